@@ -1,0 +1,102 @@
+"""How psph compiles: numba's flags, dispatch by type, and a cache that cannot go stale.
+
+An *effect*, a smoothing kernel or an equation of state is a ``NamedTuple``: its fields are its
+parameters, its methods are its formula.  numba sees the class in the value's type, so calling
+``value.method(...)`` in compiled code selects the formula at compile time and inlines it; a new
+parameter value recompiles nothing, a scene without an effect holds none of its code.
+"""
+
+import hashlib
+import os
+from pathlib import Path
+
+import llvmlite.binding as llvm
+import numba
+from numba.core import types
+from numba.extending import intrinsic, overload, overload_method, register_jitable
+
+FAST = frozenset({"contract", "reassoc", "arcp", "nsz", "afn"})
+"""Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
+no ``ninf``): a run that blows up must be seen to do so."""
+
+
+def source_digest() -> str:
+    """Fingerprint of psph's own sources, the key of the compile cache.
+
+    numba looks only at the file of the function it caches.  An effect lives in another file than
+    the pair loop that it is compiled into, so without this key an edited effect would go on
+    running as it was before.
+    """
+    package = Path(__file__).parent
+    digest = hashlib.sha256()
+    for path in sorted(package.rglob("*.py")):
+        digest.update(str(path.relative_to(package)).encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """Folder of the compiled loops: ``$PSPH_CACHE`` or the user's cache folder, one per digest."""
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    root = Path(os.environ.get("PSPH_CACHE") or Path(home) / "psph")
+    return root / source_digest()
+
+
+def _configure() -> None:
+    numba.config.CACHE_DIR = str(cache_folder())
+    numba.config.CPU_NAME = numba.config.CPU_NAME or llvm.get_host_cpu_name()
+    if not numba.config.CPU_FEATURES:
+        # 512-bit vectors where the processor has them: LLVM would prefer 256.
+        features = llvm.get_host_cpu_features().flatten()
+        numba.config.CPU_FEATURES = features + ",-prefer-256-bit"
+
+
+_configure()
+
+compiled = numba.njit(cache=True, fastmath=FAST, error_model="numpy")
+"""Decorator of every compiled loop: a module-level function, kept in the cache."""
+
+_NAMED = (types.NamedTuple, types.NamedUniTuple)
+
+
+def callable_by_type(name: str) -> None:
+    """Make ``value.name(...)`` of any NamedTuple that has such a method callable when compiled."""
+
+    def resolve(self, *args):
+        formula = register_jitable(getattr(self.instance_class, name))
+
+        def call(self, *args):
+            return formula(self, *args)
+
+        return call
+
+    for kind in _NAMED:
+        overload_method(kind, name)(resolve)
+
+
+def method_of(named_type, name: str):
+    """The compiled form of method ``name`` of a NamedTuple's class, or None if it has none."""
+    formula = getattr(named_type.instance_class, name, None)
+    return formula and register_jitable(formula)
+
+
+@intrinsic
+def _minnum(typing, a, b):
+    def build(context, builder, signature, args):
+        # With plain flags LLVM keeps a min reduction scalar (3 to 8 times slower): only this one
+        # instruction gets them all.
+        kind = args[0].type
+        function = builder.module.declare_intrinsic("llvm.minnum", [kind])
+        return builder.call(function, args, fastmath=("fast",))
+
+    return types.float64(types.float64, types.float64), build
+
+
+def minimum(a: float, b: float) -> float:
+    """The smaller of two numbers, as a reduction that vectorises."""
+    return a if a < b else b
+
+
+@overload(minimum)
+def _minimum(a, b):
+    return lambda a, b: _minnum(a, b)

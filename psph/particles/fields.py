@@ -1,0 +1,42 @@
+"""The one table of what a particle can carry."""
+
+from typing import NamedTuple
+
+FLUID, WALL = 0, 1
+"""Values of ``kind``: a fluid particle moves, a wall particle stays."""
+
+
+class Field(NamedTuple):
+    """A quantity that each particle carries.
+
+    ``vector``: one number per dimension.  ``state``: travels with its particle from step to step;
+    what is not is computed anew in each step.  ``saved``: stands in every frame.
+    """
+
+    unit: str
+    meaning: str
+    vector: bool = False
+    state: bool = True
+    saved: bool = False
+    dtype: str = "float64"
+
+
+FIELDS = {
+    "id": Field("1", "number of the particle, unique and constant", saved=True, dtype="int64"),
+    "kind": Field("1", "0 fluid, 1 wall", saved=True, dtype="uint8"),
+    "position": Field("m", "place", vector=True, saved=True),
+    "velocity": Field("m/s", "velocity", vector=True, saved=True),
+    "density": Field("kg/m3", "density", saved=True),
+    "pressure": Field("Pa", "pressure by the equation of state", saved=True),
+    "specific_volume": Field("m3/kg", "1/density, as the forces read it"),
+    "predicted_velocity": Field("m/s", "velocity at the end of the step, predicted", vector=True),
+    "acceleration": Field("m/s2", "acceleration of the last pass", vector=True),
+    "density_rate": Field("kg/(m3 s)", "rate of density of the last pass"),
+    "density_rate_1": Field("kg/(m3 s)", "rate of density one step before"),
+    "density_rate_2": Field("kg/(m3 s)", "rate of density two steps before"),
+    "listed_position": Field("m", "place when the neighbour list was built", vector=True),
+    "mass": Field("kg", "mass"),
+    "rest_density": Field("kg/m3", "density at zero pressure"),
+    "viscosity": Field("m2/s", "kinematic viscosity"),
+    "kernel_sum": Field("1", "sum of W m/rho over the support, the particle included"),
+}

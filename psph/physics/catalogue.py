@@ -1,0 +1,38 @@
+"""Every effect and the key of a case that calls for it.  A new effect is one line here."""
+
+from typing import NamedTuple
+
+from psph.physics.continuity import Continuity
+from psph.physics.gravity import Gravity
+from psph.physics.pressure import MinimumPressure, SymmetricPressure
+from psph.physics.state import Linear, Tait
+from psph.physics.surface import FreeSurface
+from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
+
+
+class Entry(NamedTuple):
+    """An effect and what calls for it.
+
+    ``key`` is empty (every scene), a key of the case (present: the effect is on, and its value
+    holds the effect's parameters), or ``key=name`` for one of several choices, the first of which
+    is the default.  ``*`` stands for any name.
+    """
+
+    key: str
+    effect: type
+
+
+CATALOGUE = (
+    Entry("", Continuity),
+    Entry("physics.pressure_gradient=symmetric", SymmetricPressure),
+    Entry("physics.pressure_gradient=minimum", MinimumPressure),
+    Entry("fluids.*.viscosity", LaminarViscosity),
+    Entry("physics.artificial_viscosity", ArtificialViscosity),
+    Entry("physics.gravity", Gravity),
+    Entry("physics.free_surface", FreeSurface),
+)
+
+EQUATIONS_OF_STATE = (
+    Entry("physics.equation_of_state=linear", Linear),
+    Entry("physics.equation_of_state=tait", Tait),
+)

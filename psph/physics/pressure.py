@@ -1,0 +1,50 @@
+"""Two discrete forms of the acceleration −∇p/ρ."""
+
+from typing import NamedTuple
+
+from psph.jit import minimum
+from psph.vectors import add, scale, zero_like
+
+NOT_A_PRESSURE = 1e300
+"""Stands for a neighbour outside the support in a minimum over pressures, Pa."""
+
+
+class SymmetricPressure(NamedTuple):
+    """Pressure gradient, symmetric in the pair: conserves momentum exactly.
+
+    a_i = −Σ_j m_j (p_i/ρ_i² + p_j/ρ_j²) ∇W_ij.  SSPH paper, eq. (6); Monaghan (1992), eq. (3.3).
+    """
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return -j.mass * (i.pressure * v_i * v_i + j.pressure * v_j * v_j) * pair.dw_r
+
+
+class MinimumPressure(NamedTuple):
+    """Pressure gradient relative to the smallest neighbour pressure (p⁻): pairs only repel.
+
+    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j − p_i⁻) ∇W_ij, p_i⁻ = min_j p_j over every neighbour, ghosts and
+    walls included.  SSPH paper, eq. (15).  One pass: the sum is taken relative to p_i, and
+    (p_i − p_i⁻) Σ_j m_j/ρ_j ∇W_ij, known when the minimum is, follows at the end.
+    Conserves neither momentum nor energy; unstable with a free surface.
+    """
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the part relative to p_i, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return -j.mass * v_i * v_j * (j.pressure - i.pressure) * pair.dw_r
+
+    def start(self, i, kernel):
+        """Smallest pressure so far, and Σ_j m_j/ρ_j ∇W_ij."""
+        return NOT_A_PRESSURE, zero_like(i.position)
+
+    def gather(self, total, i, j, pair):
+        """Take neighbour j into both."""
+        inside = j.pressure if pair.dw_r < 0.0 else NOT_A_PRESSURE
+        gradient = scale(pair.x_ij, j.mass * j.specific_volume * pair.dw_r)
+        return minimum(total[0], inside), add(total[1], gradient)
+
+    def finish_acceleration(self, total, i):
+        """−(p_i − p_i⁻)/ρ_i Σ_j m_j/ρ_j ∇W_ij, m/s²."""
+        return scale(total[1], (total[0] - i.pressure) * i.specific_volume)

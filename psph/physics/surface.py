@@ -1,0 +1,37 @@
+"""What a free surface does to its particles."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+
+class FreeSurface(NamedTuple):
+    """A particle at a free surface feels no pressure.
+
+    Where Σ_j W_ij m_j/ρ_j (with the particle itself, and the walls) < β, ρ_i = ρ₀ and hence p_i = 0.
+    SSPH paper, eq. (14), β = 0.9.  The sum is gathered in the same pass as the forces and acts on
+    the density of the next step.  Resetting ρ costs mass-consistency: a still surface without it
+    is quieter.
+    """
+
+    threshold: Annotated[
+        float, Field(gt=0, lt=2, description="β: below this kernel sum a particle is surface")
+    ] = 0.9
+
+    writes = "kernel_sum"
+
+    def start(self, i, kernel):
+        """The particle's own share, W(0) m_i/ρ_i."""
+        return kernel.w(0.0) * i.mass * i.specific_volume
+
+    def gather(self, total, i, j, pair):
+        """Add W_ij m_j/ρ_j."""
+        return total + j.mass * j.specific_volume * pair.w
+
+    def finish_value(self, total, i):
+        """Σ_j W_ij m_j/ρ_j, stored as ``kernel_sum``."""
+        return total
+
+    def limit_density(self, i, rho):
+        """ρ₀ on the surface, ρ inside, kg/m^d."""
+        return i.rest_density if i.kernel_sum < self.threshold else rho

@@ -1,0 +1,46 @@
+"""Friction between particles: the fluid's own, and a numerical one."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+SINGULARITY = 0.01
+"""η² = 0.01 h² keeps r² + η² away from zero."""
+
+
+class LaminarViscosity(NamedTuple):
+    """Newtonian friction of the fluid's own viscosity.
+
+    a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·∇W_ij / [(ρ_i + ρ_j)² (r² + 0.01 h²)] u_ij, μ = ρν.
+    SSPH paper, eq. (6); Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
+    """
+
+    def shear(self, i, j, pair):
+        """Coefficient of u_ij in the acceleration, 1/s."""
+        rho_i, rho_j = 1.0 / i.specific_volume, 1.0 / j.specific_volume
+        mu = i.viscosity * rho_i + j.viscosity * rho_j
+        h = i.smoothing_length
+        rho = rho_i + rho_j
+        return (
+            4.0 * j.mass * mu * pair.r2 * pair.dw_r
+            / (rho * rho * (pair.r2 + SINGULARITY * h * h))
+        )
+
+
+class ArtificialViscosity(NamedTuple):
+    """Numerical friction between approaching particles: it spreads shocks and calms noise.
+
+    a_i = −Σ_j m_j Π_ij ∇W_ij, Π = (−α c μ + β μ²)/ρ̄, μ = h u_ij·x_ij/(r² + 0.01 h²) where the pair
+    approaches, else 0.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30, 543, eq. (4.1).
+    """
+
+    alpha: Annotated[float, Field(ge=0, description="linear coefficient α")] = 0.05
+    beta: Annotated[float, Field(ge=0, description="quadratic coefficient β")] = 0.0
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        h, c = i.smoothing_length, i.sound_speed
+        v_i, v_j = i.specific_volume, j.specific_volume
+        mu = min(h * pair.u_dot_x / (pair.r2 + SINGULARITY * h * h), 0.0)
+        inverse_rho = 2.0 * v_i * v_j / (v_i + v_j)
+        return j.mass * (self.alpha * c - self.beta * mu) * mu * inverse_rho * pair.dw_r

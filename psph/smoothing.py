@@ -1,0 +1,204 @@
+"""Smoothing kernels W(r, h): what a particle weighs its neighbours with.
+
+One class a kernel and one line in ``KERNELS``.  Each is written in s = r/h and vanishes for
+s ≥ ``support``; ``norm`` holds the constants that make ∫W dV = 1 in 1D, 2D and 3D (times h^-d).
+All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
+"""
+
+import math
+from typing import NamedTuple
+
+from psph.jit import callable_by_type
+
+callable_by_type("w")
+callable_by_type("dw")
+
+
+class Cubic(NamedTuple):
+    """Cubic spline, W = α[(2−s)³₊ − 4(1−s)³₊].
+
+    Monaghan & Lattanzio (1985), Astron. Astrophys. 149, 135; eq. (9) of the SSPH paper.
+    """
+
+    inverse_h: float
+    alpha: float
+
+    support = 2.0
+    norm = (1 / 6, 5 / (14 * math.pi), 1 / (4 * math.pi))
+
+    def w(self, r):
+        """W(r)."""
+        s = r * self.inverse_h
+        a, b = max(2.0 - s, 0.0), max(1.0 - s, 0.0)
+        return self.alpha * (a * a * a - 4.0 * b * b * b)
+
+    def dw(self, r):
+        """dW/dr, 1/m more than W."""
+        s = r * self.inverse_h
+        a, b = max(2.0 - s, 0.0), max(1.0 - s, 0.0)
+        return self.alpha * self.inverse_h * (12.0 * b * b - 3.0 * a * a)
+
+
+class Quintic(NamedTuple):
+    """Quintic spline, W = α[(3−s)⁵₊ − 6(2−s)⁵₊ + 15(1−s)⁵₊], support 3h.
+
+    Schoenberg (1946), Q. Appl. Math. 4, 45; Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
+    """
+
+    inverse_h: float
+    alpha: float
+
+    support = 3.0
+    norm = (1 / 120, 7 / (478 * math.pi), 1 / (120 * math.pi))
+
+    def w(self, r):
+        """W(r)."""
+        s = r * self.inverse_h
+        a, b, c = max(3.0 - s, 0.0), max(2.0 - s, 0.0), max(1.0 - s, 0.0)
+        return self.alpha * (a**5 - 6.0 * b**5 + 15.0 * c**5)
+
+    def dw(self, r):
+        """dW/dr, 1/m more than W."""
+        s = r * self.inverse_h
+        a, b, c = max(3.0 - s, 0.0), max(2.0 - s, 0.0), max(1.0 - s, 0.0)
+        return self.alpha * self.inverse_h * (-5.0 * a**4 + 30.0 * b**4 - 75.0 * c**4)
+
+
+class WendlandC2(NamedTuple):
+    """Wendland C2, W = α(1−s/2)⁴₊(1 + 2s), the same polynomial in 1D, 2D and 3D.
+
+    Wendland (1995), Adv. Comput. Math. 4, 389; Dehnen & Aly (2012), MNRAS 425, 1068.
+    """
+
+    inverse_h: float
+    alpha: float
+
+    support = 2.0
+    norm = (3 / 4, 7 / (4 * math.pi), 21 / (16 * math.pi))
+
+    def w(self, r):
+        """W(r)."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        return self.alpha * (a * a) * (a * a) * (1.0 + 2.0 * s)
+
+    def dw(self, r):
+        """dW/dr, 1/m more than W."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        return -5.0 * self.alpha * self.inverse_h * s * (a * a * a)
+
+
+class WendlandC4(NamedTuple):
+    """Wendland C4, W = α(1−s/2)⁶₊(1 + 3s + 35s²/12).  Source: see :class:`WendlandC2`."""
+
+    inverse_h: float
+    alpha: float
+
+    support = 2.0
+    norm = (27 / 32, 9 / (4 * math.pi), 495 / (256 * math.pi))
+
+    def w(self, r):
+        """W(r)."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        return self.alpha * a**6 * (1.0 + s * (3.0 + s * (35 / 12)))
+
+    def dw(self, r):
+        """dW/dr, 1/m more than W."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        return -(14 / 3) * self.alpha * self.inverse_h * s * a**5 * (1.0 + 2.5 * s)
+
+
+class WendlandC6(NamedTuple):
+    """Wendland C6, W = α(1−s/2)⁸₊(1 + 4s + 25s²/4 + 4s³).  Source: see :class:`WendlandC2`."""
+
+    inverse_h: float
+    alpha: float
+
+    support = 2.0
+    norm = (15 / 16, 39 / (14 * math.pi), 1365 / (512 * math.pi))
+
+    def w(self, r):
+        """W(r)."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        return self.alpha * a**8 * (1.0 + s * (4.0 + s * (6.25 + 4.0 * s)))
+
+    def dw(self, r):
+        """dW/dr, 1/m more than W."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        return -5.5 * self.alpha * self.inverse_h * s * a**7 * (1.0 + s * (3.5 + 4.0 * s))
+
+
+class Gaussian(NamedTuple):
+    """Gaussian, W = α exp(−s²), cut at 3h and normalised over what is left.
+
+    Gingold & Monaghan (1977), MNRAS 181, 375.  The cut leaves a step of 1.2e-4 W(0) at 3h.
+    """
+
+    inverse_h: float
+    alpha: float
+
+    support = 3.0
+    norm = (
+        1 / (math.sqrt(math.pi) * math.erf(3.0)),
+        1 / (math.pi * (1.0 - math.exp(-9.0))),
+        1 / (math.pi**1.5 * math.erf(3.0) - 6.0 * math.pi * math.exp(-9.0)),
+    )
+
+    def w(self, r):
+        """W(r)."""
+        s = r * self.inverse_h
+        return self.alpha * math.exp(-s * s) if s < 3.0 else 0.0
+
+    def dw(self, r):
+        """dW/dr, 1/m more than W."""
+        s = r * self.inverse_h
+        return -2.0 * self.alpha * self.inverse_h * s * math.exp(-s * s) if s < 3.0 else 0.0
+
+
+class Hyperbolic(NamedTuple):
+    """Hyperbolic kernel, W = α[(2−s)³₊ − 2(1−s)³₊]: W″ ≥ 0 everywhere.
+
+    Written out: s³ − 6s + 6 for s < 1 and (2−s)³ for 1 ≤ s < 2; W′ = −6α/h at s = 0, a cusp.
+    SSPH paper (Acta Phys. Sin. 61, 224701, 2012), eq. (13).
+    """
+
+    inverse_h: float
+    alpha: float
+
+    support = 2.0
+    norm = (1 / 7, 1 / (3 * math.pi), 15 / (62 * math.pi))
+
+    def w(self, r):
+        """W(r)."""
+        s = r * self.inverse_h
+        a, b = max(2.0 - s, 0.0), max(1.0 - s, 0.0)
+        return self.alpha * (a * a * a - 2.0 * b * b * b)
+
+    def dw(self, r):
+        """dW/dr, 1/m more than W."""
+        s = r * self.inverse_h
+        a, b = max(2.0 - s, 0.0), max(1.0 - s, 0.0)
+        return self.alpha * self.inverse_h * (6.0 * b * b - 3.0 * a * a)
+
+
+KERNELS = {
+    "hyperbolic": Hyperbolic,
+    "cubic": Cubic,
+    "quintic": Quintic,
+    "wendland-c2": WendlandC2,
+    "wendland-c4": WendlandC4,
+    "wendland-c6": WendlandC6,
+    "gaussian": Gaussian,
+}
+"""Every smoothing kernel by the name that a case gives it; the first is the default."""
+
+
+def kernel(name: str, smoothing_length: float, dimensions: int):
+    """The kernel ``name`` for h in m and 1, 2 or 3 dimensions; KeyError for an unknown name."""
+    cls = KERNELS[name]
+    return cls(1.0 / smoothing_length, cls.norm[dimensions - 1] / smoothing_length**dimensions)
