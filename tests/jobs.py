@@ -1,0 +1,60 @@
+"""Real mpirun jobs for the tests."""
+
+import os
+import signal
+import subprocess
+import sys
+
+
+def mpirun(n, args, *, timeout=120, env=None, **popen):
+    """Run ``python ARGS...`` on ``n`` ranks and return the finished job, whatever its code.
+
+    ``env`` adds to the environment, ``popen`` goes to `subprocess.Popen` (``cwd`` for instance).
+    The `subprocess.CompletedProcess` holds ``returncode`` and the text of ``stdout`` and
+    ``stderr``.  A job that outlives ``timeout`` seconds is ended, with all its ranks, and
+    `subprocess.TimeoutExpired` raised.
+    """
+    flags = ["--oversubscribe", "--bind-to", "none"] if _open_mpi() else []
+    command = ["mpirun", *flags, "-n", str(n), sys.executable, *map(str, args)]
+    with subprocess.Popen(
+        command,
+        env=clean_environment() | (env or {}),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        **popen,
+    ) as job:
+        try:
+            stdout, stderr = job.communicate(timeout=timeout)
+        except BaseException:
+            _end(job)
+            raise
+    return subprocess.CompletedProcess(command, job.returncode, stdout, stderr)
+
+
+def clean_environment():
+    """The environment without what makes Open MPI refuse an mpirun inside of a rank."""
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(("OMPI_", "PMIX_", "ORTE_", "PRTE_"))
+    }
+    return kept | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+def _open_mpi():
+    version = subprocess.run(["mpirun", "--version"], capture_output=True, text=True)
+    return "Open MPI" in version.stdout
+
+
+def _end(job):
+    """mpirun ends its ranks when told to stop; a rank that ignores that is killed with it."""
+    for blow in (signal.SIGTERM, signal.SIGKILL):
+        try:
+            os.killpg(job.pid, blow)
+            job.communicate(timeout=10)
+            return
+        except (subprocess.TimeoutExpired, ProcessLookupError):
+            continue
