@@ -12,10 +12,11 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 import numba
+from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic, overload, overload_method, register_jitable
 
-FAST = frozenset({"contract", "reassoc", "arcp", "nsz", "afn"})
+FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
 """Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
 no ``ninf``): a run that blows up must be seen to do so."""
 
@@ -56,22 +57,32 @@ _configure()
 compiled = numba.njit(cache=True, fastmath=FAST, error_model="numpy")
 """Decorator of every compiled loop: a module-level function, kept in the cache."""
 
-_NAMED = (types.NamedTuple, types.NamedUniTuple)
+def callable_method(name: str) -> None:
+    """Make ``value.name(a)`` of any NamedTuple that has such a method callable when compiled."""
 
+    def resolve(self, a):
+        formula = method_of(self, name)
+        return lambda self, a: formula(self, a)
 
-def callable_by_type(name: str) -> None:
-    """Make ``value.name(...)`` of any NamedTuple that has such a method callable when compiled."""
-
-    def resolve(self, *args):
-        formula = register_jitable(getattr(self.instance_class, name))
-
-        def call(self, *args):
-            return formula(self, *args)
-
-        return call
-
-    for kind in _NAMED:
+    for kind in (types.NamedTuple, types.NamedUniTuple):
         overload_method(kind, name)(resolve)
+
+
+def call_by_type(name: str):
+    """A function ``(value, *args) -> value.name(*args)`` for compiled code and plain Python.
+
+    For values that may have no parameter at all, whose methods numba cannot call directly.
+    """
+
+    def call(value, *args):
+        return getattr(value, name)(*args)
+
+    @overload(call)
+    def typed(value, *args):
+        formula = method_of(value, name)
+        return lambda value, *args: formula(value, *args)
+
+    return call
 
 
 def method_of(named_type, name: str):
@@ -86,7 +97,9 @@ def _minnum(typing, a, b):
         # With plain flags LLVM keeps a min reduction scalar (3 to 8 times slower): only this one
         # instruction gets them all.
         kind = args[0].type
-        function = builder.module.declare_intrinsic("llvm.minnum", [kind])
+        function = builder.module.declare_intrinsic(
+            "llvm.minnum", [kind], ir.FunctionType(kind, [kind, kind])
+        )
         return builder.call(function, args, fastmath=("fast",))
 
     return types.float64(types.float64, types.float64), build

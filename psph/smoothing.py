@@ -8,10 +8,10 @@ All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
 import math
 from typing import NamedTuple
 
-from psph.jit import callable_by_type
+from psph.jit import callable_method
 
-callable_by_type("w")
-callable_by_type("dw")
+callable_method("w")
+callable_method("dw")
 
 
 class Cubic(NamedTuple):

@@ -9,21 +9,18 @@ FLUID, WALL = 0, 1
 class Field(NamedTuple):
     """A quantity that each particle carries.
 
-    ``vector``: one number per dimension.  ``state``: travels with its particle from step to step;
-    what is not is computed anew in each step.  ``saved``: stands in every frame.
+    ``vector``: one number per dimension.  ``saved``: stands in every frame.
     """
 
     unit: str
     meaning: str
     vector: bool = False
-    state: bool = True
     saved: bool = False
-    dtype: str = "float64"
 
 
 FIELDS = {
-    "id": Field("1", "number of the particle, unique and constant", saved=True, dtype="int64"),
-    "kind": Field("1", "0 fluid, 1 wall", saved=True, dtype="uint8"),
+    "id": Field("1", "number of the particle, unique and constant", saved=True),
+    "kind": Field("1", "0 fluid, 1 wall", saved=True),
     "position": Field("m", "place", vector=True, saved=True),
     "velocity": Field("m/s", "velocity", vector=True, saved=True),
     "density": Field("kg/m3", "density", saved=True),
@@ -40,3 +37,4 @@ FIELDS = {
     "viscosity": Field("m2/s", "kinematic viscosity"),
     "kernel_sum": Field("1", "sum of W m/rho over the support, the particle included"),
 }
+"""Every field by name.  In 1D and 2D a mass is per m² and per m of depth, and a density per the same."""

@@ -2,9 +2,10 @@
 
 from typing import NamedTuple
 
-from psph.jit import callable_by_type
+from psph.jit import call_by_type
 
-callable_by_type("pressure")
+pressure = call_by_type("pressure")
+"""(state, density, rest_density, sound_speed) → p, Pa, in compiled code and plain Python."""
 
 
 class Linear(NamedTuple):

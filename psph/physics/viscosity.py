@@ -26,6 +26,10 @@ class LaminarViscosity(NamedTuple):
             / (rho * rho * (pair.r2 + SINGULARITY * h * h))
         )
 
+    def longest_step(self, smoothing_length, viscosity):
+        """Δt ≤ 0.125 h²/ν, s (Morris, Fox & Zhu 1997, eq. 22)."""
+        return 0.125 * smoothing_length * smoothing_length / viscosity
+
 
 class ArtificialViscosity(NamedTuple):
     """Numerical friction between approaching particles: it spreads shocks and calms noise.

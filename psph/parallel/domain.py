@@ -1,0 +1,146 @@
+"""A rank's part of the domain: rebuild it (wrap, balance, migrate, sort, halo, list), refresh it."""
+
+import numpy as np
+from mpi4py import MPI
+
+from psph.parallel.halo import Halo
+from psph.parallel.migration import migrate
+from psph.parallel.slabs import rebalanced
+from psph.particles import neighbours
+from psph.particles.cells import Grid, make_grid, number_cells, plane_histogram, sort_by_cell
+from psph.particles.store import Store
+
+GROWTH = 3.0
+"""The grid follows particles that leave the domain up to this many of its lengths outside."""
+
+
+class Domain:
+    """The slab of one rank, its ghosts and its neighbour lists.
+
+    ``cutoff`` is the kernel's support and the skin together, m; ``lower`` and ``upper`` the
+    corners of the domain, m; ``periods`` a length or None for each axis; ``ghost_fields`` what
+    ghosts need once at a rebuild and ``refreshed`` what they need in each step.
+    """
+
+    def __init__(
+        self, comm: MPI.Comm, store: Store, axis: int, cutoff: float, lower, upper, periods,
+        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...],
+    ):
+        self.comm, self.store = comm, store
+        self.axis, self.cutoff, self.periods = axis, cutoff, tuple(periods)
+        self.lower, self.upper = tuple(lower), tuple(upper)
+        self._home = (self.lower, self.upper)
+        self.ghost_fields, self.refreshed = ghost_fields, refreshed
+        self.bounds: np.ndarray | None = None
+        self.grid: Grid | None = None
+        self.halo: Halo | None = None
+        self.starts = np.zeros(1, np.int64)
+        self.lists = neighbours.empty(0, 0)
+        self.rebuilds = 0
+
+    @property
+    def planes(self) -> int:
+        """Planes of cells that this rank owns."""
+        return int(self.bounds[self.comm.rank + 1] - self.bounds[self.comm.rank])
+
+    def rebuild(self) -> None:
+        """Put every particle where it belongs and list its neighbours; collective."""
+        self._wrap()
+        self.grid = self._fit_grid()
+        cells = self._balance_and_migrate()
+        self._sort(cells)
+        self.halo.refresh(self.ghost_fields + self.refreshed)
+        self.lists = neighbours.build(
+            self.lists, self.store, self.grid, self.starts, self.planes, self.cutoff, self.periods
+        )
+        for now, listed in zip(self.store["position"], self.store["listed_position"]):
+            listed[self.store.inner] = now[self.store.inner]
+        self.rebuilds += 1
+
+    def interior(self) -> tuple[int, int]:
+        """Columns of the owned particles that have no ghost among their neighbours."""
+        per_plane = self.grid.plane_cells
+        first = self.starts[2 * per_plane] if self._partner(-1) != MPI.PROC_NULL else self.store.low
+        last = self.store.low + self.store.owned
+        if self._partner(1) != MPI.PROC_NULL:
+            last = self.starts[self.planes * per_plane]
+        return int(first), int(max(first, last))
+
+    def _partner(self, step: int) -> int:
+        rank = self.comm.rank + step
+        if self.periods[self.axis] is not None:
+            return rank % self.comm.size
+        return rank if 0 <= rank < self.comm.size else MPI.PROC_NULL
+
+    def _wrap(self) -> None:
+        inner = self.store.inner
+        for x, low, period in zip(self.store["position"], self.lower, self.periods):
+            if period is not None:
+                x = x[inner]
+                x -= period * np.floor((x - low) / period)
+                x[x >= low + period] = low  # rounding may land on the upper edge
+
+    def _fit_grid(self) -> Grid:
+        """The grid over all particles: it grows with them, never shrinks, and is the same on all."""
+        dimensions = self.store.dimensions
+        reach = np.full(2 * dimensions, -np.inf)
+        if self.store.owned:
+            for d, x in enumerate(self.store["position"]):
+                inner = x[self.store.inner]
+                reach[d], reach[dimensions + d] = -np.nanmin(inner), np.nanmax(inner)
+        self.comm.Allreduce(MPI.IN_PLACE, reach, MPI.MAX)
+        lower, upper = list(self.lower), list(self.upper)
+        for d in range(dimensions):
+            if self.periods[d] is None:
+                low, high = self._home[0][d], self._home[1][d]
+                span = GROWTH * (high - low) + 2.0 * self.cutoff
+                lower[d] = min(lower[d], max(-reach[d], low - span))
+                upper[d] = max(upper[d], min(reach[dimensions + d], high + span))
+        self.lower, self.upper = tuple(map(float, lower)), tuple(map(float, upper))
+        return make_grid(self.axis, self.cutoff, self.lower, self.upper, self.periods)
+
+    def _cells(self) -> np.ndarray:
+        store, grid = self.store, self.grid
+        cells = np.empty(store.owned, np.int64)
+        position = store["position"]
+        first = store.low
+        number_cells(
+            tuple(position[d] for d in grid.axes), first, first + store.owned,
+            grid.lower, grid.inverse, grid.along_axes, cells,
+        )
+        return cells
+
+    def _balance_and_migrate(self) -> np.ndarray:
+        cells = self._cells()
+        histogram = plane_histogram(cells, self.grid)
+        self.comm.Allreduce(MPI.IN_PLACE, histogram, MPI.SUM)
+        self.bounds = rebalanced(histogram, self.bounds, self.comm.size)
+        owner = np.searchsorted(self.bounds, cells // self.grid.plane_cells, side="right") - 1
+        return self._cells() if migrate(self.comm, self.store, owner) else cells
+
+    def _sort(self, cells: np.ndarray) -> None:
+        """Sort by cell and id, and learn from the neighbours how many ghosts there will be."""
+        store, per_plane = self.store, self.grid.plane_cells
+        base = int(self.bounds[self.comm.rank]) * per_plane
+        owned = np.empty(self.planes * per_plane + 1, np.int64)
+        order = np.empty(store.owned, np.int64)
+        sort_by_cell(cells, store.id, store.low, base, owned, order)
+        filled = np.diff(owned)
+        below, above = self._trade_planes(filled[:per_plane], filled[-per_plane:])
+        store.reorder(order, int(below.sum()), int(above.sum()))
+        counts = np.concatenate([below, filled, above])
+        self.starts = np.concatenate([[0], np.cumsum(counts)])
+        if self.halo is not None:
+            self.halo.free()
+        self.halo = Halo(
+            self.comm, store, self._partner(-1), self._partner(1),
+            int(filled[:per_plane].sum()), int(filled[-per_plane:].sum()),
+        )
+
+    def _trade_planes(self, lowest: np.ndarray, highest: np.ndarray):
+        """Cell counts of the ghost planes below and above, from the ranks that own them."""
+        below, above = np.zeros_like(lowest), np.zeros_like(highest)
+        down, up = self._partner(-1), self._partner(1)
+        self.comm.Sendrecv(highest, up, recvbuf=below, source=down)
+        self.comm.Sendrecv(lowest, down, recvbuf=above, source=up)
+        return below, above

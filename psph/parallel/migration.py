@@ -1,0 +1,48 @@
+"""Migration: every particle goes to the rank that owns its plane, however far that is."""
+
+import numpy as np
+from mpi4py import MPI
+
+from psph.particles.store import Store
+
+
+def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
+    """Send each owned particle k to rank ``owner[k]`` with all its fields; collective.
+
+    Ghosts are lost.  Arrivals stand behind the particles that stay, in rank order.  Returns
+    whether any particle of any rank moved.
+    """
+    leaving = np.flatnonzero(owner != comm.rank)
+    moved = np.array(len(leaving), dtype=np.int64)
+    comm.Allreduce(MPI.IN_PLACE, moved, MPI.SUM)
+    if moved == 0:
+        return False
+    leaving = leaving[np.argsort(owner[leaving], kind="stable")]
+    columns = store.low + leaving
+    fields = len(store.data)
+    parcel = np.empty((len(leaving), fields + 2))
+    parcel[:, :fields] = store.data[:, columns].T
+    parcel[:, fields] = store.id[columns].view(np.float64)  # the bits, not the value
+    parcel[:, fields + 1] = store.kind[columns]
+    received = _exchange(comm, parcel, np.bincount(owner[leaving], minlength=comm.size))
+    staying = store.low + np.flatnonzero(owner == comm.rank)
+    store.reorder(staying, 0, 0)
+    store.append(
+        np.ascontiguousarray(received[:, fields]).view(np.int64),
+        received[:, fields + 1].astype(np.uint8),
+        received[:, :fields].T,
+    )
+    return True
+
+
+def _exchange(comm: MPI.Comm, parcel: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """All-to-all of rows: ``counts`` (ranks,) rows of ``parcel`` for each rank, in rank order."""
+    counts = counts.astype(np.int64)
+    incoming = np.empty_like(counts)
+    comm.Alltoall(counts, incoming)
+    width = parcel.shape[1]
+    received = np.empty((int(incoming.sum()), width))
+    row = MPI.DOUBLE.Create_contiguous(width).Commit()
+    comm.Alltoallv([parcel, (counts, None), row], [received, (incoming, None), row])
+    row.Free()
+    return received

@@ -1,0 +1,35 @@
+"""Sums over all ranks that do not depend on how particles are spread over them."""
+
+import math
+
+import numpy as np
+from mpi4py import MPI
+
+BITS = 62
+"""Bits of a signed 64-bit integer that a sum may fill."""
+
+
+def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
+    """Sums of the columns of ``terms`` (n, k) over all ranks, the same bits in any order.
+
+    Each term is rounded once to a multiple of a common unit, 2^-62 of the largest term times the
+    number of terms, and integers are added.  The error is at most n/2 units; NaN or infinity in a
+    column makes its sum NaN.  Collective.
+    """
+    terms = np.atleast_2d(terms)
+    extremes = np.zeros(terms.shape[1] + 1)
+    if len(terms):
+        with np.errstate(invalid="ignore"):
+            extremes[:-1] = np.abs(terms).max(axis=0)
+    extremes[np.isnan(extremes)] = np.inf
+    count = np.array(len(terms), dtype=np.int64)
+    comm.Allreduce(MPI.IN_PLACE, extremes, MPI.MAX)
+    comm.Allreduce(MPI.IN_PLACE, count, MPI.SUM)
+    largest, finite = extremes[:-1], np.isfinite(extremes[:-1])
+    room = BITS - max(int(count), 1).bit_length()
+    exponents = np.array([math.frexp(x)[1] if x > 0 and ok else 0 for x, ok in zip(largest, finite)])
+    whole = np.rint(np.ldexp(np.where(finite, terms, 0.0), room - exponents)).astype(np.int64)
+    total = whole.sum(axis=0)
+    comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
+    sums = np.array([math.ldexp(int(t), int(e) - room) for t, e in zip(total, exponents)])
+    return np.where(finite, sums, np.nan)

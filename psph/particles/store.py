@@ -1,0 +1,121 @@
+"""The particles of one rank as a structure of arrays: [low ghosts | owned | high ghosts]."""
+
+import numpy as np
+
+from psph.particles.fields import FIELDS
+
+SLACK = 64
+"""Entries past the last particle: a vector load may touch them."""
+
+FAR = 1e30
+"""Coordinate of the dummy neighbour that pads the rows of a list, m: outside every support."""
+
+
+class Store:
+    """All numbers of this rank's particles in one block, a row a component.
+
+    ``data`` (rows, capacity) float64 holds the fields named; ``id`` (int64) and ``kind`` (uint8)
+    stand beside it.  Owned particles fill columns ``low`` to ``low + owned``, ghosts lie before
+    and behind, and one dummy particle follows the last ghost.  ``constants`` are quantities that
+    the whole scene shares: they need no array.
+    """
+
+    def __init__(self, dimensions: int, names: tuple[str, ...], constants: dict[str, float]):
+        self.dimensions = dimensions
+        self.constants = dict(constants)
+        self.rows: dict[str, range] = {}
+        first = 0
+        for name in names:
+            width = dimensions if FIELDS[name].vector else 1
+            self.rows[name] = range(first, first + width)
+            first += width
+        self.low = self.owned = self.high = 0
+        self.data = np.zeros((first, SLACK))
+        self.id = np.zeros(SLACK, np.int64)
+        self.kind = np.zeros(SLACK, np.uint8)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.rows
+
+    def __getitem__(self, name: str):
+        """The field over all columns: an array, or a tuple of component arrays for a vector."""
+        rows = self.rows[name]
+        if FIELDS[name].vector:
+            return tuple(self.data[row] for row in rows)
+        return self.data[rows.start]
+
+    def rotate(self, *names: str) -> None:
+        """Each field takes the rows of the one before, the first those of the last; no copy."""
+        rows = [self.rows[name] for name in names]
+        self.rows.update(zip(names, [rows[-1], *rows[:-1]]))
+
+    @property
+    def total(self) -> int:
+        """Owned particles and ghosts; also the column of the dummy."""
+        return self.low + self.owned + self.high
+
+    @property
+    def capacity(self) -> int:
+        """Columns of ``data``."""
+        return self.data.shape[1]
+
+    @property
+    def inner(self) -> slice:
+        """Columns of the owned particles."""
+        return slice(self.low, self.low + self.owned)
+
+    @property
+    def bytes(self) -> int:
+        """Memory of all arrays."""
+        return self.data.nbytes + self.id.nbytes + self.kind.nbytes
+
+    def value(self, name: str):
+        """Array(s) of a field, its constant, or None where the scene lacks it."""
+        return self[name] if name in self.rows else self.constants.get(name)
+
+    def owned_rows(self, name: str) -> np.ndarray:
+        """This rank's values as people read them: ``(owned,)`` or ``(owned, dim)``, a copy."""
+        if name in ("id", "kind"):
+            return getattr(self, name)[self.inner].copy()
+        if name not in self.rows:
+            return np.full(self.owned, self.constants[name])
+        rows = self.rows[name]
+        block = self.data[rows.start : rows.stop, self.inner]
+        return np.ascontiguousarray(block.T) if FIELDS[name].vector else block[0].copy()
+
+    def reserve(self, columns: int) -> None:
+        """Make room for so many particles and the dummy; contents stay."""
+        if columns + SLACK <= self.capacity:
+            return
+        wide = columns + columns // 16 + SLACK
+        for name in ("data", "id", "kind"):
+            old = getattr(self, name)
+            new = np.zeros((*old.shape[:-1], wide), old.dtype)
+            new[..., : old.shape[-1]] = old
+            setattr(self, name, new)
+
+    def append(self, ids: np.ndarray, kinds: np.ndarray, block: np.ndarray) -> None:
+        """Add owned particles behind the last; ``block`` (rows, n).  Ghosts are lost."""
+        n = len(ids)
+        end = self.low + self.owned
+        self.high = 0
+        self.reserve(end + n)
+        self.data[:, end : end + n] = block
+        self.id[end : end + n] = ids
+        self.kind[end : end + n] = kinds
+        self.owned += n
+
+    def reorder(self, order: np.ndarray, low: int, high: int) -> None:
+        """Let the owned columns become the columns ``order``, behind ``low`` ghosts to come."""
+        n = len(order)
+        self.reserve(max(low + n + high, self.total))
+        for array in (*self.data, self.id, self.kind):
+            array[low : low + n] = array[order]
+        self.low, self.owned, self.high = low, n, high
+        self._place_dummy()
+
+    def _place_dummy(self) -> None:
+        # Harmless as a neighbour: outside every support and, being 1, safe to divide by.
+        self.data[:, self.total] = 1.0
+        for row in self.rows["position"]:
+            self.data[row, self.total] = FAR

@@ -1,0 +1,237 @@
+"""Composition: a tuple of effects becomes one loop body, selected by the tuple's type.
+
+Each walker below exists twice: as plain Python (``NUMBA_DISABLE_JIT``, tests, the plan's trial
+call) and as a recursion over the tuple's type, which numba resolves while compiling.  An effect
+that lacks a method leaves no trace in the compiled loop.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.core import types
+from numba.extending import overload, register_jitable
+
+from psph.jit import method_of
+from psph.vectors import add, at, dot, nearest_image, subtract, zero_like
+
+
+class ParticleView(NamedTuple):
+    """What effects can read of a particle: arrays of all, or the values of one.
+
+    An entry is an array where the quantity varies, a number where the whole scene shares one
+    value, and None where the scene lacks it.  Vectors are tuples of components.
+    """
+
+    position: Any
+    velocity: Any = None
+    pressure: Any = None
+    specific_volume: Any = None
+    mass: Any = None
+    rest_density: Any = None
+    viscosity: Any = None
+    kernel_sum: Any = None
+    sound_speed: Any = None
+    smoothing_length: Any = None
+
+
+class Pair(NamedTuple):
+    """Geometry of an ordered pair; what no effect reads is not computed."""
+
+    x_ij: Any
+    """x_i − x_j, m, nearest periodic image."""
+    u_ij: Any
+    """u_i − u_j, m/s."""
+    r2: Any
+    """|x_ij|², m²."""
+    u_dot_x: Any
+    """u_ij·x_ij, m²/s."""
+    w: Any
+    """W_ij, 1/m^d."""
+    dw_r: Any
+    """W′(r)/r, so that ∇W_ij = dw_r x_ij; negative inside the support, zero outside."""
+
+
+def take(view: ParticleView, k: int) -> ParticleView:
+    """The values of particle ``k``."""
+    return ParticleView(*_take_each(tuple(view), k))
+
+
+def _take_each(entries, k):
+    return tuple(_entry(entry, k) for entry in entries)
+
+
+def _entry(entry, k):
+    if isinstance(entry, tuple):
+        return at(entry, k)
+    return entry[k] if isinstance(entry, np.ndarray) else entry
+
+
+@overload(_entry)
+def _typed_entry(entry, k):
+    if isinstance(entry, types.BaseTuple):
+        return lambda entry, k: at(entry, k)
+    if isinstance(entry, types.Array):
+        return lambda entry, k: entry[k]
+    return lambda entry, k: entry
+
+
+@overload(_take_each)
+def _typed_take_each(entries, k):
+    if len(entries) == 0:
+        return lambda entries, k: ()
+    return lambda entries, k: (_entry(entries[0], k),) + _take_each(entries[1:], k)
+
+
+@overload(take)
+def _typed_take(view, k):
+    return lambda view, k: ParticleView(*_take_each(tuple(view), k))
+
+
+@register_jitable
+def geometry(kernel, periods, tiny, i, j):
+    """Pair of the particle views ``i`` and ``j``; ``tiny`` (m²) keeps r from zero."""
+    x_ij = nearest_image(subtract(i.position, j.position), periods)
+    u_ij = subtract(i.velocity, j.velocity)
+    r2 = dot(x_ij, x_ij)
+    r = np.sqrt(r2 + tiny)
+    return Pair(x_ij, u_ij, r2, dot(u_ij, x_ij), kernel.w(r), kernel.dw(r) / r)
+
+
+def _sum_of(name: str, first, join):
+    """A walker: the sum of ``effect.name(*args)`` over those effects that have such a method."""
+    empty, plus = register_jitable(first), register_jitable(join)
+
+    def total(effects, *args):
+        value = first(*args)
+        for effect in effects:
+            if hasattr(effect, name):
+                value = join(value, getattr(effect, name)(*args))
+        return value
+
+    @overload(total)
+    def typed(effects, *args):
+        if len(effects) == 0:
+            return lambda effects, *args: empty(*args)
+        term = method_of(effects[0], name)
+        if term is None:
+            return lambda effects, *args: total(effects[1:], *args)
+        return lambda effects, *args: plus(total(effects[1:], *args), term(effects[0], *args))
+
+    return total
+
+
+def _no_number(*args):
+    return 0.0
+
+
+def _plus(a, b):
+    return a + b
+
+
+density_rate = _sum_of("density_rate", _no_number, _plus)
+"""(effects, i, j, pair) → a neighbour's share of dρ_i/dt, kg/(m^d s)."""
+radial = _sum_of("radial", _no_number, _plus)
+"""(effects, i, j, pair) → coefficient of x_ij in the acceleration, 1/s²."""
+shear = _sum_of("shear", _no_number, _plus)
+"""(effects, i, j, pair) → coefficient of u_ij in the acceleration, 1/s."""
+body = _sum_of("body", lambda i: zero_like(i.position), lambda a, b: add(a, b))
+"""(effects, i) → acceleration from outside, m/s²."""
+
+
+def limit_density(effects, i, rho):
+    """ρ after every effect that bounds it, kg/m^d."""
+    for effect in effects:
+        if hasattr(effect, "limit_density"):
+            rho = effect.limit_density(i, rho)
+    return rho
+
+
+@overload(limit_density)
+def _typed_limit_density(effects, i, rho):
+    if len(effects) == 0:
+        return lambda effects, i, rho: rho
+    limit = method_of(effects[0], "limit_density")
+    if limit is None:
+        return lambda effects, i, rho: limit_density(effects[1:], i, rho)
+    return lambda effects, i, rho: limit_density(effects[1:], i, limit(effects[0], i, rho))
+
+
+# A reduction is an effect with a sum of its own: start -> gather, gather, ... -> finish.
+
+
+def start(reductions, i, kernel):
+    """The empty sums of all reductions."""
+    return tuple(effect.start(i, kernel) for effect in reductions)
+
+
+@overload(start)
+def _typed_start(reductions, i, kernel):
+    if len(reductions) == 0:
+        return lambda reductions, i, kernel: ()
+    first = method_of(reductions[0], "start")
+    return lambda reductions, i, kernel: (
+        (first(reductions[0], i, kernel),) + start(reductions[1:], i, kernel)
+    )
+
+
+def gather(reductions, totals, i, j, pair):
+    """All sums with neighbour j in them."""
+    return tuple(
+        effect.gather(total, i, j, pair) for effect, total in zip(reductions, totals)
+    )
+
+
+@overload(gather)
+def _typed_gather(reductions, totals, i, j, pair):
+    if len(reductions) == 0:
+        return lambda reductions, totals, i, j, pair: ()
+    first = method_of(reductions[0], "gather")
+    return lambda reductions, totals, i, j, pair: (
+        (first(reductions[0], totals[0], i, j, pair),)
+        + gather(reductions[1:], totals[1:], i, j, pair)
+    )
+
+
+def finish_acceleration(reductions, totals, i):
+    """What the finished sums add to the acceleration, m/s²."""
+    acceleration = zero_like(i.position)
+    for effect, total in zip(reductions, totals):
+        if hasattr(effect, "finish_acceleration"):
+            acceleration = add(acceleration, effect.finish_acceleration(total, i))
+    return acceleration
+
+
+@overload(finish_acceleration)
+def _typed_finish_acceleration(reductions, totals, i):
+    if len(reductions) == 0:
+        return lambda reductions, totals, i: zero_like(i.position)
+    finish = method_of(reductions[0], "finish_acceleration")
+    if finish is None:
+        return lambda reductions, totals, i: finish_acceleration(reductions[1:], totals[1:], i)
+    return lambda reductions, totals, i: add(
+        finish_acceleration(reductions[1:], totals[1:], i), finish(reductions[0], totals[0], i)
+    )
+
+
+def finish_value(reductions, totals, i, k, written):
+    """Store the finished sums that are fields: ``written`` has an array or None for each."""
+    for effect, total, array in zip(reductions, totals, written):
+        if array is not None:
+            array[k] = effect.finish_value(total, i)
+
+
+@overload(finish_value)
+def _typed_finish_value(reductions, totals, i, k, written):
+    if len(reductions) == 0:
+        return lambda reductions, totals, i, k, written: None
+    finish = method_of(reductions[0], "finish_value")
+    if finish is None:
+        return lambda reductions, totals, i, k, written: finish_value(
+            reductions[1:], totals[1:], i, k, written[1:]
+        )
+
+    def store(reductions, totals, i, k, written):
+        written[0][k] = finish(reductions[0], totals[0], i)
+        finish_value(reductions[1:], totals[1:], i, k, written[1:])
+
+    return store

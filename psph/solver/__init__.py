@@ -1,0 +1,1 @@
+"""Plan, pair loop, integrator, step, run: a case becomes a simulation."""

@@ -1,0 +1,189 @@
+"""The plan: exactly the effects, fields and messages that a scene calls for, and why."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from psph.particles.fields import FIELDS
+from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
+from psph.physics.compose import ParticleView
+from psph.physics.trial import Reads, reads
+
+ALWAYS = (
+    "position", "velocity", "predicted_velocity", "acceleration", "listed_position",
+    "density", "density_rate", "density_rate_1", "density_rate_2", "specific_volume", "pressure",
+)
+"""Fields of every scene."""
+
+PER_MATERIAL = ("mass", "rest_density", "viscosity")
+"""Quantities fixed at the start: one number where all materials agree, else an array."""
+
+FORCE_LIMIT = 0.25
+"""Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
+
+
+class Called(NamedTuple):
+    """An effect of the scene, the key of the case that called for it, and what it reads."""
+
+    effect: Any
+    reason: str
+    reads: Reads
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What will be simulated.  It prints itself: see psph.solver.explain."""
+
+    called: tuple[Called, ...]
+    absent: tuple[Entry, ...]
+    kernel: Any
+    state: Any
+    state_reason: str
+    smoothing_length: float
+    constants: dict[str, float]
+    arrays: tuple[str, ...]
+    refreshed: tuple[str, ...]
+    ghost_fields: tuple[str, ...]
+    cfl: float
+    fixed_step: float | None
+
+    @property
+    def effects(self) -> tuple:
+        """The tuple whose type selects the compiled loop."""
+        return tuple(call.effect for call in self.called)
+
+    @property
+    def reductions(self) -> tuple:
+        """Effects with a sum of their own."""
+        return tuple(e for e in self.effects if hasattr(e, "start"))
+
+    @property
+    def limits_density(self) -> bool:
+        """Whether an effect bounds the density: then the first forces are computed twice."""
+        return any(hasattr(e, "limit_density") for e in self.effects)
+
+    def longest_step(self, speed: float, acceleration: float) -> tuple[float, str]:
+        """Δt in s and the name of the limit that sets it, for the largest |v| and |a|."""
+        return min(self.step_limits(speed, acceleration), key=lambda limit: limit[0])
+
+    def step_limits(self, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
+        """Every limit of the time step with its name, s."""
+        if self.fixed_step is not None:
+            yield self.fixed_step, "time.step"
+            return
+        h = self.smoothing_length
+        yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
+        if acceleration > 0.0:
+            yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
+        for effect in self.effects:
+            if hasattr(effect, "longest_step"):
+                yield effect.longest_step(h, self._largest["viscosity"]), "viscosity"
+
+    _largest: dict[str, float]
+
+
+def make_plan(scene) -> Plan:
+    """The plan of a scene (psph.scene.Scene)."""
+    case = scene.case
+    calls = [(entry, *found) for entry in CATALOGUE if (found := _called_for(case, entry))]
+    called = tuple(
+        Called(effect, reason, reads(effect, scene.dimensions, scene.kernel))
+        for _, effect, reason in calls
+    )
+    present = {entry for entry, *_ in calls}
+    [(state, state_reason)] = filter(None, (_called_for(case, e) for e in EQUATIONS_OF_STATE))
+    own = frozenset().union(*(c.reads.own | c.reads.neighbour for c in called)) | {"rest_density"}
+    shared, varying = _split(scene, own)
+    written = tuple(e.writes for e in (c.effect for c in called) if hasattr(e, "writes"))
+    neighbour = _read_of_neighbours(called)
+    return Plan(
+        called=called,
+        absent=tuple(e for e in CATALOGUE if e not in present),
+        kernel=scene.kernel,
+        state=state,
+        state_reason=state_reason,
+        smoothing_length=scene.smoothing_length,
+        constants=shared
+        | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
+        arrays=ALWAYS + varying + written,
+        refreshed=tuple(n for n in FIELDS if n in neighbour and n in ALWAYS + written),
+        ghost_fields=tuple(n for n in varying if n in neighbour),
+        cfl=case.time.cfl,
+        fixed_step=case.time.step,
+        _largest={"viscosity": max(m.viscosity for m in scene.materials)},
+    )
+
+
+def _read_of_neighbours(called) -> set[str]:
+    """Names of the fields that some effect reads of a neighbour."""
+    names = {"position"}.union(*(c.reads.neighbour for c in called))
+    if any(c.reads.pair & {"u_ij", "u_dot_x"} for c in called):
+        names.add("velocity")
+    return {"predicted_velocity" if n == "velocity" else n for n in names}
+
+
+def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Material quantities that the scene reads: shared values, and names of those that vary."""
+    shared, varying = {}, []
+    for name in PER_MATERIAL:
+        values = {scene.material_value(m, name) for m in scene.materials}
+        if name != "mass" and name not in names:
+            continue
+        if len(values) == 1:
+            shared[name] = values.pop()
+        else:
+            varying.append(name)
+    return shared, tuple(varying)
+
+
+def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
+    """The effect with its parameters and why it is there, or None."""
+    if not entry.key:
+        return entry.effect(), "every scene"
+    key, _, choice = entry.key.partition("=")
+    for path, value, given in _values(case, key.split(".")):
+        by = f"{path} = {_plain(value)}" + ("" if given else " (default)")
+        if choice:
+            if value == choice:
+                return entry.effect(), by
+        elif "*" in key:
+            if value:
+                return entry.effect(), by
+        elif value is not None:
+            return entry.effect(**_parameters(value)), by
+    return None
+
+
+def _values(node, keys: list[str], path: str = "", given: bool = True):
+    """Every (path, value, whether the case gives it) that a key with ``*`` stands for."""
+    if not keys:
+        yield path, node, given
+        return
+    head, *rest = keys
+    names = list(node) if head == "*" else [head]
+    for name in names:
+        below = node[name] if isinstance(node, dict) else getattr(node, name)
+        set_here = isinstance(node, dict) or name in node.model_fields_set
+        yield from _values(below, rest, f"{path}.{name}".strip("."), given and set_here)
+
+
+def _parameters(value) -> dict[str, Any]:
+    return {name: _as_number(x) for name, x in dict(value).items()}
+
+
+def _as_number(x):
+    return tuple(map(float, x)) if isinstance(x, (list, tuple)) else float(x)
+
+
+def _plain(value) -> str:
+    if hasattr(value, "model_fields"):
+        inner = ", ".join(f"{k} = {_plain(v)}" for k, v in dict(value).items())
+        return "{ " + inner + " }"
+    return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"
+
+
+def particle_view(store, predicted: bool = True) -> ParticleView:
+    """What effects see of the particles of a store."""
+    names = {name: name for name in ParticleView._fields}
+    names["velocity"] = "predicted_velocity"
+    return ParticleView(*(store.value(names[name]) for name in ParticleView._fields))

@@ -1,0 +1,141 @@
+"""The simulation of one rank, and its step."""
+
+import numpy as np
+from mpi4py import MPI
+
+from psph.output.ledger import Ledger
+from psph.parallel.domain import Domain
+from psph.particles.store import Store
+from psph.solver.integrator import kick, kick_drift_predict
+from psph.solver.pairs import TINY, sum_over_neighbours
+from psph.solver.plan import Plan, particle_view
+
+TOO_FAST = 1000.0
+"""A particle at this many speeds of sound is a run that blew up."""
+
+
+class BlowUp(ArithmeticError):
+    """The numbers of a run left the finite, on whatever rank; raised on all."""
+
+
+class Simulation:
+    """Particles, domain and clock; ``step`` advances them.
+
+    ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
+    scene.  ``time`` in s, ``dt`` the last step.
+    """
+
+    def __init__(self, scene, plan: Plan, store: Store, comm: MPI.Comm, ledger: Ledger):
+        self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
+        support = scene.kernel.support * scene.smoothing_length
+        self.skin = scene.case.neighbours.skin * support
+        self.periods = tuple(scene.periods)
+        self.tiny = TINY * scene.smoothing_length**2
+        self.domain = Domain(
+            comm, store, scene.axis, support + self.skin, scene.lower, scene.upper,
+            scene.periods, plan.ghost_fields, plan.refreshed,
+        )
+        self.time, self.dt, self.steps = 0.0, 0.0, 0
+        self.limited_by = ""
+        self._start()
+
+    def step(self) -> None:
+        """Advance by one time step."""
+        self.dt, self.limited_by = self.plan.longest_step(self.speed, self.acceleration)
+        crossed = self._listed_reach(self.dt)
+        with self.ledger("kick, drift, predict"):
+            self._predict(self.dt)
+        if crossed:
+            with self.ledger("rebuild"):
+                self.domain.rebuild()
+            self._forces()
+        else:
+            self._forces_while_refreshing()
+        with self.ledger("kick"):
+            self._kick(self.dt)
+        self.time += self.dt
+        self.steps += 1
+
+    def _start(self) -> None:
+        """First forces, from particles at rest in time: predicted is initial."""
+        self._predict(0.0)
+        with self.ledger("rebuild"):
+            self.domain.rebuild()
+        self._forces()
+        if self.plan.limits_density:  # its first verdict comes with the first sums
+            self._kick(0.0)
+            self._predict(0.0)
+            self._forces_while_refreshing()
+        for older in ("density_rate_1", "density_rate_2"):
+            self.store[older][:] = self.store["density_rate"]
+        self._kick(0.0)
+
+    def _listed_reach(self, dt: float) -> bool:
+        """Whether a particle could leave half the skin within ``dt``; the same on every rank."""
+        ahead = self.moved + dt * (self.speed + 0.5 * dt * self.acceleration)
+        return not ahead < 0.5 * self.skin
+
+    def _forces(self) -> None:
+        with self.ledger("pairs"):
+            self._sum(self.store.low, self.store.low + self.store.owned)
+
+    def _forces_while_refreshing(self) -> None:
+        """Interior particles are computed while the halo travels, then the rim."""
+        first, last = self.domain.interior()
+        halo, fields = self.domain.halo, self.plan.refreshed
+        with self.ledger("halo"):
+            halo.start(fields)
+        with self.ledger("pairs"):
+            self._sum(first, last)
+        with self.ledger("halo"):
+            halo.finish(fields)
+        with self.ledger("pairs"):
+            self._sum(self.store.low, first)
+            self._sum(last, self.store.low + self.store.owned)
+
+    def _predict(self, dt: float) -> None:
+        s, plan = self.store, self.plan
+        kick_drift_predict(
+            dt, s.low, s.low + s.owned, plan.effects, plan.state, particle_view(s), s.kind,
+            s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
+            s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
+            s["specific_volume"], s["pressure"],
+        )
+        s.rotate("density_rate", "density_rate_1", "density_rate_2")
+
+    def _sum(self, first: int, last: int) -> None:
+        s, plan, lists = self.store, self.plan, self.domain.lists
+        written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
+        sum_over_neighbours(
+            plan.effects, plan.reductions, plan.kernel, self.periods, self.tiny,
+            particle_view(s), first, last, s.low, lists.begin, lists.blocks, lists.lists,
+            s["acceleration"], s["density_rate"], written,
+        )
+
+    def _kick(self, dt: float) -> None:
+        """Second kick; then the largest speed, acceleration and displacement over all ranks."""
+        s = self.store
+        *largest, broken = kick(
+            dt, s.low, s.low + s.owned, self.plan.effects, particle_view(s), s.kind,
+            s["position"], s["listed_position"], s["velocity"], s["acceleration"],
+            s["density"], s["density_rate"],
+        )
+        lost = float(s.id[broken]) + 1.0 if broken >= 0 else 0.0
+        extremes = np.array([*largest, lost])
+        with self.ledger("limits"):
+            self.comm.Allreduce(MPI.IN_PLACE, extremes, MPI.MAX)
+        self.speed, self.acceleration, self.moved = np.sqrt(extremes[:3]).tolist()
+        too_fast = self.speed > TOO_FAST * self.plan.constants["sound_speed"]
+        if extremes[3] > 0.0 or too_fast:
+            self._report_blow_up(int(extremes[3]) - 1)
+
+    def _report_blow_up(self, particle: int) -> None:
+        what = (
+            f"particle {particle} has a position, velocity or density that is not finite"
+            if particle >= 0
+            else f"a particle moves at {self.speed:.3g} m/s, over {TOO_FAST:g} speeds of sound"
+        )
+        raise BlowUp(
+            f"the run blew up at step {self.steps}, time {self.time:.6g} s: {what}; "
+            "try a smaller time.cfl, physics.artificial_viscosity or another scheme"
+        )
