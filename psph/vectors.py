@@ -96,8 +96,18 @@ def _put(arrays, k, a):
 
 
 def nearest_image(a: Vector, periods: tuple) -> Vector:
-    """Difference of positions between nearest periodic images; ``None`` marks an open axis."""
-    return tuple(x if p is None else x - p * round(x / p) for x, p in zip(a, periods))
+    """Difference of positions between nearest periodic images; ``None`` marks an open axis.
+
+    One period at the most is taken off or added, so that a far dummy particle stays far.
+    """
+    return tuple(x if p is None else _wrapped(x, p) for x, p in zip(a, periods))
+
+
+@register_jitable
+def _wrapped(x, period):
+    down = period if x > 0.5 * period else 0.0
+    up = period if x < -0.5 * period else 0.0
+    return x - down + up
 
 
 @overload(nearest_image)
@@ -106,9 +116,16 @@ def _nearest_image(a, periods):
         return lambda a, periods: ()
     if isinstance(periods[0], types.NoneType):
         return lambda a, periods: (a[0],) + nearest_image(a[1:], periods[1:])
+    return lambda a, periods: (_wrapped(a[0], periods[0]),) + nearest_image(a[1:], periods[1:])
 
-    def wrap(a, periods):
-        here = a[0] - periods[0] * np.rint(a[0] / periods[0])
-        return (here,) + nearest_image(a[1:], periods[1:])
 
-    return wrap
+def columns_like(arrays: tuple, n: int) -> tuple:
+    """As many new component arrays as ``arrays`` has, ``n`` entries each."""
+    return tuple(np.empty(n) for _ in arrays)
+
+
+@overload(columns_like)
+def _columns_like(arrays, n):
+    if len(arrays) == 0:
+        return lambda arrays, n: ()
+    return lambda arrays, n: (np.empty(n),) + columns_like(arrays[1:], n)

@@ -6,7 +6,7 @@ import numpy as np
 
 from psph.jit import compiled
 from psph.particles.cells import Grid
-from psph.vectors import at, dot, nearest_image, subtract
+from psph.vectors import at, columns_like, dot, nearest_image, put, subtract
 
 WIDTH = 8
 """A row is padded to a multiple of this with the dummy particle: the loop needs no remainder."""
@@ -51,10 +51,17 @@ def fill_lists(
     position, periods, cutoff2, counts, periodic, reach, starts, planes, low, dummy,
     begin, blocks, lists,
 ):
-    """Fill the rows; returns 0, or about how many entries are needed when they do not fit."""
+    """Fill the rows; returns 0, or about how many entries are needed when they do not fit.
+
+    The candidates of a cell are copied once into one contiguous block, as their nearest images;
+    each particle of the cell then meets them without gathers.
+    """
     rows, columns = counts[1], counts[2]
-    from_k = np.empty(18, np.int64)
-    to_k = np.empty(18, np.int64)
+    from_k = np.empty(18, np.uint64)
+    to_k = np.empty(18, np.uint64)
+    near = columns_like(position, 256)
+    column_of = np.empty(256, np.uint32)
+    hit = np.empty(256, np.uint32)
     capacity = len(lists) - WIDTH
     end = np.uint64(0)
     for plane in range(1, planes + 1):
@@ -66,24 +73,47 @@ def fill_lists(
                 ranges, candidates = candidate_ranges(
                     plane, row, column, rows, columns, periodic, reach, starts, from_k, to_k
                 )
-                for i in range(starts[cell], starts[cell + 1]):
+                if candidates > len(hit):
+                    near = columns_like(position, 2 * candidates)
+                    column_of = np.empty(2 * candidates, np.uint32)
+                    hit = np.empty(2 * candidates, np.uint32)
+                x_0 = at(position, np.uint64(starts[cell]))
+                copy_candidates(position, periods, x_0, ranges, from_k, to_k, near, column_of)
+                for i in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
                     if np.int64(end) + candidates > capacity:
-                        done = max(i - low, 1)
+                        done = max(np.int64(i) - low, 1)
                         total = starts[(planes + 1) * rows * columns] - low
                         return np.int64(end) * total // done + candidates + 1024
+                    mark_near(near, subtract(at(position, i), x_0), cutoff2, candidates, hit)
                     first = end
-                    x_i = at(position, i)
-                    for q in range(ranges):
-                        for j in range(from_k[q], to_k[q]):
-                            x_ij = nearest_image(subtract(x_i, at(position, j)), periods)
-                            lists[end] = j
-                            end += np.uint64((dot(x_ij, x_ij) < cutoff2) & (i != j))
+                    for m in range(np.uint64(candidates)):
+                        lists[end] = column_of[m]
+                        end += np.uint64(hit[m] & (column_of[m] != np.uint32(i)))
                     while (end - first) % np.uint64(WIDTH) != np.uint64(0):
                         lists[end] = dummy
                         end += np.uint64(1)
-                    begin[i - low] = first
-                    blocks[i - low] = (end - first) // np.uint64(WIDTH)
+                    begin[i - np.uint64(low)] = first
+                    blocks[i - np.uint64(low)] = (end - first) // np.uint64(WIDTH)
     return np.int64(0)
+
+
+@compiled
+def copy_candidates(position, periods, x_0, ranges, from_k, to_k, near, column_of):
+    """Positions of the candidates' nearest images relative to ``x_0``, and their columns."""
+    m = np.uint64(0)
+    for q in range(ranges):
+        for j in range(from_k[q], to_k[q]):
+            put(near, m, nearest_image(subtract(at(position, j), x_0), periods))
+            column_of[m] = j
+            m += np.uint64(1)
+
+
+@compiled
+def mark_near(near, offset, cutoff2, candidates, hit):
+    """Mark those candidates that lie within the cutoff of a particle at ``offset``."""
+    for m in range(np.uint64(candidates)):
+        x_ij = subtract(offset, at(near, m))
+        hit[m] = dot(x_ij, x_ij) < cutoff2
 
 
 @compiled
@@ -102,14 +132,14 @@ def candidate_ranges(
             left, right = column - reach, column + reach + 1
             if left < 0 and periodic[2]:
                 from_k[n], to_k[n] = starts[base + left + columns], starts[base + columns]
-                candidates += to_k[n] - from_k[n]
+                candidates += np.int64(to_k[n] - from_k[n])
                 n += 1
             middle_left, middle_right = max(left, 0), min(right, columns)
             from_k[n], to_k[n] = starts[base + middle_left], starts[base + middle_right]
-            candidates += to_k[n] - from_k[n]
+            candidates += np.int64(to_k[n] - from_k[n])
             n += 1
             if right > columns and periodic[2]:
                 from_k[n], to_k[n] = starts[base], starts[base + right - columns]
-                candidates += to_k[n] - from_k[n]
+                candidates += np.int64(to_k[n] - from_k[n])
                 n += 1
     return n, candidates

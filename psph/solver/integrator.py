@@ -47,6 +47,15 @@ def kick_drift_predict(
 
 
 @compiled
+def state_of(first, last, state, view, density, specific_volume, pressure):
+    """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
+    for k in range(np.uint64(first), np.uint64(last)):
+        i = take(view, k)
+        specific_volume[k] = 1.0 / density[k]
+        pressure[k] = state_pressure(state, density[k], i.rest_density, i.sound_speed)
+
+
+@compiled
 def kick(
     dt, first, last, effects, view, kind, position, listed, velocity, acceleration, density, rate
 ):

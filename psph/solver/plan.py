@@ -126,7 +126,7 @@ def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
     """Material quantities that the scene reads: shared values, and names of those that vary."""
     shared, varying = {}, []
     for name in PER_MATERIAL:
-        values = {scene.material_value(m, name) for m in scene.materials}
+        values = {material_value(m, name) for m in scene.materials}
         if name != "mass" and name not in names:
             continue
         if len(values) == 1:
@@ -134,6 +134,11 @@ def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
         else:
             varying.append(name)
     return shared, tuple(varying)
+
+
+def material_value(material, name: str) -> float:
+    """A material's value of one of ``PER_MATERIAL``."""
+    return float(getattr(material, "density" if name == "rest_density" else name))
 
 
 def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
@@ -182,8 +187,7 @@ def _plain(value) -> str:
     return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"
 
 
-def particle_view(store, predicted: bool = True) -> ParticleView:
+def particle_view(store) -> ParticleView:
     """What effects see of the particles of a store."""
-    names = {name: name for name in ParticleView._fields}
-    names["velocity"] = "predicted_velocity"
-    return ParticleView(*(store.value(names[name]) for name in ParticleView._fields))
+    seen_as = {"velocity": "predicted_velocity"}
+    return ParticleView(*(store.value(seen_as.get(n, n)) for n in ParticleView._fields))

@@ -6,7 +6,7 @@ from mpi4py import MPI
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain
 from psph.particles.store import Store
-from psph.solver.integrator import kick, kick_drift_predict
+from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import TINY, sum_over_neighbours
 from psph.solver.plan import Plan, particle_view
 
@@ -55,6 +55,14 @@ class Simulation:
             self._kick(self.dt)
         self.time += self.dt
         self.steps += 1
+
+    def settle_pressure(self) -> None:
+        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
+        s = self.store
+        state_of(
+            s.low, s.low + s.owned, self.plan.state, particle_view(s), s["density"],
+            s["specific_volume"], s["pressure"],
+        )
 
     def _start(self) -> None:
         """First forces, from particles at rest in time: predicted is initial."""

@@ -1,0 +1,193 @@
+"""The command line: ``python -m psph case.toml`` runs a case, the verbs do the rest."""
+
+import argparse
+import os
+import sys
+import time
+import traceback
+from pathlib import Path
+
+from mpi4py import MPI
+
+import psph
+
+PATIENCE = 1.0
+"""Seconds a failed rank waits for the others to fail alike before it ends them all."""
+
+BAD_INPUT, FAILED = 2, 3
+
+
+def main(arguments: list[str]) -> int:
+    """Do what the command line asks; returns the exit code."""
+    if MPI.COMM_WORLD.rank != 0:  # rank 0 speaks, of wrong arguments too
+        sys.stderr = sys.stdout = open(os.devnull, "w", encoding="utf-8")
+    options = _parser().parse_args(_with_verb(arguments))
+    sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
+    return options.verb(options, MPI.COMM_WORLD) or 0
+
+
+def _with_verb(arguments: list[str]) -> list[str]:
+    """``case.toml`` alone means ``run case.toml``."""
+    if arguments and not arguments[0].startswith("-") and arguments[0] not in VERBS:
+        return ["run", *arguments]
+    return arguments
+
+
+def _run(options, comm) -> None:
+    from psph.solver.run import run
+
+    case = _load(options)
+    folder = options.out or Path(case.name)
+    run(case, folder, comm, options.overwrite)
+
+
+def _explain(options, comm) -> None:
+    from psph.scene import Scene
+    from psph.solver.explain import explain
+
+    scene = Scene(_load(options))
+    _warn(scene, comm)
+    if comm.rank == 0:
+        print("\n".join(explain(scene, options.ranks or comm.size)))
+
+
+def _check(options, comm) -> None:
+    from psph.scene import Scene
+    from psph.solver.explain import slab_planes
+
+    scene = Scene(_load(options))
+    _warn(scene, comm)
+    if comm.rank == 0:
+        count = int(scene.counts().sum())
+        print(f"{options.case}: good: {count:,} particles, at most {slab_planes(scene)} ranks")
+
+
+def _schema(options, comm) -> None:
+    import json
+
+    from psph.case import schema
+
+    if comm.rank == 0:
+        print(json.dumps(schema(), indent=2))
+
+
+def _plot(options, comm) -> None:
+    from psph.output.plot import plot
+
+    if comm.rank == 0:
+        for path in plot(options.folder, times=options.times, field=options.field):
+            print(path)
+
+
+def _bench(options, comm) -> None:
+    from psph.solver.bench import bench
+
+    bench(comm, options.dimensions, options.particles, options.json)
+
+
+def _load(options):
+    from psph.case import load
+
+    return load(options.case, options.set)
+
+
+def _warn(scene, comm) -> None:
+    for warning in scene.check():
+        if comm.rank == 0:
+            print(f"warning: {warning}", file=sys.stderr)
+
+
+VERBS = {
+    "run": (_run, "simulate a case (the verb may be left out)"),
+    "explain": (_explain, "what a case will simulate, why, and what it takes"),
+    "check": (_check, "validate a case and do nothing else"),
+    "schema": (_schema, "the JSON schema of a case file"),
+    "plot": (_plot, "pictures of a finished run"),
+    "bench": (_bench, "particle-steps and pairs per second of this machine"),
+}
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m psph",
+        description="Smoothed-particle hydrodynamics on any number of ranks.",
+        epilog="mpirun -n 2 python -m psph case.toml",
+    )
+    parser.add_argument("--version", action="version", version=f"psph {psph.__version__}")
+    verbs = parser.add_subparsers(title="verbs", metavar="case.toml | verb", required=True)
+    made = {name: verbs.add_parser(name, help=text) for name, (_, text) in VERBS.items()}
+    for name, (action, _) in VERBS.items():
+        made[name].set_defaults(verb=action)
+    for name in ("run", "explain", "check"):
+        made[name].add_argument("case", type=Path, help="the case file")
+        made[name].add_argument(
+            "--set", action="append", default=[], metavar="KEY=VALUE",
+            help="override a key of the case, such as time.end=0.5 (repeatable)",
+        )
+    made["run"].add_argument("--out", type=Path, help="folder of the files (default: the case's name)")
+    made["run"].add_argument(
+        "--overwrite", action="store_true", help="replace an earlier run in the folder"
+    )
+    made["explain"].add_argument("--ranks", type=int, help="plan for so many ranks")
+    made["plot"].add_argument("folder", type=Path, help="the folder of a run")
+    made["plot"].add_argument("--times", type=float, nargs="+", help="moments to show, s")
+    made["plot"].add_argument("--field", default="pressure", help="what the colours show")
+    made["bench"].add_argument("--dimensions", type=int, choices=(2, 3), help="default: both")
+    made["bench"].add_argument("--particles", type=int, default=200_000)
+    made["bench"].add_argument("--json", action="store_true", help="one JSON object as the last line")
+    return parser
+
+
+def _foreseen(error: BaseException) -> tuple[str, int] | None:
+    """The plain lines and exit code of an error that a user can do something about."""
+    from psph.case import CaseError
+    from psph.output.errors import OutputError
+    from psph.parallel.slabs import TooManyRanks
+    from psph.solver.step import BlowUp
+
+    if isinstance(error, CaseError):
+        return "\n".join(error.lines), BAD_INPUT
+    if isinstance(error, TooManyRanks):
+        return str(error), BAD_INPUT
+    if isinstance(error, (OutputError, BlowUp)):
+        return str(error), FAILED
+    return None
+
+
+def _end_all(comm, said: str, code: int):
+    """End every rank with one message: at once where all failed alike, else by force.
+
+    A rank that leaves alone would keep the others waiting for ever.
+    """
+    if comm.rank == 0 and said:
+        print(said, file=sys.stderr, flush=True)
+    together = comm.Ibarrier()
+    deadline = time.monotonic() + PATIENCE
+    while not together.Test():
+        if time.monotonic() > deadline:
+            if comm.rank != 0:
+                print(f"rank {comm.rank}: {said}", file=sys.stderr, flush=True)
+            comm.Abort(code)
+        time.sleep(0.01)
+    sys.exit(code)
+
+
+def guarded(arguments: list[str]) -> None:
+    """Run the command line so that whatever ends one rank ends all of them."""
+    last_words = MPI.COMM_WORLD.Dup()
+    try:
+        code = main(arguments)
+    except SystemExit as leaving:
+        if not leaving.code:
+            raise
+        numbered = isinstance(leaving.code, int)
+        _end_all(last_words, "" if numbered else leaving.code, leaving.code if numbered else 1)
+    except KeyboardInterrupt:
+        _end_all(last_words, "interrupted", 130)
+    except BaseException as error:
+        _end_all(last_words, *(_foreseen(error) or (traceback.format_exc(), 1)))
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    guarded(sys.argv[1:])

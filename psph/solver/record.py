@@ -1,0 +1,102 @@
+"""What a run writes and when: frames, probes, log.  Cadence never changes the steps."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+import psph
+from psph.output import diagnostics
+from psph.output.frames import FrameFile
+from psph.output.probes import Probe
+from psph.output.tables import CsvTable
+from psph.particles.fields import FIELDS
+from psph.physics.gravity import Gravity
+from psph.solver.step import Simulation
+
+
+class Schedule:
+    """Due at the first step at or after each multiple of ``interval`` s."""
+
+    def __init__(self, interval: float):
+        self.interval, self._next = interval, 0.0
+
+    def due(self, time: float) -> bool:
+        """Whether the next moment has come; asks for the one after it if so."""
+        if time < self._next:
+            return False
+        self._next = self.interval * (math.floor(time / self.interval * (1 + 1e-12)) + 1)
+        return True
+
+
+class Record:
+    """The files of a run in ``folder``; every method is collective."""
+
+    def __init__(self, scene, simulation: Simulation, folder: Path):
+        case, comm = scene.case, simulation.comm
+        self.simulation, self.kernel = simulation, scene.kernel
+        effects = simulation.plan.effects
+        still = (0.0,) * scene.dimensions
+        self.gravity = next((e.acceleration for e in effects if isinstance(e, Gravity)), still)
+        self.frames = FrameFile(
+            folder / f"{case.name}.h5",
+            comm,
+            {
+                "case": case.to_toml(),
+                "title": case.title,
+                "psph_version": psph.__version__,
+                "dimensions": scene.dimensions,
+                "spacing": scene.spacing,
+            },
+        )
+        self.written = 0
+        self.probes = [Probe(n, p.position, tuple(p.fields)) for n, p in case.probes.items()]
+        self.probed = tuple(sorted({field for probe in self.probes for field in probe.fields}))
+        names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
+        self.probe_table = CsvTable(folder / "probes.csv", ["time", *names], comm) if names else None
+        self.log = CsvTable(folder / "log.csv", diagnostics.columns(scene.dimensions), comm)
+        out = case.output
+        self.schedules = {
+            self.write_frame: Schedule(out.frames),
+            self.write_probes: Schedule(out.probes),
+            self.write_log: Schedule(out.log),
+        }
+
+    def write_due(self) -> None:
+        """Write what is due at the simulation's time."""
+        due = [write for write, when in self.schedules.items() if when.due(self.simulation.time)]
+        if due:
+            with self.simulation.ledger("output"):
+                self.simulation.settle_pressure()
+                for write in due:
+                    write()
+
+    def write_frame(self) -> None:
+        """All saved fields of all particles."""
+        sim = self.simulation
+        arrays = {name: sim.store.owned_rows(name) for name, f in FIELDS.items() if f.saved}
+        self.frames.write(self.written, sim.time, sim.steps, arrays)
+        self.written += 1
+
+    def write_probes(self) -> None:
+        """A line of probe values."""
+        if not self.probes:
+            return
+        sim = self.simulation
+        sim.domain.halo.refresh(self.probed + ("specific_volume",))
+        mass = sim.store.value("mass")
+        values = [probe.sample(sim.domain, self.kernel, mass) for probe in self.probes]
+        self.probe_table.write([sim.time, *np.concatenate(values).tolist()])
+
+    def write_log(self) -> None:
+        """A line of energies, momentum and limits."""
+        sim = self.simulation
+        sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.gravity)
+        error = diagnostics.density_error(sim.comm, sim.store)
+        self.log.write([sim.time, sim.steps, sim.dt, *sums.tolist(), sim.speed, error])
+
+    def close(self) -> None:
+        """End the tables."""
+        for table in (self.probe_table, self.log):
+            if table is not None:
+                table.close()

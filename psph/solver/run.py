@@ -1,0 +1,101 @@
+"""A case from the first line to the last."""
+
+import time
+from pathlib import Path
+
+from mpi4py import MPI
+
+from psph.output.errors import OutputError
+from psph.output.frames import funnel_notice
+from psph.output.ledger import Ledger
+from psph.output.progress import Progress
+from psph.scene import Scene
+from psph.solver.plan import make_plan
+from psph.solver.record import Record
+from psph.solver.setup import compile_ahead, create_particles
+from psph.solver.step import Simulation
+
+WORTH_SAYING = 1.0
+"""Seconds of compilation from which on it is mentioned."""
+
+
+def run(case, folder: Path, comm: MPI.Comm, overwrite: bool = False) -> Simulation:
+    """Simulate ``case`` on the ranks of ``comm`` and leave the files in ``folder``.
+
+    Raises CaseError, TooManyRanks, BlowUp or OutputError, each on every rank.
+    """
+    begun = time.perf_counter()
+    say = _speaker(comm)
+    scene = Scene(case)
+    for warning in scene.check():
+        say(f"warning: {warning}")
+    _prepare_folder(case, folder, comm, overwrite)
+    plan = make_plan(scene)
+    particles = int(scene.counts().sum())
+    say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")
+    for line in filter(None, [funnel_notice(comm)]):
+        say(line)
+    compiling = compile_ahead(scene, plan, comm)
+    if compiling > WORTH_SAYING:
+        say(f"compiled in {compiling:.1f} s (kept for the next run)")
+    simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
+    record = Record(scene, simulation, folder)
+    record.write_due()
+    say(f"first step after {time.perf_counter() - begun:.1f} s")
+    stepping = time.perf_counter()
+    progress = Progress(comm, case.time.end, case.title or case.name, particles)
+    try:
+        while simulation.time < case.time.end:
+            simulation.step()
+            record.write_due()
+            progress.update(simulation.time, simulation.steps, simulation.dt)
+    finally:
+        progress.close()
+        record.close()
+    for line in _summary(simulation, particles, time.perf_counter() - stepping):
+        say(line)
+    say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), log.csv, probes.csv")
+    return simulation
+
+
+def _speaker(comm: MPI.Comm):
+    """Rank 0 speaks; the others are silent."""
+
+    def say(line: str) -> None:
+        if comm.rank == 0:
+            print(line, flush=True)
+
+    return say
+
+
+def _ranks(size: int) -> str:
+    return "1 rank" if size == 1 else f"{size} ranks"
+
+
+def _prepare_folder(case, folder: Path, comm: MPI.Comm, overwrite: bool) -> None:
+    """Make the folder and leave the case in it; a finished run is not overwritten unasked."""
+    trouble = None
+    if comm.rank == 0:
+        try:
+            if (folder / f"{case.name}.h5").exists() and not overwrite:
+                trouble = f"{folder} holds a run of {case.name}: give --out or --overwrite"
+            else:
+                folder.mkdir(parents=True, exist_ok=True)
+                (folder / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+        except OSError as error:
+            trouble = f"{folder}: {error.strerror}; choose another folder with --out"
+    trouble = comm.bcast(trouble)
+    if trouble:
+        raise OutputError(trouble)
+
+
+def _summary(simulation: Simulation, particles: int, seconds: float) -> list[str]:
+    """What the run cost, and where the time went on rank 0."""
+    rate = particles * simulation.steps / seconds
+    lines = [
+        f"{simulation.steps:,} steps in {seconds:.1f} s: {rate / 1e6:.2f} M particle-steps/s, "
+        f"{simulation.domain.rebuilds} list rebuilds"
+    ]
+    spent = sorted(simulation.ledger.seconds.items(), key=lambda item: -item[1])
+    shares = [f"{name} {100 * s / seconds:.1f} %" for name, s in spent]
+    return lines + ["  " + ", ".join(shares)]

@@ -1,0 +1,57 @@
+"""From a scene to this rank's particles, and the compiled loops made ready."""
+
+import time
+
+import numpy as np
+from mpi4py import MPI
+
+from psph.output.ledger import Ledger
+from psph.particles.store import Store
+from psph.solver.plan import PER_MATERIAL, Plan, material_value
+from psph.solver.step import Simulation
+
+NOT_YET_SUMMED = 2.0
+"""A kernel sum that no threshold calls a surface, until the first pass knows better."""
+
+
+def create_particles(scene, plan: Plan, comm: MPI.Comm) -> Store:
+    """This rank's share of the scene's particles, by lattice planes; ids in lattice order.
+
+    Where they belong is for the first rebuild to say.
+    """
+    reached = np.concatenate([[0], np.cumsum(scene.counts())])
+    goals = reached[-1] * np.arange(comm.size + 1) // comm.size
+    cuts = np.searchsorted(reached, goals)
+    cuts[-1] = scene.planes
+    first, last = int(cuts[comm.rank]), int(cuts[comm.rank + 1])
+    found = scene.particles(first, last, int(reached[first]))
+    store = Store(scene.dimensions, plan.arrays, plan.constants)
+    block = np.zeros((len(store.data), len(found.id)))
+    for name in ("position", "velocity"):
+        block[list(store.rows[name])] = getattr(found, name).T
+    block[store.rows["density"].start] = found.density
+    for name in PER_MATERIAL:
+        if name in store:
+            values = np.array([material_value(m, name) for m in scene.materials])
+            block[store.rows[name].start] = values[found.material]
+    if "kernel_sum" in store:
+        block[store.rows["kernel_sum"].start] = NOT_YET_SUMMED
+    store.append(found.id, found.kind, block)
+    return store
+
+
+def compile_ahead(scene, plan: Plan, comm: MPI.Comm) -> float:
+    """Compile, or load from the cache, every loop of the plan on rank 0 while the others wait.
+
+    One step of two particles has the types of the whole run.  Returns the seconds it took.
+    """
+    begun = time.perf_counter()
+    if comm.rank == 0:
+        store = Store(scene.dimensions, plan.arrays, plan.constants)
+        block = np.ones((len(store.data), 2))
+        middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
+        block[list(store.rows["position"])] = np.array(middle)[:, None]
+        store.append(np.arange(2), np.zeros(2, np.uint8), block)
+        Simulation(scene, plan, store, MPI.COMM_SELF, Ledger()).step()
+    comm.Barrier()
+    return time.perf_counter() - begun

@@ -1,0 +1,51 @@
+"""Hand-made particles and pairs for the tests of effects."""
+
+import numba
+import numpy as np
+
+from psph.physics import compose
+from psph.physics.compose import ParticleView, geometry, take
+from psph.smoothing import kernel
+
+H = 0.013
+OPEN = (None, None, None)
+
+
+def view(n=2, dim=2, seed=3):
+    """Particles scattered within a support, all fields filled."""
+    rng = np.random.default_rng(seed)
+    return ParticleView(
+        position=tuple(rng.uniform(0, H, n) for _ in range(dim)),
+        velocity=tuple(rng.normal(size=n) for _ in range(dim)),
+        pressure=rng.normal(size=n) * 1000,
+        specific_volume=1 / rng.uniform(900, 1100, n),
+        mass=rng.uniform(0.05, 0.1, n),
+        rest_density=1000.0,
+        viscosity=rng.uniform(0.5, 1.0, n),
+        kernel_sum=rng.uniform(0.8, 1.0, n),
+        sound_speed=50.0,
+        smoothing_length=H,
+    )
+
+
+def pair_of(particles, a, b, name="hyperbolic"):
+    """Views of particles a and b, and their pair, in plain Python."""
+    dim = len(particles.position)
+    i, j = take(particles, a), take(particles, b)
+    return i, j, geometry(kernel(name, H, dim), OPEN[:dim], 1e-20 * H * H, i, j)
+
+
+@numba.njit
+def rates(effects, reductions, k, periods, particles, a, b):
+    """Everything that one neighbour b does to particle a."""
+    i, j = take(particles, a), take(particles, b)
+    pair = geometry(k, periods, 1e-24, i, j)
+    totals = compose.gather(reductions, compose.start(reductions, i, k), i, j, pair)
+    return (
+        compose.density_rate(effects, i, j, pair),
+        compose.radial(effects, i, j, pair),
+        compose.shear(effects, i, j, pair),
+        compose.body(effects, i),
+        compose.finish_acceleration(reductions, totals, i),
+        compose.limit_density(effects, i, 987.0),
+    )

@@ -1,0 +1,95 @@
+"""Kernels against their definition and against the lattice sums of the prototype."""
+
+import math
+
+import numpy as np
+import pytest
+
+from psph.smoothing import KERNELS, kernel
+
+H = 0.7
+ALL = [(name, dim) for name in KERNELS for dim in (1, 2, 3)]
+SMOOTH = [name for name in KERNELS if name != "gaussian"]
+
+
+def sphere(dim, r):
+    return {1: 2.0, 2: 2 * math.pi * r, 3: 4 * math.pi * r * r}[dim]
+
+
+@pytest.mark.parametrize("name, dim", ALL)
+def test_weighs_one(name, dim):
+    k = kernel(name, H, dim)
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    total = 0.0
+    for s in range(3):  # piece by piece: the splines join at whole r/h
+        r = H * (s + 0.5 + 0.5 * nodes)
+        total += 0.5 * H * sum(w * k.w(x) * sphere(dim, x) for w, x in zip(weights, r))
+    assert total == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("name, dim", ALL)
+def test_slope_is_the_derivative(name, dim):
+    k = kernel(name, H, dim)
+    for r in np.linspace(0.01, k.support * H * 0.999, 57):
+        if min(abs(r / H - s) for s in (1, 2)) < 1e-3:
+            continue
+        step = 1e-6
+        slope = (k.w(r + step) - k.w(r - step)) / (2 * step)
+        assert k.dw(r) == pytest.approx(slope, rel=1e-5, abs=1e-6 * k.w(0.0) / H)
+        assert k.dw(r) < 0.0
+
+
+@pytest.mark.parametrize("name, dim", ALL)
+def test_is_zero_beyond_its_support_and_for_the_dummy(name, dim):
+    k = kernel(name, H, dim)
+    for r in (k.support * H * (1 + 1e-12), 5 * H, 1e30):
+        assert abs(k.w(r)) <= 1e-30 and abs(k.dw(r)) <= 1e-20
+
+
+def bend(k, r, step=1e-5):
+    return (k.dw(r + step) - k.dw(r - step)) / (2 * step)
+
+
+def test_only_the_hyperbolic_kernel_is_convex():
+    convex = {
+        name
+        for name in KERNELS
+        if all(bend(kernel(name, 1.0, 2), r) >= -1e-9 for r in np.linspace(0.01, 2.9, 291))
+    }
+    assert convex == {"hyperbolic"}
+
+
+def test_hyperbolic_kernel_is_the_paper_s():
+    k = kernel("hyperbolic", 1.0, 2)
+    for s in (0.0, 0.3, 0.9):
+        assert k.w(s) == pytest.approx((s**3 - 6 * s + 6) / (3 * math.pi))
+    assert k.w(1.5) == pytest.approx(0.5**3 / (3 * math.pi))
+    assert k.dw(0.0) == pytest.approx(-6 / (3 * math.pi))
+
+
+def square_lattice(smoothing, dx=1.0, n=5):
+    axis = np.arange(-n, n + 1) * dx
+    x, y = np.meshgrid(axis, axis, indexing="ij")
+    return kernel("hyperbolic", smoothing * dx, 2), x.ravel(), y.ravel()
+
+
+@pytest.mark.parametrize("smoothing, inside, row", [(1.2, 1.083, 0.882), (1.3, 1.065, 0.843)])
+def test_kernel_sums_on_the_square_lattice(smoothing, inside, row):
+    k, x, y = square_lattice(smoothing)
+    w = np.array([k.w(r) for r in np.hypot(x, y)])
+    assert w.sum() == pytest.approx(inside, abs=5e-4)
+    assert w[y <= 0].sum() == pytest.approx(row, abs=5e-4)
+
+
+@pytest.mark.parametrize("smoothing, moment", [(1.2, 0.945), (1.3, 0.974)])
+def test_first_moment_on_the_square_lattice(smoothing, moment):
+    k, x, y = square_lattice(smoothing)
+    r = np.hypot(x, y)
+    near = r > 0
+    slope = np.array([k.dw(d) for d in r[near]])
+    assert -(x[near] ** 2 / r[near] * slope).sum() == pytest.approx(moment, abs=5e-4)
+
+
+def test_unknown_kernel():
+    with pytest.raises(KeyError):
+        kernel("cubical", 1.0, 2)
