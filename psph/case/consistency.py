@@ -1,0 +1,114 @@
+"""What no key can see alone: rules between the keys of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from psph.case.errors import advise
+from psph.case.tables import AXES, Table
+
+if TYPE_CHECKING:
+    from psph.case.model import Case
+
+Location = tuple[str | int, ...]
+Finding = tuple[Location, Any, str]
+"""Where, the value there, and what is wrong with it and to do."""
+
+
+def contradictions(case: Case) -> list[InitErrorDetails]:
+    """Everything in which the keys of a case do not fit together."""
+    rules = (_dimensions, _axes, _domain, _hydrostatic, _continued, _names)
+    return [
+        # The message goes in as a value: braces in it are not placeholders.
+        {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
+        for rule in rules
+        for loc, value, says in rule(case)
+    ]
+
+
+def walk(value: Any, loc: Location = ()) -> Iterator[tuple[Location, Any]]:
+    """Every table and list in a case, with where it stands."""
+    yield loc, value
+    if isinstance(value, Table):
+        for name, field in type(value).model_fields.items():
+            yield from walk(getattr(value, name), (*loc, field.alias or name))
+    elif isinstance(value, dict):
+        for name, inner in value.items():
+            yield from walk(inner, (*loc, name))
+    elif isinstance(value, tuple):
+        for place, inner in enumerate(value):
+            yield from walk(inner, (*loc, place))
+
+
+def _dimensions(case: Case) -> Iterator[Finding]:
+    dimensions = case.space.dimensions
+    foreign: Location = ("no key",)  # the shape that does not belong here: one line is enough
+    for loc, value in walk(case):
+        only_in = getattr(value, "only_in", dimensions)
+        if only_in != dimensions:
+            foreign = loc
+            yield loc, value, (
+                f"a {loc[-1]} needs space.dimensions = {only_in}, here it is {dimensions}; "
+                "use another shape"
+            )
+        elif _is_vector(value) and len(value) != dimensions and loc[: len(foreign)] != foreign:
+            yield loc, value, (
+                f"{len(value)} number{'s' * (len(value) > 1)} in a case with "
+                f"space.dimensions = {dimensions}; give {dimensions}"
+            )
+
+
+def _is_vector(value: Any) -> bool:
+    return isinstance(value, tuple) and value != () and all(isinstance(x, float) for x in value)
+
+
+def _axes(case: Case) -> Iterator[Finding]:
+    axes = AXES[: case.space.dimensions]
+    named = [(("space", "periodic", k), axis) for k, axis in enumerate(case.space.periodic)]
+    named.append((("parallel", "axis"), case.parallel.axis))
+    for loc, axis in named:
+        if axis is not None and axis not in axes:
+            yield loc, axis, (
+                f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}"
+            )
+
+
+def _domain(case: Case) -> Iterator[Finding]:
+    space = case.space
+    given = {"lower": space.lower, "upper": space.upper}
+    missing = [name for name, corner in given.items() if corner is None]
+    if space.periodic and missing:
+        yield ("space", "periodic"), space.periodic, (
+            "a periodic axis needs the corners of the domain; give "
+            + " and ".join(f"space.{name}" for name in missing)
+        )
+    if not missing and any(low >= up for low, up in zip(space.lower, space.upper)):
+        yield ("space", "upper"), space.upper, (
+            "not above space.lower on every axis; let every number exceed that of space.lower"
+        )
+
+
+def _hydrostatic(case: Case) -> Iterator[Finding]:
+    if case.physics.gravity is not None and any(case.physics.gravity.acceleration):
+        return
+    for name, fluid in case.fluids.items():
+        if fluid.pressure == "hydrostatic":
+            yield ("fluids", name, "pressure"), fluid.pressure, (
+                "there is no gravity; give physics.gravity, or a pressure in Pa"
+            )
+
+
+def _continued(case: Case) -> Iterator[Finding]:
+    for name, wall in case.walls.items():
+        if wall.continues is not None and wall.continues not in case.fluids:
+            yield ("walls", name, "continues"), wall.continues, (
+                f"no fluid has this name; {advise(wall.continues, case.fluids)}"
+            )
+
+
+def _names(case: Case) -> Iterator[Finding]:
+    for name in case.walls.keys() & case.fluids.keys():
+        yield ("walls", name), ..., "a fluid has this name too; give the wall another"

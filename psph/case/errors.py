@@ -1,0 +1,30 @@
+"""What is wrong with a case, in lines that a person can act on."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class CaseError(ValueError):
+    """A case that cannot be run.  ``lines``: one message each, with file, key and what to do."""
+
+    def __init__(self, lines: Iterable[str]):
+        self.lines = list(lines)
+        super().__init__("\n".join(self.lines))
+
+
+def advise(word: str, known: Iterable[str]) -> str:
+    """The known word nearest to ``word``, or all of them where none is near."""
+    known = list(known)
+    by_lower_case = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(word.lower(), by_lower_case, n=1)
+    if near:
+        return f"did you mean '{by_lower_case[near[0]]}'?"
+    return f"known here: {', '.join(known)}"
+
+
+def dotted(keys: Iterable[str | int]) -> str:
+    """Keys and positions as a person writes them: ``perturbations[0].velocity``."""
+    text = ""
+    for key in keys:
+        text += f"[{key}]" if isinstance(key, int) else f".{key}"
+    return text.removeprefix(".")

@@ -1,0 +1,125 @@
+"""Read a case from TOML, with keys overridden from the command line."""
+
+import re
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from psph.case.errors import CaseError, dotted
+
+if TYPE_CHECKING:
+    from psph.case.model import Case
+
+BARE_WORD = re.compile(r"[A-Za-z][\w.-]*")
+PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+class Override(NamedTuple):
+    """A key set from outside.  ``made``: the highest key that it brought in, as a location."""
+
+    text: str
+    made: tuple[str | int, ...]
+
+
+def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
+    """The case in a TOML file, checked and with its defaults filled in.
+
+    ``overrides`` are strings ``dotted.key=value`` with the value as in TOML; a bare word is a
+    text.  Raises CaseError with one line for every fault found.
+    """
+    # Only here: the model knows the effects, and these bring the compiler along.
+    from pydantic import ValidationError
+
+    from psph.case.messages import messages
+    from psph.case.model import Case, schema
+
+    file = str(path)
+    data = _read(file)
+    applied = [_override(file, data, text) for text in overrides]
+
+    def source(loc):
+        for override in reversed(applied):
+            shared = min(len(loc), len(override.made))
+            if loc[:shared] == override.made[:shared]:
+                return f"{file} with --set {override.text}"
+        return file
+
+    try:
+        case = Case.model_validate(data)
+    except ValidationError as error:
+        raise CaseError(messages(error, data, schema(), source)) from None
+    case._file = file
+    return case
+
+
+def _read(file: str) -> dict[str, Any]:
+    try:
+        text = Path(file).read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise CaseError([f"{file}: {error.strerror}; give the path of a case in TOML"]) from None
+    except UnicodeDecodeError as error:
+        raise CaseError(
+            [f"{file}: byte {error.start} is not UTF-8; save the file as UTF-8 text"]
+        ) from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError([_syntax(file, text, str(error))]) from None
+
+
+def _syntax(file: str, text: str, says: str) -> str:
+    """tomllib's message with the line that it is about."""
+    place = PLACE.search(says)
+    lines = text.splitlines() or [""]
+    number = int(place[1]) if place and place[1] else len(lines)
+    column = f" (column {place[2]})" if place and place[2] else ""
+    what = PLACE.sub("", says)
+    written = lines[min(number, len(lines)) - 1].strip()
+    return (
+        f"{file}: line {number}: '{written}': {what[:1].lower()}{what[1:]}{column}; correct this "
+        "line, for example: key = 1.0, key = \"text\", key = [0.0, 1.0]"
+    )
+
+
+def _override(file: str, data: dict[str, Any], text: str) -> Override:
+    """Set one key in ``data``."""
+    where = f"{file} with --set {text}"
+    path, equals, value = text.partition("=")
+    keys: list[str | int] = [*path.strip().split(".")]
+    if not equals or "" in keys:
+        raise CaseError([f"{where}: no key and value; write it as key.key=value"])
+    table, made = data, None
+    for depth, key in enumerate(keys):
+        if isinstance(table, list) and key.isdigit():
+            keys[depth] = key = int(key)
+        if not _can_hold(table, key):
+            stands = dotted(keys[:depth])
+            raise CaseError(
+                [f"{where}: {stands}: has no {dotted([key])} inside; override {stands} itself"]
+            )
+        if made is None and isinstance(table, dict) and key not in table:
+            made = tuple(keys[: depth + 1])
+        if depth == len(keys) - 1:
+            table[key] = _value(where, value.strip())
+        else:
+            table = table.setdefault(key, {}) if isinstance(table, dict) else table[key]
+    return Override(text, made or tuple(keys))
+
+
+def _can_hold(table: Any, key: str | int) -> bool:
+    if isinstance(table, list):
+        return isinstance(key, int) and key < len(table)
+    return isinstance(table, dict)
+
+
+def _value(where: str, text: str) -> Any:
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        parsed = {}
+    if list(parsed) == ["value"]:
+        return parsed["value"]
+    if BARE_WORD.fullmatch(text):
+        return text
+    raise CaseError([f"{where}: {text!r} is no value; write it as in TOML: 1.0, [0, 1] or word"])

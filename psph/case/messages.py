@@ -1,0 +1,163 @@
+"""From pydantic's findings to lines that a newcomer understands."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from pydantic import ValidationError
+
+from psph.case.consistency import Location
+from psph.case.errors import advise, dotted
+from psph.case.structure import alternatives, find, keys_of
+
+Details = dict[str, Any]
+
+WANTED = {
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "string_type": "a text in quotes",
+    "tuple_type": "a list",
+    "model_type": "a table",
+    "dict_type": "a table",
+}
+BOUNDS = {
+    "exclusiveMinimum": "above",
+    "minimum": "at least",
+    "exclusiveMaximum": "below",
+    "maximum": "at most",
+}
+LONGEST_VALUE = 40
+
+
+def messages(
+    error: ValidationError, data: dict[str, Any], schema: Details, source: Callable[[Location], str]
+) -> Iterator[str]:
+    """One line for each finding; ``source`` names what set the key at a location."""
+    found = error.errors(include_url=False)
+    for details in found:
+        if not _follows_from_another(details, found):
+            loc = _as_written(details, data)
+            yield f"{source(loc)}: {dotted(loc)}: {_sentence(details, loc, schema)}"
+
+
+def plain(value: Any) -> str:
+    """A value as TOML writes it, shortened; a table's content is left out."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        text = f'"{value}"'
+    elif isinstance(value, (list, tuple)):
+        text = f"[{', '.join(map(plain, value))}]"
+    else:
+        text = "{ ... }" if isinstance(value, dict) else str(value)
+    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 4] + " ..."
+
+
+def _follows_from_another(details: Details, found: list[Details]) -> bool:
+    """A list whose entries are wrong also counts as too short."""
+    loc = details["loc"]
+    return details["type"] == "too_short" and any(
+        other["loc"][: len(loc)] == loc and len(other["loc"]) > len(loc) for other in found
+    )
+
+
+def _as_written(details: Details, data: Any) -> Location:
+    """The location in the keys of the file: pydantic's also names branches that no file has."""
+    loc: list[str | int] = []
+    for key in details["loc"]:
+        is_place = isinstance(data, (list, tuple)) and isinstance(key, int)
+        if is_place or isinstance(data, dict) and key in data:
+            data = data[key]
+            loc.append(key)
+        elif details["type"] == "missing" and isinstance(data, dict):
+            loc.append(key)
+    return tuple(loc)
+
+
+def _sentence(details: Details, loc: Location, schema: Details) -> str:
+    """What is wrong; what to do."""
+    kind, value, node = details["type"], details["input"], find(schema, details["loc"])
+    if kind == "missing":
+        return f"missing; {_how_to_add(loc, schema)}"
+    if kind == "extra_forbidden":
+        return f"unknown key; {advise(str(loc[-1]), keys_of(schema, loc[:-1]))}"
+    if details["loc"][-1] == "[key]":
+        return _unknown_name(loc, schema)
+    if kind == "psph":
+        shown = f"{plain(value)}: " if isinstance(value, (str, int, float, list, tuple)) else ""
+        return shown + details["msg"]
+    if kind == "literal_error":
+        return f"{plain(value)} is not known; {advise(str(value), (node or {}).get('enum', ()))}"
+    if kind in WANTED:
+        return f"{plain(value)} is not {WANTED[kind]}; {_how_to_give(details, loc, schema)}"
+    if kind in ("too_short", "too_long"):
+        return _length(details, loc)
+    if limits := _range(schema, node):
+        return f"{plain(value)} is out of range; it must be {limits}"
+    return f"{plain(value)}: {details['msg']}"
+
+
+def _how_to_add(loc: Location, schema: Details) -> str:
+    for branch in alternatives(schema, find(schema, loc) or {}):
+        if "patternProperties" in branch:
+            return f"add a table [{dotted(loc)}.NAME] ({_meaning(loc, schema)})"
+        if "properties" in branch and len(loc) == 1:
+            return f"add the table [{dotted(loc)}] ({_meaning(loc, schema)})"
+    return f"add {loc[-1]} = ... ({_meaning(loc, schema)})"
+
+
+def _how_to_give(details: Details, loc: Location, schema: Details) -> str:
+    kind, meaning = details["type"], _meaning(details["loc"], schema)
+    if kind in ("model_type", "dict_type"):
+        return f"write [{dotted(loc)}] and its keys below it ({meaning})"
+    example = ""
+    if kind == "tuple_type":
+        example = f" such as {_list_example(schema, details['loc'])}"
+    off = ""
+    if isinstance(details["input"], bool) and loc[0] == "physics":
+        off = ", or leave the key out to switch the effect off"
+    return f"give {WANTED[kind]}{example} ({meaning}){off}"
+
+
+def _meaning(loc: Location, schema: Details) -> str:
+    """What the key at a location, or the one that it is part of, says in the reference."""
+    while loc and "description" not in (node := find(schema, loc) or {}):
+        loc = loc[:-1]
+    unit = node.get("unit", "1")
+    return node["description"] + (f", {unit}" if unit != "1" else "")
+
+
+def _list_example(schema: Details, loc: Location) -> str:
+    for branch in alternatives(schema, find(schema, loc) or {}):
+        for entry in alternatives(schema, branch.get("items", {})):
+            if "enum" in entry:
+                return f'["{entry["enum"][0]}"]'
+            if "properties" in entry:
+                return "[{ ... }, { ... }]"
+    return "[0.0, 0.0]"
+
+
+def _unknown_name(loc: Location, schema: Details) -> str:
+    names = (find(schema, loc[:-1]) or {}).get("propertyNames", {}).get("enum")
+    if names:
+        return f"unknown key; {advise(str(loc[-1]), names)}"
+    return "a name is made of letters, digits, - and _; give another"
+
+
+def _length(details: Details, loc: Location) -> str:
+    if details["type"] == "too_long":
+        return f"too many; at most {details['ctx']['max_length']}"
+    if isinstance(details["input"], dict):
+        return f"empty; add a table [{dotted(loc)}.NAME]"
+    least = details["ctx"]["min_length"]
+    return f"{plain(details['input'])} is too short; list at least {least}"
+
+
+def _range(schema: Details, node: Details | None) -> str:
+    """The bounds of a number in words."""
+    return " and ".join(
+        f"{words} {branch[bound]:g}"
+        for branch in alternatives(schema, node or {})
+        for bound, words in BOUNDS.items()
+        if bound in branch
+    )

@@ -1,0 +1,213 @@
+"""A case: everything that a person says about a run, typed and frozen."""
+
+import re
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import tomli_w
+from pydantic import Field, PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
+from pydantic_core import PydanticCustomError
+
+from psph.case.consistency import contradictions
+from psph.case.physics import physics_table
+from psph.case.shapes import Shape
+from psph.case.tables import Axis, Name, Table, Vector, key
+from psph.smoothing import KERNELS
+
+Physics = physics_table()
+
+LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
+"""How tomli_w writes a list of numbers or words, one a line."""
+
+
+
+def _pressure(value: Any, validate) -> Any:
+    """One message for the two things that a pressure can be."""
+    try:
+        return validate(value)
+    except ValidationError as error:
+        raise PydanticCustomError(
+            "psph", 'not a pressure; give a number in Pa or "hydrostatic"'
+        ) from error
+
+
+class Space(Table):
+    """Dimensions, resolution and extent."""
+
+    dimensions: int = key("number of dimensions, 1 to 3", ge=1, le=3)
+    spacing: float = key("distance between particles at the start", unit="m", gt=0)
+    smoothing: float = key(
+        "smoothing length h in units of the spacing, h/dx", 1.3, unit="1", ge=0.6, le=4
+    )
+    kernel: Literal[tuple(KERNELS)] = key("smoothing kernel", next(iter(KERNELS)))
+    periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("axes along which it repeats", ())
+    lower: Vector | None = key(
+        "lowest corner of the domain; required where an axis is periodic", None, unit="m",
+        otherwise="found from the shapes",
+    )
+    upper: Vector | None = key(
+        "highest corner of the domain; required where an axis is periodic", None, unit="m",
+        otherwise="found from the shapes",
+    )
+    origin: Vector | None = key(
+        "origin of the lattice: particles start at origin + (k + 1/2) spacing, k whole", None,
+        unit="m", otherwise="zeros",
+    )
+
+
+class Time(Table):
+    """How long and in which steps."""
+
+    end: float = key("simulated time at which the run ends", unit="s", gt=0)
+    cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.6)
+    step: float | None = key(
+        "a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0
+    )
+
+
+class Fluid(Table):
+    """A fluid: where it is at the start, and what it is."""
+
+    shape: Shape = key("where the fluid is at the start")
+    density: float = key("density at zero pressure", 1000.0, unit="kg/m3", gt=0)
+    viscosity: float = key("kinematic viscosity; 0: inviscid", 0.0, unit="m2/s", ge=0)
+    velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
+    pressure: Annotated[Literal["hydrostatic"] | float, WrapValidator(_pressure)] = key(
+        'pressure at the start: a number, or "hydrostatic" (needs gravity)', 0.0, unit="Pa"
+    )
+    jitter: float = key(
+        "largest random shift of a particle along each axis, in spacings", 0.0, unit="1", ge=0
+    )
+    seed: int = key("seed of the random shifts", 0, ge=0)
+
+
+class Wall(Table):
+    """A wall: particles that stay where they are."""
+
+    shape: Shape = key("where the wall is")
+    continues: Name | None = key(
+        "fluid whose density and pressure at the start go on in the wall", None,
+        otherwise="the first fluid",
+    )
+
+
+class Probe(Table):
+    """A place where fields are measured over time."""
+
+    position: Vector = key("where", unit="m")
+    fields: Annotated[
+        tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)
+    ] = key("what is measured", ("pressure",), min_length=1)
+    theory: dict[Literal["pressure", "density"], float] = key(
+        "values to compare with, drawn beside the measured ones", {}
+    )
+
+
+class Perturbation(Table):
+    """A kick to the fluid particle that is nearest to a place."""
+
+    position: Vector = key("where", unit="m")
+    velocity: Vector = key("velocity added at the start", unit="m/s")
+
+
+class Output(Table):
+    """How often what is written."""
+
+    frames: float | None = key(
+        "time between frames", None, unit="s", otherwise="time.end / 50", gt=0
+    )
+    probes: float | None = key(
+        "time between rows of probes.csv", None, unit="s", otherwise="time.end / 1000", gt=0
+    )
+    log: float | None = key(
+        "time between rows of log.csv", None, unit="s", otherwise="time.end / 200", gt=0
+    )
+
+
+class Parallel(Table):
+    """How the domain is divided among ranks."""
+
+    axis: Axis | None = key(
+        "axis across which the domain is cut into slabs", None, otherwise="the longest"
+    )
+
+
+class Neighbours(Table):
+    """The neighbour lists."""
+
+    skin: float = key(
+        "how far a list looks beyond the kernel's support, as a fraction of it", 0.1, unit="1",
+        ge=0, le=1,
+    )
+
+
+MANY = 100
+"""Limit on fluids and on walls: a material is stored as one byte."""
+
+
+class Case(Table):
+    """A case as it was resolved: every default that does not need the particles is filled in.
+
+    Made by :func:`psph.case.load`.  ``file`` is where it came from, ``name`` its stem.
+    """
+
+    title: str = key("what the case is, in one line", "")
+    space: Space = key("dimensions, resolution and extent")
+    time: Time = key("how long and in which steps")
+    physics: Physics = key("what acts on the fluids", make=Physics)
+    fluids: dict[Name, Fluid] = key("the fluids by name", min_length=1, max_length=MANY)
+    walls: dict[Name, Wall] = key("the walls by name", {}, max_length=MANY)
+    probes: dict[Name, Probe] = key("the probes by name", {})
+    perturbations: Annotated[tuple[Perturbation, ...], Strict(False)] = key(
+        "kicks to single particles", ()
+    )
+    output: Output = key("how often what is written", make=Output)
+    parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
+    neighbours: Neighbours = key("the neighbour lists", make=Neighbours)
+
+    _file: str = PrivateAttr("case")
+
+    @property
+    def file(self) -> str:
+        """The file as the person named it."""
+        return self._file
+
+    @property
+    def name(self) -> str:
+        """The file's name without folder and ending."""
+        return Path(self._file).stem
+
+    def to_toml(self) -> str:
+        """This case as TOML that :func:`psph.case.load` reads back to an equal case."""
+        tables = self.model_dump(by_alias=True, exclude_none=True)
+        text = tomli_w.dumps({name: value for name, value in tables.items() if value})
+        return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)
+
+    @model_validator(mode="after")
+    def _agree(self) -> Self:
+        if found := contradictions(self):
+            raise ValidationError.from_exception_data("case", found)
+        return self
+
+    @model_validator(mode="after")
+    def _resolve(self) -> Self:
+        end, zeros = self.time.end, (0.0,) * self.space.dimensions
+        _fill(self.space, origin=zeros)
+        _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
+        for fluid in self.fluids.values():
+            _fill(fluid, velocity=zeros)
+        for wall in self.walls.values():
+            _fill(wall, continues=next(iter(self.fluids)))
+        return self
+
+
+def _fill(table: Table, **defaults: Any) -> None:
+    """Give keys that were left out what depends on other tables."""
+    for name, value in defaults.items():
+        if getattr(table, name) is None:
+            table.__dict__[name] = value  # past the freeze: the case is still in the making
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema of a case: every key with its description, unit and default."""
+    return Case.model_json_schema()

@@ -1,0 +1,45 @@
+"""What the tables of a case are made of: strict models, described keys, vectors."""
+
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, Strict, StringConstraints
+
+AXES = ("x", "y", "z")
+"""Names of the axes, in order."""
+
+Axis = Literal["x", "y", "z"]
+
+Vector = Annotated[tuple[float, ...], Strict(False), Field(min_length=1)]
+"""One number per dimension, a list in TOML.  The numbers themselves stay strict."""
+
+Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]+$")]
+"""A name that a person gives; it stands in keys, files and columns."""
+
+
+class Table(BaseModel):
+    """A table of a case: unknown keys are refused, and so are strings or booleans for numbers."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+def key(
+    meaning: str,
+    default: Any = ...,
+    *,
+    make: Callable[[], Any] | None = None,
+    unit: str = "",
+    otherwise: str = "",
+    **rules: Any,
+) -> Any:
+    """A key of a table: its meaning, its default (none: it is required) and its unit.
+
+    ``make`` makes the default anew for each case.  ``otherwise`` says in words what holds where
+    the key is absent and no constant can stand for it.  ``rules`` are pydantic's (``gt=0``,
+    ``alias=...``).
+    """
+    extra = {"unit": unit} if unit else {}
+    if otherwise:
+        extra["otherwise"] = otherwise
+    rules |= {"default_factory": make} if make else {"default": default}
+    return Field(description=meaning, json_schema_extra=extra or None, **rules)
