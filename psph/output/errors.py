@@ -1,0 +1,35 @@
+"""One plain line on every rank when a file cannot be written."""
+
+import re
+from contextlib import contextmanager
+from pathlib import Path
+
+
+class OutputError(RuntimeError):
+    """A file of the run cannot be written or read; the message is one line that says what to do."""
+
+
+def cause(error: Exception) -> str:
+    """What the system says, without the details that HDF5 wraps around it."""
+    text = getattr(error, "strerror", None) or str(error)
+    found = re.search(r"error message = '([^']+)'", text)
+    return found[1] if found else text.splitlines()[0]
+
+
+@contextmanager
+def together(comm, path: Path):
+    """Raise OutputError on every rank of ``comm`` when the body fails on any of them (collective).
+
+    A rank that left alone would keep the others waiting for ever.
+    """
+    failure = None
+    try:
+        yield
+    except (OSError, RuntimeError) as error:
+        failure = cause(error)
+    failures = [text for text in comm.allgather(failure) if text]
+    if failures:
+        raise OutputError(
+            f"{path}: cannot be written: {failures[0]}; see to the folder, its permissions and "
+            "the free space"
+        )

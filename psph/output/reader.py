@@ -1,0 +1,94 @@
+"""A run's folder, read back: finished or still running."""
+
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from psph.output.errors import OutputError, cause
+
+
+class Run:
+    """What a run has left in ``folder`` so far; every call looks anew.
+
+    Raises OutputError with one line when there is nothing to read.
+    """
+
+    def __init__(self, folder: Path):
+        self.folder = Path(folder)
+        found = sorted(self.folder.glob("*.h5"))
+        found = [path for path in found if path.with_suffix(".xmf").exists()] or found
+        if len(found) != 1:
+            names = ", ".join(path.name for path in found) or "none"
+            raise OutputError(
+                f"{self.folder}: the folder of a run holds one file of frames (.h5), "
+                f"here: {names}; give the folder that psph wrote to"
+            )
+        self.path = found[0]
+
+    @property
+    def attributes(self) -> dict:
+        """What the root of the file tells: the case, psph's version and so on."""
+        with _open(self.path) as file:
+            return dict(file.attrs)
+
+    @property
+    def case_text(self) -> str:
+        """The case as it was resolved, TOML."""
+        return self.attributes["case"]
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times of the frames that are whole, s."""
+        with _open(self.path) as file:
+            return np.array([frame.attrs["time"] for frame in _whole(file)], dtype=float)
+
+    def frame(self, k: int) -> dict[str, np.ndarray]:
+        """The fields of the k-th whole frame, ``-1`` the last: ``(n,)`` or ``(n, dim)`` each."""
+        with _open(self.path) as file:
+            frames = _whole(file)
+            try:
+                frame = frames[k]
+            except IndexError:
+                raise OutputError(
+                    f"{self.path}: frame: {k} is not one of the {len(frames)} frames so far"
+                ) from None
+            return {name: rows[...] for name, rows in frame.items() if name != "points"}
+
+    def probes(self) -> dict[str, np.ndarray]:
+        """The columns of ``probes.csv`` by name; empty if the case has no probes."""
+        return _columns(self.folder / "probes.csv")
+
+    def log(self) -> dict[str, np.ndarray]:
+        """The columns of ``log.csv`` by name."""
+        return _columns(self.folder / "log.csv")
+
+
+def _open(path: Path) -> h5py.File:
+    # A run in progress may be changing the structure of the file just now: a millisecond a frame.
+    for attempt in range(5):
+        try:
+            return h5py.File(path, "r", locking=False)
+        except OSError as error:
+            failure = error
+            time.sleep(0.05 * attempt)
+    raise OutputError(f"{path}: cannot be read: {cause(failure)}; is it a file of psph?")
+
+
+def _whole(file: h5py.File) -> list[h5py.Group]:
+    """Frames in their order; the time is the last thing that a frame gets."""
+    if "frames" not in file:
+        raise OutputError(f"{file.filename}: holds no frames; is it a file of psph?")
+    frames = [file["frames"][name] for name in sorted(file["frames"], key=int)]
+    return [frame for frame in frames if np.isfinite(frame.attrs.get("time", np.nan))]
+
+
+def _columns(path: Path) -> dict[str, np.ndarray]:
+    if not path.exists():
+        return {}
+    names, *rows = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    names = names.strip().split(",")
+    rows = [row for row in rows if row.endswith("\n")]  # the last one may be on its way
+    table = np.loadtxt(rows, delimiter=",", ndmin=2) if rows else np.empty((0, len(names)))
+    return dict(zip(names, table.T, strict=True))

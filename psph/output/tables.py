@@ -1,0 +1,42 @@
+"""Numbers over time as CSV: a row is on the disk as soon as it is known."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from psph.output.errors import OutputError, cause, together
+
+
+class CsvTable:
+    """A CSV file with a line of names, written by rank 0; the other ranks may call it all the same.
+
+    Floats stand with all their digits: what is read back is what was computed.
+    Raises OutputError: on every rank when it is opened, on rank 0 when a row cannot be written.
+    """
+
+    def __init__(self, path: Path, columns: Sequence[str], comm):
+        self.path, self.columns = Path(path), tuple(columns)
+        self._file = None
+        with together(comm, self.path):
+            if comm.rank == 0:
+                self._file = open(self.path, "w", newline="", encoding="utf-8")
+                self._rows = csv.writer(self._file, lineterminator="\n")
+        self.write(self.columns)
+
+    def write(self, values: Iterable) -> None:
+        """Append a row: one value for each column."""
+        if self._file is None:
+            return
+        try:
+            self._rows.writerow(values)
+            self._file.flush()
+        except OSError as error:
+            raise OutputError(
+                f"{self.path}: cannot be written: {cause(error)}; see to the free space"
+            ) from error
+
+    def close(self) -> None:
+        """End the file; a second call does nothing."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
