@@ -2,6 +2,7 @@
 
 import subprocess
 import time
+from pathlib import Path
 
 import pytest
 from jobs import mpirun
@@ -26,5 +27,9 @@ def test_job_that_takes_too_long_is_ended_with_its_ranks(tmp_path):
 
 
 def is_running(process):
-    state = subprocess.run(["ps", "-o", "stat=", "-p", process], capture_output=True, text=True)
-    return bool(state.stdout.strip()) and not state.stdout.startswith("Z")
+    """Neither gone nor a zombie that its parent has yet to fetch (from /proc: Linux)."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state != "Z"
