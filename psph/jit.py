@@ -1,9 +1,9 @@
 """How psph compiles: numba's flags, dispatch by type, and a cache that cannot go stale.
 
 An *effect*, a smoothing kernel or an equation of state is a ``NamedTuple``: its fields are its
-parameters, its methods are its formula.  numba sees the class in the value's type, so calling
-``value.method(...)`` in compiled code selects the formula at compile time and inlines it; a new
-parameter value recompiles nothing, a scene without an effect holds none of its code.
+parameters, its methods are its formula.  numba sees the class in the value's type, so a call by
+type selects the formula at compile time and inlines it; a new parameter value recompiles nothing,
+a scene without an effect holds none of its code.
 """
 
 import hashlib
@@ -14,7 +14,7 @@ import llvmlite.binding as llvm
 import numba
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic, overload, overload_method, register_jitable
+from numba.extending import intrinsic, overload, register_jitable
 
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
 """Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
@@ -57,21 +57,10 @@ _configure()
 compiled = numba.njit(cache=True, fastmath=FAST, error_model="numpy")
 """Decorator of every compiled loop: a module-level function, kept in the cache."""
 
-def callable_method(name: str) -> None:
-    """Make ``value.name(a)`` of any NamedTuple that has such a method callable when compiled."""
-
-    def resolve(self, a):
-        formula = method_of(self, name)
-        return lambda self, a: formula(self, a)
-
-    for kind in (types.NamedTuple, types.NamedUniTuple):
-        overload_method(kind, name)(resolve)
-
-
 def call_by_type(name: str):
     """A function ``(value, *args) -> value.name(*args)`` for compiled code and plain Python.
 
-    For values that may have no parameter at all, whose methods numba cannot call directly.
+    The formula is found by the value's class and inlined.
     """
 
     def call(value, *args):

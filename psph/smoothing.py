@@ -8,10 +8,12 @@ All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
 import math
 from typing import NamedTuple
 
-from psph.jit import callable_method
+from psph.jit import call_by_type
 
-callable_method("w")
-callable_method("dw")
+weight = call_by_type("w")
+"""(kernel, r) → W(r), in compiled code and plain Python."""
+slope = call_by_type("dw")
+"""(kernel, r) → W′(r), in compiled code and plain Python."""
 
 
 class Cubic(NamedTuple):

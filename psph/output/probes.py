@@ -8,6 +8,7 @@ from psph.parallel.domain import Domain
 from psph.particles.cells import number_cells
 from psph.particles.fields import FIELDS
 from psph.particles.neighbours import candidate_ranges
+from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
 
 
@@ -70,7 +71,7 @@ def interpolate(
     for q in range(ranges):
         for j in range(from_k[q], to_k[q]):
             x = nearest_image(subtract(point, at(position, j)), periods)
-            share = kernel.w(np.sqrt(dot(x, x))) * mass[j] * specific_volume[j]
+            share = weight(kernel, np.sqrt(dot(x, x))) * mass[j] * specific_volume[j]
             weight += share
             for m in range(len(rows)):
                 values[m] += share * data[rows[m], j]

@@ -4,6 +4,8 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.smoothing import weight
+
 
 class FreeSurface(NamedTuple):
     """A particle at a free surface feels no pressure.
@@ -22,7 +24,7 @@ class FreeSurface(NamedTuple):
 
     def start(self, i, kernel):
         """The particle's own share, W(0) m_i/ρ_i."""
-        return kernel.w(0.0) * i.mass * i.specific_volume
+        return weight(kernel, 0.0) * i.mass * i.specific_volume
 
     def gather(self, total, i, j, pair):
         """Add W_ij m_j/ρ_j."""

@@ -1,0 +1,104 @@
+"""Neighbour lists against brute force, on one rank, in every dimension."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from psph.parallel.domain import Domain
+from psph.particles.neighbours import WIDTH
+from psph.particles.store import FAR, Store
+
+NAMES = ("position", "listed_position", "density")
+
+
+def domain_of(positions, cutoff, lower, upper, periods, axis=0, comm=MPI.COMM_SELF, mine=None):
+    """A rebuilt domain of particles at ``positions`` (n, dim); their density is their id."""
+    n, dim = positions.shape
+    mine = np.arange(n) if mine is None else mine
+    store = Store(dim, NAMES, {"mass": 1.0})
+    block = np.zeros((len(store.data), len(mine)))
+    block[list(store.rows["position"])] = positions[mine].T
+    block[store.rows["density"].start] = mine
+    store.append(mine, np.zeros(len(mine), np.uint8), block)
+    domain = Domain(
+        comm, store, axis, cutoff, lower, upper, periods, ("density",), ("position",)
+    )
+    domain.rebuild()
+    return domain
+
+
+def neighbours_by_id(domain):
+    """{id: ids of its neighbours, in the order of the list}."""
+    store, lists = domain.store, domain.lists
+    found = {}
+    for k in range(store.owned):
+        begin, entries = int(lists.begin[k]), int(lists.blocks[k]) * WIDTH
+        row = lists.lists[begin : begin + entries]
+        row = row[row != store.total].astype(int)
+        found[int(store.id[store.low + k])] = store["density"][row].astype(int).tolist()
+    return found
+
+
+def brute_force(positions, cutoff, periods):
+    """{id: set of ids within the cutoff}."""
+    found = {}
+    for i, x in enumerate(positions):
+        d = x - positions
+        for axis, period in enumerate(periods):
+            if period is not None:
+                d[:, axis] -= period * np.rint(d[:, axis] / period)
+        near = np.flatnonzero((d**2).sum(axis=1) < cutoff**2)
+        found[i] = set(near.tolist()) - {i}
+    return found
+
+
+CASES = [
+    (dim, periodic, axis)
+    for dim in (1, 2, 3)
+    for axis in range(dim)
+    for periodic in [()] + [(d,) for d in range(dim)] + ([tuple(range(dim))] if dim > 1 else [])
+]
+
+
+@pytest.mark.parametrize("dim, periodic, axis", CASES)
+def test_lists_are_complete(dim, periodic, axis):
+    rng = np.random.default_rng(5)
+    size = np.array([1.0, 0.8, 0.9])[:dim]
+    positions = rng.uniform(0, 1, (300, dim)) * size
+    periods = tuple(size[d] if d in periodic else None for d in range(dim))
+    domain = domain_of(positions, 0.17, np.zeros(dim), size, periods, axis)
+    expected = brute_force(positions, 0.17, periods)
+    found = neighbours_by_id(domain)
+    assert {i: set(row) for i, row in found.items()} == expected
+    assert all(len(row) == len(set(row)) for row in found.values())
+
+
+def test_particles_outside_the_domain_keep_their_neighbours():
+    positions = np.random.default_rng(2).uniform(-9, 9, (400, 2))
+    domain = domain_of(positions, 0.9, (0.0, 0.0), (1.0, 1.0), (None, None))
+    found = neighbours_by_id(domain)
+    assert {i: set(row) for i, row in found.items()} == brute_force(positions, 0.9, (None, None))
+
+
+def test_rows_are_padded_with_the_far_dummy():
+    domain = domain_of(np.random.default_rng(1).uniform(0, 1, (50, 2)), 0.3, (0, 0), (1, 1), (None,) * 2)
+    store = domain.store
+    assert all(x[store.total] == FAR for x in store["position"])
+    assert domain.lists.lists.dtype == np.uint32 and domain.lists.begin.dtype == np.uint64
+    rows = [int(b) * WIDTH for b in domain.lists.blocks[: store.owned]]
+    assert list(np.cumsum([0, *rows[:-1]])) == domain.lists.begin[: store.owned].tolist()
+
+
+def test_order_is_by_cell_then_id():
+    rng = np.random.default_rng(4)
+    positions = rng.uniform(0, 1, (500, 2))
+    one = domain_of(positions, 0.1, (0, 0), (1, 1), (None, None))
+    two = domain_of(positions, 0.1, (0, 0), (1, 1), (None, None), mine=rng.permutation(500))
+    assert (one.store.id[one.store.inner] == two.store.id[two.store.inner]).all()
+    assert neighbours_by_id(one) == neighbours_by_id(two)
+
+
+def test_a_crowd_in_one_cell():
+    positions = np.full((600, 3), 0.5) + np.random.default_rng(0).uniform(0, 1e-3, (600, 3))
+    domain = domain_of(positions, 0.3, (0, 0, 0), (1, 1, 1), (None,) * 3)
+    assert all(len(row) == 599 for row in neighbours_by_id(domain).values())
