@@ -1,0 +1,7 @@
+"""From the shapes of a case to particles, the same on any number of ranks."""
+
+from psph.scene.materials import Material
+from psph.scene.particles import ParticleSet
+from psph.scene.scene import Scene
+
+__all__ = ["Material", "ParticleSet", "Scene"]

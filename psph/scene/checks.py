@@ -1,0 +1,197 @@
+"""What is wrong with a scene, and what is suspicious about it, in lines that say what to do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from psph.case import CaseError
+from psph.case.tables import AXES
+from psph.scene.lattice import TOLERANCE
+from psph.scene.walls import layers_needed, thinnest_walls
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+SOUND_OVER_SPEED = 10.0
+"""Speed of sound over the largest speed: density then varies by about 1 % (Monaghan 1994)."""
+
+SLABS_IN_A_PERIOD = 3
+"""A periodic axis must hold that many cut-off radii: a particle may not meet its own image."""
+
+LARGEST_QUIET_JITTER = 0.5
+"""In spacings; beyond it neighbours may change places."""
+
+
+def faults(scene: Scene) -> Iterator[str]:
+    """Everything for which the scene cannot be run."""
+    places = [*_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene)]
+    for line in places or _state_faults(scene):  # an empty shape has no pressure
+        yield f"{scene.case.file}: {line}"
+
+
+def warnings(scene: Scene) -> Iterator[str]:
+    """Everything that will run, but likely not as meant."""
+    for kind in (_thin_walls, _surface_threshold, _slow_sound, _jitter):
+        for line in kind(scene):
+            yield f"{scene.case.file}: {line}"
+
+
+def _key(scene: Scene, material: int) -> str:
+    """``fluids.water`` or ``walls.tank``."""
+    fluids = list(scene.case.fluids)
+    if material < len(fluids):
+        return f"fluids.{fluids[material]}"
+    return f"walls.{list(scene.case.walls)[material - len(fluids)]}"
+
+
+def _point(x) -> str:
+    return f"[{', '.join(f'{value:.6g}' for value in x)}]"
+
+
+def _domain_faults(scene: Scene) -> Iterator[str]:
+    reach = scene.kernel.support * scene.smoothing_length
+    least = SLABS_IN_A_PERIOD * reach * (1.0 + scene.case.neighbours.skin)
+    for name, low, period in zip(AXES, scene.lower, scene.periods):
+        if period is None:
+            continue
+        spacings = period / scene.spacing
+        if abs(spacings - round(spacings)) > TOLERANCE:
+            fit = low + max(1, round(spacings)) * scene.spacing
+            yield (
+                f"space.upper: the domain is {period:.9g} m = {spacings:.6g} spacings long along "
+                f"the periodic axis {name}; make it a whole number, for example up to {fit:.9g}"
+            )
+        if period < least:
+            yield (
+                f"space.upper: the domain is {period:.6g} m long along the periodic axis {name}, "
+                f"the kernel needs {least:.6g}; make it longer or space.spacing smaller"
+            )
+
+
+def _site_faults(scene: Scene) -> Iterator[str]:
+    census = scene.census
+    for material, size in enumerate(census.sizes):
+        if not size:
+            yield (
+                f"{_key(scene, material)}.shape: no lattice site lies in it; make it larger than "
+                "space.spacing, or move it"
+            )
+    walls = len(scene.case.fluids)
+    for (one, other), site in sorted(census.clashes.items()):
+        if one < walls <= other:
+            yield (
+                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; take "
+                "the fluid out with shape = { difference = { from = ..., minus = [...] } }"
+            )
+        elif other < walls:
+            yield (
+                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; take "
+                "one out of the other with difference"
+            )
+    yield from _particles_outside(scene)
+
+
+def _particles_outside(scene: Scene) -> Iterator[str]:
+    census, slack = scene.census, TOLERANCE * scene.spacing
+    for material in np.flatnonzero(census.sizes):
+        for d, name in enumerate(AXES[: scene.dimensions]):
+            lowest, highest = census.lowest[material, d], census.highest[material, d]
+            low, up = scene.lower[d] - slack, scene.upper[d] - slack
+            if lowest < low or highest >= up:
+                far = lowest if lowest < low else highest
+                yield (
+                    f"{_key(scene, material)}.shape: a particle at {name} = {far:.6g} m outside "
+                    f"the domain from {scene.lower[d]:.6g} to {scene.upper[d]:.6g}; make the "
+                    "shape smaller, or change space.lower and space.upper"
+                )
+
+
+def _probe_faults(scene: Scene) -> Iterator[str]:
+    for name, probe in scene.case.probes.items():
+        ends = zip(scene.lower, probe.position, scene.upper)
+        if not all(low <= x <= up for low, x, up in ends):
+            yield (
+                f"probes.{name}.position: {_point(probe.position)} lies outside the domain "
+                f"{_point(scene.lower)} to {_point(scene.upper)}; move it inside"
+            )
+
+
+def _state_faults(scene: Scene) -> Iterator[str]:
+    try:
+        speed = scene.sound_speed
+    except CaseError as error:
+        for line in error.lines:
+            yield line.removeprefix(f"{scene.case.file}: ")
+        return
+    for name, start in zip(scene.case.fluids, scene.starts):
+        density = float(start.density(np.array([[0.0] * scene.dimensions]))[0])
+        if not start.weight and not density > 0.0:
+            yield (
+                f"fluids.{name}.pressure: {start.pressure:g} Pa leaves no density at a speed of "
+                f"sound of {speed:g} m/s; raise the pressure or physics.sound_speed"
+            )
+
+
+def _thin_walls(scene: Scene) -> Iterator[str]:
+    need = layers_needed(scene)
+    for material, (layers, site) in sorted(thinnest_walls(scene).items()):
+        reach = scene.kernel.support * scene.case.space.smoothing
+        yield (
+            f"{_key(scene, material)}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
+            f"{_point(site)}, the kernel reaches over {reach:.3g}; make the wall at least "
+            f"{need} spacings ({need * scene.spacing:.6g} m) thick"
+        )
+
+
+def kernel_sums(scene: Scene) -> tuple[float, float]:
+    """Σ W dx^d over the lattice, the particle itself included: in the interior, and in the
+    outermost row of a half space."""
+    reach = math.ceil(scene.kernel.support * scene.case.space.smoothing)
+    interior = surface = 0.0
+    for site in product(range(-reach, reach + 1), repeat=scene.dimensions):
+        share = scene.kernel.w(math.hypot(*site) * scene.spacing) * scene.spacing**scene.dimensions
+        interior += share
+        surface += share if site[-1] <= 0 else 0.0
+    return interior, surface
+
+
+def _surface_threshold(scene: Scene) -> Iterator[str]:
+    effect = scene.case.physics.free_surface
+    if effect is None:
+        return
+    interior, surface = kernel_sums(scene)
+    sums = f"the kernel sum is {interior:.3f} inside and {surface:.3f} in the surface row"
+    between = f"a value between {surface:.3f} and {interior:.3f}, or another space.smoothing"
+    if surface >= effect.threshold:
+        yield (
+            f"physics.free_surface: {effect.threshold:g} sees no surface, {sums}; give {between}"
+        )
+    elif interior < effect.threshold:
+        yield (
+            f"physics.free_surface: {effect.threshold:g} takes every particle for surface, {sums}; "
+            f"give {between}"
+        )
+
+
+def _slow_sound(scene: Scene) -> Iterator[str]:
+    least = SOUND_OVER_SPEED * scene.expected_speed
+    if scene.sound_speed < least * (1.0 - TOLERANCE):
+        yield (
+            f"physics.sound_speed: {scene.sound_speed:g} is below ten times the speed to expect, "
+            f"{scene.expected_speed:.3g} m/s, so density will vary by more than 1 %; "
+            f"raise it to {least:.3g}"
+        )
+
+
+def _jitter(scene: Scene) -> Iterator[str]:
+    for name, fluid in scene.case.fluids.items():
+        if fluid.jitter > LARGEST_QUIET_JITTER:
+            yield (
+                f"fluids.{name}.jitter: {fluid.jitter:g} spacings let neighbours change places; "
+                f"give at most {LARGEST_QUIET_JITTER:g}"
+            )

@@ -1,0 +1,156 @@
+"""Fluids and walls: what they are made of, which sites they hold, and their state at the start."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from psph.case.shapes import Shape
+from psph.scene.lattice import TOLERANCE, Lattice
+from psph.scene.shapes import Grid, inside
+
+NONE = 255
+"""In place of a material: a site without a particle."""
+
+
+class Material(NamedTuple):
+    """What the particles of a fluid or a wall have in common.
+
+    ``density`` at zero pressure in kg/m³; kinematic ``viscosity`` in m²/s; ``mass`` of a particle
+    in kg (per m of depth in 2D, per m² in 1D).  A wall takes them from the fluid it continues.
+    """
+
+    name: str
+    kind: int
+    density: float
+    viscosity: float
+    mass: float
+
+
+class Start(NamedTuple):
+    """State of a material before the first step.
+
+    p = ``pressure`` everywhere, or, with a ``weight`` = ρ₀|g| in Pa/m, p = weight (surface −
+    height) and not below 0; ``surface`` in m along ``up``, the unit vector against gravity.
+    ``state`` is the equation of state.
+    """
+
+    state: Any
+    rest_density: float
+    sound_speed: float
+    pressure: float
+    weight: float
+    up: tuple[float, ...]
+    surface: float
+
+    def density(self, position: np.ndarray) -> np.ndarray:
+        """ρ (n,) in kg/m³ at ``position`` (n, dim); NaN where the state knows none."""
+        if not self.weight:
+            return np.full(len(position), self._density(np.float64(self.pressure)))
+        depth = self.surface - position @ np.array(self.up)
+        return self._density(self.weight * np.maximum(depth, 0.0))
+
+    def mass(self, volume: float) -> float:
+        """Mass in kg of a particle of ``volume`` = dx^d.
+
+        ρ(p) dx^d under a uniform pressure.  Under the weight of the fluid ρ₀ dx^d: equal masses
+        are what a column keeps when it moves.
+        """
+        if self.weight:
+            return self.rest_density * volume
+        return float(self._density(np.float64(self.pressure))) * volume
+
+    def _density(self, pressure):
+        with np.errstate(invalid="ignore"):
+            return self.state.density(pressure, self.rest_density, self.sound_speed)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Which material holds which site: fluids first, then walls, in the order of the case."""
+
+    lattice: Lattice
+    shapes: tuple[Shape, ...]
+    fluids: int
+
+    def masks(self, grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:
+        """For each material, True at the sites inside its shape."""
+        tolerance = TOLERANCE * self.lattice.spacing
+        return [np.broadcast_to(inside(s, grid, tolerance), shape) for s in self.shapes]
+
+    def materials(self, first: int, last: int) -> np.ndarray:
+        """Material of each site of some planes, uint8; the first that claims a site has it."""
+        shape = self.lattice.shape(first, last)
+        return _first_claim(self.masks(self.lattice.grid(first, last), shape), shape)
+
+
+def _first_claim(masks: Sequence[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+    found = np.full(shape, NONE, np.uint8)
+    for material in reversed(range(len(masks))):
+        found[masks[material]] = material
+    return found
+
+
+@dataclass
+class Census:
+    """What one look at every site tells.  Materials in the order of :class:`Layout`.
+
+    ``counts`` (planes,) particles; ``sizes`` (materials,) sites inside each shape; ``lowest``,
+    ``highest`` (materials, dim) their extreme coordinates, m; ``bottom``, ``top`` (materials,) the
+    same along the upward direction; ``clashes``: pairs of materials that claim the same site, with
+    one such site.
+    """
+
+    counts: np.ndarray
+    sizes: np.ndarray
+    lowest: np.ndarray
+    highest: np.ndarray
+    bottom: np.ndarray
+    top: np.ndarray
+    clashes: dict[tuple[int, int], tuple[float, ...]] = field(default_factory=dict)
+
+
+def take_census(layout: Layout, up: Sequence[float]) -> Census:
+    """Look at every site, chunk by chunk; ``up`` is the unit vector against gravity or zeros."""
+    lattice, n, dimensions = layout.lattice, len(layout.shapes), len(layout.lattice.counts)
+    census = Census(
+        np.zeros(lattice.planes, np.int64), np.zeros(n, np.int64),
+        np.full((n, dimensions), np.inf), np.full((n, dimensions), -np.inf),
+        np.full(n, np.inf), np.full(n, -np.inf),
+    )
+    for first, last in lattice.chunks():
+        grid, shape = lattice.grid(first, last), lattice.shape(first, last)
+        masks = layout.masks(grid, shape)
+        held = reduce(np.logical_or, masks)
+        census.counts[first:last] = np.count_nonzero(held.reshape(last - first, -1), axis=1)
+        height = np.broadcast_to(sum(x * u for x, u in zip(grid, up)), shape)
+        for material, mask in enumerate(masks):
+            if mask.any():
+                _measure(census, material, mask, lattice, grid, height)
+                _find_clashes(census, material, masks, grid)
+    return census
+
+
+def _measure(census, material, mask, lattice, grid, height) -> None:
+    census.sizes[material] += np.count_nonzero(mask)
+    for place, d in enumerate(lattice.axes):
+        others = tuple(k for k in range(mask.ndim) if k != place)
+        x = grid[d].ravel()[mask.any(axis=others)]
+        census.lowest[material, d] = min(census.lowest[material, d], x[0])
+        census.highest[material, d] = max(census.highest[material, d], x[-1])
+    heights = height[mask]
+    census.bottom[material] = min(census.bottom[material], heights.min())
+    census.top[material] = max(census.top[material], heights.max())
+
+
+def _find_clashes(census, material, masks, grid) -> None:
+    for other in range(material):
+        if (other, material) not in census.clashes:
+            both = masks[other] & masks[material]
+            if both.any():
+                site = np.unravel_index(np.argmax(both), both.shape)
+                census.clashes[other, material] = tuple(
+                    float(np.broadcast_to(x, both.shape)[site]) for x in grid
+                )

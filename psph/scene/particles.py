@@ -1,0 +1,95 @@
+"""Particles on the sites of the lattice, some planes at a time."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator, Philox
+
+from psph.scene.materials import NONE
+
+NUMBERS_PER_COUNT = 4
+"""Philox gives four 64-bit numbers for each count: one count is one particle."""
+
+
+@dataclass(frozen=True)
+class ParticleSet:
+    """Particles in the order of the lattice; all arrays have n rows.
+
+    ``id`` int64; ``kind`` uint8 (psph.particles.fields); ``material`` uint8, index into the
+    scene's materials; ``position`` (n, dim) m; ``velocity`` (n, dim) m/s; ``density`` (n,) kg/m³;
+    ``mass`` (n,) kg.
+    """
+
+    id: np.ndarray
+    kind: np.ndarray
+    material: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    density: np.ndarray
+    mass: np.ndarray
+
+    @classmethod
+    def empty(cls, n: int, dimensions: int, first_id: int) -> "ParticleSet":
+        """``n`` particles that are still to be filled in."""
+        return cls(
+            first_id + np.arange(n, dtype=np.int64), np.empty(n, np.uint8), np.empty(n, np.uint8),
+            np.empty((n, dimensions)), np.empty((n, dimensions)), np.empty(n), np.empty(n),
+        )
+
+    def rows(self, first: int, last: int) -> "ParticleSet":
+        """A view of some rows."""
+        return ParticleSet(*(array[first:last] for array in vars(self).values()))
+
+
+def fill(particles: ParticleSet, scene, first: int, last: int) -> None:
+    """Put particles on the held sites of planes ``first`` to ``last - 1`` of a scene."""
+    done = 0
+    for begin, end in scene.lattice.chunks(first, last):
+        held = scene.layout.materials(begin, end)
+        sites = np.flatnonzero(held != NONE)
+        chunk = particles.rows(done, done + len(sites))
+        _place(chunk, scene, held, sites, begin)
+        _start(chunk, scene)
+        _kick(chunk, scene, sites, begin, end)
+        _shift(chunk, scene)
+        done += len(sites)
+
+
+def _place(chunk: ParticleSet, scene, held: np.ndarray, sites: np.ndarray, begin: int) -> None:
+    lattice = scene.lattice
+    chunk.material[:] = held.ravel()[sites]
+    for d, k in zip(lattice.axes, np.unravel_index(sites, held.shape)):
+        chunk.position[:, d] = lattice.coordinates(d)[k + begin if d == lattice.axis else k]
+
+
+def _start(chunk: ParticleSet, scene) -> None:
+    """Kind, velocity, density and mass by material."""
+    for index in np.unique(chunk.material):
+        material, rows = scene.materials[index], chunk.material == index
+        chunk.kind[rows] = material.kind
+        chunk.velocity[rows] = scene.velocities[index]
+        chunk.density[rows] = scene.starts[index].density(chunk.position[rows])
+        chunk.mass[rows] = material.mass
+
+
+def _kick(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> None:
+    for (plane, place), velocity in scene.kicks.items():
+        if begin <= plane < end:
+            site = (plane - begin) * scene.lattice.sites_in_plane + place
+            chunk.velocity[np.searchsorted(sites, site)] += velocity
+
+
+def _shift(chunk: ParticleSet, scene) -> None:
+    """Random shifts, the same for a particle wherever it is made: its id places the draw."""
+    dimensions = chunk.position.shape[1]
+    for index, fluid in enumerate(scene.case.fluids.values()):
+        rows = chunk.material == index
+        if fluid.jitter and rows.any():
+            source = Philox(key=fluid.seed)
+            source.advance(int(chunk.id[0]))
+            drawn = Generator(source).random((len(chunk.id), NUMBERS_PER_COUNT))[rows, :dimensions]
+            chunk.position[rows] += (2.0 * drawn - 1.0) * (fluid.jitter * scene.spacing)
+    for x, low, period in zip(chunk.position.T, scene.lower, scene.periods):
+        if period is not None:
+            x -= period * np.floor((x - low) / period)
+            x[x >= low + period] = low  # rounding may land on the upper edge

@@ -1,0 +1,193 @@
+"""The scene: a case laid out on the lattice."""
+
+import math
+from functools import cached_property
+
+import numpy as np
+
+from psph.case import Case, CaseError
+from psph.case.tables import AXES
+from psph.particles.fields import FLUID, WALL
+from psph.physics.catalogue import EQUATIONS_OF_STATE
+from psph.scene.checks import SOUND_OVER_SPEED, faults, warnings
+from psph.scene.lattice import lattice_around
+from psph.scene.materials import Census, Layout, Material, Start, take_census
+from psph.scene.particles import ParticleSet, fill
+from psph.scene.shapes import bounds
+from psph.smoothing import kernel
+
+
+class Scene:
+    """A cheap description of what a case starts with; particles are made when asked for.
+
+    The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the
+    domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
+    hold a particle, ``planes`` its planes across ``axis``.
+    """
+
+    def __init__(self, case: Case):
+        space = case.space
+        self.case = case
+        self.dimensions, self.spacing = space.dimensions, space.spacing
+        self.smoothing_length = space.smoothing * space.spacing
+        self.kernel = kernel(space.kernel, self.smoothing_length, space.dimensions)
+        self.bodies = (*case.fluids.values(), *case.walls.values())
+        shapes = tuple(body.shape for body in self.bodies)
+        axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
+        self.lattice = lattice_around(map(bounds, shapes), space.origin, self.spacing, axis)
+        self.layout = Layout(self.lattice, shapes, len(case.fluids))
+        self.axis, self.planes = self.lattice.axis, self.lattice.planes
+        self.lower = self.lattice.lower if space.lower is None else space.lower
+        self.upper = self.lattice.upper if space.upper is None else space.upper
+        self.periods = tuple(
+            up - low if name in space.periodic else None
+            for name, low, up in zip(AXES, self.lower, self.upper)
+        )
+
+    def counts(self) -> np.ndarray:
+        """Particles in each plane of the lattice, int64 (planes,)."""
+        return self.census.counts
+
+    def particles(self, first: int, last: int, first_id: int) -> ParticleSet:
+        """The particles of lattice planes ``first`` to ``last - 1``, in lattice order.
+
+        ``first_id`` is the number of particles in the planes before.
+        """
+        made = ParticleSet.empty(int(self.counts()[first:last].sum()), self.dimensions, first_id)
+        fill(made, self, first, last)
+        return made
+
+    def check(self) -> list[str]:
+        """Warnings, one line each; raises CaseError with a line for every fault."""
+        if found := list(faults(self)):
+            raise CaseError(found)
+        return list(warnings(self))
+
+    @cached_property
+    def gravity(self) -> tuple[float, ...]:
+        """g in m/s², zeros where the case has none."""
+        gravity = self.case.physics.gravity
+        return gravity.acceleration if gravity else (0.0,) * self.dimensions
+
+    @cached_property
+    def up(self) -> tuple[float, ...]:
+        """The unit vector against gravity; zeros without."""
+        pull = math.hypot(*self.gravity)
+        return tuple(-g / pull if pull else 0.0 for g in self.gravity)
+
+    @cached_property
+    def census(self) -> Census:
+        """What one look at every site tells: counts, extents, overlaps."""
+        return take_census(self.layout, self.up)
+
+    @cached_property
+    def expected_speed(self) -> float:
+        """The larger of √(2gH), free fall over the fluids' height, and any initial speed, m/s."""
+        fluids = slice(len(self.case.fluids))
+        height = self.census.top[fluids].max() - self.census.bottom[fluids].min() + self.spacing
+        falling = math.sqrt(2.0 * math.hypot(*self.gravity) * max(height, 0.0))
+        return max(falling, *(math.hypot(*v) for v in (*self.velocities, *self._kicked)))
+
+    @cached_property
+    def sound_speed(self) -> float:
+        """c in m/s: as given, else ten times the expected speed.
+
+        Raises CaseError where nothing moves and nothing falls.
+        """
+        given = self.case.physics.sound_speed
+        if given is None and not self.expected_speed > 0.0:
+            raise CaseError([
+                f"{self.case.file}: physics.sound_speed: missing, and nothing falls or moves at "
+                "the start that it could follow from; give it, ten times the largest speed that "
+                "you expect"
+            ])
+        return given or SOUND_OVER_SPEED * self.expected_speed
+
+    @cached_property
+    def state(self):
+        """The equation of state."""
+        key = f"physics.equation_of_state={self.case.physics.equation_of_state}"
+        [entry] = (entry for entry in EQUATIONS_OF_STATE if entry.key == key)
+        return entry.effect()
+
+    @cached_property
+    def materials(self) -> tuple[Material, ...]:
+        """Each fluid, then each wall."""
+        names, volume = (*self.case.fluids, *self.case.walls), self.spacing**self.dimensions
+        return tuple(
+            Material(
+                name, FLUID if index < self.layout.fluids else WALL,
+                self.bodies[source].density, self.bodies[source].viscosity, start.mass(volume),
+            )
+            for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
+        )
+
+    @cached_property
+    def starts(self) -> tuple[Start, ...]:
+        """The state of each material before the first step; a wall's is that of its fluid."""
+        return tuple(map(self._start, self._sources))
+
+    @cached_property
+    def velocities(self) -> tuple[tuple[float, ...], ...]:
+        """Velocity of each material at the start, m/s."""
+        still = (0.0,) * self.dimensions
+        return tuple(getattr(body, "velocity", still) for body in self.bodies)
+
+    @cached_property
+    def kicks(self) -> dict[tuple[int, int], np.ndarray]:
+        """Velocity added to the particle at (plane, place in the plane), m/s (dim,)."""
+        kicks: dict[tuple[int, int], np.ndarray] = {}
+        for kick in self.case.perturbations:
+            site = self._nearest_fluid_site(kick.position)
+            kicks[site] = kicks.get(site, 0.0) + np.array(kick.velocity)
+        return kicks
+
+    @property
+    def _kicked(self):
+        """Velocities of the particles that got a kick."""
+        for (plane, place), kick in self.kicks.items():
+            material = self.layout.materials(plane, plane + 1).ravel()[place]
+            yield kick + np.array(self.velocities[material])
+
+    @property
+    def _sources(self) -> list[int]:
+        """For each material the index of the fluid whose properties it has."""
+        fluids = list(self.case.fluids)
+        continued = [fluids.index(wall.continues) for wall in self.case.walls.values()]
+        return [*range(len(fluids)), *continued]
+
+    def _start(self, index: int) -> Start:
+        fluid = self.bodies[index]
+        hydrostatic = fluid.pressure == "hydrostatic"
+        return Start(
+            state=self.state,
+            rest_density=fluid.density,
+            sound_speed=self.sound_speed,
+            pressure=0.0 if hydrostatic else fluid.pressure,
+            weight=fluid.density * math.hypot(*self.gravity) if hydrostatic else 0.0,
+            up=self.up,
+            surface=float(self.census.top[index]) + 0.5 * self.spacing,
+        )
+
+    def _nearest_fluid_site(self, point: tuple[float, ...]) -> tuple[int, int]:
+        """(plane, place in the plane) of the fluid site nearest to ``point``; ties: the first."""
+        grid = self.lattice.grid(0, self.planes)
+        squares = [self._squares(d, x, point[d]) for d, x in enumerate(grid)]
+        along = squares[self.axis].ravel()
+        best = (math.inf, -1, -1)
+        for plane in np.argsort(along, kind="stable").tolist():
+            if along[plane] > best[0]:
+                break
+            squares[self.axis] = along[plane : plane + 1].reshape(grid[self.axis][:1].shape)
+            fluid = self.layout.materials(plane, plane + 1) < self.layout.fluids
+            distance = np.where(fluid, sum(squares), math.inf).ravel()
+            place = int(distance.argmin())
+            best = min(best, (float(distance[place]), plane, place))
+        return best[1:]
+
+    def _squares(self, d: int, x: np.ndarray, to: float) -> np.ndarray:
+        """Squared distances along an axis in spacings, rounded so that ties are ties."""
+        away = x - to
+        if self.periods[d] is not None:
+            away -= self.periods[d] * np.rint(away / self.periods[d])
+        return np.round((away / self.spacing) ** 2, 6)

@@ -1,0 +1,101 @@
+"""How many layers of particles a wall has behind the face that a fluid touches."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from psph.scene.lattice import TOLERANCE
+from psph.scene.materials import NONE
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+Thin = dict[int, tuple[int, tuple[float, ...]]]
+"""For a wall that is too thin somewhere: the fewest layers, and a site that has so many."""
+
+
+def layers_needed(scene: Scene) -> int:
+    """Layers that fill the support of a fluid particle at the face of a wall."""
+    reach = scene.kernel.support * scene.case.space.smoothing
+    return math.ceil(reach - TOLERANCE)
+
+
+def thinnest_walls(scene: Scene) -> Thin:
+    """The walls with fewer layers than needed, by material.
+
+    From each wall site that touches a fluid site the wall sites are counted along the axis, away
+    from the fluid; a site that touches in several directions has the largest count, so that the
+    tip of a round body is not thin.
+    """
+    need, thin = layers_needed(scene), Thin()
+    if not scene.case.walls:
+        return thin
+    for first, last in scene.lattice.chunks():
+        held = _with_surroundings(scene, first, last, need)
+        layers = _layers(held, scene.layout.fluids, need)
+        inner = held[(slice(need, -need),) * held.ndim]
+        for material in np.unique(inner[layers < need]).tolist():
+            its_layers = np.where(inner == material, layers, need)
+            _keep_thinnest(thin, scene, first, last, material, its_layers)
+    return thin
+
+
+def _layers(held: np.ndarray, fluids: int, need: int) -> np.ndarray:
+    """Wall sites behind each wall site that touches a fluid, at most ``need``; else ``need``."""
+    is_fluid, is_wall = held < fluids, (held >= fluids) & (held < NONE)
+    best = np.zeros([n - 2 * need for n in held.shape], np.uint8)
+    touching = np.zeros(best.shape, bool)
+    for axis in range(held.ndim):
+        for away in (-1, 1):
+            unbroken = _moved(is_wall, axis, 0, need) & _moved(is_fluid, axis, -away, need)
+            touching |= unbroken
+            count = unbroken.astype(np.uint8)
+            for step in range(1, need):
+                unbroken &= _moved(is_wall, axis, away * step, need)
+                count += unbroken
+            best = np.maximum(best, count)
+    return np.where(touching, best, need)
+
+
+def _moved(array: np.ndarray, axis: int, step: int, margin: int) -> np.ndarray:
+    """The inner sites' neighbours, ``step`` sites away along an axis."""
+    window = [slice(margin, n - margin) for n in array.shape]
+    window[axis] = slice(margin + step, array.shape[axis] - margin + step)
+    return array[tuple(window)]
+
+
+def _with_surroundings(scene: Scene, first: int, last: int, margin: int) -> np.ndarray:
+    """Materials of some planes and of ``margin`` sites around them, across periodic edges."""
+    lattice = scene.lattice
+    wraps = [
+        period is not None and round(period / scene.spacing) == count
+        for period, count in zip(scene.periods, lattice.counts)
+    ]
+    nothing = np.full(lattice.shape(0, 1), NONE, np.uint8)
+
+    def plane(k: int) -> np.ndarray:
+        k = k % lattice.planes if wraps[scene.axis] else k
+        return scene.layout.materials(k, k + 1) if 0 <= k < lattice.planes else nothing
+
+    held = np.concatenate([
+        *(plane(k) for k in range(first - margin, first)),
+        scene.layout.materials(first, last),
+        *(plane(k) for k in range(last, last + margin)),
+    ])
+    for place, d in enumerate(lattice.axes[1:], start=1):
+        width = [(margin, margin) if k == place else (0, 0) for k in range(held.ndim)]
+        how = {"mode": "wrap"} if wraps[d] else {"constant_values": NONE}
+        held = np.pad(held, width, **how)
+    return held
+
+
+def _keep_thinnest(thin: Thin, scene: Scene, first: int, last: int, material: int, layers) -> None:
+    site = np.unravel_index(layers.argmin(), layers.shape)
+    fewest = int(layers[site])
+    if material not in thin or fewest < thin[material][0]:
+        grid = scene.lattice.grid(first, last)
+        where = tuple(float(np.broadcast_to(x, layers.shape)[site]) for x in grid)
+        thin[material] = fewest, where
