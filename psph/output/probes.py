@@ -8,8 +8,9 @@ from psph.parallel.domain import Domain
 from psph.particles.cells import number_cells
 from psph.particles.fields import FIELDS
 from psph.particles.neighbours import candidate_ranges
+from psph.physics.compose import take
 from psph.smoothing import weight
-from psph.vectors import at, dot, nearest_image, subtract
+from psph.vectors import dot, nearest_image, subtract
 
 
 class Probe:
@@ -31,7 +32,7 @@ class Probe:
             for suffix in ([f"_{axis}" for axis in "xyz"[:dimensions]] if FIELDS[field].vector else [""])
         ]
 
-    def sample(self, domain: Domain, kernel, mass) -> np.ndarray:
+    def sample(self, domain: Domain, kernel) -> np.ndarray:
         """Values in the order of :meth:`columns` on every rank, NaN where no particle is near.
 
         Ghosts must hold the fields of this probe.  Collective.
@@ -47,10 +48,8 @@ class Probe:
         local = plane - int(domain.bounds[domain.comm.rank])
         if 0 <= local < domain.planes:
             interpolate(
-                self.position, kernel, domain.periods, store["position"],
-                store["specific_volume"], np.broadcast_to(mass, store.capacity),
-                local + 1, *divmod(rest, grid.counts[2]), grid.counts, grid.periodic, grid.reach,
-                domain.starts, store.data, np.array(rows), values,
+                self.position, kernel, domain.periods, store.view(), local + 1, *divmod(rest, grid.counts[2]), grid.counts, grid.periodic, grid.reach, domain.starts,
+                store.data, np.array(rows), values,
             )
         domain.comm.Allreduce(MPI.IN_PLACE, values, MPI.SUM)  # all others add exact zeros
         return values
@@ -58,8 +57,8 @@ class Probe:
 
 @compiled
 def interpolate(
-    point, kernel, periods, position, specific_volume, mass, plane, row, column, counts, periodic,
-    reach, starts, data, rows, values,
+    point, kernel, periods, view, plane, row, column, counts, periodic, reach, starts,
+    data, rows, values,
 ):
     """Shepard mean of some ``rows`` of ``data`` at ``point``, into ``values``."""
     from_k = np.empty(18, np.uint64)
@@ -67,13 +66,14 @@ def interpolate(
     ranges, _ = candidate_ranges(
         plane, row, column, counts[1], counts[2], periodic, reach, starts, from_k, to_k
     )
-    weight = 0.0
+    total = 0.0
     for q in range(ranges):
-        for j in range(from_k[q], to_k[q]):
-            x = nearest_image(subtract(point, at(position, j)), periods)
-            share = weight(kernel, np.sqrt(dot(x, x))) * mass[j] * specific_volume[j]
-            weight += share
+        for k in range(from_k[q], to_k[q]):
+            j = take(view, k)
+            x = nearest_image(subtract(point, j.position), periods)
+            share = weight(kernel, np.sqrt(dot(x, x))) * j.mass * j.specific_volume
+            total += share
             for m in range(len(rows)):
-                values[m] += share * data[rows[m], j]
+                values[m] += share * data[rows[m], k]
     for m in range(len(rows)):
-        values[m] = values[m] / weight if weight > 0.0 else np.nan
+        values[m] = values[m] / total if total > 0.0 else np.nan

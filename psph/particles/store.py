@@ -3,6 +3,7 @@
 import numpy as np
 
 from psph.particles.fields import FIELDS
+from psph.physics.compose import ParticleView
 
 SLACK = 64
 """Entries past the last particle: a vector load may touch them."""
@@ -72,6 +73,11 @@ class Store:
     def value(self, name: str):
         """Array(s) of a field, its constant, or None where the scene lacks it."""
         return self[name] if name in self.rows else self.constants.get(name)
+
+    def view(self) -> ParticleView:
+        """What effects see of the particles; their velocity is the predicted one."""
+        seen_as = {"velocity": "predicted_velocity"}
+        return ParticleView(*(self.value(seen_as.get(n, n)) for n in ParticleView._fields))
 
     def owned_rows(self, name: str) -> np.ndarray:
         """This rank's values as people read them: ``(owned,)`` or ``(owned, dim)``, a copy."""

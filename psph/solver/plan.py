@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 from psph.particles.fields import FIELDS
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
-from psph.physics.compose import ParticleView
 from psph.physics.trial import Reads, reads
 
 ALWAYS = (
@@ -186,8 +185,3 @@ def _plain(value) -> str:
         return "{ " + inner + " }"
     return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"
 
-
-def particle_view(store) -> ParticleView:
-    """What effects see of the particles of a store."""
-    seen_as = {"velocity": "predicted_velocity"}
-    return ParticleView(*(store.value(seen_as.get(n, n)) for n in ParticleView._fields))

@@ -23,10 +23,15 @@ class Schedule:
 
     def due(self, time: float) -> bool:
         """Whether the next moment has come; asks for the one after it if so."""
-        if time < self._next:
+        if time < self._next * (1 - 1e-12):
             return False
         self._next = self.interval * (math.floor(time / self.interval * (1 + 1e-12)) + 1)
         return True
+
+
+def probes_of(case) -> list[Probe]:
+    """The probes that a case asks for."""
+    return [Probe(name, p.position, tuple(p.fields)) for name, p in case.probes.items()]
 
 
 class Record:
@@ -50,7 +55,7 @@ class Record:
             },
         )
         self.written = 0
-        self.probes = [Probe(n, p.position, tuple(p.fields)) for n, p in case.probes.items()]
+        self.probes = probes_of(case)
         self.probed = tuple(sorted({field for probe in self.probes for field in probe.fields}))
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
         self.probe_table = CsvTable(folder / "probes.csv", ["time", *names], comm) if names else None
@@ -84,8 +89,7 @@ class Record:
             return
         sim = self.simulation
         sim.domain.halo.refresh(self.probed + ("specific_volume",))
-        mass = sim.store.value("mass")
-        values = [probe.sample(sim.domain, self.kernel, mass) for probe in self.probes]
+        values = [probe.sample(sim.domain, self.kernel) for probe in self.probes]
         self.probe_table.write([sim.time, *np.concatenate(values).tolist()])
 
     def write_log(self) -> None:

@@ -42,6 +42,7 @@ def run(case, folder: Path, comm: MPI.Comm, overwrite: bool = False) -> Simulati
     record = Record(scene, simulation, folder)
     record.write_due()
     say(f"first step after {time.perf_counter() - begun:.1f} s")
+    simulation.ledger.seconds.clear()  # the start is not a step
     stepping = time.perf_counter()
     progress = Progress(comm, case.time.end, case.title or case.name, particles)
     try:

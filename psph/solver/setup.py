@@ -8,6 +8,7 @@ from mpi4py import MPI
 from psph.output.ledger import Ledger
 from psph.particles.store import Store
 from psph.solver.plan import PER_MATERIAL, Plan, material_value
+from psph.solver.record import probes_of
 from psph.solver.step import Simulation
 
 NOT_YET_SUMMED = 2.0
@@ -52,6 +53,10 @@ def compile_ahead(scene, plan: Plan, comm: MPI.Comm) -> float:
         middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
         block[list(store.rows["position"])] = np.array(middle)[:, None]
         store.append(np.arange(2), np.zeros(2, np.uint8), block)
-        Simulation(scene, plan, store, MPI.COMM_SELF, Ledger()).step()
+        rehearsal = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+        rehearsal.step()
+        rehearsal.settle_pressure()
+        for probe in probes_of(scene.case):
+            probe.sample(rehearsal.domain, scene.kernel)
     comm.Barrier()
     return time.perf_counter() - begun

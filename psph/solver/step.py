@@ -8,7 +8,7 @@ from psph.parallel.domain import Domain
 from psph.particles.store import Store
 from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import TINY, sum_over_neighbours
-from psph.solver.plan import Plan, particle_view
+from psph.solver.plan import Plan
 
 TOO_FAST = 1000.0
 """A particle at this many speeds of sound is a run that blew up."""
@@ -60,7 +60,7 @@ class Simulation:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store
         state_of(
-            s.low, s.low + s.owned, self.plan.state, particle_view(s), s["density"],
+            s.low, s.low + s.owned, self.plan.state, s.view(), s["density"],
             s["specific_volume"], s["pressure"],
         )
 
@@ -104,7 +104,7 @@ class Simulation:
     def _predict(self, dt: float) -> None:
         s, plan = self.store, self.plan
         kick_drift_predict(
-            dt, s.low, s.low + s.owned, plan.effects, plan.state, particle_view(s), s.kind,
+            dt, s.low, s.low + s.owned, plan.effects, plan.state, s.view(), s.kind,
             s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
             s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
             s["specific_volume"], s["pressure"],
@@ -116,7 +116,7 @@ class Simulation:
         written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
         sum_over_neighbours(
             plan.effects, plan.reductions, plan.kernel, self.periods, self.tiny,
-            particle_view(s), first, last, s.low, lists.begin, lists.blocks, lists.lists,
+            s.view(), first, last, s.low, lists.begin, lists.blocks, lists.lists,
             s["acceleration"], s["density_rate"], written,
         )
 
@@ -124,7 +124,7 @@ class Simulation:
         """Second kick; then the largest speed, acceleration and displacement over all ranks."""
         s = self.store
         *largest, broken = kick(
-            dt, s.low, s.low + s.owned, self.plan.effects, particle_view(s), s.kind,
+            dt, s.low, s.low + s.owned, self.plan.effects, s.view(), s.kind,
             s["position"], s["listed_position"], s["velocity"], s["acceleration"],
             s["density"], s["density_rate"],
         )
