@@ -37,6 +37,9 @@ class Ranks:
         self.collected = ""  # what this rank could not collect
         self.trouble = ""  # what went wrong on this rank in the current test
         self.stderr = os.dup(2)  # as it is outside of pytest's capture
+        for plugin in config.pluginmanager.get_plugins():
+            if type(plugin).__name__ == "MPIPlugin":  # its table holds a NUL: the log is binary
+                plugin._is_testing_mpi = False
         if comm.rank > 0:
             config.pluginmanager.unregister(name="terminalreporter")
             silent = pytest.TerminalReporter(config, open(os.devnull, "w"))

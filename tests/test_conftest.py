@@ -38,6 +38,7 @@ def test_passing_session_has_one_summary(session):
     assert job.returncode == 0, job.stdout + job.stderr
     assert job.stdout.count("test session starts") == 1
     assert job.stdout.count("1 passed, 1 skipped, 1 xfailed in") == 1
+    assert "\0" not in job.stdout
 
 
 def test_failures_on_rank_1_alone_are_shown_by_rank_0(session):
