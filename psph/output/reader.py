@@ -44,17 +44,23 @@ class Run:
         with _open(self.path) as file:
             return np.array([frame.attrs["time"] for frame in _whole(file)], dtype=float)
 
-    def frame(self, k: int) -> dict[str, np.ndarray]:
-        """The fields of the k-th whole frame, ``-1`` the last: ``(n,)`` or ``(n, dim)`` each."""
+    def frame(self, k: int, *names: str) -> dict[str, np.ndarray]:
+        """Fields of the k-th whole frame, ``-1`` the last: ``(n,)`` or ``(n, dim)`` each.
+
+        All of them, or those with the given ``names``.
+        """
         with _open(self.path) as file:
             frames = _whole(file)
-            try:
-                frame = frames[k]
-            except IndexError:
+            if not -len(frames) <= k < len(frames):
                 raise OutputError(
                     f"{self.path}: frame: {k} is not one of the {len(frames)} frames so far"
-                ) from None
-            return {name: rows[...] for name, rows in frame.items() if name != "points"}
+                )
+            saved = [name for name in frames[k] if name != "points"]
+            for name in set(names) - set(saved):
+                raise OutputError(
+                    f"{self.path}: field: {name} is not saved; choose of {', '.join(saved)}"
+                )
+            return {name: frames[k][name][...] for name in names or saved}
 
     def probes(self) -> dict[str, np.ndarray]:
         """The columns of ``probes.csv`` by name; empty if the case has no probes."""

@@ -1,0 +1,118 @@
+"""Curves over time: what the probes read, and what the log tells of the run."""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from psph.output import style
+from psph.output.reader import Run
+from psph.particles.fields import FIELDS
+
+WIDTH, HEIGHT, GAP = 7.0, 1.6, 0.5
+"""Of a chart, and between two of them, inches."""
+STEEP = 1e3
+"""Ratio of the largest to the smallest number from which on the axis is logarithmic."""
+
+_THEORY = {"color": style.INK, "lw": 0.9, "ls": (0, (5, 3))}
+
+
+class Chart(NamedTuple):
+    """Curves that share an axis; ``theory`` holds a constant for some of them."""
+
+    title: str
+    unit: str
+    time: np.ndarray
+    curves: dict[str, np.ndarray]
+    theory: dict[str, float] = {}
+
+
+def probe_charts(run: Run, case: dict) -> list[Chart]:
+    """One chart for each field that any probe reads."""
+    table = run.probes()
+    charts: dict[str, Chart] = {}
+    for column, values in table.items():
+        probe, _, quantity = column.rpartition(".")
+        if not probe:  # the time
+            continue
+        field, _, axis = quantity.partition("_")
+        chart = charts.setdefault(field, Chart(field, FIELDS[field].unit, table["time"], {}, {}))
+        name = f"{probe} {axis}".strip()
+        chart.curves[name] = values
+        theory = case.get("probes", {}).get(probe, {}).get("theory", {}).get(field)
+        if isinstance(theory, list):
+            theory = theory["xyz".index(axis)]
+        if theory is not None:
+            chart.theory[name] = theory
+    return [chart for chart in charts.values() if len(chart.time)]
+
+
+def log_charts(run: Run, dimensions: int) -> list[Chart]:
+    """Energies, largest speed, error of the density, time step."""
+    log = run.log()
+    if not log or not len(log["time"]):
+        return []
+    time, kinetic = log["time"], log["kinetic_energy"]
+    potential = log["potential_energy"] - log["potential_energy"][0]
+    energies = {"kinetic": kinetic}
+    if potential.any():
+        energies["potential, change"] = potential
+    return [
+        Chart("energy", ("J/m²", "J/m", "J")[dimensions - 1], time, energies),
+        Chart("largest speed", "m/s", time, {"": log["largest_speed"]}),
+        Chart("largest error of the density", "%", time, {"": 100 * log["density_error"]}),
+        Chart("time step", "s", time, {"": np.where(log["dt"] > 0, log["dt"], np.nan)}),
+    ]
+
+
+def picture(charts: list[Chart], title: str, subtitle: str) -> Figure:
+    """The charts one below the other."""
+    above = style.TOP + 0.2
+    height = above + len(charts) * (HEIGHT + GAP) - GAP + style.BOTTOM
+    with style.look():
+        figure = style.sheet(style.LEFT + WIDTH + 0.3, height, title, subtitle)
+        for k, chart in enumerate(charts):
+            top = above + k * (HEIGHT + GAP)
+            axes = style.panel(figure, style.LEFT, top, WIDTH, HEIGHT)
+            draw(axes, chart, last=k == len(charts) - 1)
+    return figure
+
+
+def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
+    """Draw ``chart``; the ``last`` one of a column bears the times."""
+    values = np.abs([*chart.theory.values(), *np.concatenate([*chart.curves.values()])])
+    values = values[np.isfinite(values)]
+    largest = values.max(initial=0.0)
+    steep = len(chart.curves) == 1 and 0 < values.min(initial=np.inf) * STEEP < largest
+    factor, unit = style.readable(chart.unit, 1.0 if steep else largest)
+    seconds, second = style.clock(chart.time[-1])
+    for k, (name, curve) in enumerate(chart.curves.items()):
+        colour = style.LINES[k % len(style.LINES)]
+        axes.plot(chart.time * seconds, curve * factor, color=colour, label=name)
+        if name in chart.theory:
+            axes.axhline(chart.theory[name] * factor, **_THEORY)
+    if steep:
+        axes.set_yscale("log")
+    else:
+        style.ticks(axes.yaxis, 4)
+        axes.margins(y=0.12)
+    axes.grid(axis="y", color=style.WALLS, lw=0.4)
+    axes.set_title(f"{chart.title} ({unit})", loc="left", size=9, weight="bold")
+    _legend(axes, chart)
+    axes.set_xlim(chart.time[0] * seconds, chart.time[-1] * seconds)
+    style.ticks(axes.xaxis, 6)
+    axes.tick_params(labelbottom=last)
+    if last:
+        axes.set_xlabel(f"time ({second})")
+
+
+def _legend(axes: Axes, chart: Chart) -> None:
+    handles, names = axes.get_legend_handles_labels()
+    if chart.theory:
+        handles.append(Line2D([], [], **_THEORY))
+        names.append("theory")
+    if names:
+        place = {"loc": "lower right", "bbox_to_anchor": (1, 1.05), "borderpad": 0}
+        axes.legend(handles, names, ncols=len(names), columnspacing=1.4, **place)

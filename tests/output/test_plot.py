@@ -1,0 +1,223 @@
+"""Pictures: what is drawn where and in which colour, and which files come of it."""
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+from psph.output import charts, style
+from psph.output.errors import OutputError
+from psph.output.frames import FrameFile
+from psph.output.plot import Show, overview, plot
+from psph.output.reader import Run
+from psph.output.tables import CsvTable
+
+CASE = """
+title = "{dimensions}D tank"
+[space]
+dimensions = {dimensions}
+spacing = 0.1
+[time]
+end = 1.0
+[physics.gravity]
+acceleration = {gravity}
+[probes.P1]
+position = [0.5, 0.1]
+theory = {{ pressure = 3920.0, velocity = [0.0, 1.0] }}
+"""
+
+
+def box(*cells):
+    """Centres of the cells, 0.1 wide, of a lattice; the layers at both ends of x are wall."""
+    places = [np.arange(count) * 0.1 + 0.05 for count in cells]
+    position = np.stack([grid.ravel() for grid in np.meshgrid(*places, indexing="ij")], axis=-1)
+    wall = (position[:, 0] < 0.1) | (position[:, 0] > 0.1 * cells[0] - 0.1)
+    return {"position": position, "kind": wall.astype(np.uint8)}
+
+
+@pytest.fixture
+def run_with(tmp_path, alone):
+    """Make the folder of a run whose frames hold the given pressures, 0.25 s apart."""
+
+    def make(arrays, *pressures, gravity=None):
+        dimensions = arrays["position"].shape[1]
+        gravity = gravity or [0.0] * (dimensions - 1) + [-9.8]
+        case = CASE.format(dimensions=dimensions, gravity=gravity)
+        frames = FrameFile(tmp_path / "tank.h5", alone, {"case": case})
+        for k, pressure in enumerate(pressures):
+            velocity = np.ones_like(arrays["position"])
+            frames.write(k, 0.25 * k, k, arrays | {"pressure": pressure, "velocity": velocity})
+        return Run(tmp_path)
+
+    return make
+
+
+@pytest.fixture
+def tank(run_with, alone):
+    """A 2D run with five frames, probes and a log."""
+    arrays = box(10, 5)
+    depth = 0.5 - arrays["position"][:, 1]
+    run = run_with(arrays, *[9800 * depth + k for k in range(5)])
+    columns = ["time", "P1.pressure", "P1.velocity_x", "P1.velocity_y", "P2.pressure"]
+    probes = CsvTable(run.folder / "probes.csv", columns, alone)
+    columns = "time,step,dt,kinetic_energy,potential_energy,largest_speed,density_error"
+    log = CsvTable(run.folder / "log.csv", columns.split(","), alone)
+    for k in range(5):
+        probes.write([0.25 * k, 4000 + k, 0.0, 1.0, 2000.0])
+        log.write([0.25 * k, k, 1e-4, 0.1 * k, 7 - 0.1 * k, 1e-7 * 10**k, 0.002])
+    return run
+
+
+def test_one_picture_a_time_and_the_charts(tank):
+    paths = plot(tank.folder)
+    names = [*(f"pressure_0000{k}" for k in (0, 1, 3, 4)), "probes", "log", "overview"]
+    assert [path.name for path in paths] == [f"{name}.png" for name in names]
+    for path in paths:
+        assert path.parent == tank.folder
+        assert path.read_bytes().startswith(b"\x89PNG")
+        assert matplotlib.image.imread(path).std() > 0.05  # something is on it
+
+
+def test_nearest_frames_are_chosen_once(tank):
+    paths = plot(tank.folder, times=[0.3, 0.2, 99.0], field="velocity")
+    assert [path.stem for path in paths[:2]] == ["velocity_00001", "velocity_00004"]
+    assert overview(tank.folder, times=[0.5]).name == "overview.png"
+
+
+@pytest.mark.parametrize("cells", [(10,), (10, 5), (10, 5, 4)])
+def test_every_dimension_is_drawn(run_with, cells):
+    arrays = box(*cells)
+    run = run_with(arrays, arrays["position"][:, 0], arrays["position"][:, 0])
+    assert [path.stem for path in plot(run.folder)][-1] == "overview"
+
+
+def test_particle_has_its_colour_at_its_place(tank):
+    show = Show(tank, [0.0], "pressure")
+    figure = show.picture([0])
+    figure.canvas.draw()
+    pixels = np.asarray(figure.canvas.buffer_rgba())
+    frame = show.frames[0]
+    across, down = figure.axes[0].transData.transform(frame["position"]).T
+    seen = pixels[np.round(len(pixels) - 1 - down).astype(int), np.round(across).astype(int)]
+    colours = matplotlib.colormaps["viridis"](show.scale.norm(frame["pressure"]))
+    colours[frame["kind"] == 1] = matplotlib.colors.to_rgba(style.WALLS)
+    assert np.abs(seen / 255 - colours).max() < 0.01
+
+
+def test_title_tells_case_field_and_time(tank):
+    texts = [text.get_text() for text in Show(tank, [0.25], "pressure").picture([1]).texts]
+    assert texts == ["2D tank", "pressure, t = 0.25 s"]
+
+
+@pytest.mark.parametrize(
+    ("pressure", "colours", "low", "high"),
+    [
+        (lambda x: 5000 * x, "viridis", 0.0, 5000.0),  # near zero: from zero
+        (lambda x: 1000 + x, "viridis", 1000.0, 1001.0),
+        (lambda x: -1000 - x, "viridis", -1001.0, -1000.0),
+        (lambda x: 30 * x - 10, "coolwarm", -20.0, 20.0),  # both signs: around zero
+        (lambda x: 100 * x - 2, "viridis", 0.0, 98.0),  # hardly below zero
+        (lambda x: 0 * x - 2500, "viridis", -2525.0, -2475.0),  # uniform
+    ],
+)
+def test_colours_follow_the_signs(run_with, pressure, colours, low, high):
+    arrays = box(10, 1000)
+    run = run_with(arrays, pressure(np.linspace(0, 1, 10_000)))
+    scale = Show(run, None, "pressure").scale
+    assert scale.colours == colours
+    span = abs(high - low)
+    assert (scale.norm.vmin, scale.norm.vmax) == pytest.approx((low, high), abs=0.12 * span)
+
+
+def test_run_that_blew_up_can_still_be_seen(run_with, alone):
+    arrays = box(20, 10)
+    arrays["position"][52:55] = [[1e9, 1e9], [np.nan, 0.0], [np.inf, 1.0]]
+    pressure = np.linspace(0, 1000, 200)
+    pressure[60:63] = [np.nan, np.inf, 1e12]
+    run = run_with(box(20, 10))
+    frames = FrameFile(run.path, alone, {"case": run.case_text})
+    for k, thrown in enumerate([box(20, 10), arrays]):
+        frames.write(k, 0.1 * k, k, thrown | {"pressure": pressure})
+    show = Show(run, None, "pressure")
+    assert show.view.upper == pytest.approx([4.0, 2.0], abs=0.06)
+    assert show.scale.norm.vmax < 1e4
+    assert show.scale.extend == "max"
+    plot(run.folder)
+
+
+def test_slice_is_the_middle_layer_seen_against_gravity(run_with):
+    arrays = box(10, 4, 3)
+    show = Show(run_with(arrays, arrays["position"][:, 0]), None, "pressure")
+    view = show.view
+    assert (view.across, view.up, view.cut) == (0, 2, 1)
+    assert view.place == pytest.approx(0.15)
+    assert len(show.frames[0]["position"]) == 30
+    assert view.upper == pytest.approx([1.0, 0.3])
+    show = Show(run_with(arrays, arrays["kind"], gravity=[0, -9.8, 0]), None, "pressure")
+    assert (show.view.across, show.view.up, show.view.cut) == (0, 1, 2)
+    assert show._subtitle([0]) == "pressure, slice at z = 0.15 m, t = 0.00 s"
+
+
+def test_what_cannot_be_drawn_is_one_line(tank, tmp_path, alone):
+    with pytest.raises(OutputError, match="field: colour is not saved; choose of kind, position"):
+        plot(tank.folder, field="colour")
+    FrameFile(tank.path, alone, {"case": ""})
+    with pytest.raises(OutputError, match="tank.h5: no frame yet"):
+        plot(tank.folder)
+
+
+def test_probes_are_charted_by_field_with_their_theory(tank):
+    pressure, velocity = charts.probe_charts(tank, Show(tank, None, "pressure").case)
+    assert (pressure.title, pressure.unit) == ("pressure", "Pa")
+    assert pressure.curves["P1"].tolist() == [4000, 4001, 4002, 4003, 4004]
+    assert pressure.curves.keys() == {"P1", "P2"}
+    assert pressure.theory == {"P1": 3920.0}
+    assert velocity.curves.keys() == {"P1 x", "P1 y"}
+    assert velocity.theory == {"P1 x": 0.0, "P1 y": 1.0}
+
+
+def test_log_shows_the_change_of_energy_and_growth_in_decades(tank):
+    column = charts.log_charts(tank, 2)
+    energy, speed = column[:2]
+    assert energy.unit == "J/m"
+    assert energy.curves["kinetic"].tolist() == [0.1 * k for k in range(5)]
+    assert energy.curves["potential, change"] == pytest.approx(-0.1 * np.arange(5))
+    axes = charts.picture(column, "tank", "log").axes
+    assert axes[1].get_yscale() == "log"
+    assert [panel.get_title(loc="left") for panel in axes] == [
+        "energy (J/m)",
+        "largest speed (m/s)",
+        "largest error of the density (%)",
+        "time step ($10^{-4}$ s)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("unit", "largest", "factor", "text"),
+    [
+        ("Pa", 3920.0, 1.0, "Pa"),
+        ("Pa", 250_000.0, 1e-3, "kPa"),
+        ("Pa", 2e-5, 1e6, "µPa"),
+        ("J/m", 25e6, 1e-6, "MJ/m"),
+        ("kg/m3", 1000.0, 1.0, "kg/m³"),
+        ("m/s", 1e-7, 1e7, "$10^{-7}$ m/s"),
+        ("m/s", 0.0, 1.0, "m/s"),
+        ("m2/s", np.inf, 1.0, "m²/s"),
+    ],
+)
+def test_numbers_have_few_digits(unit, largest, factor, text):
+    assert style.readable(unit, largest) == (pytest.approx(factor), text)
+
+
+@pytest.mark.parametrize(
+    ("time", "end", "text"),
+    [
+        (0.5, 5.0, "t = 0.50 s"),
+        (0.5, 0.5, "t = 0.500 s"),
+        (12.0, 60.0, "t = 12.0 s"),
+        (120.0, 1000.0, "t = 120 s"),
+        (0.003, 0.01, "t = 3.0 ms"),
+        (1e-6, 1e-5, "t = 1.0 µs"),
+    ],
+)
+def test_time_is_told_in_its_unit(time, end, text):
+    assert style.moment(time, end) == text
