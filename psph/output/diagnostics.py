@@ -3,7 +3,7 @@
 import numpy as np
 from mpi4py import MPI
 
-from psph.parallel.reductions import exact_sums
+from psph.parallel.reductions import exact_sums, largest
 from psph.particles.fields import FLUID
 from psph.particles.store import Store
 
@@ -35,6 +35,4 @@ def density_error(comm: MPI.Comm, store: Store) -> float:
     """Largest |ρ/ρ₀ − 1| of the fluid; collective."""
     fluid = store.owned_rows("kind") == FLUID
     ratio = store.owned_rows("density")[fluid] / store.owned_rows("rest_density")[fluid]
-    worst = np.array([np.abs(ratio - 1.0).max(initial=0.0)])
-    comm.Allreduce(MPI.IN_PLACE, worst, MPI.MAX)
-    return float(worst[0])
+    return float(largest(comm, [np.abs(ratio - 1.0).max(initial=0.0)])[0])

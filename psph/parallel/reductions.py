@@ -1,4 +1,4 @@
-"""Sums over all ranks that do not depend on how particles are spread over them."""
+"""Numbers over all ranks that do not depend on how particles are spread over them."""
 
 import math
 
@@ -9,6 +9,18 @@ BITS = 62
 """Bits of a signed 64-bit integer that a sum may fill."""
 
 
+def alone() -> MPI.Comm:
+    """The communicator of this rank alone, for what it does without the others."""
+    return MPI.COMM_SELF
+
+
+def largest(comm: MPI.Comm, values) -> np.ndarray:
+    """The largest of each value over all ranks; collective."""
+    found = np.array(values, dtype=np.float64)
+    comm.Allreduce(MPI.IN_PLACE, found, MPI.MAX)
+    return found
+
+
 def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     """Sums of the columns of ``terms`` (n, k) over all ranks, the same bits in any order.
 
@@ -17,17 +29,17 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     column makes its sum NaN.  Collective.
     """
     terms = np.atleast_2d(terms)
-    extremes = np.zeros(terms.shape[1] + 1)
+    extremes = np.zeros(terms.shape[1])
     if len(terms):
         with np.errstate(invalid="ignore"):
-            extremes[:-1] = np.abs(terms).max(axis=0)
+            extremes[:] = np.abs(terms).max(axis=0)
     extremes[np.isnan(extremes)] = np.inf
     count = np.array(len(terms), dtype=np.int64)
-    comm.Allreduce(MPI.IN_PLACE, extremes, MPI.MAX)
+    peaks = largest(comm, extremes)
     comm.Allreduce(MPI.IN_PLACE, count, MPI.SUM)
-    largest, finite = extremes[:-1], np.isfinite(extremes[:-1])
+    finite = np.isfinite(peaks)
     room = BITS - max(int(count), 1).bit_length()
-    exponents = np.array([math.frexp(x)[1] if x > 0 and ok else 0 for x, ok in zip(largest, finite)])
+    exponents = np.array([math.frexp(x)[1] if x > 0 and ok else 0 for x, ok in zip(peaks, finite)])
     whole = np.rint(np.ldexp(np.where(finite, terms, 0.0), room - exponents)).astype(np.int64)
     total = whole.sum(axis=0)
     comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)

@@ -10,6 +10,14 @@ class TooManyRanks(ValueError):
     """More ranks than planes of cells."""
 
 
+def check_ranks(ranks: int, planes: int) -> None:
+    """Raise TooManyRanks, with the largest usable number, where a rank would get no plane."""
+    if ranks > planes:
+        raise TooManyRanks(
+            f"{ranks} ranks for {planes} planes of cells: use at most {planes} ranks"
+        )
+
+
 def partition(histogram: np.ndarray, ranks: int) -> np.ndarray:
     """Cut the planes into slabs of about equal particle number, at least one plane each.
 
@@ -17,10 +25,7 @@ def partition(histogram: np.ndarray, ranks: int) -> np.ndarray:
     Raises TooManyRanks with the largest usable number.
     """
     planes = len(histogram)
-    if ranks > planes:
-        raise TooManyRanks(
-            f"{ranks} ranks for {planes} planes of cells: use at most {planes} ranks"
-        )
+    check_ranks(ranks, planes)
     reached = np.concatenate([[0], np.cumsum(histogram)])
     bounds = np.zeros(ranks + 1, np.int64)
     bounds[ranks] = planes

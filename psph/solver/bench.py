@@ -6,7 +6,6 @@ import statistics
 import time
 
 import numpy as np
-from mpi4py import MPI
 
 from psph.jit import compiled
 from psph.output.ledger import Ledger
@@ -24,7 +23,7 @@ JITTER, SMOOTHING, SPEED = 0.25, 1.3, 50.0
 """Random shift in spacings (a perfect lattice flatters the caches), h/dx and c in m/s."""
 
 
-def bench(comm: MPI.Comm, dimensions: int | None, particles: int, as_json: bool) -> None:
+def bench(comm, dimensions: int | None, particles: int, as_json: bool) -> None:
     """Time the jittered periodic box in 2D, 3D or both, and print what each gave; collective."""
     for dim in (dimensions,) if dimensions else (2, 3):
         result = measure(comm, dim, particles)
@@ -36,7 +35,7 @@ def bench(comm: MPI.Comm, dimensions: int | None, particles: int, as_json: bool)
             print("\n".join(_lines(result)), flush=True)
 
 
-def measure(comm: MPI.Comm, dimensions: int, particles: int) -> dict:
+def measure(comm, dimensions: int, particles: int) -> dict:
     """Figures of one problem: rates are medians over blocks, per rank and in all."""
     scene = Scene(_box(dimensions, particles))
     plan = make_plan(scene)
@@ -95,7 +94,7 @@ def _box(dimensions: int, particles: int):
     )
 
 
-def _timed(simulation: Simulation, comm: MPI.Comm) -> float:
+def _timed(simulation: Simulation, comm) -> float:
     comm.Barrier()
     begun = time.perf_counter()
     for _ in range(STEPS):

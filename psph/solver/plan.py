@@ -180,7 +180,7 @@ def _as_number(x):
 
 
 def _plain(value) -> str:
-    if hasattr(value, "model_fields"):
+    if hasattr(type(value), "model_fields"):
         inner = ", ".join(f"{k} = {_plain(v)}" for k, v in dict(value).items())
         return "{ " + inner + " }"
     return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"

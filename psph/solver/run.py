@@ -3,13 +3,13 @@
 import time
 from pathlib import Path
 
-from mpi4py import MPI
-
 from psph.output.errors import OutputError
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
 from psph.output.progress import Progress
+from psph.parallel.slabs import check_ranks
 from psph.scene import Scene
+from psph.solver.explain import slab_planes
 from psph.solver.plan import make_plan
 from psph.solver.record import Record
 from psph.solver.setup import compile_ahead, create_particles
@@ -19,7 +19,7 @@ WORTH_SAYING = 1.0
 """Seconds of compilation from which on it is mentioned."""
 
 
-def run(case, folder: Path, comm: MPI.Comm, overwrite: bool = False) -> Simulation:
+def run(case, folder: Path, comm, overwrite: bool = False) -> Simulation:
     """Simulate ``case`` on the ranks of ``comm`` and leave the files in ``folder``.
 
     Raises CaseError, TooManyRanks, BlowUp or OutputError, each on every rank.
@@ -29,6 +29,7 @@ def run(case, folder: Path, comm: MPI.Comm, overwrite: bool = False) -> Simulati
     scene = Scene(case)
     for warning in scene.check():
         say(f"warning: {warning}")
+    check_ranks(comm.size, slab_planes(scene))
     _prepare_folder(case, folder, comm, overwrite)
     plan = make_plan(scene)
     particles = int(scene.counts().sum())
@@ -59,7 +60,7 @@ def run(case, folder: Path, comm: MPI.Comm, overwrite: bool = False) -> Simulati
     return simulation
 
 
-def _speaker(comm: MPI.Comm):
+def _speaker(comm):
     """Rank 0 speaks; the others are silent."""
 
     def say(line: str) -> None:
@@ -73,7 +74,7 @@ def _ranks(size: int) -> str:
     return "1 rank" if size == 1 else f"{size} ranks"
 
 
-def _prepare_folder(case, folder: Path, comm: MPI.Comm, overwrite: bool) -> None:
+def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
     """Make the folder and leave the case in it; a finished run is not overwritten unasked."""
     trouble = None
     if comm.rank == 0:

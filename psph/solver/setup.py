@@ -3,9 +3,9 @@
 import time
 
 import numpy as np
-from mpi4py import MPI
 
 from psph.output.ledger import Ledger
+from psph.parallel.reductions import alone
 from psph.particles.store import Store
 from psph.solver.plan import PER_MATERIAL, Plan, material_value
 from psph.solver.record import probes_of
@@ -15,7 +15,7 @@ NOT_YET_SUMMED = 2.0
 """A kernel sum that no threshold calls a surface, until the first pass knows better."""
 
 
-def create_particles(scene, plan: Plan, comm: MPI.Comm) -> Store:
+def create_particles(scene, plan: Plan, comm) -> Store:
     """This rank's share of the scene's particles, by lattice planes; ids in lattice order.
 
     Where they belong is for the first rebuild to say.
@@ -41,7 +41,7 @@ def create_particles(scene, plan: Plan, comm: MPI.Comm) -> Store:
     return store
 
 
-def compile_ahead(scene, plan: Plan, comm: MPI.Comm) -> float:
+def compile_ahead(scene, plan: Plan, comm) -> float:
     """Compile, or load from the cache, every loop of the plan on rank 0 while the others wait.
 
     One step of two particles has the types of the whole run.  Returns the seconds it took.
@@ -53,7 +53,7 @@ def compile_ahead(scene, plan: Plan, comm: MPI.Comm) -> float:
         middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
         block[list(store.rows["position"])] = np.array(middle)[:, None]
         store.append(np.arange(2), np.zeros(2, np.uint8), block)
-        rehearsal = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+        rehearsal = Simulation(scene, plan, store, alone(), Ledger())
         rehearsal.step()
         rehearsal.settle_pressure()
         for probe in probes_of(scene.case):

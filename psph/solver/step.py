@@ -1,10 +1,10 @@
 """The simulation of one rank, and its step."""
 
 import numpy as np
-from mpi4py import MPI
 
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain
+from psph.parallel.reductions import largest
 from psph.particles.store import Store
 from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import TINY, sum_over_neighbours
@@ -25,7 +25,7 @@ class Simulation:
     scene.  ``time`` in s, ``dt`` the last step.
     """
 
-    def __init__(self, scene, plan: Plan, store: Store, comm: MPI.Comm, ledger: Ledger):
+    def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger):
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
         support = scene.kernel.support * scene.smoothing_length
         self.skin = scene.case.neighbours.skin * support
@@ -123,15 +123,14 @@ class Simulation:
     def _kick(self, dt: float) -> None:
         """Second kick; then the largest speed, acceleration and displacement over all ranks."""
         s = self.store
-        *largest, broken = kick(
+        *mine, broken = kick(
             dt, s.low, s.low + s.owned, self.plan.effects, s.view(), s.kind,
             s["position"], s["listed_position"], s["velocity"], s["acceleration"],
             s["density"], s["density_rate"],
         )
         lost = float(s.id[broken]) + 1.0 if broken >= 0 else 0.0
-        extremes = np.array([*largest, lost])
         with self.ledger("limits"):
-            self.comm.Allreduce(MPI.IN_PLACE, extremes, MPI.MAX)
+            extremes = largest(self.comm, [*mine, lost])
         self.speed, self.acceleration, self.moved = np.sqrt(extremes[:3]).tolist()
         too_fast = self.speed > TOO_FAST * self.plan.constants["sound_speed"]
         if extremes[3] > 0.0 or too_fast:

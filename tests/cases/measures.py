@@ -1,0 +1,41 @@
+"""What the tests of cases measure on finished runs."""
+
+import numpy as np
+
+
+CASES = "run/cases"
+
+
+def window(table, column, begin, end):
+    """Values of a column of a table between two times, s."""
+    inside = (table["time"] >= begin) & (table["time"] <= end)
+    return table[column][inside]
+
+
+def by_id(frame):
+    """The arrays of a frame in the order of the ids."""
+    order = np.argsort(frame["id"])
+    return {name: values[order] for name, values in frame.items()}
+
+
+def growth_rate(log, low=1e-6, high=1e-3):
+    """Exponential growth of the largest speed while it lies between two speeds (m/s), 1/s."""
+    speed = log["largest_speed"]
+    first = np.argmax(speed > high)
+    begin = first - np.argmax(speed[:first][::-1] < low)
+    return np.polyfit(log["time"][begin:first], np.log(speed[begin:first]), 1)[0]
+
+
+def checkerboard(frame, spacing, scale):
+    """rms of p minus the mean over the eight nearest sites, over ``scale`` Pa, inside the fluid."""
+    fluid = frame["kind"] == 0
+    x, p = frame["position"], frame["pressure"]
+    noise = []
+    for i in np.flatnonzero(fluid):
+        near = ((x - x[i]) ** 2).sum(axis=1) < (1.6 * spacing) ** 2
+        near[i] = False
+        if near.sum() >= 6:  # not at the surface
+            noise.append(p[i] - p[near].mean())
+    return np.sqrt(np.mean(np.square(noise))) / scale
+
+

@@ -1,0 +1,106 @@
+"""The paper's two cases on 2 ranks, at reduced length, with the controls that fail beside them.
+
+Bounds: what a prototype of the same equations found (docs/theory.md).
+"""
+
+import numpy as np
+import pytest
+from cases.measures import CASES, by_id, checkerboard, growth_rate, window
+from jobs import mpirun
+
+from psph.output.reader import Run
+
+BOX_EIGENVALUE = {"cubic": 2693.0, "hyperbolic": 3004.0}
+"""Growth in 1/s of the 15×15 box of case 4.2 at h/dx 1.2, from linear theory."""
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """A function: case and overrides → its finished run on 2 ranks, each run once."""
+    done = {}
+
+    def run(case, *overrides):
+        key = (case, *overrides)
+        if key not in done:
+            folder = tmp_path_factory.mktemp(case)
+            job = mpirun(
+                2,
+                ["-m", "psph", f"{CASES}/{case}.toml", "--out", folder,
+                 *(part for o in overrides for part in ("--set", o))],
+                timeout=900,
+            )
+            assert job.returncode == 0, job.stderr
+            done[key] = Run(folder)
+        return done[key]
+
+    return run
+
+
+def centre(run):
+    """(times, vx of the kicked particle, its displacement along x) over all frames."""
+    first = by_id(run.frame(0))
+    kicked = np.flatnonzero(first["velocity"][:, 0])
+    assert len(kicked) == 1
+    frames = [by_id(run.frame(k)) for k in range(len(run.times))]
+    speed = np.array([f["velocity"][kicked[0], 0] for f in frames])
+    place = np.array([f["position"][kicked[0], 0] for f in frames])
+    return run.times, speed, place - place[0]
+
+
+@pytest.mark.parametrize("kernel", ["hyperbolic", "cubic"])
+def test_negative_pressure_by_ssph_is_calm(ran, kernel):
+    """(15) alone is the cure: the kernel plays no part."""
+    end = 1.0 if kernel == "hyperbolic" else 0.3
+    run = ran("negative_pressure", f"space.kernel={kernel}", f"time.end={end}", "output.frames=0.002")
+    times, speed, moved = centre(run)
+    late = times >= 0.05
+    assert 0.40e-7 < speed[late].mean() < 0.55e-7
+    assert speed[late].min() > 0.1e-7 and speed.max() < 1.05e-7
+    assert abs(moved[-1]) < 1e-4 * 0.001
+    energy = run.log()["kinetic_energy"]
+    assert 0.6 < energy[-20:].mean() / energy[0] < 0.85
+
+
+@pytest.mark.parametrize("kernel", ["cubic", "hyperbolic"])
+def test_negative_pressure_by_symmetric_sph_explodes(ran, kernel):
+    """The control: without (15) the kick grows by seven orders, with either kernel."""
+    run = ran(
+        "negative_pressure_traditional", f"space.kernel={kernel}", "time.end=0.1",
+        "output.log=5e-5", "output.frames=0.02",
+    )
+    log = run.log()
+    assert 0.85 < growth_rate(log) / BOX_EIGENVALUE[kernel] < 1.0
+    assert 0.005 < log["time"][np.argmax(log["largest_speed"] > 0.1)] < 0.012
+    assert 0.8 < log["largest_speed"].max() < 4.0
+
+
+def test_hydrostatic_by_ssph_swings_about_theory(ran):
+    run = ran("hydrostatic", "time.end=6.0", "output.frames=0.5")
+    probes = run.probes()
+    for name, theory in (("P1.pressure", 3920.0), ("P2.pressure", 1960.0)):
+        assert window(probes, name, 3, 6).mean() == pytest.approx(theory, rel=0.04)
+    assert window(probes, "P1.pressure", 3, 6).std() <= 150.0
+    noise = [checkerboard(run.frame(k), 0.01, 4900.0) for k in range(6, len(run.times))]
+    assert np.mean(noise) <= 0.05
+    assert len(np.unique(run.frame(-1)["id"])) == 5678
+
+
+def test_hydrostatic_by_symmetric_sph_breaks_into_lines(ran):
+    """The control: the cubic spline at the same h/dx."""
+    run = ran("hydrostatic_traditional", "time.end=6.0", "output.frames=0.5")
+    noise = [checkerboard(run.frame(k), 0.01, 4900.0) for k in range(6, len(run.times))]
+    assert np.mean(noise) >= 0.2
+
+
+@pytest.mark.parametrize("case, kernel, clean", [
+    ("hydrostatic_traditional", "cubic", True),
+    ("hydrostatic", "hyperbolic", False),
+])
+def test_the_contrast_is_a_window_in_h(ran, case, kernel, clean):
+    """At h/dx 1.2 it is the other way round: the cubic spline is clean and SSPH is not."""
+    run = ran(
+        case, f"space.kernel={kernel}", "space.smoothing=1.2", "time.end=3.0", "output.frames=0.25"
+    )
+    frames = range(8, len(run.times))
+    noise = np.mean([checkerboard(run.frame(k), 0.01, 4900.0) for k in frames])
+    assert noise <= 0.05 if clean else noise >= 0.1

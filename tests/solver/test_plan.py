@@ -1,0 +1,164 @@
+"""The plan: what a scene calls for is there, with its reason; what it does not is nowhere."""
+
+import re
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from psph.case import load
+from psph.output.ledger import Ledger
+from psph.physics import catalogue, compose
+from psph.physics.catalogue import Entry
+from psph.scene import Scene
+from psph.solver import plan as plan_module
+from psph.solver.explain import explain
+from psph.solver.plan import make_plan
+from psph.solver.setup import create_particles
+from psph.solver.step import Simulation
+
+PLAIN = """
+[space]
+dimensions = 2
+spacing = 0.1
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+"""
+
+
+@pytest.fixture
+def planned(tmp_path):
+    """A function: overrides → (scene, plan) of a plain fluid."""
+
+    def make(*overrides):
+        path = tmp_path / "plain.toml"
+        path.write_text(PLAIN)
+        scene = Scene(load(path, overrides))
+        return scene, make_plan(scene)
+
+    return make
+
+
+def names(plan):
+    return {type(effect).__name__ for effect in plan.effects}
+
+
+def test_a_plain_scene_has_nothing_but_density_and_pressure(planned):
+    _, plan = planned()
+    assert names(plan) == {"Continuity", "SymmetricPressure"}
+    assert "viscosity" not in plan.arrays and "viscosity" not in plan.constants
+    assert "kernel_sum" not in plan.arrays
+    assert set(plan.refreshed) == {
+        "position", "predicted_velocity", "pressure", "specific_volume"
+    }
+    assert plan.ghost_fields == () and plan.reductions == ()
+    assert [name for _, name in plan.step_limits(1.0, 0.0)] == ["sound (CFL)"]
+
+
+def test_a_viscosity_switches_viscosity_on(planned):
+    _, plan = planned("fluids.water.viscosity=1e-3")
+    assert names(plan) == {"Continuity", "SymmetricPressure", "LaminarViscosity"}
+    assert plan.constants["viscosity"] == 1e-3
+    [call] = (c for c in plan.called if type(c.effect).__name__ == "LaminarViscosity")
+    assert call.reason == "fluids.water.viscosity = 0.001"
+    limits = {name: step for step, name in plan.step_limits(1.0, 0.0)}
+    assert limits["viscosity"] == pytest.approx(0.125 * 0.13**2 / 1e-3)
+
+
+def test_two_viscosities_become_an_array_of_ghosts_too(planned):
+    scene, plan = planned(
+        "fluids.water.viscosity=1e-3",
+        "fluids.oil={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, viscosity=1e-2, density=800.0}",
+    )
+    assert {"mass", "rest_density", "viscosity"} <= set(plan.arrays)
+    assert set(plan.ghost_fields) == {"mass", "viscosity"}
+    store = create_particles(scene, plan, MPI.COMM_SELF)
+    assert set(np.unique(store.owned_rows("viscosity"))) == {1e-3, 1e-2}
+    assert store.owned_rows("mass").min() == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize(
+    "override, effect, reason",
+    [
+        ("physics.gravity=[0.0,-9.8]", "Gravity", "physics.gravity = { acceleration = [0.0, -9.8] }"),
+        ("physics.free_surface=0.8", "FreeSurface", "physics.free_surface = { threshold = 0.8 }"),
+        ("physics.pressure_gradient=minimum", "MinimumPressure", "physics.pressure_gradient = minimum"),
+        (
+            "physics.artificial_viscosity={alpha=0.2}",
+            "ArtificialViscosity",
+            "physics.artificial_viscosity = { alpha = 0.2, beta = 0.0 }",
+        ),
+    ],
+)
+def test_each_key_calls_for_its_effect(planned, override, effect, reason):
+    scene, plan = planned(override)
+    assert effect in names(plan)
+    lines = "\n".join(explain(scene, 1))
+    assert f"because: {reason}" in lines
+    assert effect not in {e.effect.__name__ for e in plan.absent}
+    plain = "\n".join(explain(planned()[0], 1))
+    assert effect in plain.split("Not simulated")[1]
+
+
+def test_the_surface_effect_brings_its_field_and_no_message(planned):
+    _, plan = planned("physics.free_surface=0.9")
+    assert "kernel_sum" in plan.arrays and "kernel_sum" not in plan.refreshed
+    assert len(plan.reductions) == 1 and plan.limits_density
+
+
+def assembly(scene, plan):
+    """Instructions of the pair loop without names, compiled afresh."""
+    import numba
+
+    from psph.jit import FAST
+    from psph.solver import pairs
+
+    loop = numba.njit(fastmath=FAST, error_model="numpy")(pairs.sum_over_neighbours.py_func)
+    simulation = Simulation(
+        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
+    )
+    s, lists = simulation.store, simulation.domain.lists
+    loop(
+        plan.effects, plan.reductions, plan.kernel, simulation.periods, simulation.tiny, s.view(),
+        s.low, s.low + s.owned, s.low, lists.begin, lists.blocks, lists.lists,
+        s["acceleration"], s["density_rate"], (),
+    )
+    [code] = loop.inspect_asm().values()
+    operations = re.findall(r"^\s+([a-z][a-z0-9]+)\s", code, re.MULTILINE)
+    return [op for op in operations if op not in ("movabsq", "leaq")]  # addresses of names
+
+
+class Buoyancy(compose.NamedTuple):
+    """An effect that nobody asks for."""
+
+    strength: float = 1.0
+
+    def radial(self, i, j, pair):
+        """Something costly."""
+        return self.strength * (i.viscosity + j.viscosity) * pair.w
+
+
+def test_an_unused_effect_leaves_the_compiled_loop_as_it_is(planned, monkeypatch):
+    before = assembly(*planned())
+    longer = (*catalogue.CATALOGUE, Entry("fluids.*.viscosity", Buoyancy))
+    monkeypatch.setattr(plan_module, "CATALOGUE", longer)
+    scene, plan = planned()
+    assert "Buoyancy" in {e.effect.__name__ for e in plan.absent}
+    assert assembly(scene, plan) == before
+    scene, plan = planned("fluids.water.viscosity=1e-3")  # the control: it is used here
+    assert "Buoyancy" in names(plan) and len(assembly(scene, plan)) > len(before)
+
+
+def test_memory_and_steps_are_foretold(planned):
+    scene, plan = planned("physics.gravity=[0.0,-9.8]")
+    text = "\n".join(explain(scene, 1))
+    assert "100 in 2D" in text and "sound (CFL)" in text and "at most" in text
+    simulation = Simulation(
+        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
+    )
+    simulation.step()
+    assert simulation.limited_by in text

@@ -1,0 +1,124 @@
+"""The command line as a person meets it: real processes, real mpirun."""
+
+import json
+import subprocess
+import sys
+import time
+
+import pytest
+from jobs import clean_environment, mpirun
+
+CASE = "run/cases/negative_pressure.toml"
+
+
+def psph(*arguments):
+    """A finished ``python -m psph`` on one rank."""
+    return subprocess.run(
+        [sys.executable, "-m", "psph", *map(str, arguments)],
+        capture_output=True, text=True, env=clean_environment(), stdin=subprocess.DEVNULL,
+        timeout=120,
+    )
+
+
+def test_a_run_leaves_its_files(tmp_path):
+    job = psph(CASE, "--out", tmp_path / "run", "--set", "time.end=1e-3")
+    assert job.returncode == 0, job.stderr
+    left = {path.name for path in (tmp_path / "run").iterdir()}
+    assert left == {"negative_pressure.h5", "negative_pressure.xmf", "log.csv", "case.toml"}
+    assert "441 particles" in job.stdout and "particle-steps/s" in job.stdout
+
+
+def test_the_resolved_case_runs_again_to_the_same_end(tmp_path):
+    first, second = tmp_path / "a", tmp_path / "b"
+    assert psph(CASE, "--out", first, "--set", "time.end=1e-3").returncode == 0
+    assert psph(first / "case.toml", "--out", second).returncode == 0
+    assert (first / "log.csv").read_text() == (second / "log.csv").read_text()
+
+
+def test_a_run_is_not_overwritten_unasked(tmp_path):
+    run = (CASE, "--out", tmp_path, "--set", "time.end=1e-4")
+    assert psph(*run).returncode == 0
+    again = psph(*run)
+    assert again.returncode == 3 and "--overwrite" in again.stderr
+    assert len(again.stderr.strip().splitlines()) == 1
+    assert psph(*run, "--overwrite").returncode == 0
+
+
+def test_check_explain_schema():
+    assert "good: 441 particles" in psph("check", CASE).stdout
+    assert "because: physics.pressure_gradient = minimum" in psph("explain", CASE).stdout
+    assert "fluids" in json.loads(psph("schema").stdout)["properties"]
+
+
+def test_a_fault_in_the_case_is_one_line_and_code_2(tmp_path):
+    job = psph("check", CASE, "--set", "space.spacing=-1")
+    assert job.returncode == 2 and len(job.stderr.strip().splitlines()) == 1
+    assert "space.spacing" in job.stderr and "Traceback" not in job.stderr
+
+
+def test_a_fault_is_said_once_on_many_ranks():
+    job = mpirun(3, ["-m", "psph", CASE, "--set", "space.spacing=-1"])
+    assert job.returncode == 2
+    assert job.stderr.count("must be above 0") == 1
+
+
+def test_wrong_arguments_are_said_once_on_many_ranks():
+    job = mpirun(2, ["-m", "psph", "check"])
+    assert job.returncode == 2 and job.stderr.count("usage:") == 1
+
+
+FAILING = """
+import sys
+from mpi4py import MPI
+from psph.solver import step
+
+original = step.Simulation.step
+def failing(self):
+    if self.steps == 5 and MPI.COMM_WORLD.rank == {rank}:
+        {how}
+    original(self)
+step.Simulation.step = failing
+
+from psph.__main__ import guarded
+guarded(sys.argv[1:])
+"""
+
+
+@pytest.mark.parametrize("rank", (0, 1))
+@pytest.mark.parametrize(
+    "how, code, said",
+    [
+        ("raise ValueError('a stray error')", 1, "a stray error"),
+        ("sys.exit(7)", 7, ""),
+        ("sys.exit('no more')", 1, "no more"),
+    ],
+)
+def test_one_rank_that_fails_ends_all_within_seconds(tmp_path, rank, how, code, said):
+    script = tmp_path / "failing.py"
+    script.write_text(FAILING.format(rank=rank, how=how))
+    arguments = [script, CASE, "--set", "time.end=100", "--out", tmp_path / "run"]
+    begun = time.monotonic()
+    job = mpirun(2, arguments, timeout=90)
+    assert time.monotonic() - begun < 60  # compilation included
+    assert job.returncode == code
+    assert said in job.stderr
+
+
+def test_a_run_that_blows_up_says_so_on_every_number_of_ranks(tmp_path):
+    for ranks in (1, 2):
+        job = mpirun(
+            ranks,
+            ["-m", "psph", "run/cases/minimal.toml", "--out", tmp_path / str(ranks),
+             "--set", "time.step=0.02"],
+        )
+        assert job.returncode == 3
+        assert job.stderr.count("the run blew up at step") == 1
+        assert "time.cfl" in job.stderr
+
+
+def test_bench_prints_one_object_last():
+    job = psph("bench", "--dimensions", 2, "--particles", 2000, "--json")
+    result = json.loads(job.stdout.splitlines()[-1])
+    assert result["particles"] == pytest.approx(2000, rel=0.1) and result["neighbours"] > 15
+    assert result["particle_steps_per_second"] > 1e4
+    assert result["pairs_per_second"] > 10 * result["particle_steps_per_second"]
