@@ -12,14 +12,18 @@ class CaseError(ValueError):
         super().__init__("\n".join(self.lines))
 
 
-def advise(word: str, known: Iterable[str]) -> str:
-    """The known word nearest to ``word``, or all of them where none is near."""
-    known = list(known)
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that ``word`` was likely meant to be, or None."""
     by_lower_case = {name.lower(): name for name in known}
     near = difflib.get_close_matches(word.lower(), by_lower_case, n=1)
-    if near:
-        return f"did you mean '{by_lower_case[near[0]]}'?"
-    return f"known here: {', '.join(known)}"
+    return by_lower_case[near[0]] if near else None
+
+
+def advise(word: str, known: Iterable[str]) -> str:
+    """Name the nearest known word, or all of them where none is near."""
+    known = list(known)
+    near = nearest(word, known)
+    return f"did you mean '{near}'?" if near else f"known here: {', '.join(known)}"
 
 
 def dotted(keys: Iterable[str | int]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from psph.case.consistency import Location
-from psph.case.errors import advise, dotted
+from psph.case.errors import advise, dotted, nearest
 from psph.case.structure import alternatives, find, keys_of
 
 Details = dict[str, Any]
@@ -54,9 +54,15 @@ def plain(value: Any) -> str:
 
 
 def _follows_from_another(details: Details, found: list[Details]) -> bool:
-    """A list whose entries are wrong also counts as too short."""
-    loc = details["loc"]
-    return details["type"] == "too_short" and any(
+    """A misspelt key is missing too, and a list of wrong entries too short: one line is enough."""
+    loc, kind = details["loc"], details["type"]
+    if kind == "missing":
+        return any(
+            other["type"] == "extra_forbidden" and other["loc"][:-1] == loc[:-1]
+            and nearest(str(other["loc"][-1]), [str(loc[-1])])
+            for other in found
+        )
+    return kind == "too_short" and any(
         other["loc"][: len(loc)] == loc and len(other["loc"]) > len(loc) for other in found
     )
 

@@ -99,7 +99,8 @@ class Probe(Table):
         tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)
     ] = key("what is measured", ("pressure",), min_length=1)
     theory: dict[Literal["pressure", "density"], float] = key(
-        "values to compare with, drawn beside the measured ones", {}
+        "values to compare with, drawn beside the measured ones: pressure in Pa, density in kg/m3",
+        {},
     )
 
 
@@ -155,9 +156,16 @@ class Case(Table):
     space: Space = key("dimensions, resolution and extent")
     time: Time = key("how long and in which steps")
     physics: Physics = key("what acts on the fluids", make=Physics)
-    fluids: dict[Name, Fluid] = key("the fluids by name", min_length=1, max_length=MANY)
-    walls: dict[Name, Wall] = key("the walls by name", {}, max_length=MANY)
-    probes: dict[Name, Probe] = key("the probes by name", {})
+    fluids: dict[Name, Fluid] = key(
+        "the fluids by name: where each is at the start, and what it is", min_length=1,
+        max_length=MANY,
+    )
+    walls: dict[Name, Wall] = key(
+        "the walls by name: particles that stay where they are", {}, max_length=MANY
+    )
+    probes: dict[Name, Probe] = key(
+        "the probes by name: places where fields are measured over time", {}
+    )
     perturbations: Annotated[tuple[Perturbation, ...], Strict(False)] = key(
         "kicks to single particles", ()
     )

@@ -11,6 +11,9 @@ from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 
 PREFIX = "physics."
 
+OFF = "the effect is off"
+"""What holds without the key of an optional effect."""
+
 
 class Parameters(Table):
     """The parameters of an effect; a bare value stands for the first of them."""
@@ -54,7 +57,7 @@ def _field(entries: list[Entry]) -> tuple[Any, Any]:
         says = (f"{name}: {_summary(entry.effect)}" for name, entry in zip(names, entries))
         return Literal[tuple(names)], key("; ".join(says), names[0])
     effect = entries[0].effect
-    return _parameters(effect) | None, key(_summary(effect), None, otherwise="the effect is off")
+    return _parameters(effect) | None, key(_summary(effect), None, otherwise=OFF)
 
 
 def _parameters(effect: type) -> type[Parameters]:

@@ -1,0 +1,164 @@
+"""The case reference, docs/case.md, from the schema.
+
+``python -m psph.case.reference > docs/case.md`` writes it anew.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from psph.case import schema
+from psph.case.physics import OFF
+from psph.case.structure import Node, alternatives
+
+HEAD = """\
+# The case file
+
+<!-- Written by `python -m psph.case.reference > docs/case.md`; change the models instead. -->
+
+A case is a TOML file that says what differs from the defaults. Units are SI. A key that psph does
+not know is refused, and so are a text where a number belongs and `nan` or `inf`. Lengths, places
+and velocities are lists with one number per dimension.
+
+A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a
+case and does nothing else; `run/cases/` holds examples.
+
+An effect is on when its key is there; `{}` takes all its defaults. A bare value stands for the
+first key of its table: `free_surface = 0.9` means `free_surface = { threshold = 0.9 }`.
+"""
+
+COLUMNS = ("key", "value", "default", "unit", "meaning")
+
+
+def reference() -> str:
+    """The case reference in Markdown."""
+    return "\n".join([HEAD, *_document()])
+
+
+def _document() -> Iterator[str]:
+    whole = schema()
+    plain: list[str] = []
+    tables: list[tuple[str, str, Node]] = []
+    for name, node in whole["properties"].items():
+        heading, table = _table(whole, name, node)
+        if table is None:
+            plain.append(_row(whole, name, node, name in whole["required"]))
+        else:
+            tables.append((heading, node["description"], table))
+    yield from _section("At the top", "Keys outside any table.", plain)
+    for heading, meaning, table in tables:
+        yield from _section(f"`{heading}`", _sentence(meaning), _rows(whole, table))
+        yield from _effects(whole, table)
+    yield from _shapes(whole)
+
+
+def _table(whole: Node, name: str, node: Node) -> tuple[str, Node | None]:
+    """How a file opens the table, and the node of its keys; None for a plain key."""
+    for branch in alternatives(whole, node):
+        if "properties" in branch:
+            return f"[{name}]", branch
+        if named := branch.get("patternProperties"):
+            [below] = named.values()
+            return f"[{name}.NAME]", next(alternatives(whole, below))
+        if "$ref" in branch.get("items", ()):
+            return f"[[{name}]]", next(alternatives(whole, branch["items"]))
+    return name, None
+
+
+def _effects(whole: Node, table: Node) -> Iterator[str]:
+    """The parameters of the effects that a table can switch on."""
+    for name, node in table["properties"].items():
+        if node.get("otherwise") == OFF:
+            inner = next(b for b in alternatives(whole, node) if "properties" in b)
+            title, meaning = f"`[physics.{name}]`", _sentence(node["description"])
+            yield from _section(title, meaning, _rows(whole, inner), level=3)
+
+
+def _shapes(whole: Node) -> Iterator[str]:
+    shapes = whole["$defs"]["Shape"]["properties"]
+    rows = [
+        f"| `{name}` | {_type(whole, node)} | {node['description']} |"
+        for name, node in shapes.items()
+    ]
+    meaning = "A shape is a table with exactly one of these keys."
+    yield from _section("Shapes", meaning, rows, head=("key", "value", "meaning"))
+    for name, node in shapes.items():
+        for branch in alternatives(whole, node):
+            if "properties" in branch:
+                yield from _section(f"`{name}`", "", _rows(whole, branch), level=3)
+
+
+def _section(
+    title: str, meaning: str, rows: list[str], level: int = 2, head: tuple[str, ...] = COLUMNS
+) -> Iterator[str]:
+    yield f"{'#' * level} {title}\n"
+    if meaning:
+        yield f"{meaning}\n"
+    yield f"| {' | '.join(head)} |"
+    yield f"|{'---|' * len(head)}"
+    yield from rows
+    yield ""
+
+
+def _rows(whole: Node, table: Node) -> list[str]:
+    required = table.get("required", ())
+    return [_row(whole, name, node, name in required) for name, node in table["properties"].items()]
+
+
+def _row(whole: Node, name: str, node: Node, required: bool) -> str:
+    cells = (f"`{name}`", _type(whole, node), _default(node, required), node.get("unit", ""))
+    return f"| {' | '.join(cells)} | {node.get('description', '')} |"
+
+
+def _type(whole: Node, node: Node) -> str:
+    """What may stand at a key, in words."""
+    kinds = [_kind(whole, branch) for branch in alternatives(whole, node)]
+    return " or ".join(dict.fromkeys(kinds))
+
+
+def _kind(whole: Node, node: Node) -> str:
+    if "enum" in node:
+        return ", ".join(f'`"{choice}"`' for choice in node["enum"])
+    if "const" in node:
+        return f'`"{node["const"]}"`'
+    if node["type"] == "array":
+        return f"list of {_plural(_type(whole, node['items']))}"
+    if node.get("title") == "Shape":
+        return "[shape](#shapes)"
+    words = {"object": "table", "string": "text", "integer": "whole number"}
+    return words.get(node["type"], node["type"]) + _bounds(node)
+
+
+def _plural(kind: str) -> str:
+    if "list of" in kind:
+        return kind.replace("list of", "lists of")
+    return kind.replace("number", "numbers")
+
+
+def _bounds(node: Node) -> str:
+    signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
+    found = [f"{sign} {node[bound]:g}" for bound, sign in signs.items() if bound in node]
+    return f" {', '.join(found)}" if found else ""
+
+
+def _default(node: Node, required: bool) -> str:
+    if required:
+        return "**required**"
+    return node.get("otherwise") or _toml(node.get("default"))
+
+
+def _toml(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return f'`"{value}"`'
+    if isinstance(value, list):
+        return f"`[{', '.join(_toml(entry).strip('`') for entry in value)}]`"
+    return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+if __name__ == "__main__":
+    print(reference(), end="")

@@ -1,0 +1,91 @@
+"""Rules between keys."""
+
+import pytest
+from drafts import WATER, draft, refusal
+
+BALL = "{ center = [0.0, 0.0, 0.0], radius = 1.0 }"
+BOX = "{ lower = [0.0, 0.0], upper = [1.0, 0.5] }"
+PERIODIC = 'spacing = 0.1\nperiodic = ["x"]\n'
+WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (
+            WATER.replace("[0.0, -9.8]", "[-9.8]"),
+            "physics.gravity: [-9.8]: 1 number in a case with space.dimensions = 2; give 2",
+        ),
+        (
+            WATER.replace("lower = [0.0, 0.0]", "lower = [0.0, 0.0, 0.0]"),
+            "fluids.water.shape.box.lower: [0.0, 0.0, 0.0]: 3 numbers in a case with "
+            "space.dimensions = 2; give 2",
+        ),
+        (
+            WATER + "velocity = [1.0]",
+            "fluids.water.velocity: [1.0]: 1 number in a case with space.dimensions = 2; give 2",
+        ),
+        (
+            WATER.replace("spacing = 0.1", "spacing = 0.1\norigin = [0.0]"),
+            "space.origin: [0.0]: 1 number in a case with space.dimensions = 2; give 2",
+        ),
+        (
+            WATER + "[probes.P1]\nposition = [0.0]",
+            "probes.P1.position: [0.0]: 1 number in a case with space.dimensions = 2; give 2",
+        ),
+        (
+            WATER + "[[perturbations]]\nposition = [0.0, 0.0]\nvelocity = [0.0]",
+            "perturbations[0].velocity: [0.0]: 1 number in a case with space.dimensions = 2; give",
+        ),
+        (
+            WATER.replace(f"box = {BOX}", f"ball = {BALL}"),
+            "fluids.water.shape.ball: a ball needs space.dimensions = 3, here it is 2; use another",
+        ),
+        (
+            WATER.replace("spacing = 0.1", 'spacing = 0.1\nperiodic = ["z"]\n'
+                          "lower = [0.0, 0.0]\nupper = [1.0, 1.0]"),
+            'space.periodic[0]: "z": no axis in 2D; give one of x, y',
+        ),
+        (WATER + '[parallel]\naxis = "z"', 'parallel.axis: "z": no axis in 2D; give one of x, y'),
+        (
+            WATER.replace("spacing = 0.1", PERIODIC),
+            'space.periodic: ["x"]: a periodic axis needs the corners of the domain; give '
+            "space.lower and space.upper",
+        ),
+        (
+            WATER.replace("spacing = 0.1", PERIODIC + "lower = [0.0, 0.0]"),
+            'space.periodic: ["x"]: a periodic axis needs the corners of the domain; give '
+            "space.upper",
+        ),
+        (
+            WATER.replace("spacing = 0.1", "spacing = 0.1\nlower = [0.0, 0.0]\nupper = [1.0, 0.0]"),
+            "space.upper: [1.0, 0.0]: not above space.lower on every axis; let every number exceed",
+        ),
+        (
+            WATER.replace("gravity = [0.0, -9.8]", "") + 'pressure = "hydrostatic"',
+            'fluids.water.pressure: "hydrostatic": there is no gravity; give physics.gravity, or',
+        ),
+        (
+            WATER + WALL + 'continues = "watre"',
+            "walls.floor.continues: \"watre\": no fluid has this name; did you mean 'water'?",
+        ),
+        (
+            WATER + WALL.replace("floor", "water"),
+            "walls.water: a fluid has this name too; give the wall another",
+        ),
+    ],
+)
+def test_a_contradiction_is_one_line(tmp_path, text, says):
+    [line] = refusal(tmp_path, text)
+    assert line.startswith(f"case.toml: {says}")
+
+
+def test_all_contradictions_are_found_at_once(tmp_path):
+    text = WATER + "velocity = [1.0]" + WALL + 'continues = "oil"'
+    keys = [line.split(": ")[1] for line in refusal(tmp_path, text)]
+    assert keys == ["fluids.water.velocity", "walls.floor.continues"]
+
+
+def test_what_agrees_is_accepted(tmp_path):
+    text = WATER.replace("spacing = 0.1", PERIODIC + "lower = [0.0, 0.0]\nupper = [1.0, 1.0]")
+    assert draft(tmp_path, text + WALL).space.periodic == ("x",)

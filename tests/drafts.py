@@ -1,0 +1,45 @@
+"""Cases for the tests: short texts, and how to load them."""
+
+from pathlib import Path
+
+from psph.case import Case, CaseError, load
+
+WATER = """
+[space]
+dimensions = 2
+spacing = 0.1
+[time]
+end = 2.0
+[physics]
+gravity = [0.0, -9.8]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
+"""
+"""Water of 10 by 5 sites in free fall."""
+
+TANK = (
+    WATER
+    + """
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.3, -0.3], upper = [1.3, 0.7] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.0, 0.7] } }]
+"""
+)
+"""The same in a tank with three layers of wall."""
+
+
+def draft(folder: Path, text: str = WATER, *overrides: str) -> Case:
+    """The case of a text, written to ``case.toml`` in a folder."""
+    path = folder / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return load(path, overrides)
+
+
+def refusal(folder: Path, text: str = WATER, *overrides: str) -> list[str]:
+    """The lines with which a text is refused, without the folder; fails where it is not."""
+    try:
+        draft(folder, text, *overrides)
+    except CaseError as error:
+        return [line.replace(f"{folder}/", "") for line in error.lines]
+    raise AssertionError("the case was accepted")

@@ -1,0 +1,260 @@
+"""What is refused and what is warned of, and what is not."""
+
+import pytest
+from drafts import TANK, WATER, draft
+
+from psph.case import CaseError
+from psph.scene import Scene
+from psph.scene.checks import kernel_sums
+
+PERIODIC = ("space.periodic=['x']", "space.lower=[0.0, 0.0]", "space.upper=[1.0, 2.0]")
+OIL = "\n[fluids.oil]\nshape.box = {{ lower = [0.0, {low}], upper = [1.0, 0.8] }}\n"
+
+
+def checked(folder, text=TANK, *overrides):
+    """The warnings on a text, without its folder."""
+    lines = Scene(draft(folder, text, *overrides)).check()
+    return [line.replace(f"{folder}/", "") for line in lines]
+
+
+def refused(folder, text=TANK, *overrides):
+    """The faults of a text, without its folder."""
+    with pytest.raises(CaseError) as caught:
+        checked(folder, text, *overrides)
+    return [line.replace(f"{folder}/", "") for line in caught.value.lines]
+
+
+@pytest.mark.parametrize("text", [WATER, TANK])
+def test_a_good_scene_is_silent(tmp_path, text):
+    assert checked(tmp_path, text) == []
+
+
+def test_an_empty_shape_is_refused(tmp_path):
+    text = TANK + "[walls.speck]\nshape.box = { lower = [0.01, 0.61], upper = [0.04, 0.64] }"
+    [line] = refused(tmp_path, text)
+    assert line == (
+        "case.toml: walls.speck.shape: no lattice site lies in it; make it larger than "
+        "space.spacing, or move it"
+    )
+
+
+def test_a_scene_without_any_site_is_refused(tmp_path):
+    [line] = refused(tmp_path, WATER, "space.spacing=10.0")
+    assert line.startswith("case.toml: fluids.water.shape: no lattice site lies in it")
+
+
+def test_overlapping_fluids_are_refused(tmp_path):
+    [line] = refused(tmp_path, WATER + OIL.format(low=0.4))
+    assert line == (
+        "case.toml: fluids.oil.shape: overlaps fluids.water at [0.05, 0.45]; take one out of the "
+        "other with difference"
+    )
+    assert checked(tmp_path, WATER + OIL.format(low=0.5)) == []
+
+
+def test_a_wall_in_a_fluid_is_refused(tmp_path):
+    text = WATER + "[walls.post]\nshape.box = { lower = [0.4, 0.0], upper = [0.7, 0.5] }"
+    [line] = refused(tmp_path, text)
+    assert line.startswith("case.toml: walls.post.shape: overlaps fluids.water at [0.45, 0.05]; ")
+    assert "take the fluid out with shape = { difference = { from = ..., minus = [...] } }" in line
+
+
+def test_walls_may_overlap(tmp_path):
+    text = TANK + "[walls.lid]\nshape.box = { lower = [-0.3, 0.5], upper = [1.3, 0.8] }"
+    assert checked(tmp_path, text) == []
+
+
+@pytest.mark.parametrize(
+    ("upper", "says"),
+    [
+        (
+            1.05,
+            "space.upper: the domain is 1.05 m = 10.5 spacings long along the periodic axis x; "
+            "make it a whole number, for example up to 1",
+        ),
+        (
+            1.0001,
+            "space.upper: the domain is 1.0001 m = 10.001 spacings long along the periodic axis x",
+        ),
+    ],
+)
+def test_a_period_that_is_no_multiple_of_the_spacing_is_refused(tmp_path, upper, says):
+    [line] = refused(tmp_path, WATER, *PERIODIC, f"space.upper=[{upper}, 2.0]")
+    assert line.startswith(f"case.toml: {says}")
+
+
+def test_a_short_period_is_refused(tmp_path):
+    [line] = refused(tmp_path, WATER, *PERIODIC, "space.smoothing=1.6")
+    assert line == (
+        "case.toml: space.upper: the domain is 1 m long along the periodic axis x, the kernel "
+        "needs 1.056; make it longer or space.spacing smaller"
+    )
+    assert checked(tmp_path, WATER, *PERIODIC) == []
+
+
+def test_particles_outside_the_domain_are_refused(tmp_path):
+    [line] = refused(tmp_path, WATER, *PERIODIC, "space.lower=[-1.0, 0.1]")
+    assert line == (
+        "case.toml: fluids.water.shape: a particle at y = 0.05 m outside the domain from 0.1 to 2; "
+        "make the shape smaller, or change space.lower and space.upper"
+    )
+    [line] = refused(tmp_path, WATER, *PERIODIC, "fluids.water.shape.box.upper=[1.1, 0.5]")
+    assert "a particle at x = 1.05 m outside the domain from 0 to 1; make the shape" in line
+
+
+def test_a_probe_outside_the_domain_is_refused(tmp_path):
+    probe = "probes.P1.position=[0.5, 7.0]"
+    assert refused(tmp_path, TANK, probe) == [
+        "case.toml: probes.P1.position: [0.5, 7] lies outside the domain [-0.3, -0.3] to "
+        "[1.3, 0.7]; move it inside"
+    ]
+    assert checked(tmp_path, TANK, "probes.P1.position=[0.5, 0.7]") == []
+
+
+@pytest.mark.parametrize(
+    ("state", "pressure"), [("linear", -25000.0), ("linear", -30000.0), ("tait", -4000.0)]
+)
+def test_a_pressure_without_a_density_is_refused(tmp_path, state, pressure):
+    overrides = (f"physics.equation_of_state={state}", "physics.sound_speed=5")
+    [line] = refused(tmp_path, WATER, *overrides, f"fluids.water.pressure={pressure}")
+    assert line == (
+        f"case.toml: fluids.water.pressure: {pressure:g} Pa leaves no density at a speed of sound "
+        "of 5 m/s; raise the pressure or physics.sound_speed"
+    )
+
+
+def test_an_unknown_sound_speed_is_refused(tmp_path):
+    text = WATER.replace("gravity = [0.0, -9.8]", "")
+    [line] = refused(tmp_path, text)
+    assert line.startswith("case.toml: physics.sound_speed: missing, and nothing falls or moves")
+    assert "give it, ten times the largest speed" in line
+    assert checked(tmp_path, text, "physics.sound_speed=10") == []
+
+
+def test_all_faults_of_place_are_found_at_once(tmp_path):
+    text = WATER + OIL.format(low=0.4) + "[probes.P1]\nposition = [5.0, 5.0]"
+    lines = refused(tmp_path, text, *PERIODIC, "space.smoothing=2.0")
+    assert [line.split(": ")[1] for line in lines] == ["space.upper", "fluids.oil.shape", "probes.P1.position"]
+
+
+THIN = TANK.replace("lower = [-0.3, -0.3]", "lower = [-0.3, -0.2]")
+
+
+def test_a_thin_wall_is_warned_of(tmp_path):
+    assert checked(tmp_path, THIN) == [
+        "case.toml: walls.tank.shape: 2 layers of particles at [0.05, -0.05], the kernel reaches "
+        "over 2.6; make the wall at least 3 spacings (0.3 m) thick"
+    ]
+
+
+@pytest.mark.parametrize("override", ["space.smoothing=1.0", "space.smoothing=0.9"])
+def test_a_wall_as_thick_as_the_support_is_silent(tmp_path, override):
+    assert checked(tmp_path, THIN, override) == []
+
+
+def test_a_longer_kernel_needs_a_thicker_wall(tmp_path):
+    [line] = checked(tmp_path, TANK, "space.kernel=quintic")
+    assert "3 layers of particles" in line
+    assert "reaches over 3.9; make the wall at least 4 spacings (0.4 m) thick" in line
+
+
+def test_two_walls_behind_each_other_count_together(tmp_path):
+    text = THIN + "[walls.floor]\nshape.box = { lower = [-0.3, -0.3], upper = [1.3, -0.2] }"
+    assert checked(tmp_path, text) == []
+
+
+def test_a_round_body_in_the_fluid_is_not_thin(tmp_path):
+    disc = "disc = { center = [2.0, 2.0], radius = 0.96 }"
+    text = WATER.replace(
+        "shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }",
+        "shape.difference.from.box = { lower = [0.0, 0.0], upper = [4.0, 4.0] }\n"
+        f"shape.difference.minus = [{{ {disc} }}]",
+    )
+    assert checked(tmp_path, text + f"[walls.pile]\nshape.{disc}") == []
+
+
+def test_a_plate_between_fluids_is_thin(tmp_path):
+    text = WATER.replace("shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }", """
+shape.union = [
+    { box = { lower = [0.0, 0.0], upper = [1.0, 2.0] } },
+    { box = { lower = [1.2, 0.0], upper = [2.0, 2.0] } },
+]
+""") + "[walls.plate]\nshape.box = { lower = [1.0, 0.0], upper = [1.2, 2.0] }"
+    [line] = checked(tmp_path, text)
+    assert line.startswith("case.toml: walls.plate.shape: 2 layers of particles at [1.05, 0.05]")
+
+
+def test_a_wall_goes_on_across_a_periodic_edge(tmp_path):
+    text = """
+[space]
+dimensions = 2
+spacing = 0.1
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [2.0, {height}]
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = {{ lower = [0.0, 0.2], upper = [2.0, 1.9] }}
+[walls.plate]
+shape.union = [
+    {{ box = {{ lower = [0.0, 0.0], upper = [2.0, 0.2] }} }},
+    {{ box = {{ lower = [0.0, 1.9], upper = [2.0, 2.0] }} }},
+]
+"""
+    assert checked(tmp_path, text.format(height=2.0)) == []
+    assert checked(tmp_path, text.format(height=2.0), "parallel.axis=y") == []
+    [line] = checked(tmp_path, text.format(height=3.0))  # the seam lies beyond a gap
+    assert "1 layer of particles at [0.05, 1.95]" in line
+
+
+# Of the method's notes: square lattice, hyperbolic kernel.
+@pytest.mark.parametrize(
+    ("smoothing", "interior", "surface"),
+    [(1.0, None, 0.998), (1.2, 1.083, 0.882), (1.3, 1.065, 0.843)],
+)
+def test_kernel_sums_on_the_square_lattice(tmp_path, smoothing, interior, surface):
+    found = kernel_sums(Scene(draft(tmp_path, WATER, f"space.smoothing={smoothing}")))
+    assert found[1] == pytest.approx(surface, abs=5e-4)
+    assert interior is None or found[0] == pytest.approx(interior, abs=5e-4)
+
+
+@pytest.mark.parametrize("smoothing", [1.2, 1.3])
+def test_a_threshold_between_the_sums_is_silent(tmp_path, smoothing):
+    overrides = (f"space.smoothing={smoothing}", "physics.free_surface=0.9")
+    assert checked(tmp_path, WATER, *overrides) == []
+
+
+def test_a_threshold_that_sees_no_surface_is_warned_of(tmp_path):
+    [line] = checked(tmp_path, WATER, "space.smoothing=1.0", "physics.free_surface=0.9")
+    assert line == (
+        "case.toml: physics.free_surface: 0.9 sees no surface, the kernel sum is 1.146 inside and "
+        "0.998 in the surface row; give a value between 0.998 and 1.146, or another space.smoothing"
+    )
+
+
+def test_a_threshold_that_takes_all_for_surface_is_warned_of(tmp_path):
+    [line] = checked(tmp_path, WATER, "physics.free_surface=1.1")
+    assert line.startswith(
+        "case.toml: physics.free_surface: 1.1 takes every particle for surface, the kernel sum is "
+        "1.065 inside and 0.843 in the surface row; give a value between 0.843 and 1.065"
+    )
+
+
+def test_a_slow_sound_is_warned_of(tmp_path):
+    [line] = checked(tmp_path, WATER, "physics.sound_speed=20")
+    assert line == (
+        "case.toml: physics.sound_speed: 20 is below ten times the speed to expect, 3.13 m/s, so "
+        "density will vary by more than 1 %; raise it to 31.3"
+    )
+    assert checked(tmp_path, WATER, "physics.sound_speed=31.4") == []
+
+
+def test_a_large_jitter_is_warned_of(tmp_path):
+    assert checked(tmp_path, WATER, "fluids.water.jitter=0.6") == [
+        "case.toml: fluids.water.jitter: 0.6 spacings let neighbours change places; give at most "
+        "0.5"
+    ]
+    assert checked(tmp_path, WATER, "fluids.water.jitter=0.5") == []
