@@ -1,7 +1,7 @@
 """Pictures of a run: a field at chosen times, the probes, the log, and an overview."""
 
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -108,7 +108,7 @@ class Show:
         self.case = tomllib.loads(run.case_text)
         self.title = self.case.get("title") or run.path.stem
         frames = {k: run.frame(k, "position", "kind", field) for k in self.chosen}
-        self.view = _view(self.case, frames[self.chosen[0]], list(frames.values()))
+        self.view = _view(self.case, run.frame(0, "position"), frames.values())
         self.frames = {k: self.view.of(frame) for k, frame in frames.items()}
         self.scale = self._scale()
 
@@ -224,25 +224,28 @@ class Show:
         bar.set_label(f"{self._name()} ({scale.unit})")
 
 
-def _view(case: dict, first: dict, frames: list[dict]) -> View:
+def _view(case: dict, start: dict, frames: Iterable[dict]) -> View:
     """Gravity points down; in 3D the shortest level axis is cut in the middle."""
     dimensions, spacing = case["space"]["dimensions"], case["space"]["spacing"]
-    start = first["position"].min(axis=0), first["position"].max(axis=0)
-    room = start[1] - start[0] + spacing
+    corners = np.array([_corners(frame) for frame in (start, *frames)])
+    room = corners[0, 1] - corners[0, 0] + spacing
     # What a run that blows up throws far away must not make the rest small.
-    places = np.concatenate([frame["position"] for frame in frames])
-    places = places[np.isfinite(places).all(axis=1)]
-    lower = np.maximum(places.min(axis=0), start[0] - room) - spacing / 2
-    upper = np.minimum(places.max(axis=0), start[1] + room) + spacing / 2
+    lower = np.maximum(corners[:, 0].min(axis=0), corners[0, 0] - room) - spacing / 2
+    upper = np.minimum(corners[:, 1].max(axis=0), corners[0, 1] + room) + spacing / 2
     if dimensions == 1:
         return View(1, spacing, 0, 0, None, 0.0, lower[[0, 0]], upper[[0, 0]])
     gravity = case.get("physics", {}).get("gravity", {}).get("acceleration", [0.0] * dimensions)
-    gravity = np.abs(gravity)
-    up = int(gravity.argmax()) if gravity.any() else dimensions - 1
+    up = int(np.abs(gravity).argmax()) if any(gravity) else dimensions - 1
     level = sorted(set(range(dimensions)) - {up}, key=lambda axis: (-room[axis], axis))
     across, cut = level[0], level[1] if dimensions == 3 else None
     axes = [across, up]
-    return View(dimensions, spacing, across, up, cut, _middle(first, cut), lower[axes], upper[axes])
+    return View(dimensions, spacing, across, up, cut, _middle(start, cut), lower[axes], upper[axes])
+
+
+def _corners(frame: dict) -> tuple[np.ndarray, np.ndarray]:
+    """The smallest box around all particles that are anywhere."""
+    places = frame["position"][np.isfinite(frame["position"]).all(axis=1)]
+    return places.min(axis=0, initial=np.inf), places.max(axis=0, initial=-np.inf)
 
 
 def _middle(frame: dict, axis: int | None) -> float:

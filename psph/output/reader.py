@@ -1,12 +1,16 @@
 """A run's folder, read back: finished or still running."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import h5py
 import numpy as np
 
 from psph.output.errors import OutputError, cause
+
+T = TypeVar("T")
 
 
 class Run:
@@ -30,8 +34,7 @@ class Run:
     @property
     def attributes(self) -> dict:
         """What the root of the file tells: the case, psph's version and so on."""
-        with _open(self.path) as file:
-            return dict(file.attrs)
+        return _read(self.path, lambda file: dict(file.attrs))
 
     @property
     def case_text(self) -> str:
@@ -41,15 +44,17 @@ class Run:
     @property
     def times(self) -> np.ndarray:
         """Times of the frames that are whole, s."""
-        with _open(self.path) as file:
-            return np.array([frame.attrs["time"] for frame in _whole(file)], dtype=float)
+        return _read(
+            self.path, lambda file: np.array([frame.attrs["time"] for frame in _whole(file)])
+        )
 
     def frame(self, k: int, *names: str) -> dict[str, np.ndarray]:
         """Fields of the k-th whole frame, ``-1`` the last: ``(n,)`` or ``(n, dim)`` each.
 
         All of them, or those with the given ``names``.
         """
-        with _open(self.path) as file:
+
+        def read(file: h5py.File) -> dict[str, np.ndarray]:
             frames = _whole(file)
             if not -len(frames) <= k < len(frames):
                 raise OutputError(
@@ -62,6 +67,8 @@ class Run:
                 )
             return {name: frames[k][name][...] for name in names or saved}
 
+        return _read(self.path, read)
+
     def probes(self) -> dict[str, np.ndarray]:
         """The columns of ``probes.csv`` by name; empty if the case has no probes."""
         return _columns(self.folder / "probes.csv")
@@ -71,14 +78,17 @@ class Run:
         return _columns(self.folder / "log.csv")
 
 
-def _open(path: Path) -> h5py.File:
-    # A run in progress may be changing the structure of the file just now: a millisecond a frame.
-    for attempt in range(5):
+def _read(path: Path, what: Callable[[h5py.File], T]) -> T:
+    """``what`` of the file; anew if a run is changing its structure just then (a millisecond)."""
+    for attempt in range(8):
         try:
-            return h5py.File(path, "r", locking=False)
-        except OSError as error:
+            with h5py.File(path, "r", locking=False) as file:
+                return what(file)
+        except OutputError:
+            raise
+        except (OSError, RuntimeError, KeyError) as error:  # all that h5py makes of it
             failure = error
-            time.sleep(0.05 * attempt)
+            time.sleep(0.02 * attempt)
     raise OutputError(f"{path}: cannot be read: {cause(failure)}; is it a file of psph?")
 
 

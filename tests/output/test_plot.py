@@ -135,12 +135,16 @@ def test_run_that_blew_up_can_still_be_seen(run_with, alone):
     pressure[60:63] = [np.nan, np.inf, 1e12]
     run = run_with(box(20, 10))
     frames = FrameFile(run.path, alone, {"case": run.case_text})
+    broken = {"position": arrays["position"], "pressure": pressure}
     for k, thrown in enumerate([box(20, 10), arrays]):
         frames.write(k, 0.1 * k, k, thrown | {"pressure": pressure})
     show = Show(run, None, "pressure")
     assert show.view.upper == pytest.approx([4.0, 2.0], abs=0.06)
     assert show.scale.norm.vmax < 1e4
     assert show.scale.extend == "max"
+    lost = {name: np.full_like(rows, np.nan) for name, rows in broken.items()}
+    frames.write(2, 0.2, 2, lost | {"kind": arrays["kind"]})
+    assert Show(run, [0.2], "pressure").view.upper == pytest.approx([2.0, 1.0])
     plot(run.folder)
 
 
