@@ -66,15 +66,24 @@ class Record:
             self.write_probes: Schedule(out.probes),
             self.write_log: Schedule(out.log),
         }
+        self.last_written = dict.fromkeys(self.schedules, -1)
 
     def write_due(self) -> None:
         """Write what is due at the simulation's time."""
-        due = [write for write, when in self.schedules.items() if when.due(self.simulation.time)]
-        if due:
-            with self.simulation.ledger("output"):
-                self.simulation.settle_pressure()
-                for write in due:
-                    write()
+        self._write([w for w, when in self.schedules.items() if when.due(self.simulation.time)])
+
+    def write_last(self) -> None:
+        """Write the state at the end where no cadence has just done so."""
+        self._write([w for w in self.schedules if self.last_written[w] < self.simulation.steps])
+
+    def _write(self, due) -> None:
+        if not due:
+            return
+        with self.simulation.ledger("output"):
+            self.simulation.settle_pressure()
+            for write in due:
+                write()
+                self.last_written[write] = self.simulation.steps
 
     def write_frame(self) -> None:
         """All saved fields of all particles."""

@@ -51,12 +51,14 @@ def run(case, folder: Path, comm, overwrite: bool = False) -> Simulation:
             simulation.step()
             record.write_due()
             progress.update(simulation.time, simulation.steps, simulation.dt)
+        record.write_last()
     finally:
         progress.close()
         record.close()
     for line in _summary(simulation, particles, time.perf_counter() - stepping):
         say(line)
-    say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), log.csv, probes.csv")
+    probed = ", probes.csv" if record.probes else ""
+    say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), log.csv{probed}")
     return simulation
 
 
