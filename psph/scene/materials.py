@@ -85,6 +85,27 @@ class Layout:
         shape = self.lattice.shape(first, last)
         return _first_claim(self.masks(self.lattice.grid(first, last), shape), shape)
 
+    def near(self, material: int, first: int, last: int, reach: int) -> np.ndarray:
+        """True at the sites of some planes with a site of ``material`` at most ``reach`` away.
+
+        Counted along each axis, in sites.
+        """
+        begin, end = max(first - reach, 0), min(last + reach, self.lattice.planes)
+        found = self.materials(begin, end) == material
+        for axis in range(found.ndim):
+            found = _spread(np.moveaxis(found, axis, 0), reach)
+            found = np.moveaxis(found, 0, axis)
+        return found[first - begin : last - begin]
+
+
+def _spread(held: np.ndarray, reach: int) -> np.ndarray:
+    """True along the first axis wherever True is at most ``reach`` places away."""
+    spread = held.copy()
+    for step in range(1, min(reach, len(held) - 1) + 1):
+        spread[step:] |= held[:-step]
+        spread[:-step] |= held[step:]
+    return spread
+
 
 def _first_claim(masks: Sequence[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
     found = np.full(shape, NONE, np.uint8)

@@ -50,6 +50,7 @@ def fill(particles: ParticleSet, scene, first: int, last: int) -> None:
         chunk = particles.rows(done, done + len(sites))
         _place(chunk, scene, held, sites, begin)
         _start(chunk, scene)
+        _dry(chunk, scene, sites, begin, end)
         _kick(chunk, scene, sites, begin, end)
         _shift(chunk, scene)
         done += len(sites)
@@ -70,6 +71,18 @@ def _start(chunk: ParticleSet, scene) -> None:
         chunk.velocity[rows] = scene.velocities[index]
         chunk.density[rows] = scene.starts[index].density(chunk.position[rows])
         chunk.mass[rows] = material.mass
+
+
+def _dry(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> None:
+    """A wall out of reach of the fluid whose hydrostatic pressure it continues starts without.
+
+    It would push away the water that comes to it later.
+    """
+    for index, fluid in scene.hydrostatic_walls:
+        rows = chunk.material == index
+        if rows.any():
+            wet = scene.layout.near(fluid, begin, end, scene.wall_reach).ravel()[sites]
+            chunk.density[rows & ~wet] = scene.materials[index].density
 
 
 def _kick(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> None:

@@ -150,6 +150,17 @@ class Scene:
             yield kick + np.array(self.velocities[material])
 
     @property
+    def hydrostatic_walls(self) -> list[tuple[int, int]]:
+        """(index of the wall, index of its fluid) where a wall continues a still column."""
+        walls = list(enumerate(self._sources))[self.layout.fluids :]
+        return [(wall, fluid) for wall, fluid in walls if self.starts[fluid].weight]
+
+    @property
+    def wall_reach(self) -> int:
+        """Sites into a wall that a fluid can feel, and one more."""
+        return math.ceil(self.kernel.support * self.smoothing_length / self.spacing) + 1
+
+    @property
     def _sources(self) -> list[int]:
         """For each material the index of the fluid whose properties it has."""
         fluids = list(self.case.fluids)
