@@ -134,7 +134,8 @@ def test_an_unknown_sound_speed_is_refused(tmp_path):
 def test_all_faults_of_place_are_found_at_once(tmp_path):
     text = WATER + OIL.format(low=0.4) + "[probes.P1]\nposition = [5.0, 5.0]"
     lines = refused(tmp_path, text, *PERIODIC, "space.smoothing=2.0")
-    assert [line.split(": ")[1] for line in lines] == ["space.upper", "fluids.oil.shape", "probes.P1.position"]
+    keys = [line.split(": ")[1] for line in lines]
+    assert keys == ["space.upper", "fluids.oil.shape", "probes.P1.position"]
 
 
 THIN = TANK.replace("lower = [-0.3, -0.3]", "lower = [-0.3, -0.2]")
