@@ -189,15 +189,18 @@ class Hyperbolic(NamedTuple):
 
 
 KERNELS = {
+    "wendland-c2": WendlandC2,
     "hyperbolic": Hyperbolic,
     "cubic": Cubic,
     "quintic": Quintic,
-    "wendland-c2": WendlandC2,
     "wendland-c4": WendlandC4,
     "wendland-c6": WendlandC6,
     "gaussian": Gaussian,
 }
-"""Every smoothing kernel by the name that a case gives it; the first is the default."""
+"""Every smoothing kernel by the name that a case gives it; the first is the default.
+
+Wendland C2 at h/dx 1.4 stays calm in flows that tear the lattice apart, where the hyperbolic
+kernel with symmetric pressures does not; the SSPH cases name theirs."""
 
 
 def kernel(name: str, smoothing_length: float, dimensions: int):

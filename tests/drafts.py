@@ -8,6 +8,8 @@ WATER = """
 [space]
 dimensions = 2
 spacing = 0.1
+smoothing = 1.3
+kernel = "hyperbolic"
 [time]
 end = 2.0
 [physics]

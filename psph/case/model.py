@@ -37,7 +37,7 @@ class Space(Table):
     dimensions: int = key("number of dimensions, 1 to 3", ge=1, le=3)
     spacing: float = key("distance between particles at the start", unit="m", gt=0)
     smoothing: float = key(
-        "smoothing length h in units of the spacing, h/dx", 1.3, unit="1", ge=0.6, le=4
+        "smoothing length h in units of the spacing, h/dx", 1.4, unit="1", ge=0.6, le=4
     )
     kernel: Literal[tuple(KERNELS)] = key("smoothing kernel", next(iter(KERNELS)))
     periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("axes along which it repeats", ())

@@ -12,7 +12,8 @@ class Gravity(NamedTuple):
     """
 
     acceleration: Annotated[
-        tuple[float, ...], Field(description="g, one number per dimension, m/s2")
+        tuple[float, ...],
+        Field(description="g, one number per dimension", json_schema_extra={"unit": "m/s2"}),
     ]
 
     def body(self, i):

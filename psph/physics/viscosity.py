@@ -38,8 +38,12 @@ class ArtificialViscosity(NamedTuple):
     approaches, else 0.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30, 543, eq. (4.1).
     """
 
-    alpha: Annotated[float, Field(ge=0, description="linear coefficient α")] = 0.05
-    beta: Annotated[float, Field(ge=0, description="quadratic coefficient β")] = 0.0
+    alpha: Annotated[
+        float, Field(ge=0, description="linear coefficient α", json_schema_extra={"unit": "1"})
+    ] = 0.05
+    beta: Annotated[
+        float, Field(ge=0, description="quadratic coefficient β", json_schema_extra={"unit": "1"})
+    ] = 0.0
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""

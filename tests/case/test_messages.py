@@ -98,7 +98,7 @@ FAULTS = {
         "time.cfl: 0.7 is out of range; it must be above 0 and at most 0.6",
     ),
     "h in place of h/dx": (
-        replaced("spacing = 0.1", "spacing = 0.1\nsmoothing = 0.13"),
+        replaced("smoothing = 1.3", "smoothing = 0.13"),
         "space.smoothing: 0.13 is out of range; it must be at least 0.6 and at most 4",
     ),
     "a parameter out of range, given bare": (
@@ -119,7 +119,7 @@ FAULTS = {
         "physics.gravity: 9.8 is not a list; give a list such as [0.0, 0.0] (g, one number",
     ),
     "an unknown kernel": (
-        replaced("spacing = 0.1", 'spacing = 0.1\nkernel = "cubik"'),
+        replaced('kernel = "hyperbolic"', 'kernel = "cubik"'),
         "space.kernel: \"cubik\" is not known; did you mean 'cubic'?",
     ),
     "an unknown choice of effect": (
