@@ -1,0 +1,349 @@
+"""What README.md and docs/ say is so: links, paths, commands, tables and every example."""
+
+import importlib.util
+import itertools
+import re
+import shlex
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jobs import clean_environment
+from physics.pairs import H, OPEN, rates, view
+
+from psph import smoothing
+from psph.__main__ import VERBS, _parser, _with_verb
+from psph.case import load
+from psph.case.physics import physics_table
+from psph.output import diagnostics
+from psph.output.frames import FrameFile
+from psph.output.tables import CsvTable
+from psph.parallel.reductions import alone
+from psph.particles.fields import FIELDS
+from psph.particles.store import Store
+from psph.physics import catalogue
+from psph.physics.catalogue import Entry
+from psph.physics.trial import reads
+from psph.scene import Scene
+from psph.solver.plan import ALWAYS
+
+ROOT = Path(__file__).parents[1]
+PAGES = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
+CHEAP = {"check", "explain", "schema"}
+PROGRAMS = {"source", "export", "pip"}
+"""Commands that are taken as they stand."""
+NOT_THERE = ("psph/physics/diffusion.py", "psph/physics/floor.py", "psph/output/front.py",
+             "run/cases/poiseuille.toml", "docs/images/")
+"""Files that an example would be, and pictures that are drawn apart."""
+
+
+def text(page):
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+def fences(page, language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", text(page), re.MULTILINE | re.DOTALL)
+
+
+def commands(page):
+    return [line for block in fences(page, "sh") for line in block.splitlines() if line]
+
+
+def example(name):
+    """The Python example of docs/contributing.md that begins with ``# example: name``."""
+    head = f"# example: {name}\n"
+    [block] = [b for b in fences("docs/contributing.md", "python") if b.startswith(head)]
+    return block
+
+
+@pytest.fixture
+def module(tmp_path, monkeypatch):
+    """A function: name of an example and of its module → the module, importable for this test."""
+
+    def make(name, dotted):
+        path = tmp_path / f"{dotted}.py"
+        path.write_text(example(name), encoding="utf-8")
+        spec = importlib.util.spec_from_file_location(dotted, path)
+        made = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, dotted, made)
+        spec.loader.exec_module(made)
+        return made
+
+    return make
+
+
+@pytest.fixture
+def drop(tmp_path):
+    """The case of README.md, in a file."""
+    [block] = fences("README.md", "toml")
+    path = tmp_path / block.split(":")[0].removeprefix("# ")
+    path.write_text(block, encoding="utf-8")
+    return path
+
+
+# Links, paths and commands
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_pages_are_short(page):
+    assert len(text(page).splitlines()) < 300
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#]*)(#[^)]*)?\)", text(page)):
+        path, anchor = (ROOT / page).parent / target[0], target[1]
+        if not target[0].startswith("docs/images/"):
+            assert path.exists(), target
+        if anchor:
+            whole = path if target[0] else ROOT / page
+            headings = re.findall(r"^#+ (.*)$", whole.read_text(encoding="utf-8"), re.MULTILINE)
+            slugs = {re.sub(r"[^\w -]", "", h.lower()).replace(" ", "-") for h in headings}
+            assert anchor.removeprefix("#") in slugs, target
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_named_paths_exist(page):
+    named = re.findall(r"`((?:psph|run|docs|tests)/[\w./-]*)`", text(page))
+    missing = [p for p in named if not p.startswith(NOT_THERE) and not (ROOT / p).exists()]
+    assert not missing
+
+
+@pytest.mark.parametrize(
+    ("page", "command"), [(page, command) for page in PAGES for command in commands(page)]
+)
+def test_commands_are_accepted(page, command, drop):
+    words = shlex.split(command)
+    if words[0] == "mpirun":
+        assert words[1] == "-n" and int(words[2]) > 0
+        words = words[3:]
+    if words[:3] == ["python", "-m", "psph"]:
+        options = _parser().parse_args(_with_verb(words[3:]))
+        case = getattr(options, "case", None)
+        assert case is None or (ROOT / case).exists() or case == Path(drop.name)
+        if case is not None:
+            load(drop if case == Path(drop.name) else ROOT / case, options.set)
+    elif words[0] == "sbatch":
+        script, case, *_ = (word for word in words[1:] if not word.startswith("--"))
+        assert (ROOT / script).exists() and (ROOT / case).exists()
+    elif words[:3] == ["python", "-m", "pytest"]:
+        assert all((ROOT / word).exists() for word in words[3:] if not word.startswith("-"))
+    elif words[0].startswith("./"):
+        assert (ROOT / words[0]).stat().st_mode & 0o100
+    else:
+        assert words[0] in PROGRAMS
+
+
+@pytest.mark.parametrize(
+    "command",
+    [c for c in commands("README.md") + commands("docs/contributing.md")
+     if c.startswith("python -m psph") and c.split()[3] in CHEAP] + ["python -m psph schema"],
+)
+def test_cheap_commands_run(command, drop):
+    words = [str(drop) if word == drop.name else word for word in shlex.split(command)[1:]]
+    job = subprocess.run(
+        [sys.executable, *words], cwd=ROOT, env=clean_environment(), stdin=subprocess.DEVNULL,
+        capture_output=True, text=True, timeout=120,
+    )
+    assert job.returncode == 0 and not job.stderr and job.stdout
+
+
+def test_every_verb_is_in_the_readme():
+    table = text("README.md").split("## Verbs")[1].split("##")[0]
+    assert all(f"python -m psph {verb}" in table for verb in VERBS if verb != "run")
+
+
+def test_the_case_of_the_readme_raises_no_warning(drop):
+    scene = Scene(load(drop))
+    assert scene.check() == [] and scene.counts().sum() > 1000
+
+
+# The tables of the theory
+
+
+def fastest_sound(name, smoothing_, dim):
+    """ωΔt/CFL of the fastest wave on a lattice, at rest."""
+    k = smoothing.kernel(name, smoothing_, dim)
+    reach = int(np.ceil(k.support * smoothing_))
+    sites = np.array([s for s in itertools.product(range(-reach, reach + 1), repeat=dim) if any(s)])
+    r = np.linalg.norm(sites, axis=1)
+    gradient = sites * (np.array([k.dw(x) for x in r]) / r)[:, None]
+    waves = np.array(list(itertools.product(np.linspace(0, np.pi, 37), repeat=dim)))
+    waves = waves[(np.diff(waves, axis=1) >= 0).all(axis=1)]
+    return smoothing_ * np.linalg.norm(np.sin(waves @ sites.T) @ gradient, axis=1).max()
+
+
+@pytest.mark.parametrize("name", smoothing.KERNELS)
+def test_fastest_sound_on_a_lattice(name):
+    [row] = re.findall(rf"^\| `{name}` \|([ \d.|]+)\|$", text("docs/theory.md"), re.MULTILINE)
+    told = [float(x) for x in row.split("|")]
+    found = [fastest_sound(name, 1.3, dim) for dim in (1, 2, 3)]
+    assert told == pytest.approx(found, abs=0.011)
+
+
+def test_lattice_sums():
+    row = r"^\| (hyperbolic|cubic) (1\.\d) \| ([\d. |]+) \| ([+−].*) % \|$"
+    rows = re.findall(row, text("docs/theory.md"), re.MULTILINE)
+    assert len(rows) == 5
+    x, y = np.meshgrid(np.arange(-3, 4), np.arange(-3, 4))
+    r = np.hypot(x, y).ravel()
+    for name, h, numbers, bias in rows:
+        k = smoothing.kernel(name, float(h), 2)
+        w = np.array([k.w(d) for d in r])
+        slope = np.array([k.dw(d) / d if d else 0.0 for d in r])
+        moment = -(x.ravel() ** 2 * slope).sum()
+        sums = w.sum(), w[y.ravel() <= 0].sum(), moment
+        assert [float(n) for n in numbers.split("|")] == pytest.approx(sums, abs=6e-4)
+        assert float(bias.replace("−", "-")) == pytest.approx(100 / moment - 100, abs=0.06)
+
+
+def test_growth_of_sound():
+    """The roots of λ² = −θ²(M+1)(M+P), as a polynomial in λ."""
+    weights = ((1, 0, 0), (1.5, -0.5, 0), (1.75, -1, 0.25))
+    row = r"^\| (0\.\d) \| (\S+) \| (\S+) \| (\S+) \|$"
+    rows = re.findall(row, text("docs/theory.md"), re.MULTILINE)
+    assert len(rows) == 4
+    for theta, *growth in rows:
+        for told, w in zip(growth, weights):
+            drift = np.polymul([1.5, -0.5], np.polyadd([0.5, 0.5, 0, 0], np.polymul([1, -1], w)))
+            left = np.polymul([1, 0, 0, 0, 0], [1, -2, 1])
+            roots = np.roots(np.polyadd(left, float(theta) ** 2 * drift))
+            assert float(told.replace("−", "-")) == pytest.approx(abs(roots).max() - 1, rel=0.05)
+
+
+# The examples of docs/contributing.md
+
+
+def test_example_kernel(module, monkeypatch):
+    lucy = module("kernel", "psph_example_kernel").Lucy
+    monkeypatch.setitem(smoothing.KERNELS, "lucy", lucy)
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+    r = H * (1 + nodes)
+    for dim, sphere in ((1, 2 + 0 * r), (2, 2 * np.pi * r), (3, 4 * np.pi * r * r)):
+        k = smoothing.kernel("lucy", H, dim)
+        assert sum(H * weights * [k.w(x) for x in r] * sphere) == pytest.approx(1.0, abs=1e-12)
+        for x in r:
+            slope = (k.w(x + 1e-7 * H) - k.w(x - 1e-7 * H)) / (2e-7 * H)
+            assert k.dw(x) == pytest.approx(slope, rel=1e-5, abs=1e-6 * k.w(0.0) / H)
+        assert k.w(1e30) == k.dw(1e30) == 0.0
+    effects = (catalogue.SymmetricPressure(),)
+    args = (effects, (), smoothing.kernel("lucy", H, 2), OPEN[:2], view(), 0, 1)
+    agree(rates(*args), rates.py_func(*args))
+
+
+@pytest.mark.parametrize(
+    ("name", "class_name", "key", "parameter", "own", "neighbour"),
+    [
+        ("effect", "DensityDiffusion", "density_diffusion", "delta",
+         {"smoothing_length", "sound_speed", "specific_volume"}, {"mass", "specific_volume"}),
+        ("limit", "DensityFloor", "density_floor", "fraction", {"rest_density"}, set()),
+    ],
+)
+def test_example_effect(module, name, class_name, key, parameter, own, neighbour):
+    effect = getattr(module(name, "psph_example_effect"), class_name)
+    entries = (*catalogue.CATALOGUE, Entry(f"physics.{key}", effect))
+    table = physics_table(entries + catalogue.EQUATIONS_OF_STATE)
+    physics = table.model_validate({key: 0.5})
+    assert getattr(getattr(physics, key), parameter) == 0.5
+    assert getattr(table.model_validate({}), key) is None
+    assert key in table.model_json_schema()["properties"]
+    made, k = effect(0.5), smoothing.kernel("hyperbolic", H, 2)
+    found = reads(made, 2, k)
+    assert (found.own, found.neighbour) == (own, neighbour)
+    args = ((made, catalogue.Continuity()), (), k, OPEN[:2], view(), 0, 1)
+    agree(rates(*args), rates.py_func(*args))
+    without = rates((catalogue.Continuity(),), *args[1:])
+    assert rates(*args)[0] != without[0] or effect.__name__ == "DensityFloor"
+
+
+def agree(compiled, plain):
+    for one, other in zip(compiled, plain):
+        assert one == pytest.approx(other, rel=1e-12)
+
+
+def test_example_test_of_the_effect(module):
+    module("effect", "psph.physics.diffusion")
+    tests = module("test of the effect", "psph_example_test")
+    [test] = [function for name, function in vars(tests).items() if name.startswith("test_")]
+    test()
+
+
+def test_example_limit_acts(module):
+    floor = module("limit", "psph_example_limit").DensityFloor(0.98)
+    i = types.SimpleNamespace(rest_density=1000.0)
+    assert floor.limit_density(i, 900.0) == 980.0 and floor.limit_density(i, 990.0) == 990.0
+
+
+def test_example_output(module, tmp_path):
+    front = module("output", "psph_example_output").Front(tmp_path, alone(), 2)
+    store = Store(2, ALWAYS, {})
+    block = np.zeros((len(store.data), 3))
+    block[list(store.rows["position"])] = [[0.1, 0.4, 9.0], [0.3, 0.2, 9.0]]
+    store.append(np.arange(3), np.array([0, 0, 1], np.uint8), block)
+    front.write(0.5, store)
+    front.table.close()
+    assert (tmp_path / "front.csv").read_text() == "time,front_x,front_y\n0.5,0.4,0.3\n"
+
+
+def test_example_case(tmp_path):
+    [block] = fences("docs/contributing.md", "toml")
+    path = tmp_path / "poiseuille.toml"
+    path.write_text(block, encoding="utf-8")
+    scene = Scene(load(path))
+    assert scene.check() == []
+    sizes = scene.census.sizes
+    assert f"Particles: {sizes.sum()} ({sizes[0]} water, {sizes[1]} wall)" in block
+
+
+# docs/output.md
+
+
+@pytest.fixture
+def results(tmp_path, monkeypatch, capsys):
+    """The folder ``results/drop`` of a run that never ran; the current folder is above it."""
+    folder = tmp_path / "results/drop"
+    folder.mkdir(parents=True)
+    frames = FrameFile(folder / "drop.h5", alone(), {"case": "", "dimensions": 2})
+    saved = {
+        "id": np.arange(3), "kind": np.zeros(3, np.uint8), "position": np.ones((3, 2)),
+        "velocity": np.ones((3, 2)), "density": np.ones(3), "pressure": np.full(3, 7.5),
+    }
+    for k in range(2):
+        frames.write(k, 0.5 * k, 10 * k, saved)
+    log = CsvTable(folder / "log.csv", diagnostics.columns(2), alone())
+    for time in (0.0, 0.5):
+        log.write([time, 10, 0.05, *range(6)])
+    log.close()
+    monkeypatch.chdir(tmp_path)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("block", "says"),
+    list(zip(fences("docs/output.md", "python"), ("0.5 7.5 Pa", "(3, 2)", "0.5 4.0"), strict=True)),
+)
+def test_output_is_read_as_told(block, says, results, capsys):
+    exec(block, names := {})
+    assert says in capsys.readouterr().out
+    if "file" in names:
+        names["file"].close()
+        assert len(block.splitlines()) == 4
+
+
+def test_the_table_of_datasets_is_that_of_the_fields():
+    row = r"^\| `(\w+)` \| (\(n.*?) (\w+) \| (\S+) \| (.*) \|$"
+    rows = re.findall(row, text("docs/output.md"), re.MULTILINE)
+    told = {name: (shape, unit, meaning) for name, shape, _, unit, meaning in rows}
+    assert told == {
+        name: ("(n, dim)" if f.vector else "(n,)", f.unit, f.meaning)
+        for name, f in FIELDS.items() if f.saved
+    }
+
+
+def test_the_columns_of_the_log_are_all_there():
+    table = text("docs/output.md").split("`log.csv`, over")[1].split("The sums")[0]
+    named = re.findall(r"`(\w+)`", table)
+    assert named == diagnostics.columns(3)
