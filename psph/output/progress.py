@@ -47,10 +47,10 @@ class Progress:
         while len(self._samples) > 2 and now - self._samples[1].wall > WINDOW:
             self._samples.popleft()
         if self._bar:
-            self._bar.show(self.title, time / self.end_time, *self._report(dt))
+            self._bar.show(self.title, min(time / self.end_time, 1.0), *self._report(dt))
         elif time >= self._next or now - self._said > PATIENCE:
             report, left = self._report(dt)
-            print(f"{time / self.end_time:4.0%}  t {time:.4g} s  {report}  {left}", flush=True)
+            print(f"{min(time / self.end_time, 1.0):4.0%}  t {time:.4g} s  {report}  {left}", flush=True)
             self._said = now
         if time >= self._next:
             self._next = self._milestone(time)

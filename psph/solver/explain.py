@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from psph.parallel.slabs import check_ranks
 from psph.particles.cells import make_grid
 from psph.particles.fields import FIELDS
 from psph.solver.plan import Plan, make_plan
@@ -63,12 +64,13 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
 
 def _rank_lines(scene, plan: Plan, particles: int, ranks: int) -> Iterator[str]:
     planes = slab_planes(scene)
+    check_ranks(ranks, planes)
     each = bytes_per_particle(scene, plan)
     ghosts = 0 if ranks == 1 else GHOST_PLANES * particles / planes
     memory = each * (particles / ranks + ghosts) / 2**20
     refreshed = sum(scene.dimensions if FIELDS[n].vector else 1 for n in plan.refreshed)
-    yield f"  ranks       {ranks} (slabs along {'xyz'[scene.axis]}, {planes} planes of cells: "
-    yield f"              at most {planes} ranks)"
+    along = "xyz"[scene.axis]
+    yield f"  ranks       {ranks}, at most {planes}: that many planes of cells along {along}"
     yield f"  memory      about {memory:.1f} MiB a rank, {each:.0f} bytes a particle"
     yield f"  arrays      {', '.join(plan.arrays)}"
     shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
