@@ -5,6 +5,7 @@ import os
 import sys
 import time
 import traceback
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 
 from mpi4py import MPI
@@ -19,11 +20,18 @@ BAD_INPUT, FAILED = 2, 3
 
 def main(arguments: list[str]) -> int:
     """Do what the command line asks; returns the exit code."""
-    if MPI.COMM_WORLD.rank != 0:  # rank 0 speaks, of wrong arguments too
-        sys.stderr = sys.stdout = open(os.devnull, "w", encoding="utf-8")
-    options = _parser().parse_args(_with_verb(arguments))
-    sys.stdout, sys.stderr = sys.__stdout__, sys.__stderr__
+    with _rank_0_speaks(MPI.COMM_WORLD):
+        options = _parser().parse_args(_with_verb(arguments))
     return options.verb(options, MPI.COMM_WORLD) or 0
+
+
+@contextmanager
+def _rank_0_speaks(comm):
+    """Silence the other ranks: argparse prints what is wrong with the arguments itself."""
+    with open(os.devnull, "w", encoding="utf-8") as nowhere:
+        out, err = (sys.stdout, sys.stderr) if comm.rank == 0 else (nowhere, nowhere)
+        with redirect_stdout(out), redirect_stderr(err):
+            yield
 
 
 def _with_verb(arguments: list[str]) -> list[str]:

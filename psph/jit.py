@@ -54,6 +54,12 @@ def _configure() -> None:
 
 _configure()
 
+
+def processor() -> str:
+    """The processor that loops are compiled for: bits may differ between two of them."""
+    return numba.config.CPU_NAME
+
+
 compiled = numba.njit(cache=True, fastmath=FAST, error_model="numpy")
 """Decorator of every compiled loop: a module-level function, kept in the cache."""
 

@@ -47,6 +47,18 @@ def scale(a: Vector, factor: float) -> Vector:
     return tuple(x * factor for x in a)
 
 
+@_elementwise(lambda a, b: min(a, b))
+def lower(a: Vector, b: Vector) -> Vector:
+    """The smaller of each pair of components."""
+    return tuple(min(x, y) for x, y in zip(a, b))
+
+
+@_elementwise(lambda a, b: max(a, b))
+def upper(a: Vector, b: Vector) -> Vector:
+    """The larger of each pair of components."""
+    return tuple(max(x, y) for x, y in zip(a, b))
+
+
 @_elementwise(lambda a, b: a[b])
 def at(arrays: tuple, k: int) -> Vector:
     """Component arrays → the vector of particle ``k``."""

@@ -59,7 +59,7 @@ class Time(Table):
     """How long and in which steps."""
 
     end: float = key("simulated time at which the run ends", unit="s", gt=0)
-    cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.6)
+    cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.5)
     step: float | None = key(
         "a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0
     )

@@ -21,15 +21,15 @@ class Parameters(Table):
     @model_validator(mode="before")
     @classmethod
     def _take_bare_value(cls, value: Any) -> Any:
-        if isinstance(value, (dict, Parameters)):
+        if isinstance(value, (dict, Parameters)) or not cls.model_fields:
             return value
         return {next(iter(cls.model_fields)): value}
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core_schema, handler):
         table = handler(core_schema)
-        properties = handler.resolve_ref_schema(table)["properties"]
-        return {"anyOf": [table, next(iter(properties.values()))]}
+        properties = handler.resolve_ref_schema(table).get("properties", {})
+        return {"anyOf": [table, *list(properties.values())[:1]]}
 
 
 def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -> type[Table]:

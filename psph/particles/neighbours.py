@@ -6,7 +6,9 @@ import numpy as np
 
 from psph.jit import compiled
 from psph.particles.cells import Grid
-from psph.vectors import at, columns_like, dot, nearest_image, put, subtract
+from psph.vectors import (
+    add, at, columns_like, dot, lower, nearest_image, put, scale, subtract, upper
+)
 
 WIDTH = 8
 """A row is padded to a multiple of this with the dummy particle: the loop needs no remainder."""
@@ -77,7 +79,7 @@ def fill_lists(
                     near = columns_like(position, 2 * candidates)
                     column_of = np.empty(2 * candidates, np.uint32)
                     hit = np.empty(2 * candidates, np.uint32)
-                x_0 = at(position, np.uint64(starts[cell]))
+                x_0 = middle(position, starts[cell], starts[cell + 1])
                 copy_candidates(position, periods, x_0, ranges, from_k, to_k, near, column_of)
                 for i in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
                     if np.int64(end) + candidates > capacity:
@@ -95,6 +97,15 @@ def fill_lists(
                     begin[i - np.uint64(low)] = first
                     blocks[i - np.uint64(low)] = (end - first) // np.uint64(WIDTH)
     return np.int64(0)
+
+
+@compiled
+def middle(position, first, last):
+    """Middle of the box around some particles: none is more than half a cell away."""
+    low = high = at(position, np.uint64(first))
+    for k in range(np.uint64(first), np.uint64(last)):
+        low, high = lower(low, at(position, k)), upper(high, at(position, k))
+    return scale(add(low, high), 0.5)
 
 
 @compiled

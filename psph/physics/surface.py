@@ -11,8 +11,8 @@ class FreeSurface(NamedTuple):
     """A particle at a free surface feels no pressure.
 
     Where Σ_j W_ij m_j/ρ_j (with the particle itself, and the walls) < β, ρ_i = ρ₀ and hence p_i = 0.
-    SSPH paper, eq. (14), β = 0.9.  The sum is gathered in the same pass as the forces and acts on
-    the density of the next step.  Resetting ρ costs mass-consistency: a still surface without it
+    SSPH paper, eq. (14), β = 0.9.  The sum is gathered in the same pass as the forces: it acts on
+    the density at the end of that step, and on the pressure that the next forces feel.  Resetting ρ costs mass-consistency: a still surface without it
     is quieter.
     """
 

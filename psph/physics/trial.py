@@ -17,31 +17,41 @@ class UnknownField(TypeError):
     """An effect reads something that no particle carries."""
 
 
+VALUES = (1.0, 0.5)
+"""What a trial answers: formulas compare with zero or a threshold, and each side is to be seen."""
+
+VECTORS = ("position", "velocity", "x_ij", "u_ij")
+
+
 class _Recorder:
     """Answers every known name with a harmless value and remembers that it was asked."""
 
-    def __init__(self, owner: str, record: type, vectors: dict[str, tuple[float, ...]]):
-        self._owner, self._names, self._vectors = owner, record._fields, vectors
+    def __init__(self, owner: str, record: type, dimensions: int):
+        self._owner, self._names, self._dimensions = owner, record._fields, dimensions
         self.read: set[str] = set()
+        self.value = VALUES[0]
 
     def __getattr__(self, name: str):
         if name not in self._names:
             known = ", ".join(self._names)
             raise UnknownField(f"{self._owner} reads '{name}'; a particle or pair has {known}")
         self.read.add(name)
-        return self._vectors.get(name, 1.0)
+        if name in VECTORS:
+            return (self.value,) * self._dimensions
+        return -self.value if name == "dw_r" and self.value != VALUES[0] else self.value
 
 
 def reads(effect, dimensions: int, kernel) -> Reads:
-    """Call every formula of ``effect`` once; raises UnknownField in one plain line.
-
-    Formulas are free of branches, so that one call sees everything that they ever read.
-    """
+    """Call every formula of ``effect`` in plain Python; raises UnknownField in one plain line."""
     owner = type(effect).__name__
-    ones = (1.0,) * dimensions
-    vectors = dict.fromkeys(("position", "velocity", "x_ij", "u_ij"), ones)
-    i, j = (_Recorder(owner, ParticleView, vectors) for _ in range(2))
-    pair = _Recorder(owner, Pair, vectors)
+    i, j, pair = (_Recorder(owner, r, dimensions) for r in (ParticleView, ParticleView, Pair))
+    for value in VALUES:
+        i.value = j.value = pair.value = value
+        _call_all(effect, i, j, pair, kernel)
+    return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read))
+
+
+def _call_all(effect, i, j, pair, kernel) -> None:
     for name in ("density_rate", "radial", "shear"):
         if hasattr(effect, name):
             getattr(effect, name)(i, j, pair)
@@ -54,4 +64,3 @@ def reads(effect, dimensions: int, kernel) -> Reads:
         effect.body(i)
     if hasattr(effect, "limit_density"):
         effect.limit_density(i, 1.0)
-    return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read))

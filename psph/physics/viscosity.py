@@ -26,9 +26,9 @@ class LaminarViscosity(NamedTuple):
             / (rho * rho * (pair.r2 + SINGULARITY * h * h))
         )
 
-    def longest_step(self, smoothing_length, viscosity):
-        """Δt ≤ 0.125 h²/ν, s (Morris, Fox & Zhu 1997, eq. 22)."""
-        return 0.125 * smoothing_length * smoothing_length / viscosity
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
+        return 0.125 * scene.smoothing_length**2 / scene.viscosity
 
 
 class ArtificialViscosity(NamedTuple):
@@ -52,3 +52,8 @@ class ArtificialViscosity(NamedTuple):
         mu = min(h * pair.u_dot_x / (pair.r2 + SINGULARITY * h * h), 0.0)
         inverse_rho = 2.0 * v_i * v_j / (v_i + v_j)
         return j.mass * (self.alpha * c - self.beta * mu) * mu * inverse_rho * pair.dw_r
+
+    def longest_step(self, scene):
+        """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
+        friction = self.alpha * scene.sound_speed
+        return scene.smoothing_length / friction if friction > 0.0 else float("inf")

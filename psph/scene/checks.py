@@ -12,7 +12,7 @@ import numpy as np
 from psph.case import CaseError
 from psph.case.tables import AXES
 from psph.scene.lattice import TOLERANCE
-from psph.scene.walls import layers_needed, thinnest_walls
+from psph.scene.walls import has_free_surface, layers_needed, thinnest_walls
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -21,7 +21,8 @@ SOUND_OVER_SPEED = 10.0
 """Speed of sound over the largest speed: density then varies by about 1 % (Monaghan 1994)."""
 
 SLABS_IN_A_PERIOD = 3
-"""A periodic axis must hold that many cut-off radii: a particle may not meet its own image."""
+"""A periodic axis must hold that many cut-off radii: then no particle meets another twice, and all
+particles of a cell have the same nearest image of a candidate (psph.particles.neighbours)."""
 
 LARGEST_QUIET_JITTER = 0.5
 """In spacings; beyond it neighbours may change places."""
@@ -36,7 +37,7 @@ def faults(scene: Scene) -> Iterator[str]:
 
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but likely not as meant."""
-    for kind in (_thin_walls, _surface_threshold, _slow_sound, _jitter):
+    for kind in (_thin_walls, _surface_threshold, _minimum_at_surface, _slow_sound, _jitter):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
 
@@ -175,6 +176,14 @@ def _surface_threshold(scene: Scene) -> Iterator[str]:
         yield (
             f"physics.free_surface: {effect.threshold:g} takes every particle for surface, {sums}; "
             f"give {between}"
+        )
+
+
+def _minimum_at_surface(scene: Scene) -> Iterator[str]:
+    if scene.case.physics.pressure_gradient == "minimum" and has_free_surface(scene):
+        yield (
+            'physics.pressure_gradient: "minimum" explodes at a free surface, where it only pushes '
+            'outward, and the fluid has one; take "symmetric", or enclose the fluid'
         )
 
 

@@ -23,6 +23,20 @@ def layers_needed(scene: Scene) -> int:
     return math.ceil(reach - TOLERANCE)
 
 
+def has_free_surface(scene: Scene) -> bool:
+    """Whether a fluid site has an empty site beside it, walls and periodic images counted."""
+    for first, last in scene.lattice.chunks():
+        held = with_surroundings(scene, first, last, 1)
+        inner = (slice(1, -1),) * held.ndim
+        fluid = held[inner] < scene.layout.fluids
+        for axis in range(held.ndim):
+            for beside in (slice(None, -2), slice(2, None)):
+                window = (*inner[:axis], beside, *inner[axis + 1 :])
+                if (fluid & (held[window] == NONE)).any():
+                    return True
+    return False
+
+
 def thinnest_walls(scene: Scene) -> Thin:
     """The walls with fewer layers than needed, by material.
 
@@ -34,7 +48,7 @@ def thinnest_walls(scene: Scene) -> Thin:
     if not scene.case.walls:
         return thin
     for first, last in scene.lattice.chunks():
-        held = _with_surroundings(scene, first, last, need)
+        held = with_surroundings(scene, first, last, need)
         layers = _layers(held, scene.layout.fluids, need)
         inner = held[(slice(need, -need),) * held.ndim]
         for material in np.unique(inner[layers < need]).tolist():
@@ -67,7 +81,7 @@ def _moved(array: np.ndarray, axis: int, step: int, margin: int) -> np.ndarray:
     return array[tuple(window)]
 
 
-def _with_surroundings(scene: Scene, first: int, last: int, margin: int) -> np.ndarray:
+def with_surroundings(scene: Scene, first: int, last: int, margin: int) -> np.ndarray:
     """Materials of some planes and of ``margin`` sites around them, across periodic edges."""
     lattice = scene.lattice
     wraps = [

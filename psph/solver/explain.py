@@ -66,7 +66,8 @@ def _rank_lines(scene, plan: Plan, particles: int, ranks: int) -> Iterator[str]:
     planes = slab_planes(scene)
     check_ranks(ranks, planes)
     each = bytes_per_particle(scene, plan)
-    ghosts = 0 if ranks == 1 else GHOST_PLANES * particles / planes
+    alone = ranks == 1 and scene.periods[scene.axis] is None
+    ghosts = 0 if alone else GHOST_PLANES * particles / planes
     memory = each * (particles / ranks + ghosts) / 2**20
     refreshed = sum(scene.dimensions if FIELDS[n].vector else 1 for n in plan.refreshed)
     along = "xyz"[scene.axis]

@@ -7,9 +7,9 @@
 
 Forces need the new density and its rate the new velocity, so a leapfrog exact in both would take
 two passes.  Predicting both to first order (v + Δt a, ρ + Δt ρ̇: Springel 2005 for v) makes sound
-grow by (ωΔt)⁴/4 a step; the weights 7/4, −1, 1/4 were chosen so that the (ωΔt)⁴ and (ωΔt)⁵ terms
-vanish: |λ| − 1 = −1.2e-5 at ωΔt = 0.2 and −1.9e-7 at 0.1, stable to ωΔt = 0.6.  Sound on a lattice
-has ωΔt ≤ 1.1 CFL.  docs/theory.md derives it, tests/solver/test_integrator.py measures it.
+grow by (ωΔt)⁴/4 a step; with the weights 7/4, −1, 1/4 that term vanishes and a damping of
+3/16 (ωΔt)⁶ is left: 1.2e-5 a step at ωΔt = 0.2, 1.9e-7 at 0.1; stable to ωΔt = 0.78.  The fastest
+sound on a lattice has ωΔt = 1.0 to 1.1 CFL for most kernels, 1.44 for Wendland C6 in 3D.  docs/theory.md derives it, tests/solver/test_integrator.py measures it.
 """
 
 import numpy as np

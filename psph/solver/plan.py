@@ -1,12 +1,14 @@
 """The plan: exactly the effects, fields and messages that a scene calls for, and why."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from psph.particles.fields import FIELDS
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
-from psph.physics.trial import Reads, reads
+from psph.physics.compose import ParticleView
+from psph.physics.trial import Reads, UnknownField, reads
 
 ALWAYS = (
     "position", "velocity", "predicted_velocity", "acceleration", "listed_position",
@@ -45,6 +47,8 @@ class Plan:
     ghost_fields: tuple[str, ...]
     cfl: float
     fixed_step: float | None
+    extremes: ParticleView
+    """The scene's shared values, and the largest of those that differ by material."""
 
     @property
     def effects(self) -> tuple:
@@ -76,9 +80,7 @@ class Plan:
             yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
         for effect in self.effects:
             if hasattr(effect, "longest_step"):
-                yield effect.longest_step(h, self._largest["viscosity"]), "viscosity"
-
-    _largest: dict[str, float]
+                yield effect.longest_step(self.extremes), words(type(effect).__name__)
 
 
 def make_plan(scene) -> Plan:
@@ -95,6 +97,7 @@ def make_plan(scene) -> Plan:
     shared, varying = _split(scene, own)
     written = tuple(e.writes for e in (c.effect for c in called) if hasattr(e, "writes"))
     neighbour = _read_of_neighbours(called)
+    _refuse_unwritten(called, written)
     return Plan(
         called=called,
         absent=tuple(e for e in CATALOGUE if e not in present),
@@ -109,8 +112,27 @@ def make_plan(scene) -> Plan:
         ghost_fields=tuple(n for n in varying if n in neighbour),
         cfl=case.time.cfl,
         fixed_step=case.time.step,
-        _largest={"viscosity": max(m.viscosity for m in scene.materials)},
+        extremes=ParticleView(
+            position=None,
+            sound_speed=scene.sound_speed,
+            smoothing_length=scene.smoothing_length,
+            **{n: max(material_value(m, n) for m in scene.materials) for n in PER_MATERIAL},
+        ),
     )
+
+
+def _refuse_unwritten(called, written: tuple[str, ...]) -> None:
+    """Raise UnknownField where an effect reads what only an absent effect would write."""
+    known = {"velocity", "sound_speed", "smoothing_length", *ALWAYS, *PER_MATERIAL, *written}
+    for call in called:
+        for name in sorted((call.reads.own | call.reads.neighbour) - known):
+            effect = type(call.effect).__name__
+            raise UnknownField(f"{effect} reads '{name}', which no effect of this scene writes")
+
+
+def words(name: str) -> str:
+    """``LaminarViscosity`` -> ``laminar viscosity``."""
+    return re.sub(r"(?<!^)(?=[A-Z])", " ", name).lower()
 
 
 def _read_of_neighbours(called) -> set[str]:

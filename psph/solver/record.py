@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import psph
+from psph.jit import processor
 from psph.output import diagnostics
 from psph.output.frames import FrameFile
 from psph.output.probes import Probe
@@ -50,6 +51,7 @@ class Record:
                 "case": case.to_toml(),
                 "title": case.title,
                 "psph_version": psph.__version__,
+                "processor": processor(),
                 "dimensions": scene.dimensions,
                 "spacing": scene.spacing,
             },

@@ -1,5 +1,6 @@
 """A case from the first line to the last."""
 
+import sys
 import time
 from pathlib import Path
 
@@ -28,7 +29,7 @@ def run(case, folder: Path, comm, overwrite: bool = False) -> Simulation:
     say = _speaker(comm)
     scene = Scene(case)
     for warning in scene.check():
-        say(f"warning: {warning}")
+        say(f"warning: {warning}", sys.stderr)
     check_ranks(comm.size, slab_planes(scene))
     _prepare_folder(case, folder, comm, overwrite)
     plan = make_plan(scene)
@@ -65,9 +66,9 @@ def run(case, folder: Path, comm, overwrite: bool = False) -> Simulation:
 def _speaker(comm):
     """Rank 0 speaks; the others are silent."""
 
-    def say(line: str) -> None:
+    def say(line: str, where=None) -> None:
         if comm.rank == 0:
-            print(line, flush=True)
+            print(line, file=where, flush=True)
 
     return say
 
@@ -85,6 +86,9 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
                 trouble = f"{folder} holds a run of {case.name}: give --out or --overwrite"
             else:
                 folder.mkdir(parents=True, exist_ok=True)
+                for name in ("log.csv", "probes.csv", "*.png"):
+                    for old in folder.glob(name):
+                        old.unlink()
                 (folder / "case.toml").write_text(case.to_toml(), encoding="utf-8")
         except OSError as error:
             trouble = f"{folder}: {error.strerror}; choose another folder with --out"

@@ -49,7 +49,10 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     begun = time.perf_counter()
     if comm.rank == 0:
         store = Store(scene.dimensions, plan.arrays, plan.constants)
-        block = np.ones((len(store.data), 2))
+        block = np.zeros((len(store.data), 2))
+        for name in ("density", *PER_MATERIAL):
+            if name in store:
+                block[store.rows[name].start] = 1.0
         middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
         block[list(store.rows["position"])] = np.array(middle)[:, None]
         store.append(np.arange(2), np.zeros(2, np.uint8), block)

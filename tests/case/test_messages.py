@@ -95,7 +95,7 @@ FAULTS = {
     ),
     "a cfl that is too large": (
         replaced("end = 2.0", "end = 2.0\ncfl = 0.7"),
-        "time.cfl: 0.7 is out of range; it must be above 0 and at most 0.6",
+        "time.cfl: 0.7 is out of range; it must be above 0 and at most 0.5",
     ),
     "h in place of h/dx": (
         replaced("smoothing = 1.3", "smoothing = 0.13"),

@@ -10,6 +10,8 @@ from jobs import mpirun
 
 from psph.output.reader import Run
 
+pytestmark = pytest.mark.timeout(1000)
+
 BOX_EIGENVALUE = {"cubic": 2693.0, "hyperbolic": 3004.0}
 """Growth in 1/s of the 15×15 box of case 4.2 at h/dx 1.2, from linear theory."""
 

@@ -73,6 +73,15 @@ def test_lists_are_complete(dim, periodic, axis):
     assert all(len(row) == len(set(row)) for row in found.values())
 
 
+@pytest.mark.parametrize("dim", (1, 2, 3))
+def test_the_shortest_period(dim):
+    """Three cutoffs and hardly more: every cell is a third of the domain."""
+    positions = np.random.default_rng(9).uniform(0, 1, (200, dim))
+    domain = domain_of(positions, 0.3333, (0,) * dim, (1,) * dim, (1.0,) * dim)
+    found = {i: set(row) for i, row in neighbours_by_id(domain).items()}
+    assert found == brute_force(positions, 0.3333, (1.0,) * dim)
+
+
 def test_particles_outside_the_domain_keep_their_neighbours():
     positions = np.random.default_rng(2).uniform(-9, 9, (400, 2))
     domain = domain_of(positions, 0.9, (0.0, 0.0), (1.0, 1.0), (None, None))

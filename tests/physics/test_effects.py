@@ -195,6 +195,12 @@ def test_reads_are_found_by_a_trial_call():
     assert found.pair == {"r2", "dw_r"}
 
 
+def test_both_sides_of_a_comparison_are_tried():
+    assert "rest_density" in reads(FreeSurface(), 2, kernel("cubic", H, 2)).own
+    found = reads(MinimumPressure(), 2, kernel("cubic", H, 2))
+    assert "pressure" in found.neighbour and "x_ij" in found.pair
+
+
 def test_an_effect_that_reads_what_nobody_has():
     from typing import NamedTuple
 

@@ -259,3 +259,32 @@ def test_a_large_jitter_is_warned_of(tmp_path):
         "0.5"
     ]
     assert checked(tmp_path, WATER, "fluids.water.jitter=0.5") == []
+
+
+CLOSED = """
+[space]
+dimensions = 2
+spacing = 0.1
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [2.0, 2.0]
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [2.0, 2.0] }
+"""
+
+
+def test_minimum_pressure_with_a_free_surface_is_warned_of(tmp_path):
+    [line] = checked(tmp_path, TANK, "physics.pressure_gradient=minimum")
+    assert line.startswith('case.toml: physics.pressure_gradient: "minimum" explodes at a free')
+
+
+@pytest.mark.parametrize("text, override", [
+    (TANK, "physics.pressure_gradient=symmetric"),
+    (CLOSED, "physics.pressure_gradient=minimum"),
+])
+def test_minimum_pressure_without_one_is_silent(tmp_path, text, override):
+    assert checked(tmp_path, text, override) == []

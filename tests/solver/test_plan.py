@@ -10,6 +10,7 @@ from psph.case import load
 from psph.output.ledger import Ledger
 from psph.physics import catalogue, compose
 from psph.physics.catalogue import Entry
+from psph.physics.trial import UnknownField
 from psph.scene import Scene
 from psph.solver import plan as plan_module
 from psph.solver.explain import explain
@@ -66,7 +67,7 @@ def test_a_viscosity_switches_viscosity_on(planned):
     [call] = (c for c in plan.called if type(c.effect).__name__ == "LaminarViscosity")
     assert call.reason == "fluids.water.viscosity = 0.001"
     limits = {name: step for step, name in plan.step_limits(1.0, 0.0)}
-    assert limits["viscosity"] == pytest.approx(0.125 * 0.14**2 / 1e-3)
+    assert limits["laminar viscosity"] == pytest.approx(0.125 * 0.14**2 / 1e-3)
 
 
 def test_two_viscosities_become_an_array_of_ghosts_too(planned):
@@ -102,6 +103,22 @@ def test_each_key_calls_for_its_effect(planned, override, effect, reason):
     assert effect not in {e.effect.__name__ for e in plan.absent}
     plain = "\n".join(explain(planned()[0], 1))
     assert effect in plain.split("Not simulated")[1]
+
+
+class Wetness(compose.NamedTuple):
+    """An effect that needs what only FreeSurface writes."""
+
+    def radial(self, i, j, pair):
+        """Something at the surface."""
+        return i.kernel_sum * pair.dw_r
+
+
+def test_an_effect_that_reads_what_an_absent_effect_writes_is_refused(planned, monkeypatch):
+    longer = (*catalogue.CATALOGUE, Entry("", Wetness))
+    monkeypatch.setattr(plan_module, "CATALOGUE", longer)
+    with pytest.raises(UnknownField, match="Wetness reads 'kernel_sum', which no effect"):
+        planned()
+    planned("physics.free_surface=0.9")
 
 
 def test_the_surface_effect_brings_its_field_and_no_message(planned):
