@@ -14,6 +14,8 @@ import llvmlite.binding as llvm
 import numba
 from llvmlite import ir
 from numba.core import types
+from numba.core.caching import FunctionCache
+from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic, overload, register_jitable
 
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
@@ -60,8 +62,33 @@ def processor() -> str:
     return numba.config.CPU_NAME
 
 
-compiled = numba.njit(cache=True, fastmath=FAST, error_model="numpy")
-"""Decorator of every compiled loop: a module-level function, kept in the cache."""
+class OwnCache(FunctionCache):
+    """Keeps the loops of psph's own effects on disk.
+
+    A loop with an effect from a script or a test is compiled in each process: on disk its type
+    would be the name of a module that the next process cannot import, and it would break the
+    loading of all others.
+    """
+
+    def save_overload(self, sig, data):
+        """Keep a compiled loop unless a foreign class stands in its types."""
+        arguments, _ = normalize_signature(sig)
+        if not any(_is_foreign(kind) for kind in arguments):
+            super().save_overload(sig, data)
+
+
+def _is_foreign(kind) -> bool:
+    own = getattr(kind, "instance_class", tuple)
+    if own is not tuple and own.__module__.partition(".")[0] != __name__.partition(".")[0]:
+        return True
+    return any(_is_foreign(part) for part in getattr(kind, "types", ()))
+
+
+def compiled(function):
+    """Decorator of every compiled loop: a module-level function, kept in the cache."""
+    loop = numba.njit(fastmath=FAST, error_model="numpy")(function)
+    loop._cache = OwnCache(function)
+    return loop
 
 def call_by_type(name: str):
     """A function ``(value, *args) -> value.name(*args)`` for compiled code and plain Python.
@@ -98,6 +125,37 @@ def _minnum(typing, a, b):
         return builder.call(function, args, fastmath=("fast",))
 
     return types.float64(types.float64, types.float64), build
+
+
+@intrinsic
+def _bits_below(typing, values, first, limit):
+    def build(context, builder, signature, args):
+        array = context.make_array(signature.args[0])(context, builder, args[0])
+        lanes = ir.VectorType(ir.DoubleType(), LANES)
+        place = builder.bitcast(builder.gep(array.data, [args[1]]), lanes.as_pointer())
+        block = builder.load(place)
+        block.align = 8
+        one = builder.insert_element(ir.Constant(lanes, ir.Undefined), args[2], ir.IntType(32)(0))
+        zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+        limits = builder.shuffle_vector(one, ir.Constant(lanes, ir.Undefined), zeros)
+        below = builder.fcmp_ordered("<", block, limits)
+        return builder.zext(builder.bitcast(below, ir.IntType(LANES)), ir.IntType(64))
+
+    return types.uint64(values, types.uint64, types.float64), build
+
+
+LANES = 8
+"""Numbers that :func:`bits_below` compares at once."""
+
+
+def bits_below(values, first: int, limit: float) -> int:
+    """Bit t says whether ``values[first + t] < limit``, for eight numbers."""
+    return sum(int(values[first + t] < limit) << t for t in range(LANES))
+
+
+@overload(bits_below)
+def _typed_bits_below(values, first, limit):
+    return lambda values, first, limit: _bits_below(values, first, limit)
 
 
 def minimum(a: float, b: float) -> float:

@@ -8,12 +8,27 @@ All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
 import math
 from typing import NamedTuple
 
-from psph.jit import call_by_type
+from numba.extending import overload
+
+from psph.jit import call_by_type, method_of
 
 weight = call_by_type("w")
 """(kernel, r) → W(r), in compiled code and plain Python."""
 slope = call_by_type("dw")
 """(kernel, r) → W′(r), in compiled code and plain Python."""
+
+
+def slope_over_r(kernel, r):
+    """W′(r)/r, by the kernel's own ``dw_r`` where it can do without the division."""
+    return kernel.dw_r(r) if hasattr(kernel, "dw_r") else kernel.dw(r) / r
+
+
+@overload(slope_over_r)
+def _typed_slope_over_r(kernel, r):
+    own = method_of(kernel, "dw_r")
+    if own is not None:
+        return lambda kernel, r: own(kernel, r)
+    return lambda kernel, r: slope(kernel, r) / r
 
 
 class Cubic(NamedTuple):
@@ -90,6 +105,11 @@ class WendlandC2(NamedTuple):
         a = max(1.0 - 0.5 * s, 0.0)
         return -5.0 * self.alpha * self.inverse_h * s * (a * a * a)
 
+    def dw_r(self, r):
+        """W′/r, a polynomial."""
+        a = max(1.0 - 0.5 * r * self.inverse_h, 0.0)
+        return -5.0 * self.alpha * self.inverse_h * self.inverse_h * (a * a * a)
+
 
 class WendlandC4(NamedTuple):
     """Wendland C4, W = α(1−s/2)⁶₊(1 + 3s + 35s²/12).  Source: see :class:`WendlandC2`."""
@@ -112,6 +132,12 @@ class WendlandC4(NamedTuple):
         a = max(1.0 - 0.5 * s, 0.0)
         return -(14 / 3) * self.alpha * self.inverse_h * s * a**5 * (1.0 + 2.5 * s)
 
+    def dw_r(self, r):
+        """W′/r, a polynomial."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        return -(14 / 3) * self.alpha * self.inverse_h * self.inverse_h * a**5 * (1.0 + 2.5 * s)
+
 
 class WendlandC6(NamedTuple):
     """Wendland C6, W = α(1−s/2)⁸₊(1 + 4s + 25s²/4 + 4s³).  Source: see :class:`WendlandC2`."""
@@ -133,6 +159,13 @@ class WendlandC6(NamedTuple):
         s = r * self.inverse_h
         a = max(1.0 - 0.5 * s, 0.0)
         return -5.5 * self.alpha * self.inverse_h * s * a**7 * (1.0 + s * (3.5 + 4.0 * s))
+
+    def dw_r(self, r):
+        """W′/r, a polynomial."""
+        s = r * self.inverse_h
+        a = max(1.0 - 0.5 * s, 0.0)
+        slope_s = a**7 * (1.0 + s * (3.5 + 4.0 * s))
+        return -5.5 * self.alpha * self.inverse_h * self.inverse_h * slope_s
 
 
 class Gaussian(NamedTuple):

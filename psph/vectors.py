@@ -65,6 +65,12 @@ def at(arrays: tuple, k: int) -> Vector:
     return tuple(array[k] for array in arrays)
 
 
+@_elementwise(lambda a, b: a + b)
+def add_to_each(a: Vector, b: float) -> Vector:
+    """a + b in every component."""
+    return tuple(x + b for x in a)
+
+
 def dot(a: Vector, b: Vector) -> float:
     """a · b."""
     return sum(x * y for x, y in zip(a, b))

@@ -2,10 +2,11 @@
 
 import math
 
+import numba
 import numpy as np
 import pytest
 
-from psph.smoothing import KERNELS, kernel
+from psph.smoothing import KERNELS, kernel, slope_over_r
 
 H = 0.7
 ALL = [(name, dim) for name in KERNELS for dim in (1, 2, 3)]
@@ -37,6 +38,15 @@ def test_slope_is_the_derivative(name, dim):
         slope = (k.w(r + step) - k.w(r - step)) / (2 * step)
         assert k.dw(r) == pytest.approx(slope, rel=1e-5, abs=1e-6 * k.w(0.0) / H)
         assert k.dw(r) < 0.0
+
+
+@pytest.mark.parametrize("name, dim", ALL)
+def test_slope_over_r(name, dim):
+    k = kernel(name, H, dim)
+    compiled = numba.njit(lambda k, r: slope_over_r(k, r))
+    for r in (1e-3, 0.3, 0.9, 1.3, 5.0):
+        expected = pytest.approx(k.dw(r) / r, rel=1e-12, abs=1e-30)
+        assert slope_over_r(k, r) == expected and compiled(k, r) == expected
 
 
 @pytest.mark.parametrize("name, dim", ALL)

@@ -12,7 +12,7 @@ from numba.core import types
 from numba.extending import overload, register_jitable
 
 from psph.jit import method_of
-from psph.smoothing import slope, weight
+from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, at, dot, nearest_image, subtract, zero_like
 
 
@@ -95,7 +95,7 @@ def geometry(kernel, periods, tiny, i, j):
     u_ij = subtract(i.velocity, j.velocity)
     r2 = dot(x_ij, x_ij)
     r = np.sqrt(r2 + tiny)
-    return Pair(x_ij, u_ij, r2, dot(u_ij, x_ij), weight(kernel, r), slope(kernel, r) / r)
+    return Pair(x_ij, u_ij, r2, dot(u_ij, x_ij), weight(kernel, r), slope_over_r(kernel, r))
 
 
 def _sum_of(name: str, first, join):

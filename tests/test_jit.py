@@ -1,0 +1,82 @@
+"""The compile cache: it cannot go stale, and nothing foreign gets into it."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from jobs import clean_environment
+
+from psph import jit
+
+SCRIPT = """
+import sys
+from typing import NamedTuple
+from psph.jit import call_by_type, compiled
+from psph.solver.integrator import state_of
+from psph.physics.compose import ParticleView
+from psph.physics.state import Linear
+import numpy as np
+
+class Foreign(NamedTuple):
+    def pressure(self, density, rest_density, sound_speed):
+        return 7.0 * density
+
+view = ParticleView(position=(np.zeros(3),), rest_density=1.0, sound_speed=1.0)
+for state in (Linear(), Foreign()) if "foreign" in sys.argv else (Linear(),):
+    pressure = np.zeros(3)
+    state_of(0, 3, state, view, np.full(3, 2.0), np.zeros(3), pressure)
+    print(pressure[0])
+print(sum(state_of.stats.cache_hits.values()), "from the cache")
+"""
+
+
+def script(folder, *arguments):
+    """What the script prints, with its compiled loops in ``folder``."""
+    path = folder / "script.py"
+    path.write_text(SCRIPT)
+    job = subprocess.run(
+        [sys.executable, path, *arguments], capture_output=True, text=True,
+        env=clean_environment() | {"PSPH_CACHE": str(folder / "cache")},
+    )
+    assert job.returncode == 0, job.stderr
+    return job.stdout.splitlines()
+
+
+def test_a_second_process_compiles_nothing(tmp_path):
+    assert script(tmp_path) == ["1.0", "0 from the cache"]
+    assert script(tmp_path) == ["1.0", "1 from the cache"]
+
+
+def test_an_effect_of_a_script_leaves_the_cache_as_it_is(tmp_path):
+    assert script(tmp_path, "foreign") == ["1.0", "14.0", "0 from the cache"]
+    assert script(tmp_path) == ["1.0", "1 from the cache"]
+    assert script(tmp_path, "foreign")[:2] == ["1.0", "14.0"]
+
+
+def test_the_cache_follows_the_sources(tmp_path, monkeypatch):
+    """An edit in any file gives another folder, and so compiles anew."""
+    package = tmp_path / "psph"
+    (package / "physics").mkdir(parents=True)
+    (package / "jit.py").write_text("a = 1\n")
+    effect = package / "physics" / "effect.py"
+    effect.write_text("b = 1\n")
+    monkeypatch.setattr(jit, "__file__", str(package / "jit.py"))
+    before = jit.source_digest()
+    assert jit.source_digest() == before
+    effect.write_text("b = 2\n")
+    assert jit.source_digest() != before
+    effect.write_text("b = 1\n")
+    assert jit.source_digest() == before
+    effect.rename(Path(effect).with_name("other.py"))
+    assert jit.source_digest() != before
+
+
+@pytest.mark.parametrize("values, bits", [([1.0] * 8, 0b0), ([0.0] * 8, 0xFF), ([0, 1] * 4, 0x55)])
+def test_bits_below(values, bits):
+    import numba
+    import numpy as np
+
+    compiled = numba.njit(lambda v, k: jit.bits_below(v, np.uint64(k), 0.5))
+    array = np.array([9.0, 9.0, *values])
+    assert jit.bits_below(array, 2, 0.5) == compiled(array, 2) == bits
