@@ -127,37 +127,6 @@ def _minnum(typing, a, b):
     return types.float64(types.float64, types.float64), build
 
 
-@intrinsic
-def _bits_below(typing, values, first, limit):
-    def build(context, builder, signature, args):
-        array = context.make_array(signature.args[0])(context, builder, args[0])
-        lanes = ir.VectorType(ir.DoubleType(), LANES)
-        place = builder.bitcast(builder.gep(array.data, [args[1]]), lanes.as_pointer())
-        block = builder.load(place)
-        block.align = 8
-        one = builder.insert_element(ir.Constant(lanes, ir.Undefined), args[2], ir.IntType(32)(0))
-        zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-        limits = builder.shuffle_vector(one, ir.Constant(lanes, ir.Undefined), zeros)
-        below = builder.fcmp_ordered("<", block, limits)
-        return builder.zext(builder.bitcast(below, ir.IntType(LANES)), ir.IntType(64))
-
-    return types.uint64(values, types.uint64, types.float64), build
-
-
-LANES = 8
-"""Numbers that :func:`bits_below` compares at once."""
-
-
-def bits_below(values, first: int, limit: float) -> int:
-    """Bit t says whether ``values[first + t] < limit``, for eight numbers."""
-    return sum(int(values[first + t] < limit) << t for t in range(LANES))
-
-
-@overload(bits_below)
-def _typed_bits_below(values, first, limit):
-    return lambda values, first, limit: _bits_below(values, first, limit)
-
-
 def minimum(a: float, b: float) -> float:
     """The smaller of two numbers, as a reduction that vectorises."""
     return a if a < b else b

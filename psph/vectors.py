@@ -4,7 +4,6 @@ Every function works on plain tuples in Python and, by the length of the tuple's
 straight-line code when compiled: no loop over the axes, no memory.
 """
 
-import numpy as np
 from numba.core import types
 from numba.extending import overload, register_jitable
 
@@ -47,28 +46,10 @@ def scale(a: Vector, factor: float) -> Vector:
     return tuple(x * factor for x in a)
 
 
-@_elementwise(lambda a, b: min(a, b))
-def lower(a: Vector, b: Vector) -> Vector:
-    """The smaller of each pair of components."""
-    return tuple(min(x, y) for x, y in zip(a, b))
-
-
-@_elementwise(lambda a, b: max(a, b))
-def upper(a: Vector, b: Vector) -> Vector:
-    """The larger of each pair of components."""
-    return tuple(max(x, y) for x, y in zip(a, b))
-
-
 @_elementwise(lambda a, b: a[b])
 def at(arrays: tuple, k: int) -> Vector:
     """Component arrays → the vector of particle ``k``."""
     return tuple(array[k] for array in arrays)
-
-
-@_elementwise(lambda a, b: a + b)
-def add_to_each(a: Vector, b: float) -> Vector:
-    """a + b in every component."""
-    return tuple(x + b for x in a)
 
 
 def dot(a: Vector, b: Vector) -> float:
@@ -135,15 +116,3 @@ def _nearest_image(a, periods):
     if isinstance(periods[0], types.NoneType):
         return lambda a, periods: (a[0],) + nearest_image(a[1:], periods[1:])
     return lambda a, periods: (_wrapped(a[0], periods[0]),) + nearest_image(a[1:], periods[1:])
-
-
-def columns_like(arrays: tuple, n: int) -> tuple:
-    """As many new component arrays as ``arrays`` has, ``n`` entries each."""
-    return tuple(np.empty(n) for _ in arrays)
-
-
-@overload(columns_like)
-def _columns_like(arrays, n):
-    if len(arrays) == 0:
-        return lambda arrays, n: ()
-    return lambda arrays, n: (np.empty(n),) + columns_like(arrays[1:], n)

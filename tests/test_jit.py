@@ -4,7 +4,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
 from jobs import clean_environment
 
 from psph import jit
@@ -70,13 +69,3 @@ def test_the_cache_follows_the_sources(tmp_path, monkeypatch):
     assert jit.source_digest() == before
     effect.rename(Path(effect).with_name("other.py"))
     assert jit.source_digest() != before
-
-
-@pytest.mark.parametrize("values, bits", [([1.0] * 8, 0b0), ([0.0] * 8, 0xFF), ([0, 1] * 4, 0x55)])
-def test_bits_below(values, bits):
-    import numba
-    import numpy as np
-
-    compiled = numba.njit(lambda v, k: jit.bits_below(v, np.uint64(k), 0.5))
-    array = np.array([9.0, 9.0, *values])
-    assert jit.bits_below(array, 2, 0.5) == compiled(array, 2) == bits

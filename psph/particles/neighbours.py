@@ -4,25 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.jit import LANES, bits_below, compiled
+from psph.jit import compiled
 from psph.particles.cells import Grid
-from psph.particles.store import FAR
-from psph.vectors import (
-    add, add_to_each, at, columns_like, dot, lower, nearest_image, put, scale, subtract, upper
-)
+from psph.particles.lanes import LANES, append_near, near_bits
+from psph.vectors import at
 
 WIDTH = 8
 """A row is padded to a multiple of this with the dummy particle: the loop needs no remainder."""
-
-
-PACKED = np.zeros((1 << LANES, LANES), np.uint32)
-"""For each pattern of bits the numbers of those that are set, packed to the left."""
-HOW_MANY = np.zeros(1 << LANES, np.uint64)
-"""For each pattern of bits how many are set."""
-for _bits in range(1 << LANES):
-    _set = [t for t in range(LANES) if _bits >> t & 1]
-    PACKED[_bits, : len(_set)] = _set
-    HOW_MANY[_bits] = len(_set)
 
 
 class Neighbours(NamedTuple):
@@ -66,16 +54,16 @@ def fill_lists(
 ):
     """Fill the rows; returns 0, or about how many entries are needed when they do not fit.
 
-    The candidates of a cell are copied once into one contiguous block, as their nearest images,
-    eight to a group; each particle of the cell then meets them without gathers.
+    The candidates of a cell are a few ranges of columns, eight to a group; all eight are compared at
+    once, and a table packs those that are near.
     """
     rows, columns = counts[1], counts[2]
     from_k = np.empty(18, np.uint64)
     to_k = np.empty(18, np.uint64)
-    near = columns_like(position, 512)
-    squares = np.empty(512)
-    columns_of = np.empty(64, np.uint32)
+    column_of = np.empty(64, np.uint32)
+    valid = np.empty(64, np.uint64)
     capacity = len(lists) - WIDTH
+    one = np.uint64(1)
     end = np.uint64(0)
     for plane in range(1, planes + 1):
         for row in range(rows):
@@ -86,26 +74,25 @@ def fill_lists(
                 ranges, candidates = candidate_ranges(
                     plane, row, column, rows, columns, periodic, reach, starts, from_k, to_k
                 )
-                if candidates > len(squares):
-                    near = columns_like(position, 2 * candidates)
-                    squares = np.empty(2 * candidates)
-                    columns_of = np.empty(candidates // 4, np.uint32)
-                x_0 = middle(position, starts[cell], starts[cell + 1])
-                copy_candidates(position, periods, x_0, ranges, from_k, to_k, near, columns_of)
-                own = place_in_block(starts[cell], ranges, from_k, to_k)
+                if candidates > len(column_of) * LANES:
+                    column_of = np.empty(candidates // 4, np.uint32)
+                    valid = np.empty(candidates // 4, np.uint64)
+                own = group_candidates(starts[cell], ranges, from_k, to_k, column_of, valid)
                 for i in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
                     if np.int64(end) + candidates > capacity:
                         done = max(np.int64(i) - low, 1)
                         total = starts[(planes + 1) * rows * columns] - low
                         return np.int64(end) * total // done + candidates + 1024
-                    measure(near, subtract(at(position, i), x_0), candidates, squares)
-                    squares[own + i - np.uint64(starts[cell])] = FAR  # not its own neighbour
+                    x_i = at(position, i)
+                    lane = own + i - np.uint64(starts[cell])
+                    own_group, own_bit = lane // np.uint64(LANES), one << lane % np.uint64(LANES)
+                    valid[own_group] ^= own_bit  # not its own neighbour
                     first = end
                     for g in range(np.uint64(candidates // LANES)):
-                        bits = bits_below(squares, g * np.uint64(LANES), cutoff2)
-                        for t in range(LANES):  # all eight: those past the last are overwritten
-                            lists[end + np.uint64(t)] = columns_of[g] + PACKED[bits, t]
-                        end += HOW_MANY[bits]
+                        column_g = np.uint64(column_of[g])
+                        bits = near_bits(position, column_g, x_i, periods, cutoff2) & valid[g]
+                        end = append_near(lists, end, column_g, bits)
+                    valid[own_group] ^= own_bit
                     while (end - first) % np.uint64(WIDTH) != np.uint64(0):
                         lists[end] = dummy
                         end += np.uint64(1)
@@ -115,41 +102,21 @@ def fill_lists(
 
 
 @compiled
-def middle(position, first, last):
-    """Middle of the box around some particles: none is more than half a cell away."""
-    low = high = at(position, np.uint64(first))
-    for k in range(np.uint64(first), np.uint64(last)):
-        low, high = lower(low, at(position, k)), upper(high, at(position, k))
-    return scale(add(low, high), 0.5)
+def group_candidates(cell_start, ranges, from_k, to_k, column_of, valid):
+    """Cut the ranges into groups: their first columns, and bits of the lanes inside the range.
 
-
-@compiled
-def copy_candidates(position, periods, x_0, ranges, from_k, to_k, near, columns_of):
-    """Nearest images of the candidates relative to ``x_0``, each range filled up to groups.
-
-    ``columns_of`` receives the store's column of the first candidate of each group.
+    Returns the lane, counted over all groups, of the cell's first particle.
     """
-    m = np.uint64(0)
+    lanes, one = np.uint64(LANES), np.uint64(1)
+    g = own = np.uint64(0)
     for q in range(ranges):
-        for j in range(from_k[q], to_k[q]):
-            if (j - from_k[q]) % np.uint64(LANES) == np.uint64(0):
-                columns_of[m // np.uint64(LANES)] = j
-            put(near, m, nearest_image(subtract(at(position, j), x_0), periods))
-            m += np.uint64(1)
-        while m % np.uint64(LANES) != np.uint64(0):
-            put(near, m, add_to_each(x_0, FAR))
-            m += np.uint64(1)
-
-
-@compiled
-def place_in_block(column, ranges, from_k, to_k):
-    """Where a column of the store stands in the block of candidates."""
-    m = np.uint64(0)
-    for q in range(ranges):
-        if from_k[q] <= np.uint64(column) < to_k[q]:
-            return m + np.uint64(column) - from_k[q]
-        m += grouped(to_k[q] - from_k[q])
-    return m
+        if from_k[q] <= np.uint64(cell_start) < to_k[q]:
+            own = g * lanes + np.uint64(cell_start) - from_k[q]
+        for column in range(from_k[q], to_k[q], lanes):
+            column_of[g] = column
+            valid[g] = (one << min(lanes, to_k[q] - column)) - one
+            g += one
+    return own
 
 
 @compiled
@@ -157,14 +124,6 @@ def grouped(n):
     """``n`` rounded up to whole groups."""
     lanes = np.uint64(LANES)
     return (n + lanes - np.uint64(1)) // lanes * lanes
-
-
-@compiled
-def measure(near, offset, candidates, squares):
-    """Squared distances of the candidates from a particle at ``offset``, m²."""
-    for m in range(np.uint64(candidates)):
-        x_ij = subtract(offset, at(near, m))
-        squares[m] = dot(x_ij, x_ij)
 
 
 @compiled
