@@ -100,7 +100,9 @@ def _load(options):
 
 
 def _warn(scene, comm) -> None:
-    for warning in scene.check():
+    from psph.scene import check
+
+    for warning in check(scene):
         if comm.rank == 0:
             print(f"warning: {warning}", file=sys.stderr)
 

@@ -27,7 +27,7 @@ from psph.particles.store import Store
 from psph.physics import catalogue
 from psph.physics.catalogue import Entry
 from psph.physics.trial import reads
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.solver.plan import ALWAYS
 
 ROOT = Path(__file__).parents[1]
@@ -157,7 +157,7 @@ def test_every_verb_is_in_the_readme():
 
 def test_the_case_of_the_readme_raises_no_warning(drop):
     scene = Scene(load(drop))
-    assert scene.check() == [] and scene.counts().sum() > 1000
+    assert check(scene) == [] and scene.counts().sum() > 1000
 
 
 # The tables of the theory
@@ -292,7 +292,7 @@ def test_example_case(tmp_path):
     path = tmp_path / "poiseuille.toml"
     path.write_text(block, encoding="utf-8")
     scene = Scene(load(path))
-    assert scene.check() == []
+    assert check(scene) == []
     sizes = scene.census.sizes
     assert f"Particles: {sizes.sum()} ({sizes[0]} water, {sizes[1]} wall)" in block
 

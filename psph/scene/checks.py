@@ -1,24 +1,16 @@
 """What is wrong with a scene, and what is suspicious about it, in lines that say what to do."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from psph.case import CaseError
 from psph.case.tables import AXES
 from psph.scene.lattice import TOLERANCE
+from psph.scene.scene import SOUND_OVER_SPEED, Scene
 from psph.scene.walls import has_free_surface, layers_needed, thinnest_walls
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
-
-SOUND_OVER_SPEED = 10.0
-"""Speed of sound over the largest speed: density then varies by about 1 % (Monaghan 1994)."""
 
 SLABS_IN_A_PERIOD = 3
 """A periodic axis must hold that many cut-off radii: then no particle meets another twice, and all
@@ -26,6 +18,13 @@ particles of a cell have the same nearest image of a candidate (psph.particles.n
 
 LARGEST_QUIET_JITTER = 0.5
 """In spacings; beyond it neighbours may change places."""
+
+
+def check(scene: Scene) -> list[str]:
+    """Warnings, one line each; raises CaseError with a line for every fault."""
+    if found := list(faults(scene)):
+        raise CaseError(found)
+    return list(warnings(scene))
 
 
 def faults(scene: Scene) -> Iterator[str]:

@@ -9,7 +9,7 @@ from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
 from psph.output.progress import Progress
 from psph.parallel.slabs import check_ranks
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.solver.explain import slab_planes
 from psph.solver.plan import make_plan
 from psph.solver.record import Record
@@ -28,7 +28,7 @@ def run(case, folder: Path, comm, overwrite: bool = False) -> Simulation:
     begun = time.perf_counter()
     say = _speaker(comm)
     scene = Scene(case)
-    for warning in scene.check():
+    for warning in check(scene):
         say(f"warning: {warning}", sys.stderr)
     check_ranks(comm.size, slab_planes(scene))
     _prepare_folder(case, folder, comm, overwrite)

@@ -4,7 +4,7 @@ import pytest
 from drafts import TANK, WATER, draft
 
 from psph.case import CaseError
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.scene.checks import kernel_sums
 
 PERIODIC = ("space.periodic=['x']", "space.lower=[0.0, 0.0]", "space.upper=[1.0, 2.0]")
@@ -13,7 +13,7 @@ OIL = "\n[fluids.oil]\nshape.box = {{ lower = [0.0, {low}], upper = [1.0, 0.8] }
 
 def checked(folder, text=TANK, *overrides):
     """The warnings on a text, without its folder."""
-    lines = Scene(draft(folder, text, *overrides)).check()
+    lines = check(Scene(draft(folder, text, *overrides)))
     return [line.replace(f"{folder}/", "") for line in lines]
 
 

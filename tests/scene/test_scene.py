@@ -8,7 +8,7 @@ from drafts import TANK, WATER, draft
 
 from psph.case import CaseError, load
 from psph.particles.fields import FLUID, WALL
-from psph.scene import Material, Scene
+from psph.scene import Material, Scene, check
 from psph.scene import lattice as lattices
 
 CASES = Path(__file__).parents[2] / "run/cases"
@@ -134,6 +134,6 @@ def test_a_uniform_pressure_sets_the_mass(tmp_path, state):
 def test_shipped_cases_are_sound(name, sizes):
     path = CASES / f"{name}.toml"
     shipped = Scene(load(path))
-    assert shipped.check() == []
+    assert check(shipped) == []
     assert shipped.census.sizes.tolist() == sizes
     assert f"# Particles: {sum(sizes):,} (" in path.read_text(encoding="utf-8")
