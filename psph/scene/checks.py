@@ -16,6 +16,9 @@ SLABS_IN_A_PERIOD = 3
 """A periodic axis must hold that many cut-off radii: then no particle meets another twice, and all
 particles of a cell have the same nearest image of a candidate (psph.particles.neighbours)."""
 
+MOST_SITES = 10**11
+"""Sites of a lattice that are looked at one by one; a slip in the units gives far more."""
+
 LARGEST_QUIET_JITTER = 0.5
 """In spacings; beyond it neighbours may change places."""
 
@@ -29,9 +32,23 @@ def check(scene: Scene) -> list[str]:
 
 def faults(scene: Scene) -> Iterator[str]:
     """Everything for which the scene cannot be run."""
+    if sites := _too_many_sites(scene):
+        yield f"{scene.case.file}: {sites}"
+        return
     places = [*_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene)]
     for line in places or _state_faults(scene):  # an empty shape has no pressure
         yield f"{scene.case.file}: {line}"
+
+
+def _too_many_sites(scene: Scene) -> str | None:
+    """Known before any site is looked at, which would take hours."""
+    sites = math.prod(scene.lattice.counts)
+    if sites <= MOST_SITES:
+        return None
+    return (
+        f"space.spacing: {scene.spacing:g} m makes a lattice of {sites:.2g} sites, more than "
+        f"{MOST_SITES:.0e}; make it larger, or the shapes smaller"
+    )
 
 
 def warnings(scene: Scene) -> Iterator[str]:
