@@ -161,6 +161,8 @@ def _foreseen(error: BaseException) -> tuple[str, int] | None:
         return str(error), BAD_INPUT
     if isinstance(error, (OutputError, BlowUp)):
         return str(error), FAILED
+    if isinstance(error, BrokenPipeError):
+        return "nobody reads the output any more", FAILED
     return None
 
 
