@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from psph.jit import compiled
 from psph.particles.fields import FIELDS
 from psph.physics.compose import ParticleView
 
@@ -31,6 +32,7 @@ class Store:
             self.rows[name] = range(first, first + width)
             first += width
         self.low = self.owned = self.high = 0
+        self._view: ParticleView | None = None
         self.data = np.zeros((first, SLACK))
         self.id = np.zeros(SLACK, np.int64)
         self.kind = np.zeros(SLACK, np.uint8)
@@ -46,7 +48,10 @@ class Store:
         return self.data[rows.start]
 
     def rotate(self, *names: str) -> None:
-        """Each field takes the rows of the one before, the first those of the last; no copy."""
+        """Each field takes the rows of the one before, the first those of the last; no copy.
+
+        For fields that no effect sees and no halo carries: both keep the rows that they know.
+        """
         rows = [self.rows[name] for name in names]
         self.rows.update(zip(names, [rows[-1], *rows[:-1]]))
 
@@ -76,8 +81,11 @@ class Store:
 
     def view(self) -> ParticleView:
         """What effects see of the particles; their velocity is the predicted one."""
-        seen_as = {"velocity": "predicted_velocity"}
-        return ParticleView(*(self.value(seen_as.get(n, n)) for n in ParticleView._fields))
+        if self._view is None:
+            seen_as = {"velocity": "predicted_velocity"}
+            names = (seen_as.get(name, name) for name in ParticleView._fields)
+            self._view = ParticleView(*map(self.value, names))
+        return self._view
 
     def owned_rows(self, name: str) -> np.ndarray:
         """This rank's values as people read them: ``(owned,)`` or ``(owned, dim)``, a copy."""
@@ -99,6 +107,7 @@ class Store:
             new = np.zeros((*old.shape[:-1], wide), old.dtype)
             new[..., : old.shape[-1]] = old
             setattr(self, name, new)
+        self._view = None  # it shows the old arrays
 
     def append(self, ids: np.ndarray, kinds: np.ndarray, block: np.ndarray) -> None:
         """Add owned particles behind the last; ``block`` (rows, n).  Ghosts are lost."""
@@ -115,7 +124,8 @@ class Store:
         """Let the owned columns become the columns ``order``, behind ``low`` ghosts to come."""
         n = len(order)
         self.reserve(max(low + n + high, self.total))
-        for array in (*self.data, self.id, self.kind):
+        permute(self.data, order, low, np.empty(n))
+        for array in (self.id, self.kind):
             array[low : low + n] = array[order]
         self.low, self.owned, self.high = low, n, high
         self._place_dummy()
@@ -125,3 +135,13 @@ class Store:
         self.data[:, self.total] = 1.0
         for row in self.rows["position"]:
             self.data[row, self.total] = FAR
+
+
+@compiled
+def permute(data, order, low, spare):
+    """Move the columns ``order`` of every row to the columns from ``low`` on."""
+    for row in range(len(data)):
+        for k in range(len(order)):
+            spare[k] = data[row, np.uint64(order[k])]
+        for k in range(len(order)):
+            data[row, np.uint64(low + k)] = spare[k]

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from psph.particles.fields import FIELDS
@@ -50,17 +51,17 @@ class Plan:
     extremes: ParticleView
     """The scene's shared values, and the largest of those that differ by material."""
 
-    @property
+    @cached_property
     def effects(self) -> tuple:
         """The tuple whose type selects the compiled loop."""
         return tuple(call.effect for call in self.called)
 
-    @property
+    @cached_property
     def reductions(self) -> tuple:
         """Effects with a sum of their own."""
         return tuple(e for e in self.effects if hasattr(e, "start"))
 
-    @property
+    @cached_property
     def limits_density(self) -> bool:
         """Whether an effect bounds the density: then the first forces are computed twice."""
         return any(hasattr(e, "limit_density") for e in self.effects)

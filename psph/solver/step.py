@@ -112,6 +112,8 @@ class Simulation:
         s.rotate("density_rate", "density_rate_1", "density_rate_2")
 
     def _sum(self, first: int, last: int) -> None:
+        if first == last:
+            return
         s, plan, lists = self.store, self.plan, self.domain.lists
         written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
         sum_over_neighbours(
