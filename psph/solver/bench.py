@@ -1,6 +1,7 @@
 """How fast this machine is: particle-steps and pairs per second on a standard problem."""
 
 import json
+import math
 import platform
 import statistics
 import time
@@ -11,6 +12,7 @@ from psph.jit import compiled
 from psph.output.ledger import Ledger
 from psph.physics.compose import take
 from psph.scene import Scene
+from psph.smoothing import WendlandC2
 from psph.solver.plan import make_plan
 from psph.solver.setup import compile_ahead, create_particles
 from psph.solver.step import Simulation
@@ -19,14 +21,21 @@ from psph.vectors import dot, nearest_image, subtract
 WARM_UP, REPEATS, STEPS = 20, 5, 20
 """Steps before the clock starts, blocks that are timed, and steps of a block."""
 
-JITTER, SMOOTHING, SPEED = 0.25, 1.3, 50.0
-"""Random shift in spacings (a perfect lattice flatters the caches), h/dx and c in m/s."""
+JITTER, SPEED = 0.25, 50.0
+"""Random shift in spacings (a perfect lattice flatters the caches), and c in m/s."""
+
+NEIGHBOURS = {2: 20, 3: 57}
+"""Neighbours inside the support where none are asked for."""
+
+BALL = {2: math.pi, 3: 4.0 / 3.0 * math.pi}
 
 
-def bench(comm, dimensions: int | None, particles: int, as_json: bool) -> None:
+def bench(
+    comm, dimensions: int | None, particles: int, neighbours: int | None, as_json: bool
+) -> None:
     """Time the jittered periodic box in 2D, 3D or both, and print what each gave; collective."""
     for dim in (dimensions,) if dimensions else (2, 3):
-        result = measure(comm, dim, particles)
+        result = measure(comm, dim, particles, neighbours or NEIGHBOURS[dim])
         if comm.rank != 0:
             continue
         if as_json:
@@ -35,9 +44,9 @@ def bench(comm, dimensions: int | None, particles: int, as_json: bool) -> None:
             print("\n".join(_lines(result)), flush=True)
 
 
-def measure(comm, dimensions: int, particles: int) -> dict:
+def measure(comm, dimensions: int, particles: int, neighbours: int) -> dict:
     """Figures of one problem: rates are medians over blocks, per rank and in all."""
-    scene = Scene(_box(dimensions, particles))
+    scene = Scene(_box(dimensions, particles, neighbours))
     plan = make_plan(scene)
     compiling = compile_ahead(scene, plan, comm)
     ledger = Ledger()
@@ -72,9 +81,10 @@ def measure(comm, dimensions: int, particles: int) -> dict:
     }
 
 
-def _box(dimensions: int, particles: int):
+def _box(dimensions: int, particles: int, neighbours: int):
     from psph.case import Case
 
+    reach = ((neighbours + 1) / BALL[dimensions]) ** (1 / dimensions)  # in spacings
     sides = max(16, round(particles ** (1 / dimensions)))
     corners = {"lower": [0.0] * dimensions, "upper": [1.0] * dimensions}
     return Case.model_validate(
@@ -82,7 +92,7 @@ def _box(dimensions: int, particles: int):
             "space": {
                 "dimensions": dimensions,
                 "spacing": 1.0 / sides,
-                "smoothing": SMOOTHING,
+                "smoothing": reach / WendlandC2.support,
                 "kernel": "wendland-c2",
                 "periodic": ["x", "y", "z"][:dimensions],
                 **corners,
