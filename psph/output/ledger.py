@@ -5,11 +5,10 @@ from collections import defaultdict
 
 
 class Ledger:
-    """Seconds and calls by name: ``with ledger("pairs"): ...``; about a microsecond an entry."""
+    """Seconds by name: ``with ledger("pairs"): ...``; about a microsecond an entry."""
 
     def __init__(self):
         self.seconds: dict[str, float] = defaultdict(float)
-        self.calls: dict[str, int] = defaultdict(int)
         self._open: list[tuple[str, float]] = []
 
     def __call__(self, name: str) -> "Ledger":
@@ -22,4 +21,3 @@ class Ledger:
     def __exit__(self, *exception) -> None:
         name, begun = self._open.pop()
         self.seconds[name] += time.perf_counter() - begun
-        self.calls[name] += 1

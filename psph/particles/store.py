@@ -70,11 +70,6 @@ class Store:
         """Columns of the owned particles."""
         return slice(self.low, self.low + self.owned)
 
-    @property
-    def bytes(self) -> int:
-        """Memory of all arrays."""
-        return self.data.nbytes + self.id.nbytes + self.kind.nbytes
-
     def value(self, name: str):
         """Array(s) of a field, its constant, or None where the scene lacks it."""
         return self[name] if name in self.rows else self.constants.get(name)
