@@ -12,11 +12,9 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 import numba
-from llvmlite import ir
-from numba.core import types
 from numba.core.caching import FunctionCache
 from numba.core.sigutils import normalize_signature
-from numba.extending import intrinsic, overload, register_jitable
+from numba.extending import overload, register_jitable
 
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
 """Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
@@ -62,6 +60,11 @@ def processor() -> str:
     return numba.config.CPU_NAME
 
 
+def register_bits() -> int:
+    """Bits of the processor's vector registers."""
+    return 512 if "+avx512f" in numba.config.CPU_FEATURES.split(",") else 256
+
+
 class OwnCache(FunctionCache):
     """Keeps the loops of psph's own effects on disk.
 
@@ -90,6 +93,7 @@ def compiled(function):
     loop._cache = OwnCache(function)
     return loop
 
+
 def call_by_type(name: str):
     """A function ``(value, *args) -> value.name(*args)`` for compiled code and plain Python.
 
@@ -111,27 +115,3 @@ def method_of(named_type, name: str):
     """The compiled form of method ``name`` of a NamedTuple's class, or None if it has none."""
     formula = getattr(named_type.instance_class, name, None)
     return formula and register_jitable(formula)
-
-
-@intrinsic
-def _minnum(typing, a, b):
-    def build(context, builder, signature, args):
-        # With plain flags LLVM keeps a min reduction scalar (3 to 8 times slower): only this one
-        # instruction gets them all.
-        kind = args[0].type
-        function = builder.module.declare_intrinsic(
-            "llvm.minnum", [kind], ir.FunctionType(kind, [kind, kind])
-        )
-        return builder.call(function, args, fastmath=("fast",))
-
-    return types.float64(types.float64, types.float64), build
-
-
-def minimum(a: float, b: float) -> float:
-    """The smaller of two numbers, as a reduction that vectorises."""
-    return a if a < b else b
-
-
-@overload(minimum)
-def _minimum(a, b):
-    return lambda a, b: _minnum(a, b)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from numba.extending import overload
 
 from psph.jit import call_by_type, method_of
+from psph.simd import where
 
 weight = call_by_type("w")
 """(kernel, r) → W(r), in compiled code and plain Python."""
@@ -187,12 +188,13 @@ class Gaussian(NamedTuple):
     def w(self, r):
         """W(r)."""
         s = r * self.inverse_h
-        return self.alpha * math.exp(-s * s) if s < 3.0 else 0.0
+        return where(s < 3.0, self.alpha * math.exp(-s * s), 0.0)
 
     def dw(self, r):
         """dW/dr, 1/m more than W."""
         s = r * self.inverse_h
-        return -2.0 * self.alpha * self.inverse_h * s * math.exp(-s * s) if s < 3.0 else 0.0
+        slope_s = -2.0 * self.alpha * self.inverse_h * s * math.exp(-s * s)
+        return where(s < 3.0, slope_s, 0.0)
 
 
 class Hyperbolic(NamedTuple):

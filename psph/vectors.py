@@ -97,16 +97,14 @@ def _put(arrays, k, a):
 def nearest_image(a: Vector, periods: tuple) -> Vector:
     """Difference of positions between nearest periodic images; ``None`` marks an open axis.
 
-    One period at the most is taken off or added, so that a far dummy particle stays far.
+    One period at the most is added, so that a far dummy particle stays far.
     """
     return tuple(x if p is None else _wrapped(x, p) for x, p in zip(a, periods))
 
 
 @register_jitable
 def _wrapped(x, period):
-    down = period if x > 0.5 * period else 0.0
-    up = period if x < -0.5 * period else 0.0
-    return x - down + up
+    return x - period * round(max(x * (1.0 / period), -1.0))
 
 
 @overload(nearest_image)

@@ -2,7 +2,7 @@
 
 import numpy as np
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic, overload
 
 from psph.vectors import at, dot, nearest_image, subtract
@@ -132,9 +132,11 @@ class _Vectors:
     def wrap(self, x, period):
         """The nearest periodic image of a difference."""
         build = self.builder
-        none = self.spread(ir.Constant(ir.DoubleType(), 0.0))
-        half = self.spread(build.fmul(period, ir.Constant(ir.DoubleType(), 0.5)))
-        whole = self.spread(period)
-        down = build.select(build.fcmp_ordered(">", x, half), whole, none)
-        up = build.select(build.fcmp_ordered("<", x, build.fsub(none, half)), whole, none)
-        return build.fadd(build.fsub(x, down), up)
+        one = ir.Constant(ir.DoubleType(), 1.0)
+        turns = build.fmul(x, self.spread(build.fdiv(one, period)))
+        lowest = self.spread(build.fneg(one))
+        turns = build.select(build.fcmp_ordered(">", turns, lowest), turns, lowest)
+        rint = cgutils.get_or_insert_function(
+            build.module, ir.FunctionType(self.type, [self.type]), f"llvm.rint.v{LANES}f64"
+        )
+        return build.fsub(x, build.fmul(build.call(rint, [turns]), self.spread(period)))

@@ -13,6 +13,11 @@ FAR = 1e30
 """Coordinate of the dummy neighbour that pads the rows of a list, m: outside every support."""
 
 
+def seen_as(name: str) -> str:
+    """The field that effects see under a name of a particle view."""
+    return "predicted_velocity" if name == "velocity" else name
+
+
 class Store:
     """All numbers of this rank's particles in one block, a row a component.
 
@@ -77,9 +82,7 @@ class Store:
     def view(self) -> ParticleView:
         """What effects see of the particles; their velocity is the predicted one."""
         if self._view is None:
-            seen_as = {"velocity": "predicted_velocity"}
-            names = (seen_as.get(name, name) for name in ParticleView._fields)
-            self._view = ParticleView(*map(self.value, names))
+            self._view = ParticleView(*(self.value(seen_as(n)) for n in ParticleView._fields))
         return self._view
 
     def owned_rows(self, name: str) -> np.ndarray:

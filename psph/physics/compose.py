@@ -5,6 +5,7 @@ call) and as a recursion over the tuple's type, which numba resolves while compi
 that lacks a method leaves no trace in the compiled loop.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,8 +13,9 @@ from numba.core import types
 from numba.extending import overload, register_jitable
 
 from psph.jit import method_of
+from psph.simd import fold, turning
 from psph.smoothing import slope_over_r, weight
-from psph.vectors import add, at, dot, nearest_image, subtract, zero_like
+from psph.vectors import add, at, dot, nearest_image, scale, subtract, zero_like
 
 
 class ParticleView(NamedTuple):
@@ -88,13 +90,55 @@ def _typed_take(view, k):
     return lambda view, k: ParticleView(*_take_each(tuple(view), k))
 
 
+def fetch(view: ParticleView, records, lists, entry: int) -> ParticleView:
+    """The values of the neighbours ``lists[entry]`` and following, as lanes.
+
+    Arrays of ``view`` say which quantities the records hold, in this order.
+    """
+    return ParticleView(*_dealt(tuple(view), tuple(records[lists[entry]])))
+
+
+def _dealt(entries, numbers):
+    """Give each array among ``entries`` the next of the numbers."""
+    left = list(numbers)
+    return tuple(
+        tuple(left.pop(0) for _ in entry) if isinstance(entry, tuple)
+        else left.pop(0) if isinstance(entry, np.ndarray) else entry
+        for entry in entries
+    )
+
+
+@overload(_dealt)
+def _typed_dealt(entries, numbers):
+    if len(entries) == 0:
+        return lambda entries, numbers: ()
+    if isinstance(entries[0], types.BaseTuple):
+        n = len(entries[0])
+        return lambda entries, numbers: (numbers[:n],) + _dealt(entries[1:], numbers[n:])
+    if isinstance(entries[0], types.Array):
+        return lambda entries, numbers: (numbers[0],) + _dealt(entries[1:], numbers[1:])
+    return lambda entries, numbers: (entries[0],) + _dealt(entries[1:], numbers)
+
+
+@overload(fetch)
+def _typed_fetch(view, records, lists, entry):
+    count = sum(
+        len(kind) if isinstance(kind, types.BaseTuple) else isinstance(kind, types.Array)
+        for kind in view.types
+    )
+    turn = turning(count)
+    return lambda view, records, lists, entry: ParticleView(
+        *_dealt(tuple(view), turn(records, lists, entry))
+    )
+
+
 @register_jitable
 def geometry(kernel, periods, tiny, i, j):
     """Pair of the particle views ``i`` and ``j``; ``tiny`` (m²) keeps r from zero."""
     x_ij = nearest_image(subtract(i.position, j.position), periods)
     u_ij = subtract(i.velocity, j.velocity)
-    r2 = dot(x_ij, x_ij)
-    r = np.sqrt(r2 + tiny)
+    r2 = dot(x_ij, x_ij) + tiny
+    r = math.sqrt(r2)
     return Pair(x_ij, u_ij, r2, dot(u_ij, x_ij), weight(kernel, r), slope_over_r(kernel, r))
 
 
@@ -125,16 +169,32 @@ def _no_number(*args):
     return 0.0
 
 
+def _nothing(*args):
+    return None
+
+
 def _plus(a, b):
-    return a + b
+    return b if a is None else a + b
+
+
+def pushed(a, direction, coefficient):
+    """a + coefficient · direction; a coefficient None costs nothing."""
+    return a if coefficient is None else add(a, scale(direction, coefficient))
+
+
+@overload(pushed)
+def _typed_pushed(a, direction, coefficient):
+    if isinstance(coefficient, types.NoneType):
+        return lambda a, direction, coefficient: a
+    return lambda a, direction, coefficient: add(a, scale(direction, coefficient))
 
 
 density_rate = _sum_of("density_rate", _no_number, _plus)
 """(effects, i, j, pair) → a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-radial = _sum_of("radial", _no_number, _plus)
-"""(effects, i, j, pair) → coefficient of x_ij in the acceleration, 1/s²."""
-shear = _sum_of("shear", _no_number, _plus)
-"""(effects, i, j, pair) → coefficient of u_ij in the acceleration, 1/s."""
+radial = _sum_of("radial", _nothing, _plus)
+"""(effects, i, j, pair) → coefficient of x_ij in the acceleration, 1/s², or None."""
+shear = _sum_of("shear", _nothing, _plus)
+"""(effects, i, j, pair) → coefficient of u_ij in the acceleration, 1/s, or None."""
 body = _sum_of("body", lambda i: zero_like(i.position), lambda a, b: add(a, b))
 """(effects, i) → acceleration from outside, m/s²."""
 
@@ -160,37 +220,64 @@ def _typed_limit_density(effects, i, rho):
 # A reduction is an effect with a sum of its own: start -> gather, gather, ... -> finish.
 
 
-def start(reductions, i, kernel):
+def start(reductions, i):
     """The empty sums of all reductions."""
-    return tuple(effect.start(i, kernel) for effect in reductions)
+    return tuple(effect.start(i) for effect in reductions)
 
 
 @overload(start)
-def _typed_start(reductions, i, kernel):
+def _typed_start(reductions, i):
     if len(reductions) == 0:
-        return lambda reductions, i, kernel: ()
+        return lambda reductions, i: ()
     first = method_of(reductions[0], "start")
-    return lambda reductions, i, kernel: (
-        (first(reductions[0], i, kernel),) + start(reductions[1:], i, kernel)
-    )
+    return lambda reductions, i: (first(reductions[0], i),) + start(reductions[1:], i)
 
 
-def gather(reductions, totals, i, j, pair):
-    """All sums with neighbour j in them."""
+def gather_each(reductions, totals, i, j, pair):
+    """All sums with the neighbours j in them."""
     return tuple(
         effect.gather(total, i, j, pair) for effect, total in zip(reductions, totals)
     )
 
 
-@overload(gather)
-def _typed_gather(reductions, totals, i, j, pair):
+@overload(gather_each)
+def _typed_gather_each(reductions, totals, i, j, pair):
     if len(reductions) == 0:
         return lambda reductions, totals, i, j, pair: ()
     first = method_of(reductions[0], "gather")
     return lambda reductions, totals, i, j, pair: (
         (first(reductions[0], totals[0], i, j, pair),)
-        + gather(reductions[1:], totals[1:], i, j, pair)
+        + gather_each(reductions[1:], totals[1:], i, j, pair)
     )
+
+
+def fold_each(reductions, totals):
+    """All sums with their lanes joined, by the effect's own ``join`` or by adding."""
+    return totals
+
+
+@overload(fold_each)
+def _typed_fold_each(reductions, totals):
+    if len(reductions) == 0:
+        return lambda reductions, totals: ()
+    join = method_of(reductions[0], "join")
+    if join is None:
+        return lambda reductions, totals: (
+            (fold(plus, totals[0]),) + fold_each(reductions[1:], totals[1:])
+        )
+
+    def folded(reductions, totals):
+        effect = reductions[0]
+        total = fold(lambda a, b: join(effect, a, b), totals[0])
+        return (total,) + fold_each(reductions[1:], totals[1:])
+
+    return folded
+
+
+@register_jitable
+def plus(a, b):
+    """a + b."""
+    return a + b
 
 
 def finish_acceleration(reductions, totals, i):
@@ -214,25 +301,25 @@ def _typed_finish_acceleration(reductions, totals, i):
     )
 
 
-def finish_value(reductions, totals, i, k, written):
+def finish_value(reductions, totals, i, kernel, k, written):
     """Store the finished sums that are fields: ``written`` has an array or None for each."""
     for effect, total, array in zip(reductions, totals, written):
         if array is not None:
-            array[k] = effect.finish_value(total, i)
+            array[k] = effect.finish_value(total, i, kernel)
 
 
 @overload(finish_value)
-def _typed_finish_value(reductions, totals, i, k, written):
+def _typed_finish_value(reductions, totals, i, kernel, k, written):
     if len(reductions) == 0:
-        return lambda reductions, totals, i, k, written: None
+        return lambda reductions, totals, i, kernel, k, written: None
     finish = method_of(reductions[0], "finish_value")
     if finish is None:
-        return lambda reductions, totals, i, k, written: finish_value(
-            reductions[1:], totals[1:], i, k, written[1:]
+        return lambda reductions, totals, i, kernel, k, written: finish_value(
+            reductions[1:], totals[1:], i, kernel, k, written[1:]
         )
 
-    def store(reductions, totals, i, k, written):
-        written[0][k] = finish(reductions[0], totals[0], i)
-        finish_value(reductions[1:], totals[1:], i, k, written[1:])
+    def store(reductions, totals, i, kernel, k, written):
+        written[0][k] = finish(reductions[0], totals[0], i, kernel)
+        finish_value(reductions[1:], totals[1:], i, kernel, k, written[1:])
 
     return store

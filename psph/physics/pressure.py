@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from psph.jit import minimum
+from psph.simd import where
 from psph.vectors import add, scale, zero_like
 
 NOT_A_PRESSURE = 1e300
@@ -35,15 +35,19 @@ class MinimumPressure(NamedTuple):
         v_i, v_j = i.specific_volume, j.specific_volume
         return -j.mass * v_i * v_j * (j.pressure - i.pressure) * pair.dw_r
 
-    def start(self, i, kernel):
+    def start(self, i):
         """Smallest pressure so far, and Σ_j m_j/ρ_j ∇W_ij."""
         return NOT_A_PRESSURE, zero_like(i.position)
 
     def gather(self, total, i, j, pair):
         """Take neighbour j into both."""
-        inside = j.pressure if pair.dw_r < 0.0 else NOT_A_PRESSURE
+        inside = where(pair.dw_r < 0.0, j.pressure, NOT_A_PRESSURE)
         gradient = scale(pair.x_ij, j.mass * j.specific_volume * pair.dw_r)
-        return minimum(total[0], inside), add(total[1], gradient)
+        return min(total[0], inside), add(total[1], gradient)
+
+    def join(self, a, b):
+        """Both over two sets of neighbours."""
+        return min(a[0], b[0]), add(a[1], b[1])
 
     def finish_acceleration(self, total, i):
         """−(p_i − p_i⁻)/ρ_i Σ_j m_j/ρ_j ∇W_ij, m/s²."""

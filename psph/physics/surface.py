@@ -22,17 +22,17 @@ class FreeSurface(NamedTuple):
 
     writes = "kernel_sum"
 
-    def start(self, i, kernel):
-        """The particle's own share, W(0) m_i/ρ_i."""
-        return weight(kernel, 0.0) * i.mass * i.specific_volume
+    def start(self, i):
+        """No neighbour yet."""
+        return 0.0
 
     def gather(self, total, i, j, pair):
         """Add W_ij m_j/ρ_j."""
         return total + j.mass * j.specific_volume * pair.w
 
-    def finish_value(self, total, i):
-        """Σ_j W_ij m_j/ρ_j, stored as ``kernel_sum``."""
-        return total
+    def finish_value(self, total, i, kernel):
+        """Σ_j W_ij m_j/ρ_j with the particle's own share, stored as ``kernel_sum``."""
+        return total + weight(kernel, 0.0) * i.mass * i.specific_volume
 
     def limit_density(self, i, rho):
         """ρ₀ on the surface, ρ inside, kg/m^d."""

@@ -56,10 +56,11 @@ def _call_all(effect, i, j, pair, kernel) -> None:
         if hasattr(effect, name):
             getattr(effect, name)(i, j, pair)
     if hasattr(effect, "start"):
-        total = effect.gather(effect.start(i, kernel), i, j, pair)
-        for name in ("finish_acceleration", "finish_value"):
-            if hasattr(effect, name):
-                getattr(effect, name)(total, i)
+        total = effect.gather(effect.start(i), i, j, pair)
+        if hasattr(effect, "finish_acceleration"):
+            effect.finish_acceleration(total, i)
+        if hasattr(effect, "finish_value"):
+            effect.finish_value(total, i, kernel)
     if hasattr(effect, "body"):
         effect.body(i)
     if hasattr(effect, "limit_density"):

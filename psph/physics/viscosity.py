@@ -46,11 +46,10 @@ class ArtificialViscosity(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, c = i.smoothing_length, i.sound_speed
         v_i, v_j = i.specific_volume, j.specific_volume
-        eta2 = pair.r2 + SINGULARITY * h * h
-        inverse = 1.0 / (eta2 * (v_i + v_j))  # one division for μ and for 1/ρ̄
-        mu = h * min(pair.u_dot_x, 0.0) * (v_i + v_j) * inverse
-        inverse_rho = 2.0 * v_i * v_j * eta2 * inverse
-        return j.mass * (self.alpha * c - self.beta * mu) * mu * inverse_rho * pair.dw_r
+        # μ = h (v_i + v_j) q and μ/ρ̄ = 2 h v_i v_j q: one division for both.
+        q = min(pair.u_dot_x, 0.0) / ((pair.r2 + SINGULARITY * h * h) * (v_i + v_j))
+        strength = self.alpha * c - self.beta * h * ((v_i + v_j) * q)
+        return 2.0 * h * j.mass * v_i * (v_j * q) * strength * pair.dw_r
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""

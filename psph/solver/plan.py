@@ -46,6 +46,7 @@ class Plan:
     arrays: tuple[str, ...]
     refreshed: tuple[str, ...]
     ghost_fields: tuple[str, ...]
+    neighbour_fields: tuple[str, ...]
     cfl: float
     fixed_step: float | None
     extremes: ParticleView
@@ -111,6 +112,7 @@ def make_plan(scene) -> Plan:
         arrays=ALWAYS + varying + written,
         refreshed=tuple(n for n in FIELDS if n in neighbour and n in ALWAYS + written),
         ghost_fields=tuple(n for n in varying if n in neighbour),
+        neighbour_fields=tuple(n for n in FIELDS if n in neighbour and n in ALWAYS + varying + written),
         cfl=case.time.cfl,
         fixed_step=case.time.step,
         extremes=ParticleView(

@@ -5,6 +5,7 @@ import numpy as np
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import largest
+from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import TINY, sum_over_neighbours
@@ -35,6 +36,7 @@ class Simulation:
             comm, store, scene.axis, support + self.skin, scene.lower, scene.upper,
             scene.periods, plan.ghost_fields, plan.refreshed,
         )
+        self.records = Records(store, plan.neighbour_fields)
         self.time, self.dt, self.steps = 0.0, 0.0, 0
         self.limited_by = ""
         self._start()
@@ -84,6 +86,8 @@ class Simulation:
         return not ahead < 0.5 * self.skin
 
     def _forces(self) -> None:
+        with self.ledger("records"):
+            self.records.fill_all()
         with self.ledger("pairs"):
             self._sum(self.store.low, self.store.low + self.store.owned)
 
@@ -91,15 +95,21 @@ class Simulation:
         """Interior particles are computed while the halo travels, then the rim."""
         first, last = self.domain.interior()
         halo, fields = self.domain.halo, self.plan.refreshed
+        begin, end = self.store.low, self.store.low + self.store.owned
         with self.ledger("halo"):
             halo.start(fields)
+        with self.ledger("records"):
+            self.records.fill(begin, end)
         with self.ledger("pairs"):
             self._sum(first, last)
         with self.ledger("halo"):
             halo.finish(fields)
+        with self.ledger("records"):
+            self.records.fill(0, begin)
+            self.records.fill(end, self.store.total)
         with self.ledger("pairs"):
-            self._sum(self.store.low, first)
-            self._sum(last, self.store.low + self.store.owned)
+            self._sum(begin, first)
+            self._sum(last, end)
 
     def _predict(self, dt: float) -> None:
         s, plan = self.store, self.plan
@@ -118,8 +128,8 @@ class Simulation:
         written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
         sum_over_neighbours(
             plan.effects, plan.reductions, plan.kernel, self.periods, self.tiny,
-            s.view(), first, last, s.low, lists.begin, lists.blocks, lists.lists,
-            s["acceleration"], s["density_rate"], written,
+            s.view(), self.records.view(), self.records.table, first, last, s.low,
+            lists.begin, lists.blocks, lists.lists, s["acceleration"], s["density_rate"], written,
         )
 
     def _kick(self, dt: float) -> None:

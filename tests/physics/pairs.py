@@ -40,7 +40,7 @@ def rates(effects, reductions, k, periods, particles, a, b):
     """Everything that one neighbour b does to particle a."""
     i, j = take(particles, a), take(particles, b)
     pair = geometry(k, periods, 1e-24, i, j)
-    totals = compose.gather(reductions, compose.start(reductions, i, k), i, j, pair)
+    totals = compose.gather_each(reductions, compose.start(reductions, i), i, j, pair)
     return (
         compose.density_rate(effects, i, j, pair),
         compose.radial(effects, i, j, pair),

@@ -70,7 +70,7 @@ def test_minimum_pressure_over_three_neighbours(dim):
     p = view(n=4, dim=dim)
     effect, rho = MinimumPressure(), 1 / p.specific_volume
     i = pair_of(p, 0, 1)[0]
-    total, relative = effect.start(i, kernel("hyperbolic", H, dim)), np.zeros(dim)
+    total, relative = effect.start(i), np.zeros(dim)
     for b in (1, 2, 3):
         _, j, pair = pair_of(p, 0, b)
         total = effect.gather(total, i, j, pair)
@@ -89,8 +89,8 @@ def test_minimum_pressure_ignores_what_is_out_of_reach():
     p.pressure[2] = -1e9
     effect = MinimumPressure()
     i, j, pair = pair_of(p, 0, 2)
-    assert effect.gather(effect.start(i, None), i, j, pair)[0] > 1e299
-    alone = effect.finish_acceleration(effect.start(i, None), i)
+    assert effect.gather(effect.start(i), i, j, pair)[0] > 1e299
+    alone = effect.finish_acceleration(effect.start(i), i)
     assert alone == (0.0, 0.0)
 
 
@@ -129,10 +129,10 @@ def test_free_surface():
     p = view()
     effect, (i, j, pair) = FreeSurface(0.9), pair_of(p, 0, 1)
     own = kernel("hyperbolic", H, 2).w(0.0) * p.mass[0] * p.specific_volume[0]
-    first = effect.start(i, kernel("hyperbolic", H, 2))
-    assert first == pytest.approx(own)
     share = p.mass[1] * p.specific_volume[1] * pair.w
-    assert effect.finish_value(effect.gather(first, i, j, pair), i) == pytest.approx(own + share)
+    total = effect.gather(effect.start(i), i, j, pair)
+    found = effect.finish_value(total, i, kernel("hyperbolic", H, 2))
+    assert found == pytest.approx(own + share)
     for kernel_sum, rho in ((0.89, 1000.0), (0.91, 987.0)):
         assert effect.limit_density(i._replace(kernel_sum=kernel_sum), 987.0) == rho
 
@@ -144,7 +144,7 @@ def test_compiled_is_plain(effect, dim):
     reductions = (one,) if hasattr(one, "start") else ()
     args = ((one,), reductions, kernel("hyperbolic", H, dim), OPEN[:dim], view(n=3, dim=dim), 0, 1)
     for compiled, plain in zip(rates(*args), rates.py_func(*args)):
-        assert compiled == pytest.approx(plain, rel=1e-12)
+        assert compiled is plain is None or compiled == pytest.approx(plain, rel=1e-12)
 
 
 @pytest.mark.parametrize("effect", [SymmetricPressure, LaminarViscosity, ArtificialViscosity])
@@ -165,7 +165,7 @@ def test_minimum_pressure_does_not_conserve_momentum():
     total = np.zeros(2)
     for a in range(3):
         effect, i = MinimumPressure(), pair_of(p, a, (a + 1) % 3)[0]
-        sums = effect.start(i, None)
+        sums = effect.start(i)
         for b in range(3):
             if b != a:
                 _, j, pair = pair_of(p, a, b)
