@@ -220,6 +220,37 @@ def _spread_number(typing, value):
     return DOUBLES(types.float64), build
 
 
+EIGHT = 8
+"""Entries that ``consecutive`` loads."""
+
+
+@intrinsic
+def consecutive(typing, array, first):
+    """The entries ``first`` to ``first + 8`` of an array."""
+    lanes = Lanes(array.dtype, EIGHT)
+
+    def build(context, builder, sig, args):
+        data = context.make_array(sig.args[0])(context, builder, args[0]).data
+        kind = context.get_value_type(lanes)
+        place = builder.bitcast(builder.gep(data, [args[1]]), kind.as_pointer())
+        value = builder.load(place)
+        value.align = array.dtype.bitwidth // 8
+        return value
+
+    return lanes(array, types.uint64), build
+
+
+@intrinsic
+def bits(typing, mask):
+    """A comparison of lanes as the bits of a number, the first lane lowest."""
+
+    def build(context, builder, sig, args):
+        whole = builder.bitcast(args[0], ir.IntType(mask.width))
+        return builder.zext(whole, ir.IntType(64))
+
+    return types.uint64(mask), build
+
+
 GROUP = 4
 """Numbers of a record that are loaded and turned at once."""
 
@@ -309,50 +340,76 @@ def _on_each(function):
     return each
 
 
+def _turned_by(builder, lanes, places: int):
+    """The lanes moved down by some places, those in front to the end."""
+    width = lanes.type.count
+    order = ir.Constant(
+        ir.VectorType(ir.IntType(32), width), [(t + places) % width for t in range(width)]
+    )
+    return builder.shuffle_vector(lanes, ir.Constant(lanes.type, ir.Undefined), order)
+
+
+@_on_each
+@intrinsic
+def total(typing, lanes):
+    """The sum of the lanes as a double, half added to half: always in the same order."""
+
+    def build(context, builder, sig, args):
+        double = ir.VectorType(ir.DoubleType(), lanes.width)
+        sums = args[0] if args[0].type == double else builder.fpext(args[0], double)
+        half = lanes.width // 2
+        while half:
+            sums = builder.fadd(sums, _turned_by(builder, sums, half))
+            half //= 2
+        return builder.extract_element(sums, ir.IntType(32)(0))
+
+    return types.float64(lanes), build
+
+
 @_on_each
 @intrinsic
 def _first(typing, lanes):
-    """The number in the first lane."""
+    """The number in the first lane, as a double."""
 
     def build(context, builder, sig, args):
-        return builder.extract_element(args[0], ir.IntType(32)(0))
+        number = builder.extract_element(args[0], ir.IntType(32)(0))
+        return context.cast(builder, number, lanes.element, types.float64)
 
-    return lanes.element(lanes), build
+    return types.float64(lanes), build
 
 
 def _halving(half: int):
-    """A function ``(join, total)`` that joins the lanes with those ``half`` places on."""
+    """A function ``(join, owner, sums)`` that joins the lanes with those ``half`` places on."""
 
     @_on_each
     @intrinsic
     def moved(typing, lanes):
         def build(context, builder, sig, args):
-            picks = [(t + half) % lanes.width for t in range(lanes.width)]
-            order = ir.Constant(ir.VectorType(ir.IntType(32), lanes.width), picks)
-            return builder.shuffle_vector(args[0], ir.Constant(args[0].type, ir.Undefined), order)
+            return _turned_by(builder, args[0], half)
 
         return lanes(lanes), build
 
-    return register_jitable(lambda join, total: join(total, moved(total)))
+    return register_jitable(lambda join, owner, sums: join(owner, sums, moved(sums)))
 
 
 _halved_1, _halved_2, _halved_4 = map(_halving, (1, 2, 4))
 
 
-def fold(join, total):
-    """The lanes of a sum joined into one number: half with half, in a fixed order.
+def fold(join, owner, sums):
+    """The lanes of ``sums`` joined into one by ``join(owner, a, b)``, in a fixed order.
 
-    ``total`` is lanes or a tuple of them, ``join(a, b)`` unites two of the kind.
+    ``sums`` is lanes or a tuple of them.
     """
-    return total
+    return sums
 
 
 @overload(fold)
-def _typed_fold(join, total):
-    def four(join, total):
-        return _first(_halved_1(join, _halved_2(join, total)))
+def _typed_fold(join, owner, sums):
+    def four(join, owner, sums):
+        return _first(_halved_1(join, owner, _halved_2(join, owner, sums)))
 
-    def eight(join, total):
-        return _first(_halved_1(join, _halved_2(join, _halved_4(join, total))))
+    def eight(join, owner, sums):
+        halves = _halved_4(join, owner, sums)
+        return _first(_halved_1(join, owner, _halved_2(join, owner, halves)))
 
     return eight if WIDTH == 8 else four

@@ -28,18 +28,14 @@ def summed(formula, count=2):
     turn, one = simd.turning(count), compiled(formula)
 
     @compiled
-    def plus(a, b):
-        return a + b
-
-    @compiled
-    def total(table, lists):
+    def run(table, lists):
         found = simd.spread(0.0)
         for n in range(np.uint64(0), np.uint64(ENTRIES), np.uint64(simd.WIDTH)):
             numbers = turn(table, lists, n)
             found += one(numbers[0], numbers[1])
-        return simd.fold(plus, found)
+        return simd.total(found)
 
-    return total
+    return run
 
 
 @pytest.mark.parametrize(
@@ -91,13 +87,13 @@ def test_a_sum_is_folded_by_its_own_join(records, lists):
     turn = simd.turning(2)
 
     @compiled
-    def join(a, b):
-        return min(a[0], b[0]), (a[1][0] + b[1][0],)
+    def join(scale, a, b):
+        return min(a[0], b[0]), (a[1][0] + scale * b[1][0],)
 
     @compiled
     def folded(table, lists):
         numbers = turn(table, lists, np.uint64(0))
-        return simd.fold(join, (numbers[0], (numbers[1],)))
+        return simd.fold(join, 1.0, (numbers[0], (numbers[1],)))
 
     a, b = records[lists[: simd.WIDTH], :2].T
     lowest, (total,) = folded(records, lists)

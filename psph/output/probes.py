@@ -1,24 +1,22 @@
 """Probes: fields interpolated at fixed points."""
 
+import math
+
 import numpy as np
-from mpi4py import MPI
 
 from psph.jit import compiled
 from psph.parallel.domain import Domain
-from psph.particles.cells import number_cells
+from psph.parallel.reductions import exact_sums
 from psph.particles.fields import FIELDS
-from psph.particles.neighbours import candidate_ranges
 from psph.physics.compose import take
 from psph.smoothing import weight
-from psph.vectors import dot, nearest_image, subtract
+from psph.vectors import at, dot, nearest_image, subtract
 
 
 class Probe:
     """Fields at one point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968), walls included.
 
-    ``position`` (dim,) m; ``fields`` names of saved fields.  The rank that owns the point's plane
-    of cells sums over particles and ghosts in the global order, so that the bits do not depend on
-    the number of ranks.
+    ``position`` (dim,) m; ``fields`` names of saved fields.
     """
 
     def __init__(self, name: str, position: tuple[float, ...], fields: tuple[str, ...]):
@@ -35,45 +33,41 @@ class Probe:
     def sample(self, domain: Domain, kernel) -> np.ndarray:
         """Values in the order of :meth:`columns` on every rank, NaN where no particle is near.
 
-        Ghosts must hold the fields of this probe.  Collective.
+        Every rank finds the near ones among its own particles, wherever these have drifted since
+        the lists were made; the sums do not depend on how particles are spread.  Collective.
         """
-        store, grid = domain.store, domain.grid
-        rows = [row for field in self.fields for row in store.rows[field]]
-        values = np.zeros(len(rows))
-        point = tuple(np.array([x]) for x in self.position)
-        cell = np.empty(1, np.int64)
-        along = tuple(point[d] for d in grid.axes)
-        number_cells(along, 0, 1, grid.lower, grid.inverse, grid.along_axes, cell)
-        plane, rest = divmod(int(cell[0]), grid.plane_cells)
-        local = plane - int(domain.bounds[domain.comm.rank])
-        if 0 <= local < domain.planes:
-            interpolate(
-                self.position, kernel, domain.periods, store.view(), local + 1, *divmod(rest, grid.counts[2]), grid.counts, grid.periodic, grid.reach, domain.starts,
-                store.data, np.array(rows), values,
-            )
-        domain.comm.Allreduce(MPI.IN_PLACE, values, MPI.SUM)  # all others add exact zeros
-        return values
+        store = domain.store
+        rows = np.array([row for field in self.fields for row in store.rows[field]], np.int64)
+        radius = kernel.support / kernel.inverse_h
+        near = np.empty(store.owned, np.int64)
+        found = find_near(
+            self.position, domain.periods, store["position"], store.low, store.low + store.owned,
+            radius * radius, near,
+        )
+        terms = np.empty((found, 1 + len(rows)))
+        weigh(self.position, kernel, domain.periods, store.view(), near[:found], store.data, rows, terms)
+        total, *sums = exact_sums(domain.comm, terms)
+        return np.array(sums) / total if total > 0.0 else np.full(len(rows), np.nan)
 
 
 @compiled
-def interpolate(
-    point, kernel, periods, view, plane, row, column, counts, periodic, reach, starts,
-    data, rows, values,
-):
-    """Shepard mean of some ``rows`` of ``data`` at ``point``, into ``values``."""
-    from_k = np.empty(18, np.uint64)
-    to_k = np.empty(18, np.uint64)
-    ranges, _ = candidate_ranges(
-        plane, row, column, counts[1], counts[2], periodic, reach, starts, from_k, to_k
-    )
-    total = 0.0
-    for q in range(ranges):
-        for k in range(from_k[q], to_k[q]):
-            j = take(view, k)
-            x = nearest_image(subtract(point, j.position), periods)
-            share = weight(kernel, np.sqrt(dot(x, x))) * j.mass * j.specific_volume
-            total += share
-            for m in range(len(rows)):
-                values[m] += share * data[rows[m], k]
-    for m in range(len(rows)):
-        values[m] = values[m] / total if total > 0.0 else np.nan
+def find_near(point, periods, position, first, last, radius2, near):
+    """Columns from ``first`` to ``last`` within the radius of ``point``; returns how many."""
+    found = 0
+    for k in range(np.uint64(first), np.uint64(last)):
+        x = nearest_image(subtract(point, at(position, k)), periods)
+        near[found] = k
+        found += dot(x, x) < radius2
+    return found
+
+
+@compiled
+def weigh(point, kernel, periods, view, near, data, rows, terms):
+    """Fill ``terms``: W V_j and W V_j f_j of each near column, f the ``rows`` of ``data``."""
+    for n in range(len(near)):
+        j = take(view, near[n])
+        x = nearest_image(subtract(point, j.position), periods)
+        share = weight(kernel, math.sqrt(dot(x, x))) * j.mass * j.specific_volume
+        terms[n, 0] = share
+        for m in range(len(rows)):
+            terms[n, m + 1] = share * data[rows[m], near[n]]

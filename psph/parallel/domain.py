@@ -54,7 +54,7 @@ class Domain:
             self.lists, self.store, self.grid, self.starts, self.planes, self.cutoff, self.periods
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
-            listed[self.store.inner] = now[self.store.inner]
+            listed[: self.store.total] = now[: self.store.total]
         self.rebuilds += 1
 
     def interior(self) -> tuple[int, int]:

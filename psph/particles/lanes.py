@@ -2,9 +2,10 @@
 
 import numpy as np
 from llvmlite import ir
-from numba.core import cgutils, types
+from numba.core import types
 from numba.extending import intrinsic, overload
 
+from psph.simd import bits, consecutive
 from psph.vectors import at, dot, nearest_image, subtract
 
 LANES = 8
@@ -25,42 +26,34 @@ def near_bits(position, column: int, x_i, periods, cutoff2: float) -> int:
 
     ``position`` tuple of component arrays; the arrays must go on for eight entries.
     """
-    bits = 0
+    found = 0
     for t in range(LANES):
         x_ij = nearest_image(subtract(x_i, at(position, column + t)), periods)
-        bits |= int(dot(x_ij, x_ij) < cutoff2) << t
-    return bits
+        found |= int(dot(x_ij, x_ij) < cutoff2) << t
+    return found
 
 
 @overload(near_bits)
 def _typed_near_bits(position, column, x_i, periods, cutoff2):
-    return lambda position, column, x_i, periods, cutoff2: _near_bits(
-        position, column, x_i, periods, cutoff2
+    def compare(position, column, x_i, periods, cutoff2):
+        x_ij = nearest_image(subtract(x_i, consecutive_each(position, column)), periods)
+        return bits(dot(x_ij, x_ij) < cutoff2)
+
+    return compare
+
+
+def consecutive_each(arrays, first):
+    """Eight entries of each array, as lanes."""
+    raise NotImplementedError("compiled code only")
+
+
+@overload(consecutive_each)
+def _typed_consecutive_each(arrays, first):
+    if len(arrays) == 0:
+        return lambda arrays, first: ()
+    return lambda arrays, first: (
+        (consecutive(arrays[0], first),) + consecutive_each(arrays[1:], first)
     )
-
-
-@intrinsic
-def _near_bits(typing, position, column, x_i, periods, cutoff2):
-    """The same with explicit vectors: LLVM makes poor loops of a few groups at a time."""
-
-    def build(context, builder, signature, args):
-        vectors = _Vectors(builder)
-        limit = vectors.spread(args[4])
-        square = None
-        for d, array_type in enumerate(signature.args[0].types):
-            array = context.make_array(array_type)(
-                context, builder, builder.extract_value(args[0], d)
-            )
-            x_j = vectors.load(array.data, args[1])
-            x = builder.fsub(vectors.spread(builder.extract_value(args[2], d)), x_j)
-            if not isinstance(signature.args[3].types[d], types.NoneType):
-                x = vectors.wrap(x, builder.extract_value(args[3], d))
-            term = builder.fmul(x, x)
-            square = term if square is None else builder.fadd(square, term)
-        near = builder.fcmp_ordered("<", square, limit)
-        return builder.zext(builder.bitcast(near, ir.IntType(LANES)), ir.IntType(64))
-
-    return types.uint64(position, types.uint64, x_i, periods, types.float64), build
 
 
 def append_near(entries, end: int, column: int, bits: int) -> int:
@@ -105,38 +98,3 @@ def _store_packed(typing, entries, end, column, table, bits):
 
     return types.none(entries, types.uint64, types.uint64, table, types.uint64), build
 
-
-class _Vectors:
-    """Vectors of eight doubles in LLVM's words."""
-
-    def __init__(self, builder):
-        self.builder = builder
-        self.type = ir.VectorType(ir.DoubleType(), LANES)
-
-    def load(self, pointer, first):
-        """Eight consecutive numbers."""
-        place = self.builder.bitcast(
-            self.builder.gep(pointer, [first]), self.type.as_pointer()
-        )
-        value = self.builder.load(place)
-        value.align = 8
-        return value
-
-    def spread(self, number):
-        """One number in all lanes."""
-        nothing = ir.Constant(self.type, ir.Undefined)
-        one = self.builder.insert_element(nothing, number, ir.IntType(32)(0))
-        zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-        return self.builder.shuffle_vector(one, nothing, zeros)
-
-    def wrap(self, x, period):
-        """The nearest periodic image of a difference."""
-        build = self.builder
-        one = ir.Constant(ir.DoubleType(), 1.0)
-        turns = build.fmul(x, self.spread(build.fdiv(one, period)))
-        lowest = self.spread(build.fneg(one))
-        turns = build.select(build.fcmp_ordered(">", turns, lowest), turns, lowest)
-        rint = cgutils.get_or_insert_function(
-            build.module, ir.FunctionType(self.type, [self.type]), f"llvm.rint.v{LANES}f64"
-        )
-        return build.fsub(x, build.fmul(build.call(rint, [turns]), self.spread(period)))

@@ -13,7 +13,7 @@ from numba.core import types
 from numba.extending import overload, register_jitable
 
 from psph.jit import method_of
-from psph.simd import fold, turning
+from psph.simd import fold, total, turning
 from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, at, dot, nearest_image, scale, subtract, zero_like
 
@@ -146,23 +146,23 @@ def _sum_of(name: str, first, join):
     """A walker: the sum of ``effect.name(*args)`` over those effects that have such a method."""
     empty, plus = register_jitable(first), register_jitable(join)
 
-    def total(effects, *args):
+    def summed(effects, *args):
         value = first(*args)
         for effect in effects:
             if hasattr(effect, name):
                 value = join(value, getattr(effect, name)(*args))
         return value
 
-    @overload(total)
+    @overload(summed)
     def typed(effects, *args):
         if len(effects) == 0:
             return lambda effects, *args: empty(*args)
         term = method_of(effects[0], name)
         if term is None:
-            return lambda effects, *args: total(effects[1:], *args)
-        return lambda effects, *args: plus(total(effects[1:], *args), term(effects[0], *args))
+            return lambda effects, *args: summed(effects[1:], *args)
+        return lambda effects, *args: plus(summed(effects[1:], *args), term(effects[0], *args))
 
-    return total
+    return summed
 
 
 def _no_number(*args):
@@ -263,21 +263,11 @@ def _typed_fold_each(reductions, totals):
     join = method_of(reductions[0], "join")
     if join is None:
         return lambda reductions, totals: (
-            (fold(plus, totals[0]),) + fold_each(reductions[1:], totals[1:])
+            (total(totals[0]),) + fold_each(reductions[1:], totals[1:])
         )
-
-    def folded(reductions, totals):
-        effect = reductions[0]
-        total = fold(lambda a, b: join(effect, a, b), totals[0])
-        return (total,) + fold_each(reductions[1:], totals[1:])
-
-    return folded
-
-
-@register_jitable
-def plus(a, b):
-    """a + b."""
-    return a + b
+    return lambda reductions, totals: (
+        (fold(join, reductions[0], totals[0]),) + fold_each(reductions[1:], totals[1:])
+    )
 
 
 def finish_acceleration(reductions, totals, i):

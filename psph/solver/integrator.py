@@ -18,7 +18,7 @@ from psph.jit import compiled
 from psph.particles.fields import FLUID
 from psph.physics.compose import limit_density, take
 from psph.physics.state import pressure as state_pressure
-from psph.vectors import add, at, dot, put, scale, subtract
+from psph.vectors import add, at, dot, put, scale
 
 
 @compiled
@@ -56,17 +56,14 @@ def state_of(first, last, state, view, density, specific_volume, pressure):
 
 
 @compiled
-def kick(
-    dt, first, last, effects, view, kind, position, listed, velocity, acceleration, density, rate
-):
+def kick(dt, first, last, effects, view, kind, velocity, acceleration, density, rate):
     """Kick by the second half of the step, with the new rates.
 
-    Returns the largest |v|², |a|² and |x − x_listed|² over the columns ``first`` to ``last``, and
-    the first column with a number that is not finite, or −1.
+    Returns the largest |v|² and |a|² over the columns ``first`` to ``last``, and the first column
+    with a number that is not finite, or −1.
     """
     v2_max = 0.0
     a2_max = 0.0
-    moved2_max = 0.0
     broken = -1
     for k in range(np.uint64(first), np.uint64(last)):
         rho = density[k] + 0.5 * dt * rate[k]
@@ -75,14 +72,12 @@ def kick(
             v = add(at(velocity, k), scale(a, 0.5 * dt))
             put(velocity, k, v)
             rho = limit_density(effects, take(view, k), rho)
-            moved = subtract(at(position, k), at(listed, k))
-            v2, a2, moved2 = dot(v, v), dot(a, a), dot(moved, moved)
+            v2, a2 = dot(v, v), dot(a, a)
             v2_max = max(v2_max, v2)
             a2_max = max(a2_max, a2)
-            moved2_max = max(moved2_max, moved2)
-            if not v2 + a2 + moved2 < np.inf and broken < 0:
+            if not v2 + a2 < np.inf and broken < 0:
                 broken = np.int64(k)
         density[k] = rho
         if not abs(rho) < np.inf and broken < 0:
             broken = np.int64(k)
-    return v2_max, a2_max, moved2_max, broken
+    return v2_max, a2_max, broken

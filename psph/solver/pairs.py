@@ -4,8 +4,8 @@ import numpy as np
 
 from psph.jit import compiled
 from psph.physics import compose
-from psph.physics.compose import fetch, geometry, plus, pushed, take
-from psph.simd import WIDTH, fold, spread
+from psph.physics.compose import fetch, geometry, pushed, take
+from psph.simd import WIDTH, spread, total
 from psph.vectors import add, put, zero_like
 
 TINY = 1e-20
@@ -40,7 +40,7 @@ def sum_over_neighbours(
             a = pushed(a, pair.u_ij, compose.shear(effects, i, j, pair))
             totals = compose.gather_each(reductions, totals, i, j, pair)
         sums = compose.fold_each(reductions, totals)
-        force = add(fold(add, a), compose.finish_acceleration(reductions, sums, i))
+        force = add(total(a), compose.finish_acceleration(reductions, sums, i))
         put(acceleration, k, add(force, compose.body(effects, i)))
-        density_rate[k] = fold(plus, rate)
+        density_rate[k] = total(rate)
         compose.finish_value(reductions, sums, i, kernel, k, written)

@@ -58,7 +58,6 @@ class Record:
         )
         self.written = 0
         self.probes = probes_of(case)
-        self.probed = tuple(sorted({field for probe in self.probes for field in probe.fields}))
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
         self.probe_table = CsvTable(folder / "probes.csv", ["time", *names], comm) if names else None
         self.log = CsvTable(folder / "log.csv", diagnostics.columns(scene.dimensions), comm)
@@ -99,7 +98,6 @@ class Record:
         if not self.probes:
             return
         sim = self.simulation
-        sim.domain.halo.refresh(self.probed + ("specific_volume",))
         values = [probe.sample(sim.domain, self.kernel) for probe in self.probes]
         self.probe_table.write([sim.time, *np.concatenate(values).tolist()])
 

@@ -5,6 +5,7 @@ import numpy as np
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import largest
+from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.solver.integrator import kick, kick_drift_predict, state_of
@@ -29,13 +30,14 @@ class Simulation:
     def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger):
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
         support = scene.kernel.support * scene.smoothing_length
-        self.skin = scene.case.neighbours.skin * support
+        skin = scene.case.neighbours.skin * support
         self.periods = tuple(scene.periods)
         self.tiny = TINY * scene.smoothing_length**2
         self.domain = Domain(
-            comm, store, scene.axis, support + self.skin, scene.lower, scene.upper,
+            comm, store, scene.axis, support + skin, scene.lower, scene.upper,
             scene.periods, plan.ghost_fields, plan.refreshed,
         )
+        self.skin = Skin(self.domain, skin)
         self.records = Records(store, plan.neighbour_fields)
         self.time, self.dt, self.steps = 0.0, 0.0, 0
         self.limited_by = ""
@@ -44,15 +46,15 @@ class Simulation:
     def step(self) -> None:
         """Advance by one time step."""
         self.dt, self.limited_by = self.plan.longest_step(self.speed, self.acceleration)
-        crossed = self._listed_reach(self.dt)
+        with self.ledger("skin"):
+            listed = self.skin.holds(self.dt, self.speed, self.acceleration)
         with self.ledger("kick, drift, predict"):
             self._predict(self.dt)
-        if crossed:
-            with self.ledger("rebuild"):
-                self.domain.rebuild()
-            self._forces()
-        else:
+        if listed:
             self._forces_while_refreshing()
+        else:
+            self._rebuild()
+            self._forces()
         with self.ledger("kick"):
             self._kick(self.dt)
         self.time += self.dt
@@ -69,8 +71,7 @@ class Simulation:
     def _start(self) -> None:
         """First forces, from particles at rest in time: predicted is initial."""
         self._predict(0.0)
-        with self.ledger("rebuild"):
-            self.domain.rebuild()
+        self._rebuild()
         self._forces()
         if self.plan.limits_density:  # its first verdict comes with the first sums
             self._kick(0.0)
@@ -80,10 +81,10 @@ class Simulation:
             self.store[older][:] = self.store["density_rate"]
         self._kick(0.0)
 
-    def _listed_reach(self, dt: float) -> bool:
-        """Whether a particle could leave half the skin within ``dt``; the same on every rank."""
-        ahead = self.moved + dt * (self.speed + 0.5 * dt * self.acceleration)
-        return not ahead < 0.5 * self.skin
+    def _rebuild(self) -> None:
+        with self.ledger("rebuild"):
+            self.domain.rebuild()
+        self.skin.renew()
 
     def _forces(self) -> None:
         with self.ledger("records"):
@@ -133,20 +134,19 @@ class Simulation:
         )
 
     def _kick(self, dt: float) -> None:
-        """Second kick; then the largest speed, acceleration and displacement over all ranks."""
+        """Second kick; then the largest speed and acceleration over all ranks."""
         s = self.store
         *mine, broken = kick(
             dt, s.low, s.low + s.owned, self.plan.effects, s.view(), s.kind,
-            s["position"], s["listed_position"], s["velocity"], s["acceleration"],
-            s["density"], s["density_rate"],
+            s["velocity"], s["acceleration"], s["density"], s["density_rate"],
         )
         lost = float(s.id[broken]) + 1.0 if broken >= 0 else 0.0
         with self.ledger("limits"):
             extremes = largest(self.comm, [*mine, lost])
-        self.speed, self.acceleration, self.moved = np.sqrt(extremes[:3]).tolist()
+        self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()
         too_fast = self.speed > TOO_FAST * self.plan.constants["sound_speed"]
-        if extremes[3] > 0.0 or too_fast:
-            self._report_blow_up(int(extremes[3]) - 1)
+        if extremes[2] > 0.0 or too_fast:
+            self._report_blow_up(int(extremes[2]) - 1)
 
     def _report_blow_up(self, particle: int) -> None:
         what = (

@@ -18,8 +18,11 @@ SIDES = {1: (4.0,), 2: (2.0, 1.5), 3: (1.5, 1.2, 1.3)}
 
 
 def box(dim, periodic, axis, **physics):
-    """A jittered box whose particles move fast: several rebuilds in some tens of steps."""
+    """A jittered box whose halves run against each other: several rebuilds in some tens of steps."""
     corners = {"lower": [0.0] * dim, "upper": list(SIDES[dim])}
+    middle = 0.5 * SIDES[dim][0]
+    left = corners | {"upper": [middle, *SIDES[dim][1:]]}
+    right = corners | {"lower": [middle, *[0.0] * (dim - 1)]}
     return Case.model_validate(
         {
             "space": {
@@ -29,10 +32,11 @@ def box(dim, periodic, axis, **physics):
             "time": {"end": 1.0, "cfl": 0.4},
             "physics": {"sound_speed": 10.0, "artificial_viscosity": 0.1, **physics},
             "fluids": {
-                "water": {
-                    "shape": {"box": corners}, "jitter": 0.2, "pressure": 3000.0,
-                    "velocity": [3.0, -2.0, 1.0][:dim],
+                name: {
+                    "shape": {"box": part}, "jitter": 0.2, "pressure": 3000.0,
+                    "velocity": [sign * v for v in (3.0, -2.0, 1.0)[:dim]],
                 }
+                for name, part, sign in (("left", left, 1.0), ("right", right, -1.0))
             },
             "parallel": {"axis": "xyz"[axis]},
         }
@@ -70,6 +74,8 @@ def test_the_comparison_sees_another_start():
     """The control: one more in the seed of the jitter."""
     case = box(2, True, 0)
     other = case.model_copy(
-        update={"fluids": {"water": case.fluids["water"].model_copy(update={"seed": 1})}}
+        update={
+            "fluids": case.fluids | {"left": case.fluids["left"].model_copy(update={"seed": 1})}
+        }
     )
     assert not np.array_equal(run(case, COMM, 3)[0], run(other, COMM, 3)[0])

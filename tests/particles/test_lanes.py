@@ -15,7 +15,7 @@ def bits_of(position, column, x_i, periods, cutoff2):
 @pytest.mark.parametrize("periods", [(None,), (1.0,), (None, 1.0), (1.0, None, 1.0)])
 def test_vectors_against_plain_python(periods):
     rng = np.random.default_rng(2)
-    position = tuple(rng.uniform(0, 1, 64) for _ in periods)
+    position = tuple(rng.uniform(0, 1, 64).astype(np.float32) for _ in periods)
     seen = set()
     for column in range(0, 50, 7):
         x_i = tuple(x[column] for x in position)

@@ -10,7 +10,7 @@ from psph.solver.integrator import kick, kick_drift_predict
 
 def oscillate(theta, steps):
     """Amplitude after ``steps`` steps of ωΔt = ``theta``, from 1; real compiled loops."""
-    kind, listed = np.zeros(1, np.uint8), (np.zeros(1),)
+    kind = np.zeros(1, np.uint8)
     x, v, predicted, a = ((np.zeros(1),) for _ in range(4))
     density, volume, pressure = np.ones(1), np.ones(1), np.zeros(1)
     rates = [np.zeros(1) for _ in range(3)]
@@ -25,7 +25,7 @@ def oscillate(theta, steps):
         rates = [rates[2], rates[0], rates[1]]
         rates[0][0] = theta * predicted[0][0]
         a[0][0] = -theta * pressure[0]
-        kick(1.0, 0, 1, (), view, kind, x, listed, v, a, density, rates[0])
+        kick(1.0, 0, 1, (), view, kind, v, a, density, rates[0])
     return np.hypot(v[0][0], density[0] - 1.0)
 
 
@@ -61,7 +61,7 @@ def test_first_order_prediction_would_grow():
 
 def test_walls_stay_and_lost_numbers_are_reported():
     kind = np.array([1, 0], np.uint8)
-    x, v, predicted, a, listed = ((np.zeros(2),) for _ in range(5))
+    x, v, predicted, a = ((np.zeros(2),) for _ in range(4))
     a[0][:] = 5.0, np.nan
     rates = [np.zeros(2) for _ in range(3)]
     density, volume, pressure = np.ones(2), np.ones(2), np.zeros(2)
@@ -69,5 +69,5 @@ def test_walls_stay_and_lost_numbers_are_reported():
     kick_drift_predict(
         0.1, 0, 2, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
     )
-    *_, broken = kick(0.1, 0, 2, (), view, kind, x, listed, v, a, density, rates[0])
+    *_, broken = kick(0.1, 0, 2, (), view, kind, v, a, density, rates[0])
     assert x[0][0] == v[0][0] == 0.0 and broken == 1

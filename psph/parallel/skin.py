@@ -1,0 +1,73 @@
+"""How long the lists hold: a bound on how far any two neighbours may have drifted apart."""
+
+import math
+
+import numpy as np
+
+from psph.parallel.domain import Domain
+from psph.parallel.reductions import largest
+from psph.particles.drift import bounding_boxes, largest_differences
+
+PART_OF_PERIOD = 0.25
+"""A particle strays from its listed place by less than this part of any period: the nearest image
+takes one period off at the most."""
+
+
+class Skin:
+    """Keeps the lists of ``domain`` until two neighbours could differ by ``width`` m.
+
+    What counts is the displacement of neighbours relative to each other, not their speed: a body
+    of water that falls as one needs no new lists.  It is measured now and then; in between it is
+    bounded by |Δx| ≤ |Δx|₀ + t (|Δv|₀ + 2 a (t + Δt)), with the largest acceleration a since.
+    The same on every rank.
+    """
+
+    def __init__(self, domain: Domain, width: float):
+        self.domain, self.width = domain, width
+        lengths = [p for p in domain.periods if p is not None]
+        self._farthest = PART_OF_PERIOD * min(lengths, default=math.inf)
+        self.renew()
+
+    def renew(self) -> None:
+        """The lists are new."""
+        self.drifted = self._apart = self._since = 0.0
+        self._closing: float | None = None
+        self._acceleration = 0.0
+
+    def holds(self, dt: float, speed: float, acceleration: float) -> bool:
+        """Whether the lists still hold after a step of ``dt`` s; collective where it must measure.
+
+        ``speed`` and ``acceleration`` are the largest of the scene.
+        """
+        if not acceleration <= self._acceleration:  # NaN counts as more
+            self._acceleration = acceleration
+        if self._closing is None or not self._bounded(dt, speed):
+            self._measure()
+            self._acceleration = acceleration
+            if not self._bounded(dt, speed):
+                return False
+        self._since += dt
+        self.drifted += self._way(dt, speed)
+        return True
+
+    def _bounded(self, dt: float, speed: float) -> bool:
+        t = self._since + dt
+        apart = self._apart + t * (self._closing + 2.0 * self._acceleration * (t + dt))
+        return apart < self.width and self.drifted + self._way(dt, speed) < self._farthest
+
+    def _way(self, dt: float, speed: float) -> float:
+        return dt * (speed + 0.5 * dt * self._acceleration)
+
+    def _measure(self) -> None:
+        domain, store = self.domain, self.domain.store
+        rows = (
+            np.array(store.rows[name], np.int64)
+            for name in ("position", "listed_position", "predicted_velocity")
+        )
+        grid = domain.grid
+        boxes = bounding_boxes(
+            store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach
+        )
+        mine = largest_differences(boxes, domain.planes, grid.counts[1], grid.periodic)
+        self._apart, self._closing, self.drifted = np.sqrt(largest(domain.comm, mine)).tolist()
+        self._since = 0.0
