@@ -20,7 +20,7 @@ Finding = tuple[Location, Any, str]
 
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
-    rules = (_dimensions, _axes, _domain, _hydrostatic, _continued, _names)
+    rules = (_dimensions, _axes, _domain, _hydrostatic, _continued, _names, _single)
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
@@ -112,3 +112,16 @@ def _continued(case: Case) -> Iterator[Finding]:
 def _names(case: Case) -> Iterator[Finding]:
     for name in case.walls.keys() & case.fluids.keys():
         yield ("walls", name), ..., "a fluid has this name too; give the wall another"
+
+
+LARGEST_SINGLE = 1e36
+"""Numbers of pairs in single precision stay below, with room for their sums."""
+
+
+def _single(case: Case) -> Iterator[Finding]:
+    h = case.space.smoothing * case.space.spacing
+    largest = h ** -(case.space.dimensions + 2.0)  # W'/r
+    if case.precision == "mixed" and not 1.0 / LARGEST_SINGLE < largest < LARGEST_SINGLE:
+        yield ("precision",), case.precision, (
+            f"single precision cannot hold the kernel's slope at h = {h:g} m; use \"double\""
+        )

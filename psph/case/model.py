@@ -153,6 +153,9 @@ class Case(Table):
     """
 
     title: str = key("what the case is, in one line", "")
+    precision: Literal["double", "mixed"] = key(
+        "mixed: pairs in single precision, particles and time integration in double", "double"
+    )
     space: Space = key("dimensions, resolution and extent")
     time: Time = key("how long and in which steps")
     physics: Physics = key("what acts on the fluids", make=Physics)

@@ -19,18 +19,20 @@ class Domain:
 
     ``cutoff`` is the kernel's support and the skin together, m; ``lower`` and ``upper`` the
     corners of the domain, m; ``periods`` a length or None for each axis; ``ghost_fields`` what
-    ghosts need once at a rebuild and ``refreshed`` what they need in each step.
+    ghosts need once at a rebuild and ``refreshed`` what they need in each step; ``dummies_apart``
+    the distance of dummy particles, m (psph.particles.neighbours).
     """
 
     def __init__(
         self, comm: MPI.Comm, store: Store, axis: int, cutoff: float, lower, upper, periods,
-        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...],
+        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...], dummies_apart: float = np.inf,
     ):
         self.comm, self.store = comm, store
         self.axis, self.cutoff, self.periods = axis, cutoff, tuple(periods)
         self.lower, self.upper = tuple(lower), tuple(upper)
         self._home = (self.lower, self.upper)
         self.ghost_fields, self.refreshed = ghost_fields, refreshed
+        self.dummies_apart = dummies_apart
         self.bounds: np.ndarray | None = None
         self.grid: Grid | None = None
         self.halo: Halo | None = None
@@ -51,7 +53,8 @@ class Domain:
         self._sort(cells)
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
-            self.lists, self.store, self.grid, self.starts, self.planes, self.cutoff, self.periods
+            self.lists, self.store, self.grid, self.starts, self.planes, self.cutoff, self.periods,
+            self.dummies_apart,
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[: self.store.total] = now[: self.store.total]

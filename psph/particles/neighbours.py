@@ -7,6 +7,7 @@ import numpy as np
 from psph.jit import compiled
 from psph.particles.cells import Grid
 from psph.particles.lanes import LANES, append_near, near_bits
+from psph.physics.space import DUMMIES
 from psph.vectors import at
 
 WIDTH = 8
@@ -31,11 +32,15 @@ def empty(owned: int, entries: int) -> Neighbours:
     )
 
 
-def build(room: Neighbours, store, grid: Grid, starts, planes: int, cutoff: float, periods):
+def build(
+    room: Neighbours, store, grid: Grid, starts, planes: int, cutoff: float, periods,
+    dummies_apart: float,
+):
     """Lists of every owned particle, in the global order of cells, then ids.
 
     ``starts`` are the first columns of the cells of ``planes`` owned planes and one ghost plane
-    on either side.  ``room`` is used again where it is large enough.
+    on either side.  ``room`` is used again where it is large enough.  Rows are filled up with the
+    dummy that is farthest along the first axis, where dummies stand ``dummies_apart`` m apart.
     """
     owned = store.owned
     position, cutoff = in_single_precision(store, grid, cutoff)
@@ -44,7 +49,8 @@ def build(room: Neighbours, store, grid: Grid, starts, planes: int, cutoff: floa
     while True:
         needed = fill_lists(
             position, periods, cutoff * cutoff, grid.counts, grid.periodic, grid.reach,
-            starts, planes, store.low, store.total, room.begin, room.blocks, room.lists,
+            starts, planes, store.low, store.total, store["position"][0], 1.0 / dummies_apart,
+            room.begin, room.blocks, room.lists,
         )
         if needed == 0:
             return room
@@ -71,7 +77,7 @@ def in_single_precision(store, grid: Grid, cutoff: float):
 @compiled
 def fill_lists(
     position, periods, cutoff2, counts, periodic, reach, starts, planes, low, dummy,
-    begin, blocks, lists,
+    along, dummies_per_metre, begin, blocks, lists,
 ):
     """Fill the rows; returns 0, or about how many entries are needed when they do not fit.
 
@@ -114,12 +120,19 @@ def fill_lists(
                         bits = near_bits(position, column_g, x_i, periods, cutoff2) & valid[g]
                         end = append_near(lists, end, column_g, bits)
                     valid[own_group] ^= own_bit
+                    farthest = dummy + farthest_dummy(along[i] * dummies_per_metre)
                     while (end - first) % np.uint64(WIDTH) != np.uint64(0):
-                        lists[end] = dummy
+                        lists[end] = farthest
                         end += np.uint64(1)
                     begin[i - np.uint64(low)] = first
                     blocks[i - np.uint64(low)] = (end - first) // np.uint64(WIDTH)
     return np.int64(0)
+
+
+@compiled
+def farthest_dummy(x):
+    """Number of the dummy nearest to the point opposite to ``x``, both in distances of dummies."""
+    return np.int64(np.floor(x + 0.5 * DUMMIES + 0.5)) % DUMMIES
 
 
 @compiled

@@ -9,27 +9,32 @@ import numpy as np
 from psph.jit import compiled
 from psph.particles.store import Store, seen_as
 from psph.physics.compose import ParticleView
+from psph.physics.space import DUMMIES, FixedPoint
 from psph.simd import GROUP
 
-LINE = 8
-"""Doubles of a cache line."""
+LINE = 64
+"""Bytes of a cache line."""
 
 
 class Records:
     """The records of one rank's particles.
 
     ``names`` are the fields that vary and that pairs read of a neighbour.  ``table``
-    (columns, width) float64 has the columns of the store, the dummy included; a record begins with
-    a cache line.
+    (columns, width) has the columns of the store, the dummies included; a record begins with a
+    cache line, or shares it with one other.  Where ``space`` is fixed point all is in single
+    precision, but for positions: whole steps of 32 bits, modulo their range.
     """
 
-    def __init__(self, store: Store, names: tuple[str, ...]):
+    def __init__(self, store: Store, names: tuple[str, ...], space):
         self.store = store
         self._names = tuple(n for n in map(seen_as, ParticleView._fields) if n in names)
         rows = [row for name in self._names for row in store.rows[name]]
         self._rows = np.array(rows, np.uint64)
+        self._fixed = isinstance(space, FixedPoint)
+        self._steps_per_metre = 1.0 / np.array(space.units) if self._fixed else None
         self.width = -(-len(rows) // GROUP) * GROUP
-        self.table = np.zeros((0, self.width))
+        self._type = np.float32 if self._fixed else np.float64
+        self.table = np.zeros((0, self.width), self._type)
 
     def view(self) -> ParticleView:
         """A neighbour: an array for what its record holds, else the shared value or None."""
@@ -42,20 +47,33 @@ class Records:
         )
 
     def fill_all(self) -> None:
-        """Records of owned particles, ghosts and the dummy, after these found new columns."""
+        """Records of owned particles, ghosts and dummies, after these found new columns."""
         if len(self.table) < self.store.capacity:
-            self.table = _aligned(self.store.capacity, self.width)
-        self.fill(0, self.store.total + 1)
+            self.table = _aligned(self.store.capacity, self.width, self._type)
+        total = self.store.total
+        self.fill(0, total)
+        if self._fixed:
+            whole = self.table.view(np.uint32)
+            self.table[total : total + DUMMIES] = 1.0
+            whole[total : total + DUMMIES, 0] = np.arange(DUMMIES) * (2**32 // DUMMIES)
+        else:
+            self.fill(total, total + DUMMIES)
 
     def fill(self, first: int, last: int) -> None:
         """Bring the records of the columns ``first`` to ``last`` up to date."""
-        fill_records(self.store.data, self._rows, first, last, self.table)
+        data, rows = self.store.data, self._rows
+        if self._fixed:
+            whole = self.table.view(np.int32)
+            fill_fixed(data, rows, self._steps_per_metre, first, last, self.table, whole)
+        else:
+            fill_records(data, rows, first, last, self.table)
 
 
-def _aligned(records: int, width: int) -> np.ndarray:
+def _aligned(records: int, width: int, kind) -> np.ndarray:
     """Zeros (records, width) that begin with a cache line."""
-    room = np.zeros(records * width + LINE)
-    first = -(room.ctypes.data // room.itemsize) % LINE
+    line = LINE // np.dtype(kind).itemsize
+    room = np.zeros(records * width + line, kind)
+    first = -(room.ctypes.data // room.itemsize) % line
     return room[first : first + records * width].reshape(records, width)
 
 
@@ -65,3 +83,14 @@ def fill_records(data, rows, first, last, table):
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(np.uint64(len(rows))):
             table[k, f] = data[rows[f], k]
+
+
+@compiled
+def fill_fixed(data, rows, steps_per_metre, first, last, table, whole):
+    """The same in single precision, positions as whole steps; ``whole`` shows the table's bits."""
+    axes = np.uint64(len(steps_per_metre))
+    for k in range(np.uint64(first), np.uint64(last)):
+        for f in range(axes):
+            whole[k, f] = np.int32(np.int64(np.rint(data[rows[f], k] * steps_per_metre[f])))
+        for f in range(axes, np.uint64(len(rows))):
+            table[k, f] = np.float32(data[rows[f], k])

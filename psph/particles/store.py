@@ -5,6 +5,7 @@ import numpy as np
 from psph.jit import compiled
 from psph.particles.fields import FIELDS
 from psph.physics.compose import ParticleView
+from psph.physics.space import DUMMIES
 
 SLACK = 64
 """Entries past the last particle: a vector load may touch them."""
@@ -23,7 +24,7 @@ class Store:
 
     ``data`` (rows, capacity) float64 holds the fields named; ``id`` (int64) and ``kind`` (uint8)
     stand beside it.  Owned particles fill columns ``low`` to ``low + owned``, ghosts lie before
-    and behind, and one dummy particle follows the last ghost.  ``constants`` are quantities that
+    and behind, and a few dummy particles follow the last ghost.  ``constants`` are quantities that
     the whole scene shares: they need no array.
     """
 
@@ -62,7 +63,7 @@ class Store:
 
     @property
     def total(self) -> int:
-        """Owned particles and ghosts; also the column of the dummy."""
+        """Owned particles and ghosts; also the column of the first dummy."""
         return self.low + self.owned + self.high
 
     @property
@@ -130,9 +131,10 @@ class Store:
 
     def _place_dummy(self) -> None:
         # Harmless as a neighbour: outside every support and, being 1, safe to divide by.
-        self.data[:, self.total] = 1.0
+        dummies = slice(self.total, self.total + DUMMIES)
+        self.data[:, dummies] = 1.0
         for row in self.rows["position"]:
-            self.data[row, self.total] = FAR
+            self.data[row, dummies] = FAR
 
 
 @compiled

@@ -15,7 +15,7 @@ from numba.extending import overload, register_jitable
 from psph.jit import method_of
 from psph.simd import fold, total, turning
 from psph.smoothing import slope_over_r, weight
-from psph.vectors import add, at, dot, nearest_image, scale, subtract, zero_like
+from psph.vectors import add, at, dot, scale, subtract, zero_like
 
 
 class ParticleView(NamedTuple):
@@ -133,9 +133,8 @@ def _typed_fetch(view, records, lists, entry):
 
 
 @register_jitable
-def geometry(kernel, periods, tiny, i, j):
-    """Pair of the particle views ``i`` and ``j``; ``tiny`` (m²) keeps r from zero."""
-    x_ij = nearest_image(subtract(i.position, j.position), periods)
+def geometry(kernel, x_ij, tiny, i, j):
+    """Pair of the particle views ``i`` and ``j``, ``x_ij`` m apart; ``tiny`` (m²) keeps r from zero."""
     u_ij = subtract(i.velocity, j.velocity)
     r2 = dot(x_ij, x_ij) + tiny
     r = math.sqrt(r2)

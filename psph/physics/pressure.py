@@ -5,7 +5,7 @@ from typing import NamedTuple
 from psph.simd import where
 from psph.vectors import add, scale, zero_like
 
-NOT_A_PRESSURE = 1e300
+NOT_A_PRESSURE = 1e30
 """Stands for a neighbour outside the support in a minimum over pressures, Pa."""
 
 

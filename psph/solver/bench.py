@@ -118,7 +118,7 @@ def _pairs_inside(simulation: Simulation, scene) -> int:
     store, lists = simulation.store, simulation.domain.lists
     support = scene.kernel.support * scene.smoothing_length
     return count_inside(
-        store.view(), simulation.periods, support * support, store.low, store.owned,
+        store.view(), simulation.domain.periods, support * support, store.low, store.owned,
         lists.begin, lists.blocks, lists.lists,
     )
 

@@ -3,9 +3,11 @@
 import numpy as np
 
 from psph.jit import compiled
+from psph.particles.neighbours import WIDTH
 from psph.physics import compose
 from psph.physics.compose import fetch, geometry, pushed, take
-from psph.simd import WIDTH, spread, total
+from psph.physics.space import difference
+from psph.simd import spread, total, width_of
 from psph.vectors import add, put, zero_like
 
 TINY = 1e-20
@@ -15,7 +17,7 @@ other distance."""
 
 @compiled
 def sum_over_neighbours(
-    effects, reductions, kernel, periods, tiny, view, neighbour_view, records, first, last, low,
+    effects, reductions, kernel, space, tiny, view, neighbour_view, records, first, last, low,
     begin, blocks, lists, acceleration, density_rate, written,
 ):
     """Rates of the particles in columns ``first`` to ``last``.
@@ -25,16 +27,15 @@ def sum_over_neighbours(
     the array, or None, that each of these fills.  Sums are in gather form and in the order of the
     lists, so that they are the same on any number of ranks.
     """
-    width = np.uint64(WIDTH)
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
         i = take(view, k)
-        rate = spread(0.0)
-        a = spread(zero_like(i.position))
-        totals = spread(compose.start(reductions, i))
-        for n in range(begin[row], begin[row] + blocks[row] * np.uint64(8), width):
+        rate = spread(0.0, records)
+        a = spread(zero_like(i.position), records)
+        totals = spread(compose.start(reductions, i), records)
+        for n in range(begin[row], begin[row] + blocks[row] * np.uint64(WIDTH), width_of(records)):
             j = fetch(neighbour_view, records, lists, n)
-            pair = geometry(kernel, periods, tiny, i, j)
+            pair = geometry(kernel, difference(space, i, j, records, k), tiny, i, j)
             rate = rate + compose.density_rate(effects, i, j, pair)
             a = pushed(a, pair.x_ij, compose.radial(effects, i, j, pair))
             a = pushed(a, pair.u_ij, compose.shear(effects, i, j, pair))

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from psph.particles.fields import FIELDS
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 from psph.physics.compose import ParticleView
+from psph.physics.space import Metres, fixed_point
 from psph.physics.trial import Reads, UnknownField, reads
 
 ALWAYS = (
@@ -41,6 +42,9 @@ class Plan:
     kernel: Any
     state: Any
     state_reason: str
+    precision: str
+    space: Any
+    """How positions of neighbours are told apart: psph.physics.space."""
     smoothing_length: float
     constants: dict[str, float]
     arrays: tuple[str, ...]
@@ -105,6 +109,10 @@ def make_plan(scene) -> Plan:
         absent=tuple(e for e in CATALOGUE if e not in present),
         kernel=scene.kernel,
         state=state,
+        precision=case.precision,
+        space=fixed_point(scene.smoothing_length, scene.periods)
+        if case.precision == "mixed"
+        else Metres(tuple(scene.periods)),
         state_reason=state_reason,
         smoothing_length=scene.smoothing_length,
         constants=shared

@@ -31,14 +31,13 @@ class Simulation:
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
         support = scene.kernel.support * scene.smoothing_length
         skin = scene.case.neighbours.skin * support
-        self.periods = tuple(scene.periods)
         self.tiny = TINY * scene.smoothing_length**2
         self.domain = Domain(
             comm, store, scene.axis, support + skin, scene.lower, scene.upper,
-            scene.periods, plan.ghost_fields, plan.refreshed,
+            scene.periods, plan.ghost_fields, plan.refreshed, plan.space.dummies_apart,
         )
         self.skin = Skin(self.domain, skin)
-        self.records = Records(store, plan.neighbour_fields)
+        self.records = Records(store, plan.neighbour_fields, plan.space)
         self.time, self.dt, self.steps = 0.0, 0.0, 0
         self.limited_by = ""
         self._start()
@@ -128,7 +127,7 @@ class Simulation:
         s, plan, lists = self.store, self.plan, self.domain.lists
         written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
         sum_over_neighbours(
-            plan.effects, plan.reductions, plan.kernel, self.periods, self.tiny,
+            plan.effects, plan.reductions, plan.kernel, plan.space, self.tiny,
             s.view(), self.records.view(), self.records.table, first, last, s.low,
             lists.begin, lists.blocks, lists.lists, s["acceleration"], s["density_rate"], written,
         )

@@ -34,7 +34,7 @@ def neighbours_by_id(domain):
     for k in range(store.owned):
         begin, entries = int(lists.begin[k]), int(lists.blocks[k]) * WIDTH
         row = lists.lists[begin : begin + entries]
-        row = row[row != store.total].astype(int)
+        row = row[row < store.total].astype(int)
         found[int(store.id[store.low + k])] = store["density"][row].astype(int).tolist()
     return found
 

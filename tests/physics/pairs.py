@@ -6,6 +6,7 @@ import numpy as np
 from psph.physics import compose
 from psph.physics.compose import ParticleView, geometry, take
 from psph.smoothing import kernel
+from psph.vectors import nearest_image, subtract
 
 H = 0.013
 OPEN = (None, None, None)
@@ -32,14 +33,15 @@ def pair_of(particles, a, b, name="hyperbolic"):
     """Views of particles a and b, and their pair, in plain Python."""
     dim = len(particles.position)
     i, j = take(particles, a), take(particles, b)
-    return i, j, geometry(kernel(name, H, dim), OPEN[:dim], 1e-20 * H * H, i, j)
+    x_ij = nearest_image(subtract(i.position, j.position), OPEN[:dim])
+    return i, j, geometry(kernel(name, H, dim), x_ij, 1e-20 * H * H, i, j)
 
 
 @numba.njit
 def rates(effects, reductions, k, periods, particles, a, b):
     """Everything that one neighbour b does to particle a."""
     i, j = take(particles, a), take(particles, b)
-    pair = geometry(k, periods, 1e-24, i, j)
+    pair = geometry(k, nearest_image(subtract(i.position, j.position), periods), 1e-24, i, j)
     totals = compose.gather_each(reductions, compose.start(reductions, i), i, j, pair)
     return (
         compose.density_rate(effects, i, j, pair),

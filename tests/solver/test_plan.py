@@ -140,7 +140,7 @@ def assembly(scene, plan):
     )
     s, lists = simulation.store, simulation.domain.lists
     loop(
-        plan.effects, plan.reductions, plan.kernel, simulation.periods, simulation.tiny, s.view(),
+        plan.effects, plan.reductions, plan.kernel, plan.space, simulation.tiny, s.view(),
         simulation.records.view(), simulation.records.table,
         s.low, s.low + s.owned, s.low, lists.begin, lists.blocks, lists.lists,
         s["acceleration"], s["density_rate"], (),

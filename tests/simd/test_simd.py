@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from psph import simd
+from psph.simd import sums
 from psph.jit import FAST
 
 compiled = numba.njit(fastmath=FAST, error_model="numpy")
@@ -29,8 +30,8 @@ def summed(formula, count=2):
 
     @compiled
     def run(table, lists):
-        found = simd.spread(0.0)
-        for n in range(np.uint64(0), np.uint64(ENTRIES), np.uint64(simd.WIDTH)):
+        found = simd.spread(0.0, table)
+        for n in range(np.uint64(0), np.uint64(ENTRIES), simd.width_of(table)):
             numbers = turn(table, lists, n)
             found += one(numbers[0], numbers[1])
         return simd.total(found)
@@ -73,7 +74,7 @@ def test_records_are_turned(lists, count):
     width = -(-count // simd.GROUP) * simd.GROUP
     table = np.arange(50.0 * width).reshape(50, width)
     turn = simd.turning(count)
-    lane = simd._first
+    lane = sums._first
 
     @compiled
     def first_of_each(table, lists, entry):

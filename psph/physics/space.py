@@ -1,0 +1,79 @@
+"""Where neighbours are: differences of positions, in double precision or in fixed point."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import overload
+
+from psph.jit import call_by_type
+from psph.simd import steps_between
+from psph.vectors import nearest_image, subtract
+
+difference = call_by_type("difference")
+"""(space, i, j, records, k) -> x_i − x_j, m; k is the column of i."""
+
+RANGE = 256.0
+"""Smoothing lengths after which a fixed-point coordinate repeats itself."""
+
+STEPS = 2.0**32
+"""Steps of a fixed-point coordinate."""
+
+DUMMIES = 4
+"""Dummy particles a quarter of the range apart: one is out of reach of any particle."""
+
+
+class Metres(NamedTuple):
+    """Positions in double precision; ``periods`` m, None for an open axis."""
+
+    periods: tuple
+
+    dummies_apart = np.inf
+
+    def difference(self, i, j, records, k):
+        """x_i − x_j to the nearest image, m."""
+        return nearest_image(subtract(i.position, j.position), self.periods)
+
+
+class FixedPoint(NamedTuple):
+    """Positions as whole steps modulo 2³², so that a difference is exact wherever the pair is.
+
+    A step is 256 h/2³² = 6e-8 h, finer than single precision resolves near neighbours, and it does
+    not grow with the domain.  A period is a whole number of ranges: its images need no code.
+    ``units`` m a step, an axis each.
+    """
+
+    units: tuple
+
+    @property
+    def dummies_apart(self) -> float:
+        """Distance of dummy particles along the first axis, m."""
+        return self.units[0] * STEPS / DUMMIES
+
+    def difference(self, i, j, records, k):
+        """x_i − x_j to the nearest image, m."""
+        return steps_each(records, k, np.uint64(0), j.position, self.units)
+
+
+def fixed_point(smoothing_length: float, periods) -> FixedPoint:
+    """Steps for a smoothing length (m) and periods (m, None for an open axis)."""
+    most = RANGE * smoothing_length
+    ranges = (most if p is None else p / max(1.0, np.ceil(p / most)) for p in periods)
+    return FixedPoint(tuple(float(r / STEPS) for r in ranges))
+
+
+def steps_each(records, k, d, positions, units):
+    """Differences from axis d on."""
+    own = records[k, d : d + len(units)].view(np.int32)
+    return tuple(
+        float(np.int32(a - np.float32(b).view(np.int32))) * unit
+        for a, b, unit in zip(own, positions, units)
+    )
+
+
+@overload(steps_each)
+def _typed_steps_each(records, k, d, positions, units):
+    if len(units) == 0:
+        return lambda records, k, d, positions, units: ()
+    return lambda records, k, d, positions, units: (
+        steps_between(records, k, d, positions[0], units[0]),
+    ) + steps_each(records, k, d + np.uint64(1), positions[1:], units[1:])

@@ -1,0 +1,140 @@
+"""From memory to lanes: consecutive entries, records transposed, fixed-point differences."""
+
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic
+
+from psph.simd.lanes import EIGHT, Lanes, lanes_of, spread_number
+
+
+@intrinsic
+def consecutive(typing, array, first):
+    """Eight entries of an array from ``first`` on."""
+    lanes = Lanes(array.dtype, EIGHT)
+
+    def build(context, builder, sig, args):
+        data = context.make_array(sig.args[0])(context, builder, args[0]).data
+        kind = context.get_value_type(lanes)
+        place = builder.bitcast(builder.gep(data, [args[1]]), kind.as_pointer())
+        value = builder.load(place)
+        value.align = array.dtype.bitwidth // 8
+        return value
+
+    return lanes(array, types.uint64), build
+
+
+@intrinsic
+def bits(typing, mask):
+    """A comparison of lanes as the bits of a number, the first lane lowest."""
+
+    def build(context, builder, sig, args):
+        whole = builder.bitcast(args[0], ir.IntType(mask.width))
+        return builder.zext(whole, ir.IntType(64))
+
+    return types.uint64(mask), build
+
+
+GROUP = 4
+"""Numbers of a record that are loaded and turned at once."""
+
+
+def turning(count: int):
+    """A compiled function ``(table, lists, entry)`` that gives records as a tuple of lanes.
+
+    ``table`` (records, width), width the next multiple of ``GROUP`` from ``count``.  Lane t of
+    number f is ``table[lists[entry + t], f]``.  Loading records whole and transposing them in
+    registers takes a quarter of the loads that one array a quantity would.
+    """
+
+    @intrinsic
+    def turn(typing, table, lists, entry):
+        lanes = lanes_of(table.dtype)
+
+        def build(context, builder, sig, args):
+            records, listed = (
+                context.make_array(kind)(context, builder, value).data
+                for kind, value in zip(sig.args[:2], args[:2])
+            )
+            integer = ir.IntType(64)
+            places = []
+            for t in range(lanes.width):
+                at = builder.gep(listed, [builder.add(args[2], integer(t))])
+                j = builder.zext(builder.load(at), integer)
+                width = -(-count // GROUP) * GROUP
+                places.append(builder.gep(records, [builder.mul(j, integer(width))]))
+            found = []
+            for first in range(0, count, GROUP):
+                found += _transposed(builder, places, first)
+            return context.make_tuple(builder, sig.return_type, found[:count])
+
+        return types.UniTuple(lanes, count)(table, lists, types.uint64), build
+
+    return turn
+
+
+def _transposed(builder, places, first: int):
+    """Lanes of the numbers ``first`` to ``first + 4`` of the records at ``places``."""
+    blocks = len(places) // GROUP
+
+    def mix(a, b, picks):
+        """Pick from a and b (4 to 7) in each block of four lanes."""
+        order = [
+            GROUP * block + pick % GROUP + (a.type.count if pick >= GROUP else 0)
+            for block in range(blocks)
+            for pick in picks
+        ]
+        return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(ir.IntType(32), len(order)), order))
+
+    def load(place):
+        group = ir.VectorType(place.type.pointee, GROUP)
+        at = builder.gep(place, [ir.IntType(64)(first)])
+        value = builder.load(builder.bitcast(at, group.as_pointer()))
+        value.align = 4
+        return value
+
+    def row(t):
+        """The groups of the records t, t + 4, ... side by side."""
+        groups = [load(place) for place in places[t::GROUP]]
+        while len(groups) > 1:
+            order = ir.Constant(
+                ir.VectorType(ir.IntType(32), 2 * groups[0].type.count),
+                list(range(2 * groups[0].type.count)),
+            )
+            groups = [builder.shuffle_vector(*two, order) for two in zip(groups[::2], groups[1::2])]
+        return groups[0]
+
+    a, b, c, d = map(row, range(GROUP))
+    if isinstance(a.type.element, ir.DoubleType):  # what a processor does in one instruction
+        ab, cd = mix(a, b, [0, 4, 2, 6]), mix(c, d, [0, 4, 2, 6])
+        ab_odd, cd_odd = mix(a, b, [1, 5, 3, 7]), mix(c, d, [1, 5, 3, 7])
+        return [
+            mix(ab, cd, [0, 1, 4, 5]), mix(ab_odd, cd_odd, [0, 1, 4, 5]),
+            mix(ab, cd, [2, 3, 6, 7]), mix(ab_odd, cd_odd, [2, 3, 6, 7]),
+        ]
+    ab, cd = mix(a, b, [0, 4, 1, 5]), mix(c, d, [0, 4, 1, 5])
+    ab_high, cd_high = mix(a, b, [2, 6, 3, 7]), mix(c, d, [2, 6, 3, 7])
+    return [
+        mix(ab, cd, [0, 1, 4, 5]), mix(ab, cd, [2, 3, 6, 7]),
+        mix(ab_high, cd_high, [0, 1, 4, 5]), mix(ab_high, cd_high, [2, 3, 6, 7]),
+    ]
+
+
+@intrinsic
+def steps_between(typing, table, k, d, lanes, unit):
+    """(table[k, d] − lanes) · unit, both whole numbers of 32 bits kept in single-precision places.
+
+    Differences wrap around, so that only the range of the difference matters.
+    """
+
+    def build(context, builder, sig, args):
+        data = context.make_array(sig.args[0])(context, builder, args[0])
+        width = builder.extract_value(data.shape, 1)
+        place = builder.gep(data.data, [builder.add(builder.mul(args[1], width), args[2])])
+        whole = ir.VectorType(ir.IntType(32), lanes.width)
+        own = builder.bitcast(builder.load(place), ir.IntType(32))
+        other = builder.bitcast(args[3], whole)
+        steps = builder.sub(spread_number(builder, own, lanes.width), other)
+        length = context.cast(builder, args[4], types.float64, lanes.element)
+        return builder.fmul(builder.sitofp(steps, args[3].type), spread_number(builder, length, lanes.width))
+
+    return lanes(table, types.uint64, types.uint64, lanes, types.float64), build

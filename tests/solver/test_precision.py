@@ -1,0 +1,115 @@
+"""Mixed precision: its error against double, wherever the pair is; and what naive rounding does."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from psph.case import Case
+from psph.output.ledger import Ledger
+from psph.scene import Scene
+from psph.solver.plan import make_plan
+from psph.solver.setup import create_particles
+from psph.solver.step import Simulation
+
+SPACING, SIDES = 0.01, {1: 40, 2: 24, 3: 12}
+WORST = 5e-6
+"""Largest error of an acceleration over the largest acceleration."""
+
+
+def box(dim, precision, periodic=False, offset=0.0, sides=None, **physics):
+    lower = [offset] * dim
+    upper = [offset + (sides or SIDES[dim]) * SPACING] * dim
+    corners = {"lower": lower, "upper": upper}
+    middle = offset + 0.5 * (upper[0] - offset)
+    left = corners | {"upper": [middle, *upper[1:]]}
+    right = corners | {"lower": [middle, *lower[1:]]}
+    return Case.model_validate(
+        {
+            "precision": precision,
+            "space": {
+                "dimensions": dim, "spacing": SPACING, "smoothing": 1.3, "origin": lower,
+                **({"periodic": ["x", "y", "z"][:dim], **corners} if periodic else {}),
+            },
+            "time": {"end": 1.0},
+            "physics": {"sound_speed": 20.0, "artificial_viscosity": 0.1, **physics},
+            "fluids": {
+                name: {
+                    "shape": {"box": part}, "jitter": 0.2, "seed": 5, "pressure": 2000.0 * sign,
+                    "velocity": [sign * v for v in (3.0, -2.0, 1.0)[:dim]],
+                }
+                for name, part, sign in (("left", left, 1.0), ("right", right, 1.5))
+            },
+        }
+    )
+
+
+def simulation(case):
+    scene = Scene(case)
+    plan = make_plan(scene)
+    particles = create_particles(scene, plan, MPI.COMM_SELF)
+    return Simulation(scene, plan, particles, MPI.COMM_SELF, Ledger())
+
+
+def run(case, steps=3):
+    """Positions, accelerations and rates of density after some steps, in the order of the ids."""
+    sim = simulation(case)
+    for _ in range(steps):
+        sim.step()
+    order = np.argsort(sim.store.owned_rows("id"))
+    return [
+        sim.store.owned_rows(name)[order] for name in ("position", "acceleration", "density_rate")
+    ]
+
+
+def worst(one, other):
+    return np.abs(one - other).max() / np.abs(other).max()
+
+
+@pytest.mark.parametrize("dim", (1, 2, 3))
+@pytest.mark.parametrize("periodic", (False, True))
+@pytest.mark.parametrize("gradient", ("symmetric", "minimum"))
+def test_error_against_double(dim, periodic, gradient):
+    mixed, double = (
+        run(box(dim, precision, periodic, pressure_gradient=gradient, free_surface=0.9))
+        for precision in ("mixed", "double")
+    )
+    assert 0.0 < worst(mixed[1], double[1]) < WORST
+    assert worst(mixed[2], double[2]) < 2.0 * WORST
+    assert np.abs(mixed[0] - double[0]).max() < 1e-7 * SPACING
+
+
+@pytest.mark.parametrize("offset", (0.0, 100.0, 1e4))
+def test_error_does_not_grow_far_from_the_origin(offset):
+    """1e4 m are a million spacings: single-precision positions could not tell neighbours apart."""
+    mixed, double = (run(box(2, p, offset=offset), 1) for p in ("mixed", "double"))
+    # Double precision itself resolves 1e4 m to 2e-10 spacings.
+    assert worst(mixed[1], double[1]) < WORST
+    naive = np.diff(np.float32(double[0]), axis=0) - np.diff(double[0], axis=0)
+    assert np.abs(naive).max() > 0.05 * SPACING or offset < 1e4  # the control
+
+
+def test_the_smallest_period():
+    """Three cutoffs: the dummies that fill up a row must still be out of reach."""
+    for dim in (1, 2, 3):
+        mixed, double = (run(box(dim, p, True, sides=9), 1) for p in ("mixed", "double"))
+        assert worst(mixed[1], double[1]) < WORST
+
+
+def test_a_long_period_is_many_ranges():
+    """512 spacings: more than one range of 256 h, and still a whole number of them."""
+    mixed, double = (run(box(1, p, True, sides=512), 1) for p in ("mixed", "double"))
+    assert worst(mixed[1], double[1]) < WORST
+
+
+def test_records_of_neighbours_are_half_as_long():
+    sizes = [simulation(box(3, p)).records.table.itemsize for p in ("mixed", "double")]
+    assert sizes == [4, 8]
+
+
+def test_too_fine_a_scene_is_refused():
+    from pydantic import ValidationError
+
+    case = box(2, "mixed").model_dump(exclude_unset=True)
+    case["space"]["spacing"] = 1e-10
+    with pytest.raises(ValidationError, match="cannot hold the kernel's slope"):
+        Case.model_validate(case)
