@@ -9,8 +9,24 @@ from psph.physics.compose import ParticleView
 SLACK = 64
 """Entries past the last particle: a vector load may touch them."""
 
+MOST = 2**32 - SLACK
+"""Particles and ghosts that a rank can hold: neighbour lists name them by 32-bit columns."""
+
 FAR = 1e30
 """Coordinate of the dummy neighbour that pads the rows of a list, m: outside every support."""
+
+
+class TooManyParticles(ValueError):
+    """More particles than the ranks can hold."""
+
+
+def check_room(particles: int, ranks: int) -> None:
+    """Raise TooManyParticles, with the number of ranks that works, where one could not hold its share."""
+    if particles > ranks * MOST:
+        raise TooManyParticles(
+            f"{particles:,} particles on {ranks} ranks: a rank holds {MOST:,} at the most, its "
+            f"ghosts included; use {particles // MOST + 1} ranks or more"
+        )
 
 
 class Store:
@@ -93,7 +109,15 @@ class Store:
         return np.ascontiguousarray(block.T) if FIELDS[name].vector else block[0].copy()
 
     def reserve(self, columns: int) -> None:
-        """Make room for so many particles and the dummy; contents stay."""
+        """Make room for so many particles and the dummy; contents stay.
+
+        Raises TooManyParticles where their columns would not fit into 32 bits.
+        """
+        if columns > MOST:
+            raise TooManyParticles(
+                f"{columns:,} particles and ghosts on one rank: it holds {MOST:,} at the most; "
+                "use more ranks"
+            )
         if columns + SLACK <= self.capacity:
             return
         wide = columns + columns // 16 + SLACK
