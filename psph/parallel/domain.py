@@ -5,7 +5,7 @@ from mpi4py import MPI
 
 from psph.parallel.halo import Halo
 from psph.parallel.migration import migrate
-from psph.parallel.slabs import rebalanced
+from psph.parallel.slabs import Prices, rebalanced
 from psph.particles import neighbours
 from psph.particles.cells import Grid, make_grid, number_cells, plane_histogram, sort_by_cell
 from psph.particles.store import Store
@@ -32,6 +32,7 @@ class Domain:
         self._home = (self.lower, self.upper)
         self.ghost_fields, self.refreshed = ghost_fields, refreshed
         self.bounds: np.ndarray | None = None
+        self.prices = Prices(comm.size)
         self.grid: Grid | None = None
         self.halo: Halo | None = None
         self.starts = np.zeros(1, np.int64)
@@ -43,15 +44,20 @@ class Domain:
         """Planes of cells that this rank owns."""
         return int(self.bounds[self.comm.rank + 1] - self.bounds[self.comm.rank])
 
-    def rebuild(self) -> None:
-        """Put every particle where it belongs and list its neighbours; collective."""
+    def rebuild(self, spent: float = 0.0) -> None:
+        """Put every particle where it belongs and list its neighbours; collective.
+
+        ``spent`` are the seconds that this rank's pairs took since the last rebuild: they weigh
+        its planes, so that slow ranks get fewer.
+        """
         self._wrap()
         self.grid = self._fit_grid()
-        cells = self._balance_and_migrate()
+        cells = self._balance_and_migrate(spent)
         self._sort(cells)
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
-            self.lists, self.store, self.grid, self.starts, self.planes, self.cutoff, self.periods
+            self._used_lists(), self.store, self.grid, self.starts, self.planes, self.cutoff,
+            self.periods,
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[self.store.inner] = now[self.store.inner]
@@ -65,6 +71,11 @@ class Domain:
         if self._partner(1) != MPI.PROC_NULL:
             last = self.starts[self.planes * per_plane]
         return int(first), int(max(first, last))
+
+    def _used_lists(self) -> neighbours.Neighbours:
+        """The old lists, to be filled again, and given back where they are too short."""
+        room, self.lists = self.lists, neighbours.empty(0, 0)
+        return room
 
     def _partner(self, step: int) -> int:
         rank = self.comm.rank + step
@@ -110,13 +121,24 @@ class Domain:
         )
         return cells
 
-    def _balance_and_migrate(self) -> np.ndarray:
+    def _balance_and_migrate(self, spent: float) -> np.ndarray:
         cells = self._cells()
-        histogram = plane_histogram(cells, self.grid)
-        self.comm.Allreduce(MPI.IN_PLACE, histogram, MPI.SUM)
-        self.bounds = rebalanced(histogram, self.bounds, self.comm.size)
+        costs = self._costs(plane_histogram(cells, self.grid), spent)
+        self.bounds = rebalanced(costs, self.bounds, self.comm.size)
         owner = np.searchsorted(self.bounds, cells // self.grid.plane_cells, side="right") - 1
         return self._cells() if migrate(self.comm, self.store, owner) else cells
+
+    def _costs(self, mine: np.ndarray, spent: float) -> np.ndarray:
+        """What each plane costs, from this rank's particles in each plane; the same on all ranks."""
+        numbers = np.zeros(len(mine) + self.comm.size, np.int64)
+        numbers[: len(mine)] = mine
+        numbers[len(mine) + self.comm.rank] = round(1e9 * spent)  # counts and times in one message
+        self.comm.Allreduce(MPI.IN_PLACE, numbers, MPI.SUM)
+        histogram, times = numbers[: len(mine)], numbers[len(mine) :]
+        if self.bounds is None:
+            return histogram
+        self.prices.learn(histogram, self.bounds, times)
+        return self.prices.of_planes(histogram, self.bounds)
 
     def _sort(self, cells: np.ndarray) -> None:
         """Sort by cell and id, and learn from the neighbours how many ghosts there will be."""

@@ -37,7 +37,9 @@ class Simulation:
         )
         self.time, self.dt, self.steps = 0.0, 0.0, 0
         self.limited_by = ""
+        self._paid = 0.0
         self._start()
+        self._spent_on_pairs()  # the first passes may have loaded compiled loops
 
     def step(self) -> None:
         """Advance by one time step."""
@@ -47,7 +49,7 @@ class Simulation:
             self._predict(self.dt)
         if crossed:
             with self.ledger("rebuild"):
-                self.domain.rebuild()
+                self.domain.rebuild(self._spent_on_pairs())
             self._forces()
         else:
             self._forces_while_refreshing()
@@ -77,6 +79,11 @@ class Simulation:
         for older in ("density_rate_1", "density_rate_2"):
             self.store[older][:] = self.store["density_rate"]
         self._kick(0.0)
+
+    def _spent_on_pairs(self) -> float:
+        """Seconds of this rank's pair loop since this was last asked."""
+        paid, self._paid = self._paid, self.ledger.seconds["pairs"]
+        return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
 
     def _listed_reach(self, dt: float) -> bool:
         """Whether a particle could leave half the skin within ``dt``; the same on every rank."""
