@@ -1,6 +1,7 @@
 """Slabs: which rank owns which planes of cells, by what their particles cost there.
 
-All numbers are integers, so that ranks on different processors decide alike.
+Sums are of integers, and the rest is done number by number: ranks on different processors decide
+alike.
 """
 
 import numpy as np
@@ -42,15 +43,13 @@ def partition(costs: np.ndarray, ranks: int) -> np.ndarray:
     planes = len(costs)
     check_ranks(ranks, planes)
     reached = np.concatenate([[0], np.cumsum(costs)])
-    bounds = np.zeros(ranks + 1, np.int64)
-    bounds[ranks] = planes
-    for r in range(1, ranks):
-        goal = int(reached[-1]) * r / ranks
-        cut = int(np.searchsorted(reached, goal))
-        if cut > 0 and goal - reached[cut - 1] < reached[cut] - goal:
-            cut -= 1
-        bounds[r] = min(max(cut, bounds[r - 1] + 1), planes - (ranks - r))
-    return bounds
+    rank = np.arange(ranks + 1)
+    goals = float(reached[-1]) * (rank / ranks)
+    above = np.clip(np.searchsorted(reached, goals), 1, planes)
+    cuts = above - (goals - reached[above - 1] < reached[above] - goals)
+    cuts[[0, ranks]] = 0, planes
+    # A plane at least for each rank before a cut, and for each behind it.
+    return rank + np.clip(np.maximum.accumulate(cuts - rank), 0, planes - ranks)
 
 
 def dearest(costs: np.ndarray, bounds: np.ndarray) -> int:
@@ -83,15 +82,14 @@ class Prices:
 
         ``histogram`` (planes,) particles in each plane, ``bounds`` (ranks + 1,) the slabs.
         """
-        held = np.add.reduceat(histogram, _fitted(bounds, histogram)[:-1]).tolist()
-        times = spent.tolist()
-        if sum(times) < WORTH_MEASURING:
+        held = np.add.reduceat(histogram, _fitted(bounds, histogram)[:-1])
+        known = (held > 0) & (spent > 0)
+        if spent.sum() < WORTH_MEASURING:
             return
-        for rank, (mine, time) in enumerate(zip(held, times)):
-            if mine > 0 and time > 0:
-                price = PAR * time * sum(held) // (sum(times) * mine)
-                price = min(max(price, PAR // EXTREME), PAR * EXTREME)
-                self.each[rank] += (price - int(self.each[rank])) // NEW_SHARE
+        average = spent.sum() / held.sum()
+        measured = PAR * (spent[known] / held[known] / average)
+        measured = np.clip(measured, PAR // EXTREME, PAR * EXTREME).astype(np.int64)
+        self.each[known] += (measured - self.each[known]) // NEW_SHARE
 
     def of_planes(self, histogram: np.ndarray, bounds: np.ndarray) -> np.ndarray:
         """What each plane costs where it is now, int64 (planes,)."""

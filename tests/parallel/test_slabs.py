@@ -18,6 +18,27 @@ def test_every_rank_gets_a_plane():
     assert (np.diff(bounds) >= 1).all() and bounds[0] == 0 and bounds[-1] == 6
 
 
+def test_a_cut_lies_where_it_comes_nearest_to_equal_shares():
+    """The rule, written rank by rank."""
+    rng = np.random.default_rng(6)
+    for planes, ranks in ((9, 9), (30, 7), (50, 3), (40, 1)):
+        histogram = rng.integers(0, 50, planes) * rng.integers(0, 2, planes)
+        reached, bounds = np.concatenate([[0], np.cumsum(histogram)]), [0]
+        for r in range(1, ranks):
+            distance = np.abs(reached - reached[-1] * (r / ranks))
+            cut = int(distance[1:].argmin()) + 1
+            bounds.append(min(max(cut, bounds[-1] + 1), planes - ranks + r))
+        found = partition(histogram, ranks)
+        assert distances(reached, found) == distances(reached, bounds + [planes])
+        assert found[0] == 0 and found[-1] == planes and (np.diff(found) >= 1).all()
+
+
+def distances(reached, bounds):
+    """How far each cut is from an equal share (ties may fall either way)."""
+    goals = reached[-1] * (np.arange(len(bounds)) / (len(bounds) - 1))
+    return np.abs(reached[bounds] - goals).round(9).tolist()
+
+
 def test_balance_follows_the_particles():
     histogram = np.random.default_rng(0).integers(0, 100, 200)
     for ranks in (2, 3, 7):
