@@ -100,13 +100,20 @@ class Store:
 
     def owned_rows(self, name: str) -> np.ndarray:
         """This rank's values as people read them: ``(owned,)`` or ``(owned, dim)``, a copy."""
+        return self.shown(name).copy(order="C")
+
+    def shown(self, name: str) -> np.ndarray:
+        """What :meth:`owned_rows` copies, to be read and not to be kept: the next step changes it."""
         if name in ("id", "kind"):
-            return getattr(self, name)[self.inner].copy()
-        if name not in self.rows:
-            return np.full(self.owned, self.constants[name])
-        rows = self.rows[name]
-        block = self.data[rows.start : rows.stop, self.inner]
-        return np.ascontiguousarray(block.T) if FIELDS[name].vector else block[0].copy()
+            values = getattr(self, name)[self.inner]
+        elif name in self.rows:
+            rows = self.rows[name]
+            block = self.data[rows.start : rows.stop, self.inner]
+            values = block.T if FIELDS[name].vector else block[0]
+        else:
+            values = np.full(self.owned, self.constants[name])
+        values.flags.writeable = False
+        return values
 
     def reserve(self, columns: int) -> None:
         """Make room for so many particles and the dummy; contents stay.
