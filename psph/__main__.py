@@ -154,11 +154,12 @@ def _foreseen(error: BaseException) -> tuple[str, int] | None:
     from psph.case import CaseError
     from psph.output.errors import OutputError
     from psph.parallel.slabs import TooManyRanks
+    from psph.particles.store import TooManyParticles
     from psph.solver.step import BlowUp
 
     if isinstance(error, CaseError):
         return "\n".join(error.lines), BAD_INPUT
-    if isinstance(error, TooManyRanks):
+    if isinstance(error, (TooManyRanks, TooManyParticles)):
         return str(error), BAD_INPUT
     if isinstance(error, (OutputError, BlowUp)):
         return str(error), FAILED

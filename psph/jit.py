@@ -8,6 +8,7 @@ a scene without an effect holds none of its code.
 
 import hashlib
 import os
+import sys
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -63,6 +64,16 @@ def processor() -> str:
 def register_bits() -> int:
     """Bits of the processor's vector registers."""
     return 512 if "+avx512f" in numba.config.CPU_FEATURES.split(",") else 256
+
+
+def marker(loops: str, *examples) -> Path:
+    """The file that says: these ``loops``, for the types of these ``examples``, are in the cache.
+
+    Whoever has compiled them all touches it.  Where it is wrong, loops are compiled once more.
+    """
+    build = (numba.__version__, sys.version, numba.config.CPU_NAME, numba.config.CPU_FEATURES)
+    selected = (build, numba.config.DISABLE_JIT, loops, *map(numba.typeof, examples))
+    return cache_folder() / f"{hashlib.sha256(str(selected).encode()).hexdigest()[:16]}.ready"
 
 
 class OwnCache(FunctionCache):

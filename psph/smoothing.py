@@ -8,6 +8,7 @@ All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba.extending import overload
 
 from psph.jit import call_by_type, method_of
@@ -188,12 +189,12 @@ class Gaussian(NamedTuple):
     def w(self, r):
         """W(r)."""
         s = r * self.inverse_h
-        return where(s < 3.0, self.alpha * math.exp(-s * s), 0.0)
+        return where(s < 3.0, self.alpha * np.exp(-s * s), 0.0)
 
     def dw(self, r):
         """dW/dr, 1/m more than W."""
         s = r * self.inverse_h
-        slope_s = -2.0 * self.alpha * self.inverse_h * s * math.exp(-s * s)
+        slope_s = -2.0 * self.alpha * self.inverse_h * s * np.exp(-s * s)
         return where(s < 3.0, slope_s, 0.0)
 
 

@@ -137,7 +137,7 @@ class Neighbours(Table):
     """The neighbour lists."""
 
     skin: float = key(
-        "how far a list looks beyond the kernel's support, as a fraction of it", 0.1, unit="1",
+        "how far a list looks beyond the kernel's support, as a fraction of it", 0.08, unit="1",
         ge=0, le=1,
     )
 

@@ -59,6 +59,7 @@ class FrameFile:
         """Append a frame: the rows of the ranks one after another, in the order of the ranks.
 
         ``arrays`` holds the rows of this rank: ``(n,)`` or ``(n, dim)``, ``position`` among them.
+        They may be views of any layout: one at a time is copied, to spare memory.
         """
         frame = f"frames/{index:05d}"
         counts = self.comm.allgather(len(arrays["position"]))
@@ -80,7 +81,7 @@ class FrameFile:
     def _rows(self, frame: str, arrays: dict, first: int, total: int) -> dict[str, np.ndarray]:
         """What this rank writes, by the name in the file; the same names on every rank."""
         count, dimensions = arrays["position"].shape
-        rows = {f"{frame}/{name}": np.ascontiguousarray(part) for name, part in arrays.items()}
+        rows = {f"{frame}/{name}": part for name, part in arrays.items()}
         short = [name for name, part in arrays.items() if len(part) != count]
         if short:
             raise ValueError(f"{self.path}: {', '.join(short)}: not {count} rows as position")
@@ -131,7 +132,7 @@ class FrameFile:
         else:
             for part in rows.values():
                 for start in range(0, len(part), CHUNK):
-                    self.comm.Send(part[start : start + CHUNK], dest=0)
+                    self.comm.Send(np.ascontiguousarray(part[start : start + CHUNK]), dest=0)
 
 
 def _fill_collectively(file, rows: dict[str, np.ndarray], first: int) -> None:
@@ -149,8 +150,9 @@ def _fill_collectively(file, rows: dict[str, np.ndarray], first: int) -> None:
             space.select_hyperslab((first,) + (0,) * (part.ndim - 1), part.shape)
         else:
             space.select_none()
+        memory = h5py.h5s.create_simple(part.shape)
         try:
-            dataset.write(h5py.h5s.create_simple(part.shape), space, part, dxpl=transfer)
+            dataset.write(memory, space, np.ascontiguousarray(part), dxpl=transfer)
         except OSError as error:
             failure = error
     if failure:

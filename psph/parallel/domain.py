@@ -5,10 +5,11 @@ from mpi4py import MPI
 
 from psph.parallel.halo import Halo
 from psph.parallel.migration import migrate
-from psph.parallel.slabs import rebalanced
+from psph.parallel.slabs import Prices, rebalanced
 from psph.particles import neighbours
-from psph.particles.cells import Grid, make_grid, number_cells, plane_histogram, sort_by_cell
+from psph.particles.cells import Grid, make_grid, number_cells, planes_of, sort_by_cell
 from psph.particles.store import Store
+from psph.physics.space import Filling, Metres
 
 GROWTH = 3.0
 """The grid follows particles that leave the domain up to this many of its lengths outside."""
@@ -19,21 +20,22 @@ class Domain:
 
     ``cutoff`` is the kernel's support and the skin together, m; ``lower`` and ``upper`` the
     corners of the domain, m; ``periods`` a length or None for each axis; ``ghost_fields`` what
-    ghosts need once at a rebuild and ``refreshed`` what they need in each step; ``dummies_apart``
-    the distance of dummy particles, m (psph.particles.neighbours).
+    ghosts need once at a rebuild and ``refreshed`` what they need in each step; ``filling``
+    is how the rows of the lists are filled up.
     """
 
     def __init__(
         self, comm: MPI.Comm, store: Store, axis: int, cutoff: float, lower, upper, periods,
-        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...], dummies_apart: float = np.inf,
+        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...], filling: Filling = Metres.filling,
     ):
         self.comm, self.store = comm, store
         self.axis, self.cutoff, self.periods = axis, cutoff, tuple(periods)
         self.lower, self.upper = tuple(lower), tuple(upper)
         self._home = (self.lower, self.upper)
         self.ghost_fields, self.refreshed = ghost_fields, refreshed
-        self.dummies_apart = dummies_apart
+        self.filling = filling
         self.bounds: np.ndarray | None = None
+        self.prices = Prices(comm.size)
         self.grid: Grid | None = None
         self.halo: Halo | None = None
         self.starts = np.zeros(1, np.int64)
@@ -45,16 +47,19 @@ class Domain:
         """Planes of cells that this rank owns."""
         return int(self.bounds[self.comm.rank + 1] - self.bounds[self.comm.rank])
 
-    def rebuild(self) -> None:
-        """Put every particle where it belongs and list its neighbours; collective."""
+    def rebuild(self, spent: float = 0.0) -> None:
+        """Put every particle where it belongs and list its neighbours; collective.
+
+        ``spent`` are the seconds that this rank's pairs took since the last rebuild: they weigh
+        its planes, so that slow ranks get fewer.
+        """
         self._wrap()
         self.grid = self._fit_grid()
-        cells = self._balance_and_migrate()
-        self._sort(cells)
+        self._sort(self._balance_and_migrate(spent))
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
-            self.lists, self.store, self.grid, self.starts, self.planes, self.cutoff, self.periods,
-            self.dummies_apart,
+            self._used_lists(), self.store, self.grid, self.starts, self.planes, self.cutoff,
+            self.periods, self.filling,
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[: self.store.total] = now[: self.store.total]
@@ -68,6 +73,11 @@ class Domain:
         if self._partner(1) != MPI.PROC_NULL:
             last = self.starts[self.planes * per_plane]
         return int(first), int(max(first, last))
+
+    def _used_lists(self) -> neighbours.Neighbours:
+        """The old lists, to be filled again, and given back where they are too short."""
+        room, self.lists = self.lists, neighbours.empty(0, 0)
+        return room
 
     def _partner(self, step: int) -> int:
         rank = self.comm.rank + step
@@ -113,21 +123,34 @@ class Domain:
         )
         return cells
 
-    def _balance_and_migrate(self) -> np.ndarray:
+    def _balance_and_migrate(self, spent: float) -> np.ndarray:
         cells = self._cells()
-        histogram = plane_histogram(cells, self.grid)
-        self.comm.Allreduce(MPI.IN_PLACE, histogram, MPI.SUM)
-        self.bounds = rebalanced(histogram, self.bounds, self.comm.size)
-        owner = np.searchsorted(self.bounds, cells // self.grid.plane_cells, side="right") - 1
+        planes = planes_of(cells, self.grid)
+        histogram = np.bincount(planes, minlength=self.grid.counts[0])
+        self.bounds = rebalanced(self._costs(histogram, spent), self.bounds, self.comm.size)
+        owner = np.repeat(np.arange(self.comm.size, dtype=np.int32), np.diff(self.bounds))[planes]
         return self._cells() if migrate(self.comm, self.store, owner) else cells
+
+    def _costs(self, mine: np.ndarray, spent: float) -> np.ndarray:
+        """What each plane costs, from this rank's particles in each plane; the same on all ranks."""
+        numbers = np.zeros(len(mine) + self.comm.size, np.int64)
+        numbers[: len(mine)] = mine
+        numbers[len(mine) + self.comm.rank] = round(1e9 * spent)  # counts and times in one message
+        self.comm.Allreduce(MPI.IN_PLACE, numbers, MPI.SUM)
+        histogram, times = numbers[: len(mine)], numbers[len(mine) :]
+        if self.bounds is None:
+            return histogram
+        self.prices.learn(histogram, self.bounds, times)
+        return self.prices.of_planes(histogram, self.bounds)
 
     def _sort(self, cells: np.ndarray) -> None:
         """Sort by cell and id, and learn from the neighbours how many ghosts there will be."""
         store, per_plane = self.store, self.grid.plane_cells
         base = int(self.bounds[self.comm.rank]) * per_plane
         owned = np.empty(self.planes * per_plane + 1, np.int64)
-        order = np.empty(store.owned, np.int64)
+        order = np.empty(store.owned, np.uint32)
         sort_by_cell(cells, store.id, store.low, base, owned, order)
+        del cells  # as long as a field
         filled = np.diff(owned)
         below, above = self._trade_planes(filled[:per_plane], filled[-per_plane:])
         store.reorder(order, int(below.sum()), int(above.sum()))

@@ -25,7 +25,7 @@ def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
     parcel[:, fields] = store.id[columns].view(np.float64)  # the bits, not the value
     parcel[:, fields + 1] = store.kind[columns]
     received = _exchange(comm, parcel, np.bincount(owner[leaving], minlength=comm.size))
-    staying = store.low + np.flatnonzero(owner == comm.rank)
+    staying = (store.low + np.flatnonzero(owner == comm.rank)).astype(np.uint32)
     store.reorder(staying, 0, 0)
     store.append(
         np.ascontiguousarray(received[:, fields]).view(np.int64),
@@ -36,13 +36,28 @@ def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
 
 
 def _exchange(comm: MPI.Comm, parcel: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """All-to-all of rows: ``counts`` (ranks,) rows of ``parcel`` for each rank, in rank order."""
+    """All-to-all of rows: ``counts`` (ranks,) rows of ``parcel`` for each rank, in rank order.
+
+    Only ranks that have something for each other exchange messages, each of any size: MPI's own
+    all-to-all of different lengths counts with 32 bits.
+    """
     counts = counts.astype(np.int64)
     incoming = np.empty_like(counts)
     comm.Alltoall(counts, incoming)
-    width = parcel.shape[1]
-    received = np.empty((int(incoming.sum()), width))
-    row = MPI.DOUBLE.Create_contiguous(width).Commit()
-    comm.Alltoallv([parcel, (counts, None), row], [received, (incoming, None), row])
-    row.Free()
+    received = np.empty((int(incoming.sum()), parcel.shape[1]))
+    requests = [
+        *_each(comm.Irecv, received, incoming),
+        *_each(comm.Isend, parcel, counts),
+    ]
+    MPI.Request.Waitall(requests)
     return received
+
+
+def _each(transfer, rows: np.ndarray, counts: np.ndarray):
+    """Begin to send or receive ``counts[r]`` rows to or from each rank r, one after another."""
+    ends = np.cumsum(counts)
+    for rank in np.flatnonzero(counts).tolist():
+        part = rows[ends[rank] - counts[rank] : ends[rank]]
+        message = MPI.DOUBLE.Create_contiguous(part.size).Commit()  # one, of any size
+        yield transfer([part, 1, message], rank)
+        message.Free()

@@ -138,6 +138,7 @@ def sort_by_cell(cells, ids, first_column, base, starts, order):
             order[m] = column
 
 
-def plane_histogram(cells: np.ndarray, grid: Grid) -> np.ndarray:
-    """Particles in each plane of the whole grid, int64 (planes,)."""
-    return np.bincount(cells // grid.plane_cells, minlength=grid.counts[0])
+def planes_of(cells: np.ndarray, grid: Grid) -> np.ndarray:
+    """The plane of the whole grid that each of the cells lies in, int32 to spare memory."""
+    planes = np.empty(len(cells), np.int32)
+    return np.floor_divide(cells, grid.plane_cells, out=planes, casting="unsafe")

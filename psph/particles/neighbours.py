@@ -7,18 +7,19 @@ import numpy as np
 from psph.jit import compiled
 from psph.particles.cells import Grid
 from psph.particles.lanes import LANES, append_near, near_bits
-from psph.physics.space import DUMMIES
+from psph.particles.store import SPARE
+from psph.physics.space import DUMMIES, Filling
 from psph.vectors import at
 
-WIDTH = 8
-"""A row is padded to a multiple of this with the dummy particle: the loop needs no remainder."""
+WIDTH = 4
+"""The rows' lengths are counted in this many entries."""
 
 ROUNDING = 1e-6
 """Relative error of a distance in single precision, generously."""
 
 
 class Neighbours(NamedTuple):
-    """Row k belongs to owned particle ``low + k``: ``lists[begin[k] : begin[k] + 8 blocks[k]]``."""
+    """Row k belongs to owned particle ``low + k``: ``lists[begin[k] : begin[k] + 4 blocks[k]]``."""
 
     begin: np.ndarray
     blocks: np.ndarray
@@ -28,36 +29,36 @@ class Neighbours(NamedTuple):
 def empty(owned: int, entries: int) -> Neighbours:
     """Room for the rows of ``owned`` particles with ``entries`` neighbours in all."""
     return Neighbours(
-        np.zeros(owned, np.uint64), np.zeros(owned, np.uint64), np.zeros(entries, np.uint32)
+        np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), np.zeros(entries, np.uint32)
     )
 
 
 def build(
     room: Neighbours, store, grid: Grid, starts, planes: int, cutoff: float, periods,
-    dummies_apart: float,
+    filling: Filling,
 ):
     """Lists of every owned particle, in the global order of cells, then ids.
 
     ``starts`` are the first columns of the cells of ``planes`` owned planes and one ghost plane
     on either side.  ``room`` is used again where it is large enough.  Rows are filled up with the
-    dummy that is farthest along the first axis, where dummies stand ``dummies_apart`` m apart.
+    dummy that is farthest along the first axis.
     """
     owned = store.owned
-    position, cutoff = in_single_precision(store, grid, cutoff)
+    position, cutoff = in_single_precision(store, grid, int(starts[0]), cutoff)
     if len(room.begin) < owned:
-        room = empty(owned + owned // 16, max(len(room.lists), 64 * owned + 1024))
+        room = empty(owned + owned // SPARE, max(len(room.lists), 64 * owned + 1024))
     while True:
         needed = fill_lists(
             position, periods, cutoff * cutoff, grid.counts, grid.periodic, grid.reach,
-            starts, planes, store.low, store.total, store["position"][0], 1.0 / dummies_apart,
-            room.begin, room.blocks, room.lists,
+            starts, planes, store.low, store.total, store["position"][0], 1.0 / filling.dummies_apart,
+            filling.multiple, room.begin, room.blocks, room.lists,
         )
         if needed == 0:
             return room
-        room = room._replace(lists=np.zeros(needed + needed // 8, np.uint32))
+        room = room._replace(lists=np.zeros(needed + needed // SPARE, np.uint32))
 
 
-def in_single_precision(store, grid: Grid, cutoff: float):
+def in_single_precision(store, grid: Grid, first: int, cutoff: float):
     """Positions relative to the grid, rounded, and a cutoff that loses no neighbour by it.
 
     Twice as many fit into a register.  The lists may name a few particles just outside the cutoff:
@@ -65,11 +66,11 @@ def in_single_precision(store, grid: Grid, cutoff: float):
     """
     arrays = store["position"]
     lower = dict(zip(grid.axes, grid.lower))
-    near = [np.zeros(store.total + WIDTH, np.float32) for _ in arrays]
-    extent = 0.0
+    near = [np.zeros(store.total + LANES, np.float32) for _ in arrays]
+    extent, used = 0.0, slice(first, store.total)
     for d, (x, rounded) in enumerate(zip(arrays, near)):
-        np.subtract(x[: store.total], lower[d], out=rounded[: store.total], casting="same_kind")
-        extent = max(extent, float(np.abs(rounded).max(initial=0.0)))
+        np.subtract(x[used], lower[d], out=rounded[used], casting="same_kind")
+        extent = max(extent, float(np.abs(rounded[used]).max(initial=0.0)))
     rounding = len(arrays) * 2.0 * extent * np.finfo(np.float32).eps
     return tuple(near), cutoff * (1.0 + ROUNDING) + rounding
 
@@ -77,7 +78,7 @@ def in_single_precision(store, grid: Grid, cutoff: float):
 @compiled
 def fill_lists(
     position, periods, cutoff2, counts, periodic, reach, starts, planes, low, dummy,
-    along, dummies_per_metre, begin, blocks, lists,
+    along, dummies_per_metre, multiple, begin, blocks, lists,
 ):
     """Fill the rows; returns 0, or about how many entries are needed when they do not fit.
 
@@ -89,7 +90,7 @@ def fill_lists(
     to_k = np.empty(18, np.uint64)
     column_of = np.empty(64, np.uint32)
     valid = np.empty(64, np.uint64)
-    capacity = len(lists) - WIDTH
+    capacity = len(lists) - 2 * LANES
     one = np.uint64(1)
     end = np.uint64(0)
     for plane in range(1, planes + 1):
@@ -121,7 +122,7 @@ def fill_lists(
                         end = append_near(lists, end, column_g, bits)
                     valid[own_group] ^= own_bit
                     farthest = dummy + farthest_dummy(along[i] * dummies_per_metre)
-                    while (end - first) % np.uint64(WIDTH) != np.uint64(0):
+                    while (end - first) % np.uint64(multiple) != np.uint64(0):
                         lists[end] = farthest
                         end += np.uint64(1)
                     begin[i - np.uint64(low)] = first

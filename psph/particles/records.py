@@ -16,6 +16,11 @@ LINE = 64
 """Bytes of a cache line."""
 
 
+def record_width(numbers: int) -> int:
+    """Places of a record that holds so many numbers: whole groups."""
+    return -(-numbers // GROUP) * GROUP
+
+
 class Records:
     """The records of one rank's particles.
 
@@ -32,8 +37,8 @@ class Records:
         self._rows = np.array(rows, np.uint64)
         self._fixed = isinstance(space, FixedPoint)
         self._steps_per_metre = 1.0 / np.array(space.units) if self._fixed else None
-        self.width = -(-len(rows) // GROUP) * GROUP
-        self._type = np.float32 if self._fixed else np.float64
+        self.width = record_width(len(rows))
+        self._type = space.record_type
         self.table = np.zeros((0, self.width), self._type)
 
     def view(self) -> ParticleView:
@@ -71,7 +76,7 @@ class Records:
 
 def _aligned(records: int, width: int, kind) -> np.ndarray:
     """Zeros (records, width) that begin with a cache line."""
-    line = LINE // np.dtype(kind).itemsize
+    line = LINE // kind.itemsize
     room = np.zeros(records * width + line, kind)
     first = -(room.ctypes.data // room.itemsize) % line
     return room[first : first + records * width].reshape(records, width)

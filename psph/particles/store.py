@@ -10,6 +10,12 @@ from psph.physics.space import DUMMIES
 SLACK = 64
 """Entries past the last particle: a vector load may touch them."""
 
+SPARE = 64
+"""One place in so many is kept free for particles and list entries to come."""
+
+MOST = 2**32 - SLACK
+"""Particles and ghosts that a rank can hold: neighbour lists name them by 32-bit columns."""
+
 FAR = 1e30
 """Coordinate of the dummy neighbour that pads the rows of a list, m: outside every support."""
 
@@ -17,6 +23,19 @@ FAR = 1e30
 def seen_as(name: str) -> str:
     """The field that effects see under a name of a particle view."""
     return "predicted_velocity" if name == "velocity" else name
+
+
+class TooManyParticles(ValueError):
+    """More particles than the ranks can hold."""
+
+
+def check_room(particles: int, ranks: int) -> None:
+    """Raise TooManyParticles, with the number of ranks that works, where one could not hold its share."""
+    if particles > ranks * MOST:
+        raise TooManyParticles(
+            f"{particles:,} particles on {ranks} ranks: a rank holds {MOST:,} at the most, its "
+            f"ghosts included; use {particles // MOST + 1} ranks or more"
+        )
 
 
 class Store:
@@ -88,19 +107,34 @@ class Store:
 
     def owned_rows(self, name: str) -> np.ndarray:
         """This rank's values as people read them: ``(owned,)`` or ``(owned, dim)``, a copy."""
+        return self.shown(name).copy(order="C")
+
+    def shown(self, name: str) -> np.ndarray:
+        """What :meth:`owned_rows` copies, to be read and not to be kept: the next step changes it."""
         if name in ("id", "kind"):
-            return getattr(self, name)[self.inner].copy()
-        if name not in self.rows:
-            return np.full(self.owned, self.constants[name])
-        rows = self.rows[name]
-        block = self.data[rows.start : rows.stop, self.inner]
-        return np.ascontiguousarray(block.T) if FIELDS[name].vector else block[0].copy()
+            values = getattr(self, name)[self.inner]
+        elif name in self.rows:
+            rows = self.rows[name]
+            block = self.data[rows.start : rows.stop, self.inner]
+            values = block.T if FIELDS[name].vector else block[0]
+        else:
+            values = np.full(self.owned, self.constants[name])
+        values.flags.writeable = False
+        return values
 
     def reserve(self, columns: int) -> None:
-        """Make room for so many particles and the dummy; contents stay."""
+        """Make room for so many particles and the dummy; contents stay.
+
+        Raises TooManyParticles where their columns would not fit into 32 bits.
+        """
+        if columns > MOST:
+            raise TooManyParticles(
+                f"{columns:,} particles and ghosts on one rank: it holds {MOST:,} at the most; "
+                "use more ranks"
+            )
         if columns + SLACK <= self.capacity:
             return
-        wide = columns + columns // 16 + SLACK
+        wide = columns + columns // SPARE + SLACK
         for name in ("data", "id", "kind"):
             old = getattr(self, name)
             new = np.zeros((*old.shape[:-1], wide), old.dtype)

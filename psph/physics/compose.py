@@ -5,7 +5,6 @@ call) and as a recursion over the tuple's type, which numba resolves while compi
 that lacks a method leaves no trace in the compiled loop.
 """
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -137,7 +136,7 @@ def geometry(kernel, x_ij, tiny, i, j):
     """Pair of the particle views ``i`` and ``j``, ``x_ij`` m apart; ``tiny`` (m²) keeps r from zero."""
     u_ij = subtract(i.velocity, j.velocity)
     r2 = dot(x_ij, x_ij) + tiny
-    r = math.sqrt(r2)
+    r = np.sqrt(r2)
     return Pair(x_ij, u_ij, r2, dot(u_ij, x_ij), weight(kernel, r), slope_over_r(kernel, r))
 
 

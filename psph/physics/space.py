@@ -3,10 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
+from numba.core import types
 from numba.extending import overload
 
 from psph.jit import call_by_type
-from psph.simd import steps_between
+from psph.simd import lanes_of, steps_between
 from psph.vectors import nearest_image, subtract
 
 difference = call_by_type("difference")
@@ -22,12 +23,22 @@ DUMMIES = 4
 """Dummy particles a quarter of the range apart: one is out of reach of any particle."""
 
 
+class Filling(NamedTuple):
+    """How the rows of a neighbour list are filled up: to whole registers, with far dummies."""
+
+    multiple: int
+    """Entries of a row are a multiple of this."""
+    dummies_apart: float
+    """Distance of the dummy particles along the first axis, m."""
+
+
 class Metres(NamedTuple):
     """Positions in double precision; ``periods`` m, None for an open axis."""
 
     periods: tuple
 
-    dummies_apart = np.inf
+    filling = Filling(lanes_of(types.float64).width, np.inf)
+    record_type = np.dtype(np.float64)
 
     def difference(self, i, j, records, k):
         """x_i − x_j to the nearest image, m."""
@@ -44,10 +55,12 @@ class FixedPoint(NamedTuple):
 
     units: tuple
 
+    record_type = np.dtype(np.float32)
+
     @property
-    def dummies_apart(self) -> float:
-        """Distance of dummy particles along the first axis, m."""
-        return self.units[0] * STEPS / DUMMIES
+    def filling(self) -> Filling:
+        """Rows of single-precision lanes; dummies a quarter of the range apart."""
+        return Filling(lanes_of(types.float32).width, self.units[0] * STEPS / DUMMIES)
 
     def difference(self, i, j, records, k):
         """x_i − x_j to the nearest image, m."""

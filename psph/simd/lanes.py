@@ -141,7 +141,10 @@ for _function, _symbol in (
     (operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="),
 ):
     _give(_function, Mask, _comparison(_symbol))
-for _function, _name in ((math.sqrt, "sqrt"), (math.exp, "exp"), (abs, "fabs"), (round, "rint")):
+for _function, _name in (
+    (math.sqrt, "sqrt"), (np.sqrt, "sqrt"), (math.exp, "exp"), (np.exp, "exp"), (abs, "fabs"),
+    (round, "rint"),
+):
     _give(_function, _itself, _llvm(_name), 1)
 _give(operator.neg, _itself, lambda builder, a: builder.fneg(a), 1)
 _give(operator.pos, _itself, lambda builder, a: a, 1)

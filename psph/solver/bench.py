@@ -129,7 +129,7 @@ def count_inside(view, periods, support2, low, owned, begin, blocks, lists):
     inside = 0
     for k in range(owned):
         i = take(view, low + k)
-        for n in range(begin[k], begin[k] + blocks[k] * np.uint64(8)):
+        for n in range(begin[k], begin[k] + np.uint64(blocks[k]) * np.uint64(4)):
             x_ij = nearest_image(subtract(i.position, take(view, lists[n]).position), periods)
             inside += dot(x_ij, x_ij) < support2
     return inside

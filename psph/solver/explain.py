@@ -4,12 +4,16 @@ import math
 from collections.abc import Iterator
 
 from psph.parallel.slabs import check_ranks
-from psph.particles.cells import make_grid
+from psph.particles.cells import COLUMNS_PER_CUTOFF, make_grid
 from psph.particles.fields import FIELDS
+from psph.particles.records import record_width
+from psph.particles.store import SPARE
+from psph.physics.count import flops_per_pair
 from psph.solver.plan import Plan, make_plan
 
-GHOST_PLANES = 2
-"""A rank holds a plane of cells from each of its neighbours."""
+NUMBER, IDENTITY, ROW, SORTING, ENTRY = 8, 9, 12, 24, 4
+"""Bytes of a number; of a particle's id and kind; of where its list stands; of what a rebuild sorts
+it with; and of a neighbour in a list."""
 
 
 def explain(scene, ranks: int) -> Iterator[str]:
@@ -29,12 +33,39 @@ def slab_planes(scene) -> int:
     return grid.counts[0]
 
 
-def bytes_per_particle(scene, plan: Plan) -> float:
-    """Memory of a particle with its neighbour list, bytes."""
-    columns = sum(scene.dimensions if FIELDS[n].vector else 1 for n in plan.arrays)
-    identity, row, padding = 9, 16, 4
-    sorting = 24
-    return 8 * columns + identity + sorting + row + 4 * (_within(scene, _cutoff(scene)) + padding)
+def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
+    """Memory of a particle: its fields and what keeps them in order, and its neighbour list, bytes."""
+    own = NUMBER * _rows(scene, plan.arrays) + IDENTITY
+    record = record_width(_rows(scene, plan.neighbour_fields)) * plan.space.record_type.itemsize
+    own += own / SPARE + record + SORTING + NUMBER * _cells_per_particle(scene)
+    entries = _within(scene, _cutoff(scene)) + (plan.space.filling.multiple - 1) / 2
+    return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+
+
+def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
+    """What a refresh of the halo moves: bytes a ghost, and bytes that a rank sends in all."""
+    each = NUMBER * _rows(scene, plan.refreshed)
+    return each, each * _neighbours(scene, ranks) * _ghosts_a_side(scene)
+
+
+def _rows(scene, names: tuple[str, ...]) -> int:
+    """Numbers that these fields take."""
+    return sum(scene.dimensions if FIELDS[name].vector else 1 for name in names)
+
+
+def _neighbours(scene, ranks: int) -> int:
+    """Ranks, or sides, that a rank exchanges ghosts with."""
+    return 2 if scene.periods[scene.axis] is not None else min(ranks - 1, 2)
+
+
+def _ghosts_a_side(scene) -> float:
+    """Particles of an average plane of cells: a rank holds one plane from each side."""
+    return float(scene.counts().sum()) / slab_planes(scene)
+
+
+def _cells_per_particle(scene) -> float:
+    finest = COLUMNS_PER_CUTOFF if scene.dimensions > 1 else 1
+    return finest * (scene.spacing / _cutoff(scene)) ** scene.dimensions
 
 
 def _cutoff(scene) -> float:
@@ -65,25 +96,33 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
 def _rank_lines(scene, plan: Plan, particles: int, ranks: int) -> Iterator[str]:
     planes = slab_planes(scene)
     check_ranks(ranks, planes)
-    each = bytes_per_particle(scene, plan)
-    alone = ranks == 1 and scene.periods[scene.axis] is None
-    ghosts = 0 if alone else GHOST_PLANES * particles / planes
-    memory = each * (particles / ranks + ghosts) / 2**20
-    refreshed = sum(scene.dimensions if FIELDS[n].vector else 1 for n in plan.refreshed)
+    own, listed = bytes_per_particle(scene, plan)
+    ghosts = _neighbours(scene, ranks) * _ghosts_a_side(scene)
+    memory = (own * (particles / ranks + ghosts) + listed * particles / ranks) / 2**20
+    each, sent = bytes_per_refresh(scene, plan, ranks)
     along = "xyz"[scene.axis]
     yield f"  ranks       {ranks}, at most {planes}: that many planes of cells along {along}"
-    yield f"  memory      about {memory:.1f} MiB a rank, {each:.0f} bytes a particle"
+    yield (
+        f"  memory      about {memory:.1f} MiB a rank, {own + listed:.0f} bytes a particle, "
+        f"{listed:.0f} of them in its neighbour list"
+    )
     yield f"  arrays      {', '.join(plan.arrays)}"
     shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
     yield f"  shared      {shared}"
     yield f"  halo        once a step: {', '.join(plan.refreshed)}"
-    yield f"              {8 * refreshed} bytes a ghost, about {particles / planes:.0f} ghosts a side"
+    yield (
+        f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
+        f"{sent:,.0f} bytes from a rank"
+    )
     if plan.ghost_fields:
         yield f"              once a rebuild: {', '.join(plan.ghost_fields)}"
 
 
 def _pass_lines(scene, plan: Plan) -> Iterator[str]:
-    yield "Pass over the neighbours, one a step"
+    flops = flops_per_pair(
+        plan.effects, plan.reductions, plan.kernel, plan.constants, scene.periods
+    )
+    yield f"Pass over the neighbours, one a step, {flops} flops a pair"
     for call in plan.called:
         yield f"  {type(call.effect).__name__:<20}{_first_line(call.effect)}"
         yield f"  {'':<20}because: {call.reason}"

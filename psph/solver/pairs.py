@@ -33,7 +33,8 @@ def sum_over_neighbours(
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
         totals = spread(compose.start(reductions, i), records)
-        for n in range(begin[row], begin[row] + blocks[row] * np.uint64(WIDTH), width_of(records)):
+        end = begin[row] + np.uint64(blocks[row]) * np.uint64(WIDTH)
+        for n in range(begin[row], end, width_of(records)):
             j = fetch(neighbour_view, records, lists, n)
             pair = geometry(kernel, difference(space, i, j, records, k), tiny, i, j)
             rate = rate + compose.density_rate(effects, i, j, pair)

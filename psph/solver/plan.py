@@ -148,9 +148,8 @@ def words(name: str) -> str:
 
 def _read_of_neighbours(called) -> set[str]:
     """Names of the fields that some effect reads of a neighbour."""
-    names = {"position"}.union(*(c.reads.neighbour for c in called))
-    if any(c.reads.pair & {"u_ij", "u_dot_x"} for c in called):
-        names.add("velocity")
+    # The velocity also tells how far neighbours drift apart.
+    names = {"position", "velocity"}.union(*(c.reads.neighbour for c in called))
     return {"predicted_velocity" if n == "velocity" else n for n in names}
 
 

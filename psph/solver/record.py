@@ -89,7 +89,7 @@ class Record:
     def write_frame(self) -> None:
         """All saved fields of all particles."""
         sim = self.simulation
-        arrays = {name: sim.store.owned_rows(name) for name, f in FIELDS.items() if f.saved}
+        arrays = {name: sim.store.shown(name) for name, f in FIELDS.items() if f.saved}
         self.frames.write(self.written, sim.time, sim.steps, arrays)
         self.written += 1
 

@@ -9,6 +9,7 @@ from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
 from psph.output.progress import Progress
 from psph.parallel.slabs import check_ranks
+from psph.particles.store import check_room
 from psph.scene import Scene, check
 from psph.solver.explain import slab_planes
 from psph.solver.plan import make_plan
@@ -31,9 +32,10 @@ def run(case, folder: Path, comm, overwrite: bool = False) -> Simulation:
     for warning in check(scene):
         say(f"warning: {warning}", sys.stderr)
     check_ranks(comm.size, slab_planes(scene))
+    particles = int(scene.counts().sum())
+    check_room(particles, comm.size)
     _prepare_folder(case, folder, comm, overwrite)
     plan = make_plan(scene)
-    particles = int(scene.counts().sum())
     say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")
     for line in filter(None, [funnel_notice(comm)]):
         say(line)

@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 
+from psph.jit import marker
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
@@ -42,24 +43,37 @@ def create_particles(scene, plan: Plan, comm) -> Store:
 
 
 def compile_ahead(scene, plan: Plan, comm) -> float:
-    """Compile, or load from the cache, every loop of the plan on rank 0 while the others wait.
+    """Every loop of the plan, ready to run: compiled, or loaded from the cache.
 
-    One step of two particles has the types of the whole run.  Returns the seconds it took.
+    Where the cache holds them all, the ranks load together; else rank 0 compiles while the others
+    wait, and they load when they need one.  Returns the seconds it took.  Collective.
     """
     begun = time.perf_counter()
-    if comm.rank == 0:
-        store = Store(scene.dimensions, plan.arrays, plan.constants)
-        block = np.zeros((len(store.data), 2))
-        for name in ("density", *PER_MATERIAL):
-            if name in store:
-                block[store.rows[name].start] = 1.0
-        middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
-        block[list(store.rows["position"])] = np.array(middle)[:, None]
-        store.append(np.arange(2), np.zeros(2, np.uint8), block)
-        rehearsal = Simulation(scene, plan, store, alone(), Ledger())
-        rehearsal.step()
-        rehearsal.settle_pressure()
-        for probe in probes_of(scene.case):
-            probe.sample(rehearsal.domain, scene.kernel)
+    store = Store(scene.dimensions, plan.arrays, plan.constants)
+    ready = marker(
+        "step and probes" if scene.case.probes else "step",
+        plan.effects, plan.kernel, plan.state, plan.space, scene.periods, store.view(),
+    )
+    kept = comm.bcast(comm.rank == 0 and ready.exists())
+    if kept or comm.rank == 0:
+        _rehearse(scene, plan, store)
+    if comm.rank == 0 and not kept:
+        ready.touch()
     comm.Barrier()
     return time.perf_counter() - begun
+
+
+def _rehearse(scene, plan: Plan, store: Store) -> None:
+    """One step of two particles in ``store``: it has the types of the whole run."""
+    block = np.zeros((len(store.data), 2))
+    for name in ("density", *PER_MATERIAL):
+        if name in store:
+            block[store.rows[name].start] = 1.0
+    middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
+    block[list(store.rows["position"])] = np.array(middle)[:, None]
+    store.append(np.arange(2), np.zeros(2, np.uint8), block)
+    rehearsal = Simulation(scene, plan, store, alone(), Ledger())
+    rehearsal.step()
+    rehearsal.settle_pressure()
+    for probe in probes_of(scene.case):
+        probe.sample(rehearsal.domain, scene.kernel)

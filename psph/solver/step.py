@@ -34,13 +34,15 @@ class Simulation:
         self.tiny = TINY * scene.smoothing_length**2
         self.domain = Domain(
             comm, store, scene.axis, support + skin, scene.lower, scene.upper,
-            scene.periods, plan.ghost_fields, plan.refreshed, plan.space.dummies_apart,
+            scene.periods, plan.ghost_fields, plan.refreshed, plan.space.filling,
         )
         self.skin = Skin(self.domain, skin)
         self.records = Records(store, plan.neighbour_fields, plan.space)
         self.time, self.dt, self.steps = 0.0, 0.0, 0
         self.limited_by = ""
+        self._paid = 0.0
         self._start()
+        self._spent_on_pairs()  # the first passes may have loaded compiled loops
 
     def step(self) -> None:
         """Advance by one time step."""
@@ -82,8 +84,13 @@ class Simulation:
 
     def _rebuild(self) -> None:
         with self.ledger("rebuild"):
-            self.domain.rebuild()
+            self.domain.rebuild(self._spent_on_pairs())
         self.skin.renew()
+
+    def _spent_on_pairs(self) -> float:
+        """Seconds of this rank's pair loop since this was last asked."""
+        paid, self._paid = self._paid, self.ledger.seconds["pairs"]
+        return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
 
     def _forces(self) -> None:
         with self.ledger("records"):

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.mpi(min_size=2)
 SIDES = {1: (4.0,), 2: (2.0, 1.5), 3: (1.5, 1.2, 1.3)}
 
 
-def box(dim, periodic, axis, **physics):
+def box(dim, periodic, axis, skin=0.1, **physics):
     """A jittered box whose halves run against each other: several rebuilds in some tens of steps."""
     corners = {"lower": [0.0] * dim, "upper": list(SIDES[dim])}
     middle = 0.5 * SIDES[dim][0]
@@ -30,6 +30,7 @@ def box(dim, periodic, axis, **physics):
                 **({"periodic": ["x", "y", "z"][:dim], **corners} if periodic else {}),
             },
             "time": {"end": 1.0, "cfl": 0.4},
+            "neighbours": {"skin": skin},
             "physics": {"sound_speed": 10.0, "artificial_viscosity": 0.1, **physics},
             "fluids": {
                 name: {
@@ -43,14 +44,25 @@ def box(dim, periodic, axis, **physics):
     )
 
 
-def run(case, comm, steps=40):
-    """(everything that particles carry, in the order of their ids; rebuilds; ids a rank)."""
+def start(case, comm, ledger=None):
+    """The simulation of a case before its first step."""
     scene = Scene(case)
     plan = make_plan(scene)
-    simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
+    store = create_particles(scene, plan, comm)
+    return Simulation(scene, plan, store, comm, ledger or Ledger())
+
+
+def run(case, comm, steps=40):
+    """(everything that particles carry, in the order of their ids; rebuilds; time)."""
+    simulation = start(case, comm)
     for _ in range(steps):
         simulation.step()
-    store = simulation.store
+    return state(simulation)
+
+
+def state(simulation):
+    """What :func:`run` returns."""
+    store, comm = simulation.store, simulation.comm
     fields = ("position", "velocity", "density", "acceleration", "density_rate")
     mine = np.column_stack([store.owned_rows("id"), *(store.owned_rows(f) for f in fields)])
     rows = np.concatenate(comm.allgather(mine))
@@ -68,6 +80,41 @@ def test_same_bits_as_on_one_rank(dim, axis, periodic, pressure_gradient):
     assert np.array_equal(together, alone)
     moved = together[:, 1] - together[0, 1]
     assert np.isfinite(together).all() and moved.any()
+
+
+@pytest.mark.parametrize("periodic", (False, True))
+def test_same_bits_where_a_list_lasts(periodic):
+    """Steps between rebuilds: the halo is refreshed while the interior is computed."""
+    case = box(2, periodic, 0, skin=0.4)
+    together, rebuilds, _ = run(case, COMM)
+    assert 2 < rebuilds < 20
+    assert np.array_equal(together, run(case, MPI.COMM_SELF)[0])
+
+
+class SlowFirstRank(Ledger):
+    """Tells that rank 0 needs three times as long for a particle as the others."""
+
+    store = None
+
+    def __exit__(self, *exception):
+        """As if: a tenth of a millisecond a particle, or three."""
+        name, _ = self._open.pop()
+        if name == "pairs" and self.store:
+            self.seconds[name] += 1e-4 * self.store.owned * (3 if COMM.rank == 0 else 1)
+
+
+def test_a_slow_rank_gets_fewer_particles_and_the_bits_stay():
+    case, ledger = box(1, True, 0), SlowFirstRank()
+    simulation = start(case, COMM, ledger)
+    ledger.store = simulation.store
+    before = simulation.domain.bounds.copy()
+    for _ in range(200):
+        simulation.step()
+    assert simulation.domain.rebuilds > 10
+    assert simulation.domain.bounds[1] < before[1]
+    held = COMM.allgather(simulation.store.owned)
+    assert held[0] < 0.7 * held[1]
+    assert np.array_equal(state(simulation)[0], run(case, MPI.COMM_SELF, 200)[0])
 
 
 def test_the_comparison_sees_another_start():

@@ -5,7 +5,7 @@ import pytest
 from mpi4py import MPI
 
 from psph.parallel.reductions import exact_sums
-from psph.parallel.slabs import TooManyRanks, fullest, partition, rebalanced
+from psph.parallel.slabs import PAR, TOLERATED, Prices, TooManyRanks, dearest, partition, rebalanced
 
 
 def test_equal_planes_are_shared_equally():
@@ -18,10 +18,31 @@ def test_every_rank_gets_a_plane():
     assert (np.diff(bounds) >= 1).all() and bounds[0] == 0 and bounds[-1] == 6
 
 
+def test_a_cut_lies_where_it_comes_nearest_to_equal_shares():
+    """The rule, written rank by rank."""
+    rng = np.random.default_rng(6)
+    for planes, ranks in ((9, 9), (30, 7), (50, 3), (40, 1)):
+        histogram = rng.integers(0, 50, planes) * rng.integers(0, 2, planes)
+        reached, bounds = np.concatenate([[0], np.cumsum(histogram)]), [0]
+        for r in range(1, ranks):
+            distance = np.abs(reached - reached[-1] * (r / ranks))
+            cut = int(distance[1:].argmin()) + 1
+            bounds.append(min(max(cut, bounds[-1] + 1), planes - ranks + r))
+        found = partition(histogram, ranks)
+        assert distances(reached, found) == distances(reached, bounds + [planes])
+        assert found[0] == 0 and found[-1] == planes and (np.diff(found) >= 1).all()
+
+
+def distances(reached, bounds):
+    """How far each cut is from an equal share (ties may fall either way)."""
+    goals = reached[-1] * (np.arange(len(bounds)) / (len(bounds) - 1))
+    return np.abs(reached[bounds] - goals).round(9).tolist()
+
+
 def test_balance_follows_the_particles():
     histogram = np.random.default_rng(0).integers(0, 100, 200)
     for ranks in (2, 3, 7):
-        load = fullest(histogram, partition(histogram, ranks))
+        load = dearest(histogram, partition(histogram, ranks))
         assert load <= histogram.sum() / ranks + histogram.max()
 
 
@@ -36,6 +57,66 @@ def test_slabs_move_only_when_it_pays():
     slightly = np.array([100] * 5 + [104] * 5)
     assert rebalanced(slightly, old, 2) is old
     assert rebalanced(np.array([300] * 5 + [100] * 5), old, 2).tolist() == [0, 3, 10]
+
+
+def followed(histogram, speeds, rebuilds, noise=0.0, seed=0):
+    """Slabs after each of so many rebuilds where rank r computes ``speeds[r]`` particles a ns."""
+    rng, speeds = np.random.default_rng(seed), np.array(speeds)
+    prices, bounds, history = Prices(len(speeds)), None, []
+    for _ in range(rebuilds):
+        costs = histogram
+        if bounds is not None:
+            held = np.add.reduceat(histogram, bounds[:-1])
+            spent = 1e4 * held / speeds * rng.normal(1.0, noise, len(speeds))
+            prices.learn(histogram, bounds, spent.astype(np.int64))
+            costs = prices.of_planes(histogram, bounds)
+        bounds = rebalanced(costs, bounds, len(speeds))
+        history.append(bounds.tolist())
+    return history
+
+
+@pytest.mark.parametrize("speeds", [(0.5, 1.0), (1.0, 0.5, 1.0, 1.0), (1.0, 1.3, 0.9, 1.1, 0.6)])
+def test_a_slow_rank_gets_fewer_planes(speeds):
+    """A rebuild at a time the slabs come to take equal times, and then they stay."""
+    histogram = np.full(600, 1000)
+    history = followed(histogram, speeds, 60)
+
+    def slowest(bounds):
+        return max(np.diff(bounds) / np.array(speeds)) * sum(speeds) / 600
+
+    assert slowest(history[0]) > 1.25  # by counts: this is what is to be gained
+    assert slowest(history[-1]) < 1.02 * TOLERATED
+    assert history[-1] == history[-20]
+    changes = sum(a != b for a, b in zip(history, history[1:]))
+    assert 1 <= changes <= 20
+
+
+def test_noise_moves_nothing():
+    """Three per cent from interval to interval on every rank: no slab moves, even or not."""
+    for seed in range(5):
+        history = followed(np.full(64, 1000), [1.0] * 8, 200, 0.03, seed)
+        assert history[0] == history[-1] and len(set(map(tuple, history))) == 1
+        settled = followed(np.full(600, 1000), (0.5, 1.0, 1.0), 200, 0.03, seed)[60:]
+        assert sum(a != b for a, b in zip(settled, settled[1:])) <= 1
+    wild = followed(np.full(64, 1000), [1.0] * 8, 200, 0.5)  # the control
+    assert len(set(map(tuple, wild))) > 1
+
+
+def test_an_accident_empties_no_slab():
+    prices, bounds = Prices(2), np.array([0, 5, 10])
+    prices.learn(np.full(10, 100), bounds, np.array([10**12, 10**6]))
+    assert PAR < prices.each[0] < 2 * PAR and PAR // 2 < prices.each[1] < PAR
+    unknown = Prices(2)
+    unknown.learn(np.full(10, 100), bounds, np.array([900, 100]))  # a microsecond says nothing
+    unknown.learn(np.array([0] * 5 + [100] * 5), bounds, np.array([10**9, 10**9]))  # nor no particle
+    assert unknown.each[0] == PAR
+
+
+def test_prices_follow_a_grid_that_grows():
+    prices, bounds = Prices(2), np.array([0, 5, 10])
+    prices.learn(np.full(10, 1000), bounds, np.array([3 * 10**9, 10**9]))
+    slow, fast = prices.of_planes(np.ones(12, np.int64), bounds)[[5, 6]]
+    assert slow > PAR > fast
 
 
 def test_a_sum_does_not_depend_on_the_order():

@@ -48,6 +48,7 @@ def summed(formula, count=2):
         (lambda a, b: 1.0 / (+a), None),
         (lambda a, b: a**5 + b**1, None),
         (lambda a, b: math.sqrt(a) * math.exp(-b), lambda a, b: np.sqrt(a) * np.exp(-b)),
+        (lambda a, b: np.sqrt(a) * np.exp(-b), None),
         (lambda a, b: abs(a - b), None),
         (lambda a, b: round(a * 3.0), np.vectorize(lambda a, b: round(a * 3.0))),
         (lambda a, b: max(a, b) + min(a, 0.7), lambda a, b: np.maximum(a, b) + np.minimum(a, 0.7)),

@@ -1,7 +1,5 @@
 """The plan: what a scene calls for is there, with its reason; what it does not is nowhere."""
 
-import re
-
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -125,50 +123,6 @@ def test_the_surface_effect_brings_its_field_and_no_message(planned):
     _, plan = planned("physics.free_surface=0.9")
     assert "kernel_sum" in plan.arrays and "kernel_sum" not in plan.refreshed
     assert len(plan.reductions) == 1 and plan.limits_density
-
-
-def assembly(scene, plan):
-    """Instructions of the pair loop without names, compiled afresh."""
-    import numba
-
-    from psph.jit import FAST
-    from psph.solver import pairs
-
-    loop = numba.njit(fastmath=FAST, error_model="numpy")(pairs.sum_over_neighbours.py_func)
-    simulation = Simulation(
-        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
-    )
-    s, lists = simulation.store, simulation.domain.lists
-    loop(
-        plan.effects, plan.reductions, plan.kernel, plan.space, simulation.tiny, s.view(),
-        simulation.records.view(), simulation.records.table,
-        s.low, s.low + s.owned, s.low, lists.begin, lists.blocks, lists.lists,
-        s["acceleration"], s["density_rate"], (),
-    )
-    [code] = loop.inspect_asm().values()
-    operations = re.findall(r"^\s+([a-z][a-z0-9]+)\s", code, re.MULTILINE)
-    return [op for op in operations if op not in ("movabsq", "leaq")]  # addresses of names
-
-
-class Buoyancy(compose.NamedTuple):
-    """An effect that nobody asks for."""
-
-    strength: float = 1.0
-
-    def radial(self, i, j, pair):
-        """Something costly."""
-        return self.strength * (i.viscosity + j.viscosity) * pair.w
-
-
-def test_an_unused_effect_leaves_the_compiled_loop_as_it_is(planned, monkeypatch):
-    before = assembly(*planned())
-    longer = (*catalogue.CATALOGUE, Entry("fluids.*.viscosity", Buoyancy))
-    monkeypatch.setattr(plan_module, "CATALOGUE", longer)
-    scene, plan = planned()
-    assert "Buoyancy" in {e.effect.__name__ for e in plan.absent}
-    assert assembly(scene, plan) == before
-    scene, plan = planned("fluids.water.viscosity=1e-3")  # the control: it is used here
-    assert "Buoyancy" in names(plan) and len(assembly(scene, plan)) > len(before)
 
 
 def test_memory_and_steps_are_foretold(planned):

@@ -1,0 +1,185 @@
+"""Every message of a step is one that the plan asks for, and it travels behind the interior."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from parallel.test_simulation import box, start
+
+from psph.output.ledger import Ledger
+from psph.parallel import halo as halo_module
+from psph.particles.neighbours import WIDTH
+
+COMM = MPI.COMM_WORLD
+pytestmark = pytest.mark.mpi(min_size=2)
+
+
+class Watched:
+    """A communicator that writes down each call; messages count when they are started."""
+
+    def __init__(self, comm, events):
+        self.comm, self.events = comm, events
+        self.rank, self.size = comm.rank, comm.size
+
+    def __getattr__(self, name):
+        method = getattr(self.comm, name)
+
+        def call(*args, **named):
+            result = method(*args, **named)
+            if name.endswith("_init"):  # local: nothing travels yet
+                [_, count, kind], partner, _ = args
+                message = (name, partner, count * kind.Get_size())
+                self.events.prepared.append((result, message))
+            else:
+                size = args[1].nbytes if name == "Allreduce" else None
+                self.events.append((name, size))
+            return result
+
+        return call
+
+
+class Events(list):
+    """What happened on this rank, in order."""
+
+    def __init__(self):
+        super().__init__()
+        self.prepared = []
+
+    def start_all(self, requests):
+        """Write down the messages of persistent requests."""
+        self.extend(message for known, message in self.prepared if known in requests)
+        MPI.Prequest.Startall(requests)
+
+    def wait_all(self, requests):
+        """Write down that a refresh is waited for."""
+        self.append(("wait", len(requests)))
+        MPI.Request.Waitall(requests)
+
+
+class Watch(Ledger):
+    """A ledger that also tells the events which pass over the pairs begins."""
+
+    def __init__(self, events):
+        super().__init__()
+        self.events = events
+
+    def __call__(self, name):
+        if name == "pairs":
+            self.events.append(("pairs", None))
+        return super().__call__(name)
+
+
+@pytest.fixture
+def watched(monkeypatch):
+    """A function: case → (simulation, its events)."""
+
+    def make(case):
+        events = Events()
+        counting = SimpleNamespace(
+            PROC_NULL=MPI.PROC_NULL, DOUBLE=MPI.DOUBLE, Comm=MPI.Comm, Datatype=MPI.Datatype,
+            Prequest=SimpleNamespace(Startall=events.start_all),
+            Request=SimpleNamespace(Waitall=events.wait_all),
+        )
+        monkeypatch.setattr(halo_module, "MPI", counting)
+        return start(case, Watched(COMM, events), Watch(events)), events
+
+    return make
+
+
+def events_of_a_step(simulation, events, with_rebuild):
+    """The events of the next step that rebuilds, or does not."""
+    for _ in range(60):
+        rebuilds = simulation.domain.rebuilds
+        events.clear()
+        simulation.step()
+        if (simulation.domain.rebuilds > rebuilds) == with_rebuild:
+            return list(events)
+    raise AssertionError("no such step")
+
+
+def expected_sends(simulation, names):
+    """(partner, bytes) of one refresh, from what the neighbours hold as ghosts."""
+    store, domain = simulation.store, simulation.domain
+    rows = sum(simulation.store.dimensions if n in VECTORS else 1 for n in names)
+    ghosts = COMM.allgather((store.low, store.high))
+    below, above = domain._partner(-1), domain._partner(1)
+    sends = [(below, 8 * rows * ghosts[below][1])] if below != MPI.PROC_NULL else []
+    return sends + ([(above, 8 * rows * ghosts[above][0])] if above != MPI.PROC_NULL else [])
+
+
+SKIN = 0.4
+"""So wide that a list lasts for some steps."""
+
+VECTORS = ("position", "predicted_velocity")
+PLAIN = ("position", "predicted_velocity", "pressure", "specific_volume")
+
+CASES = {
+    "plain": (box(2, False, 0, SKIN, artificial_viscosity=None), PLAIN),
+    "periodic": (box(2, True, 0, SKIN), PLAIN),
+    "3D": (box(3, True, 0, SKIN), PLAIN),
+    "p- and surface": (box(2, False, 1, SKIN, pressure_gradient="minimum", free_surface=0.9), PLAIN),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_step_sends_one_message_a_neighbour_and_reduces_once(name, watched):
+    case, fields = CASES[name]
+    simulation, events = watched(case)
+    assert set(simulation.plan.refreshed) == set(fields)
+    found = events_of_a_step(simulation, events, with_rebuild=False)
+    sends = [event[1:] for event in found if event[0] == "Send_init"]
+    assert sorted(sends) == sorted(expected_sends(simulation, fields))
+    assert 0 < len(sends) <= 2 and all(size > 0 for _, size in sends)
+    received = [event for event in found if event[0] == "Recv_init"]
+    assert len(received) == len(sends)
+    assert sum(e[2] for e in received) == 8 * (simulation.store.low + simulation.store.high) * sum(
+        simulation.store.dimensions if n in VECTORS else 1 for n in fields
+    )
+    rest = [e for e in found if e[0] not in ("Send_init", "Recv_init", "wait", "pairs")]
+    assert rest == [("Allreduce", 4 * 8)]
+    assert sum(s for _, s in sends) == simulation.domain.halo.bytes(simulation.plan.refreshed)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_halo_travels_while_the_interior_is_computed(name, watched):
+    simulation, events = watched(CASES[name][0])
+    found = [event[0] for event in events_of_a_step(simulation, events, with_rebuild=False)]
+    started = [k for k, what in enumerate(found) if what in ("Send_init", "Recv_init")]
+    interior, rim = (k for k, what in enumerate(found) if what == "pairs")
+    assert max(started) < interior < found.index("wait") < rim
+    first, last = simulation.domain.interior()
+    # There is something to hide it behind, but for the few planes of the small box in 3D.
+    assert COMM.allreduce(last - first) > 0 or name == "3D"
+    store, lists = simulation.store, simulation.domain.lists
+    for k in range(first - store.low, last - store.low):
+        begin, n = int(lists.begin[k]), int(lists.blocks[k]) * WIDTH
+        row = lists.lists[begin : begin + n]
+        row = row[row != store.total]
+        assert ((row >= store.low) & (row < store.low + store.owned)).all()
+
+
+def test_a_rebuild_sends_what_does_not_change_too_and_no_more(watched):
+    case = box(2, True, 0, SKIN)
+    water = case.fluids["water"]
+    halves = [[0.0, 0.0], [2.0, 0.7]], [[0.0, 0.7], [2.0, 1.5]]
+    fluids = {
+        name: water.model_dump(exclude_unset=True)
+        | {"shape": {"box": {"lower": low, "upper": up}}, "density": density}
+        for name, density, (low, up) in zip(("water", "oil"), (1000.0, 800.0), halves)
+    }
+    case = type(case).model_validate(case.model_dump(exclude_unset=True) | {"fluids": fluids})
+    simulation, events = watched(case)
+    assert simulation.plan.ghost_fields == ("mass",)
+    found = events_of_a_step(simulation, events, with_rebuild=True)
+    sends = [event[1:] for event in found if event[0] == "Send_init"]
+    assert sorted(sends) == sorted(expected_sends(simulation, (*PLAIN, "mass")))
+    names = [e[0] for e in found if e[0] not in ("Send_init", "Recv_init", "wait", "pairs")]
+    # extent, planes, movers; the counts of the ghost planes below and above; the limits
+    moving = ["Alltoall", *(n for n in names if n in ("Irecv", "Isend"))]
+    asked = ["Allreduce"] * 3 + ["Sendrecv"] * 2 + ["Allreduce"]
+    assert names == asked or names == asked[:3] + moving + asked[3:]
+    again = events_of_a_step(simulation, events, with_rebuild=False)
+    sends = [event[1:] for event in again if event[0] == "Send_init"]
+    assert sorted(sends) == sorted(expected_sends(simulation, PLAIN))
+    assert np.isfinite(simulation.store["density"]).all()

@@ -1,0 +1,164 @@
+"""What a scene does not call for costs nothing: counted for every effect of the catalogue."""
+
+import re
+from typing import NamedTuple, get_type_hints
+
+import numba
+import pytest
+from drafts import draft
+from mpi4py import MPI
+
+from psph.jit import FAST
+from psph.output.ledger import Ledger
+from psph.physics.catalogue import CATALOGUE, Entry
+from psph.scene import Scene
+from psph.solver import pairs
+from psph.solver import plan as plan_module
+from psph.solver import step as step_module
+from psph.solver.explain import bytes_per_refresh
+from psph.solver.plan import make_plan
+from psph.solver.setup import create_particles
+from psph.solver.step import Simulation
+
+SQUARE = """
+[space]
+dimensions = 2
+spacing = 0.1
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+"""
+
+IN_PAIRS = {"density_rate", "radial", "shear", "body", "start"}
+"""Methods that the pair loop calls."""
+
+
+class Loop:
+    """The pair loop of this module's tests, compiled afresh and once for each type of a scene."""
+
+    def __init__(self):
+        self.loop = numba.njit(fastmath=FAST, error_model="numpy")(
+            pairs.sum_over_neighbours.py_func
+        )
+
+    def signature(self, arguments):
+        """The types of a call, compiled."""
+        kinds = tuple(map(numba.typeof, arguments))
+        self.loop.compile(kinds)
+        return kinds
+
+    def instructions(self, arguments) -> list[str]:
+        """The instructions of a call, without their operands."""
+        code = self.loop.inspect_asm(self.signature(arguments))
+        operations = re.findall(r"^\s+([a-z][a-z0-9]+)\s", code, re.MULTILINE)
+        return [op for op in operations if op not in ("movabsq", "leaq")]  # addresses of names
+
+
+@pytest.fixture(scope="module")
+def loop():
+    return Loop()
+
+
+class Footprint(NamedTuple):
+    """What a scene's plan makes of the machine."""
+
+    effects: set[str]
+    call: tuple
+    arrays: tuple[str, ...]
+    read: tuple[str, ...]
+    halo: tuple[str, ...]
+    sent: float
+
+
+@pytest.fixture
+def footprint(tmp_path, monkeypatch):
+    """A function: (catalogue, overrides) → the Footprint of a plain square of fluid with them."""
+
+    def make(catalogue, *overrides):
+        calls = []
+        monkeypatch.setattr(plan_module, "CATALOGUE", tuple(catalogue))
+        monkeypatch.setattr(Simulation, "_start", lambda self: None)  # no step: types suffice
+        monkeypatch.setattr(step_module, "sum_over_neighbours", lambda *call: calls.append(call))
+        scene = Scene(draft(tmp_path, SQUARE, *overrides))
+        plan = make_plan(scene)
+        store = create_particles(scene, plan, MPI.COMM_SELF)
+        Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())._sum(0, store.owned)
+        [call] = calls
+        read = tuple(n for n, x in store.view()._asdict().items() if x is not None)
+        halo = plan.refreshed + plan.ghost_fields
+        names = {type(effect).__name__ for effect in plan.effects}
+        return Footprint(
+            names, call, plan.arrays, read, halo, bytes_per_refresh(scene, plan, 2)[1]
+        )
+
+    return make
+
+
+def without(entry):
+    """The catalogue before this effect existed."""
+    return [other for other in CATALOGUE if other is not entry]
+
+
+def calling_for(entry) -> str:
+    """An override that calls for the effect of an entry."""
+    key, _, choice = entry.key.partition("=")
+    if choice:
+        return f"{key}={choice}"
+    if "*" in key:
+        return f"{key.replace('*', 'water')}=0.001"
+    hints = get_type_hints(entry.effect)
+    values = {name: 0.5 if hint is float else [0.5, 0.5] for name, hint in hints.items()}
+    return f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
+
+
+def not_calling_for(entry) -> list[str]:
+    """Overrides of a scene that lacks the effect of an entry; none do where it is a choice."""
+    key, _, choice = entry.key.partition("=")
+    others = [e.key for e in without(entry) if choice and e.key.startswith(f"{key}=")]
+    return others[:1]
+
+
+@pytest.mark.parametrize("entry", [e for e in CATALOGUE if e.key], ids=lambda e: e.effect.__name__)
+def test_an_absent_effect_leaves_everything_as_it_was_before_it_existed(entry, footprint, loop):
+    scene = not_calling_for(entry)
+    after, before = footprint(CATALOGUE, *scene), footprint(without(entry), *scene)
+    assert entry.effect.__name__ not in after.effects
+    assert after._replace(call=()) == before._replace(call=())
+    assert loop.signature(after.call) == loop.signature(before.call)  # the very same code
+
+
+@pytest.mark.parametrize("entry", CATALOGUE, ids=lambda e: e.effect.__name__)
+def test_a_present_effect_costs_instructions(entry, footprint, loop):
+    scene = [calling_for(entry)] if entry.key else []
+    on, off = footprint(CATALOGUE, *scene), footprint(without(entry), *scene)
+    assert on.effects == off.effects | {entry.effect.__name__}
+    more = len(loop.instructions(on.call)) - len(loop.instructions(off.call))
+    assert more > 0 or not IN_PAIRS & vars(entry.effect).keys()
+    assert set(off.arrays) <= set(on.arrays) and set(off.read) <= set(on.read)
+    assert on.sent >= off.sent
+
+
+class Buoyancy(NamedTuple):
+    """An effect that nobody asks for, and that reads what nobody else does."""
+
+    strength: float = 1.0
+
+    def radial(self, i, j, pair):
+        """Something costly."""
+        return self.strength * (i.viscosity + j.viscosity) * pair.w
+
+
+def test_an_effect_of_its_own_costs_what_it_reads(footprint, loop):
+    """Compiled afresh on both sides, with two fluids: instructions, arrays and messages."""
+    oil = "fluids.oil={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, viscosity=1e-2}"
+    longer = [*CATALOGUE, Entry("fluids.*.viscosity", Buoyancy)]
+    absent, before = footprint(longer), footprint(CATALOGUE)
+    assert Loop().instructions(absent.call) == loop.instructions(before.call)
+    assert absent.sent == before.sent and absent.arrays == before.arrays
+    on, off = footprint(longer, oil), footprint(CATALOGUE[:3], oil)
+    assert len(loop.instructions(on.call)) > len(loop.instructions(off.call))
+    assert set(on.arrays) - set(off.arrays) == {"viscosity"}
+    assert set(on.halo) - set(off.halo) == {"viscosity"}

@@ -1,0 +1,80 @@
+"""What explain foretells against what a run then holds and sends."""
+
+import re
+
+import pytest
+from drafts import draft
+from mpi4py import MPI
+
+from psph.output.ledger import Ledger
+from psph.scene import Scene
+from psph.solver.explain import bytes_per_particle, bytes_per_refresh, explain
+from psph.solver.plan import make_plan
+from psph.solver.setup import create_particles
+from psph.solver.step import Simulation
+
+BOX = """
+[space]
+dimensions = 3
+spacing = 0.05
+smoothing = 1.2
+periodic = ["x", "y", "z"]
+lower = [0.0, 0.0, 0.0]
+upper = [1.2, 1.2, 1.2]
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.2, 1.2, 1.2] }
+jitter = 0.2
+"""
+"""13,824 particles without a surface."""
+
+
+@pytest.fixture(scope="module")
+def box(tmp_path_factory):
+    """(scene, plan, simulation) of the box."""
+    scene = Scene(draft(tmp_path_factory.mktemp("box"), BOX))
+    plan = make_plan(scene)
+    store = create_particles(scene, plan, MPI.COMM_SELF)
+    return scene, plan, Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+
+
+def test_memory_is_what_a_run_holds(box):
+    scene, plan, simulation = box
+    store, lists = simulation.store, simulation.domain.lists
+    held = store.data.nbytes + store.id.nbytes + store.kind.nbytes
+    held += simulation.domain.starts.nbytes + simulation.records.table.nbytes
+    in_lists = sum(array.nbytes for array in lists)
+    own, listed = bytes_per_particle(scene, plan)
+    assert own * store.total + listed * store.owned == pytest.approx(held + in_lists, rel=0.15)
+    assert own * store.total == pytest.approx(held, rel=0.15)
+    assert listed * store.owned == pytest.approx(in_lists, rel=0.15)
+    assert own + listed <= 600.0  # a plain fluid, 57 neighbours and more
+
+
+def test_the_halo_is_what_a_refresh_sends(box):
+    scene, plan, simulation = box
+    store = simulation.store
+    each, sent = bytes_per_refresh(scene, plan, 1)
+    assert each == 8 * (3 + 3 + 1 + 1)
+    measured = simulation.domain.halo.bytes(plan.refreshed)
+    assert measured == each * (store.low + store.high)
+    assert sent == pytest.approx(measured, rel=0.25)  # planes of cells hold one lattice plane more
+
+
+def test_it_says_so(box):
+    scene, plan, _ = box
+    text = "\n".join(explain(scene, 1))
+    own, listed = bytes_per_particle(scene, plan)
+    assert f"{own + listed:.0f} bytes a particle, {listed:.0f} of them in its neighbour list" in text
+    assert f"{bytes_per_refresh(scene, plan, 1)[1]:,.0f} bytes from a rank" in text
+    assert int(re.search(r"(\d+) flops a pair", text)[1]) > 20
+
+
+def test_one_rank_of_an_open_domain_sends_nothing_and_two_send_to_one_side(tmp_path):
+    scene = Scene(draft(tmp_path))
+    plan = make_plan(scene)
+    sent = [bytes_per_refresh(scene, plan, ranks)[1] for ranks in (1, 2, 3, 4)]
+    assert sent[0] == 0.0 < sent[1] and sent[2] == sent[3] == 2 * sent[1]

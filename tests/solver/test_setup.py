@@ -1,0 +1,64 @@
+"""The start: who compiles, who loads, and what a marker in the cache is worth."""
+
+import json
+
+from jobs import mpirun
+
+LINE = """
+[space]
+dimensions = 1
+spacing = 0.1
+[time]
+end = 1e-3
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0], upper = [4.0] }
+"""
+
+SCRIPT = """
+import json, sys
+from pathlib import Path
+
+from mpi4py import MPI
+from numba.core import event
+
+from psph.case import load
+from psph.solver.run import run
+
+case, folder = sys.argv[1:]
+with event.install_recorder("numba:compile") as compilations:
+    run(load(Path(case)), Path(folder), MPI.COMM_WORLD)
+begun = [e for _, e in compilations.buffer if e.is_start]
+counts = MPI.COMM_WORLD.gather(len(begun))
+if MPI.COMM_WORLD.rank == 0:
+    print(json.dumps(counts))
+"""
+
+
+def compilations(ranks, folder, cache):
+    """How many loops each rank compiled for a short run."""
+    script = folder / "script.py"
+    case = folder / "line.toml"
+    script.write_text(SCRIPT)
+    case.write_text(LINE)
+    out = folder / f"run{len(list(folder.iterdir()))}"
+    job = mpirun(ranks, [script, case, out], env={"PSPH_CACHE": str(cache)})
+    assert job.returncode == 0, job.stderr
+    return json.loads(job.stdout.splitlines()[-1])
+
+
+def test_one_rank_compiles_and_the_others_load(tmp_path):
+    cache = tmp_path / "cache"
+    first, second = compilations(2, tmp_path, cache)
+    assert first > 0 and second == 0
+    [ready] = cache.glob("*/*.ready")
+    assert compilations(2, tmp_path, cache) == [0, 0]
+
+    # Without a marker rank 0 looks first; a wrong one costs what is missing, on every rank.
+    ready.unlink()
+    assert compilations(2, tmp_path, cache) == [0, 0]
+    assert ready.exists()
+    for kept in cache.rglob("*permute*"):
+        kept.unlink()
+    assert compilations(2, tmp_path, cache) == [1, 1]
