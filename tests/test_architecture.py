@@ -18,6 +18,7 @@ LAYERS = [
     {"scene", "parallel"},
     {"output"},
     {"solver"},
+    {"bench"},
     {"__main__"},
 ]
 DEPTH = {part: depth for depth, layer in enumerate(LAYERS) for part in layer}

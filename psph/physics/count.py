@@ -1,0 +1,171 @@
+"""Operations of a pair: its formulas are written down in a trial call, and counted.
+
+What compiled code does once a particle is not counted: only operations on something of the
+neighbour.  The same operation on the same numbers counts once, and what no sum uses not at all.
+"""
+
+import operator
+from collections.abc import Iterable
+from typing import Any
+
+from psph.physics import compose
+from psph.physics.compose import ParticleView, geometry
+from psph.vectors import add, scale
+
+VECTORS = {"position": 1.0, "velocity": -1.0}
+"""Entries of a view with components; so the pair of the trial approaches, as viscosities ask."""
+
+APART = 0.5
+"""Distance of the pair over h: inside every piece of every kernel."""
+
+
+def flops_per_pair(effects: tuple, reductions: tuple, kernel, shared: Iterable[str], periods) -> int:
+    """Additions, multiplications, divisions, roots and exponentials of an ordered pair.
+
+    ``effects`` and ``reductions`` as the pair loop has them; ``shared`` names the entries of a view
+    that all particles have in common; ``periods`` has one entry for each dimension.  Comparisons,
+    minima and a change of sign count nothing, nor does the search for the nearest image.
+    """
+    trace = _Trace()
+    known = {name: trace.leaf(1.0, False) for name in shared}
+    apart = APART / kernel.inverse_h / len(periods) ** 0.5
+    i = _view(trace, len(periods), known, apart, varies=False)
+    j = _view(trace, len(periods), known, 0.0, varies=True)
+    kernel, effects, reductions = (trace.parameters(x) for x in (kernel, effects, reductions))
+    pair = geometry(kernel, (None,) * len(periods), trace.leaf(0.0, False), i, j)
+    running = trace.running((0.0, (0.0,) * len(periods), compose.start(reductions, i, kernel)))
+    rate, a, totals = running
+    rate = rate + compose.density_rate(effects, i, j, pair)
+    a = add(a, scale(pair.x_ij, compose.radial(effects, i, j, pair)))
+    a = add(a, scale(pair.u_ij, compose.shear(effects, i, j, pair)))
+    totals = compose.gather(reductions, totals, i, j, pair)
+    return trace.operations((rate, a, totals))
+
+
+def _view(trace: "_Trace", dimensions: int, known: dict, apart: float, varies: bool):
+    """The view of one particle of the pair; positions lie ``apart`` m from zero on every axis."""
+
+    def entry(name: str):
+        if name in known:
+            return known[name]
+        if name in VECTORS:
+            return tuple(trace.leaf(VECTORS[name] * apart, varies) for _ in range(dimensions))
+        return trace.leaf(0.5 if varies else 1.0, varies)
+
+    return ParticleView(*map(entry, ParticleView._fields))
+
+
+class _Number:
+    """A number that knows how it came about: ``made`` of (operation, operands), or a leaf."""
+
+    def __init__(self, trace: "_Trace", made: tuple, value: float, varies: bool):
+        self.trace, self.made, self.value, self.varies = trace, made, value, varies
+
+    def __add__(self, other):
+        return self if _is_zero(other) else self.trace.note(operator.add, self, other)
+
+    def __sub__(self, other):
+        return self if _is_zero(other) else self.trace.note(operator.sub, self, other)
+
+    def __rsub__(self, other):
+        return -self if _is_zero(other) else self.trace.note(operator.sub, other, self)
+
+    def __mul__(self, other):
+        return 0.0 if _is_zero(other) else self.trace.note(operator.mul, self, other)
+
+    def __truediv__(self, other):
+        return self.trace.note(operator.truediv, self, other)
+
+    def __rtruediv__(self, other):
+        return self.trace.note(operator.truediv, other, self)
+
+    def __pow__(self, exponent: int):
+        """A whole power, by repeated squares as the compiler does it."""
+        power, square = None, self
+        while exponent:
+            if exponent & 1:
+                power = square if power is None else power * square
+            exponent >>= 1
+            square = square * square if exponent else square
+        return power
+
+    def __neg__(self):
+        return self.trace.note(operator.neg, self)
+
+    def sqrt(self):
+        """What ``np.sqrt`` asks of an object."""
+        return self.trace.note(lambda x: x**0.5, self, name="sqrt")
+
+    def exp(self):
+        """What ``np.exp`` asks of an object."""
+        return self.trace.note(lambda x: 2.718281828**x, self, name="exp")
+
+    def __lt__(self, other):
+        return self.value < _value(other)
+
+    def __gt__(self, other):
+        return self.value > _value(other)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+
+FREE = {operator.neg}
+"""Operations that a compiler folds into others."""
+
+
+class _Trace:
+    """Every operation of a trial call, each once."""
+
+    def __init__(self):
+        self._noted: dict[tuple, _Number] = {}
+
+    def leaf(self, value: float, varies: bool) -> _Number:
+        """A number that is given; ``varies``: from neighbour to neighbour."""
+        return _Number(self, (), value, varies)
+
+    def note(self, function, *operands, name: str = "") -> _Number:
+        """The result of an operation; the same one where it was noted before."""
+        keys = [id(x) if isinstance(x, _Number) else float(x) for x in operands]
+        if function in (operator.add, operator.mul):
+            keys.sort()
+        key = (name or function, *keys)
+        if key not in self._noted:
+            value = function(*map(_value, operands))
+            varies = any(x.varies for x in operands if isinstance(x, _Number))
+            self._noted[key] = _Number(self, (name or function, operands), value, varies)
+        return self._noted[key]
+
+    def parameters(self, value: Any) -> Any:
+        """Effects or a kernel with their parameters as numbers that do not vary."""
+        if isinstance(value, tuple):
+            inner = map(self.parameters, value)
+            return type(value)(*inner) if hasattr(value, "_fields") else tuple(inner)
+        return self.leaf(value, False)
+
+    def running(self, total: Any) -> Any:
+        """Sums as they stand somewhere on the way: every number varies."""
+        if isinstance(total, tuple):
+            return tuple(map(self.running, total))
+        return self.leaf(_value(total), True)
+
+    def operations(self, results: Any) -> int:
+        """Counted operations that the results, in tuples, rest on."""
+        counted, seen, open_ = 0, set(), [results]
+        while open_:
+            one = open_.pop()
+            if isinstance(one, tuple):
+                open_ += one
+            elif isinstance(one, _Number) and one.made and one.varies and id(one) not in seen:
+                seen.add(id(one))
+                function, operands = one.made
+                counted += function not in FREE
+                open_.append(operands)
+        return counted
+
+
+def _value(x) -> float:
+    return x.value if isinstance(x, _Number) else x
+
+
+def _is_zero(x) -> bool:
+    return not isinstance(x, _Number) and x == 0.0
