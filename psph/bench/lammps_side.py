@@ -51,7 +51,18 @@ def run(lmp, steps) -> float:
     return time.perf_counter() - begun
 
 
-ORDERS = {order.__name__: order for order in (version, commands, atoms, run)}
+def state(lmp) -> dict:
+    """This rank's atoms: int32 "id", double "x" (n, 3) and "rho", as bytes."""
+    mine = lmp.extract_setting("nlocal")
+    if not mine:
+        return {"id": b"", "x": b"", "rho": b""}
+    first = {"id": lmp.extract_atom("id"), "x": lmp.extract_atom("x")[0]}
+    first["rho"] = lmp.extract_atom("rho")
+    size = {"id": 4 * mine, "x": 24 * mine, "rho": 8 * mine}
+    return {name: ctypes.string_at(first[name], size[name]) for name in size}
+
+
+ORDERS = {order.__name__: order for order in (version, commands, atoms, run, state)}
 
 
 def main(host: str, port: str) -> None:

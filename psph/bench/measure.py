@@ -61,6 +61,8 @@ def measure(asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None) -> d
         turns = [
             (_timed(simulation, comm), peer.timed(STEPS) if peer else None) for _ in range(REPEATS)
         ]
+        if peer:
+            peer.check()
     blocks = [ours for ours, _ in turns]
     phases = _mean_over_ranks(ledger, comm)
     rates = Rates.of(blocks, count)

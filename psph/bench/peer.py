@@ -24,8 +24,14 @@ from psph.physics.viscosity import ArtificialViscosity
 SKINS = (0.01, 0.03, 0.06, 0.1, 0.2)
 """Skins of its neighbour lists that are tried, over the support; the fastest is taken."""
 
-SETTLING, TRIAL = 10, 20
+SETTLING, TRIAL = 5, 15
 """Steps before a trial of a skin, and steps of the trial."""
+
+STEP = 0.5
+"""Its time step over psph's: with psph's own a falling dam blows up in its integrator."""
+
+BROKEN = 0.2
+"""A density that is off by this fraction: what is timed is no flow any more."""
 
 FOREIGN = ("OMPI_", "PMIX_", "PMI_", "ORTE_", "PRTE_", "HYDRA_", "MPI_")
 """What another mpirun leaves in the environment."""
@@ -40,6 +46,7 @@ class Peer:
 
     def __init__(self, python: Path, scene, simulation):
         self.comm = simulation.comm
+        self._rest_density = scene.materials[0].density
         particles, cores = _gathered(simulation), _cores(self.comm)
 
         def begin() -> dict:
@@ -63,13 +70,29 @@ class Peer:
         """Seconds of so many steps, of its slowest rank."""
         return on_rank_0(self.comm, lambda: max(self._processes.ask("run", steps)))
 
+    def check(self) -> None:
+        """Raise BenchError where its densities are no longer those of water."""
+        low, high = on_rank_0(self.comm, self._densities)
+        if not 1.0 - BROKEN < low <= high < 1.0 + BROKEN:
+            raise BenchError(
+                f"bench --peer: LAMMPS blew up: densities of {low:.3g} to {high:.3g} of the rest "
+                "density; leave --peer out, or ask for more particles"
+            )
+
+    def _densities(self) -> tuple[float, float]:
+        """The smallest and the largest, over the density at rest."""
+        rho = np.concatenate([np.frombuffer(s["rho"]) for s in self._processes.ask("state")])
+        return float(rho.min()) / self._rest_density, float(rho.max()) / self._rest_density
+
     def _hand_over(self, scene, simulation, particles: dict) -> dict:
         ask = self._processes.ask
         version = ask("version")[0]
-        ask("commands", commands(scene, simulation))
+        space, motion = commands(scene, simulation)
+        ask("commands", space)
         made, all_ = sum(ask("atoms", particles)), len(particles["rho"]) // 8
         if made != all_:
             raise BenchError(f"bench --peer: LAMMPS took {made:,} of {all_:,} particles")
+        ask("commands", motion)
         support = scene.kernel.support * scene.smoothing_length
 
         def pace(skin: float) -> float:
@@ -80,12 +103,16 @@ class Peer:
         pace(best)
         return {
             "name": "LAMMPS", "version": version, "style": "sph/taitwater",
-            "ranks": self.comm.size, "skin": best, "skins_tried": list(SKINS),
+            "ranks": self.comm.size,
+            "skin": best, "skins_tried": list(SKINS), "time_step_over_psph": STEP,
         }
 
 
-def commands(scene, simulation) -> list[str]:
-    """The scene in LAMMPS's own words; its particles come afterwards."""
+def commands(scene, simulation) -> tuple[list[str], list[str]]:
+    """The scene in LAMMPS's own words: before its particles are made, and after.
+
+    A group holds the atoms that are there when it is named.
+    """
     dx, d = scene.spacing, scene.dimensions
     support = scene.kernel.support * scene.smoothing_length
     thin = [(-0.5 * dx, 0.5 * dx)] * (3 - d)
@@ -96,7 +123,7 @@ def commands(scene, simulation) -> list[str]:
     water, *tank = scene.materials
     pull = math.hypot(*scene.gravity)
     down = " ".join(f"{g / pull!r}" for g in (*scene.gravity, *(0.0 for _ in thin))) if pull else ""
-    return [
+    space = [
         "units si",
         f"dimension {d}",
         "atom_style sph",
@@ -108,15 +135,18 @@ def commands(scene, simulation) -> list[str]:
         f"mass * {water.mass!r}",
         "pair_style sph/taitwater",
         f"pair_coeff * * {water.density!r} {scene.sound_speed!r} {alpha!r} {support!r}",
+        "neigh_modify every 1 delay 0 check yes",
+        "thermo 1000000",
+        f"timestep {STEP * simulation.dt!r}",
+    ]
+    motion = [
         f"group water type {FLUID + 1}",
         "fix move water sph",
         *([f"group tank type {WALL + 1}", "fix stay tank sph/stationary"] if tank else []),
         *([f"fix fall water gravity {pull!r} vector {down}"] if pull else []),
         *(["fix flat all enforce2d"] if d == 2 else []),
-        f"timestep {simulation.dt!r}",
-        "neigh_modify every 1 delay 0 check yes",
-        "thermo 1000000",
     ]
+    return space, motion
 
 
 def _gathered(simulation) -> dict | None:

@@ -5,13 +5,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from jobs import clean_environment
 
 from psph.bench.box import Box
 from psph.bench.errors import BenchError
+from psph.bench.falling import Falling
 from psph.bench.measure import Asked, measure
-from psph.bench.peer import Peer, Processes, commands
+from psph.bench.peer import Peer, Processes, _gathered, commands
 from psph.bench.roofline import Ceiling
 from psph.bench.tank import Tank
 from psph.output.ledger import Ledger
@@ -43,11 +45,11 @@ def test_a_box_in_its_words():
     layout = Box.nearest(2, 20, 400)
     scene, simulation = simulation_of(layout)
     simulation.step()
-    said = commands(scene, simulation)
+    said = sum(commands(scene, simulation), [])
     support = 2.0 * scene.smoothing_length
     assert "boundary p p p" in said and "dimension 2" in said and "fix flat all enforce2d" in said
     assert f"pair_coeff * * 1000.0 50.0 0.05 {support!r}" in said  # α h is the same
-    assert f"timestep {simulation.dt!r}" in said and simulation.dt > 0.0
+    assert f"timestep {0.5 * simulation.dt!r}" in said and simulation.dt > 0.0
     [mass] = [float(line.split()[2]) for line in said if line.startswith("mass")]
     assert mass == pytest.approx(1000.0 / layout.sides**2)
     assert not any("np." in line or "tank" in line or "gravity" in line for line in said)
@@ -55,7 +57,7 @@ def test_a_box_in_its_words():
 
 def test_a_tank_in_its_words():
     scene, simulation = simulation_of(Tank.nearest(2, 20, 1500))
-    said = commands(scene, simulation)
+    said = sum(commands(scene, simulation), [])
     assert "boundary s s p" in said and "fix stay tank sph/stationary" in said
     assert "fix fall water gravity 9.81 vector 0.0 -1.0 0.0" in said
     assert not any("np." in line for line in said)
@@ -73,6 +75,46 @@ def test_they_take_turns(python, problem, dim, neighbours):
     assert peer["pairs_per_second"] == pytest.approx(pairs, rel=1e-2)
     ratio = result["particle_steps_per_second"] / peer["particle_steps_per_second"]
     assert peer["ratio"] == pytest.approx(ratio, rel=0.5)
+
+
+def test_it_simulates_the_same(python):
+    scene, simulation = simulation_of(Falling.nearest(2, 20, 3000))
+    simulation.step()
+    before = rows(_gathered(simulation), "x")
+    space, motion = commands(scene, simulation)
+    processes = Processes(python, 1, set())
+    try:
+        processes.ask("commands", space)
+        processes.ask("atoms", _gathered(simulation))
+        processes.ask("commands", [*motion, f"neighbor {0.2 * scene.smoothing_length!r} bin"])
+        end = simulation.time + 40 * simulation.dt
+        processes.ask("commands", ["run 80 post no"])
+        [theirs] = processes.ask("state")
+    finally:
+        processes.end()
+    while simulation.time < end - 1e-9:
+        simulation.step()
+    ours = rows(_gathered(simulation), "x")
+    order = np.argsort(np.frombuffer(theirs["id"], np.int32))
+    theirs = rows(theirs, "x")[order]
+    way, apart = (np.linalg.norm(ours - other, axis=1) for other in (before, theirs))
+    water = way > 0.0
+    assert water.sum() > 500 and (apart[~water] == 0.0).all()
+    assert np.median(apart[water]) < 0.1 * np.median(way[water])
+
+
+def rows(state, name):
+    """A vector of all particles, (n, 3)."""
+    return np.frombuffer(state[name]).reshape(-1, 3)
+
+
+def test_a_blow_up_is_said(python):
+    scene, simulation = simulation_of(Box.nearest(2, 20, 400))
+    with Peer(python, scene, simulation) as peer:
+        peer.check()
+        peer._processes.ask("commands", ["set group all sph/rho 500.0"])
+        with pytest.raises(BenchError, match="LAMMPS blew up: densities of 0.5 to 0.5 of"):
+            peer.check()
 
 
 def test_its_ranks_are_its_own(python):
