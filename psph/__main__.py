@@ -92,9 +92,7 @@ def _bench(options, comm) -> None:
     from psph.bench.command import bench, one, standard
 
     choose = standard if options.standard else one
-    asked = choose(
-        options.problem, options.dimensions, options.particles, options.neighbours
-    )
+    asked = choose(options.problem, options.dimensions, options.particles, options.neighbours)
     bench(comm, asked, options.compare, options.peer, options.json)
 
 
@@ -157,7 +155,7 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
     bench.add_argument("--dimensions", type=int, choices=(2, 3), help="default: 3")
     bench.add_argument("--particles", type=int, help="about so many (default: 200,000)")
     bench.add_argument(
-        "--neighbours", type=int, help="inside the support in the bulk (default: 20 in 2D, 57 in 3D)"
+        "--neighbours", type=int, help="inside the support (default: 20 in 2D, 57 in 3D)"
     )
     bench.add_argument(
         "--standard", action="store_true", help="the standard set, around the number of particles"

@@ -45,7 +45,7 @@ def standard(
     [usual] = one(FALLING, None, particles, None)
     n = usual.particles
     return [
-        *(Asked(name, d, n, usual_many) for d, usual_many in NEIGHBOURS.items() for name in PROBLEMS),
+        *(Asked(name, d, n, many) for d, many in NEIGHBOURS.items() for name in PROBLEMS),
         usual._replace(particles=round(TENTH * n)),
         usual._replace(particles=FIVEFOLD * n),
         usual._replace(neighbours=MANY_NEIGHBOURS),
@@ -96,9 +96,9 @@ def lines(run: dict) -> list[str]:
     if "peer" in run:
         peer = run["peer"]
         said.append(
-            f"  beside it   {peer['name']} {peer['version']} {peer['style']} on {peer['ranks']} ranks: "
-            f"{_pace(peer)} in all (spread {100 * peer['spread']:.0f} %, skin {peer['skin']:g}); psph "
-            f"is {peer['ratio']:.2f} times as fast (spread {100 * peer['ratio_spread']:.0f} %)"
+            f"  beside it   {peer['name']} {peer['version']} {peer['style']} on {peer['ranks']} "
+            f"ranks: {_pace(peer)} in all (spread {100 * peer['spread']:.0f} %, skin {peer['skin']:g}); "
+            f"psph is {peer['ratio']:.2f} times as fast (spread {100 * peer['ratio_spread']:.0f} %)"
         )
     return said
 

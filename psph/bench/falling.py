@@ -40,7 +40,7 @@ class Falling(NamedTuple):
 
     @classmethod
     def nearest(cls, dimensions: int, neighbours: int, particles: int) -> "Falling":
-        """The one with about so many particles; a particle is split by 2, 4, 8... along each axis."""
+        """The one with about so many particles, split by 2, 4, 8... along each axis."""
         times = 1
         while True:
             times *= 2
@@ -54,7 +54,7 @@ class Falling(NamedTuple):
         return self.coarse.refined(self.times).case()
 
     def create(self, scene, plan: Plan, comm) -> Store:
-        """This rank's share of the particles, the same in all on any number of ranks; collective."""
+        """This rank's share of the particles, the same for any number of ranks.  Collective."""
         coarse = Scene(self.coarse.case())
         fallen = fall(coarse, comm)
         walls = lattice_particles(scene, comm)

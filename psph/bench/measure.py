@@ -178,7 +178,7 @@ def count_inside(view, periods, support2, low, owned, begin, blocks, lists):
     return inside
 
 
-def _beside(peer: Peer, turns: list[tuple[float, float]], particles: int, neighbours: float) -> dict:
+def _beside(peer: Peer, turns: list[tuple], particles: int, neighbours: float) -> dict:
     """The peer's figures; ``ratio`` is psph's pace over the peer's, the median over the turns."""
     ratios = [theirs / ours for ours, theirs in turns]
     rates = Rates.of([theirs for _, theirs in turns], particles)

@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import threading
 from contextlib import contextmanager
-from multiprocessing.connection import Connection, Listener
+from multiprocessing.connection import Connection, Listener, wait
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +33,9 @@ STEP = 0.5
 BROKEN = 0.2
 """A density that is off by this fraction: what is timed is no flow any more."""
 
+PATIENCE = 5.0
+"""Seconds that its processes get to end by themselves."""
+
 FOREIGN = ("OMPI_", "PMIX_", "PMI_", "ORTE_", "PRTE_", "HYDRA_", "MPI_")
 """What another mpirun leaves in the environment."""
 
@@ -47,7 +50,7 @@ class Peer:
     def __init__(self, python: Path, scene, simulation):
         self.comm = simulation.comm
         self._rest_density = scene.materials[0].density
-        particles, cores = _gathered(simulation), _cores(self.comm)
+        particles, cores = gathered(simulation), _cores(self.comm)
 
         def begin() -> dict:
             self._processes = Processes(python, self.comm.size, cores)
@@ -149,7 +152,7 @@ def commands(scene, simulation) -> tuple[list[str], list[str]]:
     return space, motion
 
 
-def _gathered(simulation) -> dict | None:
+def gathered(simulation) -> dict | None:
     """All particles in the order of their ids, as LAMMPS wants them; None on the other ranks."""
     names = ("id", "kind", "position", "velocity", "density")
     parts = simulation.comm.gather([simulation.store.owned_rows(name) for name in names])
@@ -193,26 +196,28 @@ class Processes:
 
     def ask(self, what: str, *details) -> list:
         """The answer of each process."""
+        answers = {}
         try:
             for connection in self._connections:
                 connection.send((what, *details))
-            answers = [connection.recv() for connection in self._connections]
+            while len(answers) < len(self._connections):
+                for ready in wait([c for c in self._connections if c not in answers]):
+                    answers[ready] = _good(ready.recv())
         except (EOFError, OSError):
             raise BenchError(f"bench --peer: LAMMPS ended: {self._last_words()}") from None
-        for answer in answers:
-            if isinstance(answer, str) and answer.startswith(lammps_side.ERROR):
-                raise BenchError(f"bench --peer: LAMMPS: {answer.removeprefix(lammps_side.ERROR)}")
-        return answers
+        return list(answers.values())
 
     def end(self) -> None:
-        """Let them go home."""
+        """Let them go home; one that failed alone leaves the others hanging, so they are sent."""
         for connection in self._connections:
             connection.close()
-        try:
-            self._job.wait(10)
-        except subprocess.TimeoutExpired:
-            self._job.kill()
-            self._job.wait()
+        for send in (self._job.terminate, self._job.kill):
+            try:
+                self._job.wait(PATIENCE)
+                break
+            except subprocess.TimeoutExpired:
+                send()
+        self._job.wait()
         self._said.close()
 
     def _meet(self, listener: Listener, ranks: int) -> None:
@@ -233,6 +238,13 @@ class Processes:
         self._said.seek(0)
         lines = self._said.read().decode(errors="replace").split("\n")
         return next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
+
+
+def _good(answer):
+    """The answer, unless it says what went wrong: then BenchError."""
+    if isinstance(answer, str) and answer.startswith(lammps_side.ERROR):
+        raise BenchError(f"bench --peer: LAMMPS: {answer.removeprefix(lammps_side.ERROR)}")
+    return answer
 
 
 ADVICE = (

@@ -13,7 +13,10 @@ NAP = 0.002
 
 
 def on_rank_0(comm, work: Callable[[], T]) -> T:
-    """The result of ``work()`` on rank 0, on all ranks; a BenchError is raised on all; collective."""
+    """The result of ``work()`` on rank 0, for all ranks; collective.
+
+    A BenchError is raised on all ranks.
+    """
     found = trouble = None
     if comm.rank == 0:
         try:

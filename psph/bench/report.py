@@ -19,7 +19,7 @@ PHASES = ("pairs", "rebuild", "halo", "limits")
 
 
 def renew(page: Path, files: Iterable[Path]) -> None:
-    """Put the tables of these results into the page.  BenchError: a file is not what it should be."""
+    """Put the tables of these results into the page.  BenchError: a file is of another kind."""
     runs = [run for file in files for run in read_runs(file)]
     try:
         text = page.read_text(encoding="utf-8")
@@ -46,7 +46,7 @@ def _tables(runs: list[dict]) -> Iterator[str]:
             map(_pace, here),
         )
         yield ""
-        yield "Where a step's time goes, and what the pair loop reaches of multiply-adds and of a copy:"
+        yield "Where a step's time goes, and what the pair loop reaches of these two ceilings:"
         yield ""
         yield from _table(
             ("problem", "particles", "neighbours", "ranks × threads", *PHASES, "the rest",

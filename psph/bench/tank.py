@@ -35,7 +35,7 @@ class Tank(NamedTuple):
 
     @classmethod
     def nearest(cls, dimensions: int, neighbours: int, particles: int, times: int = 1) -> "Tank":
-        """The tank with about so many particles and a multiple of ``times`` sites along each axis."""
+        """The tank with about so many particles, a multiple of ``times`` sites along each axis."""
         most = max(FEWEST_ACROSS, math.ceil(particles ** (1.0 / dimensions) / times)) + 1
         tanks = [
             cls(dimensions, neighbours, n, math.ceil(RIM * n)).refined(times)

@@ -103,7 +103,7 @@ def run_of(pace, spread=0.05, **other):
          " (spread 5 % now, 5 % then)"),
         (run_of(80.0), run_of(100.0), "0.80 times the pace in F, slower"),
         (run_of(104.0), run_of(100.0), "1.04 times the pace in F, no difference beyond the spread"),
-        (run_of(120.0), run_of(100.0, 0.3), "no difference beyond the spread (spread 5 % now, 30 %"),
+        (run_of(120.0), run_of(100.0, 0.3), "beyond the spread (spread 5 % now, 30 % then)"),
         (run_of(120.0, ranks=2), run_of(100.0), "; ranks 1 then, 2 now"),
         (run_of(1.0, particles=9), run_of(1.0), "box 3D, 9 particles: not in F"),
     ],

