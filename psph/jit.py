@@ -100,7 +100,7 @@ def _is_foreign(kind) -> bool:
 
 def compiled(function):
     """Decorator of every compiled loop: a module-level function, kept in the cache."""
-    loop = numba.njit(fastmath=FAST, error_model="numpy")(function)
+    loop = numba.njit(fastmath=FAST, error_model="numpy", nogil=True)(function)
     loop._cache = OwnCache(function)
     return loop
 

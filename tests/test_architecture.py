@@ -11,7 +11,7 @@ MODULES = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob(
 # A module imports from its own layer's part (folder or file) and from the layers before it.
 LAYERS = [
     {"jit"},
-    {"simd"},
+    {"simd", "threads"},
     {"vectors", "smoothing"},
     {"physics"},
     {"particles"},
@@ -19,6 +19,7 @@ LAYERS = [
     {"scene", "parallel"},
     {"output"},
     {"solver"},
+    {"bench"},
     {"__main__"},
 ]
 DEPTH = {part: depth for depth, layer in enumerate(LAYERS) for part in layer}

@@ -5,7 +5,10 @@ from collections import defaultdict
 
 
 class Ledger:
-    """Seconds by name: ``with ledger("pairs"): ...``; about a microsecond an entry."""
+    """Seconds by name: ``with ledger("pairs"): ...``; about a microsecond an entry.
+
+    A part inside of another counts for itself alone, so that all of them add up.
+    """
 
     def __init__(self):
         self.seconds: dict[str, float] = defaultdict(float)
@@ -20,4 +23,7 @@ class Ledger:
 
     def __exit__(self, *exception) -> None:
         name, begun = self._open.pop()
-        self.seconds[name] += time.perf_counter() - begun
+        elapsed = time.perf_counter() - begun
+        self.seconds[name] += elapsed
+        if self._open:
+            self.seconds[self._open[-1][0]] -= elapsed

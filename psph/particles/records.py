@@ -11,6 +11,7 @@ from psph.particles.store import Store, seen_as
 from psph.physics.compose import ParticleView
 from psph.physics.space import DUMMIES, FixedPoint
 from psph.simd import GROUP
+from psph.threads import in_threads
 
 LINE = 64
 """Bytes of a cache line."""
@@ -69,9 +70,9 @@ class Records:
         data, rows = self.store.data, self._rows
         if self._fixed:
             whole = self.table.view(np.int32)
-            fill_fixed(data, rows, self._steps_per_metre, first, last, self.table, whole)
+            in_threads(fill_fixed, first, last, data, rows, self._steps_per_metre, self.table, whole)
         else:
-            fill_records(data, rows, first, last, self.table)
+            in_threads(fill_records, first, last, data, rows, self.table)
 
 
 def _aligned(records: int, width: int, kind) -> np.ndarray:
@@ -83,7 +84,7 @@ def _aligned(records: int, width: int, kind) -> np.ndarray:
 
 
 @compiled
-def fill_records(data, rows, first, last, table):
+def fill_records(first, last, data, rows, table):
     """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``."""
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(np.uint64(len(rows))):
@@ -91,7 +92,7 @@ def fill_records(data, rows, first, last, table):
 
 
 @compiled
-def fill_fixed(data, rows, steps_per_metre, first, last, table, whole):
+def fill_fixed(first, last, data, rows, steps_per_metre, table, whole):
     """The same in single precision, positions as whole steps; ``whole`` shows the table's bits."""
     axes = np.uint64(len(steps_per_metre))
     for k in range(np.uint64(first), np.uint64(last)):

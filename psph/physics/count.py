@@ -19,7 +19,9 @@ APART = 0.5
 """Distance of the pair over h: inside every piece of every kernel."""
 
 
-def flops_per_pair(effects: tuple, reductions: tuple, kernel, shared: Iterable[str], periods) -> int:
+def flops_per_pair(
+    effects: tuple, reductions: tuple, kernel, shared: Iterable[str], periods: tuple
+) -> int:
     """Additions, multiplications, divisions, roots and exponentials of an ordered pair.
 
     ``effects`` and ``reductions`` as the pair loop has them; ``shared`` names the entries of a view

@@ -23,7 +23,7 @@ from psph.vectors import add, at, dot, put, scale
 
 @compiled
 def kick_drift_predict(
-    dt, first, last, effects, state, view, kind,
+    first, last, dt, effects, state, view, kind,
     position, velocity, predicted_velocity, acceleration,
     density, rate, rate_1, rate_2, specific_volume, pressure,
 ):
@@ -56,7 +56,7 @@ def state_of(first, last, state, view, density, specific_volume, pressure):
 
 
 @compiled
-def kick(dt, first, last, effects, view, kind, velocity, acceleration, density, rate):
+def kick(first, last, dt, effects, view, kind, velocity, acceleration, density, rate):
     """Kick by the second half of the step, with the new rates.
 
     Returns the largest |v|² and |a|² over the columns ``first`` to ``last``, and the first column

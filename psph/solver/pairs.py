@@ -17,7 +17,7 @@ other distance."""
 
 @compiled
 def sum_over_neighbours(
-    effects, reductions, kernel, space, tiny, view, neighbour_view, records, first, last, low,
+    first, last, effects, reductions, kernel, space, tiny, view, neighbour_view, records, low,
     begin, blocks, lists, acceleration, density_rate, written,
 ):
     """Rates of the particles in columns ``first`` to ``last``.

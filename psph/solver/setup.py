@@ -8,6 +8,7 @@ from psph.jit import marker
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
+from psph.scene.particles import ParticleSet
 from psph.solver.plan import PER_MATERIAL, Plan, material_value
 from psph.solver.record import probes_of
 from psph.solver.step import Simulation
@@ -17,16 +18,25 @@ NOT_YET_SUMMED = 2.0
 
 
 def create_particles(scene, plan: Plan, comm) -> Store:
-    """This rank's share of the scene's particles, by lattice planes; ids in lattice order.
+    """This rank's share of the scene's particles in a store.
 
     Where they belong is for the first rebuild to say.
     """
+    return store_of(scene, plan, lattice_particles(scene, comm))
+
+
+def lattice_particles(scene, comm) -> ParticleSet:
+    """This rank's share of the scene's particles, by lattice planes; ids in lattice order."""
     reached = np.concatenate([[0], np.cumsum(scene.counts())])
     goals = reached[-1] * np.arange(comm.size + 1) // comm.size
     cuts = np.searchsorted(reached, goals)
     cuts[-1] = scene.planes
     first, last = int(cuts[comm.rank]), int(cuts[comm.rank + 1])
-    found = scene.particles(first, last, int(reached[first]))
+    return scene.particles(first, last, int(reached[first]))
+
+
+def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
+    """A store of these particles of a scene, with the arrays that its plan asks for."""
     store = Store(scene.dimensions, plan.arrays, plan.constants)
     block = np.zeros((len(store.data), len(found.id)))
     for name in ("position", "velocity"):

@@ -11,6 +11,7 @@ from psph.particles.store import Store
 from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import TINY, sum_over_neighbours
 from psph.solver.plan import Plan
+from psph.threads import in_threads
 
 TOO_FAST = 1000.0
 """A particle at this many speeds of sound is a run that blew up."""
@@ -120,8 +121,8 @@ class Simulation:
 
     def _predict(self, dt: float) -> None:
         s, plan = self.store, self.plan
-        kick_drift_predict(
-            dt, s.low, s.low + s.owned, plan.effects, plan.state, s.view(), s.kind,
+        in_threads(
+            kick_drift_predict, s.low, s.low + s.owned, dt, plan.effects, plan.state, s.view(), s.kind,
             s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
             s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
             s["specific_volume"], s["pressure"],
@@ -133,20 +134,21 @@ class Simulation:
             return
         s, plan, lists = self.store, self.plan, self.domain.lists
         written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
-        sum_over_neighbours(
-            plan.effects, plan.reductions, plan.kernel, plan.space, self.tiny,
-            s.view(), self.records.view(), self.records.table, first, last, s.low,
+        in_threads(
+            sum_over_neighbours, first, last, plan.effects, plan.reductions, plan.kernel,
+            plan.space, self.tiny, s.view(), self.records.view(), self.records.table, s.low,
             lists.begin, lists.blocks, lists.lists, s["acceleration"], s["density_rate"], written,
         )
 
     def _kick(self, dt: float) -> None:
         """Second kick; then the largest speed and acceleration over all ranks."""
         s = self.store
-        *mine, broken = kick(
-            dt, s.low, s.low + s.owned, self.plan.effects, s.view(), s.kind,
+        parts = in_threads(
+            kick, s.low, s.low + s.owned, dt, self.plan.effects, s.view(), s.kind,
             s["velocity"], s["acceleration"], s["density"], s["density_rate"],
         )
-        lost = float(s.id[broken]) + 1.0 if broken >= 0 else 0.0
+        *mine, broken = np.max(parts, axis=0)
+        lost = float(s.id[int(broken)]) + 1.0 if broken >= 0 else 0.0
         with self.ledger("limits"):
             extremes = largest(self.comm, [*mine, lost])
         self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()

@@ -1,41 +1,60 @@
-"""Operations of a pair, counted: by hand for small formulas, more for more effects."""
+"""The operations of a pair, counted by hand and by the trial call."""
 
-from typing import NamedTuple
+import pytest
 
-from physics.pairs import H, OPEN
-
-from psph.physics.continuity import Continuity
+from psph.physics.catalogue import (
+    ArtificialViscosity, Continuity, FreeSurface, MinimumPressure, SymmetricPressure,
+)
 from psph.physics.count import flops_per_pair
-from psph.physics.pressure import MinimumPressure, SymmetricPressure
-from psph.smoothing import kernel
+from psph.smoothing import KERNELS, kernel
 
-SHARED = ("mass", "sound_speed", "smoothing_length")
-
-
-class Drag(NamedTuple):
-    """A coefficient of u_ij that is a product."""
-
-    strength: float = 2.0
-
-    def shear(self, i, j, pair):
-        """One product that varies; that of i alone and the parameter does not."""
-        return (self.strength * i.pressure) * j.pressure
+SHARED = ("mass", "rest_density", "sound_speed", "smoothing_length")
 
 
-def flops(*effects, dimensions=3):
+def count(*effects, dim=1, name="wendland-c2", shared=SHARED):
     reductions = tuple(e for e in effects if hasattr(e, "start"))
-    k = kernel("wendland-c2", H, dimensions)
-    return flops_per_pair(effects, reductions, k, SHARED, OPEN[:dimensions])
+    return flops_per_pair(effects, reductions, kernel(name, 0.1, dim), shared, (None,) * dim)
 
 
-def test_by_hand():
-    # per axis u_i − u_j, times the coefficient, and into the sum; once the coefficient
-    assert [flops(Drag(), dimensions=d) for d in (1, 2, 3)] == [4, 7, 10]
-    assert flops() == 0  # nobody reads the geometry
+def geometry_by_hand(dim):
+    """x_ij, r², √(r² + tiny), and W′/r of Wendland C2: 3 for a, 2 for a³, 1 for the factor."""
+    return dim + (2 * dim - 1) + 2 + 6
 
 
-def test_what_is_shared_counts_once():
-    both = flops(Continuity(), SymmetricPressure())
-    assert both < flops(Continuity()) + flops(SymmetricPressure())
-    assert flops(Continuity(), SymmetricPressure(), Drag()) > both
-    assert flops(Continuity(), MinimumPressure()) > flops(MinimumPressure())
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_continuity_by_hand(dim):
+    velocities = dim + (2 * dim - 1)  # u_ij and u·x
+    assert count(Continuity(), dim=dim) == geometry_by_hand(dim) + velocities + 2 + 1
+
+
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_symmetric_pressure_by_hand(dim):
+    # p_j v_j v_j, the sum, times m and W′/r; then x_ij times it onto the acceleration.
+    assert count(SymmetricPressure(), dim=dim) == geometry_by_hand(dim) + 2 + 1 + 2 + 2 * dim
+
+
+def test_shared_geometry_counts_once():
+    both = count(Continuity(), SymmetricPressure(), dim=3)
+    assert both == count(Continuity(), dim=3) + count(SymmetricPressure(), dim=3) - geometry_by_hand(3)
+
+
+def test_what_belongs_to_the_particle_itself_is_free():
+    alike = count(Continuity(), dim=2)
+    assert count(Continuity(), dim=2, shared=SHARED[1:]) == alike  # m_j in place of m
+    assert count(ArtificialViscosity(0.1, 0.5)) == count(ArtificialViscosity(0.0, 0.0))
+
+
+def test_a_sum_of_its_own_counts():
+    # W: s, 0.5 s, 1 − that, a², α a² twice, 1 + 2s, times; then m v, which is there, times W; sum.
+    w = 1 + 2 + 1 + 2 + 2 + 1
+    more = count(MinimumPressure(), FreeSurface(), dim=2) - count(MinimumPressure(), dim=2)
+    assert more == w + 1 + 1
+
+
+@pytest.mark.parametrize("name", KERNELS)
+def test_every_kernel_can_be_counted(name):
+    assert count(Continuity(), FreeSurface(), dim=2, name=name) > count(Continuity(), dim=2, name=name)
+
+
+def test_nothing_costs_nothing():
+    assert count(dim=3) == 0

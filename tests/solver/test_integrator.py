@@ -20,12 +20,12 @@ def oscillate(theta, steps):
         rate[0] = theta
     for _ in range(steps):
         kick_drift_predict(
-            1.0, 0, 1, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
+            0, 1, 1.0, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
         )
         rates = [rates[2], rates[0], rates[1]]
         rates[0][0] = theta * predicted[0][0]
         a[0][0] = -theta * pressure[0]
-        kick(1.0, 0, 1, (), view, kind, v, a, density, rates[0])
+        kick(0, 1, 1.0, (), view, kind, v, a, density, rates[0])
     return np.hypot(v[0][0], density[0] - 1.0)
 
 
@@ -67,7 +67,7 @@ def test_walls_stay_and_lost_numbers_are_reported():
     density, volume, pressure = np.ones(2), np.ones(2), np.zeros(2)
     view = ParticleView(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
     kick_drift_predict(
-        0.1, 0, 2, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
+        0, 2, 0.1, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
     )
-    *_, broken = kick(0.1, 0, 2, (), view, kind, v, a, density, rates[0])
+    *_, broken = kick(0, 2, 0.1, (), view, kind, v, a, density, rates[0])
     assert x[0][0] == v[0][0] == 0.0 and broken == 1

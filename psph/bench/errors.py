@@ -1,0 +1,5 @@
+"""What was asked of the bench cannot be done."""
+
+
+class BenchError(ValueError):
+    """One line that names the option or the file and says what to do."""

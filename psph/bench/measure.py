@@ -1,0 +1,184 @@
+"""The time of a problem's steps: warm-up apart, block by block."""
+
+import os
+import platform
+import statistics
+import time
+from contextlib import nullcontext
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.bench import BOX, DAM, FALLING
+from psph.bench.box import Box
+from psph.bench.falling import Falling
+from psph.bench.peer import Peer
+from psph.bench.roofline import Ceiling, shares
+from psph.bench.tank import Tank
+from psph.jit import compiled, processor
+from psph.output.ledger import Ledger
+from psph.particles.neighbours import WIDTH
+from psph.physics.compose import take
+from psph.scene import Scene
+from psph.solver.plan import make_plan
+from psph.solver.setup import compile_ahead
+from psph.solver.step import Simulation
+from psph.threads import threads
+from psph.vectors import dot, nearest_image, subtract
+
+WARM_UP, REPEATS, STEPS = 20, 5, 20
+"""Steps before the clock starts, blocks that are timed, and steps of a block."""
+
+LAYOUTS = {BOX: Box.nearest, DAM: Tank.nearest, FALLING: Falling.nearest}
+"""For each problem: (dimensions, neighbours, particles) to what lays it out."""
+
+
+class Asked(NamedTuple):
+    """A problem by name, about how many particles, neighbours in the bulk, and the precision."""
+
+    problem: str
+    dimensions: int
+    particles: int
+    neighbours: int
+    precision: str
+
+
+def measure(asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None) -> dict:
+    """Figures of one problem, ready for JSON: rates are medians over blocks, of all ranks.
+
+    With ``peer_python`` the peer takes turns with psph, block by block.  Collective.
+    """
+    layout = LAYOUTS[asked.problem](asked.dimensions, asked.neighbours, asked.particles)
+    scene = Scene(layout.case().model_copy(update={"precision": asked.precision}))
+    plan = make_plan(scene)
+    compiling = compile_ahead(scene, plan, comm)
+    ledger = Ledger()
+    simulation = Simulation(scene, plan, layout.create(scene, plan, comm), comm, ledger)
+    for _ in range(WARM_UP):
+        simulation.step()
+    count, pairs, entries = _work(simulation, scene)
+    with Peer(peer_python, scene, simulation) if peer_python else nullcontext() as peer:
+        ledger.seconds.clear()
+        rebuilds = simulation.domain.rebuilds
+        turns = [
+            (_timed(simulation, comm), peer.timed(STEPS) if peer else None) for _ in range(REPEATS)
+        ]
+        if peer:
+            peer.check()
+    blocks = [ours for ours, _ in turns]
+    phases = _mean_over_ranks(ledger, comm)
+    rates = Rates.of(blocks, count)
+    cores = comm.size * threads()
+    result = {
+        "machine": machine(),
+        **asked._asdict(),
+        "particles": count,
+        "neighbours": round(pairs / count, 1),
+        "neighbours_in_bulk": asked.neighbours,
+        "ranks": comm.size,
+        "threads": threads(),
+        "compile_seconds": round(compiling, 2),
+        **rates.figures(pairs / count),
+        "per_core": rates.per(cores).figures(pairs / count),
+        "spread": rates.spread,
+        "rebuilds": simulation.domain.rebuilds - rebuilds,
+        "share": {k: round(v / sum(blocks), 4) for k, v in sorted(phases.items())},
+        "roofline": shares(
+            simulation, ceiling, pairs, entries, phases["pairs"] / (REPEATS * STEPS)
+        ),
+    }
+    if peer:
+        result["peer"] = _beside(peer, turns, count, pairs / count)
+    return result
+
+
+class Rates(NamedTuple):
+    """Particle-steps/s, the median over blocks, and (largest − smallest)/median."""
+
+    particle_steps: float
+    spread: float
+
+    @classmethod
+    def of(cls, blocks: list[float], particles: int) -> "Rates":
+        """From the seconds of each block."""
+        rates = [particles * STEPS / seconds for seconds in blocks]
+        median = statistics.median(rates)
+        return cls(median, (max(rates) - min(rates)) / median)
+
+    def per(self, cores: int) -> "Rates":
+        """The share of one core."""
+        return self._replace(particle_steps=self.particle_steps / cores)
+
+    def figures(self, neighbours: float) -> dict[str, float]:
+        """Particle-steps and pairs per second."""
+        return {
+            "particle_steps_per_second": self.particle_steps,
+            "pairs_per_second": self.particle_steps * neighbours,
+        }
+
+
+def machine() -> str:
+    """The processor by its name, and as loops are compiled for it."""
+    name = platform.processor() or platform.machine()
+    try:
+        described = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        name = next(line.partition(":")[2] for line in described if line.startswith("model name"))
+    except (OSError, StopIteration):
+        pass  # not Linux, or a processor that is described in other words
+    return f"{name.strip()} ({processor()}), {os.cpu_count()} cores"
+
+
+def _timed(simulation: Simulation, comm) -> float:
+    """Seconds of a block of steps."""
+    comm.Barrier()
+    begun = time.perf_counter()
+    for _ in range(STEPS):
+        simulation.step()
+    comm.Barrier()
+    return time.perf_counter() - begun
+
+
+def _mean_over_ranks(ledger: Ledger, comm) -> dict[str, float]:
+    """Seconds of each phase, a rank's on average."""
+    parts = comm.allgather(dict(ledger.seconds))
+    names = {name for part in parts for name in part}
+    return {name: sum(part.get(name, 0.0) for part in parts) / comm.size for name in names}
+
+
+def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
+    """Particles, ordered pairs inside the kernel's support and entries of the lists, in all."""
+    store, lists, comm = simulation.store, simulation.domain.lists, simulation.comm
+    support = scene.kernel.support * scene.smoothing_length
+    inside = count_inside(
+        store.view(), simulation.domain.periods, support * support, store.low, store.owned,
+        lists.begin, lists.blocks, lists.lists,
+    )
+    entries = WIDTH * int(lists.blocks[: store.owned].sum())
+    return tuple(comm.allreduce(n) for n in (store.owned, int(inside), entries))
+
+
+@compiled
+def count_inside(view, periods, support2, low, owned, begin, blocks, lists):
+    """Entries of the lists that lie within the support."""
+    inside = 0
+    for k in range(owned):
+        i = take(view, low + k)
+        for n in range(begin[k], begin[k] + np.uint64(blocks[k]) * np.uint64(WIDTH)):
+            x_ij = nearest_image(subtract(i.position, take(view, lists[n]).position), periods)
+            inside += dot(x_ij, x_ij) < support2
+    return inside
+
+
+def _beside(peer: Peer, turns: list[tuple], particles: int, neighbours: float) -> dict:
+    """The peer's figures; ``ratio`` is psph's pace over the peer's, the median over the turns."""
+    ratios = [theirs / ours for ours, theirs in turns]
+    rates = Rates.of([theirs for _, theirs in turns], particles)
+    ratio = statistics.median(ratios)
+    return {
+        **peer.described,
+        **rates.figures(neighbours),
+        "spread": rates.spread,
+        "ratio": ratio,
+        "ratio_spread": (max(ratios) - min(ratios)) / ratio,
+    }

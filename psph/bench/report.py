@@ -1,0 +1,125 @@
+"""The measured tables of a page: ``python -m psph.bench.report PAGE FILE...``.
+
+Each FILE ends with what ``bench --json`` printed; the tables replace what stands between two
+markers of the page.
+"""
+
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from psph.bench import PROBLEMS
+from psph.bench.errors import BenchError
+from psph.bench.results import read_runs
+
+BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
+
+PHASES = ("pairs", "rebuild", "halo", "limits")
+"""Phases with a column of their own; the rest goes together."""
+
+
+def renew(page: Path, files: Iterable[Path]) -> None:
+    """Put the tables of these results into the page.  BenchError: a file is of another kind."""
+    runs = [run for file in files for run in read_runs(file)]
+    try:
+        text = page.read_text(encoding="utf-8")
+    except OSError as error:
+        raise BenchError(f"{page}: {error.strerror}; give a page with the two markers") from None
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise BenchError(f"{page}: no place for the tables; add the lines {BEGIN} and {END}")
+    tables = "\n".join(_tables(runs))
+    page.write_text(f"{before}{BEGIN}\n{tables}\n{END}{after}", encoding="utf-8")
+
+
+def _tables(runs: list[dict]) -> Iterator[str]:
+    for machine in sorted({run["machine"] for run in runs}):
+        here = [run for run in runs if run["machine"] == machine]
+        roofs = [run["roofline"] for run in here if run["ranks"] == here[0]["ranks"]]
+        yield f"{machine}. On {_ranks(here[0])} a copy reaches {_best(roofs, 'copy_bytes')} GB/s,"
+        yield f"multiply-adds {_best(roofs, 'multiply_add_flops')} Gflop/s."
+        yield ""
+        yield from _table(
+            ("problem", "particles", "neighbours", "ranks × threads", "precision",
+             "M particle-steps/s a core", "M pairs/s a core", "spread", "LAMMPS", "psph/LAMMPS"),
+            map(_pace, here),
+        )
+        yield ""
+        yield "Where a step's time goes, and what the pair loop reaches of these two ceilings:"
+        yield ""
+        yield from _table(
+            ("problem", "particles", "neighbours", "ranks × threads", *PHASES, "the rest",
+             "multiply-adds", "copy"),
+            map(_shares, here),
+        )
+
+
+def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
+    yield f"| {' | '.join(head)} |"
+    yield "|---" * len(head) + "|"
+    for row in rows:
+        yield f"| {' | '.join(row)} |"
+
+
+def _what(run: dict) -> tuple[str, ...]:
+    name = f"{PROBLEMS[run['problem']]}, {run['dimensions']}D"
+    neighbours = f"{run['neighbours']:.0f} (bulk {run['neighbours_in_bulk']})"
+    return name, f"{run['particles']:,}", neighbours, f"{run['ranks']} × {run['threads']}"
+
+
+def _pace(run: dict) -> tuple[str, ...]:
+    core, cores = run["per_core"], run["ranks"] * run["threads"]
+    beside = "–", "–"
+    if "peer" in run:
+        peer = run["peer"]
+        pace = _millions(peer["particle_steps_per_second"] / cores)
+        beside = (
+            f"{pace} (spread {_percent(peer['spread'])})",
+            f"{peer['ratio']:.2f} (spread {_percent(peer['ratio_spread'])})",
+        )
+    return (
+        *_what(run), run["precision"], _millions(core["particle_steps_per_second"]),
+        f"{core['pairs_per_second'] / 1e6:.0f}", _percent(run["spread"]), *beside,
+    )
+
+
+def _shares(run: dict) -> tuple[str, ...]:
+    share, roof = run["share"], run["roofline"]
+    own = [share.get(phase, 0.0) for phase in PHASES]
+    columns = [*own, 1.0 - sum(own), roof["flops_share"], roof["bytes_share"]]
+    return (*_what(run), *map(_percent, columns))
+
+
+def _best(roofs: list[dict], what: str) -> str:
+    return f"{max(roof[f'{what}_per_second'] for roof in roofs) / 1e9:.0f}"
+
+
+def _ranks(run: dict) -> str:
+    return "1 rank" if run["ranks"] == 1 else f"{run['ranks']} ranks"
+
+
+def _millions(number: float) -> str:
+    return f"{number / 1e6:.2f}"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f} %"
+
+
+def main(arguments: list[str]) -> int:
+    """Renew a page; the exit code."""
+    if len(arguments) < 2:
+        print("python -m psph.bench.report PAGE FILE...", file=sys.stderr)
+        return 2
+    page, *files = map(Path, arguments)
+    try:
+        renew(page, files)
+    except BenchError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

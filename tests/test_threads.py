@@ -1,0 +1,58 @@
+"""Threads of a rank: every column once, the same bits, and one line where there are too few cores."""
+
+import os
+
+import numpy as np
+import pytest
+from solver.test_precision import box, run
+
+from psph.threads import TooManyThreads, in_threads, threads, use_threads
+
+CORES = len(os.sched_getaffinity(0))
+
+
+@pytest.fixture
+def two():
+    if CORES < 2:
+        pytest.skip("one core")
+    use_threads(2)
+    yield
+    use_threads(1)
+
+
+def test_every_column_once(two):
+    seen = np.zeros(101, int)
+
+    def loop(first, last, by):
+        seen[first:last] += by
+        return last - first
+
+    assert sum(in_threads(loop, 1, 100, 2)) == 99
+    assert seen[0] == seen[100] == 0 and (seen[1:100] == 2).all()
+    assert in_threads(loop, 5, 5, 1) == [0]
+
+
+def test_a_failure_in_a_thread_is_not_lost(two):
+    def loop(first, last):
+        if first > 0:
+            raise ValueError("here")
+
+    with pytest.raises(ValueError, match="here"):
+        in_threads(loop, 0, 10)
+
+
+@pytest.mark.parametrize("precision", ("double", "mixed"))
+def test_same_bits_as_in_one_thread(two, precision):
+    case = box(2, precision, True, free_surface=0.9, pressure_gradient="minimum")
+    together = run(case, 8)
+    use_threads(1)
+    for one, other in zip(together, run(case, 8)):
+        assert np.array_equal(one, other)
+
+
+def test_more_threads_than_cores_are_refused():
+    with pytest.raises(TooManyThreads, match=f"--threads {CORES + 1}: this rank may use {CORES}"):
+        use_threads(CORES + 1)
+    with pytest.raises(TooManyThreads, match="--threads 0"):
+        use_threads(0)
+    assert threads() == 1
