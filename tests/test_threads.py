@@ -56,3 +56,15 @@ def test_more_threads_than_cores_are_refused():
     with pytest.raises(TooManyThreads, match="--threads 0"):
         use_threads(0)
     assert threads() == 1
+
+
+def test_lists_are_the_same_in_two_threads(two):
+    """Rows stand elsewhere, and hold the same."""
+    from particles.test_neighbours import domain_of, neighbours_by_id
+
+    positions = np.random.default_rng(1).uniform(0, 1, (2000, 3))
+    positions[:, 0] **= 3  # crowded at one end: the parts need different room
+    args = (positions, 0.12, (0,) * 3, (1,) * 3, (None,) * 3)
+    together = neighbours_by_id(domain_of(*args))
+    use_threads(1)
+    assert together == neighbours_by_id(domain_of(*args))

@@ -9,6 +9,7 @@ from psph.particles.cells import Grid
 from psph.particles.lanes import LANES, append_near, near_bits
 from psph.particles.store import SPARE
 from psph.physics.space import DUMMIES, Filling
+from psph.threads import in_threads
 from psph.vectors import at
 
 WIDTH = 4
@@ -48,10 +49,13 @@ def build(
     if len(room.begin) < owned:
         room = empty(owned + owned // SPARE, max(len(room.lists), 64 * owned + 1024))
     while True:
-        needed = fill_lists(
-            position, periods, cutoff * cutoff, grid.counts, grid.periodic, grid.reach,
-            starts, planes, store.low, store.total, store["position"][0], 1.0 / filling.dummies_apart,
-            filling.multiple, room.begin, room.blocks, room.lists,
+        needed = max(
+            in_threads(
+                fill_lists, 1, planes + 1, position, periods, cutoff * cutoff, grid.counts,
+                grid.periodic, grid.reach, starts, store.low, owned, store.total,
+                store["position"][0], 1.0 / filling.dummies_apart, filling.multiple,
+                room.begin, room.blocks, room.lists,
+            )
         )
         if needed == 0:
             return room
@@ -77,11 +81,12 @@ def in_single_precision(store, grid: Grid, first: int, cutoff: float):
 
 @compiled
 def fill_lists(
-    position, periods, cutoff2, counts, periodic, reach, starts, planes, low, dummy,
-    along, dummies_per_metre, multiple, begin, blocks, lists,
+    first_plane, last_plane, position, periods, cutoff2, counts, periodic, reach, starts, low,
+    owned, dummy, along, dummies_per_metre, multiple, begin, blocks, lists,
 ):
-    """Fill the rows; returns 0, or about how many entries are needed when they do not fit.
+    """Fill the rows of some planes; returns 0, or about how many entries are needed for all.
 
+    Planes take the part of the lists that is their part of the ``owned`` particles.
     The candidates of a cell are a few ranges of columns, eight to a group; all eight are compared at
     once, and a table packs those that are near.
     """
@@ -90,10 +95,16 @@ def fill_lists(
     to_k = np.empty(18, np.uint64)
     column_of = np.empty(64, np.uint32)
     valid = np.empty(64, np.uint64)
-    capacity = len(lists) - 2 * LANES
+    line = rows * columns
+    before = starts[first_plane * line] - low
+    here = starts[last_plane * line] - low - before
+    # A group is written whole: between two parts lies room for it.
+    each = max(len(lists) - 2 * LANES * (len(starts) // line), 0) / max(owned, 1)
+    begun = np.int64(each * before) + 2 * LANES * (first_plane - 1)
+    capacity = begun + np.int64(each * here)
     one = np.uint64(1)
-    end = np.uint64(0)
-    for plane in range(1, planes + 1):
+    end = np.uint64(begun)
+    for plane in range(first_plane, last_plane):
         for row in range(rows):
             for column in range(columns):
                 cell = (plane * rows + row) * columns + column
@@ -108,9 +119,9 @@ def fill_lists(
                 own = group_candidates(starts[cell], ranges, from_k, to_k, column_of, valid)
                 for i in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
                     if np.int64(end) + candidates > capacity:
-                        done = max(np.int64(i) - low, 1)
-                        total = starts[(planes + 1) * rows * columns] - low
-                        return np.int64(end) * total // done + candidates + 1024
+                        done = max(np.int64(i) - low - before, 1)
+                        guess = (np.int64(end) - begun) * owned // done + candidates
+                        return max(guess, len(lists) + len(lists) // SPARE) + 1024
                     x_i = at(position, i)
                     lane = own + i - np.uint64(starts[cell])
                     own_group, own_bit = lane // np.uint64(LANES), one << lane % np.uint64(LANES)
