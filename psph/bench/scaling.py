@@ -19,6 +19,8 @@ class Machine(NamedTuple):
     """Bytes/s that a rank sends while all others do."""
     serial: float
     """Part of a step that the threads of a rank do not share: sorting, the skin, starting a loop."""
+    node: int
+    """Cores of a node."""
 
 
 class Scene(NamedTuple):
@@ -67,10 +69,11 @@ def model(machine: Machine, scene: Scene, cores: int) -> Step:
     """The fastest split of the cores into ranks and threads.
 
     A rank owns whole planes, so that the fullest slab has ⌈planes/ranks⌉ of them.  Threads share
-    (1 − serial) of the work.
+    (1 − serial) of the work and stay on one node.  Cores that slabs have no use for stay idle.
     """
-    threads = [2**n for n in range(int(math.log2(cores)) + 1) if cores // 2**n <= scene.planes]
-    return min((_step(machine, scene, cores // t, t) for t in threads), key=lambda s: s.seconds)
+    threads = [2**n for n in range(int(math.log2(min(cores, machine.node))) + 1)]
+    splits = [(min(cores // t, scene.planes), t) for t in threads]
+    return min((_step(machine, scene, *split) for split in splits), key=lambda s: s.seconds)
 
 
 def _step(machine: Machine, scene: Scene, ranks: int, threads: int) -> Step:
@@ -83,8 +86,8 @@ def _step(machine: Machine, scene: Scene, ranks: int, threads: int) -> Step:
     return Step(ranks, threads, owned * machine.particle * shared, messages, reduction)
 
 
-MEASURED = Machine(particle=0.25e-6, latency=2e-6, bandwidth=2.5e9, serial=0.04)
-"""The core of docs/performance.md, in a cluster whose network gives a rank 2.5 GB/s at 2 µs."""
+MEASURED = Machine(particle=0.25e-6, latency=2e-6, bandwidth=5e9, serial=0.04, node=64)
+"""The core of docs/performance.md, in a cluster whose nodes have 64, a rank sends 5 GB/s at 2 µs."""
 
 SIZES, CORES = (10**7, 10**8, 10**9), (1, 64, 1024, 16_384)
 
