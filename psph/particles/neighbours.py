@@ -71,10 +71,11 @@ def in_single_precision(store, grid: Grid, first: int, cutoff: float):
     arrays = store["position"]
     lower = dict(zip(grid.axes, grid.lower))
     near = [np.zeros(store.total + LANES, np.float32) for _ in arrays]
-    extent, used = 0.0, slice(first, store.total)
+    used = slice(first, store.total)
     for d, (x, rounded) in enumerate(zip(arrays, near)):
         np.subtract(x[used], lower[d], out=rounded[used], casting="same_kind")
-        extent = max(extent, float(np.abs(rounded[used]).max(initial=0.0)))
+    # From the grid, since the cutoff must be the same on every rank.
+    extent = max(n / per_metre for n, per_metre in zip(grid.along_axes, grid.inverse))
     rounding = len(arrays) * 2.0 * extent * np.finfo(np.float32).eps
     return tuple(near), cutoff * (1.0 + ROUNDING) + rounding
 

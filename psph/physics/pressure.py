@@ -33,7 +33,7 @@ class MinimumPressure(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the part relative to p_i, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        return -j.mass * v_i * v_j * (j.pressure - i.pressure) * pair.dw_r
+        return (i.pressure - j.pressure) * v_i * (j.mass * v_j * pair.dw_r)
 
     def start(self, i):
         """Smallest pressure so far, and Σ_j m_j/ρ_j ∇W_ij."""

@@ -58,7 +58,8 @@ def test_the_comparison_sees_the_last_bit(tmp_path):
 
 
 def test_too_many_ranks_are_refused_with_the_largest_number(tmp_path):
-    job = mpirun(8, ["-m", "psph", f"{CASES}/negative_pressure.toml", "--out", tmp_path / "x"])
+    case = ["-m", "psph", f"{CASES}/negative_pressure.toml", "--set", "neighbours.skin=0.1"]
+    job = mpirun(8, [*case, "--out", tmp_path / "x"])
     assert job.returncode == 2
     assert "8 ranks for 7 planes of cells: use at most 7 ranks" in job.stderr
     assert job.stderr.count("at most 7 ranks") == 1

@@ -87,7 +87,7 @@ def test_a_short_period_is_refused(tmp_path):
     [line] = refused(tmp_path, WATER, *PERIODIC, "space.smoothing=1.6")
     assert line == (
         "case.toml: space.upper: the domain is 1 m long along the periodic axis x, the kernel "
-        "needs 1.056; make it longer or space.spacing smaller"
+        "needs 1.0368; make it longer or space.spacing smaller"
     )
     assert checked(tmp_path, WATER, *PERIODIC) == []
 
