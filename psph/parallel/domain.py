@@ -85,11 +85,23 @@ class Domain:
             return rank % self.comm.size
         return rank if 0 <= rank < self.comm.size else MPI.PROC_NULL
 
+    def inside(self, position: np.ndarray) -> np.ndarray:
+        """Positions (n, dim) as people read them: within the periods, m; a copy if there are any.
+
+        Between two rebuilds a particle may have left the domain on one side.
+        """
+        if any(self.periods):
+            position = position.copy()
+            self._fold(position.T)
+        return position
+
     def _wrap(self) -> None:
         inner = self.store.inner
-        for x, low, period in zip(self.store["position"], self.lower, self.periods):
+        self._fold([x[inner] for x in self.store["position"]])
+
+    def _fold(self, components) -> None:
+        for x, low, period in zip(components, self.lower, self.periods):
             if period is not None:
-                x = x[inner]
                 x -= period * np.floor((x - low) / period)
                 x[x >= low + period] = low  # rounding may land on the upper edge
 

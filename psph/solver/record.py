@@ -90,6 +90,7 @@ class Record:
         """All saved fields of all particles."""
         sim = self.simulation
         arrays = {name: sim.store.shown(name) for name, f in FIELDS.items() if f.saved}
+        arrays["position"] = sim.domain.inside(arrays["position"])
         self.frames.write(self.written, sim.time, sim.steps, arrays)
         self.written += 1
 

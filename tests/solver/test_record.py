@@ -1,6 +1,16 @@
 """When things are written."""
 
-from psph.solver.record import Schedule
+import h5py
+import numpy as np
+from mpi4py import MPI
+from solver.test_precision import SPACING, box
+
+from psph.output.ledger import Ledger
+from psph.scene import Scene
+from psph.solver.plan import make_plan
+from psph.solver.record import Record, Schedule
+from psph.solver.setup import create_particles
+from psph.solver.step import Simulation
 
 
 def due_times(schedule, dt, steps):
@@ -17,3 +27,24 @@ def test_a_cadence_finer_than_the_steps_is_due_once_a_step():
 
 def test_exact_multiples_are_not_missed():
     assert due_times(Schedule(0.3), 0.1, 10) == [0, 3, 6, 9]
+
+
+def test_a_frame_holds_positions_inside_the_periods(tmp_path):
+    """All move as one: lists last, and particles leave the domain between two of them."""
+    case = box(2, "double", periodic=True, sides=20)
+    scene = Scene(case)
+    plan = make_plan(scene)
+    store = create_particles(scene, plan, MPI.COMM_SELF)
+    simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    record = Record(scene, simulation, tmp_path)
+    length = 20 * SPACING
+    while max(x[store.inner].max() for x in store["position"]) < length:
+        simulation.step()
+    record.write_frame()
+    record.close()
+    with h5py.File(tmp_path / f"{case.name}.h5") as file:
+        [frame] = file["frames"].values()
+        written = frame["position"][...]
+    assert written.min() >= 0.0 and written.max() < length
+    apart = (written - store.owned_rows("position")) / length
+    assert np.abs(apart - np.rint(apart)).max() < 1e-12 and np.abs(np.rint(apart)).max() == 1.0
