@@ -45,3 +45,17 @@ def refusal(folder: Path, text: str = WATER, *overrides: str) -> list[str]:
     except CaseError as error:
         return [line.replace(f"{folder}/", "") for line in error.lines]
     raise AssertionError("the case was accepted")
+
+
+SQUARE = """
+[space]
+dimensions = 2
+spacing = 0.1
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+"""
+"""A plain square of fluid."""

@@ -77,10 +77,8 @@ def fixed_point(smoothing_length: float, periods) -> FixedPoint:
 def steps_each(records, k, d, positions, units):
     """Differences from axis d on."""
     own = records[k, d : d + len(units)].view(np.int32)
-    return tuple(
-        float(np.int32(a - np.float32(b).view(np.int32))) * unit
-        for a, b, unit in zip(own, positions, units)
-    )
+    steps = own - np.array(positions, np.float32).view(np.int32)  # wraps around
+    return tuple(float(n) * unit for n, unit in zip(steps, units))
 
 
 @overload(steps_each)

@@ -8,7 +8,6 @@ number and everything below works on one neighbour.
 import math
 import operator
 
-import numba
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
@@ -19,7 +18,7 @@ from numba.extending import (
 
 from psph.jit import register_bits
 
-WIDTH = 1 if numba.config.DISABLE_JIT else register_bits() // 64
+WIDTH = register_bits() // 64
 """Doubles of a register."""
 
 EIGHT = 8

@@ -8,10 +8,10 @@ from psph.simd.lanes import Lanes
 
 
 def _on_each(function):
-    """Let ``function(lanes)`` work on tuples of lanes too."""
+    """Let ``function(lanes)`` work on tuples of lanes too; in plain Python a lane is a number."""
 
     def each(value):
-        raise NotImplementedError("compiled code only")
+        return value
 
     @overload(each)
     def typed(value):

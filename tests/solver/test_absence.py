@@ -5,7 +5,7 @@ from typing import NamedTuple, get_type_hints
 
 import numba
 import pytest
-from drafts import draft
+from drafts import SQUARE, draft
 from mpi4py import MPI
 
 from psph.jit import FAST
@@ -19,18 +19,6 @@ from psph.solver.explain import bytes_per_refresh
 from psph.solver.plan import make_plan
 from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
-
-SQUARE = """
-[space]
-dimensions = 2
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-sound_speed = 10.0
-[fluids.water]
-shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
-"""
 
 IN_PAIRS = {"density_rate", "radial", "shear", "body", "start"}
 """Methods that the pair loop calls."""

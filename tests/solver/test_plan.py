@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from drafts import SQUARE
 from mpi4py import MPI
 
 from psph.case import load
@@ -16,26 +17,13 @@ from psph.solver.plan import make_plan
 from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
 
-PLAIN = """
-[space]
-dimensions = 2
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-sound_speed = 10.0
-[fluids.water]
-shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
-"""
-
-
 @pytest.fixture
 def planned(tmp_path):
     """A function: overrides → (scene, plan) of a plain fluid."""
 
     def make(*overrides):
         path = tmp_path / "plain.toml"
-        path.write_text(PLAIN)
+        path.write_text(SQUARE)
         scene = Scene(load(path, overrides))
         return scene, make_plan(scene)
 

@@ -1,7 +1,12 @@
 """Mixed precision: its error against double, wherever the pair is; and what naive rounding does."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
+from jobs import clean_environment
 from mpi4py import MPI
 
 from psph.case import Case
@@ -113,3 +118,27 @@ def test_too_fine_a_scene_is_refused():
     case["space"]["spacing"] = 1e-10
     with pytest.raises(ValidationError, match="cannot hold the kernel's slope"):
         Case.model_validate(case)
+
+
+PLAIN_PYTHON = """
+import sys
+import numpy as np
+from solver.test_precision import box, run
+
+for precision in ("double", "mixed"):
+    case = box(2, precision, True, sides=9, free_surface=0.9, pressure_gradient="minimum")
+    np.save(f"{sys.argv[1]}/{precision}.npy", np.concatenate([x.ravel() for x in run(case, 2)]))
+"""
+
+
+def test_without_compiling_psph_is_plain_python(tmp_path):
+    """What docs/contributing.md promises to whoever debugs a formula."""
+    job = subprocess.run(
+        [sys.executable, "-c", PLAIN_PYTHON, tmp_path], capture_output=True, text=True,
+        env=clean_environment() | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert job.returncode == 0, job.stderr
+    for precision, close in (("double", 1e-13), ("mixed", WORST)):
+        case = box(2, precision, True, sides=9, free_surface=0.9, pressure_gradient="minimum")
+        compiled = np.concatenate([x.ravel() for x in run(case, 2)])
+        assert worst(np.load(tmp_path / f"{precision}.npy"), compiled) < close
