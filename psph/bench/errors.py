@@ -3,3 +3,7 @@
 
 class BenchError(ValueError):
     """One line that names the option or the file and says what to do."""
+
+
+class PeerFailed(BenchError):
+    """LAMMPS began, and did not bear this problem to the end; raised on every rank."""

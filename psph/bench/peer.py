@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from psph.bench import lammps_side
-from psph.bench.errors import BenchError
+from psph.bench.errors import BenchError, PeerFailed
 from psph.bench.ranks import on_rank_0
 from psph.particles.fields import FLUID, WALL
 from psph.physics.viscosity import ArtificialViscosity
@@ -77,7 +77,7 @@ class Peer:
         """Raise BenchError where its densities are no longer those of water."""
         low, high = on_rank_0(self.comm, self._densities)
         if not 1.0 - BROKEN < low <= high < 1.0 + BROKEN:
-            raise BenchError(
+            raise PeerFailed(
                 f"bench --peer: LAMMPS blew up: densities of {low:.3g} to {high:.3g} of the rest "
                 "density; leave --peer out, or ask for more particles"
             )
@@ -204,7 +204,7 @@ class Processes:
                 for ready in wait([c for c in self._connections if c not in answers]):
                     answers[ready] = _good(ready.recv())
         except (EOFError, OSError):
-            raise BenchError(f"bench --peer: LAMMPS ended: {self._last_words()}") from None
+            raise PeerFailed(f"bench --peer: LAMMPS ended: {self._last_words()}") from None
         return list(answers.values())
 
     def end(self) -> None:
@@ -241,9 +241,9 @@ class Processes:
 
 
 def _good(answer):
-    """The answer, unless it says what went wrong: then BenchError."""
+    """The answer, unless it says what went wrong: then PeerFailed."""
     if isinstance(answer, str) and answer.startswith(lammps_side.ERROR):
-        raise BenchError(f"bench --peer: LAMMPS: {answer.removeprefix(lammps_side.ERROR)}")
+        raise PeerFailed(f"bench --peer: LAMMPS: {answer.removeprefix(lammps_side.ERROR)}")
     return answer
 
 

@@ -15,18 +15,18 @@ NAP = 0.002
 def on_rank_0(comm, work: Callable[[], T]) -> T:
     """The result of ``work()`` on rank 0, for all ranks; collective.
 
-    A BenchError is raised on all ranks.
+    A BenchError is raised on all ranks, as what it is.
     """
     found = trouble = None
     if comm.rank == 0:
         try:
             found = work()
         except BenchError as error:
-            trouble = str(error)
+            trouble = error
     arrived = comm.Ibarrier()
     while not arrived.Test():
         time.sleep(NAP)
     found, trouble = comm.bcast((found, trouble))
     if trouble:
-        raise BenchError(trouble)
+        raise trouble
     return found

@@ -7,9 +7,10 @@ import sys
 import pytest
 from jobs import clean_environment, mpirun
 
+from psph.bench import command
 from psph.bench.command import bench
 from psph.bench.compare import compared
-from psph.bench.errors import BenchError
+from psph.bench.errors import BenchError, PeerFailed
 from psph.bench.measure import Asked
 from psph.bench.report import BEGIN, END, renew
 from psph.bench.results import KEYS, read_runs
@@ -56,6 +57,23 @@ def test_the_pair_loop_stays_under_the_roof(result):
     assert 0.0 < roof["flops_share"] < 1.2 and 0.0 < roof["bytes_share"] < 1.2
     at_least = result["pairs_per_second"] * roof["flops_per_pair"]  # in the whole step
     assert at_least < roof["flops_per_second"] < 2.0 * at_least
+
+
+def test_a_peer_that_fails_at_one_problem_does_not_end_the_set(result, monkeypatch, capsys):
+    def measure(problem, comm, ceiling, peer):
+        if peer:
+            raise PeerFailed("bench --peer: LAMMPS blew up")
+        return result
+
+    monkeypatch.setattr(command, "measure", measure)
+    monkeypatch.setattr(command, "measure_ceiling", lambda comm: None)
+    asked = Asked("box", 3, 5000, 57, "double")
+    bench(alone(), [asked, asked], None, "python", as_json=True)
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "bench --peer: LAMMPS blew up; without it:"
+    assert len(json.loads(said[-1])["runs"]) == 2
+    with pytest.raises(PeerFailed):
+        bench(alone(), [asked], None, "python", as_json=True)
 
 
 def test_two_ranks_speak_with_one_voice():
