@@ -67,7 +67,7 @@ def test_a_tank_in_its_words():
     ("problem", "dim", "neighbours"), [("box", 2, 20), ("box", 3, 57), ("falling", 2, 20)]
 )
 def test_they_take_turns(python, problem, dim, neighbours):
-    result = measure(Asked(problem, dim, 3000, neighbours), alone(), Ceiling(1e10, 1e10), python)
+    result = measure(Asked(problem, dim, 3000, neighbours, "double"), alone(), Ceiling(1e10, 1e10), python)
     peer = result["peer"]
     assert peer["name"] == "LAMMPS" and int(peer["version"]) > 20200101 and peer["ranks"] == 1
     assert peer["particle_steps_per_second"] > 1e4 and peer["skin"] in peer["skins_tried"]
