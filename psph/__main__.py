@@ -60,6 +60,10 @@ def _explain(options, comm) -> None:
     _warn(scene, comm)
     if comm.rank == 0:
         print("\n".join(explain(scene, options.ranks or comm.size)))
+        if options.study:
+            from psph.study.study import foretold
+
+            print("\n".join(foretold(options.study, scene.case)))
 
 
 def _check(options, comm) -> None:
@@ -103,6 +107,17 @@ def _bench(options, comm) -> None:
     bench(comm, asked, options.compare, options.peer, options.json)
 
 
+def _study(options, comm) -> None:
+    from psph.study.command import study
+    from psph.threads import use_threads
+
+    use_threads(options.threads)
+    study(
+        comm, options.case, options.set, options.vary, options.grid, options.effects, options.out,
+        options.error, options.seconds,
+    )
+
+
 def _load(options):
     from psph.case import load
 
@@ -123,6 +138,7 @@ VERBS = {
     "check": (_check, "validate a case and do nothing else"),
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
+    "study": (_study, "what accuracy costs in time: a case over a ladder of choices"),
     "bench": (_bench, "particle-steps and pairs per second of this machine"),
 }
 
@@ -138,24 +154,44 @@ def _parser() -> argparse.ArgumentParser:
     made = {name: verbs.add_parser(name, help=text) for name, (_, text) in VERBS.items()}
     for name, (action, _) in VERBS.items():
         made[name].set_defaults(verb=action)
-    for name in ("run", "explain", "check"):
+    for name in ("run", "explain", "check", "study"):
         made[name].add_argument("case", type=Path, help="the case file")
         made[name].add_argument(
             "--set", action="append", default=[], metavar="KEY=VALUE",
-            help="override a key of the case, such as time.end=0.5 (repeatable)",
+            help="override a key of the case, such as time.end=0.5; off takes it out (repeatable)",
         )
     made["run"].add_argument("--out", type=Path, help="folder of the files (default: the case's name)")
     made["run"].add_argument(
         "--overwrite", action="store_true", help="replace an earlier run in the folder"
     )
-    for name in ("run", "bench"):
+    for name in ("run", "bench", "study"):
         made[name].add_argument("--threads", type=int, default=1, help="threads a rank (default: 1)")
     made["explain"].add_argument("--ranks", type=int, help="plan for so many ranks")
+    made["explain"].add_argument(
+        "--study", type=Path, metavar="DIR", help="foretell error and run time from a study"
+    )
     made["plot"].add_argument("folder", type=Path, help="the folder of a run")
     made["plot"].add_argument("--times", type=float, nargs="+", help="moments to show, s")
     made["plot"].add_argument("--field", default="pressure", help="what the colours show")
+    _add_study_options(made["study"])
     _add_bench_options(made["bench"])
     return parser
+
+
+def _add_study_options(study: argparse.ArgumentParser) -> None:
+    study.add_argument(
+        "--vary", action="append", default=[], metavar="KEY=V,V",
+        help="a key and its values, such as space.spacing=0.02,0.01 (repeatable)",
+    )
+    study.add_argument("--grid", action="store_true", help="all combinations of the values")
+    study.add_argument(
+        "--effects", action="store_true", help="what each effect costs, and what it changes"
+    )
+    study.add_argument("--error", type=float, help="which settings reach this relative error")
+    study.add_argument("--seconds", type=float, help="which settings take so many seconds")
+    study.add_argument(
+        "--out", type=Path, help="folder of the files (default: the case's name and -study)"
+    )
 
 
 def _add_bench_options(bench: argparse.ArgumentParser) -> None:
@@ -186,11 +222,12 @@ def _foreseen(error: BaseException) -> tuple[str, int] | None:
     from psph.parallel.slabs import TooManyRanks
     from psph.particles.store import TooManyParticles
     from psph.solver.step import BlowUp
+    from psph.study.errors import StudyError
     from psph.threads import TooManyThreads
 
     if isinstance(error, CaseError):
         return "\n".join(error.lines), BAD_INPUT
-    if isinstance(error, (BenchError, TooManyRanks, TooManyThreads, TooManyParticles)):
+    if isinstance(error, (BenchError, StudyError, TooManyRanks, TooManyThreads, TooManyParticles)):
         return str(error), BAD_INPUT
     if isinstance(error, (OutputError, BlowUp)):
         return str(error), FAILED

@@ -13,13 +13,13 @@ LAYERS = [
     {"jit"},
     {"simd", "threads"},
     {"vectors", "smoothing"},
-    {"physics"},
+    {"physics", "solutions"},
     {"particles"},
     {"case"},
     {"scene", "parallel"},
     {"output"},
     {"solver"},
-    {"bench"},
+    {"bench", "study"},
     {"__main__"},
 ]
 DEPTH = {part: depth for depth, layer in enumerate(LAYERS) for part in layer}

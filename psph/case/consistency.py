@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.errors import advise
+from psph.case.study import EXACT
 from psph.case.tables import AXES, Table
+from psph.solutions.catalogue import SOLUTIONS, known
 
 if TYPE_CHECKING:
     from psph.case.model import Case
@@ -20,7 +22,9 @@ Finding = tuple[Location, Any, str]
 
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
-    rules = (_dimensions, _axes, _domain, _hydrostatic, _continued, _names, _single)
+    rules = (
+        _dimensions, _axes, _domain, _hydrostatic, _exact, _continued, _probed, _names, _single,
+    )
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
@@ -47,6 +51,8 @@ def _dimensions(case: Case) -> Iterator[Finding]:
     dimensions = case.space.dimensions
     foreign: Location = ("no key",)  # the shape that does not belong here: one line is enough
     for loc, value in walk(case):
+        if loc[:2] == ("study", "vary"):  # lists there are ladders, not vectors
+            continue
         only_in = getattr(value, "only_in", dimensions)
         if only_in != dimensions:
             foreign = loc
@@ -69,6 +75,7 @@ def _axes(case: Case) -> Iterator[Finding]:
     axes = AXES[: case.space.dimensions]
     named = [(("space", "periodic", k), axis) for k, axis in enumerate(case.space.periodic)]
     named.append((("parallel", "axis"), case.parallel.axis))
+    named += [(("probes", name, "front"), probe.front) for name, probe in case.probes.items()]
     for loc, axis in named:
         if axis is not None and axis not in axes:
             yield loc, axis, (
@@ -99,6 +106,26 @@ def _hydrostatic(case: Case) -> Iterator[Finding]:
             yield ("fluids", name, "pressure"), fluid.pressure, (
                 "there is no gravity; give physics.gravity, or a pressure in Pa"
             )
+
+
+def _exact(case: Case) -> Iterator[Finding]:
+    given = [name for name, value in case.exact if value is not None]
+    for extra in given[1:]:
+        yield ("exact", extra), ..., f"a case has one exact solution, here {given[0]}; take one out"
+    fields = known(SOLUTIONS[given[0]]) if given else ()
+    for name, fluid in case.fluids.items():
+        for field in ("velocity", "pressure"):
+            if getattr(fluid, field) == EXACT and field not in fields:
+                yield ("fluids", name, field), EXACT, (
+                    f"{given[0]} does not know it; give numbers" if given
+                    else "the case has no exact solution; give [exact], or numbers"
+                )
+
+
+def _probed(case: Case) -> Iterator[Finding]:
+    for name, probe in case.probes.items():
+        if (probe.position is None) == (probe.front is None):
+            yield ("probes", name), ..., "give either position or front"
 
 
 def _continued(case: Case) -> Iterator[Finding]:

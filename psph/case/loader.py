@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 BARE_WORD = re.compile(r"[A-Za-z][\w.-]*")
 PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
+OFF = "off"
+"""The value that takes a key out of the case."""
+
 
 class Override(NamedTuple):
     """A key set from outside.  ``made``: the highest key that it brought in, as a location."""
@@ -26,7 +29,7 @@ def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
     """The case in a TOML file, checked and with its defaults filled in.
 
     ``overrides`` are strings ``dotted.key=value`` with the value as in TOML; a bare word is a
-    text.  Raises CaseError with one line for every fault found.
+    text, and ``off`` takes the key out.  Raises CaseError with one line for every fault found.
     """
     # Only here: the model knows the effects, and these bring the compiler along.
     from pydantic import ValidationError
@@ -100,11 +103,18 @@ def _override(file: str, data: dict[str, Any], text: str) -> Override:
             )
         if made is None and isinstance(table, dict) and key not in table:
             made = tuple(keys[: depth + 1])
-        if depth == len(keys) - 1:
+        if depth == len(keys) - 1 and value.strip() == OFF:
+            _take_out(table, key)
+        elif depth == len(keys) - 1:
             table[key] = _value(where, value.strip())
         else:
             table = table.setdefault(key, {}) if isinstance(table, dict) else table[key]
     return Override(text, made or tuple(keys))
+
+
+def _take_out(table: dict[str, Any] | list[Any], key: str | int) -> None:
+    if isinstance(table, list) or key in table:
+        del table[key]
 
 
 def _can_hold(table: Any, key: str | int) -> bool:

@@ -11,23 +11,34 @@ from pydantic_core import PydanticCustomError
 from psph.case.consistency import contradictions
 from psph.case.physics import physics_table
 from psph.case.shapes import Shape
+from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.case.tables import Axis, Name, Table, Vector, key
 from psph.smoothing import KERNELS
 
 Physics = physics_table()
+Exact = exact_table()
 
 LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
 """How tomli_w writes a list of numbers or words, one a line."""
 
 
 
+def _velocity(value: Any, validate) -> Any:
+    """One message for all that is no velocity at all; a list has the messages of its numbers."""
+    if isinstance(value, str) and value != EXACT:
+        raise PydanticCustomError(
+            "psph", 'not a velocity; give one number per dimension in m/s, or "exact"'
+        )
+    return validate(value)
+
+
 def _pressure(value: Any, validate) -> Any:
-    """One message for the two things that a pressure can be."""
+    """One message for all that a pressure can be."""
     try:
         return validate(value)
     except ValidationError as error:
         raise PydanticCustomError(
-            "psph", 'not a pressure; give a number in Pa or "hydrostatic"'
+            "psph", 'not a pressure; give a number in Pa, "hydrostatic" or "exact"'
         ) from error
 
 
@@ -71,9 +82,15 @@ class Fluid(Table):
     shape: Shape = key("where the fluid is at the start")
     density: float = key("density at zero pressure", 1000.0, unit="kg/m3", gt=0)
     viscosity: float = key("kinematic viscosity; 0: inviscid", 0.0, unit="m2/s", ge=0)
-    velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
-    pressure: Annotated[Literal["hydrostatic"] | float, WrapValidator(_pressure)] = key(
-        'pressure at the start: a number, or "hydrostatic" (needs gravity)', 0.0, unit="Pa"
+    velocity: Annotated[
+        Literal[EXACT] | Vector | None, WrapValidator(_velocity)
+    ] = key(
+        'velocity at the start: numbers, or "exact" (needs [exact])', None, unit="m/s",
+        otherwise="zeros",
+    )
+    pressure: Annotated[Literal["hydrostatic", EXACT] | float, WrapValidator(_pressure)] = key(
+        'pressure at the start: a number, "hydrostatic" (needs gravity) or "exact" (needs [exact])',
+        0.0, unit="Pa",
     )
     jitter: float = key(
         "largest random shift of a particle along each axis, in spacings", 0.0, unit="1", ge=0
@@ -85,6 +102,10 @@ class Wall(Table):
     """A wall: particles that stay where they are."""
 
     shape: Shape = key("where the wall is")
+    velocity: Vector | None = key(
+        "velocity that the fluid beside it feels, as that of a belt: the wall stays where it is",
+        None, unit="m/s", otherwise="zeros",
+    )
     continues: Name | None = key(
         "fluid whose density and pressure at the start go on in the wall", None,
         otherwise="the first fluid",
@@ -92,9 +113,12 @@ class Wall(Table):
 
 
 class Probe(Table):
-    """A place where fields are measured over time."""
+    """What is measured over time: fields at a place, or how far the fluid reaches."""
 
-    position: Vector = key("where", unit="m")
+    position: Vector | None = key("where", None, unit="m", otherwise="give front")
+    front: Axis | None = key(
+        "the largest coordinate of the fluid along this axis", None, otherwise="give position"
+    )
     fields: Annotated[
         tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)
     ] = key("what is measured", ("pressure",), min_length=1)
@@ -175,6 +199,11 @@ class Case(Table):
     output: Output = key("how often what is written", make=Output)
     parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
     neighbours: Neighbours = key("the neighbour lists", make=Neighbours)
+    exact: Exact = key("an exact solution of the case, to start from and to judge by", make=Exact)
+    experiments: dict[Name, Experiment] = key(
+        "experiments by name: measured curves to judge by", {}
+    )
+    study: Study = key("what `psph study` varies, and by what it judges", make=Study)
 
     _file: str = PrivateAttr("case")
 
@@ -208,7 +237,7 @@ class Case(Table):
         for fluid in self.fluids.values():
             _fill(fluid, velocity=zeros)
         for wall in self.walls.values():
-            _fill(wall, continues=next(iter(self.fluids)))
+            _fill(wall, velocity=zeros, continues=next(iter(self.fluids)))
         return self
 
 

@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from itertools import groupby
-from typing import Annotated, Any, Literal, get_origin, get_type_hints
+from typing import Any, Literal
 
-from pydantic import Strict, create_model, model_validator
+from pydantic import create_model
 
+from psph.case.parameters import parameters, summary
 from psph.case.tables import Table, key
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 
@@ -13,23 +14,6 @@ PREFIX = "physics."
 
 OFF = "the effect is off"
 """What holds without the key of an optional effect."""
-
-
-class Parameters(Table):
-    """The parameters of an effect; a bare value stands for the first of them."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _take_bare_value(cls, value: Any) -> Any:
-        if isinstance(value, (dict, Parameters)) or not cls.model_fields:
-            return value
-        return {next(iter(cls.model_fields)): value}
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, core_schema, handler):
-        table = handler(core_schema)
-        properties = handler.resolve_ref_schema(table).get("properties", {})
-        return {"anyOf": [table, *list(properties.values())[:1]]}
 
 
 def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -> type[Table]:
@@ -54,23 +38,7 @@ def _field(entries: list[Entry]) -> tuple[Any, Any]:
     """Type and description of one key: a choice between effects, or one optional effect."""
     names = [choice for entry in entries if (choice := entry.key.partition("=")[2])]
     if names:
-        says = (f"{name}: {_summary(entry.effect)}" for name, entry in zip(names, entries))
+        says = (f"{name}: {summary(entry.effect)}" for name, entry in zip(names, entries))
         return Literal[tuple(names)], key("; ".join(says), names[0])
     effect = entries[0].effect
-    return _parameters(effect) | None, key(_summary(effect), None, otherwise=OFF)
-
-
-def _parameters(effect: type) -> type[Parameters]:
-    """A model of the fields of an effect."""
-    fields: dict[str, Any] = {}
-    plain, full = get_type_hints(effect), get_type_hints(effect, include_extras=True)
-    for name in effect._fields:
-        hint = full[name]
-        if get_origin(plain[name]) is tuple:  # a list in TOML
-            hint = Annotated[hint, Strict(False)]
-        fields[name] = (hint, effect._field_defaults.get(name, ...))
-    return create_model(effect.__name__, __base__=Parameters, __doc__=_summary(effect), **fields)
-
-
-def _summary(effect: type) -> str:
-    return effect.__doc__.strip().partition("\n")[0].rstrip(".")
+    return parameters(effect) | None, key(summary(effect), None, otherwise=OFF)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from psph.output import style
+from psph.output.probes import FRONT
 from psph.output.reader import Run
 from psph.particles.fields import FIELDS
 
@@ -38,7 +39,8 @@ def probe_charts(run: Run, case: dict) -> list[Chart]:
         if not probe:  # the time
             continue
         field, _, axis = quantity.partition("_")
-        chart = charts.setdefault(field, Chart(field, FIELDS[field].unit, table["time"], {}, {}))
+        unit = "m" if field == FRONT else FIELDS[field].unit
+        chart = charts.setdefault(field, Chart(field, unit, table["time"], {}, {}))
         name = f"{probe} {axis}".strip()
         chart.curves[name] = values
         theory = case.get("probes", {}).get(probe, {}).get("theory", {}).get(field)

@@ -1,4 +1,4 @@
-"""Probes: fields interpolated at fixed points."""
+"""Probes: fields interpolated at fixed points, and how far the fluid reaches."""
 
 import math
 
@@ -6,11 +6,14 @@ import numpy as np
 
 from psph.jit import compiled
 from psph.parallel.domain import Domain
-from psph.parallel.reductions import exact_sums
-from psph.particles.fields import FIELDS
+from psph.parallel.reductions import exact_sums, largest
+from psph.particles.fields import FIELDS, FLUID
 from psph.physics.compose import take
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
+
+FRONT = "front"
+"""The quantity of a probe that follows the fluid."""
 
 
 class Probe:
@@ -48,6 +51,24 @@ class Probe:
         weigh(self.position, kernel, domain.periods, store.view(), near[:found], store.data, rows, terms)
         total, *sums = exact_sums(domain.comm, terms)
         return np.array(sums) / total if total > 0.0 else np.full(len(rows), np.nan)
+
+
+class Front:
+    """How far the fluid reaches along an ``axis`` (0, 1 or 2): its largest coordinate, m."""
+
+    def __init__(self, name: str, axis: int):
+        self.name, self.axis = name, axis
+
+    def columns(self, dimensions: int) -> list[str]:
+        """The name of the value: ``tip.front``."""
+        return [f"{self.name}.{FRONT}"]
+
+    def sample(self, domain: Domain, kernel) -> np.ndarray:
+        """The value on every rank; collective."""
+        store = domain.store
+        fluid = store.owned_rows("kind") == FLUID
+        reach = store.owned_rows("position")[fluid, self.axis].max(initial=-np.inf)
+        return np.array(largest(domain.comm, [float(reach)]))
 
 
 @compiled

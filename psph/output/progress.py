@@ -24,11 +24,12 @@ class _Sample(NamedTuple):
 class Progress:
     """Reports how far a run to ``end_time`` (s) with ``particles`` particles in all has come.
 
-    Rank 0 alone prints; the other ranks may call it all the same.
+    Rank 0 alone prints; the other ranks may call it all the same.  Without ``lines`` it shows
+    nothing but the bar on a terminal.
     """
 
-    def __init__(self, comm, end_time: float, title: str, particles: int):
-        self.end_time, self.title, self.particles = end_time, title, particles
+    def __init__(self, comm, end_time: float, title: str, particles: int, lines: bool = True):
+        self.end_time, self.title, self.particles, self.lines = end_time, title, particles, lines
         self._samples: deque[_Sample] = deque()
         self._bar = None
         self._due = self._next = math.inf  # wall-clock and simulated time of the next report
@@ -48,7 +49,7 @@ class Progress:
             self._samples.popleft()
         if self._bar:
             self._bar.show(self.title, min(time / self.end_time, 1.0), *self._report(dt))
-        elif time >= self._next or now - self._said > PATIENCE:
+        elif self.lines and (time >= self._next or now - self._said > PATIENCE):
             report, left = self._report(dt)
             print(f"{min(time / self.end_time, 1.0):4.0%}  t {time:.4g} s  {report}  {left}", flush=True)
             self._said = now

@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from psph.output.errors import OutputError, cause
+from psph.output.tables import ERRORS, LOG, PROBES
 
 T = TypeVar("T")
 
@@ -71,11 +72,15 @@ class Run:
 
     def probes(self) -> dict[str, np.ndarray]:
         """The columns of ``probes.csv`` by name; empty if the case has no probes."""
-        return _columns(self.folder / "probes.csv")
+        return _columns(self.folder / PROBES)
 
     def log(self) -> dict[str, np.ndarray]:
         """The columns of ``log.csv`` by name."""
-        return _columns(self.folder / "log.csv")
+        return _columns(self.folder / LOG)
+
+    def errors(self) -> dict[str, np.ndarray]:
+        """The columns of ``errors.csv`` by name; empty if the case has no exact solution."""
+        return _columns(self.folder / ERRORS)
 
 
 def _read(path: Path, what: Callable[[h5py.File], T]) -> T:

@@ -6,6 +6,9 @@ from pathlib import Path
 
 from psph.output.errors import OutputError, cause, together
 
+LOG, PROBES, ERRORS = "log.csv", "probes.csv", "errors.csv"
+"""The tables of a run: its health, what the probes read, errors against the exact solution."""
+
 
 class CsvTable:
     """A CSV file with a line of names, written by rank 0; the other ranks may call it all the same.

@@ -14,7 +14,7 @@ from numba.extending import overload, register_jitable
 from psph.jit import method_of
 from psph.simd import fold, total, turning
 from psph.smoothing import slope_over_r, weight
-from psph.vectors import add, at, dot, scale, subtract, zero_like
+from psph.vectors import add, at, dot, put, scale, subtract, zero_like
 
 
 class ParticleView(NamedTuple):
@@ -175,6 +175,26 @@ def _plus(a, b):
     return b if a is None else a + b
 
 
+def _no_vector(i, *args):
+    return zero_like(i.position)
+
+
+def _plus_vector(a, b):
+    return b if a is None else add(a, b)
+
+
+def added(a, b):
+    """a + b; a vector b that is None costs nothing."""
+    return a if b is None else add(a, b)
+
+
+@overload(added)
+def _typed_added(a, b):
+    if isinstance(b, types.NoneType):
+        return lambda a, b: a
+    return lambda a, b: add(a, b)
+
+
 def pushed(a, direction, coefficient):
     """a + coefficient · direction; a coefficient None costs nothing."""
     return a if coefficient is None else add(a, scale(direction, coefficient))
@@ -193,8 +213,12 @@ radial = _sum_of("radial", _nothing, _plus)
 """(effects, i, j, pair) → coefficient of x_ij in the acceleration, 1/s², or None."""
 shear = _sum_of("shear", _nothing, _plus)
 """(effects, i, j, pair) → coefficient of u_ij in the acceleration, 1/s, or None."""
-body = _sum_of("body", lambda i: zero_like(i.position), lambda a, b: add(a, b))
+push = _sum_of("push", _nothing, _plus_vector)
+"""(effects, i, j, pair) → an acceleration along neither, m/s², or None."""
+body = _sum_of("body", _no_vector, _plus_vector)
 """(effects, i) → acceleration from outside, m/s²."""
+displacement = _sum_of("displacement", _no_vector, _plus_vector)
+"""(effects, i, dt) → what a fluid particle moves beside its velocity in a step, m."""
 
 
 def limit_density(effects, i, rho):
@@ -293,7 +317,7 @@ def finish_value(reductions, totals, i, kernel, k, written):
     """Store the finished sums that are fields: ``written`` has an array or None for each."""
     for effect, total, array in zip(reductions, totals, written):
         if array is not None:
-            array[k] = effect.finish_value(total, i, kernel)
+            _store(array, k, effect.finish_value(total, i, kernel))
 
 
 @overload(finish_value)
@@ -307,7 +331,26 @@ def _typed_finish_value(reductions, totals, i, kernel, k, written):
         )
 
     def store(reductions, totals, i, kernel, k, written):
-        written[0][k] = finish(reductions[0], totals[0], i, kernel)
+        _store(written[0], k, finish(reductions[0], totals[0], i, kernel))
         finish_value(reductions[1:], totals[1:], i, kernel, k, written[1:])
 
     return store
+
+
+def _store(arrays, k, value):
+    """Write a number into its array, or a vector into its component arrays."""
+    if isinstance(arrays, tuple):
+        put(arrays, k, value)
+    else:
+        arrays[k] = value
+
+
+@overload(_store)
+def _typed_store(arrays, k, value):
+    if isinstance(arrays, types.BaseTuple):
+        return lambda arrays, k, value: put(arrays, k, value)
+
+    def number(arrays, k, value):
+        arrays[k] = value
+
+    return number

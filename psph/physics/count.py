@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from psph.physics import compose
-from psph.physics.compose import ParticleView, geometry, pushed
+from psph.physics.compose import ParticleView, added, geometry, pushed
 from psph.vectors import subtract
 
 VECTORS = {"position": 1.0, "velocity": -1.0}
@@ -41,6 +41,7 @@ def flops_per_pair(
     rate = rate + compose.density_rate(effects, i, j, pair)
     a = pushed(a, pair.x_ij, compose.radial(effects, i, j, pair))
     a = pushed(a, pair.u_ij, compose.shear(effects, i, j, pair))
+    a = added(a, compose.push(effects, i, j, pair))
     totals = compose.gather_each(reductions, totals, i, j, pair)
     return trace.operations((rate, a, totals))
 

@@ -52,7 +52,7 @@ def reads(effect, dimensions: int, kernel) -> Reads:
 
 
 def _call_all(effect, i, j, pair, kernel) -> None:
-    for name in ("density_rate", "radial", "shear"):
+    for name in ("density_rate", "radial", "shear", "push"):
         if hasattr(effect, name):
             getattr(effect, name)(i, j, pair)
     if hasattr(effect, "start"):
@@ -63,5 +63,7 @@ def _call_all(effect, i, j, pair, kernel) -> None:
             effect.finish_value(total, i, kernel)
     if hasattr(effect, "body"):
         effect.body(i)
+    if hasattr(effect, "displacement"):
+        effect.displacement(i, 1.0)
     if hasattr(effect, "limit_density"):
         effect.limit_density(i, 1.0)

@@ -35,7 +35,9 @@ def faults(scene: Scene) -> Iterator[str]:
     if sites := _too_many_sites(scene):
         yield f"{scene.case.file}: {sites}"
         return
-    places = [*_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene)]
+    places = [
+        *_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene), *_exact_faults(scene)
+    ]
     for line in places or _state_faults(scene):  # an empty shape has no pressure
         yield f"{scene.case.file}: {line}"
 
@@ -130,12 +132,20 @@ def _particles_outside(scene: Scene) -> Iterator[str]:
 
 def _probe_faults(scene: Scene) -> Iterator[str]:
     for name, probe in scene.case.probes.items():
+        if probe.position is None:
+            continue
         ends = zip(scene.lower, probe.position, scene.upper)
         if not all(low <= x <= up for low, x, up in ends):
             yield (
                 f"probes.{name}.position: {_point(probe.position)} lies outside the domain "
                 f"{_point(scene.lower)} to {_point(scene.upper)}; move it inside"
             )
+
+
+def _exact_faults(scene: Scene) -> Iterator[str]:
+    for name, table in scene.case.exact:
+        if table is not None and (unfit := scene.exact.unfit(scene.unheard_setting)):
+            yield f"exact.{name}: {unfit}"
 
 
 def _state_faults(scene: Scene) -> Iterator[str]:
@@ -147,7 +157,7 @@ def _state_faults(scene: Scene) -> Iterator[str]:
         return
     for name, start in zip(scene.case.fluids, scene.starts):
         density = float(start.density(np.array([[0.0] * scene.dimensions]))[0])
-        if not start.weight and not density > 0.0:
+        if not start.weight and not start.exact and not density > 0.0:
             yield (
                 f"fluids.{name}.pressure: {start.pressure:g} Pa leaves no density at a speed of "
                 f"sound of {speed:g} m/s; raise the pressure or physics.sound_speed"

@@ -1,6 +1,6 @@
 """Fluids and walls: what they are made of, which sites they hold, and their state at the start."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import Any, NamedTuple
@@ -33,8 +33,8 @@ class Start(NamedTuple):
     """State of a material before the first step.
 
     p = ``pressure`` everywhere, or, with a ``weight`` = ρ₀|g| in Pa/m, p = weight (surface −
-    height) and not below 0; ``surface`` in m along ``up``, the unit vector against gravity.
-    ``state`` is the equation of state.
+    height) and not below 0; ``surface`` in m along ``up``, the unit vector against gravity.  Or p =
+    ``exact`` of the positions (n, dim).  ``state`` is the equation of state.
     """
 
     state: Any
@@ -44,9 +44,12 @@ class Start(NamedTuple):
     weight: float
     up: tuple[float, ...]
     surface: float
+    exact: Callable[[np.ndarray], np.ndarray] | None = None
 
     def density(self, position: np.ndarray) -> np.ndarray:
         """ρ (n,) in kg/m³ at ``position`` (n, dim); NaN where the state knows none."""
+        if self.exact:
+            return self._density(self.exact(position))
         if not self.weight:
             return np.full(len(position), self._density(np.float64(self.pressure)))
         depth = self.surface - position @ np.array(self.up)
@@ -55,10 +58,10 @@ class Start(NamedTuple):
     def mass(self, volume: float) -> float:
         """Mass in kg of a particle of ``volume`` = dx^d.
 
-        ρ(p) dx^d under a uniform pressure.  Under the weight of the fluid ρ₀ dx^d: equal masses
-        are what a column keeps when it moves.
+        ρ(p) dx^d under a uniform pressure.  Where pressure differs from place to place ρ₀ dx^d:
+        equal masses are what a fluid keeps when it moves.
         """
-        if self.weight:
+        if self.weight or self.exact:
             return self.rest_density * volume
         return float(self._density(np.float64(self.pressure))) * volume
 

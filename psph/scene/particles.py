@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator, Philox
 
+from psph.case.study import EXACT
 from psph.scene.materials import NONE
 
 NUMBERS_PER_COUNT = 4
@@ -53,6 +54,7 @@ def fill(particles: ParticleSet, scene, first: int, last: int) -> None:
         _dry(chunk, scene, sites, begin, end)
         _kick(chunk, scene, sites, begin, end)
         _shift(chunk, scene)
+        _as_exact(chunk, scene)
         done += len(sites)
 
 
@@ -106,3 +108,13 @@ def _shift(chunk: ParticleSet, scene) -> None:
         if period is not None:
             x -= period * np.floor((x - low) / period)
             x[x >= low + period] = low  # rounding may land on the upper edge
+
+
+def _as_exact(chunk: ParticleSet, scene) -> None:
+    """Velocity and density of the exact solution, where each particle now is."""
+    for index, body in enumerate(scene.bodies):
+        rows = chunk.material == index
+        if body.velocity == EXACT and rows.any():
+            chunk.velocity[rows] += scene.exact.velocity(chunk.position[rows], 0.0, scene.setting)
+        if scene.starts[index].exact:
+            chunk.density[rows] = scene.starts[index].density(chunk.position[rows])

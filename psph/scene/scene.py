@@ -6,6 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from psph.case import Case, CaseError
+from psph.case.parameters import as_numbers
+from psph.case.study import EXACT
 from psph.case.tables import AXES
 from psph.particles.fields import FLUID, WALL
 from psph.physics.catalogue import EQUATIONS_OF_STATE
@@ -14,6 +16,8 @@ from psph.scene.materials import Census, Layout, Material, Start, take_census
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.smoothing import kernel
+from psph.solutions.catalogue import SOLUTIONS
+from psph.solutions.setting import Setting
 
 
 SOUND_OVER_SPEED = 10.0
@@ -79,11 +83,13 @@ class Scene:
 
     @cached_property
     def expected_speed(self) -> float:
-        """The larger of √(2gH), free fall over the fluids' height, and any initial speed, m/s."""
+        """The largest of √(2gH), free fall over the fluids' height, any initial speed and the
+        exact solution's, m/s."""
         fluids = slice(len(self.case.fluids))
         height = self.census.top[fluids].max() - self.census.bottom[fluids].min() + self.spacing
         falling = math.sqrt(2.0 * math.hypot(*self.gravity) * max(height, 0.0))
-        return max(falling, *(math.hypot(*v) for v in (*self.velocities, *self._kicked)))
+        known = self.exact.top_speed(self.unheard_setting) if self.exact else 0.0
+        return max(falling, known, *(math.hypot(*v) for v in (*self.velocities, *self._kicked)))
 
     @cached_property
     def sound_speed(self) -> float:
@@ -108,6 +114,31 @@ class Scene:
         return entry.effect()
 
     @cached_property
+    def exact(self):
+        """The exact solution that the case names, or None."""
+        for name, table in self.case.exact:
+            if table is not None:
+                return SOLUTIONS[name](**as_numbers(table))
+        return None
+
+    @cached_property
+    def setting(self) -> Setting:
+        """What the exact solution has to know of the scene: its first fluid and the domain."""
+        return self._setting(self.sound_speed)
+
+    @property
+    def unheard_setting(self) -> Setting:
+        """The same before the speed of sound is known: NaN stands for it."""
+        return self._setting(math.nan)
+
+    def _setting(self, sound_speed: float) -> Setting:
+        fluid = self.bodies[0]
+        return Setting(
+            self.dimensions, fluid.density, fluid.viscosity, sound_speed, self.gravity, self.lower,
+            self.upper, self.periods,
+        )
+
+    @cached_property
     def materials(self) -> tuple[Material, ...]:
         """Each fluid, then each wall."""
         names, volume = (*self.case.fluids, *self.case.walls), self.spacing**self.dimensions
@@ -126,9 +157,9 @@ class Scene:
 
     @cached_property
     def velocities(self) -> tuple[tuple[float, ...], ...]:
-        """Velocity of each material at the start, m/s."""
+        """Velocity of each material at the start, m/s; zeros where it differs by place."""
         still = (0.0,) * self.dimensions
-        return tuple(getattr(body, "velocity", still) for body in self.bodies)
+        return tuple(still if b.velocity == EXACT else b.velocity for b in self.bodies)
 
     @cached_property
     def kicks(self) -> dict[tuple[int, int], np.ndarray]:
@@ -166,15 +197,16 @@ class Scene:
 
     def _start(self, index: int) -> Start:
         fluid = self.bodies[index]
-        hydrostatic = fluid.pressure == "hydrostatic"
+        hydrostatic, exact = (fluid.pressure == word for word in ("hydrostatic", EXACT))
         return Start(
             state=self.state,
             rest_density=fluid.density,
             sound_speed=self.sound_speed,
-            pressure=0.0 if hydrostatic else fluid.pressure,
+            pressure=0.0 if hydrostatic or exact else fluid.pressure,
             weight=fluid.density * math.hypot(*self.gravity) if hydrostatic else 0.0,
             up=self.up,
             surface=float(self.census.top[index]) + 0.5 * self.spacing,
+            exact=(lambda x: self.exact.pressure(x, 0.0, self.setting)) if exact else None,
         )
 
     def _nearest_fluid_site(self, point: tuple[float, ...]) -> tuple[int, int]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from psph.jit import compiled
 from psph.particles.fields import FLUID
-from psph.physics.compose import limit_density, take
+from psph.physics.compose import displacement, limit_density, take
 from psph.physics.state import pressure as state_pressure
 from psph.vectors import add, at, dot, put, scale
 
@@ -39,7 +39,8 @@ def kick_drift_predict(
             kick = scale(at(acceleration, k), 0.5 * dt)
             v = add(at(velocity, k), kick)
             put(velocity, k, v)
-            put(position, k, add(at(position, k), scale(v, dt)))
+            move = add(scale(v, dt), displacement(effects, i, dt))
+            put(position, k, add(at(position, k), move))
             put(predicted_velocity, k, add(v, kick))
             rho = limit_density(effects, i, rho)
         specific_volume[k] = 1.0 / rho

@@ -5,7 +5,7 @@ import numpy as np
 from psph.jit import compiled
 from psph.particles.neighbours import WIDTH
 from psph.physics import compose
-from psph.physics.compose import fetch, geometry, pushed, take
+from psph.physics.compose import added, fetch, geometry, pushed, take
 from psph.physics.space import difference
 from psph.simd import spread, total, width_of
 from psph.vectors import add, put, zero_like
@@ -40,6 +40,7 @@ def sum_over_neighbours(
             rate = rate + compose.density_rate(effects, i, j, pair)
             a = pushed(a, pair.x_ij, compose.radial(effects, i, j, pair))
             a = pushed(a, pair.u_ij, compose.shear(effects, i, j, pair))
+            a = added(a, compose.push(effects, i, j, pair))
             totals = compose.gather_each(reductions, totals, i, j, pair)
         sums = compose.fold_each(reductions, totals)
         force = add(total(a), compose.finish_acceleration(reductions, sums, i))

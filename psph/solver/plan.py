@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from psph.case.parameters import as_numbers
 from psph.particles.fields import FIELDS
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 from psph.physics.compose import ParticleView
@@ -186,7 +187,7 @@ def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
             if value:
                 return entry.effect(), by
         elif value is not None:
-            return entry.effect(**_parameters(value)), by
+            return entry.effect(**as_numbers(value)), by
     return None
 
 
@@ -201,14 +202,6 @@ def _values(node, keys: list[str], path: str = "", given: bool = True):
         below = node[name] if isinstance(node, dict) else getattr(node, name)
         set_here = isinstance(node, dict) or name in node.model_fields_set
         yield from _values(below, rest, f"{path}.{name}".strip("."), given and set_here)
-
-
-def _parameters(value) -> dict[str, Any]:
-    return {name: _as_number(x) for name, x in dict(value).items()}
-
-
-def _as_number(x):
-    return tuple(map(float, x)) if isinstance(x, (list, tuple)) else float(x)
 
 
 def _plain(value) -> str:

@@ -7,10 +7,12 @@ import numpy as np
 
 import psph
 from psph.jit import processor
+from psph.case.tables import AXES
 from psph.output import diagnostics
+from psph.output.accuracy import Accuracy
 from psph.output.frames import FrameFile
-from psph.output.probes import Probe
-from psph.output.tables import CsvTable
+from psph.output.probes import Front, Probe
+from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
 from psph.particles.fields import FIELDS
 from psph.physics.gravity import Gravity
 from psph.solver.step import Simulation
@@ -30,9 +32,12 @@ class Schedule:
         return True
 
 
-def probes_of(case) -> list[Probe]:
+def probes_of(case) -> list[Probe | Front]:
     """The probes that a case asks for."""
-    return [Probe(name, p.position, tuple(p.fields)) for name, p in case.probes.items()]
+    return [
+        Front(name, AXES.index(p.front)) if p.front else Probe(name, p.position, tuple(p.fields))
+        for name, p in case.probes.items()
+    ]
 
 
 class Record:
@@ -59,8 +64,13 @@ class Record:
         self.written = 0
         self.probes = probes_of(case)
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
-        self.probe_table = CsvTable(folder / "probes.csv", ["time", *names], comm) if names else None
-        self.log = CsvTable(folder / "log.csv", diagnostics.columns(scene.dimensions), comm)
+        self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm) if names else None
+        self.log = CsvTable(folder / LOG, diagnostics.columns(scene.dimensions), comm)
+        self.accuracy = self.errors = None
+        self.latest_errors: list[float] = []
+        if scene.exact:
+            self.accuracy = Accuracy(simulation.domain, scene.exact, scene.setting)
+            self.errors = CsvTable(folder / ERRORS, ["time", *self.accuracy.columns()], comm)
         out = case.output
         self.schedules = {
             self.write_frame: Schedule(out.frames),
@@ -103,14 +113,21 @@ class Record:
         self.probe_table.write([sim.time, *np.concatenate(values).tolist()])
 
     def write_log(self) -> None:
-        """A line of energies, momentum and limits."""
+        """A line of energies, momentum and limits, and one of errors where these are known."""
         sim = self.simulation
         sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.gravity)
         error = diagnostics.density_error(sim.comm, sim.store)
         self.log.write([sim.time, sim.steps, sim.dt, *sums.tolist(), sim.speed, error])
+        if self.accuracy:
+            self.latest_errors = self.accuracy.errors(sim.time)
+            self.errors.write([sim.time, *self.latest_errors])
 
     def close(self) -> None:
         """End the tables."""
-        for table in (self.probe_table, self.log):
-            if table is not None:
-                table.close()
+        for table in self.tables:
+            table.close()
+
+    @property
+    def tables(self) -> list[CsvTable]:
+        """Those that this run has."""
+        return [t for t in (self.log, self.probe_table, self.errors) if t is not None]

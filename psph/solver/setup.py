@@ -41,6 +41,7 @@ def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
     block = np.zeros((len(store.data), len(found.id)))
     for name in ("position", "velocity"):
         block[list(store.rows[name])] = getattr(found, name).T
+    block[list(store.rows["predicted_velocity"])] = found.velocity.T  # a wall's stays
     block[store.rows["density"].start] = found.density
     for name in PER_MATERIAL:
         if name in store:

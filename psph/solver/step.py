@@ -62,6 +62,11 @@ class Simulation:
         self.time += self.dt
         self.steps += 1
 
+    def bytes_held(self) -> int:
+        """Bytes of this rank's particles, records and lists."""
+        arrays = (self.store.data, self.store.id, self.store.kind, self.records.table)
+        return sum(a.nbytes for a in (*arrays, *self.domain.lists))
+
     def settle_pressure(self) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store

@@ -156,11 +156,11 @@ FAULTS = {
     ),
     "an unknown pressure": (
         WATER + 'pressure = "hydro"',
-        'fluids.water.pressure: "hydro": not a pressure; give a number in Pa or "hydrostatic"',
+        'fluids.water.pressure: "hydro": not a pressure; give a number in Pa, "hydrostatic" or "exact"',
     ),
     "an infinite pressure": (
         WATER + "pressure = inf",
-        'fluids.water.pressure: inf: not a pressure; give a number in Pa or "hydrostatic"',
+        'fluids.water.pressure: inf: not a pressure; give a number in Pa, "hydrostatic" or "exact"',
     ),
     "an unknown probe field": (
         WATER + PROBE + 'fields = ["presure"]',

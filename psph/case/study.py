@@ -1,0 +1,60 @@
+"""What a run is judged by, and what a study varies: ``[exact]``, ``[experiments]``, ``[study]``."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import Field, Strict, create_model
+
+from psph.case.parameters import parameters, summary
+from psph.case.tables import Table, key
+from psph.solutions.catalogue import SOLUTIONS
+
+EXACT = "exact"
+"""In place of a velocity or a pressure: as the exact solution has it at the start."""
+
+
+def exact_table(solutions: Mapping[str, type] = SOLUTIONS) -> type[Table]:
+    """The model of ``[exact]``: one key for each solution."""
+    fields: dict[str, Any] = {
+        name: (parameters(of) | None, key(summary(of), None, otherwise="not this one"))
+        for name, of in solutions.items()
+    }
+    return create_model(
+        "Exact", __base__=Table, __doc__="The exact solution of the case, one at most.", **fields
+    )
+
+
+class Experiment(Table):
+    """A measured curve over time, to compare a column of probes.csv with."""
+
+    file: str = key("CSV file, beside the case; lines that begin with # are remarks", min_length=1)
+    time: str = key("its column of times")
+    value: str = key("its column of values")
+    probe: str = key("the column of probes.csv that it stands beside, such as tip.front")
+    time_unit: float = key("seconds in one of its times", 1.0, unit="s", gt=0)
+    value_unit: float = key("what one of its values is in the probe's own unit", 1.0, unit="1")
+
+
+Choices = Annotated[tuple[float | int | bool | str, ...], Strict(False), Field(min_length=1)]
+
+
+class Study(Table):
+    """What ``psph study`` varies, and by what it judges."""
+
+    vary: dict[str, Choices] = key(
+        'keys and the values that each takes: { "space.spacing" = [0.02, 0.01] }; "off" takes a '
+        "key out",
+        {},
+    )
+    grid: bool = key("all combinations of the values, not one key at a time", False)
+    error: str | None = key(
+        "what is compared: velocity, pressure or density of the fluid at the end, or a column of "
+        "probes.csv over time", None, otherwise="what the reference knows first",
+    )
+    against: str | None = key(
+        'what it is compared with: "exact", "theory" (of a probe), "finest" (the run with the '
+        "smallest spacing) or the name of an experiment", None,
+        otherwise="the first of these that the case has",
+    )
+    after: float = key("probes are compared from this time on", 0.0, unit="s", ge=0)
+    repeats: int = key("a short run is timed so many times", 3, ge=1)

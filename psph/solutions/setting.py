@@ -1,0 +1,36 @@
+"""What an exact solution has to know of the case that it is compared with."""
+
+from typing import NamedTuple
+
+
+class Setting(NamedTuple):
+    """The fluid, its surroundings and the domain.
+
+    ``density`` ρ₀ in kg/m³, kinematic ``viscosity`` in m²/s, ``sound_speed`` in m/s, ``gravity``
+    in m/s²; ``lower`` and ``upper`` are the corners of the domain in m, ``periods`` a length in m
+    or None for each axis.
+    """
+
+    dimensions: int
+    density: float
+    viscosity: float
+    sound_speed: float
+    gravity: tuple[float, ...]
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+    periods: tuple[float | None, ...]
+
+
+def whole_waves(setting: Setting, axes: tuple[int, ...], length: float) -> str | None:
+    """What is wrong where a pattern of this ``length`` in m must repeat along ``axes``."""
+    for axis in axes:
+        name, period = "xyz"[axis], setting.periods[axis]
+        if period is None:
+            return f"repeats along {name}; add \"{name}\" to space.periodic"
+        waves = period / length
+        if abs(waves - round(waves)) > 1e-9 * waves or round(waves) < 1:
+            return (
+                f"repeats every {length:g} m, the domain every {period:g} m along {name}; "
+                "let the one be a whole multiple of the other"
+            )
+    return None

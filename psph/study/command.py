@@ -1,0 +1,49 @@
+"""The verb ``study``: what is asked for, run and said."""
+
+from pathlib import Path
+
+from psph.case import load
+from psph.study.effects import effect_words, without_each
+from psph.study.errors import StudyError
+from psph.study.ladder import rows, wanted
+from psph.study.study import Study
+
+
+def study(
+    comm, file, sets: list[str], vary: list[str], grid: bool, effects: bool, out: Path | None,
+    error: float | None, seconds: float | None,
+) -> None:
+    """Run what is asked for and print what it tells; collective.
+
+    Raises CaseError or StudyError before the first run.
+    """
+    for name, value in (("error", error), ("seconds", seconds)):
+        if value is not None and not value > 0.0:
+            raise StudyError(f"study --{name} {value:g}: give a number above zero")
+    case = load(file, sets)
+    if effects:
+        named = without_each(case)
+        if not named:
+            raise StudyError(f"{file}: study --effects: no effect that it could do without")
+        every = [{}, *named.values()]
+    else:
+        every = rows(wanted(case.study.vary, vary), grid or case.study.grid)
+    folder = out or Path(f"{case.name}-study")
+    asked = Study(file, sets, every, folder, comm)
+    if not effects:
+        asked.needs_a_reference()
+
+    def say(line: str) -> None:
+        if comm.rank == 0:
+            print(line, flush=True)
+
+    found = asked.run(say)
+    if comm.rank == 0:
+        say("")
+        for line in asked.conclude(found, error, seconds):
+            say(line)
+        if effects:
+            for name, row in zip(named, found[1:]):
+                for line in effect_words(name, row, found[0]):
+                    say(line)
+        say(f"wrote {folder}: {', '.join(p.name for p in sorted(folder.glob('study.*')))}")

@@ -1,0 +1,51 @@
+"""What each effect of a case costs, and what the answer would be without it."""
+
+import math
+from collections.abc import Iterator
+
+from psph.case.loader import OFF
+from psph.physics.catalogue import CATALOGUE
+from psph.scene import Scene
+from psph.solver.plan import make_plan, words
+from psph.study.ladder import Settings
+from psph.study.report import percent
+from psph.study.runs import DONE
+from psph.study.study import MEAN
+
+NOTHING = 1e-3
+"""A relative change of every answer below this is none that a person would look at."""
+
+
+def without_each(case) -> dict[str, Settings]:
+    """For each effect that the case could do without: its name, and what takes it out."""
+    present = {type(call.effect) for call in make_plan(Scene(case)).called}
+    found = {}
+    for entry in CATALOGUE:
+        if entry.key and "=" not in entry.key and entry.effect in present:
+            head, star, tail = entry.key.partition("*")
+            names = list(getattr(case, head.rstrip("."))) if star else [""]
+            found[words(entry.effect.__name__)] = {f"{head}{n}{tail}": OFF for n in names}
+    return found
+
+
+def answers(row: dict, base: dict) -> dict[str, float]:
+    """How much each answer of a run differs from that of the run with all effects, relative."""
+    names = [n for n in base if n.startswith(MEAN)] or ["kinetic_energy"]
+    if not math.isnan(base["error_l2"]):
+        names.append("error_l2")
+    return {
+        n.removeprefix(MEAN).replace("_", " "): row[n] / base[n] - 1.0 for n in names if base[n]
+    }
+
+
+def effect_words(name: str, row: dict, base: dict) -> Iterator[str]:
+    """What the effect takes of the time, and what it changes."""
+    if row["status"] != DONE:
+        yield f"{name}: without it the run fails ({row['status']}): keep it."
+        return
+    saved = 1.0 - row["seconds"] / base["seconds"]
+    changed = answers(row, base)
+    told = ", ".join(f"{what} by {percent(-by)}" for what, by in changed.items())
+    yield f"{name}: {percent(max(saved, 0.0))} of the time; it changes {told or 'nothing asked for'}."
+    if all(abs(by) < NOTHING for by in changed.values()):
+        yield f"{name}: nothing that this case asks for feels it; the case can do without."

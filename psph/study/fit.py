@@ -1,0 +1,174 @@
+"""From the runs of a ladder to those that were not made: error and seconds at any spacing.
+
+Errors follow C dx^p between two runs, and beyond the last as its neighbours say.  Seconds are
+those of a particle-step and those of a step, the same for all runs of a ladder; particle-steps
+follow from the spacing, since particles go with dx^-d and steps with dx^-1.
+"""
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy import optimize, stats
+
+CONFIDENCE = 0.9
+"""Of the intervals."""
+
+LAST = 3
+"""Runs from which the error beyond the finest is foretold."""
+
+
+class Run(NamedTuple):
+    """What a fit takes of a run: spacing in m, relative error, seconds, particles and steps."""
+
+    spacing: float
+    error: float
+    seconds: float
+    particles: int
+    steps: int
+
+
+class Estimate(NamedTuple):
+    """A number and the interval that holds it with 90 %; NaN where too few runs tell."""
+
+    value: float
+    low: float
+    high: float
+
+
+class Ladder:
+    """Runs of one case that differ in the spacing alone, at least two of them."""
+
+    def __init__(self, runs: Sequence[Run], dimensions: int):
+        self.runs = sorted((r for r in runs if r.error > 0.0), key=lambda r: -r.spacing)
+        if len(self.runs) < 2:
+            raise ValueError("a ladder needs two runs with an error")
+        self.dimensions = dimensions
+        self._log_dx = np.log([r.spacing for r in self.runs])
+        self._log_error = np.log([r.error for r in self.runs])
+        self._costs = self._fit_costs()
+
+    @property
+    def order(self) -> Estimate:
+        """The observed order p of the error C dx^p, over all runs, and its uncertainty."""
+        return _slope(self._log_dx, self._log_error)
+
+    def error(self, spacing: float) -> Estimate:
+        """The error to expect at a spacing in m."""
+        x, where = math.log(spacing), self._log_dx[::-1]
+        if where[0] <= x <= where[-1]:
+            middle = float(np.interp(x, where, self._log_error[::-1]))
+        else:
+            near = slice(None, LAST) if x > where[-1] else slice(-LAST, None)
+            slope, level = np.polyfit(self._log_dx[near], self._log_error[near], 1)
+            middle = level + slope * x
+        return _around(middle, _scatter(self._log_dx, self._log_error, x))
+
+    def seconds(self, spacing: float) -> Estimate:
+        """The seconds to expect at a spacing in m."""
+        middle = math.log(self._seconds(*self._size(spacing)))
+        off = [math.log(r.seconds / self._seconds(r.particles, r.steps)) for r in self.runs]
+        free = len(off) - 1
+        spread = math.sqrt(sum(x * x for x in off) / free) if free > 1 else math.nan
+        reach = stats.t.ppf(0.5 + CONFIDENCE / 2, max(free, 1)) * spread * math.sqrt(1 + 1 / len(off))
+        return _around(middle, reach)
+
+    def spacing_for_error(self, error: float) -> float:
+        """The largest spacing in m at which the error is expected to be so small; NaN: none."""
+        return self._solve(lambda x: self.error(math.exp(x)).value / error)
+
+    def spacing_for_seconds(self, seconds: float) -> float:
+        """The smallest spacing in m that takes so many seconds; NaN: none."""
+        return self._solve(lambda x: self.seconds(math.exp(x)).value / seconds)
+
+    def _solve(self, ratio) -> float:
+        """e^x where ``ratio`` crosses one, within a factor of 30 around the ladder."""
+        low, high = self._log_dx[-1] - math.log(30.0), self._log_dx[0] + math.log(30.0)
+        at = np.linspace(low, high, 400)
+        over = np.array([math.log(ratio(x)) for x in at])
+        crossings = np.flatnonzero(np.diff(np.sign(over)))
+        if not len(crossings):
+            return math.nan
+        k = crossings[-1]
+        return math.exp(optimize.brentq(lambda x: math.log(ratio(x)), at[k], at[k + 1]))
+
+    def _size(self, spacing: float) -> tuple[float, float]:
+        """Particles and steps, scaled from the nearest run."""
+        nearest = min(self.runs, key=lambda r: abs(math.log(r.spacing / spacing)))
+        finer = nearest.spacing / spacing
+        return nearest.particles * finer**self.dimensions, nearest.steps * finer
+
+    def _fit_costs(self) -> np.ndarray:
+        """Seconds of a particle-step and of a step, none negative, relative errors least."""
+        rows = np.array([[r.particles * r.steps, r.steps] for r in self.runs], float)
+        rows /= np.array([r.seconds for r in self.runs])[:, None]
+        scale = rows.max(axis=0)
+        return optimize.nnls(rows / scale, np.ones(len(rows)))[0] / scale
+
+    def _seconds(self, particles: float, steps: float) -> float:
+        return float(self._costs @ (particles * steps, steps))
+
+
+def _slope(x: np.ndarray, y: np.ndarray) -> Estimate:
+    fit = stats.linregress(x, y)
+    reach = _quantile(len(x)) * fit.stderr if len(x) > 2 else math.nan
+    return Estimate(fit.slope, fit.slope - reach, fit.slope + reach)
+
+
+def _scatter(x: np.ndarray, y: np.ndarray, at: float) -> float:
+    """Half the interval of a single new value at ``at`` around the line through all."""
+    if len(x) < 3:
+        return math.nan
+    slope, level = np.polyfit(x, y, 1)
+    rest = y - level - slope * x
+    spread = math.sqrt(rest @ rest / (len(x) - 2))
+    away = (at - x.mean()) ** 2 / ((x - x.mean()) ** 2).sum()
+    return _quantile(len(x)) * spread * math.sqrt(1.0 + 1.0 / len(x) + away)
+
+
+def _quantile(count: int) -> float:
+    return float(stats.t.ppf(0.5 + CONFIDENCE / 2, count - 2))
+
+
+def _around(log_middle: float, reach: float) -> Estimate:
+    return Estimate(*(math.exp(log_middle + off) for off in (0.0, -reach, reach)))
+
+
+class Extrapolated(NamedTuple):
+    """A quantity at zero spacing, and the order at which it goes there."""
+
+    value: Estimate
+    order: Estimate
+
+
+def richardson(spacings: Sequence[float], values: Sequence[float]) -> Extrapolated | None:
+    """q₀ and p of q = q₀ + C dx^p through three runs or more; None where they do not converge.
+
+    Richardson (1911), Philos. Trans. R. Soc. Lond. A 210, 307; the order from the runs as in
+    Roache (1994), J. Fluids Eng. 116, 405.  With three runs there is no uncertainty.
+    """
+    dx, q = (np.array(x, float) for x in (spacings, values))
+    order = np.argsort(-dx)
+    dx, q = dx[order] / dx.min(), q[order]
+    steps = np.diff(q)
+    if len(q) < 3 or not (np.all(steps > 0.0) or np.all(steps < 0.0)):
+        return None
+
+    def curve(x, limit, height, p):
+        return limit + height * x**p
+
+    start = (q[-1] + steps[-1], -steps[-1], 1.5)
+    try:
+        with warnings.catch_warnings(action="ignore", category=optimize.OptimizeWarning):
+            best, covariance = optimize.curve_fit(curve, dx, q, p0=start, maxfev=10_000)
+    except RuntimeError:
+        return None
+    if not 0.1 < best[2] < 10.0:
+        return None
+    free = len(q) - 3
+    wide = stats.t.ppf(0.5 + CONFIDENCE / 2, free) if free else math.nan
+    reach = wide * np.sqrt(np.diag(covariance)) if free else np.full(3, math.nan)
+    limit, p = (Estimate(best[k], best[k] - reach[k], best[k] + reach[k]) for k in (0, 2))
+    return Extrapolated(limit, p)

@@ -1,0 +1,235 @@
+"""How wrong a finished run is: its files against an exact solution, an experiment or another run."""
+
+import csv
+import math
+from collections.abc import Callable
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.case.study import EXACT
+from psph.output.accuracy import NORMS
+from psph.output.reader import Run
+from psph.particles.fields import FLUID
+from psph.scene import Scene
+from psph.solutions.catalogue import known
+from psph.solver.record import probes_of
+from psph.study.errors import StudyError
+
+THEORY, FINEST = "theory", "finest"
+
+AT_THE_END = ("velocity", "pressure", "density")
+"""Fields that are compared particle by particle at the end of a run."""
+
+
+class Judgement(NamedTuple):
+    """Relative errors in three norms."""
+
+    l1: float
+    l2: float
+    linf: float
+
+
+class Judge:
+    """What is compared with what, found in a case once; reads the files of its runs.
+
+    ``what`` is a field at the end or a column of probes.csv, ``against`` the reference.  Raises
+    StudyError where the case has no such thing.
+    """
+
+    def __init__(self, case):
+        self.case, study = case, case.study
+        self.columns = _probe_columns(case)
+        self.against = study.against or self._first_reference()
+        self.what = study.error or self._first_known()
+        self._agree()
+
+    @property
+    def in_words(self) -> str:
+        """``velocity at the end against the exact solution``."""
+        names = {EXACT: "the exact solution", THEORY: "theory", FINEST: "the finest run"}
+        at = " at the end" if self.what in AT_THE_END else ""
+        return f"{self.what}{at} against {names.get(self.against, f'experiment {self.against}')}"
+
+    def errors(self, folder: Path, finest: Path) -> Judgement:
+        """Of the run in ``folder``; ``finest`` holds the run with the smallest spacing."""
+        run = Run(folder)
+        if self.what in AT_THE_END:
+            return self._fields(run, finest)
+        table = run.probes()
+        time, values = table["time"], table[self.what]
+        late = time >= self.case.study.after
+        theirs, of_theirs = self._curve(run, finest)
+        if of_theirs is None:  # known at any time
+            return series_errors(values[late], theirs(time[late]))
+        shared = of_theirs[(of_theirs >= max(self.case.study.after, time[0])) & (of_theirs <= time[-1])]
+        return series_errors(np.interp(shared, time, values), theirs(shared))
+
+    def reference_value(self, run: Run) -> float:
+        """What the column's mean should be; NaN for a field."""
+        if self.what in AT_THE_END or self.against == FINEST:
+            return math.nan
+        time = run.probes()["time"]
+        return float(np.mean(self._curve(run, run.folder)[0](time[time >= self.case.study.after])))
+
+    def _fields(self, run: Run, finest: Path) -> Judgement:
+        if self.against == EXACT:
+            last = {name: values[-1] for name, values in run.errors().items()}
+            return Judgement(*(float(last[f"{self.what}_{norm}"]) for norm in NORMS))
+        ours, theirs = (_fluid(r, self.what) for r in (run, Run(finest)))
+        if run.folder == finest:
+            return Judgement(math.nan, math.nan, math.nan)
+        return series_errors(ours[1], interpolated(*theirs, ours[0], self._spacing(finest)))
+
+    @staticmethod
+    def _spacing(folder: Path) -> float:
+        return float(Run(folder).attributes["spacing"])
+
+    def _curve(self, run: Run, finest: Path) -> tuple[Callable, np.ndarray | None]:
+        """The reference as a function of times, and the times at which it was measured."""
+        if self.against == THEORY:
+            name, _, field = self.what.partition(".")
+            value = self.case.probes[name].theory[field]
+            return (lambda t: np.full(len(t), value)), None
+        if self.against == EXACT:
+            return self._exact_curve(run), None
+        if self.against == FINEST:
+            table = Run(finest).probes()
+            if run.folder == finest:
+                return (lambda t: np.full(len(t), math.nan)), None
+            return (lambda t: np.interp(t, table["time"], table[self.what])), None
+        time, value = self.measured
+        return (lambda t: np.interp(t, time, value)), time
+
+    def _exact_curve(self, run: Run) -> Callable:
+        name, _, quantity = self.what.partition(".")
+        field, _, axis = quantity.partition("_")
+        scene = Scene(self.case)
+        x = np.array([self.case.probes[name].position])
+
+        def at(t: float) -> float:
+            [value] = getattr(scene.exact, field)(x, t, scene.setting)
+            return float(value["xyz".index(axis)] if axis else value)
+
+        return np.vectorize(at)
+
+    @cached_property
+    def measured(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times in s and values of the experiment, in the probe's unit.  StudyError: no such file,
+        or no such columns."""
+        return read_experiment(self.case, self.against)
+
+    def _first_reference(self) -> str:
+        if any(table is not None for _, table in self.case.exact):
+            return EXACT
+        for name in self.case.experiments:
+            return name
+        return THEORY if any(p.theory for p in self.case.probes.values()) else FINEST
+
+    def _first_known(self) -> str:
+        if self.against == EXACT:
+            return known(Scene(self.case).exact)[0]
+        if self.against in self.case.experiments:
+            return self.case.experiments[self.against].probe
+        if self.against == THEORY:
+            return next(
+                f"{name}.{field}" for name, p in self.case.probes.items() for field in p.theory
+            )
+        return self.columns[0] if self.columns else AT_THE_END[0]
+
+    def _agree(self) -> None:
+        """StudyError where the reference does not fit what is compared."""
+        file, what = self.case.file, self.what
+        if what not in (*AT_THE_END, *self.columns):
+            names = ", ".join((*AT_THE_END, *self.columns))
+            raise StudyError(f"{file}: study.error: {what} is not measured; give one of {names}")
+        known_here = self._references_of(what)
+        if self.against not in known_here:
+            raise StudyError(
+                f"{file}: study.against: {self.against} does not know {what}; give one of "
+                f"{', '.join(known_here)}"
+            )
+        if self.against in self.case.experiments:
+            self.measured
+
+    def _references_of(self, what: str) -> list[str]:
+        """Whatever of the case can judge ``what``."""
+        found = [n for n, e in self.case.experiments.items() if e.probe == what]
+        solution = Scene(self.case).exact
+        name, _, quantity = what.partition(".")
+        field = quantity.partition("_")[0] if quantity else what
+        if solution and field in known(solution):
+            found.append(EXACT)
+        if quantity and quantity in self.case.probes[name].theory:
+            found.append(THEORY)
+        return [*found, FINEST]
+
+
+def _probe_columns(case) -> list[str]:
+    """The columns of probes.csv that a case makes."""
+    return [c for probe in probes_of(case) for c in probe.columns(case.space.dimensions)]
+
+
+def read_experiment(case, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times in s and values of an experiment of the case, sorted by time.  Raises StudyError."""
+    experiment = case.experiments[name]
+    path = Path(case.file).parent / experiment.file
+    where = f"{case.file}: experiments.{name}"
+    try:
+        lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError(f"{where}.file: {path}: {error}; give a CSV file beside the case") from None
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    try:
+        table = sorted((float(r[experiment.time]), float(r[experiment.value])) for r in rows)
+    except KeyError as error:
+        names = ", ".join(rows[0])
+        raise StudyError(f"{where}: {path} has no column {error}; give one of {names}") from None
+    except (TypeError, ValueError) as error:
+        raise StudyError(f"{where}: {path}: {error}; let each line hold numbers") from None
+    if not table:
+        raise StudyError(f"{where}: {path} holds no rows; give a CSV file with a line of names")
+    time, value = np.array(table).T
+    return time * experiment.time_unit, value * experiment.value_unit
+
+
+def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:
+    """Relative errors of a curve or a field, (n,) or (n, dim), over its points.
+
+    Σ|e|/Σ|f|, √(Σe²/Σf²) and max|e|/max|f|; NaN where there is none.
+    """
+    e, f = (np.linalg.norm(x.reshape(len(x), -1), axis=1) for x in (ours - theirs, theirs))
+    if not len(e):
+        return Judgement(math.nan, math.nan, math.nan)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        l2 = np.sqrt((e * e).sum() / (f * f).sum())
+        return Judgement(float(e.sum() / f.sum()), float(l2), float(e.max() / f.max()))
+
+
+def _fluid(run: Run, field: str) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and values of the fluid in the last frame."""
+    frame = run.frame(-1, "position", "kind", field)
+    fluid = frame["kind"] == FLUID
+    return frame["position"][fluid], frame[field][fluid]
+
+
+def interpolated(
+    position: np.ndarray, values: np.ndarray, at: np.ndarray, spacing: float
+) -> np.ndarray:
+    """Values of particles at other places, averaged by the squares of (1 − r/2dx)₊.
+
+    Where no particle is that near, the nearest one's value.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(position)
+    distance, who = tree.query(at, k=4 ** position.shape[1], distance_upper_bound=2.0 * spacing)
+    share = np.maximum(1.0 - distance / (2.0 * spacing), 0.0) ** 2
+    near = share.sum(axis=1) > 0.0
+    padded = np.concatenate([values, values[:1]])  # where there are fewer, the share is zero
+    share[near] /= share[near].sum(axis=1, keepdims=True)
+    found = np.einsum("nk,nk...->n...", share, padded[who])
+    found[~near] = values[tree.query(at[~near])[1]]
+    return found

@@ -1,0 +1,96 @@
+"""Which runs a study makes: keys of the case, and the values that each takes."""
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+
+from psph.study.errors import StudyError
+
+SPACING = "space.spacing"
+"""The key along which errors fall and costs grow."""
+
+Settings = dict[str, object]
+"""Keys of a case and the values of one run."""
+
+
+def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, list]:
+    """What varies: the case's table, or what the command line gives as ``key=value,value``.
+
+    Raises StudyError where nothing varies, or a key has no second value.
+    """
+    vary = dict(map(_read, given)) if given else {key: list(values) for key, values in table.items()}
+    if not vary:
+        raise StudyError(
+            "study: nothing varies; give the case a table [study] with "
+            'vary = { "space.spacing" = [...] }, or --vary space.spacing=0.02,0.01'
+        )
+    for key, values in vary.items():
+        if len(set(map(str, values))) < 2:
+            raise StudyError(f"study: {key}: a ladder of one value, {values[0]}; give a second one")
+        if len(set(map(str, values))) < len(values):
+            raise StudyError(f"study: {key}: {values}: a value stands there twice; take one out")
+    return vary
+
+
+def _read(text: str) -> tuple[str, list]:
+    key, equals, values = text.partition("=")
+    if not equals or not key.strip() or not values.strip():
+        raise StudyError(f"study --vary {text}: no key and values; write it as key=value,value")
+    return key.strip(), [_value(word.strip()) for word in values.split(",")]
+
+
+def _value(word: str):
+    for kind in (int, float):
+        try:
+            return kind(word)
+        except ValueError:
+            continue
+    return {"true": True, "false": False}.get(word, word)
+
+
+def rows(vary: Mapping[str, Sequence], grid: bool) -> list[Settings]:
+    """The settings of each run, the coarsest spacing first.
+
+    As a ``grid`` all combinations.  Else one key at a time: the spacings by themselves, and each
+    other value at the finest spacing but one, where there are several, so that what it changes
+    can be told from what the spacing changes.
+    """
+    ladder = sorted(vary.get(SPACING, ()), reverse=True)
+    others = {key: values for key, values in vary.items() if key != SPACING}
+    if grid:
+        every = itertools.product(ladder or [None], *others.values())
+        found = [dict(zip((SPACING, *others), values)) for values in every]
+        return [{k: v for k, v in row.items() if v is not None} for row in found]
+    at = ladder[-2:][:1]
+    found = [{SPACING: dx} for dx in ladder] or [{}]
+    found += [{**{SPACING: dx for dx in at}, key: v} for key, vs in others.items() for v in vs]
+    return found
+
+
+def overrides(settings: Settings) -> list[str]:
+    """The settings as what ``--set`` takes."""
+    return [f"{key}={toml(value)}" for key, value in settings.items()]
+
+
+def toml(value) -> str:
+    """A value as TOML writes it; a word stays bare."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def name_of(settings: Settings) -> str:
+    """What a person calls the run: ``spacing 0.01, kernel wendland-c4``."""
+    return ", ".join(f"{short(key)} {toml(value)}" for key, value in settings.items()) or "as it is"
+
+
+def short(key: str) -> str:
+    """The last part of a key, in words."""
+    return key.rpartition(".")[2].replace("_", " ")
+
+
+def groups(every: Sequence[Settings]) -> Iterator[tuple[Settings, list[int]]]:
+    """Runs that differ in nothing but the spacing: what they share, and their places."""
+    found: dict[tuple, list[int]] = {}
+    for place, settings in enumerate(every):
+        shared = tuple((k, v) for k, v in settings.items() if k != SPACING)
+        found.setdefault(shared, []).append(place)
+    for shared, places in found.items():
+        yield dict(shared), places

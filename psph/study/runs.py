@@ -1,0 +1,117 @@
+"""The runs of a study: each done once, timed, and kept for the next time."""
+
+import json
+import statistics
+from collections.abc import Callable
+from pathlib import Path
+
+import psph
+from psph.case import CaseError, load
+from psph.jit import processor
+from psph.output.errors import OutputError
+from psph.parallel.slabs import TooManyRanks
+from psph.solver.run import Finished, run
+from psph.solver.step import BlowUp
+from psph.study.ladder import Settings, overrides
+from psph.threads import threads
+
+ENOUGH = 10.0
+"""Seconds: a run that has taken so long is not timed again."""
+
+KEPT = "result.json"
+
+DONE = "done"
+
+def cases(file: str, given: list[str], every: list[Settings]) -> list:
+    """The case of each run, or the CaseError that speaks against it."""
+    return [_case(file, [*given, *overrides(settings)]) for settings in every]
+
+
+def _case(file: str, sets: list[str]):
+    try:
+        end = load(file, sets).time.end
+        return load(file, [f"output.frames={end!r}", *sets])  # of use here: the first and the last
+    except CaseError as error:
+        return error
+
+
+def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) -> dict:
+    """What a run took and how it ended, from ``folder`` where it was done before; collective.
+
+    A short run is repeated, and its seconds are the median.
+    """
+    if isinstance(case, CaseError):
+        return {"status": f"refused: {'; '.join(case.lines)}"}
+    key = _key(case, comm)
+    kept = comm.bcast(_kept(folder, key) if comm.rank == 0 else None)
+    if kept:
+        say("done before")
+        return kept
+    found: list[Finished] = []
+    try:
+        while len(found) < repeats and sum(map(_seconds, found)) < ENOUGH:
+            found.append(run(case, folder, comm, overwrite=True, say=_silent))
+    except BlowUp as trouble:
+        result = {"status": str(trouble)}
+    except (CaseError, TooManyRanks) as trouble:
+        result = {"status": f"refused: {trouble}"}
+    else:
+        result = _measured(found, comm)
+    if comm.rank == 0:
+        _keep(folder, key, result)
+    return result
+
+
+def _measured(found: list[Finished], comm) -> dict:
+    """The figures of runs that came to their end."""
+    last, every = found[-1], comm.bcast([_seconds(one) for one in found])
+    steps, middle = last.simulation.steps, statistics.median(every)
+    parts = ("compiling", "set_up", "stepping", "output")
+    return {
+        "status": DONE,
+        "particles": last.particles,
+        "steps": steps,
+        "particle_steps": last.particles * steps,
+        "seconds": middle,
+        "seconds_spread": (max(every) - min(every)) / middle if len(every) > 1 else None,
+        "timed": len(every),
+        **{f"{part}_seconds": comm.bcast(getattr(found[0], part)) for part in parts},
+        "bytes": comm.allreduce(last.simulation.bytes_held()),
+        "phases": comm.bcast(dict(last.simulation.ledger.seconds)),
+    }
+
+
+def _seconds(one: Finished) -> float:
+    """What the run took, compiling apart."""
+    return one.set_up + one.stepping + one.output
+
+
+def _silent(line: str, where=None) -> None:
+    """A run among many has nothing to say."""
+
+
+def _key(case, comm) -> dict:
+    """What a result rests on: it holds for no other."""
+    text = case.model_copy(update={"study": type(case.study)()}).to_toml()
+    return {
+        "case": text, "version": psph.__version__, "processor": processor(), "ranks": comm.size,
+        "threads": threads(),
+    }
+
+
+def _kept(folder: Path, key: dict) -> dict | None:
+    try:
+        kept = json.loads((folder / KEPT).read_text(encoding="utf-8"))
+        return kept["result"] if kept["key"] == key else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _keep(folder: Path, key: dict, result: dict) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        beside = folder / f"{KEPT}.part"
+        beside.write_text(json.dumps({"key": key, "result": result}, indent=1), encoding="utf-8")
+        beside.replace(folder / KEPT)
+    except OSError as error:
+        raise OutputError(f"{folder}: {error.strerror}; choose another folder with --out") from None

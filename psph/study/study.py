@@ -1,0 +1,290 @@
+"""A study from its question to its files."""
+
+import json
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from psph.case import CaseError, load
+from psph.output.reader import Run as Folder
+from psph.study import fit, report, words
+from psph.study.errors import StudyError
+from psph.study.judge import FINEST, Judge, Judgement
+from psph.study.ladder import SPACING, Settings, groups, name_of
+from psph.study.picture import draw
+from psph.study.runs import DONE, cases, perform
+
+CSV, PAGE, PICTURE, KEPT = "study.csv", "study.md", "study.png", "study.json"
+
+
+class Study:
+    """The runs of a study in ``folder``; methods are collective but where they say otherwise.
+
+    ``file`` is the case, ``sets`` what ``--set`` gave, ``every`` the settings of each run.  Raises
+    CaseError or StudyError before anything is run.
+    """
+
+    def __init__(self, file, sets: list[str], every: list[Settings], folder: Path, comm):
+        self.folder, self.comm, self.every = folder, comm, every
+        self.case = load(file, sets)
+        self.judge = Judge(self.case)
+        self.keys = list(dict.fromkeys(key for settings in every for key in settings))
+        self.cases = cases(file, sets, every)
+        self._merge()
+        if all(isinstance(case, CaseError) for case in self.cases):
+            raise self.cases[0]
+
+    def _merge(self) -> None:
+        """Two ways to say the same run are one run: that which was said first."""
+        found: dict[str, int] = {}
+        for k, case in enumerate(self.cases):
+            found.setdefault(repr(case) if isinstance(case, CaseError) else case.to_toml(), k)
+        self.every = [self.every[k] for k in found.values()]
+        self.cases = [self.cases[k] for k in found.values()]
+
+    def needs_a_reference(self) -> None:
+        """StudyError where the runs have nothing to be judged by."""
+        if self.judge.against == FINEST and len({s.get(SPACING) for s in self.every}) < 2:
+            raise StudyError(
+                f"{self.case.file}: study: no reference, and no finer run to stand for one; give "
+                "[exact], an experiment, a probe's theory, or two values of space.spacing"
+            )
+
+    def run(self, say: Callable[[str], None]) -> list[dict]:
+        """Every run, then a row for each: on all ranks, errors on rank 0."""
+        results = []
+        for k, (settings, case) in enumerate(zip(self.every, self.cases)):
+            told = f"run {k + 1} of {len(self.every)}: {name_of(settings)}"
+            say(f"{told} ...{self._left(results, k)}")
+            result = perform(
+                case, self.folder / f"run-{k + 1:02d}", self.comm, self.case.study.repeats, say
+            )
+            results.append(result)
+            say(f"{told}: {_outcome(result)}")
+        return self._rows(results) if self.comm.rank == 0 else []
+
+    def _left(self, results: list[dict], k: int) -> str:
+        """How long the rest may take, from the particle-steps of the runs so far."""
+        done = [(c, r) for c, r in zip(self.cases, results) if r["status"] == DONE]
+        if not done:
+            return ""
+        d = self.case.space.dimensions
+
+        def size(case) -> float:
+            return 0.0 if isinstance(case, CaseError) else case.space.spacing ** -(d + 1.0)
+
+        case, result = done[-1]
+        left = sum(map(size, self.cases[k:])) / size(case) * result["seconds"]
+        return f" about {report.seconds(left)} to go"
+
+    def _rows(self, results: list[dict]) -> list[dict]:
+        """Settings, errors and figures of each run, flat; rank 0 alone."""
+        finest = self._finest(results)
+        found = []
+        for k, (settings, result) in enumerate(zip(self.every, results)):
+            own = settings | ({SPACING: self.cases[k].space.spacing} if result["status"] == DONE else {})
+            folder = self.folder / f"run-{k + 1:02d}"
+            if result["status"] == DONE:
+                errors = self.judge.errors(folder, finest)
+                more = vitals(Folder(folder), self.case.study.after)
+            else:
+                errors, more = Judgement(math.nan, math.nan, math.nan), {}
+            figures = {name: x for name, x in result.items() if not isinstance(x, dict)}
+            norms = {f"error_{norm}": x for norm, x in errors._asdict().items()}
+            found.append({**own, **norms, **figures, **more})
+        return found
+
+    def _finest(self, results: list[dict]) -> Path | None:
+        """The folder of the run with the smallest spacing and nothing else changed."""
+        done = [
+            (case.space.spacing, len(self.every[k]), k)
+            for k, (case, result) in enumerate(zip(self.cases, results))
+            if result["status"] == DONE
+        ]
+        return self.folder / f"run-{min(done)[2] + 1:02d}" if done else None
+
+    def conclude(self, found: list[dict], error: float | None, seconds: float | None) -> Iterator[str]:
+        """Write the files and yield what to tell; rank 0 alone."""
+        keys = self.keys
+        told = list(self._sentences(found))
+        ladders = list(self.ladders(found))
+        answer = list(_answer(ladders, error, seconds)) if error or seconds else []
+        title = f"{self.case.title or self.case.name}: what accuracy costs"
+        page = [f"# {title}", "", f"Error: {self.judge.in_words}.", "",
+                *report.markdown(found, keys), "", *(f"- {line}" for line in told), ""]
+        report.write_csv(self.folder / CSV, found)
+        report.write(self.folder / PAGE, "\n".join(page))
+        report.write_json(self.folder / KEPT, {
+            "case": self.case.file, "error": self.judge.in_words, "rows": found, "vary": keys,
+            "dimensions": self.case.space.dimensions, "ranks": self.comm.size,
+        })
+        good = [row for row in found if row["error_l2"] > 0.0]
+        if good:
+            self._draw(title, found, good, error)
+        yield f"error: {self.judge.in_words}"
+        yield from report.plain(found, keys)
+        yield from told
+        yield from answer
+
+    def ladders(self, found: list[dict]) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
+        """Runs that share all but the spacing: what they share, their rows, their fit."""
+        yield from ladders_of(found, self.keys, self.case.space.dimensions)
+
+    def _sentences(self, found: list[dict]) -> Iterator[str]:
+        ladders = list(self.ladders(found))
+        several = sum(ladder is not None for *_, ladder in ladders) > 1
+        for shared, _, ladder in ladders:
+            if ladder:
+                yield from words.ladder_words(ladder, name_of(shared) if several else "")
+        base = next((ladder for shared, _, ladder in ladders if ladder and not shared), None)
+        yield from self._choices(found, base)
+        yield from self._limits(found)
+        front = [name_of({k: row[k] for k in self.keys if k in row}) for row in pareto(found)]
+        if 0 < len(front) < len(found) and len(found) > 2:
+            yield words.front_words(front)
+        yield from words.failed_words(found)
+
+    def _choices(self, found: list[dict], ladder: fit.Ladder | None) -> Iterator[str]:
+        """Each choice against the run that differs from it in that alone."""
+        for row in found:
+            own = [key for key in self.keys if key in row and key != SPACING]
+            if len(own) != 1:
+                continue
+            others = {k: v for k, v in row.items() if k in self.keys and k not in own}
+            plain = [
+                other for other in found
+                if other["status"] == DONE and other["error_l2"] > 0.0
+                and {k: v for k, v in other.items() if k in self.keys} == others
+            ]
+            if plain:
+                yield words.against_base(row, plain[0], own[0], ladder)
+
+    def _limits(self, found: list[dict]) -> Iterator[str]:
+        """Means of the probes at zero spacing, where three runs tell."""
+        alone = [
+            row for row in found
+            if row["status"] == DONE and not any(k in row for k in self.keys if k != SPACING)
+        ]
+        for name in alone[0] if alone else ():
+            if name.startswith(MEAN):
+                values = [row[name] for row in alone]
+                limit = fit.richardson([row[SPACING] for row in alone], values)
+                finest = min(alone, key=lambda row: row[SPACING])[name]
+                if limit:
+                    yield words.limit_words(name, limit, finest)
+
+    def _draw(self, title: str, found: list[dict], good: list[dict], error: float | None) -> None:
+        curves = [
+            (name_of(shared) if shared else "as it is", [row for row in part if row in good])
+            for shared, part, _ in self.ladders(found)
+        ]
+        enough = [row for row in good if error and row["error_l2"] <= error]
+        goal = (error, min(enough, key=lambda row: row["seconds"])) if enough else None
+        draw(
+            self.folder / PICTURE, title, self.judge.in_words,
+            [curve for curve in curves if curve[1]], pareto(found), goal,
+        )
+
+
+def _outcome(result: dict) -> str:
+    """How a run ended, in a few words."""
+    if result["status"] != DONE:
+        return result["status"]
+    compiled = f", compiled in {result['compiling_seconds']:.1f} s before"
+    return (
+        f"{result['steps']:,} steps of {result['particles']:,} particles in "
+        f"{report.seconds(result['seconds'])}" + (compiled if result["compiling_seconds"] > 1.0 else "")
+    )
+
+
+MEAN, SPREAD = "mean ", "spread "
+"""Columns of a row: a probe's mean and standard deviation over time."""
+
+
+def vitals(run: Folder, after: float) -> dict[str, float]:
+    """Means and spreads of the probes, drift of energy and momentum, largest density error."""
+    found: dict[str, float] = {}
+    table = run.probes()
+    for name, values in table.items():
+        if name != "time":
+            late = values[table["time"] >= after]
+            found[MEAN + name], found[SPREAD + name] = float(late.mean()), float(late.std())
+    log = run.log()
+    energy = log["kinetic_energy"] + log["potential_energy"]
+    momentum = [values for name, values in log.items() if name.startswith("momentum")]
+    return found | {
+        "kinetic_energy": float(log["kinetic_energy"][-1]),
+        "energy_drift": float(energy[-1] - energy[0]),
+        "momentum_drift": math.hypot(*(float(p[-1] - p[0]) for p in momentum)),
+        "density_error": float(log["density_error"].max()),
+    }
+
+
+def ladders_of(
+    found: list[dict], keys: list[str], dimensions: int
+) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
+    """Runs that share all but the spacing: what they share, their rows, their fit."""
+    every = [{k: row[k] for k in keys if k in row} for row in found]
+    for shared, places in groups(every):
+        part = [found[k] for k in places if found[k]["status"] == DONE]
+        runs = [
+            fit.Run(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part
+        ]
+        enough = len({run.spacing for run in runs if run.error > 0.0}) > 1
+        yield shared, [found[k] for k in places], fit.Ladder(runs, dimensions) if enough else None
+
+
+def pareto(found: list[dict]) -> list[dict]:
+    """Rows that no other beats in both error and time, the fastest first."""
+    good = sorted((r for r in found if r["error_l2"] > 0.0), key=lambda r: r["seconds"])
+    front: list[dict] = []
+    for row in good:
+        if not front or row["error_l2"] < front[-1]["error_l2"]:
+            front.append(row)
+    return front
+
+
+def _answer(ladders, error: float | None, seconds: float | None) -> Iterator[str]:
+    """Which settings reach an error, or what so many seconds buy."""
+    fits = [(shared, ladder) for shared, _, ladder in ladders if ladder]
+    if not fits:
+        yield "no answer: it takes two runs with an error that differ in the spacing alone."
+        return
+    found = []
+    for shared, ladder in fits:
+        dx = ladder.spacing_for_error(error) if error else ladder.spacing_for_seconds(seconds)
+        if not math.isnan(dx):
+            dx = float(f"{dx:.3g}")
+            found.append(({SPACING: dx, **shared}, ladder.error(dx), ladder.seconds(dx)))
+    if not found:
+        asked = report.percent(error) if error else report.seconds(seconds)
+        yield f"no answer: {asked} lies beyond what these runs can tell."
+        return
+    best = min(found, key=lambda f: (f[2] if error else f[1]).value)
+    asked = f"an error of {report.percent(error)}" if error else f"{report.seconds(seconds)}"
+    yield f"For {asked}, " + next(lines := words.advice(*best))
+    yield from lines
+
+
+def foretold(folder: Path, case) -> Iterator[str]:
+    """What a stored study says of a case: its error and its seconds; rank 0 alone.
+
+    Raises StudyError where the folder holds no study of it.
+    """
+    try:
+        kept = json.loads((folder / KEPT).read_text(encoding="utf-8"))
+        found, keys, dimensions = kept["rows"], kept["vary"], kept["dimensions"]
+    except (OSError, ValueError, KeyError) as error:
+        raise StudyError(
+            f"{folder}: holds no study ({error}); give the folder that `study` wrote to"
+        ) from None
+    fits = [ladder for shared, _, ladder in ladders_of(found, keys, dimensions) if ladder and not shared]
+    if not fits:
+        raise StudyError(
+            f"{folder}: its study has no ladder of spacings; vary space.spacing over two values"
+        )
+    [ladder] = fits
+    error, time = ladder.error(case.space.spacing), ladder.seconds(case.space.spacing)
+    yield f"From the study in {folder} ({kept['case']} on {kept['ranks']} ranks)"
+    yield f"  error       {report.percent(error.value)}{words.interval(error, report.percent)}, {kept['error']}"
+    yield f"  run time    {report.seconds(time.value)}{words.interval(time, report.seconds)}"

@@ -1,0 +1,104 @@
+"""What a study found, in plain sentences.  Each follows from its table."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from psph.study.fit import Estimate, Extrapolated, Ladder
+from psph.study.ladder import SPACING, short, toml
+from psph.study.report import joined, percent, seconds
+
+SAME = 0.005
+"""Relative changes below are called none."""
+
+HALF = 0.5
+
+
+def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
+    """The price of accuracy along a ladder of spacings."""
+    finest = ladder.runs[-1]
+    beginning = f"{name}: " if name else ""
+    yield (
+        f"{beginning}{percent(finest.error)} costs {seconds(finest.seconds)} "
+        f"(spacing {finest.spacing:g} m)."
+    )
+    order = ladder.order
+    yield f"{beginning}the error falls with order {order.value:.2f}{within(order, '.2f')}."
+    spacing = ladder.spacing_for_error(HALF * finest.error)
+    if order.value > 0.0 and not math.isnan(spacing):
+        longer = ladder.seconds(spacing).value / ladder.seconds(finest.spacing).value
+        yield (
+            f"{beginning}half that error is to be expected at a spacing of {spacing:.3g} m and "
+            f"costs {longer:.1f} times as long."
+        )
+    elif order.value <= 0.0:
+        yield f"{beginning}a finer spacing does not help: something else sets the error."
+
+
+def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
+    """What one choice changes at the same spacing; with a ladder, what it saves at equal error."""
+    what = f"{short(key)} {toml(row[key])}"
+    if row["status"] != "done":
+        return f"{what}: {row['status']}."
+    time, error = row["seconds"] / base["seconds"], row["error_l2"] / base["error_l2"]
+    same = f"{what} takes {time:.2f} times as long and has {error:.2f} times the error"
+    if abs(error - 1.0) < SAME:
+        same = f"{what} takes {time:.2f} times as long and leaves the error as it is"
+    if ladder is None or not ladder.order.value > 0.0 or not error > 0.0:
+        return f"{same}."
+    spacing = base[SPACING] * (1.0 / error) ** (1.0 / ladder.order.value)
+    scaled = time * ladder.seconds(spacing).value / ladder.seconds(base[SPACING]).value
+    return f"{same}: about {scaled:.2f} of the time for the same error."
+
+
+def limit_words(what: str, found: Extrapolated, finest: float) -> str:
+    """A quantity at zero spacing."""
+    value = found.value
+    text = (
+        f"{what} goes to {value.value:.6g}{within(value, '.3g')} at zero spacing, with order "
+        f"{found.order.value:.2f}{within(found.order, '.2f')}"
+    )
+    if value.value:
+        text += f"; the finest run is {percent(abs(finest / value.value - 1.0))} off"
+    return f"{text}."
+
+
+def failed_words(rows: Sequence[dict]) -> Iterator[str]:
+    """The runs that did not come to their end."""
+    failed = [row for row in rows if row["status"] != "done"]
+    if failed:
+        yield f"{len(failed)} of {len(rows)} runs did not end well: their status says why."
+
+
+def advice(settings: dict, error: Estimate, time: Estimate) -> Iterator[str]:
+    """Which settings to use, and what to expect of them; the last lines go into the case."""
+    yield (
+        f"expect an error of {percent(error.value)}{interval(error, percent)} in "
+        f"{seconds(time.value)}{interval(time, seconds)}, compiling apart, with:"
+    )
+    tables: dict[str, list[str]] = {}
+    for key, value in settings.items():
+        table, _, name = key.rpartition(".")
+        tables.setdefault(table, []).append(f"{name} = {_written(value)}")
+    for table, lines in tables.items():
+        yield f"[{table}]" if table else ""
+        yield from lines
+
+
+def _written(value) -> str:
+    return f'"{value}"' if isinstance(value, str) else toml(value)
+
+
+def within(estimate: Estimate, form: str) -> str:
+    reach = estimate.high - estimate.value
+    return "" if math.isnan(reach) else f" ± {reach:{form}}"
+
+
+def interval(estimate: Estimate, write) -> str:
+    if math.isnan(estimate.low):
+        return " (too few runs for an uncertainty)"
+    return f" ({write(estimate.low)} to {write(estimate.high)})"
+
+
+def front_words(names: Sequence[str]) -> str:
+    """The settings that no other beats in both error and time."""
+    return f"No other run is both faster and more accurate than {joined(names)}."

@@ -1,0 +1,64 @@
+"""What is foretold from a ladder whose law is known."""
+
+import math
+
+import numpy as np
+import pytest
+
+from psph.study.fit import Ladder, Run, richardson
+
+
+def run(dx: float, order: float = 2.0, noise: float = 1.0) -> Run:
+    """A run in 2D: error 5 dx^p, 1e-7 s a particle-step and 1e-4 s a step."""
+    particles, steps = round(dx**-2), round(10 / dx)
+    return Run(dx, noise * 5.0 * dx**order, 1e-7 * particles * steps + 1e-4 * steps, particles, steps)
+
+
+def test_error_and_seconds_of_a_run_that_was_not_made():
+    ladder = Ladder([run(0.04), run(0.02), run(0.01)], 2)
+    assert ladder.order.value == pytest.approx(2.0)
+    for dx in (0.03, 0.015, 0.005):  # inside the ladder and beyond
+        assert ladder.error(dx).value == pytest.approx(run(dx).error, rel=1e-9)
+        assert ladder.seconds(dx).value == pytest.approx(run(dx).seconds, rel=0.02)
+    dx = ladder.spacing_for_error(5 * 0.007**2)
+    assert dx == pytest.approx(0.007, rel=1e-6)
+    assert ladder.spacing_for_seconds(run(0.007).seconds) == pytest.approx(0.007, rel=0.02)
+    assert math.isnan(ladder.spacing_for_error(1e-12))
+
+
+def test_scatter_makes_the_interval_that_holds_the_truth():
+    rng = np.random.default_rng(1)
+    held = 0
+    for _ in range(200):
+        noise = np.exp(0.1 * rng.standard_normal(5))
+        runs = [run(dx, noise=x) for dx, x in zip((0.08, 0.04, 0.02, 0.01), noise)]
+        foretold = Ladder(runs, 2).error(0.005)
+        truth = run(0.005, noise=noise[-1]).error
+        held += foretold.low <= truth <= foretold.high
+        assert foretold.low < foretold.value < foretold.high
+    assert 160 < held  # 90 % are promised, of the line through all; three points place the middle
+
+
+def test_two_runs_give_a_value_without_an_interval():
+    ladder = Ladder([run(0.04), run(0.02)], 2)
+    assert ladder.error(0.01).value == pytest.approx(5e-4)
+    assert math.isnan(ladder.error(0.01).low) and math.isnan(ladder.order.high)
+    with pytest.raises(ValueError, match="two runs"):
+        Ladder([run(0.04)], 2)
+
+
+def test_an_error_that_levels_off_has_no_spacing_to_halve_it():
+    runs = [run(0.04, 0.0), run(0.02, 0.0), run(0.01, 0.0)]
+    assert math.isnan(Ladder(runs, 2).spacing_for_error(1e-3))
+
+
+def test_richardson_finds_limit_and_order():
+    dx = [0.04, 0.02, 0.01, 0.005]
+    q = [3.0 - 7.0 * x**1.5 for x in dx]
+    found = richardson(dx[:3], q[:3])
+    assert found.value.value == pytest.approx(3.0, rel=1e-4)
+    assert found.order.value == pytest.approx(1.5, rel=1e-3) and math.isnan(found.order.low)
+    found = richardson(dx[::-1], [x + 1e-5 * (-1) ** k for k, x in enumerate(q[::-1])])
+    assert found.value.low < 3.0 < found.value.high
+    assert richardson(dx[:2], q[:2]) is None
+    assert richardson(dx, [1.0, 2.0, 1.5, 1.7]) is None  # it does not converge
