@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from psph.case import load
-from psph.study.effects import effect_words, without_each
+from psph.study.effects import effects_words, without_each
 from psph.study.errors import StudyError
 from psph.study.ladder import rows, wanted
 from psph.study.study import Study
@@ -31,7 +31,7 @@ def study(
     folder = out or Path(f"{case.name}-study")
     asked = Study(file, sets, every, folder, comm)
     if not effects:
-        asked.needs_a_reference()
+        asked.refuse_nonsense()
 
     def say(line: str) -> None:
         if comm.rank == 0:
@@ -39,11 +39,8 @@ def study(
 
     found = asked.run(say)
     if comm.rank == 0:
+        told = effects_words(named, found) if effects else asked.sentences(found)
         say("")
-        for line in asked.conclude(found, error, seconds):
+        for line in asked.conclude(found, list(told), error, seconds):
             say(line)
-        if effects:
-            for name, row in zip(named, found[1:]):
-                for line in effect_words(name, row, found[0]):
-                    say(line)
         say(f"wrote {folder}: {', '.join(p.name for p in sorted(folder.glob('study.*')))}")

@@ -38,10 +38,20 @@ def answers(row: dict, base: dict) -> dict[str, float]:
     }
 
 
-def effect_words(name: str, row: dict, base: dict) -> Iterator[str]:
+def effects_words(named: dict[str, Settings], rows: list[dict]) -> Iterator[str]:
+    """A line or two for each effect; the first of the rows has them all, the others lack one."""
+    base, *lacking = rows
+    if base["status"] != DONE:
+        yield f"the case itself does not come to its end: {base['status']}."
+        return
+    for name, row in zip(named, lacking):
+        yield from _words(name, row, base)
+
+
+def _words(name: str, row: dict, base: dict) -> Iterator[str]:
     """What the effect takes of the time, and what it changes."""
     if row["status"] != DONE:
-        yield f"{name}: without it the run fails ({row['status']}): keep it."
+        yield f"{name}: the case needs it; without, {row['status']}."
         return
     saved = 1.0 - row["seconds"] / base["seconds"]
     changed = answers(row, base)

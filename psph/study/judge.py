@@ -134,9 +134,8 @@ class Judge:
         if self.against in self.case.experiments:
             return self.case.experiments[self.against].probe
         if self.against == THEORY:
-            return next(
-                f"{name}.{field}" for name, p in self.case.probes.items() for field in p.theory
-            )
+            named = [f"{name}.{field}" for name, p in self.case.probes.items() for field in p.theory]
+            return (*named, AT_THE_END[0])[0]
         return self.columns[0] if self.columns else AT_THE_END[0]
 
     def _agree(self) -> None:

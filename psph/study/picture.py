@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from matplotlib.ticker import LogLocator, NullLocator
+
 from psph.output import style
 from psph.study.ladder import SPACING, toml
 
@@ -18,9 +20,10 @@ def draw(
 
     ``goal``: an error to reach and the cheapest row that does.
     """
+    top = style.TOP + 0.2
     with style.look():
-        figure = style.sheet(style.LEFT + WIDTH + 2.2, style.TOP + HEIGHT + style.BOTTOM, title, subtitle)
-        axes = style.panel(figure, style.LEFT, style.TOP, WIDTH, HEIGHT)
+        figure = style.sheet(style.LEFT + WIDTH + 2.2, top + HEIGHT + style.BOTTOM, title, subtitle)
+        axes = style.panel(figure, style.LEFT, top, WIDTH, HEIGHT)
         axes.set_xscale("log")
         axes.set_yscale("log")
         if len(front) > 1:
@@ -44,9 +47,11 @@ def draw(
             axes.plot([row["seconds"]], [100.0 * row["error_l2"]], "o", ms=11, mfc="none",
                       mec=style.INK, label=f"cheapest within {100.0 * error:g} %", zorder=4)
         for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter(lambda number, _: f"{number:g}")
-            axis.set_minor_formatter(lambda number, _: "")
-        axes.grid(color=style.WALLS, lw=0.4, which="both", alpha=0.6)
+            axis.set_minor_locator(NullLocator())
+        axes.margins(0.12)
+        axes.grid(color=style.WALLS, lw=0.4)
         axes.set_xlabel("seconds")
         axes.set_title("error, L2 (%)", loc="left", size=9, weight="bold")
         axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from psph.case import CaseError, load
 from psph.output.reader import Run as Folder
+from psph.scene import Scene, check
 from psph.study import fit, report, words
 from psph.study.errors import StudyError
 from psph.study.judge import FINEST, Judge, Judgement
@@ -27,12 +28,11 @@ class Study:
     def __init__(self, file, sets: list[str], every: list[Settings], folder: Path, comm):
         self.folder, self.comm, self.every = folder, comm, every
         self.case = load(file, sets)
+        check(Scene(self.case))
         self.judge = Judge(self.case)
         self.keys = list(dict.fromkeys(key for settings in every for key in settings))
         self.cases = cases(file, sets, every)
         self._merge()
-        if all(isinstance(case, CaseError) for case in self.cases):
-            raise self.cases[0]
 
     def _merge(self) -> None:
         """Two ways to say the same run are one run: that which was said first."""
@@ -42,8 +42,12 @@ class Study:
         self.every = [self.every[k] for k in found.values()]
         self.cases = [self.cases[k] for k in found.values()]
 
-    def needs_a_reference(self) -> None:
-        """StudyError where the runs have nothing to be judged by."""
+    def refuse_nonsense(self) -> None:
+        """CaseError where no value of a key is one; StudyError where runs have no reference."""
+        for key in self.keys:
+            with_it = [case for case, s in zip(self.cases, self.every) if key in s]
+            if all(isinstance(case, CaseError) for case in with_it):
+                raise with_it[0]
         if self.judge.against == FINEST and len({s.get(SPACING) for s in self.every}) < 2:
             raise StudyError(
                 f"{self.case.file}: study: no reference, and no finer run to stand for one; give "
@@ -103,10 +107,11 @@ class Study:
         ]
         return self.folder / f"run-{min(done)[2] + 1:02d}" if done else None
 
-    def conclude(self, found: list[dict], error: float | None, seconds: float | None) -> Iterator[str]:
-        """Write the files and yield what to tell; rank 0 alone."""
+    def conclude(
+        self, found: list[dict], told: list[str], error: float | None, seconds: float | None
+    ) -> Iterator[str]:
+        """Write the files and yield what to tell, the sentences ``told`` among it; rank 0 alone."""
         keys = self.keys
-        told = list(self._sentences(found))
         ladders = list(self.ladders(found))
         answer = list(_answer(ladders, error, seconds)) if error or seconds else []
         title = f"{self.case.title or self.case.name}: what accuracy costs"
@@ -130,7 +135,8 @@ class Study:
         """Runs that share all but the spacing: what they share, their rows, their fit."""
         yield from ladders_of(found, self.keys, self.case.space.dimensions)
 
-    def _sentences(self, found: list[dict]) -> Iterator[str]:
+    def sentences(self, found: list[dict]) -> Iterator[str]:
+        """What the rows tell in words."""
         ladders = list(self.ladders(found))
         several = sum(ladder is not None for *_, ladder in ladders) > 1
         for shared, _, ladder in ladders:

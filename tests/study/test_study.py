@@ -1,0 +1,250 @@
+"""A study on the command line: its rows, its files, its words, interrupted and under mpirun."""
+
+import csv
+import json
+import math
+import subprocess
+import sys
+
+import pytest
+from drafts import draft
+from jobs import clean_environment, mpirun
+
+from psph.case import load
+from psph.parallel.reductions import alone
+from psph.study.effects import effects_words, without_each
+from psph.study.errors import StudyError
+from psph.study.judge import Judge, interpolated, series_errors
+from psph.study.study import foretold, pareto
+
+WAVE = """
+[space]
+dimensions = 1
+spacing = 0.025
+smoothing = 2.0
+kernel = "cubic"
+periodic = ["x"]
+lower = [0.0]
+upper = [1.0]
+[time]
+end = 0.1
+[physics]
+sound_speed = 10.0
+[fluids.air]
+shape.box = { lower = [0.0], upper = [1.0] }
+density = 1.0
+velocity = "exact"
+pressure = "exact"
+[exact.sound_wave]
+speed = 1e-4
+length = 1.0
+[probes.P]
+position = [0.3]
+[study]
+vary = { "space.spacing" = [0.05, 0.025, 0.0125] }
+"""
+
+
+def study(folder, *options, text=WAVE, ranks=None):
+    """A finished ``psph study`` of the case ``text`` in ``folder``."""
+    file = folder / "wave.toml"
+    file.write_text(text)
+    command = ["-m", "psph", "study", str(file), "--out", str(folder / "out"), *options]
+    if ranks:
+        return mpirun(ranks, command)
+    return subprocess.run(
+        [sys.executable, *command], capture_output=True, text=True, env=clean_environment(),
+        stdin=subprocess.DEVNULL, timeout=120,
+    )
+
+
+def rows_of(folder) -> list[dict]:
+    with open(folder / "out" / "study.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """A study of a sound wave, and what it printed."""
+    folder = tmp_path_factory.mktemp("study")
+    job = study(folder, "--error", "0.002", ranks=2)
+    assert job.returncode == 0, job.stderr
+    return folder, job.stdout
+
+
+def test_a_row_holds_what_is_promised(done):
+    folder, _ = done
+    rows = rows_of(folder)
+    assert [float(r["space.spacing"]) for r in rows] == [0.05, 0.025, 0.0125]
+    for row in rows:
+        assert row["status"] == "done"
+        l1, l2, linf, seconds = (float(row[k]) for k in ("error_l1", "error_l2", "error_linf", "seconds"))
+        assert 0.0 < l2 < 0.5 and 0.0 < l1 and 0.0 < linf
+        parts = sum(float(row[f"{part}_seconds"]) for part in ("set_up", "stepping", "output"))
+        assert 0.0 < seconds < 3.0 * parts
+        assert float(row["particle_steps"]) == float(row["particles"]) * float(row["steps"])
+        assert float(row["bytes"]) > 8 * 11 * float(row["particles"])
+        assert int(row["timed"]) == 3 and float(row["seconds_spread"]) > 0.0
+    errors = [float(r["error_l2"]) for r in rows]
+    assert errors[0] > 3.0 * errors[1] > 9.0 * errors[2]  # second order, nearly
+
+
+def test_its_words_follow_from_its_table(done):
+    folder, said = done
+    errors = [float(r["error_l2"]) for r in rows_of(folder)]
+    order = math.log(errors[0] / errors[2]) / math.log(4.0)
+    assert f"the error falls with order {order:.2f}" in said
+    assert f"{100 * errors[2]:.3g} % costs" in said
+    page = (folder / "out" / "study.md").read_text()
+    assert "| space.spacing |" in page and "half that error" in page
+    assert (folder / "out" / "study.png").stat().st_size > 10_000
+    assert said.count("run 3 of 3") == 2  # rank 0 alone speaks
+
+
+def test_an_error_is_answered_with_settings_to_paste(done, tmp_path):
+    folder, said = done
+    answer = said[said.index("For an error of 0.2 %") :].splitlines()
+    assert answer[1] == "[space]"
+    spacing = float(answer[2].removeprefix("spacing = "))
+    errors = {float(r["space.spacing"]): float(r["error_l2"]) for r in rows_of(folder)}
+    slope = math.log(errors[0.05] / errors[0.0125]) / math.log(4.0)
+    assert spacing == pytest.approx(0.0125 * (0.002 / errors[0.0125]) ** (1 / slope), rel=0.05)
+
+
+def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
+    folder, _ = done
+    case = load(folder / "wave.toml", ["space.spacing=0.00625"])
+    lines = list(foretold(folder / "out", case))
+    foretold_error = float(lines[1].split()[1])
+    job = study(tmp_path, "--vary", "space.spacing=0.00625,0.0125")
+    assert job.returncode == 0, job.stderr
+    [finest] = [r for r in rows_of(tmp_path) if float(r["space.spacing"]) == 0.00625]
+    assert 1 / 1.5 < foretold_error / (100 * float(finest["error_l2"])) < 1.5
+    job = subprocess.run(
+        [sys.executable, "-m", "psph", "explain", str(folder / "wave.toml"), "--study",
+         str(folder / "out")],
+        capture_output=True, text=True, env=clean_environment(), timeout=60,
+    )
+    assert "From the study in" in job.stdout and "velocity at the end" in job.stdout
+    with pytest.raises(StudyError, match="holds no study"):
+        list(foretold(tmp_path, case))
+
+
+def test_an_interrupted_study_goes_on_from_its_finished_runs(done):
+    folder, _ = done
+    before = rows_of(folder)
+    kept = folder / "out" / "run-02" / "result.json"
+    kept.unlink()
+    again = study(folder, ranks=2)
+    assert again.returncode == 0, again.stderr
+    assert again.stdout.count("done before") == 2
+    after = rows_of(folder)
+    assert [r["error_l2"] for r in after] == [r["error_l2"] for r in before]
+    assert after[0]["seconds"] == before[0]["seconds"] and kept.exists()
+    one = study(folder)  # another number of ranks is another timing
+    assert "done before" not in one.stdout
+
+
+def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
+    vary = '"time.step" = [1e-3, 0.05], "space.spacing" = [0.05, 0.025, 0.0124]'
+    text = WAVE.replace('"space.spacing" = [0.05, 0.025, 0.0125]', vary)
+    job = study(tmp_path, "--set", "time.end=2.0", text=text)
+    assert job.returncode == 0, job.stderr
+    status = {(r["space.spacing"], r["time.step"]): r["status"] for r in rows_of(tmp_path)}
+    assert status["0.05", ""] == status["0.025", ""] == status["0.025", "0.001"] == "done"
+    assert "blew up at step" in status["0.025", "0.05"]
+    assert status["0.0124", ""].startswith("refused: ") and "whole number" in status["0.0124", ""]
+    assert "2 of 5 runs did not end well" in job.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--vary", "space.spacing=0.1"], "a ladder of one value"),
+        (["--vary", "space.spacin=0.1,0.2"], "spacin"),
+        (["--set", "study.error=heat"], "study.error: heat is not measured; give one of velocity"),
+        (["--set", "study.against=theory"], "study.against: theory does not know velocity"),
+        (["--set", "exact.sound_wave.length=0.7"], "exact.sound_wave: repeats every 0.7 m"),
+        (["--error", "-1"], "study --error -1: give a number above zero"),
+        (["--set", "exact=off", "--set", "fluids.air.velocity=[1.0]", "--set",
+          "fluids.air.pressure=0.0", "--vary", "time.cfl=0.1,0.2"], "no reference"),
+    ],
+)
+def test_what_makes_no_sense_is_said_before_any_run(tmp_path, options, says):
+    job = study(tmp_path, *options)
+    assert job.returncode == 2 and says in job.stderr, job.stderr
+    assert not (tmp_path / "out").exists() and "Traceback" not in job.stderr
+
+
+def test_effects_are_left_out_one_by_one(tmp_path):
+    text = WAVE.replace("[fluids.air]", "artificial_viscosity = 0.05\n[fluids.air]").replace(
+        "density = 1.0", "density = 1.0\nviscosity = 1e-9"
+    )
+    job = study(tmp_path, "--effects", text=text)
+    assert job.returncode == 0, job.stderr
+    assert [r["status"] for r in rows_of(tmp_path)] == ["done"] * 3
+    assert "laminar viscosity: nothing that this case asks for feels it" in job.stdout
+    assert "artificial viscosity: nothing" not in job.stdout  # it damps the wave
+    case = load(tmp_path / "wave.toml")
+    assert set(without_each(case)) == {"laminar viscosity", "artificial viscosity"}
+
+
+def test_words_of_an_effect_that_a_case_needs():
+    base = {"status": "done", "seconds": 2.0, "mean P": 10.0, "error_l2": math.nan}
+    rows = [base, {"status": "it blew up"}, base | {"seconds": 1.0, "mean P": 9.0}]
+    lines = list(effects_words({"gravity": {}, "friction": {}}, rows))
+    assert lines[0] == "gravity: the case needs it; without, it blew up."
+    assert lines[1] == "friction: 50 % of the time; it changes P by 10 %."
+    assert list(effects_words({}, [{"status": "it blew up"}]))[0].endswith("its end: it blew up.")
+
+
+def test_the_front_holds_what_nothing_beats():
+    made = [{"seconds": s, "error_l2": e} for s, e in ((1, 0.5), (2, 0.6), (3, 0.1), (4, math.nan))]
+    assert pareto(made) == [made[0], made[2]]
+
+
+def test_a_table_from_an_experiment_is_a_reference(tmp_path):
+    (tmp_path / "curve.csv").write_text("# source\nT,Z\n0.0,2.0\n2.0,4.0\n")
+    text = """
+[experiments.gauge]
+file = "curve.csv"
+time = "T"
+value = "Z"
+probe = "P.pressure"
+time_unit = 0.05
+value_unit = 10.0
+"""
+    (tmp_path / "wave.toml").write_text(WAVE + text)
+    judge = Judge(load(tmp_path / "wave.toml", ["study.error=P.pressure", "study.against=gauge"]))
+    time, value = judge.measured
+    assert time.tolist() == [0.0, 0.1] and value.tolist() == [20.0, 40.0]
+    for change, says in (
+        ("experiments.gauge.file=none.csv", "No such file"),
+        ("experiments.gauge.time=Time", "has no column 'Time'; give one of T, Z"),
+    ):
+        with pytest.raises(StudyError, match=says):
+            Judge(load(tmp_path / "wave.toml", ["study.error=P.pressure", "study.against=gauge", change]))
+
+
+def test_norms_and_interpolation_by_hand():
+    import numpy as np
+
+    found = series_errors(np.array([1.0, 2.0]), np.array([2.0, 2.0]))
+    assert found == pytest.approx((0.25, math.sqrt(1 / 8), 0.5))
+    grid = (np.indices((20, 20)).reshape(2, -1).T + 0.5) * 0.1
+    at = np.array([[0.83, 1.21], [1.5, 0.5]])
+    linear = interpolated(grid, grid @ [2.0, 1.0], at, 0.1)
+    assert linear == pytest.approx(at @ [2.0, 1.0], rel=0.02)
+    assert interpolated(grid, grid, np.array([[9.0, 9.0]]), 0.1) == pytest.approx(grid[-1:])
+
+
+def test_the_finest_run_judges_where_nothing_else_does(tmp_path):
+    text = WAVE.replace('"exact"', "0.0").replace("velocity = 0.0", "velocity = [0.5]")
+    text = text[: text.index("[exact")] + text[text.index("[probes") :] + 'error = "velocity"\n'
+    job = study(tmp_path, text=text)
+    assert job.returncode == 0, job.stderr
+    errors = [r["error_l2"] for r in rows_of(tmp_path)]
+    assert errors[2] == "nan" and float(errors[0]) < 1e-12  # a uniform flow stays one
+    case = load(tmp_path / "wave.toml")
+    assert Judge(case).in_words == "velocity at the end against the finest run"
+    assert alone().size == 1 and json.loads((tmp_path / "out" / "study.json").read_text())["ranks"] == 1
