@@ -13,7 +13,7 @@ from psph.solver.pairs import TINY, sum_over_neighbours
 from psph.solver.plan import Plan
 from psph.threads import in_threads
 
-TOO_FAST = 1000.0
+TOO_FAST = 100.0
 """A particle at this many speeds of sound is a run that blew up."""
 
 
