@@ -10,6 +10,7 @@ from numpy.random import Generator, Philox
 from psph.bench.tank import GRAVITY, HEIGHT, Tank
 from psph.case import Case
 from psph.output.ledger import Ledger
+from psph.output.interpolation import interpolated
 from psph.particles.fields import FLUID, WALL
 from psph.particles.store import Store
 from psph.scene import Scene
@@ -64,14 +65,16 @@ class Falling(NamedTuple):
         shares = len(water.id) * np.arange(comm.size + 1) // comm.size
         mine = water.rows(shares[comm.rank], shares[comm.rank + 1])
         children = self._split(mine, int(shares[comm.rank]), int(scene.counts().sum()))
+        children.velocity[:] = interpolated(  # else a list would wear at once where parents meet
+            water.position, water.velocity, children.position, self.coarse.spacing
+        )
         both = zip(vars(children).values(), vars(walls).values())
         return store_of(scene, plan, ParticleSet(*map(np.concatenate, both)))
 
     def _split(self, parents: ParticleSet, first: int, first_id: int) -> ParticleSet:
         """The children of some parents, the ``first``-th on, numbered from ``first_id``.
 
-        On a lattice of the new spacing around the parent, and shaken; with the parent's velocity
-        and density.  Near a wall the lattice is squeezed so that no child comes to lie in it.
+        On a lattice of the new spacing around the parent, and shaken; with the parent's density.  Near a wall the lattice is squeezed so that no child comes to lie in it.
         """
         dimensions, times = self.coarse.dimensions, self.times
         along = (np.arange(times) + 0.5) / times - 0.5

@@ -11,10 +11,11 @@ from drafts import draft
 from jobs import clean_environment, mpirun
 
 from psph.case import load
+from psph.output.interpolation import interpolated
 from psph.parallel.reductions import alone
 from psph.study.effects import effects_words, without_each
 from psph.study.errors import StudyError
-from psph.study.judge import Judge, interpolated, series_errors
+from psph.study.judge import Judge, series_errors
 from psph.study.study import foretold, pareto
 
 WAVE = """

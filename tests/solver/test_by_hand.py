@@ -1,0 +1,128 @@
+"""The loop that is composed from effects against the same sums written out by hand."""
+
+import re
+
+import numba
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from psph.bench.box import Box
+from psph.jit import FAST
+from psph.output.ledger import Ledger
+from psph.physics.viscosity import ArtificialViscosity
+from psph.scene import Scene
+from psph.simd import spread, total, turning
+from psph.solver import pairs
+from psph.solver.plan import make_plan
+from psph.solver.step import Simulation
+
+LANES = 4
+READ = 8
+"""Numbers of a neighbour: position, velocity, pressure, 1/ρ."""
+
+turn = turning(READ)
+
+
+def by_hand(
+    first, last, records, low, begin, blocks, lists, x, y, z, u, v, w, pressure, volume, m, h, c,
+    alpha, beta, inverse_h, kernel_alpha, tiny, ax, ay, az, rate,
+):
+    """Continuity, symmetric pressure and artificial viscosity with Wendland's C2 in an open box."""
+    front, half = -5.0 * kernel_alpha * inverse_h * inverse_h * m, 0.5 * inverse_h
+    eta, ac, bh = 0.01 * h * h, alpha * c, beta * h
+    for k in range(np.uint64(first), np.uint64(last)):
+        row = k - np.uint64(low)
+        x_i, y_i, z_i, u_i, v_i, w_i, p_i, q_i = (
+            x[k], y[k], z[k], u[k], v[k], w[k], pressure[k], volume[k]
+        )
+        own = p_i * q_i * q_i
+        sx, sy, sz = spread(0.0, records), spread(0.0, records), spread(0.0, records)
+        sr = spread(0.0, records)
+        end = begin[row] + np.uint64(blocks[row]) * np.uint64(LANES)
+        for n in range(begin[row], end, np.uint64(LANES)):
+            j = turn(records, lists, n)
+            dx, dy, dz = x_i - j[0], y_i - j[1], z_i - j[2]
+            du, dv, dw = u_i - j[3], v_i - j[4], w_i - j[5]
+            p_j, q_j = j[6], j[7]
+            r2 = dx * dx + dy * dy + dz * dz + tiny
+            approach = du * dx + dv * dy + dw * dz
+            a = max(1.0 - np.sqrt(r2) * half, 0.0)
+            g = front * (a * a * a)
+            mu = min(approach, 0.0) / ((r2 + eta) * (q_i + q_j))
+            friction = 2.0 * h * q_i * (q_j * mu) * (ac - bh * ((q_i + q_j) * mu))
+            f = g * (friction - (own + p_j * q_j * q_j))
+            sx, sy, sz = sx + f * dx, sy + f * dy, sz + f * dz
+            sr = sr + g * approach
+        ax[k], ay[k], az[k], rate[k] = total(sx), total(sy), total(sz), total(sr)
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    """A shifted 3D box in motion, its axes open as far as pairs are concerned."""
+    scene = Scene(Box.nearest(3, 57, 3000).case().model_copy(update={"precision": "double"}))
+    open_box = scene.case.model_copy(
+        update={"space": scene.case.space.model_copy(update={"periodic": ()})}
+    )
+    scene = Scene(open_box)
+    plan = make_plan(scene)
+    simulation = Simulation(
+        scene, plan, Box.nearest(3, 57, 3000).create(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
+    )
+    for component in simulation.store["predicted_velocity"]:
+        component[simulation.store.inner] = np.random.default_rng(1).uniform(
+            -1.0, 1.0, simulation.store.owned
+        )
+    simulation.records.fill_all()
+    return simulation
+
+
+def call_by_hand(s: Simulation) -> tuple:
+    """What ``by_hand`` takes; its last four arrays are filled."""
+    store, lists, kernel = s.store, s.domain.lists, s.plan.kernel
+    [friction] = [e for e in s.plan.effects if isinstance(e, ArtificialViscosity)]
+    c = store.constants
+    return (
+        store.low, store.low + store.owned, s.records.table, store.low, lists.begin, lists.blocks,
+        lists.lists, *store["position"], *store["predicted_velocity"], store["pressure"],
+        store["specific_volume"], c["mass"], c["smoothing_length"], c["sound_speed"],
+        friction.alpha, friction.beta, kernel.inverse_h, kernel.alpha, s.tiny,
+        *(np.zeros_like(store["pressure"]) for _ in range(4)),
+    )
+
+
+def in_the_loop(code: str) -> int:
+    """Instructions of the innermost loop with a root in it."""
+    lines = [line.strip() for line in code.splitlines()]
+    labels = {line[:-1]: n for n, line in enumerate(lines) if re.fullmatch(r"\.?L\w+:", line)}
+    loops = []
+    for n, line in enumerate(lines):
+        jump = re.fullmatch(r"j\w+\s+(\.?L\w+)", line)
+        if jump and labels.get(jump[1], n) < n:
+            body = lines[labels[jump[1]] : n + 1]
+            if any("sqrt" in one for one in body):
+                loops.append(sum(bool(re.match(r"[a-z]", one)) for one in body))
+    return min(loops)
+
+
+def test_composed_is_as_lean_as_by_hand_and_gives_the_same(simulation):
+    options = {"fastmath": FAST, "error_model": "numpy"}
+    hand, composed = numba.njit(**options)(by_hand), numba.njit(**options)(
+        pairs.sum_over_neighbours.py_func
+    )
+    calls = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("psph.solver.step.in_threads", lambda f, *call: calls.append((f, call)))
+        simulation._sum(simulation.store.low, simulation.store.low + simulation.store.owned)
+    [(_, call)] = calls
+    hand_call = call_by_hand(simulation)
+    hand(*hand_call)
+    composed(*call)
+    inner = simulation.store.inner
+    theirs = (*simulation.store["acceleration"], simulation.store["density_rate"])
+    for ours, other in zip(hand_call[-4:], theirs):
+        assert np.abs(other[inner]).max() > 0.0
+        assert np.abs(ours - other)[inner].max() < 1e-12 * np.abs(other[inner]).max()
+    [hand_code], [composed_code] = hand.inspect_asm().values(), composed.inspect_asm().values()
+    lean, made = in_the_loop(hand_code), in_the_loop(composed_code)
+    assert 60 < lean < 120 and made <= 1.05 * lean, (made, lean)
