@@ -9,6 +9,7 @@ from psph.particles.fields import FIELDS
 from psph.particles.records import record_width
 from psph.particles.store import SPARE
 from psph.physics.count import flops_per_pair
+from psph.solver.hints import hints
 from psph.solver.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY = 8, 9, 12, 24, 4
@@ -25,6 +26,8 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from _rank_lines(scene, plan, particles, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
+    for line in hints(scene, plan):
+        yield f"Hint: {line}"
 
 
 def slab_planes(scene) -> int:
