@@ -57,4 +57,7 @@ class Study(Table):
         otherwise="the first of these that the case has",
     )
     after: float = key("probes are compared from this time on", 0.0, unit="s", ge=0)
+    until: float | None = key(
+        "probes are compared up to this time", None, unit="s", otherwise="the end", gt=0
+    )
     repeats: int = key("a short run is timed so many times", 3, ge=1)

@@ -61,19 +61,10 @@ class Judge:
             return self._fields(run, finest)
         table = run.probes()
         time, values = table["time"], table[self.what]
-        late = time >= self.case.study.after
         theirs, of_theirs = self._curve(run, finest)
-        if of_theirs is None:  # known at any time
-            return series_errors(values[late], theirs(time[late]))
-        shared = of_theirs[(of_theirs >= max(self.case.study.after, time[0])) & (of_theirs <= time[-1])]
-        return series_errors(np.interp(shared, time, values), theirs(shared))
-
-    def reference_value(self, run: Run) -> float:
-        """What the column's mean should be; NaN for a field."""
-        if self.what in AT_THE_END or self.against == FINEST:
-            return math.nan
-        time = run.probes()["time"]
-        return float(np.mean(self._curve(run, run.folder)[0](time[time >= self.case.study.after])))
+        at = time if of_theirs is None else of_theirs  # None: known at any time
+        at = at[window(self.case.study, at) & (at >= time[0]) & (at <= time[-1])]
+        return series_errors(np.interp(at, time, values), theirs(at))
 
     def _fields(self, run: Run, finest: Path) -> Judgement:
         if self.against == EXACT:
@@ -193,6 +184,12 @@ def read_experiment(case, name: str) -> tuple[np.ndarray, np.ndarray]:
         raise StudyError(f"{where}: {path} holds no rows; give a CSV file with a line of names")
     time, value = np.array(table).T
     return time * experiment.time_unit, value * experiment.value_unit
+
+
+def window(study, time: np.ndarray) -> np.ndarray:
+    """True at the times at which probes are compared."""
+    until = math.inf if study.until is None else study.until
+    return (time >= study.after) & (time <= until)
 
 
 def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:

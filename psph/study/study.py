@@ -10,7 +10,7 @@ from psph.output.reader import Run as Folder
 from psph.scene import Scene, check
 from psph.study import fit, report, words
 from psph.study.errors import StudyError
-from psph.study.judge import FINEST, Judge, Judgement
+from psph.study.judge import FINEST, Judge, Judgement, window
 from psph.study.ladder import SPACING, Settings, groups, name_of
 from psph.study.picture import draw
 from psph.study.runs import DONE, cases, perform
@@ -90,7 +90,7 @@ class Study:
             folder = self.folder / f"run-{k + 1:02d}"
             if result["status"] == DONE:
                 errors = self.judge.errors(folder, finest)
-                more = vitals(Folder(folder), self.case.study.after)
+                more = vitals(Folder(folder), self.case.study)
             else:
                 errors, more = Judgement(math.nan, math.nan, math.nan), {}
             figures = {name: x for name, x in result.items() if not isinstance(x, dict)}
@@ -207,14 +207,14 @@ MEAN, SPREAD = "mean ", "spread "
 """Columns of a row: a probe's mean and standard deviation over time."""
 
 
-def vitals(run: Folder, after: float) -> dict[str, float]:
+def vitals(run: Folder, study) -> dict[str, float]:
     """Means and spreads of the probes, drift of energy and momentum, largest density error."""
     found: dict[str, float] = {}
     table = run.probes()
     for name, values in table.items():
         if name != "time":
-            late = values[table["time"] >= after]
-            found[MEAN + name], found[SPREAD + name] = float(late.mean()), float(late.std())
+            told = values[window(study, table["time"])]
+            found[MEAN + name], found[SPREAD + name] = float(told.mean()), float(told.std())
     log = run.log()
     energy = log["kinetic_energy"] + log["potential_energy"]
     momentum = [values for name, values in log.items() if name.startswith("momentum")]

@@ -43,7 +43,7 @@ def test_same_bits_on_any_number_of_ranks(case, tmp_path):
         assert other.keys() == last.keys()
         for name in last:
             assert np.array_equal(other[name], last[name]), f"{name} on {n} ranks"
-        for table in ("log.csv", "probes.csv"):
+        for table in ("log.csv", "probes.csv", "errors.csv"):
             path = results[1].folder / table
             if path.exists():
                 assert path.read_text() == (results[n].folder / table).read_text()
