@@ -17,6 +17,12 @@ BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
 PHASES = ("pairs", "rebuild", "halo", "limits")
 """Phases with a column of their own; the rest goes together."""
 
+LIKE = 0.1
+"""Numbers of particles that differ by less than this part count as the same."""
+
+KIND = ("problem", "dimensions", "neighbours_in_bulk", "precision", "threads")
+"""What two runs share that differ only in particles and ranks."""
+
 
 def renew(page: Path, files: Iterable[Path]) -> None:
     """Put the tables of these results into the page.  BenchError: a file is of another kind."""
@@ -53,6 +59,33 @@ def _tables(runs: list[dict]) -> Iterator[str]:
              "multiply-adds", "copy"),
             map(_shares, here),
         )
+        if scaled := list(_scaled(here)):
+            yield ""
+            yield "More ranks against one: the same particles, or as many to a rank (weak)."
+            yield ""
+            yield from _table(
+                ("problem", "in the bulk", "precision", "particles on 1 rank", "particles", "ranks",
+                 "times the pace", "efficiency", "spread", "halo and waiting"),
+                scaled,
+            )
+
+
+def _scaled(runs: list[dict]) -> Iterator[tuple[str, ...]]:
+    """Each run on several ranks beside those on one that it can be measured by."""
+    for many in (run for run in runs if run["ranks"] > 1):
+        for one in (run for run in runs if run["ranks"] == 1):
+            size = many["particles"] / one["particles"]
+            alike = all(one[key] == many[key] for key in KIND)
+            if alike and any(abs(size / n - 1.0) < LIKE for n in (1, many["ranks"])):
+                pace = many["particle_steps_per_second"] / one["particle_steps_per_second"]
+                between = many["share"].get("halo", 0.0) + many["share"].get("limits", 0.0)
+                yield (
+                    f"{PROBLEMS[many['problem']]}, {many['dimensions']}D",
+                    str(many["neighbours_in_bulk"]), many["precision"],
+                    f"{one['particles']:,}", f"{many['particles']:,}", str(many["ranks"]),
+                    f"{pace:.2f}", _percent(pace / many["ranks"]),
+                    _percent(max(one["spread"], many["spread"])), _percent(between),
+                )
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:

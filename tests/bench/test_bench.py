@@ -178,6 +178,21 @@ def test_tables_stand_between_the_markers(result, tmp_path):
     assert tables == [11] * 4 + [12] * 4
 
 
+def test_ranks_stand_beside_one_rank(result, tmp_path):
+    page, file = tmp_path / "page.md", tmp_path / "runs.json"
+    page.write_text(f"{BEGIN}\n{END}\n")
+    pace, n = result["particle_steps_per_second"], result["particles"]
+    twice = result | {"ranks": 2, "particle_steps_per_second": 1.8 * pace}
+    weak = twice | {"particles": 2 * n, "particle_steps_per_second": 1.9 * pace}
+    other = twice | {"precision": "mixed"}
+    file.write_text(json.dumps({"runs": [result, twice, weak, other]}))
+    renew(page, [file])
+    rows = [line.split(" | ") for line in page.read_text().partition("(weak)")[2].splitlines()[4:]]
+    assert [row[3:8] for row in rows if len(row) > 7] == [
+        [f"{n:,}", f"{n:,}", "2", "1.80", "90 %"], [f"{n:,}", f"{2 * n:,}", "2", "1.90", "95 %"],
+    ]
+
+
 def test_a_page_without_markers(result, tmp_path):
     page, file = tmp_path / "page.md", tmp_path / "runs.json"
     page.write_text("nothing")
