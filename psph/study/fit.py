@@ -55,6 +55,11 @@ class Ladder:
         """The observed order p of the error C dx^p, over all runs, and its uncertainty."""
         return _slope(self._log_dx, self._log_error)
 
+    @property
+    def steady(self) -> bool:
+        """Whether each finer run has the smaller error: only then there is a law to go by."""
+        return bool(np.all(np.diff(self._log_error) < 0.0))
+
     def error(self, spacing: float) -> Estimate:
         """The error to expect at a spacing in m."""
         x, where = math.log(spacing), self._log_dx[::-1]

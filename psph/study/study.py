@@ -113,7 +113,8 @@ class Study:
         """Write the files and yield what to tell, the sentences ``told`` among it; rank 0 alone."""
         keys = self.keys
         ladders = list(self.ladders(found))
-        answer = list(_answer(ladders, error, seconds)) if error or seconds else []
+        periods = [length for length in Scene(self.case).periods if length is not None]
+        answer = list(_answer(ladders, periods, error, seconds)) if error or seconds else []
         title = f"{self.case.title or self.case.name}: what accuracy costs"
         page = [f"# {title}", "", f"Error: {self.judge.in_words}.", "",
                 *report.markdown(found, keys), "", *(f"- {line}" for line in told), ""]
@@ -250,17 +251,19 @@ def pareto(found: list[dict]) -> list[dict]:
     return front
 
 
-def _answer(ladders, error: float | None, seconds: float | None) -> Iterator[str]:
+def _answer(
+    ladders, periods: list[float], error: float | None, seconds: float | None
+) -> Iterator[str]:
     """Which settings reach an error, or what so many seconds buy."""
-    fits = [(shared, ladder) for shared, _, ladder in ladders if ladder]
+    fits = [(shared, ladder) for shared, _, ladder in ladders if ladder and ladder.steady]
     if not fits:
-        yield "no answer: it takes two runs with an error that differ in the spacing alone."
+        yield "no answer: it takes two runs that differ in the spacing alone, the finer the better."
         return
     found = []
     for shared, ladder in fits:
         dx = ladder.spacing_for_error(error) if error else ladder.spacing_for_seconds(seconds)
         if not math.isnan(dx):
-            dx = float(f"{dx:.3g}")
+            dx = fitting(dx, periods)
             found.append(({SPACING: dx, **shared}, ladder.error(dx), ladder.seconds(dx)))
     if not found:
         asked = report.percent(error) if error else report.seconds(seconds)
@@ -270,6 +273,20 @@ def _answer(ladders, error: float | None, seconds: float | None) -> Iterator[str
     asked = f"an error of {report.percent(error)}" if error else f"{report.seconds(seconds)}"
     yield f"For {asked}, " + next(lines := words.advice(*best))
     yield from lines
+
+
+TRIES = 1000
+"""Spacings that are looked at for one that divides all periods."""
+
+
+def fitting(spacing: float, periods: list[float]) -> float:
+    """A spacing in m at most so large that all periods are whole multiples of it; else rounded."""
+    rounded = float(f"{spacing:.3g}")
+    for n in range(TRIES) if periods else ():
+        least = periods[0] / (math.ceil(periods[0] / spacing - 1e-9) + n)
+        if all(abs(p / least - round(p / least)) < 1e-9 * p / least for p in periods):
+            return least
+    return rounded
 
 
 def foretold(folder: Path, case) -> Iterator[str]:
@@ -285,9 +302,10 @@ def foretold(folder: Path, case) -> Iterator[str]:
             f"{folder}: holds no study ({error}); give the folder that `study` wrote to"
         ) from None
     fits = [ladder for shared, _, ladder in ladders_of(found, keys, dimensions) if ladder and not shared]
-    if not fits:
+    if not fits or not fits[0].steady:
         raise StudyError(
-            f"{folder}: its study has no ladder of spacings; vary space.spacing over two values"
+            f"{folder}: its study has no ladder of spacings on which the error falls steadily; "
+            "vary space.spacing over two values or more"
         )
     [ladder] = fits
     error, time = ladder.error(case.space.spacing), ladder.seconds(case.space.spacing)

@@ -21,17 +21,22 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
         f"{beginning}{percent(finest.error)} costs {seconds(finest.seconds)} "
         f"(spacing {finest.spacing:g} m)."
     )
+    if not ladder.steady:
+        best = min(ladder.runs, key=lambda run: run.error)
+        yield (
+            f"{beginning}the error does not fall steadily: at {best.spacing:g} m it is smallest, "
+            f"{percent(best.error)}. Something else than the spacing sets it, and nothing is foretold."
+        )
+        return
     order = ladder.order
     yield f"{beginning}the error falls with order {order.value:.2f}{within(order, '.2f')}."
     spacing = ladder.spacing_for_error(HALF * finest.error)
-    if order.value > 0.0 and not math.isnan(spacing):
+    if not math.isnan(spacing):
         longer = ladder.seconds(spacing).value / ladder.seconds(finest.spacing).value
         yield (
             f"{beginning}half that error is to be expected at a spacing of {spacing:.3g} m and "
             f"costs {longer:.1f} times as long."
         )
-    elif order.value <= 0.0:
-        yield f"{beginning}a finer spacing does not help: something else sets the error."
 
 
 def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
@@ -43,7 +48,7 @@ def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
     same = f"{what} takes {time:.2f} times as long and has {error:.2f} times the error"
     if abs(error - 1.0) < SAME:
         same = f"{what} takes {time:.2f} times as long and leaves the error as it is"
-    if ladder is None or not ladder.order.value > 0.0 or not error > 0.0:
+    if ladder is None or not ladder.steady or not error > 0.0:
         return f"{same}."
     spacing = base[SPACING] * (1.0 / error) ** (1.0 / ladder.order.value)
     scaled = time * ladder.seconds(spacing).value / ladder.seconds(base[SPACING]).value
@@ -79,8 +84,9 @@ def advice(settings: dict, error: Estimate, time: Estimate) -> Iterator[str]:
     for key, value in settings.items():
         table, _, name = key.rpartition(".")
         tables.setdefault(table, []).append(f"{name} = {_written(value)}")
+    yield from tables.pop("", ())  # TOML wants them before any table
     for table, lines in tables.items():
-        yield f"[{table}]" if table else ""
+        yield f"[{table}]"
         yield from lines
 
 

@@ -50,6 +50,7 @@ def test_two_runs_give_a_value_without_an_interval():
 def test_an_error_that_levels_off_has_no_spacing_to_halve_it():
     runs = [run(0.04, 0.0), run(0.02, 0.0), run(0.01, 0.0)]
     assert math.isnan(Ladder(runs, 2).spacing_for_error(1e-3))
+    assert not Ladder(runs, 2).steady and Ladder([run(0.04), run(0.02)], 2).steady
 
 
 def test_richardson_finds_limit_and_order():

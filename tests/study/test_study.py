@@ -16,7 +16,7 @@ from psph.parallel.reductions import alone
 from psph.study.effects import effects_words, without_each
 from psph.study.errors import StudyError
 from psph.study.judge import Judge, series_errors
-from psph.study.study import foretold, pareto
+from psph.study.study import fitting, foretold, pareto
 
 WAVE = """
 [space]
@@ -110,6 +110,15 @@ def test_an_error_is_answered_with_settings_to_paste(done, tmp_path):
     errors = {float(r["space.spacing"]): float(r["error_l2"]) for r in rows_of(folder)}
     slope = math.log(errors[0.05] / errors[0.0125]) / math.log(4.0)
     assert spacing == pytest.approx(0.0125 * (0.002 / errors[0.0125]) ** (1 / slope), rel=0.05)
+    assert load(folder / "wave.toml", [f"space.spacing={spacing!r}"]).space.spacing == spacing
+    assert round(1.0 / spacing) == pytest.approx(1.0 / spacing)  # the period is a multiple of it
+
+
+def test_a_spacing_that_fits_all_periods():
+    assert fitting(0.123, []) == 0.123
+    assert fitting(0.123, [1.0]) == 1.0 / 9 and fitting(0.5, [1.0]) == 0.5
+    assert fitting(0.3, [1.0, 0.6]) == 0.2
+    assert fitting(0.3, [1.0, 2**0.5]) == 0.3  # nothing fits: check will say so
 
 
 def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
