@@ -11,8 +11,8 @@ from pathlib import Path
 from psph.bench import PROBLEMS
 from psph.bench.errors import BenchError
 from psph.bench.results import read_runs
-
-BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
+from psph.output.errors import OutputError
+from psph.output.pages import renew
 
 PHASES = ("pairs", "rebuild", "halo", "limits")
 """Phases with a column of their own; the rest goes together."""
@@ -24,19 +24,9 @@ KIND = ("problem", "dimensions", "neighbours_in_bulk", "precision", "threads")
 """What two runs share that differ only in particles and ranks."""
 
 
-def renew(page: Path, files: Iterable[Path]) -> None:
-    """Put the tables of these results into the page.  BenchError: a file is of another kind."""
-    runs = [run for file in files for run in read_runs(file)]
-    try:
-        text = page.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BenchError(f"{page}: {error.strerror}; give a page with the two markers") from None
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise BenchError(f"{page}: no place for the tables; add the lines {BEGIN} and {END}")
-    tables = "\n".join(_tables(runs))
-    page.write_text(f"{before}{BEGIN}\n{tables}\n{END}{after}", encoding="utf-8")
+def tables(files: Iterable[Path]) -> str:
+    """The tables of these results.  BenchError: a file is of another kind."""
+    return "\n".join(_tables([run for file in files for run in read_runs(file)]))
 
 
 def _tables(runs: list[dict]) -> Iterator[str]:
@@ -147,8 +137,8 @@ def main(arguments: list[str]) -> int:
         return 2
     page, *files = map(Path, arguments)
     try:
-        renew(page, files)
-    except BenchError as error:
+        renew(page, tables(files))
+    except (BenchError, OutputError) as error:
         print(error, file=sys.stderr)
         return 2
     return 0

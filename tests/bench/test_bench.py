@@ -12,8 +12,10 @@ from psph.bench.command import bench
 from psph.bench.compare import compared
 from psph.bench.errors import BenchError, PeerFailed
 from psph.bench.measure import Asked
-from psph.bench.report import BEGIN, END, renew
+from psph.bench.report import tables
 from psph.bench.results import KEYS, read_runs
+from psph.output.errors import OutputError
+from psph.output.pages import BEGIN, END, renew
 from psph.parallel.reductions import alone
 
 PHASES = {"pairs", "kick", "kick, drift, predict", "limits", "halo"}
@@ -167,15 +169,15 @@ def test_tables_stand_between_the_markers(result, tmp_path):
     peer = {"particle_steps_per_second": 1e6, "spread": 0.1, "ratio": 1.75, "ratio_spread": 0.02}
     file.write_text(json.dumps({"runs": [result, result | {"peer": peer}]}))
     for _ in range(2):
-        renew(page, [file])
+        renew(page, tables([file]))
     text = page.read_text()
     assert text.startswith(f"# Before\n{BEGIN}\n") and text.endswith(f"{END}\n# After\n")
     assert "old" not in text and text.count(BEGIN) == 1
     pace = f"{result['particle_steps_per_second'] / 1e6:.2f}"
     [plain, beside] = [line for line in text.splitlines() if f"| {pace} |" in line]
     assert "| – | – |" in plain and "| 1.00 (spread 10 %) | 1.75 (spread 2 %) |" in beside
-    tables = [line.count("|") for line in text.splitlines() if line.startswith("|")]
-    assert tables == [11] * 4 + [12] * 4
+    columns = [line.count("|") for line in text.splitlines() if line.startswith("|")]
+    assert columns == [11] * 4 + [12] * 4
 
 
 def test_ranks_stand_beside_one_rank(result, tmp_path):
@@ -186,7 +188,7 @@ def test_ranks_stand_beside_one_rank(result, tmp_path):
     weak = twice | {"particles": 2 * n, "particle_steps_per_second": 1.9 * pace}
     other = twice | {"precision": "mixed"}
     file.write_text(json.dumps({"runs": [result, twice, weak, other]}))
-    renew(page, [file])
+    renew(page, tables([file]))
     rows = [line.split(" | ") for line in page.read_text().partition("(weak)")[2].splitlines()[4:]]
     assert [row[3:8] for row in rows if len(row) > 7] == [
         [f"{n:,}", f"{n:,}", "2", "1.80", "90 %"], [f"{n:,}", f"{2 * n:,}", "2", "1.90", "95 %"],
@@ -197,6 +199,6 @@ def test_a_page_without_markers(result, tmp_path):
     page, file = tmp_path / "page.md", tmp_path / "runs.json"
     page.write_text("nothing")
     file.write_text(json.dumps(result))
-    with pytest.raises(BenchError, match="page.md: no place for the tables; add the lines"):
-        renew(page, [file])
+    with pytest.raises(OutputError, match="page.md: no place for what was measured; add the"):
+        renew(page, tables([file]))
     assert page.read_text() == "nothing"

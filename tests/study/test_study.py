@@ -12,10 +12,12 @@ from jobs import clean_environment, mpirun
 
 from psph.case import load
 from psph.output.interpolation import interpolated
+from psph.output.pages import BEGIN, END
 from psph.parallel.reductions import alone
 from psph.study.effects import effects_words, without_each
 from psph.study.errors import StudyError
 from psph.study.judge import Judge, series_errors
+from psph.study.page import main as on_page
 from psph.study.study import fitting, foretold, pareto
 
 WAVE = """
@@ -258,3 +260,16 @@ def test_the_finest_run_judges_where_nothing_else_does(tmp_path):
     case = load(tmp_path / "wave.toml")
     assert Judge(case).in_words == "velocity at the end against the finest run"
     assert alone().size == 1 and json.loads((tmp_path / "out" / "study.json").read_text())["ranks"] == 1
+
+
+def test_a_study_comes_onto_a_page_with_its_picture(done, tmp_path):
+    folder, _ = done
+    (tmp_path / "images").mkdir()
+    page = tmp_path / "page.md"
+    page.write_text(f"# Before\n{BEGIN}\nold\n{END}\nafter\n")
+    assert on_page([str(page), str(folder / "out")]) == 0
+    text = page.read_text()
+    assert "## wave" in text and "old" not in text and text.endswith(f"{END}\nafter\n")
+    assert "| space.spacing |" in text and "costs" in text
+    assert "(images/accuracy_out.png)" in text and (tmp_path / "images/accuracy_out.png").exists()
+    assert on_page([str(page), str(tmp_path)]) == 2 and on_page([]) == 2
