@@ -10,7 +10,8 @@ from psph.smoothing import KERNELS, kernel, slope_over_r
 
 H = 0.7
 ALL = [(name, dim) for name in KERNELS for dim in (1, 2, 3)]
-SMOOTH = [name for name in KERNELS if name != "gaussian"]
+JOINTS = sorted({0.0, 1.0, 2.0, 3.0, *(math.sqrt(2.0) * k for k in (1, 2, 3))})
+"""r/h at which pieces of some spline join."""
 
 
 def sphere(dim, r):
@@ -22,9 +23,10 @@ def test_weighs_one(name, dim):
     k = kernel(name, H, dim)
     nodes, weights = np.polynomial.legendre.leggauss(40)
     total = 0.0
-    for s in range(3):  # piece by piece: the splines join at whole r/h
-        r = H * (s + 0.5 + 0.5 * nodes)
-        total += 0.5 * H * sum(w * k.w(x) * sphere(dim, x) for w, x in zip(weights, r))
+    for a, b in zip(JOINTS, JOINTS[1:]):  # piece by piece
+        r = H * (0.5 * (a + b) + 0.5 * (b - a) * nodes)
+        share = sum(w * k.w(x) * sphere(dim, x) for w, x in zip(weights, r))
+        total += 0.5 * (b - a) * H * share
     assert total == pytest.approx(1.0, abs=1e-12)
 
 
@@ -32,12 +34,12 @@ def test_weighs_one(name, dim):
 def test_slope_is_the_derivative(name, dim):
     k = kernel(name, H, dim)
     for r in np.linspace(0.01, k.support * H * 0.999, 57):
-        if min(abs(r / H - s) for s in (1, 2)) < 1e-3:
+        if min(abs(r / H - s) for s in JOINTS) < 1e-3:
             continue
         step = 1e-6
         slope = (k.w(r + step) - k.w(r - step)) / (2 * step)
         assert k.dw(r) == pytest.approx(slope, rel=1e-5, abs=1e-6 * k.w(0.0) / H)
-        assert k.dw(r) < 0.0
+        assert k.dw(r) < 0.0 or not getattr(k, "repels", True)
 
 
 @pytest.mark.parametrize("name, dim", ALL)
@@ -54,6 +56,17 @@ def test_is_zero_beyond_its_support_and_for_the_dummy(name, dim):
     k = kernel(name, H, dim)
     for r in (k.support * H * (1 + 1e-12), 5 * H, 1e30):
         assert abs(k.w(r)) <= 1e-30 and abs(k.dw(r)) <= 1e-20
+
+
+@pytest.mark.parametrize("dim", (1, 2, 3))
+def test_the_fourth_order_kernel_has_no_second_moment(dim):
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    for name, vanishes in (("fourth-order", True), ("quintic", False)):
+        k, moment = kernel(name, H, dim), 0.0
+        for a, b in zip(JOINTS, JOINTS[1:]):
+            r = H * (0.5 * (a + b) + 0.5 * (b - a) * nodes)
+            moment += 0.5 * (b - a) * H * (weights * r**2 * sphere(dim, r) * list(map(k.w, r))).sum()
+        assert (abs(moment) < 1e-12) == vanishes
 
 
 def bend(k, r, step=1e-5):

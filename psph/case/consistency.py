@@ -10,6 +10,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from psph.case.errors import advise
 from psph.case.study import EXACT
 from psph.case.tables import AXES, Table
+from psph.smoothing import KERNELS
 from psph.solutions.catalogue import SOLUTIONS, known
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ Finding = tuple[Location, Any, str]
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
-        _dimensions, _axes, _domain, _hydrostatic, _exact, _continued, _probed, _names, _single,
+        _dimensions, _axes, _domain, _hydrostatic, _exact, _attracting, _continued, _probed, _names, _single,
     )
     return [
         # The message goes in as a value: braces in it are not placeholders.
@@ -126,6 +127,15 @@ def _probed(case: Case) -> Iterator[Finding]:
     for name, probe in case.probes.items():
         if (probe.position is None) == (probe.front is None):
             yield ("probes", name), ..., "give either position or front"
+
+
+def _attracting(case: Case) -> Iterator[Finding]:
+    kernel, form = case.space.kernel, case.physics.pressure_gradient
+    if form == "minimum" and not getattr(KERNELS[kernel], "repels", True):
+        yield ("physics", "pressure_gradient"), form, (
+            f"takes the minimum over neighbours that repel, and pairs attract where the kernel "
+            f"{kernel} rises; take another kernel"
+        )
 
 
 def _continued(case: Case) -> Iterator[Finding]:
