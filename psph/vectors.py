@@ -1,7 +1,8 @@
-"""Small vectors as tuples of numbers, one source for 1D, 2D and 3D.
+"""Small vectors and symmetric matrices as tuples of numbers, one source for 1D, 2D and 3D.
 
 Every function works on plain tuples in Python and, by the length of the tuple's type, as
-straight-line code when compiled: no loop over the axes, no memory.
+straight-line code when compiled: no loop over the axes, no memory.  A symmetric matrix is its rows
+from the diagonal on: (xx), (xx, xy, yy), (xx, xy, xz, yy, yz, zz).
 """
 
 from numba.core import types
@@ -114,3 +115,73 @@ def _nearest_image(a, periods):
     if isinstance(periods[0], types.NoneType):
         return lambda a, periods: (a[0],) + nearest_image(a[1:], periods[1:])
     return lambda a, periods: (_wrapped(a[0], periods[0]),) + nearest_image(a[1:], periods[1:])
+
+
+def outer(a: Vector) -> Vector:
+    """The symmetric matrix a aᵀ."""
+    return scale(a, a[0]) + outer(a[1:]) if a else ()
+
+
+@overload(outer)
+def _outer(a):
+    if len(a) == 0:
+        return lambda a: ()
+    return lambda a: scale(a, a[0]) + outer(a[1:])
+
+
+def _by_dimension(one, two, three):
+    """A function of a matrix ``m`` and more, the last argument a vector that tells the dimension."""
+
+    def function(*args):
+        return (one, two, three)[len(args[-1]) - 1](*args)
+
+    @overload(function)
+    def typed(*args):
+        chosen = register_jitable((one, two, three)[len(args[-1]) - 1])
+        return lambda *args: chosen(*args)
+
+    return function
+
+
+times = _by_dimension(
+    lambda m, a: (m[0] * a[0],),
+    lambda m, a: (m[0] * a[0] + m[1] * a[1], m[1] * a[0] + m[2] * a[1]),
+    lambda m, a: (
+        m[0] * a[0] + m[1] * a[1] + m[2] * a[2],
+        m[1] * a[0] + m[3] * a[1] + m[4] * a[2],
+        m[2] * a[0] + m[4] * a[1] + m[5] * a[2],
+    ),
+)
+"""(m, a) → the vector m a."""
+
+adjugate = _by_dimension(
+    lambda m, a: (1.0,),
+    lambda m, a: (m[2], -m[1], m[0]),
+    lambda m, a: (
+        m[3] * m[5] - m[4] * m[4],
+        m[2] * m[4] - m[1] * m[5],
+        m[1] * m[4] - m[2] * m[3],
+        m[0] * m[5] - m[2] * m[2],
+        m[1] * m[2] - m[0] * m[4],
+        m[0] * m[3] - m[1] * m[1],
+    ),
+)
+"""(m, a) → the symmetric matrix that is det(m) m⁻¹; ``a`` is any vector of the dimension."""
+
+determinant = _by_dimension(
+    lambda m, a: m[0],
+    lambda m, a: m[0] * m[2] - m[1] * m[1],
+    lambda m, a: (
+        m[0] * (m[3] * m[5] - m[4] * m[4])
+        + m[1] * (m[2] * m[4] - m[1] * m[5])
+        + m[2] * (m[1] * m[4] - m[2] * m[3])
+    ),
+)
+"""(m, a) → det(m); ``a`` is any vector of the dimension."""
+
+less_diagonal = _by_dimension(
+    lambda m, s, a: (m[0] - s,),
+    lambda m, s, a: (m[0] - s, m[1], m[2] - s),
+    lambda m, s, a: (m[0] - s, m[1], m[2], m[3] - s, m[4], m[5] - s),
+)
+"""(m, s, a) → m − s on the diagonal; ``a`` is any vector of the dimension."""

@@ -35,7 +35,7 @@ PAGES = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").g
 CHEAP = {"check", "explain", "schema"}
 PROGRAMS = {"source", "export", "pip"}
 """Commands that are taken as they stand."""
-NOT_THERE = ("psph/physics/diffusion.py", "psph/physics/floor.py", "psph/output/front.py",
+NOT_THERE = ("psph/physics/cohesion.py", "psph/physics/floor.py", "psph/output/front.py",
              "run/cases/poiseuille.toml")
 """Files that an example would be."""
 
@@ -236,8 +236,7 @@ def test_example_kernel(module, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "class_name", "key", "parameter", "own", "neighbour"),
     [
-        ("effect", "DensityDiffusion", "density_diffusion", "delta",
-         {"smoothing_length", "sound_speed", "specific_volume"}, {"mass", "specific_volume"}),
+        ("effect", "Cohesion", "cohesion", "strength", set(), {"mass"}),
         ("limit", "DensityFloor", "density_floor", "fraction", {"rest_density"}, set()),
     ],
 )
@@ -255,7 +254,7 @@ def test_example_effect(module, name, class_name, key, parameter, own, neighbour
     args = ((made, catalogue.Continuity()), (), k, OPEN[:2], view(), 0, 1)
     agree(rates(*args), rates.py_func(*args))
     without = rates((catalogue.Continuity(),), *args[1:])
-    assert rates(*args)[0] != without[0] or effect.__name__ == "DensityFloor"
+    assert rates(*args)[1] != without[1] or effect.__name__ == "DensityFloor"
 
 
 def agree(compiled, plain):
@@ -264,7 +263,7 @@ def agree(compiled, plain):
 
 
 def test_example_test_of_the_effect(module):
-    module("effect", "psph.physics.diffusion")
+    module("effect", "psph.physics.cohesion")
     tests = module("test of the effect", "psph_example_test")
     [test] = [function for name, function in vars(tests).items() if name.startswith("test_")]
     test()

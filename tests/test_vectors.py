@@ -6,6 +6,9 @@ import pytest
 
 from psph import vectors
 
+ENTRIES = [[(0, 0)], [(0, 0), (0, 1), (1, 1)], [(p, q) for p in range(3) for q in range(p, 3)]]
+"""Places of a symmetric matrix's numbers, by dimension less one."""
+
 A, B = (0.7, -1.1, 2.3), (1.9, 0.4, -0.6)
 
 
@@ -25,6 +28,30 @@ def test_compiled_is_plain(dim):
     a, b = A[:dim], B[:dim]
     for compiled, plain in zip(every(a, b), every.py_func(a, b)):
         assert compiled == pytest.approx(plain)
+
+
+@numba.njit
+def matrices(m, a):
+    return (
+        vectors.outer(a),
+        vectors.times(m, a),
+        vectors.adjugate(m, a),
+        (vectors.determinant(m, a),),
+        vectors.less_diagonal(m, 2.0, a),
+    )
+
+
+@pytest.mark.parametrize("dim", (1, 2, 3))
+def test_symmetric_matrices(dim):
+    a, places = A[:dim], tuple(zip(*ENTRIES[dim - 1]))
+    full = np.cov(np.random.default_rng(4).normal(size=(dim, 9))).reshape(dim, dim)
+    m, one = tuple(full[places].tolist()), np.eye(dim)
+    expected = (
+        np.outer(a, a)[places], full @ a, (np.linalg.inv(full) * np.linalg.det(full))[places],
+        [np.linalg.det(full)], (full - 2.0 * one)[places],
+    )
+    for compiled, plain, told in zip(matrices(m, a), matrices.py_func(m, a), expected):
+        assert compiled == pytest.approx(told) and plain == pytest.approx(told)
 
 
 @pytest.mark.parametrize("dim", (1, 2, 3))

@@ -24,7 +24,8 @@ Finding = tuple[Location, Any, str]
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
-        _dimensions, _axes, _domain, _hydrostatic, _exact, _attracting, _continued, _probed, _names, _single,
+        _dimensions, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected, _continued,
+        _probed, _names, _single,
     )
     return [
         # The message goes in as a value: braces in it are not placeholders.
@@ -161,4 +162,12 @@ def _single(case: Case) -> Iterator[Finding]:
     if case.precision == "mixed" and not 1.0 / LARGEST_SINGLE < largest < LARGEST_SINGLE:
         yield ("precision",), case.precision, (
             f"single precision cannot hold the kernel's slope at h = {h:g} m; use \"double\""
+        )
+
+
+def _corrected(case: Case) -> Iterator[Finding]:
+    physics = case.physics
+    if physics.gradient_correction is not None and physics.pressure_gradient == "minimum":
+        yield ("physics", "gradient_correction"), ..., (
+            'cannot correct physics.pressure_gradient = "minimum"; take "symmetric" or "difference"'
         )

@@ -18,7 +18,8 @@ class Skin:
 
     What counts is the displacement of neighbours relative to each other, not their speed: a body
     of water that falls as one needs no new lists.  It is measured now and then; in between it is
-    bounded by |Δx| ≤ |Δx|₀ + t (|Δv|₀ + 2 a (t + Δt)), with the largest acceleration a since.
+    bounded by |Δx| ≤ |Δx|₀ + t (|Δv|₀ + 2 s + 2 a (t + Δt)), with the largest acceleration a since
+    and the fastest shift s of a particle beside its velocity.
     The same on every rank.
     """
 
@@ -32,18 +33,20 @@ class Skin:
         """The lists are new."""
         self.drifted = self._apart = self._since = 0.0
         self._closing: float | None = None
-        self._acceleration = 0.0
+        self._acceleration = self._shift = 0.0
 
-    def holds(self, dt: float, speed: float, acceleration: float) -> bool:
+    def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
         """Whether the lists still hold after a step of ``dt`` s; collective where it must measure.
 
-        ``speed`` and ``acceleration`` are the largest of the scene.
+        ``speed``, ``acceleration`` and ``shift`` (m/s) are the largest of the scene.
         """
         if not acceleration <= self._acceleration:  # NaN counts as more
             self._acceleration = acceleration
+        if not shift <= self._shift:
+            self._shift = shift
         if self._closing is None or not self._bounded(dt, speed):
             self._measure()
-            self._acceleration = acceleration
+            self._acceleration, self._shift = acceleration, shift
             if not self._bounded(dt, speed):
                 return False
         self._since += dt
@@ -52,11 +55,12 @@ class Skin:
 
     def _bounded(self, dt: float, speed: float) -> bool:
         t = self._since + dt
-        apart = self._apart + t * (self._closing + 2.0 * self._acceleration * (t + dt))
+        closing = self._closing + 2.0 * self._shift
+        apart = self._apart + t * (closing + 2.0 * self._acceleration * (t + dt))
         return apart < self.width and self.drifted + self._way(dt, speed) < self._farthest
 
     def _way(self, dt: float, speed: float) -> float:
-        return dt * (speed + 0.5 * dt * self._acceleration)
+        return dt * (speed + self._shift + 0.5 * dt * self._acceleration)
 
     def _measure(self) -> None:
         domain, store = self.domain, self.domain.store

@@ -9,13 +9,26 @@ FLUID, WALL = 0, 1
 class Field(NamedTuple):
     """A quantity that each particle carries.
 
-    ``vector``: one number per dimension.  ``saved``: stands in every frame.
+    ``vector``: one number per dimension.  ``saved``: stands in every frame.  ``symmetric``: a
+    symmetric matrix, its rows from the diagonal on.
     """
 
     unit: str
     meaning: str
     vector: bool = False
     saved: bool = False
+    symmetric: bool = False
+
+    @property
+    def composed(self) -> bool:
+        """Whether it has several components, by the dimension."""
+        return self.vector or self.symmetric
+
+    def width(self, dimensions: int) -> int:
+        """Numbers that it takes."""
+        if self.symmetric:
+            return dimensions * (dimensions + 1) // 2
+        return dimensions if self.vector else 1
 
 
 FIELDS = {
@@ -36,5 +49,7 @@ FIELDS = {
     "rest_density": Field("kg/m3", "density at zero pressure"),
     "viscosity": Field("m2/s", "kinematic viscosity"),
     "kernel_sum": Field("1", "sum of W m/rho over the support, the particle included"),
+    "crowding": Field("1", "h times the gradient of how crowded it is", vector=True),
+    "gradient_correction": Field("1", "correction of the kernel's gradient, L - 1", symmetric=True),
 }
 """Every field by name.  In 1D and 2D a mass is per m² and per m of depth, and a density per the same."""

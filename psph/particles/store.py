@@ -53,7 +53,7 @@ class Store:
         self.rows: dict[str, range] = {}
         first = 0
         for name in names:
-            width = dimensions if FIELDS[name].vector else 1
+            width = FIELDS[name].width(dimensions)
             self.rows[name] = range(first, first + width)
             first += width
         self.low = self.owned = self.high = 0
@@ -66,9 +66,9 @@ class Store:
         return name in self.rows
 
     def __getitem__(self, name: str):
-        """The field over all columns: an array, or a tuple of component arrays for a vector."""
+        """The field over all columns: an array, or a tuple of component arrays."""
         rows = self.rows[name]
-        if FIELDS[name].vector:
+        if FIELDS[name].composed:
             return tuple(self.data[row] for row in rows)
         return self.data[rows.start]
 
@@ -116,7 +116,7 @@ class Store:
         elif name in self.rows:
             rows = self.rows[name]
             block = self.data[rows.start : rows.stop, self.inner]
-            values = block.T if FIELDS[name].vector else block[0]
+            values = block.T if FIELDS[name].composed else block[0]
         else:
             values = np.full(self.owned, self.constants[name])
         values.flags.writeable = False

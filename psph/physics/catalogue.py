@@ -3,8 +3,13 @@
 from typing import NamedTuple
 
 from psph.physics.continuity import Continuity
+from psph.physics.correction import GradientCorrection
+from psph.physics.diffusion import DensityDiffusion
 from psph.physics.gravity import Gravity
-from psph.physics.pressure import MinimumPressure, SymmetricPressure
+from psph.physics.pressure import (
+    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
+)
+from psph.physics.shifting import ParticleShifting
 from psph.physics.state import Linear, Tait
 from psph.physics.surface import FreeSurface
 from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
@@ -26,10 +31,15 @@ CATALOGUE = (
     Entry("", Continuity),
     Entry("physics.pressure_gradient=symmetric", SymmetricPressure),
     Entry("physics.pressure_gradient=minimum", MinimumPressure),
+    Entry("physics.pressure_gradient=difference", DifferencePressure),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.gravity", Gravity),
     Entry("physics.free_surface", FreeSurface),
+    Entry("physics.background_pressure", BackgroundPressure),
+    Entry("physics.density_diffusion", DensityDiffusion),
+    Entry("physics.particle_shifting", ParticleShifting),
+    Entry("physics.gradient_correction", GradientCorrection),
 )
 
 EQUATIONS_OF_STATE = (

@@ -32,6 +32,8 @@ class ParticleView(NamedTuple):
     rest_density: Any = None
     viscosity: Any = None
     kernel_sum: Any = None
+    crowding: Any = None
+    gradient_correction: Any = None
     sound_speed: Any = None
     smoothing_length: Any = None
 
@@ -51,6 +53,20 @@ class Pair(NamedTuple):
     """W_ij, 1/m^d."""
     dw_r: Any
     """W′(r)/r, so that ∇W_ij = dw_r x_ij; negative inside the support, zero outside."""
+
+
+VECTORS = ("position", "velocity", "crowding", "x_ij", "u_ij")
+"""Entries of a view or a pair with a number for each dimension."""
+
+MATRICES = ("gradient_correction",)
+"""Entries that are symmetric matrices."""
+
+
+def components(name: str, dimensions: int) -> int | None:
+    """How many components an entry of a view or a pair has; None where it is a number."""
+    if name in MATRICES:
+        return dimensions * (dimensions + 1) // 2
+    return dimensions if name in VECTORS else None
 
 
 def take(view: ParticleView, k: int) -> ParticleView:

@@ -9,11 +9,11 @@ from collections.abc import Iterable
 from typing import Any
 
 from psph.physics import compose
-from psph.physics.compose import ParticleView, added, geometry, pushed
+from psph.physics.compose import ParticleView, added, components, geometry, pushed
 from psph.vectors import subtract
 
-VECTORS = {"position": 1.0, "velocity": -1.0}
-"""Entries of a view with components; so the pair of the trial approaches, as viscosities ask."""
+TOWARDS = {"velocity": -1.0}
+"""Factor of an entry's components, else 1: so the pair of the trial approaches, as viscosities ask."""
 
 APART = 0.5
 """Distance of the pair over h: inside every piece of every kernel."""
@@ -52,8 +52,9 @@ def _view(trace: "_Trace", dimensions: int, known: dict, apart: float, varies: b
     def entry(name: str):
         if name in known:
             return known[name]
-        if name in VECTORS:
-            return tuple(trace.leaf(VECTORS[name] * apart, varies) for _ in range(dimensions))
+        if several := components(name, dimensions):
+            value = TOWARDS.get(name, 1.0) * apart
+            return tuple(trace.leaf(value, varies) for _ in range(several))
         return trace.leaf(0.5 if varies else 1.0, varies)
 
     return ParticleView(*map(entry, ParticleView._fields))

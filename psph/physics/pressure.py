@@ -1,6 +1,8 @@
-"""Two discrete forms of the acceleration −∇p/ρ."""
+"""Discrete forms of the acceleration −∇p/ρ, and a pressure that all particles share."""
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
 
 from psph.simd import where
 from psph.vectors import add, scale, zero_like
@@ -52,3 +54,41 @@ class MinimumPressure(NamedTuple):
     def finish_acceleration(self, total, i):
         """−(p_i − p_i⁻)/ρ_i Σ_j m_j/ρ_j ∇W_ij, m/s²."""
         return scale(total[1], (total[0] - i.pressure) * i.specific_volume)
+
+
+class DifferencePressure(NamedTuple):
+    """Pressure gradient from differences: exact for a constant, whatever the order of particles.
+
+    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j − p_i) ∇W_ij.  Monaghan (1992), eq. (2.13).  The symmetric form errs
+    by 2p/ρ Σ_j ∇W_ij/ρ_j, which a finer spacing does not cure; this one does not hold particles
+    apart, so shift them.  Conserves neither momentum nor energy exactly.
+    """
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return (i.pressure - j.pressure) * v_i * (j.mass * v_j * pair.dw_r)
+
+
+class BackgroundPressure(NamedTuple):
+    """A constant pressure pushes particles apart: it keeps a closed fluid from tearing.
+
+    a_i = −p_b Σ_j m_j (1/ρ_i² + 1/ρ_j²) ∇W_ij: the symmetric form of p + p_b, while p itself, as
+    given and as saved, stays free of p_b.  Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
+    Σ_j ∇W_ij/ρ_j would vanish for particles in perfect order; where it does not, p_b restores order
+    at the price of noise.  It conserves momentum and, being constant, energy.  A free surface would
+    fly apart.
+    """
+
+    pressure: Annotated[
+        float,
+        Field(
+            ge=0, description="p_b, no less than what the pressure falls below zero",
+            json_schema_extra={"unit": "Pa"},
+        ),
+    ]
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return -j.mass * self.pressure * (v_i * v_i + v_j * v_j) * pair.dw_r

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from psph.physics.compose import Pair, ParticleView
+from psph.physics.compose import Pair, ParticleView, components
 
 
 class Reads(NamedTuple):
@@ -20,8 +20,6 @@ class UnknownField(TypeError):
 VALUES = (1.0, 0.5)
 """What a trial answers: formulas compare with zero or a threshold, and each side is to be seen."""
 
-VECTORS = ("position", "velocity", "x_ij", "u_ij")
-
 
 class _Recorder:
     """Answers every known name with a harmless value and remembers that it was asked."""
@@ -36,8 +34,8 @@ class _Recorder:
             known = ", ".join(self._names)
             raise UnknownField(f"{self._owner} reads '{name}'; a particle or pair has {known}")
         self.read.add(name)
-        if name in VECTORS:
-            return (self.value,) * self._dimensions
+        if several := components(name, self._dimensions):
+            return (self.value,) * several
         return -self.value if name == "dw_r" and self.value != VALUES[0] else self.value
 
 

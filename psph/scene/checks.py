@@ -55,7 +55,10 @@ def _too_many_sites(scene: Scene) -> str | None:
 
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but likely not as meant."""
-    for kind in (_thin_walls, _surface_threshold, _minimum_at_surface, _slow_sound, _jitter):
+    for kind in (
+        _thin_walls, _surface_threshold, _minimum_at_surface, _background_at_surface, _slow_sound,
+        _jitter,
+    ):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
 
@@ -210,6 +213,14 @@ def _minimum_at_surface(scene: Scene) -> Iterator[str]:
         yield (
             'physics.pressure_gradient: "minimum" explodes at a free surface, where it only pushes '
             'outward, and the fluid has one; take "symmetric", or enclose the fluid'
+        )
+
+
+def _background_at_surface(scene: Scene) -> Iterator[str]:
+    if scene.case.physics.background_pressure is not None and has_free_surface(scene):
+        yield (
+            "physics.background_pressure: blows a free surface apart, and the fluid has one; "
+            "leave it out, or enclose the fluid"
         )
 
 

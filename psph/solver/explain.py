@@ -53,7 +53,7 @@ def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
 
 def _rows(scene, names: tuple[str, ...]) -> int:
     """Numbers that these fields take."""
-    return sum(scene.dimensions if FIELDS[name].vector else 1 for name in names)
+    return sum(FIELDS[name].width(scene.dimensions) for name in names)
 
 
 def _neighbours(scene, ranks: int) -> int:

@@ -48,6 +48,17 @@ def kick_drift_predict(
 
 
 @compiled
+def fastest_shift(first, last, effects, view, kind):
+    """Largest square of a displacement over its time step, m²/s²."""
+    fastest = 0.0
+    for k in range(np.uint64(first), np.uint64(last)):
+        if kind[k] == FLUID:
+            shift = displacement(effects, take(view, k), 1.0)
+            fastest = max(fastest, dot(shift, shift))
+    return fastest
+
+
+@compiled
 def state_of(first, last, state, view, density, specific_volume, pressure):
     """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
     for k in range(np.uint64(first), np.uint64(last)):

@@ -68,9 +68,15 @@ class Plan:
         return tuple(e for e in self.effects if hasattr(e, "start"))
 
     @cached_property
-    def limits_density(self) -> bool:
-        """Whether an effect bounds the density: then the first forces are computed twice."""
-        return any(hasattr(e, "limit_density") for e in self.effects)
+    def starts_twice(self) -> bool:
+        """Whether forces rest on sums of the pass before: then the first are computed twice."""
+        late = ("limit_density", "writes")
+        return any(hasattr(e, name) for e in self.effects for name in late)
+
+    @cached_property
+    def displaces(self) -> bool:
+        """Whether an effect moves particles beside their velocity."""
+        return any(hasattr(e, "displacement") for e in self.effects)
 
     def longest_step(self, speed: float, acceleration: float) -> tuple[float, str]:
         """Δt in s and the name of the limit that sets it, for the largest |v| and |a|."""
@@ -94,9 +100,10 @@ def make_plan(scene) -> Plan:
     """The plan of a scene (psph.scene.Scene)."""
     case = scene.case
     calls = [(entry, *found) for entry in CATALOGUE if (found := _called_for(case, entry))]
+    fitted = [(_in_scene(effect, scene), reason) for _, effect, reason in calls]
     called = tuple(
         Called(effect, reason, reads(effect, scene.dimensions, scene.kernel))
-        for _, effect, reason in calls
+        for effect, reason in fitted
     )
     present = {entry for entry, *_ in calls}
     [(state, state_reason)] = filter(None, (_called_for(case, e) for e in EQUATIONS_OF_STATE))
@@ -171,6 +178,11 @@ def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
 def material_value(material, name: str) -> float:
     """A material's value of one of ``PER_MATERIAL``."""
     return float(getattr(material, "density" if name == "rest_density" else name))
+
+
+def _in_scene(effect, scene):
+    """The form of an effect that a scene calls for."""
+    return effect.in_scene(scene) if hasattr(effect, "in_scene") else effect
 
 
 def _called_for(case, entry: Entry) -> tuple[Any, str] | None:

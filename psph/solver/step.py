@@ -8,7 +8,7 @@ from psph.parallel.reductions import largest
 from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.solver.integrator import kick, kick_drift_predict, state_of
+from psph.solver.integrator import fastest_shift, kick, kick_drift_predict, state_of
 from psph.solver.pairs import TINY, sum_over_neighbours
 from psph.solver.plan import Plan
 from psph.threads import in_threads
@@ -49,7 +49,7 @@ class Simulation:
         """Advance by one time step."""
         self.dt, self.limited_by = self.plan.longest_step(self.speed, self.acceleration)
         with self.ledger("skin"):
-            listed = self.skin.holds(self.dt, self.speed, self.acceleration)
+            listed = self.skin.holds(self.dt, self.speed, self.acceleration, self.shift)
         with self.ledger("kick, drift, predict"):
             self._predict(self.dt)
         if listed:
@@ -80,7 +80,7 @@ class Simulation:
         self._predict(0.0)
         self._rebuild()
         self._forces()
-        if self.plan.limits_density:  # its first verdict comes with the first sums
+        if self.plan.starts_twice:  # its first verdict comes with the first sums
             self._kick(0.0)
             self._predict(0.0)
             self._forces_while_refreshing()
@@ -146,7 +146,7 @@ class Simulation:
         )
 
     def _kick(self, dt: float) -> None:
-        """Second kick; then the largest speed and acceleration over all ranks."""
+        """Second kick; then the largest speed, acceleration and shift over all ranks."""
         s = self.store
         parts = in_threads(
             kick, s.low, s.low + s.owned, dt, self.plan.effects, s.view(), s.kind,
@@ -155,11 +155,22 @@ class Simulation:
         *mine, broken = np.max(parts, axis=0)
         lost = float(s.id[int(broken)]) + 1.0 if broken >= 0 else 0.0
         with self.ledger("limits"):
-            extremes = largest(self.comm, [*mine, lost])
+            extremes = largest(self.comm, [*mine, lost, *self._own_shift()])
         self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()
+        self.shift = float(np.sqrt(extremes[3:]).sum())
         too_fast = self.speed > TOO_FAST * self.plan.constants["sound_speed"]
         if extremes[2] > 0.0 or too_fast:
             self._report_blow_up(int(extremes[2]) - 1)
+
+    def _own_shift(self) -> list[float]:
+        """Square of this rank's fastest displacement, if any effect displaces."""
+        if not self.plan.displaces:
+            return []
+        s = self.store
+        parts = in_threads(
+            fastest_shift, s.low, s.low + s.owned, self.plan.effects, s.view(), s.kind
+        )
+        return [float(np.max(parts))]
 
     def _report_blow_up(self, particle: int) -> None:
         what = (

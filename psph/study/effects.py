@@ -18,10 +18,10 @@ NOTHING = 1e-3
 
 def without_each(case) -> dict[str, Settings]:
     """For each effect that the case could do without: its name, and what takes it out."""
-    present = {type(call.effect) for call in make_plan(Scene(case)).called}
+    absent = make_plan(Scene(case)).absent
     found = {}
     for entry in CATALOGUE:
-        if entry.key and "=" not in entry.key and entry.effect in present:
+        if entry.key and "=" not in entry.key and entry not in absent:
             head, star, tail = entry.key.partition("*")
             names = list(getattr(case, head.rstrip("."))) if star else [""]
             found[words(entry.effect.__name__)] = {f"{head}{n}{tail}": OFF for n in names}

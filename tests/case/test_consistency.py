@@ -66,6 +66,12 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             'fluids.water.pressure: "hydrostatic": there is no gravity; give physics.gravity, or',
         ),
         (
+            WATER.replace(
+                "[physics]", '[physics]\npressure_gradient = "minimum"\ngradient_correction = 0.5'
+            ),
+            'physics.gradient_correction: cannot correct physics.pressure_gradient = "minimum"; take',
+        ),
+        (
             WATER + WALL + 'continues = "watre"',
             "walls.floor.continues: \"watre\": no fluid has this name; did you mean 'water'?",
         ),

@@ -9,6 +9,7 @@ from parallel.test_simulation import box, start
 
 from psph.output.ledger import Ledger
 from psph.parallel import halo as halo_module
+from psph.particles.fields import FIELDS
 from psph.particles.neighbours import WIDTH
 
 COMM = MPI.COMM_WORLD
@@ -106,7 +107,7 @@ def events_of_a_step(simulation, events, kind):
 def expected_sends(simulation, names):
     """(partner, bytes) of one refresh, from what the neighbours hold as ghosts."""
     store, domain = simulation.store, simulation.domain
-    rows = sum(simulation.store.dimensions if n in VECTORS else 1 for n in names)
+    rows = sum(FIELDS[n].width(simulation.store.dimensions) for n in names)
     ghosts = COMM.allgather((store.low, store.high))
     below, above = domain._partner(-1), domain._partner(1)
     sends = [(below, 8 * rows * ghosts[below][1])] if below != MPI.PROC_NULL else []
@@ -116,7 +117,6 @@ def expected_sends(simulation, names):
 SKIN = 0.4
 """So wide that a list lasts for some steps."""
 
-VECTORS = ("position", "predicted_velocity")
 PLAIN = ("position", "predicted_velocity", "pressure", "specific_volume")
 
 CASES = {
@@ -124,6 +124,10 @@ CASES = {
     "periodic": (box(2, True, 0, SKIN), PLAIN),
     "3D": (box(3, True, 0, SKIN), PLAIN),
     "p- and surface": (box(2, False, 1, SKIN, pressure_gradient="minimum", free_surface=0.9), PLAIN),
+    "shifts and matrices": (
+        box(2, True, 0, SKIN, particle_shifting=0.1, gradient_correction=0.5),
+        (*PLAIN, "gradient_correction"),
+    ),
 }
 
 
@@ -139,10 +143,10 @@ def test_a_step_sends_one_message_a_neighbour_and_reduces_once(name, watched):
     received = [event for event in found if event[0] == "Recv_init"]
     assert len(received) == len(sends)
     assert sum(e[2] for e in received) == 8 * (simulation.store.low + simulation.store.high) * sum(
-        simulation.store.dimensions if n in VECTORS else 1 for n in fields
+        FIELDS[n].width(simulation.store.dimensions) for n in fields
     )
     rest = [e for e in found if e[0] not in ("Send_init", "Recv_init", "wait", "pairs")]
-    assert rest == [("Allreduce", 3 * 8)]
+    assert rest == [("Allreduce", (3 + simulation.plan.displaces) * 8)]
     assert sum(s for _, s in sends) == simulation.domain.halo.bytes(simulation.plan.refreshed)
 
 

@@ -82,6 +82,24 @@ def test_same_bits_as_on_one_rank(dim, axis, periodic, pressure_gradient):
     assert np.isfinite(together).all() and moved.any()
 
 
+REFINED = {
+    "background_pressure": 500.0, "density_diffusion": 0.1, "particle_shifting": 0.1,
+    "gradient_correction": 0.5,
+}
+
+
+@pytest.mark.parametrize("gradient, dim, axis", [
+    ("symmetric", 1, 0), ("difference", 2, 0), ("symmetric", 2, 1), ("difference", 3, 2),
+])
+def test_same_bits_with_sums_of_the_pass_before(gradient, dim, axis):
+    case = box(dim, True, axis, pressure_gradient=gradient, **REFINED)
+    together, rebuilds, end = run(case, COMM)
+    alone, rebuilds_alone, end_alone = run(case, MPI.COMM_SELF)
+    assert rebuilds == rebuilds_alone > 2 and end == end_alone
+    assert np.array_equal(together, alone) and np.isfinite(together).all()
+    assert not np.array_equal(together, run(box(dim, True, axis), COMM)[0])
+
+
 @pytest.mark.parametrize("periodic", (False, True))
 def test_same_bits_where_a_list_lasts(periodic):
     """Steps between rebuilds: the halo is refreshed while the interior is computed."""

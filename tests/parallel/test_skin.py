@@ -76,16 +76,17 @@ def test_bounds_hold_for_every_listed_pair(dim, everywhere):
     assert (bounds[:2] <= 8.0 * true[:2]).all()  # and are no blank cheque
 
 
-def steps_until_over(domain, velocity, dt=1e-3, most=200):
-    """Steps that the lists last when particles move with ``velocity(x)``."""
+def steps_until_over(domain, velocity, dt=1e-3, most=200, beside=False):
+    """Steps that the lists last when particles move with ``velocity(x)``, or shift so beside it."""
     store, skin = domain.store, Skin(domain, WIDE)
     inner = store.inner
     v = velocity(np.array(store["position"])[:, inner])
     for row, component in zip(store.rows["predicted_velocity"], v):
-        store.data[row, inner] = component
-    speed = float(np.linalg.norm(v, axis=0).max())
+        store.data[row, inner] = 0.0 if beside else component
+    fastest = float(np.linalg.norm(v, axis=0).max())
+    speed, shift = (0.0, fastest) if beside else (fastest, 0.0)
     for step in range(most):
-        if not skin.holds(dt, speed, 0.0):
+        if not skin.holds(dt, speed, 0.0, shift):
             return step
         for row, component in zip(store.rows["position"], v):
             store.data[row, inner] += dt * component
@@ -111,6 +112,13 @@ def test_opposing_jets_end_them_as_early_as_the_largest_speed_would():
         return np.stack([np.where(x[1] > 0.5, 3.0, -3.0), 0.0 * x[1]])
 
     assert steps_until_over(domain_of(300, 2), jets) == 3  # 6 m/s, 0.02 m
+
+
+def test_shifts_beside_the_velocity_count():
+    def apart(x):
+        return np.stack([np.where(x[1] > 0.5, 3.0, -3.0), 0.0 * x[1]])
+
+    assert steps_until_over(domain_of(300, 2), apart, beside=True) == 3
 
 
 def test_nobody_strays_too_far_in_a_periodic_domain():

@@ -2,7 +2,10 @@
 
 import numba
 import numpy as np
+from numba.core import types
+from numba.extending import overload
 
+from psph.jit import method_of
 from psph.physics import compose
 from psph.physics.compose import ParticleView, geometry, take
 from psph.smoothing import kernel
@@ -26,6 +29,8 @@ def view(n=2, dim=2, seed=3):
         kernel_sum=rng.uniform(0.8, 1.0, n),
         sound_speed=50.0,
         smoothing_length=H,
+        crowding=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
+        gradient_correction=tuple(rng.normal(size=n) * 0.1 for _ in range(dim * (dim + 1) // 2)),
     )
 
 
@@ -35,6 +40,33 @@ def pair_of(particles, a, b, name="hyperbolic"):
     i, j = take(particles, a), take(particles, b)
     x_ij = nearest_image(subtract(i.position, j.position), OPEN[:dim])
     return i, j, geometry(kernel(name, H, dim), x_ij, 1e-20 * H * H, i, j)
+
+
+def stored(reductions, totals, i, k):
+    """What a single reduction would store; numbers as tuples."""
+    if not reductions or not hasattr(reductions[0], "finish_value"):
+        return ()
+    return as_tuple(reductions[0].finish_value(totals[0], i, k))
+
+
+@overload(stored)
+def _typed_stored(reductions, totals, i, k):
+    finish = len(reductions) and method_of(reductions[0], "finish_value")
+    if not finish:
+        return lambda reductions, totals, i, k: ()
+    return lambda reductions, totals, i, k: as_tuple(finish(reductions[0], totals[0], i, k))
+
+
+def as_tuple(found):
+    """A number as a tuple."""
+    return found if isinstance(found, tuple) else (found,)
+
+
+@overload(as_tuple)
+def _typed_as_tuple(found):
+    if isinstance(found, types.BaseTuple):
+        return lambda found: found
+    return lambda found: (found,)
 
 
 @numba.njit
@@ -47,7 +79,10 @@ def rates(effects, reductions, k, periods, particles, a, b):
         compose.density_rate(effects, i, j, pair),
         compose.radial(effects, i, j, pair),
         compose.shear(effects, i, j, pair),
+        compose.push(effects, i, j, pair),
         compose.body(effects, i),
         compose.finish_acceleration(reductions, totals, i),
         compose.limit_density(effects, i, 987.0),
+        compose.displacement(effects, i, 1e-4),
+        stored(reductions, totals, i, k),
     )

@@ -1,6 +1,7 @@
 """Every effect on a hand-made pair: the formula written out, plain against compiled, invariants."""
 
 import math
+from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -8,20 +9,26 @@ from physics.pairs import H, OPEN, pair_of, rates, view
 
 from psph.physics.catalogue import CATALOGUE
 from psph.physics.continuity import Continuity
+from psph.physics.correction import DifferenceCorrection, GradientCorrection
+from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
 from psph.physics.gravity import Gravity
-from psph.physics.pressure import MinimumPressure, SymmetricPressure
+from psph.physics.pressure import (
+    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
+)
+from psph.physics.shifting import ParticleShifting
 from psph.physics.surface import FreeSurface
 from psph.physics.trial import UnknownField, reads
-from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
+from psph.physics.viscosity import ArtificialViscosity, CorrectedViscosity, LaminarViscosity
 from psph.smoothing import kernel
 
 DIMENSIONS = (1, 2, 3)
 
 
 def made(effect, dim):
-    """An instance with its defaults, or with a vector where it asks for one."""
+    """An instance with its defaults, or with a number or vector where it asks for one."""
+    hints = get_type_hints(effect)
     needed = [n for n in effect._fields if n not in effect._field_defaults]
-    return effect(**dict.fromkeys(needed, (0.0, -9.8, 0.3)[:dim]))
+    return effect(*(0.7 if hints[n] is float else (0.3, -9.8, 0.3)[:dim] for n in needed))
 
 
 def written_out(particles, a, b):
@@ -140,14 +147,240 @@ def test_free_surface():
 @pytest.mark.parametrize("dim", DIMENSIONS)
 @pytest.mark.parametrize("effect", [e.effect for e in CATALOGUE])
 def test_compiled_is_plain(effect, dim):
-    one = made(effect, dim)
+    agree_compiled(made(effect, dim), dim)
+
+
+def agree_compiled(one, dim):
+    """Fails where compiled and plain Python differ in anything that the effect does to a pair."""
     reductions = (one,) if hasattr(one, "start") else ()
     args = ((one,), reductions, kernel("hyperbolic", H, dim), OPEN[:dim], view(n=3, dim=dim), 0, 1)
     for compiled, plain in zip(rates(*args), rates.py_func(*args)):
         assert compiled is plain is None or compiled == pytest.approx(plain, rel=1e-12)
 
 
-@pytest.mark.parametrize("effect", [SymmetricPressure, LaminarViscosity, ArtificialViscosity])
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_difference_pressure(dim):
+    p = view(dim=dim)
+    x, _, _, _, grad_w = written_out(p, 0, 1)
+    rho = 1 / p.specific_volume
+    a = -p.mass[1] / (rho[0] * rho[1]) * (p.pressure[1] - p.pressure[0]) * grad_w
+    assert DifferencePressure().radial(*pair_of(p, 0, 1)) * x == pytest.approx(a)
+    level = p._replace(pressure=np.full(2, 700.0))
+    assert DifferencePressure().radial(*pair_of(level, 0, 1)) == 0.0
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_background_pressure_is_the_symmetric_form_of_a_constant(dim):
+    p = view(dim=dim)
+    i, j, pair = pair_of(p, 0, 1)
+    raised = SymmetricPressure().radial(*pair_of(p._replace(pressure=p.pressure + 40.0), 0, 1))
+    found = BackgroundPressure(40.0).radial(i, j, pair)
+    assert found > 0.0  # it pushes
+    assert found == pytest.approx(raised - SymmetricPressure().radial(i, j, pair), rel=1e-9)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_density_diffusion(dim):
+    p = view(dim=dim)
+    x, _, r, _, grad_w = written_out(p, 0, 1)
+    rho = 1 / p.specific_volume
+    rate = 2 * 0.3 * H * 50.0 * p.mass[1] / rho[1] * (rho[0] - rho[1]) * (x @ grad_w)
+    rate /= r * r + 0.01 * H * H
+    found = DensityDiffusion(0.3).density_rate(*pair_of(p, 0, 1))
+    assert found == pytest.approx(rate)
+    assert found * (rho[1] - rho[0]) > 0.0
+    there = DensityDiffusion(0.3).density_rate(*pair_of(p, 1, 0))
+    volumes = p.mass / rho
+    assert volumes @ (found, there) == pytest.approx(0.0, abs=1e-12 * abs(found))
+
+
+def test_density_diffusion_leaves_two_fluids_apart():
+    p = view()
+    i, j, pair = pair_of(p, 0, 1)
+    i = i._replace(rest_density=800.0, specific_volume=1 / 801.0)
+    j = j._replace(rest_density=1000.0, specific_volume=1 / 1001.0)
+    assert DensityDiffusion(0.3).density_rate(i, j, pair) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_hydrostatic_diffusion_leaves_a_still_column_alone(dim):
+    p, g = view(dim=dim), (0.3, -9.8, 1.0)[:dim]
+    depth = np.array(g) @ p.position
+    p = p._replace(specific_volume=1 / (1000.0 + 1000.0 * depth / 50.0**2))
+    pair = pair_of(p, 0, 1)
+    plain = DensityDiffusion(0.1).density_rate(*pair)
+    still = HydrostaticDiffusion(0.1, g).density_rate(*pair)
+    assert abs(still) < 1e-9 * abs(plain)
+    assert HydrostaticDiffusion(0.1, (0.0,) * dim).density_rate(*pair) == pytest.approx(plain)
+
+
+def sums_of(effect, p, b, name="wendland-c2"):
+    """What ``effect`` stores of particle ``b`` with all other particles of ``p`` around it."""
+    i = pair_of(p, b, b, name)[0]
+    total = effect.start(i)
+    for k in range(len(p.mass)):
+        if k != b:
+            _, j, pair = pair_of(p, b, k, name)
+            total = effect.gather(total, i, j, pair)
+    return effect.finish_value(total, i, kernel(name, H, len(p.position)))
+
+
+def patch(dim, jitter=0.0, reach=3):
+    """A lattice of equal volumes around particle 0, h/dx = 1.3, perhaps out of order."""
+    dx = H / 1.3
+    sites = np.array(sorted(
+        np.ndindex(*(2 * reach + 1,) * dim), key=lambda s: sum((k - reach) ** 2 for k in s)
+    )) - reach
+    x = dx * (sites + jitter * np.random.default_rng(5).uniform(-1, 1, sites.shape))
+    n = len(x)
+    return view(n=n, dim=dim)._replace(
+        position=tuple(x.T), mass=np.full(n, 1000 * dx**dim), specific_volume=np.full(n, 1e-3)
+    )
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_shifting_leaves_a_lattice_and_flees_a_neighbour_that_comes_near(dim):
+    effect, p = ParticleShifting(0.1), patch(dim)
+    assert sums_of(effect, p, 0) == pytest.approx((0.0,) * dim, abs=1e-12)
+    nearest = next(k for k in range(1, len(p.mass)) if p.position[-1][k] > 0.5 * H)
+    p.position[-1][nearest] *= 0.9
+    crowding = sums_of(effect, p, 0)
+    i = pair_of(p, 0, 0)[0]._replace(crowding=crowding)
+    shift = effect.displacement(i, 1e-5)
+    assert shift[-1] < 0.0
+    assert shift == pytest.approx(np.multiply(crowding, -2 * 0.1 * 50.0 * 1e-5), rel=1e-12)
+    i = i._replace(crowding=(3.0,) * dim)
+    assert np.linalg.norm(effect.displacement(i, 1e-5)) == pytest.approx(0.1 * 50.0 * 1e-5)
+
+
+def test_shifting_by_the_formula():
+    effect, p = ParticleShifting(), patch(2, 0.2)
+    k, dx = kernel("hyperbolic", H, 2), H / 1.3
+    expected = np.zeros(2)
+    for b in range(1, len(p.mass)):
+        _, _, r, w, grad_w = written_out(p, 0, b)
+        expected += dx**2 * (1 + 0.2 * (w / k.w(dx)) ** 4) * grad_w * (r < 2 * H)
+    assert sums_of(effect, p, 0, "hyperbolic") == pytest.approx(H * expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_velocity_and_density_follow_a_shift(dim):
+    p = view(dim=dim)
+    _, u, _, _, grad_w = written_out(p, 0, 1)
+    i, j, pair = pair_of(p, 0, 1)
+    effect, rho = ParticleShifting(0.1), 1 / p.specific_volume
+    along = np.array(effect.displacement(i, 1.0)) @ grad_w * p.mass[1] / rho[1]
+    assert effect.shear(i, j, pair) * u == pytest.approx(-along * u)
+    assert effect.density_rate(i, j, pair) == pytest.approx(along * (rho[1] - rho[0]))
+
+
+def test_no_shift_at_a_surface():
+    effect, p = ParticleShifting(), patch(2)
+    half = p.position[1] > -0.1 * H  # a surface row, and what is above it
+    p = p._replace(**{
+        n: tuple(a[half] for a in x) if isinstance(x, tuple) else x[half]
+        for n, x in p._asdict().items() if not np.isscalar(x)
+    })
+    assert sums_of(effect, p, 0) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_corrected_gradients_are_exact_for_linear_fields(dim):
+    effect, p = GradientCorrection(0.01), patch(dim, jitter=0.2)
+    slope = np.array([[0.7, -1.2, 0.4], [0.1, 0.5, -0.3], [-0.9, 0.2, 0.6]])[:dim, :dim]
+    p = p._replace(velocity=tuple(slope @ p.position))
+    corrected = plain = 0.0
+    i = pair_of(p, 0, 0, "wendland-c2")[0]._replace(gradient_correction=sums_of(effect, p, 0))
+    for b in range(1, len(p.mass)):
+        _, j, pair = pair_of(p, 0, b, "wendland-c2")
+        plain += Continuity().density_rate(i, j, pair)
+        corrected += effect.density_rate(i, j, pair)
+    exact = -1000.0 * np.trace(slope)
+    assert plain + corrected == pytest.approx(exact, rel=1e-10)
+    assert abs(plain - exact) > 1e-3 * abs(exact)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_corrected_pressure_is_exact_for_linear_pressure_up_to_disorder(dim):
+    """What is left of the crossed form once its part p_i Σ (L_i + L_j) ∇W is taken off."""
+    effect, p = GradientCorrection(0.01), patch(dim, jitter=0.2)
+    slope = np.array([400.0, -300.0, 250.0])[:dim]
+    p = p._replace(pressure=slope @ p.position + 50.0)
+    found = np.zeros(dim)
+    own = sums_of(effect, p, 0)
+    for pressure, sign in ((p.pressure, 1.0), (np.full_like(p.pressure, p.pressure[0]), -1.0)):
+        here = p._replace(pressure=pressure)
+        i = pair_of(here, 0, 0)[0]._replace(gradient_correction=own)
+        for b in range(1, len(p.mass)):
+            _, j, pair = pair_of(here, 0, b, "wendland-c2")  # L_j ends up in both, and drops out
+            found += sign * SymmetricPressure().radial(i, j, pair) * np.array(pair.x_ij)
+            found += sign * np.array(effect.push(i, j, pair))
+    assert found == pytest.approx(-slope / 1000.0, rel=1e-10)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_corrected_differences_are_exact_for_linear_pressure(dim):
+    p, slope = patch(dim, jitter=0.2), np.array([400.0, -300.0, 250.0])[:dim]
+    p = p._replace(pressure=slope @ p.position + 50.0)
+    effect, found = DifferenceCorrection(0.01), np.zeros(dim)
+    i = pair_of(p, 0, 0)[0]._replace(gradient_correction=sums_of(effect, p, 0))
+    for b in range(1, len(p.mass)):
+        _, j, pair = pair_of(p, 0, b, "wendland-c2")
+        found += DifferencePressure().radial(i, j, pair) * np.array(pair.x_ij)
+        found += effect.push(i, j, pair)
+    assert found == pytest.approx(-slope / 1000.0, rel=1e-10)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_corrected_viscosity_is_exact_on_a_lattice(dim):
+    """u = (|x|², 0, ...) has the Laplacian 2d everywhere; the plain form falls short of it."""
+    p = patch(dim)
+    p = p._replace(
+        velocity=(sum(x * x for x in p.position), *[0 * x for x in p.position[1:]]),
+        viscosity=np.full(len(p.mass), 0.3),
+    )
+    stored = sums_of(GradientCorrection(), p, 0)  # the same all over a lattice
+    i = pair_of(p, 0, 0)[0]._replace(gradient_correction=stored)
+    corrected = plain = 0.0
+    for b in range(1, len(p.mass)):
+        _, j, pair = pair_of(p, 0, b, "wendland-c2")
+        j = j._replace(gradient_correction=stored)
+        corrected += CorrectedViscosity().shear(i, j, pair) * pair.u_ij[0]
+        plain += LaminarViscosity().shear(i, j, pair) * pair.u_ij[0]
+    exact = 0.3 * 2 * dim
+    assert corrected == pytest.approx(exact, rel=1e-10)
+    assert abs(plain - exact) > 0.005 * exact
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+@pytest.mark.parametrize(
+    "one", [DifferenceCorrection(0.5), CorrectedViscosity(), HydrostaticDiffusion],
+    ids=lambda one: getattr(one, "__name__", type(one).__name__),
+)
+def test_forms_for_a_scene_are_the_same_compiled(one, dim):
+    one = one(0.1, (0.3, -9.8, 1.0)[:dim]) if isinstance(one, type) else one
+    agree_compiled(one, dim)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_the_correction_fades_where_neighbours_are_missing(dim):
+    p = patch(dim)
+    matrix = dim * (dim + 1) // 2
+    effect = GradientCorrection(0.5)
+    i = pair_of(p, 0, 0)[0]
+    alone = effect.finish_value(effect.start(i), i, None)
+    assert dim == 1 or alone == (0.0,) * matrix
+    one = sums_of(effect, view(n=2, dim=dim)._replace(mass=np.full(2, 1e-4)), 0)
+    assert np.abs(one).max() < 2.1
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        SymmetricPressure, LaminarViscosity, ArtificialViscosity, BackgroundPressure,
+        GradientCorrection, CorrectedViscosity,
+    ],
+)
 def test_conserves_momentum_where_the_formula_promises_it(effect):
     p = view(dim=3)
     one = made(effect, 3)
@@ -156,7 +389,9 @@ def test_conserves_momentum_where_the_formula_promises_it(effect):
         i, j, pair = pair_of(p, a, b)
         radial = one.radial(i, j, pair) if hasattr(one, "radial") else 0.0
         shear = one.shear(i, j, pair) if hasattr(one, "shear") else 0.0
-        force.append(p.mass[a] * (radial * np.array(pair.x_ij) + shear * np.array(pair.u_ij)))
+        push = one.push(i, j, pair) if hasattr(one, "push") else (0.0,) * 3
+        a_i = radial * np.array(pair.x_ij) + shear * np.array(pair.u_ij) + np.array(push)
+        force.append(p.mass[a] * a_i)
     assert force[0] == pytest.approx(-force[1], rel=1e-13)
 
 

@@ -290,6 +290,12 @@ def test_minimum_pressure_without_one_is_silent(tmp_path, text, override):
     assert checked(tmp_path, text, override) == []
 
 
+def test_a_background_pressure_at_a_free_surface_is_warned_of(tmp_path):
+    [line] = checked(tmp_path, TANK, "physics.background_pressure=100.0")
+    assert line.startswith("case.toml: physics.background_pressure: blows a free surface apart")
+    assert checked(tmp_path, CLOSED, "physics.background_pressure=100.0") == []
+
+
 def test_a_slip_in_the_units_is_refused_at_once(tmp_path):
     assert refused(tmp_path, TANK, "space.spacing=1e-8") == [
         "case.toml: space.spacing: 1e-08 m makes a lattice of 1.6e+16 sites, more than 1e+11; "

@@ -20,7 +20,7 @@ from psph.solver.plan import make_plan
 from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
 
-IN_PAIRS = {"density_rate", "radial", "shear", "body", "start"}
+IN_PAIRS = {"density_rate", "radial", "shear", "push", "body", "start"}
 """Methods that the pair loop calls."""
 
 

@@ -7,8 +7,10 @@ from mpi4py import MPI
 
 from psph.case import load
 from psph.output.ledger import Ledger
+from psph.particles.fields import FIELDS
 from psph.physics import catalogue, compose
 from psph.physics.catalogue import Entry
+from psph.physics.diffusion import HydrostaticDiffusion
 from psph.physics.trial import UnknownField
 from psph.scene import Scene
 from psph.solver import plan as plan_module
@@ -110,7 +112,7 @@ def test_an_effect_that_reads_what_an_absent_effect_writes_is_refused(planned, m
 def test_the_surface_effect_brings_its_field_and_no_message(planned):
     _, plan = planned("physics.free_surface=0.9")
     assert "kernel_sum" in plan.arrays and "kernel_sum" not in plan.refreshed
-    assert len(plan.reductions) == 1 and plan.limits_density
+    assert len(plan.reductions) == 1 and plan.starts_twice
 
 
 def test_memory_and_steps_are_foretold(planned):
@@ -122,3 +124,25 @@ def test_memory_and_steps_are_foretold(planned):
     )
     simulation.step()
     assert simulation.limited_by in text
+
+
+def test_diffusion_under_gravity_knows_of_weight(planned):
+    _, plan = planned("physics.density_diffusion=0.2", "physics.gravity=[0.0,-9.8]")
+    [diffusion] = (e for e in plan.effects if hasattr(e, "delta"))
+    assert diffusion == HydrostaticDiffusion(0.2, (0.0, -9.8))
+    assert "DensityDiffusion" in names(planned("physics.density_diffusion=0.2")[1])
+
+
+def test_sums_of_the_pass_before_bring_their_fields(planned):
+    _, plan = planned("physics.particle_shifting=0.1", "physics.gradient_correction=0.5")
+    assert {"crowding", "gradient_correction"} <= set(plan.arrays) and plan.starts_twice
+    assert "gradient_correction" in plan.refreshed and "crowding" not in plan.refreshed
+    assert plan.displaces and not planned("physics.gradient_correction=0.5")[1].displaces
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 3])
+def test_views_and_fields_agree_on_components(dimensions):
+    for name in compose.ParticleView._fields:
+        if name in FIELDS:
+            width = compose.components(name, dimensions) or 1
+            assert FIELDS[name].width(dimensions) == width

@@ -1,0 +1,70 @@
+"""Smoothing of what noise continuity leaves in the density."""
+
+from typing import Annotated, NamedTuple
+
+from numba.extending import register_jitable
+from pydantic import Field
+
+from psph.physics.viscosity import SINGULARITY
+from psph.vectors import dot
+
+
+class DensityDiffusion(NamedTuple):
+    """Density spreads between neighbours: the noise of the pressure fades.
+
+    dρ_i/dt = 2 δ h c Σ_j (m_j/ρ_j) [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j)] x_ij·∇W_ij / (r² + 0.01 h²).
+    Molteni & Colagrossi (2009), Comput. Phys. Commun. 180, 861.  Keeps Σ m_i/ρ_i dρ_i/dt = 0.
+    """
+
+    delta: Annotated[
+        float, Field(ge=0, description="strength δ", json_schema_extra={"unit": "1"})
+    ] = 0.1
+
+    def in_scene(self, scene):
+        """Under gravity, the form that knows of weight."""
+        return HydrostaticDiffusion(self.delta, scene.gravity) if any(scene.gravity) else self
+
+    def density_rate(self, i, j, pair):
+        """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        return _spreading(self.delta, i, j, pair, 0.0)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h/(δ c), s: the limit of a viscosity δch."""
+        return _longest_step(self.delta, scene)
+
+
+class HydrostaticDiffusion(NamedTuple):
+    """Density spreads between neighbours, but for what the weight of a still column asks for.
+
+    As :class:`DensityDiffusion` with (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ρ₀_i g·x_ij/c² in the bracket:
+    the slope of density in a fluid at rest, linear in the depth, stays.  Antuono, Colagrossi,
+    Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532, with the exact slope for theirs.
+    """
+
+    delta: float
+    gravity: tuple[float, ...]
+
+    def density_rate(self, i, j, pair):
+        """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        weight = i.rest_density / (i.sound_speed * i.sound_speed) * dot(pair.x_ij, self.gravity)
+        return _spreading(self.delta, i, j, pair, weight)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h/(δ c), s: the limit of a viscosity δch."""
+        return _longest_step(self.delta, scene)
+
+
+@register_jitable
+def _spreading(delta, i, j, pair, weight):
+    """The sum's term with ``weight`` kg/m^d of the difference in densities left alone."""
+    h = i.smoothing_length
+    # m_j/ρ_j (a − ρ_j) as m_j (a/ρ_j − 1): no division by 1/ρ_j.
+    level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density) - weight
+    excess = j.mass * (level * j.specific_volume - 1.0)
+    strength = 2.0 * delta * h * i.sound_speed
+    return strength * excess * pair.r2 * pair.dw_r / (pair.r2 + SINGULARITY * h * h)
+
+
+def _longest_step(delta: float, scene) -> float:
+    mixing = delta * scene.sound_speed
+    return 0.125 * scene.smoothing_length / mixing if mixing > 0.0 else float("inf")
