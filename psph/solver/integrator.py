@@ -68,7 +68,7 @@ def state_of(first, last, state, view, density, specific_volume, pressure):
 
 
 @compiled
-def kick(first, last, dt, effects, view, kind, velocity, acceleration, density, rate):
+def kick(first, last, dt, effects, view, kind, position, velocity, acceleration, density, rate):
     """Kick by the second half of the step, with the new rates.
 
     Returns the largest |v|² and |a|² over the columns ``first`` to ``last``, and the first column
@@ -87,7 +87,8 @@ def kick(first, last, dt, effects, view, kind, velocity, acceleration, density, 
             v2, a2 = dot(v, v), dot(a, a)
             v2_max = max(v2_max, v2)
             a2_max = max(a2_max, a2)
-            if not v2 + a2 < np.inf and broken < 0:
+            x = at(position, k)
+            if not v2 + a2 + dot(x, x) < np.inf and broken < 0:
                 broken = np.int64(k)
         density[k] = rho
         if not abs(rho) < np.inf and broken < 0:

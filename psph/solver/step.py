@@ -150,7 +150,7 @@ class Simulation:
         s = self.store
         parts = in_threads(
             kick, s.low, s.low + s.owned, dt, self.plan.effects, s.view(), s.kind,
-            s["velocity"], s["acceleration"], s["density"], s["density_rate"],
+            s["position"], s["velocity"], s["acceleration"], s["density"], s["density_rate"],
         )
         *mine, broken = np.max(parts, axis=0)
         lost = float(s.id[int(broken)]) + 1.0 if broken >= 0 else 0.0

@@ -25,7 +25,7 @@ def oscillate(theta, steps):
         rates = [rates[2], rates[0], rates[1]]
         rates[0][0] = theta * predicted[0][0]
         a[0][0] = -theta * pressure[0]
-        kick(0, 1, 1.0, (), view, kind, v, a, density, rates[0])
+        kick(0, 1, 1.0, (), view, kind, x, v, a, density, rates[0])
     return np.hypot(v[0][0], density[0] - 1.0)
 
 
@@ -69,5 +69,9 @@ def test_walls_stay_and_lost_numbers_are_reported():
     kick_drift_predict(
         0, 2, 0.1, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
     )
-    *_, broken = kick(0, 2, 0.1, (), view, kind, v, a, density, rates[0])
+    *_, broken = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
     assert x[0][0] == v[0][0] == 0.0 and broken == 1
+    a[0][1] = v[0][1] = 0.0
+    assert kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])[-1] == 1  # its place is lost
+    x[0][1] = 1.0
+    assert kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])[-1] == -1
