@@ -130,7 +130,7 @@ def _outer(a):
 
 
 def _by_dimension(one, two, three):
-    """A function of a matrix ``m`` and more, the last argument a vector that tells the dimension."""
+    """A function of a matrix and more, the last argument a vector that tells the dimension."""
 
     def function(*args):
         return (one, two, three)[len(args[-1]) - 1](*args)

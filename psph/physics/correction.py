@@ -14,8 +14,8 @@ class GradientCorrection(NamedTuple):
     """Gradients are corrected to be exact for linear fields, in pressure and in continuity.
 
     ∇W_ij becomes L∇W_ij with L_i = (−Σ_j m_j/ρ_j x_ij ∇W_ijᵀ)⁻¹.  dρ_i/dt takes L_i, the symmetric
-    pressure takes p_i/ρ_i² L_j + p_j/ρ_j² L_i, which conserves momentum and is exact for linear p where
-    Σ_j (L_i + L_j) ∇W_ij/ρ_j vanishes.  Randles & Libersky (1996), Comput. Methods Appl. Mech. Eng.
+    pressure takes p_i/ρ_i² L_j + p_j/ρ_j² L_i, which conserves momentum and is exact for linear p
+    where Σ_j (L_i + L_j) ∇W_ij/ρ_j vanishes.  Randles & Libersky (1996), Comput. Methods Appl. Mech. Eng.
     139, 375; Bonet & Lok (1999), 180, 97; the crossed pair: Zhang, Adams & Hu (2024),
     arXiv:2406.02576.  With D the determinant of the sum, L − 1 = (adjugate − D)/max(D, D₀), so that
     L fades to 1 where neighbours are missing.  L is that of the pass before.

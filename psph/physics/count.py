@@ -13,7 +13,7 @@ from psph.physics.compose import ParticleView, added, components, geometry, push
 from psph.vectors import subtract
 
 TOWARDS = {"velocity": -1.0}
-"""Factor of an entry's components, else 1: so the pair of the trial approaches, as viscosities ask."""
+"""Factor of an entry's components, else 1: so the pair of the trial approaches."""
 
 APART = 0.5
 """Distance of the pair over h: inside every piece of every kernel."""

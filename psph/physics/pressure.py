@@ -59,9 +59,10 @@ class MinimumPressure(NamedTuple):
 class DifferencePressure(NamedTuple):
     """Pressure gradient from differences: exact for a constant, whatever the order of particles.
 
-    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j − p_i) ∇W_ij.  Monaghan (1992), eq. (2.13).  The symmetric form errs
-    by 2p/ρ Σ_j ∇W_ij/ρ_j, which a finer spacing does not cure; this one does not hold particles
-    apart, so shift them.  Conserves neither momentum nor energy exactly.
+    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j − p_i) ∇W_ij.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30,
+    543.  The symmetric form errs by 2p/ρ Σ_j m_j/ρ_j ∇W_ij, which a finer spacing does not cure;
+    this one does not hold particles apart, so shift them.  Conserves neither momentum nor energy
+    exactly.
     """
 
     def radial(self, i, j, pair):

@@ -25,10 +25,10 @@ class ParticleShifting(NamedTuple):
 
     δx_i = −2 U Δt h Σ_j m_j/ρ_j [1 + 0.2 (W_ij/W(dx))⁴] ∇W_ij, U a part of the speed of sound, and
     |δx_i| ≤ U Δt; none where the kernel sum, the particle included, is below 0.85.  Velocity and
-    density change to those at the new place: du_i/dt = (δx_i/Δt·∇)u, dρ_i/dt = δx_i/Δt·∇ρ, gradients
-    from differences.  Lind, Xu, Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun, Colagrossi,
-    Marrone & Zhang (2017), Comput. Methods Appl. Mech. Eng. 315, 25.  The sum is that of the pass
-    before.  Momentum and angular momentum are not conserved exactly.
+    density change to those at the new place: du_i/dt = (δx_i/Δt·∇)u, dρ_i/dt = δx_i/Δt·∇ρ, with
+    gradients from differences.  Lind, Xu, Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun,
+    Colagrossi, Marrone & Zhang (2017), Comput. Methods Appl. Mech. Eng. 315, 25.  The sum is that
+    of the pass before.  Momentum and angular momentum are not conserved exactly.
     """
 
     strength: Annotated[

@@ -39,8 +39,9 @@ class CorrectedViscosity(NamedTuple):
     """Newtonian friction of the fluid's own viscosity, with corrected gradients.
 
     a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·(L_i + L_j)/2 ∇W_ij / [(ρ_i + ρ_j)² r²] u_ij.  As
-    :class:`LaminarViscosity`, less what makes it weak: on a lattice −Σ V x_ij·∇W_ij misses the number
-    of dimensions by some percent, and 0.01 h² takes another.  Both stay however fine the spacing.
+    :class:`LaminarViscosity`, less what makes it weak: on a lattice −Σ V x_ij·∇W_ij misses the
+    number of dimensions by some percent, and 0.01 h² takes another.  Both stay however fine the
+    spacing.
     """
 
     def shear(self, i, j, pair):

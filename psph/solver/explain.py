@@ -127,14 +127,14 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     )
     yield f"Pass over the neighbours, one a step, {flops} flops a pair"
     for call in plan.called:
-        yield f"  {type(call.effect).__name__:<20}{_first_line(call.effect)}"
-        yield f"  {'':<20}because: {call.reason}"
+        yield f"  {type(call.effect).__name__:<22}{_first_line(call.effect)}"
+        yield f"  {'':<22}because: {call.reason}"
     yield "Equation of state"
-    yield f"  {type(plan.state).__name__:<20}{_first_line(plan.state)}"
-    yield f"  {'':<20}because: {plan.state_reason}"
+    yield f"  {type(plan.state).__name__:<22}{_first_line(plan.state)}"
+    yield f"  {'':<22}because: {plan.state_reason}"
     yield "Not simulated"
     for entry in plan.absent:
-        yield f"  {entry.effect.__name__:<20}the case does not say {_asked_by(entry.key)}"
+        yield f"  {entry.effect.__name__:<22}the case does not say {_asked_by(entry.key)}"
 
 
 def _asked_by(key: str) -> str:
@@ -151,7 +151,7 @@ def _step_lines(scene, plan: Plan) -> Iterator[str]:
     pull = max((math.hypot(*g) for g in gravity), default=0.0)
     yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
     for step, name in plan.step_limits(scene.expected_speed, pull):
-        yield f"  {name:<20}{step:.3g} s"
+        yield f"  {name:<22}{step:.3g} s"
     step, name = plan.longest_step(scene.expected_speed, pull)
     end = scene.case.time.end
     yield f"  expected            {math.ceil(end / step):,} steps to {end:g} s, limited by {name}"
