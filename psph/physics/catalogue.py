@@ -5,6 +5,7 @@ from typing import NamedTuple
 from psph.physics.continuity import Continuity
 from psph.physics.gravity import Gravity
 from psph.physics.pressure import MinimumPressure, SymmetricPressure
+from psph.physics.slip import NoSlip
 from psph.physics.state import Linear, Tait
 from psph.physics.surface import FreeSurface
 from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
@@ -27,6 +28,7 @@ CATALOGUE = (
     Entry("physics.pressure_gradient=symmetric", SymmetricPressure),
     Entry("physics.pressure_gradient=minimum", MinimumPressure),
     Entry("fluids.*.viscosity", LaminarViscosity),
+    Entry("walls.*.no_slip", NoSlip),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.gravity", Gravity),
     Entry("physics.free_surface", FreeSurface),

@@ -32,6 +32,9 @@ class ParticleView(NamedTuple):
     rest_density: Any = None
     viscosity: Any = None
     kernel_sum: Any = None
+    wall: Any = None
+    no_slip: Any = None
+    slip: Any = None
     sound_speed: Any = None
     smoothing_length: Any = None
 

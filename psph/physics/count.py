@@ -12,7 +12,7 @@ from psph.physics import compose
 from psph.physics.compose import ParticleView, added, geometry, pushed
 from psph.vectors import subtract
 
-VECTORS = {"position": 1.0, "velocity": -1.0}
+VECTORS = {"position": 1.0, "velocity": -1.0, "slip": 1.0}
 """Entries of a view with components; so the pair of the trial approaches, as viscosities ask."""
 
 APART = 0.5

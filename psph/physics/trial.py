@@ -20,7 +20,7 @@ class UnknownField(TypeError):
 VALUES = (1.0, 0.5)
 """What a trial answers: formulas compare with zero or a threshold, and each side is to be seen."""
 
-VECTORS = ("position", "velocity", "x_ij", "u_ij")
+VECTORS = ("position", "velocity", "slip", "x_ij", "u_ij")
 
 
 class _Recorder:

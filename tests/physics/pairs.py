@@ -24,6 +24,9 @@ def view(n=2, dim=2, seed=3):
         rest_density=1000.0,
         viscosity=rng.uniform(0.5, 1.0, n),
         kernel_sum=rng.uniform(0.8, 1.0, n),
+        wall=np.resize((0.0, 1.0, 0.0), n),
+        no_slip=np.resize((0.0, 1.0), n),
+        slip=tuple(rng.normal(size=n) for _ in range(dim)),
         sound_speed=50.0,
         smoothing_length=H,
     )
@@ -47,6 +50,7 @@ def rates(effects, reductions, k, periods, particles, a, b):
         compose.density_rate(effects, i, j, pair),
         compose.radial(effects, i, j, pair),
         compose.shear(effects, i, j, pair),
+        compose.push(effects, i, j, pair),
         compose.body(effects, i),
         compose.finish_acceleration(reductions, totals, i),
         compose.limit_density(effects, i, 987.0),
