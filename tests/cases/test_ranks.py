@@ -17,6 +17,13 @@ END = {
     "dam_break": 0.02,
     "dam_break_3d": 0.01,
     "minimal": 0.05,
+    "taylor_green": 0.05,
+    "poiseuille": 0.02,
+    "couette": 0.02,
+    "standing_wave": 0.02,
+    "elliptic_drop": 1e-3,
+    "gresho": 0.05,
+    "sound_wave": 2.0,
 }
 """Seconds of simulated time: some hundred steps, several rebuilds."""
 
@@ -43,7 +50,7 @@ def test_same_bits_on_any_number_of_ranks(case, tmp_path):
         assert other.keys() == last.keys()
         for name in last:
             assert np.array_equal(other[name], last[name]), f"{name} on {n} ranks"
-        for table in ("log.csv", "probes.csv"):
+        for table in ("log.csv", "probes.csv", "errors.csv"):
             path = results[1].folder / table
             if path.exists():
                 assert path.read_text() == (results[n].folder / table).read_text()
