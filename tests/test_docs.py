@@ -36,7 +36,7 @@ CHEAP = {"check", "explain", "schema"}
 PROGRAMS = {"source", "export", "pip"}
 """Commands that are taken as they stand."""
 NOT_THERE = ("psph/physics/cohesion.py", "psph/physics/floor.py", "psph/output/front.py",
-             "run/cases/poiseuille.toml")
+             "run/cases/plates.toml")
 """Files that an example would be."""
 
 
@@ -288,7 +288,7 @@ def test_example_output(module, tmp_path):
 
 def test_example_case(tmp_path):
     [block] = fences("docs/contributing.md", "toml")
-    path = tmp_path / "poiseuille.toml"
+    path = tmp_path / "plates.toml"
     path.write_text(block, encoding="utf-8")
     scene = Scene(load(path))
     assert check(scene) == []

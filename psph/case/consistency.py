@@ -25,7 +25,7 @@ def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
         _dimensions, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected, _continued,
-        _probed, _names, _single,
+        _no_slip, _probed, _names, _single,
     )
     return [
         # The message goes in as a value: braces in it are not placeholders.
@@ -144,6 +144,16 @@ def _continued(case: Case) -> Iterator[Finding]:
         if wall.continues is not None and wall.continues not in case.fluids:
             yield ("walls", name, "continues"), wall.continues, (
                 f"no fluid has this name; {advise(wall.continues, case.fluids)}"
+            )
+
+
+def _no_slip(case: Case) -> Iterator[Finding]:
+    if any(fluid.viscosity for fluid in case.fluids.values()):
+        return
+    for name, wall in case.walls.items():
+        if wall.no_slip:
+            yield ("walls", name, "no_slip"), True, (
+                "no fluid has any friction; give a fluid its viscosity, or take no_slip out"
             )
 
 

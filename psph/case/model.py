@@ -106,6 +106,10 @@ class Wall(Table):
         "velocity that the fluid beside it feels, as that of a belt: the wall stays where it is",
         None, unit="m/s", otherwise="zeros",
     )
+    no_slip: bool = key(
+        "the fluid's friction holds it at the wall's velocity right at the face; needs a viscosity",
+        False,
+    )
     continues: Name | None = key(
         "fluid whose density and pressure at the start go on in the wall", None,
         otherwise="the first fluid",

@@ -48,8 +48,13 @@ FIELDS = {
     "mass": Field("kg", "mass"),
     "rest_density": Field("kg/m3", "density at zero pressure"),
     "viscosity": Field("m2/s", "kinematic viscosity"),
+    "wall": Field("1", "1 in a wall, 0 in a fluid, as effects read it"),
+    "no_slip": Field("1", "1 in a wall to which the fluid sticks, else 0"),
     "kernel_sum": Field("1", "sum of W m/rho over the support, the particle included"),
     "crowding": Field("1", "h times the gradient of how crowded it is", vector=True),
     "gradient_correction": Field("1", "correction of the kernel's gradient, L - 1", symmetric=True),
+    "slip": Field(
+        "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", vector=True
+    ),
 }
 """Every field by name.  In 1D and 2D a mass is per m² and per m of depth, and a density per the same."""

@@ -10,6 +10,7 @@ from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
 )
 from psph.physics.shifting import ParticleShifting
+from psph.physics.slip import NoSlip
 from psph.physics.state import Linear, Tait
 from psph.physics.surface import FreeSurface
 from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
@@ -33,6 +34,7 @@ CATALOGUE = (
     Entry("physics.pressure_gradient=minimum", MinimumPressure),
     Entry("physics.pressure_gradient=difference", DifferencePressure),
     Entry("fluids.*.viscosity", LaminarViscosity),
+    Entry("walls.*.no_slip", NoSlip),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.gravity", Gravity),
     Entry("physics.free_surface", FreeSurface),

@@ -34,6 +34,9 @@ class ParticleView(NamedTuple):
     kernel_sum: Any = None
     crowding: Any = None
     gradient_correction: Any = None
+    wall: Any = None
+    no_slip: Any = None
+    slip: Any = None
     sound_speed: Any = None
     smoothing_length: Any = None
 
@@ -55,7 +58,7 @@ class Pair(NamedTuple):
     """W′(r)/r, so that ∇W_ij = dw_r x_ij; negative inside the support, zero outside."""
 
 
-VECTORS = ("position", "velocity", "crowding", "x_ij", "u_ij")
+VECTORS = ("position", "velocity", "crowding", "slip", "x_ij", "u_ij")
 """Entries of a view or a pair with a number for each dimension."""
 
 MATRICES = ("gradient_correction",)

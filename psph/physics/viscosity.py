@@ -2,12 +2,23 @@
 
 from typing import Annotated, NamedTuple
 
+from numba.extending import register_jitable
 from pydantic import Field
 
 from psph.vectors import add, dot, times
 
 SINGULARITY = 0.01
 """η² = 0.01 h² keeps r² + η² away from zero."""
+
+
+@register_jitable
+def friction(i, j, pair):
+    """Coefficient of a difference of velocities in the acceleration by the fluid's viscosity, 1/s."""
+    v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
+    # (μ_i + μ_j)/(ρ_i + ρ_j)² in specific volumes: one division in place of three.
+    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * pair.r2
+    under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
+    return 4.0 * j.mass * pair.dw_r * over / under
 
 
 class LaminarViscosity(NamedTuple):
@@ -24,11 +35,7 @@ class LaminarViscosity(NamedTuple):
 
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
-        v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
-        # (μ_i + μ_j)/(ρ_i + ρ_j)² in specific volumes: one division in place of three.
-        over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * pair.r2
-        under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
-        return 4.0 * j.mass * pair.dw_r * over / under
+        return friction(i, j, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""

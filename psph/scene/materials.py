@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.case.shapes import Shape
+from psph.particles.fields import WALL
 from psph.scene.lattice import TOLERANCE, Lattice
 from psph.scene.shapes import Grid, inside
 
@@ -19,7 +20,8 @@ class Material(NamedTuple):
     """What the particles of a fluid or a wall have in common.
 
     ``density`` at zero pressure in kg/m³; kinematic ``viscosity`` in m²/s; ``mass`` of a particle
-    in kg (per m of depth in 2D, per m² in 1D).  A wall takes them from the fluid it continues.
+    in kg (per m of depth in 2D, per m² in 1D).  A wall takes them from the fluid it continues;
+    ``no_slip`` if that fluid sticks to it.
     """
 
     name: str
@@ -27,6 +29,12 @@ class Material(NamedTuple):
     density: float
     viscosity: float
     mass: float
+    no_slip: bool = False
+
+    @property
+    def wall(self) -> bool:
+        """Whether it is a wall."""
+        return self.kind == WALL
 
 
 class Start(NamedTuple):

@@ -146,6 +146,7 @@ class Scene:
             Material(
                 name, FLUID if index < self.layout.fluids else WALL,
                 self.bodies[source].density, self.bodies[source].viscosity, start.mass(volume),
+                getattr(self.bodies[index], "no_slip", False),
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
         )

@@ -19,7 +19,7 @@ ALWAYS = (
 )
 """Fields of every scene."""
 
-PER_MATERIAL = ("mass", "rest_density", "viscosity")
+PER_MATERIAL = ("mass", "rest_density", "viscosity", "wall", "no_slip")
 """Quantities fixed at the start: one number where all materials agree, else an array."""
 
 FORCE_LIMIT = 0.25
@@ -220,5 +220,7 @@ def _plain(value) -> str:
     if hasattr(type(value), "model_fields"):
         inner = ", ".join(f"{k} = {_plain(v)}" for k, v in dict(value).items())
         return "{ " + inner + " }"
+    if isinstance(value, bool):
+        return str(value).lower()
     return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"
 

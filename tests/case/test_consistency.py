@@ -76,6 +76,10 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             "walls.floor.continues: \"watre\": no fluid has this name; did you mean 'water'?",
         ),
         (
+            WATER + WALL + "no_slip = true",
+            "walls.floor.no_slip: true: no fluid has any friction; give a fluid its viscosity, or",
+        ),
+        (
             WATER + WALL.replace("floor", "water"),
             "walls.water: a fluid has this name too; give the wall another",
         ),

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import pytest
 from pydantic import Field, ValidationError
 
-from psph.case.model import Fluid
+from psph.case.model import Fluid, Wall
 from psph.case.physics import physics_table
 from psph.physics.catalogue import CATALOGUE, Entry
 
@@ -78,6 +78,7 @@ def test_the_schema_allows_the_bare_value():
 def test_every_key_of_the_catalogue_has_a_place():
     for entry in CATALOGUE:
         first, _, rest = entry.key.partition(".")
-        assert first in ("", "physics", "fluids")
-        if first == "fluids":
-            assert rest.removeprefix("*.") in Fluid.model_fields
+        assert first in ("", "physics", "fluids", "walls")
+        if first in ("fluids", "walls"):
+            table = {"fluids": Fluid, "walls": Wall}[first]
+            assert rest.removeprefix("*.") in table.model_fields

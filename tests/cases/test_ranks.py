@@ -17,6 +17,13 @@ END = {
     "dam_break": 0.02,
     "dam_break_3d": 0.01,
     "minimal": 0.05,
+    "taylor_green": 0.05,
+    "poiseuille": 0.02,
+    "couette": 0.02,
+    "standing_wave": 0.02,
+    "elliptic_drop": 1e-3,
+    "gresho": 0.05,
+    "sound_wave": 2.0,
 }
 """Seconds of simulated time: some hundred steps, several rebuilds."""
 

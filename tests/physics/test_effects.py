@@ -16,6 +16,7 @@ from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
 )
 from psph.physics.shifting import ParticleShifting
+from psph.physics.slip import NoSlip
 from psph.physics.surface import FreeSurface
 from psph.physics.trial import UnknownField, reads
 from psph.physics.viscosity import ArtificialViscosity, CorrectedViscosity, LaminarViscosity
@@ -111,6 +112,43 @@ def test_laminar_viscosity(dim):
     a /= (rho[0] + rho[1]) ** 2 * (r * r + 0.01 * H * H)
     assert LaminarViscosity().shear(*pair_of(p, 0, 1)) * u == pytest.approx(a)
     assert a @ u < 0  # friction
+
+
+def gathered(effect, particles, i, *others):
+    """The effect's sum at particle ``i`` over the others, finished."""
+    one = pair_of(particles, i, others[0])[0]
+    total = effect.start(one)
+    for b in others:
+        total = effect.gather(total, *pair_of(particles, i, b))
+    return effect.finish_value(total, one, kernel("hyperbolic", H, len(particles.position)))
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_a_wall_without_slip_mirrors_the_mean_of_the_fluid_around_it(dim):
+    p = view(n=5, dim=dim)
+    p = p._replace(wall=np.array([0, 1, 0, 0, 1.0]), no_slip=np.array([0, 1, 0, 0, 0.0]))
+    w = np.array([written_out(p, 1, b)[3] for b in (0, 2, 3)])
+    u = np.array([[v[b] for v in p.velocity] for b in (0, 2, 3)])
+    own = np.array([v[1] for v in p.velocity])
+    found = gathered(NoSlip(), p, 1, 0, 2, 3, 4)
+    assert found == pytest.approx(own - w @ u / w.sum())  # the other wall, 4, is left out
+    assert gathered(NoSlip(), p, 4, 0, 1, 2, 3) == (0.0,) * dim  # a wall that does not ask
+    assert gathered(NoSlip(), p, 0, 1, 2, 3, 4) == (0.0,) * dim  # fluid
+    assert gathered(NoSlip(), p, 1, 4) == (0.0,) * dim  # no fluid in reach
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim):
+    p = view(dim=dim)
+    mean, slip = np.full(dim, 0.3), [v[1] for v in p.velocity] - np.full(dim, 0.3)
+    p = p._replace(slip=tuple(np.array([0.0, s]) for s in slip))
+    i, j, pair = pair_of(p, 0, 1)
+    mirrored = p._replace(velocity=tuple(
+        np.array([v[0], 2.0 * v[1] - m]) for v, m in zip(p.velocity, mean)
+    ))
+    expected = LaminarViscosity().shear(i, j, pair) * np.array(pair_of(mirrored, 0, 1)[2].u_ij)
+    found = LaminarViscosity().shear(i, j, pair) * np.array(pair.u_ij) + NoSlip().push(i, j, pair)
+    assert found == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("approaching", (True, False))

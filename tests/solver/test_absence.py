@@ -90,16 +90,25 @@ def without(entry):
     return [other for other in CATALOGUE if other is not entry]
 
 
-def calling_for(entry) -> str:
-    """An override that calls for the effect of an entry."""
+STICKY = (
+    "walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}, no_slip=true}",
+    "fluids.water.viscosity=0.001",
+)
+"""Overrides: a wall without slip, and the friction that it needs."""
+
+
+def calling_for(entry) -> list[str]:
+    """Overrides that call for the effect of an entry."""
     key, _, choice = entry.key.partition("=")
+    if key.startswith("walls."):
+        return [*STICKY]
     if choice:
-        return f"{key}={choice}"
+        return [f"{key}={choice}"]
     if "*" in key:
-        return f"{key.replace('*', 'water')}=0.001"
+        return [f"{key.replace('*', 'water')}=0.001"]
     hints = get_type_hints(entry.effect)
     values = {name: 0.5 if hint is float else [0.5, 0.5] for name, hint in hints.items()}
-    return f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
+    return [f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"]
 
 
 def not_calling_for(entry) -> list[str]:
@@ -120,7 +129,7 @@ def test_an_absent_effect_leaves_everything_as_it_was_before_it_existed(entry, f
 
 @pytest.mark.parametrize("entry", CATALOGUE, ids=lambda e: e.effect.__name__)
 def test_a_present_effect_costs_instructions(entry, footprint, loop):
-    scene = [calling_for(entry)] if entry.key else []
+    scene = calling_for(entry) if entry.key else []
     on, off = footprint(CATALOGUE, *scene), footprint(without(entry), *scene)
     assert on.effects == off.effects | {entry.effect.__name__}
     more = len(loop.instructions(on.call)) - len(loop.instructions(off.call))

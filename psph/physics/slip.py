@@ -1,0 +1,40 @@
+"""What friction at a wall does to the fluid beside it."""
+
+from typing import NamedTuple
+
+from psph.physics.viscosity import friction
+from psph.vectors import add, scale, subtract, zero_like
+
+NO_FLUID = 1e-300
+"""Keeps a kernel sum without any fluid from dividing by zero, 1/m^d."""
+
+
+class NoSlip(NamedTuple):
+    """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
+
+    A wall particle shows the velocity 2 v_wall − ṽ, ṽ = Σ_f u_f W_wf / Σ_f W_wf over the fluid, in
+    the viscous force alone: beside that of :class:`LaminarViscosity`, a_i = Σ_j F_ij (s_i − s_j)
+    with its coefficient F_ij, s = v_wall − ṽ in such a wall and 0 elsewhere.  Adami, Hu & Adams
+    (2012), J. Comput. Phys. 231, 7057, eqs. (22), (23).  ṽ is gathered in the same pass as the
+    forces, so it is that of the step before.
+    """
+
+    writes = "slip"
+
+    def push(self, i, j, pair):
+        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
+        return scale(subtract(i.slip, j.slip), friction(i, j, pair))
+
+    def start(self, i):
+        """No fluid yet: Σ W and Σ u W."""
+        return 0.0, zero_like(i.position)
+
+    def gather(self, total, i, j, pair):
+        """Take a fluid neighbour j into both."""
+        w = (1.0 - j.wall) * pair.w
+        return total[0] + w, add(total[1], scale(j.velocity, w))
+
+    def finish_value(self, total, i, kernel):
+        """v_wall − ṽ in a wall without slip, 0 elsewhere and out of reach of the fluid, m/s."""
+        share = i.no_slip / max(total[0], NO_FLUID)
+        return scale(subtract(scale(i.velocity, total[0]), total[1]), share)
