@@ -6,7 +6,8 @@ All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
 """
 
 import math
-from typing import NamedTuple
+from itertools import product
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.extending import overload
@@ -253,6 +254,39 @@ class FourthOrder(NamedTuple):
         return 2.0 * slope(narrow, r) - slope(wide, r)
 
 
+class Normalised(NamedTuple):
+    """A kernel whose slope is divided by its first moment M = −(1/d) Σ dx^d r W′ on the lattice.
+
+    Gradients of linear fields are then exact on that lattice.  W itself stays.
+    """
+
+    kernel: Any
+    stretch: float
+    """1/M."""
+
+    @property
+    def support(self) -> float:
+        """Where W ends, r/h."""
+        return self.kernel.support
+
+    @property
+    def inverse_h(self) -> float:
+        """1/h, 1/m."""
+        return self.kernel.inverse_h
+
+    def w(self, r):
+        """W(r)."""
+        return weight(self.kernel, r)
+
+    def dw(self, r):
+        """W′(r)/M."""
+        return self.stretch * slope(self.kernel, r)
+
+    def dw_r(self, r):
+        """W′/(M r)."""
+        return self.stretch * slope_over_r(self.kernel, r)
+
+
 KERNELS = {
     "wendland-c2": WendlandC2,
     "hyperbolic": Hyperbolic,
@@ -274,3 +308,12 @@ def kernel(name: str, smoothing_length: float, dimensions: int):
     cls = KERNELS[name]
     constants = np.atleast_1d(cls.norm[dimensions - 1]) / smoothing_length**dimensions
     return cls(1.0 / smoothing_length, *constants.tolist())
+
+
+def normalised(kernel, spacing: float, dimensions: int) -> Normalised:
+    """``kernel`` normalised on the row, square or cube lattice of ``spacing``, m."""
+    reach = math.ceil(kernel.support / (kernel.inverse_h * spacing))
+    sites = product(range(-reach, reach + 1), repeat=dimensions)
+    radii = (math.hypot(*site) * spacing for site in sites if any(site))
+    moment = -sum(r * kernel.dw(r) for r in radii) * spacing**dimensions / dimensions
+    return Normalised(kernel, 1.0 / moment)

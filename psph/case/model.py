@@ -51,6 +51,9 @@ class Space(Table):
         "smoothing length h in units of the spacing, h/dx", 1.4, unit="1", ge=0.6, le=4
     )
     kernel: Literal[tuple(KERNELS)] = key("smoothing kernel", next(iter(KERNELS)))
+    normalised: bool = key(
+        "divide the kernel's slope by its first moment on the lattice of the start", False
+    )
     periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("axes along which it repeats", ())
     lower: Vector | None = key(
         "lowest corner of the domain; required where an axis is periodic", None, unit="m",

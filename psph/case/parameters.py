@@ -42,8 +42,11 @@ def summary(of: type) -> str:
 
 
 def as_numbers(table: Parameters) -> dict[str, Any]:
-    """The values of such a table as floats and tuples of floats."""
-    return {
-        name: tuple(map(float, x)) if isinstance(x, (list, tuple)) else float(x)
-        for name, x in dict(table).items()
-    }
+    """The values of such a table as floats and tuples of floats; words stay."""
+    return {name: _as_number(value) for name, value in dict(table).items()}
+
+
+def _as_number(value: Any) -> Any:
+    if isinstance(value, (list, tuple)):
+        return tuple(map(float, value))
+    return value if isinstance(value, str) else float(value)

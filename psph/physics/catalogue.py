@@ -6,14 +6,15 @@ from psph.physics.continuity import Continuity
 from psph.physics.correction import GradientCorrection
 from psph.physics.diffusion import DensityDiffusion
 from psph.physics.gravity import Gravity
+from psph.physics.potential import PairPotential
 from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
 )
-from psph.physics.shifting import ParticleShifting
+from psph.physics.shifting import ParticleShifting, PositionShift
 from psph.physics.slip import NoSlip
 from psph.physics.state import Linear, Tait
-from psph.physics.surface import FreeSurface
-from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
+from psph.physics.surface import FreeSurface, TensionFloor
+from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity, PairDamping
 
 
 class Entry(NamedTuple):
@@ -36,11 +37,15 @@ CATALOGUE = (
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("walls.*.no_slip", NoSlip),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
+    Entry("physics.pair_damping", PairDamping),
+    Entry("physics.pair_potential", PairPotential),
     Entry("physics.gravity", Gravity),
     Entry("physics.free_surface", FreeSurface),
+    Entry("physics.tension_floor", TensionFloor),
     Entry("physics.background_pressure", BackgroundPressure),
     Entry("physics.density_diffusion", DensityDiffusion),
     Entry("physics.particle_shifting", ParticleShifting),
+    Entry("physics.position_shift", PositionShift),
     Entry("physics.gradient_correction", GradientCorrection),
 )
 

@@ -39,6 +39,8 @@ class ParticleView(NamedTuple):
     slip: Any = None
     sound_speed: Any = None
     smoothing_length: Any = None
+    largest_speed: Any = None
+    """Of all fluid particles, a step old; for displacements alone."""
 
 
 class Pair(NamedTuple):
@@ -240,22 +242,31 @@ displacement = _sum_of("displacement", _no_vector, _plus_vector)
 """(effects, i, dt) → what a fluid particle moves beside its velocity in a step, m."""
 
 
-def limit_density(effects, i, rho):
-    """ρ after every effect that bounds it, kg/m^d."""
-    for effect in effects:
-        if hasattr(effect, "limit_density"):
-            rho = effect.limit_density(i, rho)
-    return rho
+def _limit_by(name: str):
+    """A walker: ρ after ``effect.name(i, rho)`` of every effect that has such a method."""
+
+    def limited(effects, i, rho):
+        for effect in effects:
+            if hasattr(effect, name):
+                rho = getattr(effect, name)(i, rho)
+        return rho
+
+    @overload(limited)
+    def typed(effects, i, rho):
+        if len(effects) == 0:
+            return lambda effects, i, rho: rho
+        limit = method_of(effects[0], name)
+        if limit is None:
+            return lambda effects, i, rho: limited(effects[1:], i, rho)
+        return lambda effects, i, rho: limited(effects[1:], i, limit(effects[0], i, rho))
+
+    return limited
 
 
-@overload(limit_density)
-def _typed_limit_density(effects, i, rho):
-    if len(effects) == 0:
-        return lambda effects, i, rho: rho
-    limit = method_of(effects[0], "limit_density")
-    if limit is None:
-        return lambda effects, i, rho: limit_density(effects[1:], i, rho)
-    return lambda effects, i, rho: limit_density(effects[1:], i, limit(effects[0], i, rho))
+limit_density = _limit_by("limit_density")
+"""(effects, i, rho) → ρ of a fluid particle after every effect that bounds it, kg/m^d."""
+limit_wall_density = _limit_by("limit_wall_density")
+"""(effects, i, rho) → the same in a wall, kg/m^d."""
 
 
 # A reduction is an effect with a sum of its own: start -> gather, gather, ... -> finish.

@@ -1,6 +1,6 @@
 """Discrete forms of the acceleration −∇p/ρ, and a pressure that all particles share."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
@@ -9,6 +9,13 @@ from psph.vectors import add, scale, zero_like
 
 NOT_A_PRESSURE = 1e30
 """Stands for a neighbour outside the support in a minimum over pressures, Pa."""
+
+
+AUTO = "auto"
+"""A background pressure that follows from the scene."""
+
+MARGIN = 1.4
+"""Such a pressure over what the scene is known to need."""
 
 
 class SymmetricPressure(NamedTuple):
@@ -78,16 +85,27 @@ class BackgroundPressure(NamedTuple):
     given and as saved, stays free of p_b.  Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
     Σ_j ∇W_ij/ρ_j would vanish for particles in perfect order; where it does not, p_b restores order
     at the price of noise.  It conserves momentum and, being constant, energy.  A free surface would
-    fly apart.
+    fly apart.  "auto" is 1.4 times what the start lacks to p = 0, or what a stop of its fastest flow
+    can lack, ρ₀v²; and nothing where there is a free surface.
     """
 
     pressure: Annotated[
-        float,
+        Annotated[float, Field(ge=0)] | Literal["auto"],
         Field(
-            ge=0, description="p_b, no less than what the pressure falls below zero",
+            description='p_b, no less than what the pressure falls below zero, or "auto"',
             json_schema_extra={"unit": "Pa"},
         ),
     ]
+
+    def in_scene(self, scene):
+        """With "auto", what the scene needs, or None."""
+        if self.pressure != AUTO:
+            return self
+        if scene.has_free_surface:
+            return None
+        stop = max(m.density for m in scene.materials) * scene.starting_speed**2
+        needed = MARGIN * max(-scene.lowest_pressure, stop)
+        return BackgroundPressure(needed) if needed > 0.0 else None
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""

@@ -37,3 +37,32 @@ class FreeSurface(NamedTuple):
     def limit_density(self, i, rho):
         """ρ₀ on the surface, ρ inside, kg/m^d."""
         return i.rest_density if i.kernel_sum < self.threshold else rho
+
+
+class TensionFloor(NamedTuple):
+    """Water that is torn apart holds no more tension than this, and walls hold none.
+
+    ρ_i ≥ f ρ₀_i in the fluid, ρ_i ≥ ρ₀_i in walls: below, the density is set to it.  Where a fluid
+    has a free surface a splash would otherwise be held together, or pulled to a wall, by
+    pressures that water does not bear.
+    """
+
+    least: Annotated[
+        float,
+        Field(
+            gt=0, le=1, description="f: least density of the fluid over its rest density",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 0.98
+
+    def in_scene(self, scene):
+        """None in a closed domain, where a fluid may be under tension."""
+        return self if scene.has_free_surface else None
+
+    def limit_density(self, i, rho):
+        """ρ or its floor in the fluid, kg/m^d."""
+        return max(rho, self.least * i.rest_density)
+
+    def limit_wall_density(self, i, rho):
+        """ρ or its floor in a wall, kg/m^d."""
+        return max(rho, i.rest_density)

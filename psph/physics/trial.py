@@ -63,5 +63,6 @@ def _call_all(effect, i, j, pair, kernel) -> None:
         effect.body(i)
     if hasattr(effect, "displacement"):
         effect.displacement(i, 1.0)
-    if hasattr(effect, "limit_density"):
-        effect.limit_density(i, 1.0)
+    for name in ("limit_density", "limit_wall_density"):
+        if hasattr(effect, name):
+            getattr(effect, name)(i, 1.0)

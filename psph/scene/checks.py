@@ -10,7 +10,7 @@ from psph.case import CaseError
 from psph.case.tables import AXES
 from psph.scene.lattice import TOLERANCE
 from psph.scene.scene import SOUND_OVER_SPEED, Scene
-from psph.scene.walls import has_free_surface, layers_needed, thinnest_walls
+from psph.scene.walls import layers_needed, thinnest_walls
 
 SLABS_IN_A_PERIOD = 3
 """A periodic axis must hold that many cut-off radii: then no particle meets another twice, and all
@@ -209,7 +209,7 @@ def _surface_threshold(scene: Scene) -> Iterator[str]:
 
 
 def _minimum_at_surface(scene: Scene) -> Iterator[str]:
-    if scene.case.physics.pressure_gradient == "minimum" and has_free_surface(scene):
+    if scene.case.physics.pressure_gradient == "minimum" and scene.has_free_surface:
         yield (
             'physics.pressure_gradient: "minimum" explodes at a free surface, where it only pushes '
             'outward, and the fluid has one; take "symmetric", or enclose the fluid'
@@ -217,7 +217,7 @@ def _minimum_at_surface(scene: Scene) -> Iterator[str]:
 
 
 def _background_at_surface(scene: Scene) -> Iterator[str]:
-    if scene.case.physics.background_pressure is not None and has_free_surface(scene):
+    if scene.case.physics.background_pressure is not None and scene.has_free_surface:
         yield (
             "physics.background_pressure: blows a free surface apart, and the fluid has one; "
             "leave it out, or enclose the fluid"

@@ -15,7 +15,8 @@ from psph.scene.lattice import lattice_around
 from psph.scene.materials import Census, Layout, Material, Start, take_census
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
-from psph.smoothing import kernel
+from psph.scene.walls import has_free_surface
+from psph.smoothing import kernel, normalised
 from psph.solutions.catalogue import SOLUTIONS
 from psph.solutions.setting import Setting
 
@@ -38,6 +39,8 @@ class Scene:
         self.dimensions, self.spacing = space.dimensions, space.spacing
         self.smoothing_length = space.smoothing * space.spacing
         self.kernel = kernel(space.kernel, self.smoothing_length, space.dimensions)
+        if space.normalised:
+            self.kernel = normalised(self.kernel, self.spacing, space.dimensions)
         self.bodies = (*case.fluids.values(), *case.walls.values())
         shapes = tuple(body.shape for body in self.bodies)
         axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
@@ -88,8 +91,13 @@ class Scene:
         fluids = slice(len(self.case.fluids))
         height = self.census.top[fluids].max() - self.census.bottom[fluids].min() + self.spacing
         falling = math.sqrt(2.0 * math.hypot(*self.gravity) * max(height, 0.0))
+        return max(falling, self.starting_speed)
+
+    @cached_property
+    def starting_speed(self) -> float:
+        """The largest speed of a fluid, a wall or the exact solution at the start, m/s."""
         known = self.exact.top_speed(self.unheard_setting) if self.exact else 0.0
-        return max(falling, known, *(math.hypot(*v) for v in (*self.velocities, *self._kicked)))
+        return max(known, *(math.hypot(*v) for v in (*self.velocities, *self._kicked)))
 
     @cached_property
     def sound_speed(self) -> float:
@@ -105,6 +113,16 @@ class Scene:
                 "you expect"
             ])
         return given or SOUND_OVER_SPEED * self.expected_speed
+
+    @cached_property
+    def has_free_surface(self) -> bool:
+        """Whether a fluid site has an empty site beside it at the start."""
+        return has_free_surface(self)
+
+    @cached_property
+    def lowest_pressure(self) -> float:
+        """The lowest pressure of a fluid at the start, Pa."""
+        return min(self._lowest_pressure(k) for k in range(self.layout.fluids))
 
     @cached_property
     def state(self):
@@ -209,6 +227,17 @@ class Scene:
             surface=float(self.census.top[index]) + 0.5 * self.spacing,
             exact=(lambda x: self.exact.pressure(x, 0.0, self.setting)) if exact else None,
         )
+
+    def _lowest_pressure(self, fluid: int) -> float:
+        start = self.starts[fluid]
+        if not start.exact:
+            return start.pressure
+        found = []
+        for first, last in self.lattice.chunks():
+            held = self.layout.materials(first, last) == fluid
+            grid = self.lattice.grid(first, last)
+            found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
+        return float(start.exact(np.concatenate(found)).min())
 
     def _nearest_fluid_site(self, point: tuple[float, ...]) -> tuple[int, int]:
         """(plane, place in the plane) of the fluid site nearest to ``point``; ties: the first."""

@@ -1,12 +1,17 @@
 """How many layers of particles a wall has behind the face that a fluid touches."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from psph.scene.lattice import TOLERANCE
 from psph.scene.materials import NONE
-from psph.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
 
 Thin = dict[int, tuple[int, tuple[float, ...]]]
 """For a wall that is too thin somewhere: the fewest layers, and a site that has so many."""

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from psph.physics.gravity import Gravity
 from psph.physics.surface import FreeSurface
 from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
-from psph.scene.walls import has_free_surface
 from psph.solver.plan import Plan, words
 
 UNSEEN = 0.01
@@ -27,7 +26,7 @@ def _gravity(scene, plan: Plan, present: dict) -> str | None:
 
 
 def _surface(scene, plan: Plan, present: dict) -> str | None:
-    if has_free_surface(scene):
+    if scene.has_free_surface:
         return None
     return (
         "fluid, walls and periods leave no free surface at the start; without physics.free_surface "

@@ -16,7 +16,7 @@ import numpy as np
 
 from psph.jit import compiled
 from psph.particles.fields import FLUID
-from psph.physics.compose import displacement, limit_density, take
+from psph.physics.compose import displacement, limit_density, limit_wall_density, take
 from psph.physics.state import pressure as state_pressure
 from psph.vectors import add, at, dot, put, scale
 
@@ -43,6 +43,8 @@ def kick_drift_predict(
             put(position, k, add(at(position, k), move))
             put(predicted_velocity, k, add(v, kick))
             rho = limit_density(effects, i, rho)
+        else:
+            rho = limit_wall_density(effects, i, rho)
         specific_volume[k] = 1.0 / rho
         pressure[k] = state_pressure(state, rho, i.rest_density, i.sound_speed)
 
@@ -78,18 +80,21 @@ def kick(first, last, dt, effects, view, kind, position, velocity, acceleration,
     a2_max = 0.0
     broken = -1
     for k in range(np.uint64(first), np.uint64(last)):
+        i = take(view, k)
         rho = density[k] + 0.5 * dt * rate[k]
         if kind[k] == FLUID:
             a = at(acceleration, k)
             v = add(at(velocity, k), scale(a, 0.5 * dt))
             put(velocity, k, v)
-            rho = limit_density(effects, take(view, k), rho)
+            rho = limit_density(effects, i, rho)
             v2, a2 = dot(v, v), dot(a, a)
             v2_max = max(v2_max, v2)
             a2_max = max(a2_max, a2)
             x = at(position, k)
             if not v2 + a2 + dot(x, x) < np.inf and broken < 0:
                 broken = np.int64(k)
+        else:
+            rho = limit_wall_density(effects, i, rho)
         density[k] = rho
         if not abs(rho) < np.inf and broken < 0:
             broken = np.int64(k)

@@ -100,12 +100,15 @@ def make_plan(scene) -> Plan:
     """The plan of a scene (psph.scene.Scene)."""
     case = scene.case
     calls = [(entry, *found) for entry in CATALOGUE if (found := _called_for(case, entry))]
-    fitted = [(_in_scene(effect, scene), reason) for _, effect, reason in calls]
+    fitted = [
+        (entry, fits, reason)
+        for entry, effect, reason in calls if (fits := _in_scene(effect, scene)) is not None
+    ]
     called = tuple(
         Called(effect, reason, reads(effect, scene.dimensions, scene.kernel))
-        for effect, reason in fitted
+        for _, effect, reason in fitted
     )
-    present = {entry for entry, *_ in calls}
+    present = {entry for entry, *_ in fitted}
     [(state, state_reason)] = filter(None, (_called_for(case, e) for e in EQUATIONS_OF_STATE))
     own = frozenset().union(*(c.reads.own | c.reads.neighbour for c in called)) | {"rest_density"}
     shared, varying = _split(scene, own)
@@ -142,7 +145,7 @@ def make_plan(scene) -> Plan:
 
 def _refuse_unwritten(called, written: tuple[str, ...]) -> None:
     """Raise UnknownField where an effect reads what only an absent effect would write."""
-    known = {"velocity", "sound_speed", "smoothing_length", *ALWAYS, *PER_MATERIAL, *written}
+    known = {"velocity", "sound_speed", "smoothing_length", "largest_speed", *ALWAYS, *PER_MATERIAL, *written}
     for call in called:
         for name in sorted((call.reads.own | call.reads.neighbour) - known):
             effect = type(call.effect).__name__
@@ -181,7 +184,7 @@ def material_value(material, name: str) -> float:
 
 
 def _in_scene(effect, scene):
-    """The form of an effect that a scene calls for."""
+    """The form of an effect that a scene calls for, or None."""
     return effect.in_scene(scene) if hasattr(effect, "in_scene") else effect
 
 

@@ -40,6 +40,7 @@ class Simulation:
         self.skin = Skin(self.domain, skin)
         self.records = Records(store, plan.neighbour_fields, plan.space)
         self.time, self.dt, self.steps = 0.0, 0.0, 0
+        self.speed, self.pace = 0.0, 0.0
         self.limited_by = ""
         self._paid = 0.0
         self._start()
@@ -127,7 +128,7 @@ class Simulation:
     def _predict(self, dt: float) -> None:
         s, plan = self.store, self.plan
         in_threads(
-            kick_drift_predict, s.low, s.low + s.owned, dt, plan.effects, plan.state, s.view(), s.kind,
+            kick_drift_predict, s.low, s.low + s.owned, dt, plan.effects, plan.state, self._view(), s.kind,
             s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
             s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
             s["specific_volume"], s["pressure"],
@@ -148,6 +149,7 @@ class Simulation:
     def _kick(self, dt: float) -> None:
         """Second kick; then the largest speed, acceleration and shift over all ranks."""
         s = self.store
+        self.pace = self.speed  # the shifts of the next step are bounded before its speed is known
         parts = in_threads(
             kick, s.low, s.low + s.owned, dt, self.plan.effects, s.view(), s.kind,
             s["position"], s["velocity"], s["acceleration"], s["density"], s["density_rate"],
@@ -168,9 +170,14 @@ class Simulation:
             return []
         s = self.store
         parts = in_threads(
-            fastest_shift, s.low, s.low + s.owned, self.plan.effects, s.view(), s.kind
+            fastest_shift, s.low, s.low + s.owned, self.plan.effects, self._view(), s.kind
         )
         return [float(np.max(parts))]
+
+    def _view(self):
+        """The particles as effects see them; a displacement also sees the pace of the flow."""
+        view = self.store.view()
+        return view._replace(largest_speed=self.pace) if self.plan.displaces else view
 
     def _report_blow_up(self, particle: int) -> None:
         what = (
