@@ -24,7 +24,7 @@ Finding = tuple[Location, Any, str]
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
-        _dimensions, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected, _continued,
+        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected, _continued,
         _no_slip, _probed, _names, _single,
     )
     return [
@@ -71,6 +71,17 @@ def _dimensions(case: Case) -> Iterator[Finding]:
 
 def _is_vector(value: Any) -> bool:
     return isinstance(value, tuple) and value != () and all(isinstance(x, float) for x in value)
+
+
+def _square(case: Case) -> Iterator[Finding]:
+    dimensions = case.space.dimensions
+    for name, fluid in case.fluids.items():
+        rows = fluid.velocity_gradient
+        if rows and len(rows) != dimensions:
+            yield ("fluids", name, "velocity_gradient"), rows, (
+                f"{len(rows)} row{'s' * (len(rows) > 1)} in a case with space.dimensions = "
+                f"{dimensions}; give one for each component of the velocity"
+            )
 
 
 def _axes(case: Case) -> Iterator[Finding]:

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 import tomli_w
 from pydantic import Field, PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
 from pydantic_core import PydanticCustomError
@@ -91,6 +92,14 @@ class Fluid(Table):
         'velocity at the start: numbers, or "exact" (needs [exact])', None, unit="m/s",
         otherwise="zeros",
     )
+    velocity_gradient: tuple[Vector, ...] | None = key(
+        "gradient of the velocity at the start, a row a component: u = velocity + gradient (x - "
+        "velocity_center); [[0, -1], [1, 0]] turns at 1 rad/s", None, unit="1/s", otherwise="zeros",
+        strict=False, min_length=1,
+    )
+    velocity_center: Vector | None = key(
+        "where velocity_gradient adds nothing", None, unit="m", otherwise="zeros"
+    )
     pressure: Annotated[Literal["hydrostatic", EXACT] | float, WrapValidator(_pressure)] = key(
         'pressure at the start: a number, "hydrostatic" (needs gravity) or "exact" (needs [exact])',
         0.0, unit="Pa",
@@ -99,6 +108,10 @@ class Fluid(Table):
         "largest random shift of a particle along each axis, in spacings", 0.0, unit="1", ge=0
     )
     seed: int = key("seed of the random shifts", 0, ge=0)
+
+    def sheared(self, x: np.ndarray) -> np.ndarray:
+        """What ``velocity_gradient`` adds to the velocity at ``x`` (n, dim), m/s (n, dim)."""
+        return (x - np.array(self.velocity_center)) @ np.array(self.velocity_gradient).T
 
 
 class Wall(Table):
@@ -242,7 +255,7 @@ class Case(Table):
         _fill(self.space, origin=zeros)
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
         for fluid in self.fluids.values():
-            _fill(fluid, velocity=zeros)
+            _fill(fluid, velocity=zeros, velocity_center=zeros)
         for wall in self.walls.values():
             _fill(wall, velocity=zeros, continues=next(iter(self.fluids)))
         return self

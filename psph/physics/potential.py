@@ -4,15 +4,23 @@ from itertools import product
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from numba.extending import overload, register_jitable
 from pydantic import Field
 
-from psph.smoothing import WendlandC2
+CORES = (1.6, 1.6, 1.3228)
+"""Range of the repelling core in spacings, in 1D, 2D and 3D."""
 
-NEAR, FAR = 0.8, 1.17
-"""Ranges of the repelling and of the attracting part, as smoothing lengths in spacings."""
+RANGES = ((2.15,), (2.15,), (1.6116, 2.4496))
+"""Ranges of the smooth parts in spacings."""
 
-NEAR_NORM = (2.0, 10.0 / np.pi, 15.0 / np.pi)
-"""Makes the integral of the repelling part one in 1D, 2D and 3D, times range^-d."""
+WEIGHTS = ((), (), (0.3207,))
+"""Their weights against the core's, but for the last, which follows from the lattice.
+
+Found by maximising the smallest eigenvalue of the potential's stiffness over all wave vectors and
+the square and hexagonal, or the cubic, body-centred and face-centred lattice: none is negative."""
+
+NEAR = 0.75
+"""Distance in spacings at which the strength is told."""
 
 SOUND_OVER_SPEED = 10.0
 """Speed of sound over the largest speed that a weakly compressible flow should have."""
@@ -21,8 +29,9 @@ SOUND_OVER_SPEED = 10.0
 class PairPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
 
-    a_i = −(2K/ρ₀²) Σ_j m_j ψ′(r) x_ij/r, ψ = S − κL, S = (1 − r/1.6dx)³₊, L = Wendland C2 with
-    h = 1.17 dx, both with integral 1; κ makes the virial Σ r ψ′ of the starting lattice zero.
+    a_i = −(2K/ρ₀²) Σ_j m_j ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊, scaled to
+    −ψ′ = dx^-(d+1) at r = ¾ dx; the last weight, negative, makes the virial Σ r ψ′ of the starting
+    lattice zero: no mean pressure.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
     artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  A potential, so momentum,
     angular momentum and energy are conserved.
@@ -34,7 +43,7 @@ class PairPotential(NamedTuple):
             ge=0, description="f: K over ρ₀U², U = c/10 the largest speed",
             json_schema_extra={"unit": "1"},
         ),
-    ] = 0.02
+    ] = 0.008
 
     def in_scene(self, scene):
         """The potential of the scene's lattice."""
@@ -44,37 +53,63 @@ class PairPotential(NamedTuple):
 class NeutralPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: see :class:`PairPotential`.
 
-    ``near``, ``far``: inverse ranges, 1/m; ``repulsion``, ``attraction``: coefficients of S′/r and
-    L′/r, times 2K/(ρ₀c²).
+    ``core`` 1/R of the core, 1/m; ``repulsion`` its strength, 1/m^(d+1); ``curvatures`` 1/R_k², 1/m²,
+    and ``weights`` of the smooth parts, 1/m^(d+2); all strengths over ρ₀c².
     """
 
-    near: float
-    far: float
+    core: float
     repulsion: float
-    attraction: float
+    curvatures: tuple[float, ...]
+    weights: tuple[float, ...]
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         r = np.sqrt(pair.r2)
-        a, b = max(1.0 - r * self.near, 0.0), max(1.0 - r * self.far, 0.0)
-        force = self.repulsion * (a * a) / r - self.attraction * (b * b * b)
-        c = i.sound_speed
-        return c * c / i.rest_density * j.mass * force
+        inside = max(1.0 - r * self.core, 0.0)
+        force = self.repulsion * (inside * inside) / r
+        force = force + _smooth(self.curvatures, self.weights, pair.r2)
+        return i.sound_speed * i.sound_speed / i.rest_density * j.mass * force
+
+
+def _smooth(curvatures, weights, r2):
+    """Σ w (1 − r²/R²)²₊ over the smooth parts."""
+    return sum(_part(k, w, r2) for k, w in zip(curvatures, weights))
+
+
+@overload(_smooth)
+def _typed_smooth(curvatures, weights, r2):
+    if len(curvatures) == 1:
+        return lambda curvatures, weights, r2: _part(curvatures[0], weights[0], r2)
+    return lambda curvatures, weights, r2: (
+        _part(curvatures[0], weights[0], r2) + _smooth(curvatures[1:], weights[1:], r2)
+    )
+
+
+@register_jitable
+def _part(curvature, weight, r2):
+    inside = max(1.0 - r2 * curvature, 0.0)
+    return weight * (inside * inside)
 
 
 def neutral_potential(strength: float, dx: float, dimensions: int) -> NeutralPotential:
     """The potential whose virial vanishes on the row, square or cube lattice of spacing dx, m."""
-    range_near, h_far = 2.0 * NEAR * dx, FAR * dx
-    peak = NEAR_NORM[dimensions - 1] / range_near**dimensions
-    wendland = WendlandC2.norm[dimensions - 1] / h_far**dimensions
-    scale = 2.0 * strength / SOUND_OVER_SPEED**2
-    whole = NeutralPotential(
-        near=1.0 / range_near, far=0.5 / h_far, repulsion=scale * 3.0 * peak / range_near,
-        attraction=scale * 5.0 * wendland / h_far**2,
+    core, ranges = CORES[dimensions - 1], np.array(RANGES[dimensions - 1])
+    sites = (k for k in product(range(-3, 4), repeat=dimensions) if any(k))
+    r2 = np.array([sum(n * n for n in k) for k in sites], float)
+    forces = _forces_over_r(core, ranges, r2)
+    virials = forces @ r2
+    weights = np.array([1.0, *WEIGHTS[dimensions - 1]])
+    weights = np.append(weights, -(weights @ virials[:-1]) / virials[-1])
+    near = NEAR * float(weights @ _forces_over_r(core, ranges, np.array([NEAR**2]))[:, 0])
+    weights *= 2.0 * strength / (SOUND_OVER_SPEED**2 * near * dx ** (dimensions + 2))
+    return NeutralPotential(
+        1.0 / (core * dx), float(weights[0]) * dx,
+        tuple((1.0 / (ranges * dx) ** 2).tolist()), tuple(weights[1:].tolist()),
     )
-    reach = range(-3, 4)
-    sites = (k for k in product(reach, repeat=dimensions) if any(k))
-    r = np.array([np.hypot.reduce(k) for k in sites]) * dx
-    a, b = np.maximum(1.0 - r * whole.near, 0.0), np.maximum(1.0 - r * whole.far, 0.0)
-    repelling, attracting = whole.repulsion * r @ a**2, whole.attraction * r**2 @ b**3
-    return whole._replace(attraction=whole.attraction * float(repelling / attracting))
+
+
+def _forces_over_r(core: float, ranges: np.ndarray, r2: np.ndarray) -> np.ndarray:
+    """−ψ′/r of each part with weight one, (1 + parts, n); lengths in spacings."""
+    r = np.sqrt(r2)
+    smooth = np.maximum(1.0 - r2 / ranges[:, None] ** 2, 0.0) ** 2
+    return np.concatenate([[np.maximum(1.0 - r / core, 0.0) ** 2 / r], smooth])

@@ -16,6 +16,10 @@ CROWDING = 0.2
 SURFACE = 0.85
 """Kernel sum below which a particle counts as surface."""
 
+NEAR_SURFACE = 0.95
+"""Kernel sum below which a position shift, which nothing carries along, stops: the surface row and
+what touches it.  With 0.85 a rotating patch gains 3 % of angular momentum, with 0.95 0.6 %."""
+
 LEAST = 1e-12
 """Floor of (V W(dx))⁴, for a kernel that hardly reaches the nearest particle."""
 
@@ -51,7 +55,7 @@ class ParticleShifting(NamedTuple):
 
     def finish_value(self, total, i, kernel):
         """h Σ_j V_j [1 + 0.2 (W/W(dx))⁴] ∇W, zero at a surface; dx from the particle's volume."""
-        return _crowding(total, i, kernel)
+        return _crowding(total, i, kernel, SURFACE)
 
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
@@ -98,7 +102,7 @@ class PositionShift(NamedTuple):
 
     def finish_value(self, total, i, kernel):
         """h Σ_j V_j [1 + 0.2 (W/W(dx))⁴] ∇W, zero at a surface; dx from the particle's volume."""
-        return _crowding(total, i, kernel)
+        return _crowding(total, i, kernel, NEAR_SURFACE)
 
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
@@ -119,11 +123,11 @@ def _with_neighbour(total, j, pair):
 
 
 @register_jitable
-def _crowding(total, i, kernel):
+def _crowding(total, i, kernel, surface):
     volume = i.mass * i.specific_volume
     spacing = volume ** (1.0 / len(i.position))
     near = max((weight(kernel, spacing) * volume) ** 4, LEAST)
-    inside = where(total[0] + weight(kernel, 0.0) * volume < SURFACE, 0.0, 1.0)
+    inside = where(total[0] + weight(kernel, 0.0) * volume < surface, 0.0, 1.0)
     crowding = add(total[1], scale(total[2], CROWDING / near))
     return scale(crowding, inside * i.smoothing_length)
 

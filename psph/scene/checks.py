@@ -8,6 +8,7 @@ import numpy as np
 
 from psph.case import CaseError
 from psph.case.tables import AXES
+from psph.physics.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
 from psph.scene.scene import SOUND_OVER_SPEED, Scene
 from psph.scene.walls import layers_needed, thinnest_walls
@@ -217,7 +218,8 @@ def _minimum_at_surface(scene: Scene) -> Iterator[str]:
 
 
 def _background_at_surface(scene: Scene) -> Iterator[str]:
-    if scene.case.physics.background_pressure is not None and scene.has_free_surface:
+    given = scene.case.physics.background_pressure
+    if given is not None and given.pressure != AUTO and scene.has_free_surface:
         yield (
             "physics.background_pressure: blows a free surface apart, and the fluid has one; "
             "leave it out, or enclose the fluid"

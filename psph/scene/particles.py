@@ -54,6 +54,7 @@ def fill(particles: ParticleSet, scene, first: int, last: int) -> None:
         _dry(chunk, scene, sites, begin, end)
         _kick(chunk, scene, sites, begin, end)
         _shift(chunk, scene)
+        _sheared(chunk, scene)
         _as_exact(chunk, scene)
         done += len(sites)
 
@@ -108,6 +109,14 @@ def _shift(chunk: ParticleSet, scene) -> None:
         if period is not None:
             x -= period * np.floor((x - low) / period)
             x[x >= low + period] = low  # rounding may land on the upper edge
+
+
+def _sheared(chunk: ParticleSet, scene) -> None:
+    """The gradient of a fluid's velocity, where each particle now is."""
+    for index, fluid in enumerate(scene.case.fluids.values()):
+        rows = chunk.material == index
+        if fluid.velocity_gradient and rows.any():
+            chunk.velocity[rows] += fluid.sheared(chunk.position[rows])
 
 
 def _as_exact(chunk: ParticleSet, scene) -> None:

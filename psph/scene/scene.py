@@ -2,6 +2,7 @@
 
 import math
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -97,7 +98,8 @@ class Scene:
     def starting_speed(self) -> float:
         """The largest speed of a fluid, a wall or the exact solution at the start, m/s."""
         known = self.exact.top_speed(self.unheard_setting) if self.exact else 0.0
-        return max(known, *(math.hypot(*v) for v in (*self.velocities, *self._kicked)))
+        moving = (math.hypot(*v) for v in (*self.velocities, *self._kicked))
+        return max(known, *moving, *map(self._fastest_corner, range(len(self.case.fluids))))
 
     @cached_property
     def sound_speed(self) -> float:
@@ -227,6 +229,16 @@ class Scene:
             surface=float(self.census.top[index]) + 0.5 * self.spacing,
             exact=(lambda x: self.exact.pressure(x, 0.0, self.setting)) if exact else None,
         )
+
+    def _fastest_corner(self, fluid: int) -> float:
+        """Largest speed at a corner of the box around a fluid whose velocity has a gradient."""
+        body = self.bodies[fluid]
+        if not body.velocity_gradient:
+            return 0.0
+        ends = np.array([self.census.lowest[fluid], self.census.highest[fluid]])
+        corners = np.array(list(product(*ends.T)))
+        velocity = body.sheared(corners) + np.array(self.velocities[fluid])
+        return float(np.sqrt((velocity**2).sum(axis=1)).max())
 
     def _lowest_pressure(self, fluid: int) -> float:
         start = self.starts[fluid]

@@ -9,13 +9,12 @@ what sound has to be faster than, ``up_to_a_constant`` which fields a case may r
 from psph.solutions.channel import Couette, Poiseuille
 from psph.solutions.drop import EllipticDrop
 from psph.solutions.still import Hydrostatic
-from psph.solutions.vortices import Gresho, RigidRotation, TaylorGreen
+from psph.solutions.vortices import Gresho, TaylorGreen
 from psph.solutions.waves import SoundWave, StandingWave
 
 SOLUTIONS = {
     "taylor_green": TaylorGreen,
     "gresho": Gresho,
-    "rigid_rotation": RigidRotation,
     "poiseuille": Poiseuille,
     "couette": Couette,
     "sound_wave": SoundWave,

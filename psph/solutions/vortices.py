@@ -98,21 +98,3 @@ class Gresho(NamedTuple):
         ring = np.clip(s, 1.0, 2.0)
         p = np.where(s < 1.0, 0.5 * s * s, 0.5 * ring * ring + 4.0 * (1.0 - ring + np.log(ring)))
         return setting.density * self.speed**2 * (p - (4.0 * math.log(2.0) - 2.0))
-
-
-class RigidRotation(NamedTuple):
-    """A fluid that turns as a solid body does, to start a patch of it in free space.
-
-    u = Ω (−y, x) about the origin.  Only at the start does a patch turn so: a square one then grows
-    arms.  Colagrossi (2005), PhD thesis, Rome; Le Touzé et al. (2013), Int. J. Numer. Methods Fluids
-    73, 660.
-    """
-
-    rate: Annotated[
-        float,
-        Field(description="angular velocity Ω", json_schema_extra={"unit": "rad/s"}),
-    ]
-
-    def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
-        return _only_2d(setting)
