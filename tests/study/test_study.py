@@ -11,6 +11,7 @@ from drafts import draft
 from jobs import clean_environment, mpirun
 
 from psph.case import load
+from psph.case.profiles import PROFILES, choices
 from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
 from psph.parallel.reductions import alone
@@ -186,6 +187,26 @@ def test_what_makes_no_sense_is_said_before_any_run(tmp_path, options, says):
     job = study(tmp_path, *options)
     assert job.returncode == 2 and says in job.stderr, job.stderr
     assert not (tmp_path / "out").exists() and "Traceback" not in job.stderr
+
+
+def test_profiles_are_a_choice_that_can_be_pasted(tmp_path):
+    """In place of the case's own kernel; the effects are kept alike, so that they compile once."""
+    job = study(
+        tmp_path, "--vary", "profile=quick,engineering,reference", "--vary",
+        "space.spacing=0.05,0.025", "--grid", "--error", "0.3", "--set", "precision=double",
+        "--set", "physics.gradient_correction=off", "--set", "study.repeats=1",
+    )
+    assert job.returncode == 0, job.stderr
+    rows = rows_of(tmp_path)
+    assert [r["profile"] for r in rows] == 2 * ["quick", "engineering", "reference"]
+    assert all(r["status"] == "done" for r in rows)
+    assert len({r["error_l2"] for r in rows}) == 6 and len({r["steps"] for r in rows}) == 6
+    answer = job.stdout[job.stdout.index("For an error of 30 %") :]
+    best = next(p for p in PROFILES if f"smoothing = {choices(p, 1, ('x',))['space.smoothing']}" in answer)
+    pasted = choices(best, 1, ("x",))
+    assert "profile =" not in answer.partition("wrote")[0]
+    assert f"density_diffusion = {pasted['physics.density_diffusion']}" in answer
+    assert 'kernel = "wendland-c2"' in answer
 
 
 def test_effects_are_left_out_one_by_one(tmp_path):
