@@ -189,7 +189,7 @@ class Study:
                 limit = fit.richardson([row[SPACING] for row in alone], values)
                 finest = min(alone, key=lambda row: row[SPACING])[name]
                 if limit:
-                    yield words.limit_words(name, limit, finest)
+                    yield words.limit_words(name, limit, finest, len(values))
 
     def _draw(self, title: str, found: list[dict], good: list[dict], error: float | None) -> None:
         curves = [
