@@ -43,7 +43,7 @@ def test_what_the_file_says_wins_over_its_profile(tmp_path):
 
 def test_a_profile_on_the_command_line_wins_over_the_file(tmp_path):
     text = TANK.replace("gravity", "gradient_correction = 0.5\ngravity")
-    case = draft(tmp_path, text, "space.smoothing=1.9", "profile=reference")
+    case = draft(tmp_path, text, "space.smoothing=1.9", "profile=quick")
     assert (case.space.kernel, case.space.smoothing) == ("wendland-c2", 1.9)
     assert case.physics.gradient_correction is None
     assert case.physics.gravity is not None  # a profile has no say in it
