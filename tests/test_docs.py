@@ -16,7 +16,7 @@ from physics.pairs import H, OPEN, rates, view
 
 from psph import smoothing
 from psph.__main__ import VERBS, _parser, _with_verb
-from psph.case import load
+from psph.case import load, profiles
 from psph.case.physics import physics_table
 from psph.output import diagnostics
 from psph.output.frames import FrameFile
@@ -345,3 +345,13 @@ def test_the_columns_of_the_log_are_all_there():
     table = text("docs/output.md").split("`log.csv`, over")[1].split("The sums")[0]
     named = re.findall(r"`(\w+)`", table)
     assert named == diagnostics.columns(3)
+
+
+def test_profiles_are_as_the_page_has_them():
+    rows = re.findall(r"^\| `([\w.]+)` \| (.*) \|$", text("docs/accuracy.md"), re.MULTILINE)
+    told = {key: [cell.split(" / ") for cell in cells.split(" | ")] for key, cells in rows}
+    for place, name in enumerate(profiles.PROFILES):
+        plain, periodic = (profiles.choices(name, 2, axes) for axes in ((), ("x", "y")))
+        assert list(plain) == list(told)
+        for key, cells in told.items():
+            assert [cells[place][0], cells[place][-1]] == [str(plain[key]), str(periodic[key])], key

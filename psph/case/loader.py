@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from psph.case.errors import CaseError, dotted
+from psph.case.profiles import OFF, fill
 
 if TYPE_CHECKING:
     from psph.case.model import Case
@@ -14,14 +15,12 @@ if TYPE_CHECKING:
 BARE_WORD = re.compile(r"[A-Za-z][\w.-]*")
 PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
-OFF = "off"
-"""The value that takes a key out of the case."""
-
 
 class Override(NamedTuple):
-    """A key set from outside.  ``made``: the highest key that it brought in, as a location."""
+    """A key set from outside.  ``made``: the highest key that it brought in; both are locations."""
 
     text: str
+    key: tuple[str | int, ...]
     made: tuple[str | int, ...]
 
 
@@ -29,7 +28,9 @@ def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
     """The case in a TOML file, checked and with its defaults filled in.
 
     ``overrides`` are strings ``dotted.key=value`` with the value as in TOML; a bare word is a
-    text, and ``off`` takes the key out.  Raises CaseError with one line for every fault found.
+    text, and ``off`` takes the key out.  A profile gives way to the keys of the file that names
+    it; one that is an override has the file give way.  Raises CaseError with one line for every
+    fault found.
     """
     # Only here: the model knows the effects, and these bring the compiler along.
     from pydantic import ValidationError
@@ -40,12 +41,16 @@ def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
     file = str(path)
     data = _read(file)
     applied = [_override(file, data, text) for text in overrides]
+    touched = [override.key for override in applied]
+    filled = fill(data, touched, over=("profile",) in touched)
 
     def source(loc):
         for override in reversed(applied):
             shared = min(len(loc), len(override.made))
             if loc[:shared] == override.made[:shared]:
                 return f"{file} with --set {override.text}"
+        if any(loc[: len(key)] == key for key in filled):
+            return f"{file} with profile {data['profile']}"
         return file
 
     try:
@@ -109,7 +114,7 @@ def _override(file: str, data: dict[str, Any], text: str) -> Override:
             table[key] = _value(where, value.strip())
         else:
             table = table.setdefault(key, {}) if isinstance(table, dict) else table[key]
-    return Override(text, made or tuple(keys))
+    return Override(text, tuple(keys), made or tuple(keys))
 
 
 def _take_out(table: dict[str, Any] | list[Any], key: str | int) -> None:

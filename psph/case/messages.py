@@ -93,7 +93,8 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
         shown = f"{plain(value)}: " if isinstance(value, (str, int, float, list, tuple)) else ""
         return shown + details["msg"]
     if kind == "literal_error":
-        return f"{plain(value)} is not known; {advise(str(value), (node or {}).get('enum', ()))}"
+        known = [x for b in alternatives(schema, node or {}) for x in b.get("enum", ())]
+        return f"{plain(value)} is not known; {advise(str(value), known)}"
     if kind in WANTED:
         return f"{plain(value)} is not {WANTED[kind]}; {_how_to_give(details, loc, schema)}"
     if kind in ("too_short", "too_long"):

@@ -1,6 +1,7 @@
 """A case: everything that a person says about a run, typed and frozen."""
 
 import re
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -11,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from psph.case.consistency import contradictions
 from psph.case.physics import physics_table
+from psph.case.profiles import OFF, PROFILES, choices
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.case.tables import Axis, Name, Table, Vector, key
@@ -197,6 +199,10 @@ class Case(Table):
     """
 
     title: str = key("what the case is, in one line", "")
+    profile: Literal[tuple(PROFILES)] | None = key(
+        "numerical choices by one name, for the keys that the case does not give itself", None,
+        otherwise="no profile",
+    )
     precision: Literal["double", "mixed"] = key(
         "mixed: pairs in single precision, particles and time integration in double", "double"
     )
@@ -237,9 +243,26 @@ class Case(Table):
         """The file's name without folder and ending."""
         return Path(self._file).stem
 
+    @property
+    def profile_keys(self) -> dict[str, Any]:
+        """Dotted keys of the case's profile and what it has there; empty without a profile."""
+        space = self.space
+        return choices(self.profile, space.dimensions, space.periodic) if self.profile else {}
+
+    def follows_profile(self, dotted: str) -> bool:
+        """Whether the value at a key of the case's profile is that of the profile."""
+        value, wanted = attrgetter(dotted)(self), self.profile_keys[dotted]
+        if isinstance(value, Table) and wanted != OFF:
+            return value == type(value).model_validate(wanted)
+        return (OFF if value is None else value) == wanted
+
     def to_toml(self) -> str:
         """This case as TOML that :func:`psph.case.load` reads back to an equal case."""
         tables = self.model_dump(by_alias=True, exclude_none=True)
+        for name in self.profile_keys:
+            table, _, effect = name.rpartition(".")
+            if table:  # what the case lacks shall not come back with the profile
+                tables[table].setdefault(effect, OFF)
         text = tomli_w.dumps({name: value for name, value in tables.items() if value})
         return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)
 

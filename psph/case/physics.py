@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from itertools import groupby
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import create_model
+from pydantic import BeforeValidator, create_model
 
 from psph.case.parameters import parameters, summary
+from psph.case.profiles import OFF as TAKEN_OUT
 from psph.case.tables import Table, key
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 
@@ -41,4 +42,13 @@ def _field(entries: list[Entry]) -> tuple[Any, Any]:
         says = (f"{name}: {summary(entry.effect)}" for name, entry in zip(names, entries))
         return Literal[tuple(names)], key("; ".join(says), names[0])
     effect = entries[0].effect
-    return parameters(effect) | None, key(summary(effect), None, otherwise=OFF)
+    table = parameters(effect)
+    off = BeforeValidator(
+        _taken_out, json_schema_input_type=table | Literal[TAKEN_OUT] | None
+    )
+    return Annotated[table | None, off], key(summary(effect), None, otherwise=OFF)
+
+
+def _taken_out(value: Any) -> Any:
+    """An effect that a file switches off, since a profile would bring it, is not there."""
+    return None if value == TAKEN_OUT else value

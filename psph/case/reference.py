@@ -24,6 +24,10 @@ case and does nothing else; `run/cases/` holds examples.
 
 An effect is on when its key is there; `{}` takes all its defaults. A bare value stands for the
 first key of its table: `free_surface = 0.9` means `free_surface = { threshold = 0.9 }`.
+
+A `profile` fills in the numerical choices that the case does not give; an effect of it that the
+case shall not have is `"off"`. Given for one run, `--set profile=reference`, it takes the place of
+what the file says. [accuracy.md](accuracy.md#profiles) has what each profile holds and costs.
 """
 
 COLUMNS = ("key", "value", "default", "unit", "meaning")

@@ -14,10 +14,11 @@ class GradientCorrection(NamedTuple):
     """Gradients are corrected to be exact for linear fields, in pressure and in continuity.
 
     ∇W_ij becomes L∇W_ij with L_i = (−Σ_j m_j/ρ_j x_ij ∇W_ijᵀ)⁻¹.  dρ_i/dt takes L_i, the symmetric
-    pressure takes p_i/ρ_i² L_j + p_j/ρ_j² L_i, which conserves momentum and is exact for linear p
-    where Σ_j (L_i + L_j) ∇W_ij/ρ_j vanishes.  Randles & Libersky (1996), Comput. Methods Appl. Mech. Eng.
-    139, 375; Bonet & Lok (1999), 180, 97; the crossed pair: Zhang, Adams & Hu (2024),
-    arXiv:2406.02576.  With D the determinant of the sum, L − 1 = (adjugate − D)/max(D, D₀), so that
+    pressure takes p_i/ρ_i² L_i + p_j/ρ_j² L_j, which conserves momentum and does exactly the work
+    that compression takes.  Randles & Libersky (1996), Comput. Methods Appl. Mech. Eng. 139, 375;
+    Bonet & Lok (1999), 180, 97.  Crossed, p_i L_j + p_j L_i (Zhang, Adams & Hu 2024,
+    arXiv:2406.02576), it is exact for linear p in more places, and feeds on the difference of L
+    beside a surface.  With D the determinant of the sum, L − 1 = (adjugate − D)/max(D, D₀), so that
     L fades to 1 where neighbours are missing.  L is that of the pass before.
     """
 
@@ -55,11 +56,11 @@ class GradientCorrection(NamedTuple):
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        crossed = add(
-            scale(j.gradient_correction, i.pressure * v_i * v_i),
-            scale(i.gradient_correction, j.pressure * v_j * v_j),
+        both = add(
+            scale(i.gradient_correction, i.pressure * v_i * v_i),
+            scale(j.gradient_correction, j.pressure * v_j * v_j),
         )
-        return scale(times(crossed, pair.x_ij), -j.mass * pair.dw_r)
+        return scale(times(both, pair.x_ij), -j.mass * pair.dw_r)
 
 
 class DifferenceCorrection(NamedTuple):

@@ -87,6 +87,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     support = scene.kernel.support * scene.smoothing_length
     yield f"{case.title or case.name} ({case.file})"
     yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
+    yield from _profile_lines(case)
     names = ", ".join(m.name for m in scene.materials)
     yield f"  materials   {names}"
     yield (
@@ -94,6 +95,17 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
         f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
         f"about {_within(scene, support):.0f} neighbours"
     )
+
+
+def _profile_lines(case) -> Iterator[str]:
+    """The profile: what it sets, and what the case gives otherwise."""
+    if not case.profile:
+        return
+    own = [key for key in case.profile_keys if not case.follows_profile(key)]
+    yield f"  profile     {case.profile}" + (f", but for {', '.join(own)}" if own else "")
+    for key, value in case.profile_keys.items():
+        if key not in own:
+            yield f"              {key} = {value}"
 
 
 def _rank_lines(scene, plan: Plan, particles: int, ranks: int) -> Iterator[str]:

@@ -194,7 +194,7 @@ def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
         return entry.effect(), "every scene"
     key, _, choice = entry.key.partition("=")
     for path, value, given in _values(case, key.split(".")):
-        by = f"{path} = {_plain(value)}" + ("" if given else " (default)")
+        by = f"{path} = {_plain(value)}" + _origin(case, path, given)
         if choice:
             if value == choice:
                 return entry.effect(), by
@@ -204,6 +204,13 @@ def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
         elif value is not None:
             return entry.effect(**as_numbers(value)), by
     return None
+
+
+def _origin(case, path: str, given: bool) -> str:
+    """Where a value comes from, where the case does not give it."""
+    if path in case.profile_keys and case.follows_profile(path):
+        return f" (profile {case.profile})"
+    return "" if given else " (default)"
 
 
 def _values(node, keys: list[str], path: str = "", given: bool = True):

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from psph.case.loader import OFF
+from psph.case.profiles import OFF
 from psph.physics.catalogue import CATALOGUE
 from psph.scene import Scene
 from psph.solver.plan import make_plan, words

@@ -142,8 +142,26 @@ class Judge:
                 f"{file}: study.against: {self.against} does not know {what}; give one of "
                 f"{', '.join(known_here)}"
             )
-        if self.against in self.case.experiments:
-            self.measured
+        if what not in AT_THE_END:
+            self._agree_in_time()
+
+    def _agree_in_time(self) -> None:
+        """StudyError where no time is left at which a probe could be compared."""
+        file, study, name = self.case.file, self.case.study, self.against
+        last = min(self.case.time.end, math.inf if study.until is None else study.until)
+        if study.after >= last:
+            raise StudyError(
+                f"{file}: study.after: {study.after:g} s leaves nothing to compare, which ends at "
+                f"{last:g} s; give an earlier time"
+            )
+        if name not in self.case.experiments:
+            return
+        time, _ = self.measured
+        if not ((time >= study.after) & (time <= last)).any():
+            raise StudyError(
+                f"{file}: experiments.{name}: measured from {time[0]:g} to {time[-1]:g} s, compared "
+                f"from {study.after:g} to {last:g} s; correct its time_unit, study.after or time.end"
+            )
 
     def _references_of(self, what: str) -> list[str]:
         """Whatever of the case can judge ``what``."""

@@ -8,6 +8,9 @@ from psph.study.errors import StudyError
 SPACING = "space.spacing"
 """The key along which errors fall and costs grow."""
 
+PROFILE = "profile"
+"""The key that stands for many others."""
+
 Settings = dict[str, object]
 """Keys of a case and the values of one run."""
 

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from psph.case import CaseError, load
+from psph.case.profiles import OFF, choices
 from psph.output.reader import Run as Folder
 from psph.scene import Scene, check
 from psph.study import fit, report, words
 from psph.study.errors import StudyError
 from psph.study.judge import FINEST, Judge, Judgement, window
-from psph.study.ladder import SPACING, Settings, groups, name_of
+from psph.study.ladder import PROFILE, SPACING, Settings, groups, name_of
 from psph.study.picture import draw
 from psph.study.runs import DONE, cases, perform
 
@@ -114,7 +115,8 @@ class Study:
         keys = self.keys
         ladders = list(self.ladders(found))
         periods = [length for length in Scene(self.case).periods if length is not None]
-        answer = list(_answer(ladders, periods, error, seconds)) if error or seconds else []
+        pasted = [(self._written_out(shared), *rest) for shared, *rest in ladders]
+        answer = list(_answer(pasted, periods, error, seconds)) if error or seconds else []
         title = f"{self.case.title or self.case.name}: what accuracy costs"
         page = [f"# {title}", "", f"Error: {self.judge.in_words}.", "",
                 *report.markdown(found, keys), "", *(f"- {line}" for line in told), ""]
@@ -131,6 +133,15 @@ class Study:
         yield from report.plain(found, keys)
         yield from told
         yield from answer
+
+    def _written_out(self, shared: Settings) -> Settings:
+        """Settings with the keys of a profile in its place: what the case gives would win over it."""
+        space = self.case.space
+        found: Settings = {}
+        for key, value in shared.items():
+            if key == PROFILE and value != OFF:
+                found |= choices(str(value), space.dimensions, space.periodic)
+        return found | {k: v for k, v in shared.items() if k != PROFILE}
 
     def ladders(self, found: list[dict]) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
         """Runs that share all but the spacing: what they share, their rows, their fit."""
@@ -178,7 +189,7 @@ class Study:
                 limit = fit.richardson([row[SPACING] for row in alone], values)
                 finest = min(alone, key=lambda row: row[SPACING])[name]
                 if limit:
-                    yield words.limit_words(name, limit, finest)
+                    yield words.limit_words(name, limit, finest, len(values))
 
     def _draw(self, title: str, found: list[dict], good: list[dict], error: float | None) -> None:
         curves = [

@@ -29,7 +29,10 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
         )
         return
     order = ladder.order
-    yield f"{beginning}the error falls with order {order.value:.2f}{within(order, '.2f')}."
+    yield (
+        f"{beginning}the error falls with order {order.value:.2f}{within(order, '.2f')}"
+        f"{unknown(order, len(ladder.runs))}."
+    )
     spacing = ladder.spacing_for_error(HALF * finest.error)
     if not math.isnan(spacing):
         longer = ladder.seconds(spacing).value / ladder.seconds(finest.spacing).value
@@ -55,8 +58,8 @@ def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
     return f"{same}: about {scaled:.2f} of the time for the same error."
 
 
-def limit_words(what: str, found: Extrapolated, finest: float) -> str:
-    """A quantity at zero spacing."""
+def limit_words(what: str, found: Extrapolated, finest: float, runs: int) -> str:
+    """A quantity at zero spacing, from so many runs."""
     value = found.value
     text = (
         f"{what} goes to {value.value:.6g}{within(value, '.3g')} at zero spacing, with order "
@@ -64,7 +67,7 @@ def limit_words(what: str, found: Extrapolated, finest: float) -> str:
     )
     if value.value:
         text += f"; the finest run is {percent(abs(finest / value.value - 1.0))} off"
-    return f"{text}."
+    return f"{text}{unknown(value, runs)}."
 
 
 def failed_words(rows: Sequence[dict]) -> Iterator[str]:
@@ -97,6 +100,11 @@ def _written(value) -> str:
 def within(estimate: Estimate, form: str) -> str:
     reach = estimate.high - estimate.value
     return "" if math.isnan(reach) else f" ± {reach:{form}}"
+
+
+def unknown(estimate: Estimate, runs: int) -> str:
+    """What is said of a value whose uncertainty so few runs do not tell."""
+    return f"; {runs} runs leave its uncertainty unknown" if math.isnan(estimate.low) else ""
 
 
 def interval(estimate: Estimate, write) -> str:

@@ -24,6 +24,7 @@ END = {
     "elliptic_drop": 1e-3,
     "gresho": 0.05,
     "sound_wave": 2.0,
+    "still_water": 0.02,
 }
 """Seconds of simulated time: some hundred steps, several rebuilds."""
 

@@ -78,3 +78,15 @@ def test_one_rank_of_an_open_domain_sends_nothing_and_two_send_to_one_side(tmp_p
     plan = make_plan(scene)
     sent = [bytes_per_refresh(scene, plan, ranks)[1] for ranks in (1, 2, 3, 4)]
     assert sent[0] == 0.0 < sent[1] and sent[2] == sent[3] == 2 * sent[1]
+
+
+def test_explain_says_what_comes_from_the_profile(tmp_path):
+    text = 'profile = "reference"\n' + BOX.replace("jitter", "viscosity = 1e-3\njitter")
+    lines = list(explain(Scene(draft(tmp_path, text, "space.smoothing=1.2")), 1))
+    assert "  profile     reference, but for space.smoothing" in lines
+    assert "              physics.gradient_correction = 0.5" in lines
+    assert not any("space.smoothing =" in line for line in lines)
+    because = [line for line in lines if "because:" in line and "profile reference" in line]
+    assert any("physics.density_diffusion = { delta = " in line for line in because)
+    assert not any("viscosity" in line for line in because)
+    assert not any("profile" in line for line in explain(Scene(draft(tmp_path, BOX)), 1))

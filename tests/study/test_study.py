@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import re
+import signal
 import subprocess
 import sys
 
@@ -11,6 +13,7 @@ from drafts import draft
 from jobs import clean_environment, mpirun
 
 from psph.case import load
+from psph.case.profiles import PROFILES, choices
 from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
 from psph.parallel.reductions import alone
@@ -157,6 +160,23 @@ def test_an_interrupted_study_goes_on_from_its_finished_runs(done):
     assert "done before" not in one.stdout
 
 
+def test_a_study_that_is_killed_goes_on_where_it_was(tmp_path):
+    file = tmp_path / "wave.toml"
+    file.write_text(WAVE.replace("end = 0.1", "end = 3.0"))  # the last run takes long enough
+    command = [sys.executable, "-m", "psph", "study", str(file), "--out", str(tmp_path / "out")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=clean_environment()) as job:
+        for line in job.stdout:
+            if line.startswith("run 1 of 3") and "steps" in line:
+                job.send_signal(signal.SIGINT)
+    assert job.returncode == 130
+    assert (tmp_path / "out/run-01/result.json").exists()
+    assert not (tmp_path / "out/run-03/result.json").exists()
+    assert not (tmp_path / "out/study.csv").exists()
+    again = study(tmp_path, "--vary", "space.spacing=0.05,0.04", text=file.read_text())
+    assert again.returncode == 0, again.stderr
+    assert again.stdout.count("done before") == 1
+
+
 def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
     vary = '"time.step" = [1e-3, 0.02], "space.spacing" = [0.05, 0.025, 0.0124]'
     text = WAVE.replace('"space.spacing" = [0.05, 0.025, 0.0125]', vary)
@@ -164,7 +184,8 @@ def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
     assert job.returncode == 0, job.stderr
     status = {(r["space.spacing"], r["time.step"]): r["status"] for r in rows_of(tmp_path)}
     assert status["0.05", ""] == status["0.025", ""] == status["0.025", "0.001"] == "done"
-    assert "blew up at step" in status["0.025", "0.02"]
+    when_and_why = r"blew up at step \d+, time [\d.e-]+ s: .*(speeds of sound|not finite)"
+    assert re.search(when_and_why, status["0.025", "0.02"])
     assert status["0.0124", ""].startswith("refused: ") and "whole number" in status["0.0124", ""]
     assert "2 of 5 runs did not end well" in job.stdout
 
@@ -186,6 +207,26 @@ def test_what_makes_no_sense_is_said_before_any_run(tmp_path, options, says):
     job = study(tmp_path, *options)
     assert job.returncode == 2 and says in job.stderr, job.stderr
     assert not (tmp_path / "out").exists() and "Traceback" not in job.stderr
+
+
+def test_profiles_are_a_choice_that_can_be_pasted(tmp_path):
+    """In place of the case's own kernel; the effects are kept alike, so that they compile once."""
+    job = study(
+        tmp_path, "--vary", "profile=quick,engineering,reference", "--vary",
+        "space.spacing=0.05,0.025", "--grid", "--error", "0.3", "--set", "precision=double",
+        "--set", "physics.gradient_correction=off", "--set", "study.repeats=1",
+    )
+    assert job.returncode == 0, job.stderr
+    rows = rows_of(tmp_path)
+    assert [r["profile"] for r in rows] == 2 * ["quick", "engineering", "reference"]
+    assert all(r["status"] == "done" for r in rows)
+    assert len({r["error_l2"] for r in rows}) == 6 and len({r["steps"] for r in rows}) == 6
+    answer = job.stdout[job.stdout.index("For an error of 30 %") :]
+    best = next(p for p in PROFILES if f"smoothing = {choices(p, 1, ('x',))['space.smoothing']}" in answer)
+    pasted = choices(best, 1, ("x",))
+    assert "profile =" not in answer.partition("wrote")[0]
+    assert f"density_diffusion = {pasted['physics.density_diffusion']}" in answer
+    assert 'kernel = "wendland-c2"' in answer
 
 
 def test_effects_are_left_out_one_by_one(tmp_path):
@@ -233,9 +274,18 @@ value_unit = 10.0
     for change, says in (
         ("experiments.gauge.file=none.csv", "No such file"),
         ("experiments.gauge.time=Time", "has no column 'Time'; give one of T, Z"),
+        ("study.after=0.2", "study.after: 0.2 s leaves nothing to compare, which ends at 0.1 s"),
+        ("study.until=0.05", None),  # its first time is enough
     ):
-        with pytest.raises(StudyError, match=says):
-            Judge(load(tmp_path / "wave.toml", ["study.error=P.pressure", "study.against=gauge", change]))
+        sets = ["study.error=P.pressure", "study.against=gauge", change]
+        if says:
+            with pytest.raises(StudyError, match=says):
+                Judge(load(tmp_path / "wave.toml", sets))
+        else:
+            assert Judge(load(tmp_path / "wave.toml", sets)).measured[0][0] == 0.0
+    (tmp_path / "curve.csv").write_text("T,Z\n20.0,2.0\n40.0,4.0\n")
+    with pytest.raises(StudyError, match="gauge: measured from 1 to 2 s, compared from 0 to 0.1 s"):
+        Judge(load(tmp_path / "wave.toml", ["study.error=P.pressure", "study.against=gauge"]))
 
 
 def test_norms_and_interpolation_by_hand():
@@ -273,3 +323,20 @@ def test_a_study_comes_onto_a_page_with_its_picture(done, tmp_path):
     assert "| space.spacing |" in text and "costs" in text
     assert "(images/accuracy_out.png)" in text and (tmp_path / "images/accuracy_out.png").exists()
     assert on_page([str(page), str(tmp_path)]) == 2 and on_page([]) == 2
+
+
+def test_studies_of_profiles_come_as_one_table(done, tmp_path):
+    folder, _ = done
+    (tmp_path / "images").mkdir()
+    page, kept = tmp_path / "page.md", tmp_path / "kept"
+    page.write_text(f"{BEGIN}\n{END}\n")
+    kept.mkdir()
+    run = {"space.spacing": 0.02, "status": "done", "error_l2": 0.0123, "seconds": 4.2}
+    rows = [run | {"profile": "quick"}, {"profile": "reference", "space.spacing": 0.02,
+                                          "status": "the run blew up at step 3: too fast"}]
+    told = {"vary": ["profile"], "rows": rows, "error": "velocity at the end", "case": "a/wave.toml"}
+    (kept / "study.json").write_text(json.dumps(told))
+    assert on_page([str(page), str(kept), str(folder / "out")]) == 0
+    text = page.read_text()
+    assert "| wave | velocity | 0.02 | 1.23 % in 4.2 s | – | the run blew up at step 3 |" in text
+    assert text.index("## wave") < text.index("## Profiles") and text.count("## ") == 2

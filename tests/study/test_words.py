@@ -1,7 +1,7 @@
 """Sentences follow from the rows."""
 
-from psph.study.fit import Estimate, Ladder, Run
-from psph.study.words import advice, against_base, ladder_words
+from psph.study.fit import Estimate, Ladder, Run, richardson
+from psph.study.words import advice, against_base, ladder_words, limit_words
 
 
 def ladder(*errors: float) -> Ladder:
@@ -23,6 +23,19 @@ def test_no_law_no_prediction():
     lines = list(ladder_words(ladder(0.02, 0.01, 0.03), "kernel cubic"))
     assert lines[1].startswith("kernel cubic: the error does not fall steadily: at 0.02 m")
     assert not any("half" in line for line in lines)
+
+
+def test_too_few_runs_leave_the_uncertainty_unknown():
+    _, order, _ = ladder_words(ladder(0.16, 0.04), "")
+    assert order == "the error falls with order 2.00; 2 runs leave its uncertainty unknown."
+    spacings = [0.04, 0.02, 0.01, 0.005]
+    values = [3.0 - 7.0 * x**1.5 for x in spacings]
+    three = limit_words("mean P", richardson(spacings[:3], values[:3]), values[2], 3)
+    assert three.startswith("mean P goes to 3 at zero spacing, with order 1.50")
+    assert three.endswith("; 3 runs leave its uncertainty unknown.")
+    values[1] += 1e-4
+    four = limit_words("mean P", richardson(spacings, values), values[3], 4)
+    assert "unknown" not in four and four.count("±") == 2
 
 
 def test_a_choice_is_weighed_at_equal_error():

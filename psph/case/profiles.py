@@ -1,0 +1,107 @@
+"""Profiles: the numerical choices of a case by one name, for keys that it does not give itself."""
+
+from collections.abc import Mapping
+from typing import Any
+
+OFF = "off"
+"""The value that takes a key out of the case."""
+
+PROFILES: dict[str, dict[str, Any]] = {
+    "quick": {
+        "precision": "mixed",
+        "space.kernel": "wendland-c2",
+        "space.smoothing": 1.3,
+        "time.cfl": 0.4,
+        "physics.pressure_gradient": "symmetric",
+        "physics.density_diffusion": 0.05,
+        "physics.particle_shifting": OFF,
+        "physics.gradient_correction": OFF,
+    },
+    "engineering": {
+        "precision": "double",
+        "space.kernel": "wendland-c2",
+        "space.smoothing": 1.4,
+        "time.cfl": 0.3,
+        "physics.pressure_gradient": "symmetric",
+        "physics.density_diffusion": 0.1,
+        "physics.particle_shifting": OFF,
+        "physics.gradient_correction": OFF,
+    },
+    "reference": {
+        "precision": "double",
+        "space.kernel": "wendland-c2",
+        "space.smoothing": 2.0,
+        "time.cfl": 0.3,
+        "physics.pressure_gradient": "symmetric",
+        "physics.density_diffusion": 0.1,
+        "physics.particle_shifting": OFF,
+        "physics.gradient_correction": 0.5,
+    },
+}
+"""Keys and values; docs/accuracy.md has what each costs and gives.  A free surface goes
+with neither shifting nor pressure from differences yet: here a profile does without.  Shorter
+steps than these change no error by as much as 3 % of it; more diffusion would shorten them."""
+
+PERIODIC: dict[str, dict[str, Any]] = {
+    "quick": {
+        "physics.pressure_gradient": "difference",
+        "physics.particle_shifting": 0.1,
+    },
+    "engineering": {
+        "physics.pressure_gradient": "difference",
+        "physics.particle_shifting": 0.1,
+        "physics.gradient_correction": 0.5,
+    },
+    "reference": {
+        "physics.pressure_gradient": "difference",
+        "physics.density_diffusion": 0.2,
+        "physics.particle_shifting": 0.1,
+        "physics.gradient_correction": 0.5,
+    },
+}
+"""What differs in a domain that is periodic along every axis: the fluid cannot have a surface, and
+whatever is under tension tears without shifting."""
+
+
+def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[str, Any]:
+    """Dotted keys and values of a profile, in a domain that is periodic along these axes."""
+    closed = len(set(periodic)) == dimensions
+    return PROFILES[profile] | (PERIODIC[profile] if closed else {})
+
+
+def fill(
+    data: dict[str, Any], touched: list[tuple[str | int, ...]], over: bool
+) -> list[tuple[str, ...]]:
+    """Put the profile that ``data`` names under its keys; the locations that it has filled.
+
+    Keys at, above or below those ``touched`` stay as they are; ``over``: all others give way.
+    """
+    found = []
+    for key, value in _asked(data).items():
+        path = tuple(key.split("."))
+        table = data.setdefault(path[0], {}) if len(path) > 1 else data
+        if not isinstance(table, dict) or any(_share(path, other) for other in touched):
+            continue
+        if over and value == OFF:
+            table.pop(path[-1], None)
+        elif value != OFF and (over or path[-1] not in table):
+            table[path[-1]] = value
+            found.append(path)
+    return found
+
+
+def _asked(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys of the profile that a file names; what is wrong with the file is said elsewhere."""
+    name, space = data.get("profile"), data.get("space")
+    if not isinstance(name, str) or name not in PROFILES:
+        return {}
+    space = space if isinstance(space, dict) else {}
+    axes = space.get("periodic", ())
+    axes = tuple(map(str, axes)) if isinstance(axes, (list, tuple)) else ()
+    return choices(name, space.get("dimensions"), axes)
+
+
+def _share(one: tuple, other: tuple) -> bool:
+    """Whether a location is the other one, or lies above or below it."""
+    least = min(len(one), len(other))
+    return one[:least] == other[:least]
