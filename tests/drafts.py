@@ -5,6 +5,7 @@ from pathlib import Path
 from psph.case import Case, CaseError, load
 
 WATER = """
+scheme = "sph"
 [space]
 dimensions = 2
 spacing = 0.1
@@ -48,6 +49,7 @@ def refusal(folder: Path, text: str = WATER, *overrides: str) -> list[str]:
 
 
 SQUARE = """
+scheme = "sph"
 [space]
 dimensions = 2
 spacing = 0.1

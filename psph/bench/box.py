@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from psph.bench.resolution import KERNEL, reach, smoothing
 from psph.case import Case
+from psph.case.schemes import PLAIN
 from psph.particles.store import Store
 from psph.solver.plan import Plan
 from psph.solver.setup import create_particles
@@ -46,6 +47,7 @@ class Box(NamedTuple):
                     **corners,
                 },
                 "time": {"end": 1.0},
+                "scheme": PLAIN,
                 "physics": {"sound_speed": SPEED, "artificial_viscosity": VISCOSITY},
                 "fluids": {"water": {"shape": {"box": corners}, "jitter": JITTER, "seed": SEED}},
             }

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from psph.bench.resolution import KERNEL, reach, smoothing
 from psph.case import Case
+from psph.case.schemes import PLAIN
 from psph.particles.store import Store
 from psph.solver.plan import Plan
 from psph.solver.setup import create_particles
@@ -88,6 +89,7 @@ class Tank(NamedTuple):
                     "kernel": KERNEL,
                 },
                 "time": {"end": 1.0},
+                "scheme": PLAIN,
                 "physics": {
                     "gravity": [*zeros[1:], -GRAVITY],
                     "artificial_viscosity": VISCOSITY,

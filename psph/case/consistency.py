@@ -24,7 +24,7 @@ Finding = tuple[Location, Any, str]
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
-        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected, _continued,
+        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected, _shifted, _continued,
         _no_slip, _probed, _names, _single,
     )
     return [
@@ -191,4 +191,12 @@ def _corrected(case: Case) -> Iterator[Finding]:
     if physics.gradient_correction is not None and physics.pressure_gradient == "minimum":
         yield ("physics", "gradient_correction"), ..., (
             'cannot correct physics.pressure_gradient = "minimum"; take "symmetric" or "difference"'
+        )
+
+
+def _shifted(case: Case) -> Iterator[Finding]:
+    physics = case.physics
+    if physics.particle_shifting is not None and physics.position_shift is not None:
+        yield ("physics", "particle_shifting"), ..., (
+            'physics.position_shift shifts them too; give it as "off", or take this one out'
         )

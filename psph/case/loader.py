@@ -28,8 +28,8 @@ def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
     """The case in a TOML file, checked and with its defaults filled in.
 
     ``overrides`` are strings ``dotted.key=value`` with the value as in TOML; a bare word is a
-    text, and ``off`` takes the key out.  A profile gives way to the keys of the file that names
-    it; one that is an override has the file give way.  Raises CaseError with one line for every
+    text, and ``off`` takes the key out.  A profile or scheme gives way to the keys of the file that
+    names it; one that is an override has the file give way.  Raises CaseError with one line for every
     fault found.
     """
     # Only here: the model knows the effects, and these bring the compiler along.
@@ -42,16 +42,15 @@ def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
     data = _read(file)
     applied = [_override(file, data, text) for text in overrides]
     touched = [override.key for override in applied]
-    filled = fill(data, touched, over=("profile",) in touched)
+    filled = fill(data, touched)
 
     def source(loc):
         for override in reversed(applied):
             shared = min(len(loc), len(override.made))
             if loc[:shared] == override.made[:shared]:
                 return f"{file} with --set {override.text}"
-        if any(loc[: len(key)] == key for key in filled):
-            return f"{file} with profile {data['profile']}"
-        return file
+        by = next((by for key, by in filled.items() if loc[: len(key)] == key), None)
+        return f"{file} with {by}" if by else file
 
     try:
         case = Case.model_validate(data)

@@ -1,6 +1,7 @@
 """A case: everything that a person says about a run, typed and frozen."""
 
 import re
+from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -13,6 +14,7 @@ from pydantic_core import PydanticCustomError
 from psph.case.consistency import contradictions
 from psph.case.physics import physics_table
 from psph.case.profiles import OFF, PROFILES, choices
+from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.case.tables import Axis, Name, Table, Vector, key
@@ -199,6 +201,10 @@ class Case(Table):
     """
 
     title: str = key("what the case is, in one line", "")
+    scheme: Literal[tuple(SCHEMES)] = key(
+        "what keeps the fluid stable: psph's own scheme, traditional SPH or SSPH; for the keys that "
+        "the case does not give itself", STABLE,
+    )
     profile: Literal[tuple(PROFILES)] | None = key(
         "numerical choices by one name, for the keys that the case does not give itself", None,
         otherwise="no profile",
@@ -243,25 +249,32 @@ class Case(Table):
         """The file's name without folder and ending."""
         return Path(self._file).stem
 
-    @property
-    def profile_keys(self) -> dict[str, Any]:
-        """Dotted keys of the case's profile and what it has there; empty without a profile."""
-        space = self.space
-        return choices(self.profile, space.dimensions, space.periodic) if self.profile else {}
+    @cached_property
+    def presets(self) -> dict[str, tuple[str, Any]]:
+        """Dotted keys that the case's profile or scheme has a say in: whose, and what it says."""
+        space, surface = self.space, self.physics.free_surface is not None
+        named = [(f"scheme {self.scheme}", scheme_keys(self.scheme, surface))]
+        if self.profile:
+            keys = choices(self.profile, space.dimensions, space.periodic)
+            named.append((f"profile {self.profile}", keys))
+        return {key: (name, value) for name, keys in named for key, value in keys.items()}
 
-    def follows_profile(self, dotted: str) -> bool:
-        """Whether the value at a key of the case's profile is that of the profile."""
-        value, wanted = attrgetter(dotted)(self), self.profile_keys[dotted]
+    def preset(self, dotted: str) -> str | None:
+        """The profile or scheme whose value stands at a key, or None."""
+        name, wanted = self.presets.get(dotted, (None, None))
+        if name is None:
+            return None
+        value = attrgetter(dotted)(self)
         if isinstance(value, Table) and wanted != OFF:
-            return value == type(value).model_validate(wanted)
-        return (OFF if value is None else value) == wanted
+            return name if value == type(value).model_validate(wanted) else None
+        return name if (OFF if value is None else value) == wanted else None
 
     def to_toml(self) -> str:
         """This case as TOML that :func:`psph.case.load` reads back to an equal case."""
         tables = self.model_dump(by_alias=True, exclude_none=True)
-        for name in self.profile_keys:
+        for name in self.presets:
             table, _, effect = name.rpartition(".")
-            if table:  # what the case lacks shall not come back with the profile
+            if table:  # what the case lacks shall not come back with a profile or scheme
                 tables[table].setdefault(effect, OFF)
         text = tomli_w.dumps({name: value for name, value in tables.items() if value})
         return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from psph.case.schemes import SCHEMES, scheme_keys, scheme_of
+
 OFF = "off"
 """The value that takes a key out of the case."""
 
@@ -70,27 +72,30 @@ def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[st
 
 
 def fill(
-    data: dict[str, Any], touched: list[tuple[str | int, ...]], over: bool
-) -> list[tuple[str, ...]]:
-    """Put the profile that ``data`` names under its keys; the locations that it has filled.
+    data: dict[str, Any], touched: list[tuple[str | int, ...]]
+) -> dict[tuple[str, ...], str]:
+    """Put the profile and the scheme of ``data`` under its keys; what filled which location.
 
-    Keys at, above or below those ``touched`` stay as they are; ``over``: all others give way.
+    Keys at, above or below those ``touched`` stay as they are.  A profile or a scheme that is
+    itself among these takes the place of all others.
     """
-    found = []
-    for key, value in _asked(data).items():
-        path = tuple(key.split("."))
-        table = data.setdefault(path[0], {}) if len(path) > 1 else data
-        if not isinstance(table, dict) or any(_share(path, other) for other in touched):
-            continue
-        if over and value == OFF:
-            table.pop(path[-1], None)
-        elif value != OFF and (over or path[-1] not in table):
-            table[path[-1]] = value
-            found.append(path)
+    found: dict[tuple[str, ...], str] = {}
+    data["scheme"] = scheme_of(data)
+    for name, keys in (("profile", _profile_keys(data)), ("scheme", _scheme_keys(data))):
+        for key, value in keys.items():
+            path = tuple(key.split("."))
+            table = data.setdefault(path[0], {}) if len(path) > 1 else data
+            if not isinstance(table, dict) or any(_share(path, other) for other in touched):
+                continue
+            if value == OFF and (name,) in touched:
+                table.pop(path[-1], None)
+            elif value != OFF and ((name,) in touched or path[-1] not in table):
+                table[path[-1]] = value
+                found[path] = f"{name} {data[name]}"
     return found
 
 
-def _asked(data: Mapping[str, Any]) -> dict[str, Any]:
+def _profile_keys(data: Mapping[str, Any]) -> dict[str, Any]:
     """The keys of the profile that a file names; what is wrong with the file is said elsewhere."""
     name, space = data.get("profile"), data.get("space")
     if not isinstance(name, str) or name not in PROFILES:
@@ -99,6 +104,13 @@ def _asked(data: Mapping[str, Any]) -> dict[str, Any]:
     axes = space.get("periodic", ())
     axes = tuple(map(str, axes)) if isinstance(axes, (list, tuple)) else ()
     return choices(name, space.get("dimensions"), axes)
+
+
+def _scheme_keys(data: Mapping[str, Any]) -> dict[str, Any]:
+    name, physics = data["scheme"], data.get("physics")
+    if not isinstance(name, str) or name not in SCHEMES:
+        return {}
+    return scheme_keys(name, isinstance(physics, dict) and "free_surface" in physics)
 
 
 def _share(one: tuple, other: tuple) -> bool:

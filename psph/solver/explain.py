@@ -87,7 +87,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     support = scene.kernel.support * scene.smoothing_length
     yield f"{case.title or case.name} ({case.file})"
     yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
-    yield from _profile_lines(case)
+    yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.materials)
     yield f"  materials   {names}"
     yield (
@@ -97,15 +97,17 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     )
 
 
-def _profile_lines(case) -> Iterator[str]:
-    """The profile: what it sets, and what the case gives otherwise."""
-    if not case.profile:
-        return
-    own = [key for key in case.profile_keys if not case.follows_profile(key)]
-    yield f"  profile     {case.profile}" + (f", but for {', '.join(own)}" if own else "")
-    for key, value in case.profile_keys.items():
-        if key not in own:
-            yield f"              {key} = {value}"
+def _preset_lines(case) -> Iterator[str]:
+    """The scheme and the profile: what they set, and what the case gives otherwise."""
+    names = dict.fromkeys((f"scheme {case.scheme}", *(name for name, _ in case.presets.values())))
+    for name in names:
+        keys = {key: value for key, (of, value) in case.presets.items() if of == name}
+        own = [key for key in keys if not case.preset(key)]
+        what, _, which = name.partition(" ")
+        yield f"  {what:<11} {which}" + (f", but for {', '.join(own)}" if own else "")
+        for key, value in keys.items():
+            if key not in own:
+                yield f"              {key} = {value}"
 
 
 def _rank_lines(scene, plan: Plan, particles: int, ranks: int) -> Iterator[str]:

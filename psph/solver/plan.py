@@ -208,8 +208,8 @@ def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
 
 def _origin(case, path: str, given: bool) -> str:
     """Where a value comes from, where the case does not give it."""
-    if path in case.profile_keys and case.follows_profile(path):
-        return f" (profile {case.profile})"
+    if name := case.preset(path):
+        return f" ({name})"
     return "" if given else " (default)"
 
 

@@ -1,0 +1,47 @@
+"""Schemes: what keeps a fluid stable, by one name, for keys that a case does not give itself."""
+
+from collections.abc import Mapping
+from typing import Any
+
+STABLE, PLAIN = "stable", "sph"
+
+SCHEMES: dict[str, dict[str, Any]] = {
+    STABLE: {
+        "space.kernel": "hyperbolic",
+        "space.smoothing": 1.3,
+        "space.normalised": True,
+        "physics.pressure_gradient": "symmetric",
+        "physics.density_diffusion": 0.1,
+        "physics.pair_damping": 0.02,
+        "physics.pair_potential": 0.008,
+        "physics.position_shift": 0.1,
+        "physics.tension_floor": 0.98,
+        "physics.background_pressure": "auto",
+    },
+    PLAIN: {
+        "space.kernel": "cubic",
+        "space.smoothing": 1.2,
+        "physics.pressure_gradient": "symmetric",
+    },
+    "ssph": {
+        "space.kernel": "hyperbolic",
+        "space.smoothing": 1.2,
+        "physics.pressure_gradient": "minimum",
+    },
+}
+"""psph's own scheme, and the two of Acta Phys. Sin. 61, 224701 (2012): traditional SPH, eqs. (5) to
+(7) with (9), and SSPH, (13) and (15).  docs/stability.md has what each of them bears."""
+
+SURFACE = "physics.free_surface"
+"""With the paper's free-surface condition, eq. (14), its pressure gradient is eq. (6)."""
+
+
+def scheme_of(data: Mapping[str, Any]) -> Any:
+    """The scheme that a file names; else ours, or the plain one beside a profile."""
+    return data.get("scheme", PLAIN if "profile" in data else STABLE)
+
+
+def scheme_keys(scheme: str, free_surface: bool) -> dict[str, Any]:
+    """Dotted keys and values of a scheme; ``free_surface``: the case gives eq. (14)."""
+    keys = SCHEMES[scheme]
+    return keys | {"physics.pressure_gradient": "symmetric"} if free_surface else keys
