@@ -36,7 +36,7 @@ def _kept(folder: Path) -> dict:
 
 def _profiles(every: list[dict]) -> Iterator[str]:
     """A line for each case and spacing: error and seconds of each profile."""
-    yield "## Profiles"
+    yield "## The price of profiles"
     yield ""
     yield f"| case | error of | spacing | {' | '.join(PROFILES)} |"
     yield "|---" * (3 + len(PROFILES)) + "|"
