@@ -116,3 +116,14 @@ def test_first_moment_on_the_square_lattice(smoothing, moment):
 def test_unknown_kernel():
     with pytest.raises(KeyError):
         kernel("cubical", 1.0, 2)
+
+
+@pytest.mark.parametrize("dim", (1, 2, 3))
+def test_a_normalised_slope_has_the_right_first_moment_and_the_same_weight(dim):
+    plain, dx = kernel("hyperbolic", 0.013, dim), 0.01
+    even = normalised(plain, dx, dim)
+    radii = [dx * math.hypot(*k) for k in product(range(-3, 4), repeat=dim) if any(k)]
+    assert -sum(r * even.dw(r) for r in radii) * dx**dim / dim == pytest.approx(1.0, rel=1e-14)
+    assert -sum(r * plain.dw(r) for r in radii) * dx**dim / dim != pytest.approx(1.0, rel=1e-3)
+    assert even.w(0.004) == plain.w(0.004)
+    assert even.dw_r(0.004) == pytest.approx(even.dw(0.004) / 0.004, rel=1e-14)

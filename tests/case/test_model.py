@@ -8,7 +8,7 @@ from drafts import TANK, WATER, draft
 from pydantic import ValidationError
 
 from psph.case import Case, load, schema
-from psph.smoothing import KERNELS
+from psph.case.schemes import SCHEMES
 
 CASES = sorted((Path(__file__).parents[2] / "run/cases").glob("*.toml"))
 
@@ -43,9 +43,11 @@ def test_what_needs_the_particles_stays_open(tmp_path):
     assert case.space.lower is None
 
 
-def test_the_first_kernel_is_the_default(tmp_path):
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_kernel_that_is_not_given_is_that_of_the_scheme(tmp_path, scheme):
     silent = WATER.replace('kernel = "hyperbolic"\n', "")
-    assert draft(tmp_path, silent).space.kernel == next(iter(KERNELS))
+    kernel = draft(tmp_path, silent, f"scheme={scheme}").space.kernel
+    assert kernel == SCHEMES[scheme]["space.kernel"]
 
 
 def test_a_whole_number_is_a_number(tmp_path):
@@ -61,7 +63,9 @@ def test_a_case_is_frozen(tmp_path):
 
 
 def test_what_the_file_says_is_remembered_as_given(tmp_path):
-    assert draft(tmp_path).physics.model_fields_set == {"gravity"}
+    case = draft(tmp_path)
+    assert case.physics.model_fields_set == {"gravity", "pressure_gradient"}
+    assert case.preset("physics.pressure_gradient") == "scheme sph"
 
 
 @pytest.mark.parametrize("text", [WATER, FULL])

@@ -5,6 +5,7 @@ from drafts import SQUARE, TANK, draft, refusal
 
 from psph.case import load
 from psph.case.profiles import OFF, PERIODIC, PROFILES, choices
+from psph.case.schemes import SCHEMES
 
 CLOSED = SQUARE.replace("spacing = 0.1", 'spacing = 0.1\nperiodic = ["x", "y"]\n'
                         "lower = [0.0, 0.0]\nupper = [1.0, 1.0]")
@@ -19,7 +20,7 @@ def named(profile, text):
 def test_a_profile_fills_in_every_key_that_the_case_leaves_out(tmp_path, profile, text):
     case = draft(tmp_path, named(profile, text))
     wanted = choices(profile, 2, case.space.periodic)
-    assert case.profile_keys == wanted and all(map(case.follows_profile, wanted))
+    assert all(case.preset(key) == f"profile {profile}" for key in wanted)
     assert case.space.smoothing == wanted["space.smoothing"] and case.time.cfl == wanted["time.cfl"]
     assert case.physics.density_diffusion.delta == wanted["physics.density_diffusion"]
     absent = {key for key, value in wanted.items() if value == OFF}
@@ -38,7 +39,7 @@ def test_what_the_file_says_wins_over_its_profile(tmp_path):
     case = draft(tmp_path, text)
     assert (case.space.kernel, case.space.smoothing) == ("hyperbolic", 1.3)
     assert case.physics.density_diffusion is not None
-    assert not case.follows_profile("space.smoothing") and case.follows_profile("time.cfl")
+    assert not case.preset("space.smoothing") and case.preset("time.cfl") == "profile reference"
 
 
 def test_a_profile_on_the_command_line_wins_over_the_file(tmp_path):
@@ -71,8 +72,8 @@ def test_the_resolved_case_reads_back_equal(tmp_path, sets):
 
 def test_no_profile_is_no_difference(tmp_path):
     case = draft(tmp_path, CLOSED)
-    assert case.profile is None and case.profile_keys == {}
-    assert case.space.smoothing == 1.4 and case.physics.density_diffusion is None
+    assert case.profile is None and case.presets.keys() == SCHEMES["sph"].keys()
+    assert case.space.smoothing == 1.2 and case.physics.density_diffusion is None
     assert "off" not in case.to_toml()
 
 

@@ -32,6 +32,7 @@ def view(n=2, dim=2, seed=3):
         slip=tuple(rng.normal(size=n) for _ in range(dim)),
         sound_speed=50.0,
         smoothing_length=H,
+        largest_speed=2.0,
         crowding=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
         gradient_correction=tuple(rng.normal(size=n) * 0.1 for _ in range(dim * (dim + 1) // 2)),
     )
@@ -86,6 +87,7 @@ def rates(effects, reductions, k, periods, particles, a, b):
         compose.body(effects, i),
         compose.finish_acceleration(reductions, totals, i),
         compose.limit_density(effects, i, 987.0),
+        compose.limit_wall_density(effects, i, 987.0),
         compose.displacement(effects, i, 1e-4),
         stored(reductions, totals, i, k),
     )

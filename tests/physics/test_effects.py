@@ -2,7 +2,8 @@
 
 import itertools
 import math
-from typing import get_type_hints
+from itertools import product
+from typing import get_origin, get_type_hints
 
 import numpy as np
 import pytest
@@ -13,14 +14,17 @@ from psph.physics.continuity import Continuity
 from psph.physics.correction import DifferenceCorrection, GradientCorrection
 from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
 from psph.physics.gravity import Gravity
+from psph.physics.potential import neutral_potential
 from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
 )
-from psph.physics.shifting import ParticleShifting
+from psph.physics.shifting import ParticleShifting, PositionShift
 from psph.physics.slip import NoSlip
-from psph.physics.surface import FreeSurface
+from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.trial import UnknownField, reads
-from psph.physics.viscosity import ArtificialViscosity, CorrectedViscosity, LaminarViscosity
+from psph.physics.viscosity import (
+    ArtificialViscosity, CorrectedViscosity, LaminarViscosity, PairDamping,
+)
 from psph.smoothing import kernel
 
 DIMENSIONS = (1, 2, 3)
@@ -30,7 +34,8 @@ def made(effect, dim):
     """An instance with its defaults, or with a number or vector where it asks for one."""
     hints = get_type_hints(effect)
     needed = [n for n in effect._fields if n not in effect._field_defaults]
-    return effect(*(0.7 if hints[n] is float else (0.3, -9.8, 0.3)[:dim] for n in needed))
+    vector = (0.3, -9.8, 0.3)[:dim]
+    return effect(*(vector if get_origin(hints[n]) is tuple else 0.7 for n in needed))
 
 
 def written_out(particles, a, b):
@@ -323,6 +328,25 @@ def test_no_shift_at_a_surface():
     assert sums_of(effect, p, 0) == (0.0, 0.0)
 
 
+def test_a_position_shift_stops_with_the_flow():
+    effect = PositionShift(0.1)
+    i = pair_of(view(), 0, 1)[0]
+    fast = np.array(effect.displacement(i._replace(largest_speed=50.0), 1e-3))
+    slow = np.array(effect.displacement(i._replace(largest_speed=2.0), 1e-3))
+    assert slow == pytest.approx(fast * 2.0 / (0.1 * i.sound_speed))
+    assert effect.displacement(i._replace(largest_speed=0.0), 1e-3) == pytest.approx((0.0, 0.0))
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_pair_damping_acts_on_approaching_and_parting_pairs_alike(dim):
+    p = view(dim=dim)
+    there, back = (
+        PairDamping(0.3).radial(*pair_of(q, 0, 1))
+        for q in (p, p._replace(velocity=tuple(-v for v in p.velocity)))
+    )
+    assert there == pytest.approx(-back, rel=1e-13) and there != 0.0
+
+
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_corrected_gradients_are_exact_for_linear_fields(dim):
     effect, p = GradientCorrection(0.01), patch(dim, jitter=0.2)
@@ -429,7 +453,7 @@ def test_the_correction_fades_where_neighbours_are_missing(dim):
     "effect",
     [
         SymmetricPressure, LaminarViscosity, ArtificialViscosity, BackgroundPressure,
-        GradientCorrection, CorrectedViscosity,
+        GradientCorrection, CorrectedViscosity, PairDamping,
     ],
 )
 def test_conserves_momentum_where_the_formula_promises_it(effect):
@@ -496,3 +520,32 @@ def test_an_effect_that_reads_what_nobody_has():
 
     with pytest.raises(UnknownField, match="Buoyancy reads 'temperature'.*pressure"):
         reads(Buoyancy(), 2, kernel("cubic", H, 2))
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_the_pair_potential_bears_no_pressure_on_its_lattice_and_repels_near_pairs(dim):
+    dx, potential = 0.01, neutral_potential(0.5, 0.01, dim)
+    sites = [np.array(k) * dx for k in product(range(-3, 4), repeat=dim) if any(k)]
+    forces = [coefficient(potential, x) * x for x in sites]
+    pushes = [abs(f @ x) for f, x in zip(forces, sites)]
+    assert abs(sum(f @ x for f, x in zip(forces, sites))) < 1e-12 * sum(pushes)
+    near, far = (coefficient(potential, np.eye(dim)[0] * r * dx) for r in (0.75, 1.5))
+    assert near > 0.0 > far
+    # K = f ρ₀ (c/10)²: a = 2K m/(ρ₀² dx^(d+1)) at three quarters of a spacing
+    k = 0.5 * 1000.0 * 5.0**2
+    assert near * 0.75 * dx == pytest.approx(2 * k * 0.1 / 1000.0**2 / dx ** (dim + 1))
+
+
+def coefficient(potential, x):
+    """Of x_ij in the acceleration of a particle by one of 0.1 kg, x away."""
+    p = view(dim=len(x))
+    p = p._replace(
+        position=tuple(np.array([c, 0.0]) for c in x), mass=np.array([0.1, 0.1]),
+    )
+    return potential.radial(*pair_of(p, 0, 1))
+
+
+def test_a_floor_on_tension_for_water_and_for_walls():
+    floor, i = TensionFloor(0.98), pair_of(view(), 0, 1)[0]
+    assert [floor.limit_density(i, rho) for rho in (900.0, 985.0, 1001.0)] == [980.0, 985.0, 1001.0]
+    assert [floor.limit_wall_density(i, rho) for rho in (985.0, 1001.0)] == [1000.0, 1001.0]

@@ -55,7 +55,7 @@ def test_a_viscosity_switches_viscosity_on(planned):
     [call] = (c for c in plan.called if type(c.effect).__name__ == "LaminarViscosity")
     assert call.reason == "fluids.water.viscosity = 0.001"
     limits = {name: step for step, name in plan.step_limits(1.0, 0.0)}
-    assert limits["laminar viscosity"] == pytest.approx(0.125 * 0.14**2 / 1e-3)
+    assert limits["laminar viscosity"] == pytest.approx(0.125 * 0.12**2 / 1e-3)
 
 
 def test_two_viscosities_become_an_array_of_ghosts_too(planned):

@@ -1,0 +1,60 @@
+"""Schemes: what they fill in, and what gives way to what."""
+
+from drafts import SQUARE, draft, refusal
+
+from psph.case.profiles import OFF
+from psph.case.schemes import SCHEMES
+
+BARE = SQUARE.replace('scheme = "sph"\n', "")
+
+
+def of(case, key):
+    """The value of a key as a person would write it."""
+    table, _, name = key.partition(".")
+    value = getattr(getattr(case, table), name)
+    return OFF if value is None else getattr(value, type(value).__annotations__ and next(
+        iter(type(value).model_fields)) if hasattr(type(value), "model_fields") else "", value)
+
+
+def test_stable_is_the_default(tmp_path):
+    case = draft(tmp_path, BARE)
+    assert case.scheme == "stable"
+    assert {key: of(case, key) for key in SCHEMES["stable"]} == SCHEMES["stable"]
+
+
+def test_what_the_file_says_wins(tmp_path):
+    case = draft(tmp_path, BARE.replace("[physics]", "[physics]\npair_damping = 0.1"))
+    assert case.physics.pair_damping.alpha == 0.1 and case.preset("physics.pair_damping") is None
+    assert case.physics.pair_potential is not None
+
+
+def test_a_part_can_be_left_out(tmp_path):
+    for text, sets in ((BARE, ("physics.pair_potential=off",)),
+                       (BARE.replace("[physics]", '[physics]\npair_potential = "off"'), ())):
+        case = draft(tmp_path, text, *sets)
+        assert case.physics.pair_potential is None and case.physics.position_shift is not None
+        assert draft(tmp_path, case.to_toml()) == case
+
+
+def test_a_scheme_on_the_command_line_wins(tmp_path):
+    text = BARE.replace("[time]", 'kernel = "quintic"\n[time]')
+    assert draft(tmp_path, text).space.kernel == "quintic"
+    assert draft(tmp_path, text, "scheme=ssph").space.kernel == "hyperbolic"
+
+
+def test_beside_a_profile_the_scheme_is_plain(tmp_path):
+    case = draft(tmp_path, 'profile = "quick"\n' + BARE)
+    assert case.scheme == "sph" and case.physics.pair_potential is None
+    assert case.space.kernel == "wendland-c2"
+
+
+def test_ssph_has_the_pressure_gradient_that_the_paper_has_for_the_case(tmp_path):
+    ssph = 'scheme = "ssph"\n' + BARE
+    assert draft(tmp_path, ssph).physics.pressure_gradient == "minimum"
+    surface = draft(tmp_path, ssph.replace("[physics]", "[physics]\nfree_surface = 0.9"))
+    assert surface.physics.pressure_gradient == "symmetric"
+
+
+def test_two_shifts_are_refused(tmp_path):
+    [line] = refusal(tmp_path, BARE.replace("[physics]", "[physics]\nparticle_shifting = 0.1"))
+    assert "physics.particle_shifting" in line and 'give it as "off"' in line
