@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.stability import SYMMETRIC
 from psph.stability.remedies import Stress
-from psph.stability.uniform import SYMMETRIC, Uniform
+from psph.stability.uniform import Uniform
 
 FINE = 1e-5
 """Step over h of the difference that gives the slope of a force: exact to 1e-9 but at knots."""

@@ -45,9 +45,11 @@ class Lattice(NamedTuple):
     def shortest(self, wave: np.ndarray) -> np.ndarray:
         """The same wave, up to its sign, in the first Brillouin zone; rad/m."""
         same = wave + _all_of([range(-2, 3)] * self.dimensions) @ self.reciprocal
-        lengths = np.round(np.linalg.norm(same, axis=1) / np.linalg.norm(self.reciprocal[0]), 6)
-        ways = [np.round(turn * k, 9) for k in same[lengths == lengths.min()] for turn in (1, -1)]
-        return max(ways, key=tuple) + 0.0
+        unit = np.linalg.norm(self.reciprocal[0])
+        same[np.abs(same) < 1e-9 * unit] = 0.0
+        lengths = np.round(np.linalg.norm(same, axis=1) / unit, 6)
+        ways = [turn * k for k in same[lengths == lengths.min()] for turn in (1.0, -1.0)]
+        return max(ways, key=lambda k: tuple(np.round(k / unit, 6))) + 0.0
 
 
 def lattice(name: str, spacing: float) -> Lattice:

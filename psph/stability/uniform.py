@@ -6,10 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.smoothing import kernel
+from psph.stability import SYMMETRIC
 from psph.stability.lattices import Lattice, lattice
-
-SYMMETRIC, FORMS = "symmetric", ("symmetric", "minimum", "difference")
-"""Discrete pressure gradients, named as in a case (``physics.pressure_gradient``)."""
 
 STIFF = 10.0
 """c in √(|P|/ρ) where nothing else is said: P is about ρU², and c ten times the speed U."""
@@ -56,7 +54,7 @@ class Uniform:
 
     def weight(self, r: np.ndarray) -> np.ndarray:
         """W(r), 1/m^d, same shape as r."""
-        return np.array([self.kernel.w(x) for x in r.tolist()])
+        return _of_each(self.kernel.w, r)
 
     def slope(self, r: np.ndarray) -> np.ndarray:
         """W′(r), 1/m^(d+1), over the first moment where a remedy asks for it."""
@@ -75,4 +73,10 @@ class Uniform:
         return float(-(r * self._slope(r)).sum() * self.volume / self.lattice.dimensions)
 
     def _slope(self, r: np.ndarray) -> np.ndarray:
-        return np.array([self.kernel.dw(x) for x in r.tolist()])
+        return _of_each(self.kernel.dw, r)
+
+
+def _of_each(formula, r: np.ndarray) -> np.ndarray:
+    """A formula of a single number, of each in r; few of the distances on a lattice differ."""
+    values, places = np.unique(r, return_inverse=True)
+    return np.array([formula(x) for x in values.tolist()])[places]
