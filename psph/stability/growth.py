@@ -119,7 +119,8 @@ def box_growth(settings: Settings, cells: int) -> Growth:
             f"stability --box {cells}: its matrix would be too large; at most {most} on a "
             f"{settings.lattice} lattice"
         )
-    system, whole = box_of(couplings(uniform), cells)
+    pairs = couplings(uniform)
+    system, whole = box_of(pairs, cells, int(np.abs(pairs.whole).max()))
     rate = float(system.urge())
     stable = not rate > system.noise
     mode = system.mode().reshape(-1, lattice.dimensions)
@@ -129,42 +130,40 @@ def box_growth(settings: Settings, cells: int) -> Growth:
     return Growth(0.0 if stable else rate, wave, stable)
 
 
-def box_of(pairs: Couplings, cells: int) -> tuple[System, np.ndarray]:
-    """The motion of ``cells``^d particles between fixed ones, and their lattice numbers (n, d).
+def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarray]:
+    """The motion of ``cells``^d particles inside ``layers`` of fixed ones, and their n (n, d).
 
-    Row d·i + x of the matrices is coordinate x of particle i.
+    Row d·i + x of the matrices is coordinate x of the particle i that moves; densities are those
+    of all sites, fixed ones included.  Layers beyond the couplings' reach change nothing.
     """
     d = pairs.whole.shape[1]
-    margin = int(np.abs(pairs.whole).max())
-    shape = (cells + 2 * margin,) * d
-    inner = np.stack(np.meshgrid(*[np.arange(cells)] * d, indexing="ij"), -1).reshape(-1, d)
-    place = np.full(np.prod(shape), -1)  # of a site among those that move
-    own = np.ravel_multi_index((inner + margin).T, shape)
-    place[own] = moving = np.arange(len(inner))
-    n, every = len(inner), len(place)
+    shape = np.full(d, cells + 2 * layers)
+    sites = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), -1).reshape(-1, d)
+    inner = ((sites >= layers) & (sites < layers + cells)).all(axis=1)
+    own = np.where(inner, np.cumsum(inner) - 1, -1)  # number of a site among those that move
+    n, every = int(inner.sum()), len(sites)
     stiffness, damping = np.zeros((n, d, n, d)), np.zeros((n, d, n, d))
     push, pull = np.zeros((n, d, every)), np.zeros((every, n, d))
     diffusion = np.zeros((every, every))
     for k, step in enumerate(pairs.whole):
-        beside = np.ravel_multi_index((inner + margin + step).T, shape)
-        other = place[beside]
-        a, b = moving[other >= 0], other[other >= 0]
+        a = np.flatnonzero(((sites + step >= 0) & (sites + step < shape)).all(axis=1))
+        b = np.ravel_multi_index((sites[a] + step).T, shape)
+        diffusion[a, a] += pairs.diffusion[k]
+        diffusion[a, b] -= pairs.diffusion[k]
+        towards = inner[b]
+        pull[a[towards], own[b[towards]]] += pairs.pull[k]
+        a, b = a[inner[a]], b[inner[a]]
+        towards = inner[b]
+        pull[a, own[a]] -= pairs.pull[k]
+        push[own[a], :, b] += pairs.push[k]
         for matrix, part in ((stiffness, pairs.stiffness[k]), (damping, pairs.damping[k])):
-            matrix[moving, :, moving, :] += part
-            matrix[a, :, b, :] -= part
-        push[moving, :, beside] += pairs.push[k]
-        pull[own, moving] -= pairs.pull[k]
-        pull[beside, moving] -= pairs.pull[k]  # seen from there, −R
-        diffusion[own, own] += pairs.diffusion[k]
-        diffusion[own, beside] -= pairs.diffusion[k]
-        walls = beside[other < 0]
-        diffusion[walls, walls] += pairs.diffusion[k]
-        diffusion[walls, own[other < 0]] -= pairs.diffusion[k]
+            matrix[own[a], :, own[a], :] += part
+            matrix[own[a[towards]], :, own[b[towards]], :] -= part
     q = n * d
     return System(
         stiffness.reshape(q, q), damping.reshape(q, q), push.reshape(q, every),
         pull.reshape(every, q), diffusion,
-    ), inner
+    ), sites[inner] - layers
 
 
 def zone_grid(lattice: Lattice, count: int) -> np.ndarray:
