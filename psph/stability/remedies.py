@@ -3,7 +3,8 @@
 A remedy has those of these that it needs, each given the :class:`Uniform` that is disturbed:
 
 - ``stress(uniform)``: a :class:`Stress`, one more term of the symmetric pressure gradient,
-- ``force(uniform, r)``: an attraction of every pair, m/s² (sites,), so that a_a = −Σ_b f x_ab/r,
+- ``force(uniform, r)``: an attraction of pairs within the kernel's support, m/s² (sites,), so that
+  a_a = −Σ_b f x_ab/r,
 - ``damping(uniform, r)``: (along, any): a_a = −Σ_b (along r̂ r̂ᵀ + any) u_ab, 1/s (sites,) or 0,
 - ``diffusion(uniform, r)``: dρ_a/dt = −Σ_b diffusion (ρ_a − ρ_b), 1/s (sites,),
 - ``normalises``: gradients are divided by their first moment.
@@ -64,7 +65,7 @@ class ArtificialStress(NamedTuple):
 
 
 class PairForce(NamedTuple):
-    """An attraction f(r) of every pair, m/s² for r in m; for example (2K/ρ²) m ψ′(r)."""
+    """An attraction f(r) of pairs within the support, m/s² for r in m: say (2K/ρ²) m ψ′(r)."""
 
     attraction: Callable[[np.ndarray], np.ndarray]
 
