@@ -148,7 +148,7 @@ VERBS = {
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
     "study": (_study, "what accuracy costs in time: a case over a ladder of choices"),
-    "stability": (_stability, "which lattices fall apart, how fast: kernel, h/dx, pressure, remedies"),
+    "stability": (_stability, "which lattices fall apart under pressure, and how fast"),
     "bench": (_bench, "particle-steps and pairs per second of this machine"),
 }
 

@@ -156,7 +156,7 @@ def test_cheap_commands_run(command, drop):
 
 
 @pytest.mark.parametrize(
-    "command", [c for c in commands("docs/stability.md") if c.startswith("python -m psph stability")]
+    "command", [c for c in commands("docs/stability.md") if "psph stability" in c]
 )
 def test_stability_commands_say_something(command, tmp_path):
     """Each with its last line, or the files that it tells of."""
@@ -245,11 +245,11 @@ def test_growth_of_sound():
 
 def test_windows_of_the_page():
     """The table of h/dx that are stable, on the lattices of the plane whole, in 3D a sample."""
-    [table] = re.findall(r"^\| kernel ((?:\| \w+ )+)\|$", text("docs/stability.md"), re.MULTILINE)[:1]
-    lattices = table.replace("|", " ").split()
+    page = text("docs/stability.md")
+    lattices = re.search(r"^\| kernel ((?:\| \w+ )+)\|$", page, re.MULTILINE)[1].split()[1::2]
     assert {"square", "hexagonal", "cubic", "fcc"} <= set(lattices)
     for kernel in smoothing.KERNELS:
-        cells = re.findall(rf"^\| `{kernel}` \|(.*)\|$", text("docs/stability.md"), re.MULTILINE)[0]
+        cells = re.findall(rf"^\| `{kernel}` \|(.*)\|$", page, re.MULTILINE)[0]
         for lattice, cell in zip(lattices, cells.split("|"), strict=True):
             told = [] if cell.strip() == "–" else [
                 [float(end) for end in run.split("–")] for run in cell.split(",")

@@ -1,1 +1,1 @@
-"""Maps of stability: which kernels hold which lattices at which h/dx, in numbers and as a picture."""
+"""Maps of stability: which kernels hold a lattice at which h/dx, as tables and pictures."""

@@ -34,8 +34,8 @@ def draw(path: Path, rows: Sequence[Row], subtitle: str) -> Path:
     height = top + len(STATES) * (tall + GAP) - GAP + style.BOTTOM
     with style.look():
         figure = style.sheet(
-            left + WIDTH + style.RIGHT, height, "Which lattices hold, and how fast the others fall apart",
-            subtitle,
+            left + WIDTH + style.RIGHT, height,
+            "Which lattices hold, and how fast the others fall apart", subtitle,
         )
         for k, state in enumerate(STATES):
             mine = [row for row in rows if row.state == state]

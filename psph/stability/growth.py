@@ -178,15 +178,16 @@ def zone_grid(lattice: Lattice, count: int) -> np.ndarray:
 
 
 def _climb(height: Callable, starts: np.ndarray, step: float) -> np.ndarray:
-    """Where ``height`` is largest: uphill from the best of ``starts``, which are ``step`` apart."""
+    """Where ``height`` is largest: uphill from the best ``starts``, ``step`` apart."""
     heights = height(starts)
     scale = np.abs(heights).max()
     _, order = np.unique(-np.round(heights / scale, 9), return_index=True)
     simplex = step * np.eye(starts.shape[1] + 1, starts.shape[1])
+    enough = {"xatol": FINEST, "fatol": FINEST**2 * scale}
     found = [
         minimize(
             lambda at: -height(at[None])[0], start, method="Nelder-Mead",
-            options={"initial_simplex": start + simplex, "xatol": FINEST, "fatol": FINEST**2 * scale},
+            options={"initial_simplex": start + simplex, **enough},
         )
         for start in starts[order[:STARTS]]
     ]

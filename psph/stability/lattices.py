@@ -36,7 +36,7 @@ class Lattice(NamedTuple):
         return 2.0 * np.pi * np.linalg.inv(self.basis).T
 
     def within(self, reach: float) -> np.ndarray:
-        """The n (sites, d) of all sites nearer than ``reach`` m to that at the origin, but itself."""
+        """The n (sites, d) of all sites nearer than ``reach`` m to the origin, but that itself."""
         most = np.ceil(reach * np.linalg.norm(self.reciprocal, axis=1) / (2.0 * np.pi)).astype(int)
         whole = _all_of([range(-n, n + 1) for n in most])
         far = np.linalg.norm(whole @ self.basis, axis=1)

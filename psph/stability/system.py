@@ -50,7 +50,7 @@ class System(NamedTuple):
         return SURE * float(np.sqrt(np.abs(self.squares).max(initial=0.0)))
 
     def urge(self) -> np.ndarray:
-        """Largest growth rate (…), 1/s; where a reversible system has none, −(slowest frequency)."""
+        """Largest growth rate (…), 1/s; of a reversible system without, −(slowest frequency)."""
         if not self.reversible:
             return np.linalg.eigvals(self.first_order).real.max(axis=-1)
         squares = self.squares

@@ -1,4 +1,4 @@
-"""The state that is disturbed: particles at rest on a lattice, under the same pressure everywhere."""
+"""The state that is disturbed: particles at rest on a lattice under a uniform pressure."""
 
 from functools import cached_property
 from typing import Any, NamedTuple

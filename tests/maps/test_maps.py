@@ -160,7 +160,8 @@ def test_sentences_of_neutral_forms(monkeypatch):
     monkeypatch.setattr(survey_module, "KERNELS", {"cubic": None})
     rows = list(survey(Settings("cubic", 1.0, "row", 1.0, form="minimum")))
     assert list(sentences(rows)) == [
-        "Under compression stable at h/dx: `cubic` 1–2.", "Under tension stable at h/dx: `cubic` 1–2."
+        "Under compression stable at h/dx: `cubic` 1–2.",
+        "Under tension stable at h/dx: `cubic` 1–2.",
     ]
 
 
