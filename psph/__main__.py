@@ -12,6 +12,8 @@ from mpi4py import MPI
 
 import psph
 from psph.bench import PROBLEMS
+from psph.stability import FORMS, STATES
+from psph.stability.lattices import LATTICES
 
 PATIENCE = 1.0
 """Seconds a failed rank waits for the others to fail alike before it ends them all."""
@@ -118,6 +120,13 @@ def _study(options, comm) -> None:
     )
 
 
+def _stability(options, comm) -> None:
+    from psph.maps.command import Asked, stability
+
+    asked = {name: getattr(options, name) for name in Asked._fields}
+    stability(comm, Asked(**asked | {"remedies": tuple(options.remedies)}))
+
+
 def _load(options):
     from psph.case import load
 
@@ -139,6 +148,7 @@ VERBS = {
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
     "study": (_study, "what accuracy costs in time: a case over a ladder of choices"),
+    "stability": (_stability, "which lattices fall apart under pressure, and how fast"),
     "bench": (_bench, "particle-steps and pairs per second of this machine"),
 }
 
@@ -174,6 +184,7 @@ def _parser() -> argparse.ArgumentParser:
     made["plot"].add_argument("--times", type=float, nargs="+", help="moments to show, s")
     made["plot"].add_argument("--field", default="pressure", help="what the colours show")
     _add_study_options(made["study"])
+    _add_stability_options(made["stability"])
     _add_bench_options(made["bench"])
     return parser
 
@@ -192,6 +203,39 @@ def _add_study_options(study: argparse.ArgumentParser) -> None:
     study.add_argument(
         "--out", type=Path, help="folder of the files (default: the case's name and -study)"
     )
+
+
+def _add_stability_options(stability: argparse.ArgumentParser) -> None:
+    stability.description = (
+        "Growth of the fastest small wave on a lattice of particles at rest under a uniform "
+        "pressure P. Without --kernel a map of all kernels over h/dx, as a table, a picture and a "
+        "CSV file. The rate is in sqrt(|P|/rho)/dx and the wave vector in rad/dx, with --pressure "
+        "in 1/s and rad/m; dx is the edge of a particle's volume, on every lattice."
+    )
+    stability.add_argument("--kernel", help="this kernel alone, no map")
+    stability.add_argument("--smoothing", type=float, help="h/dx (default: 1.4)")
+    stability.add_argument("--lattice", choices=LATTICES, default="square", help="default: square")
+    stability.add_argument("--state", choices=STATES, help="the sign of the pressure")
+    stability.add_argument(
+        "--form", choices=FORMS, default=FORMS[0],
+        help=f"discrete pressure gradient (default: {FORMS[0]})",
+    )
+    stability.add_argument(
+        "--with", dest="remedies", action="append", default=[], metavar="NAME[=VALUE]",
+        help="a remedy, such as background_pressure=1.5 (repeatable; any wrong name lists all)",
+    )
+    stability.add_argument("--pressure", type=float, help="Pa, below zero for tension")
+    stability.add_argument("--density", type=float, help="kg/m^d, with --pressure")
+    stability.add_argument("--spacing", type=float, help="dx in m, with --pressure")
+    stability.add_argument(
+        "--sound-speed", type=float,
+        help="m/s with --pressure, else in sqrt(|P|/rho) (default: 10 sqrt(|P|/rho))",
+    )
+    stability.add_argument(
+        "--box", type=int, metavar="N", help="N particles along an edge between fixed ones"
+    )
+    stability.add_argument("--out", type=Path, help="folder of the map (default: stability)")
+    stability.add_argument("--json", action="store_true", help="one JSON object as the last line")
 
 
 def _add_bench_options(bench: argparse.ArgumentParser) -> None:
@@ -222,12 +266,16 @@ def _foreseen(error: BaseException) -> tuple[str, int] | None:
     from psph.parallel.slabs import TooManyRanks
     from psph.particles.store import TooManyParticles
     from psph.solver.step import BlowUp
+    from psph.stability.errors import StabilityError
     from psph.study.errors import StudyError
     from psph.threads import TooManyThreads
 
     if isinstance(error, CaseError):
         return "\n".join(error.lines), BAD_INPUT
-    if isinstance(error, (BenchError, StudyError, TooManyRanks, TooManyThreads, TooManyParticles)):
+    foreseen = (
+        BenchError, StabilityError, StudyError, TooManyRanks, TooManyThreads, TooManyParticles,
+    )
+    if isinstance(error, foreseen):
         return str(error), BAD_INPUT
     if isinstance(error, (OutputError, BlowUp)):
         return str(error), FAILED

@@ -13,13 +13,13 @@ LAYERS = [
     {"jit"},
     {"simd", "threads"},
     {"vectors", "smoothing"},
-    {"physics", "solutions"},
+    {"physics", "solutions", "stability"},
     {"particles"},
     {"case"},
     {"scene", "parallel"},
     {"output"},
     {"solver"},
-    {"bench", "study"},
+    {"bench", "maps", "study"},
     {"__main__"},
 ]
 DEPTH = {part: depth for depth, layer in enumerate(LAYERS) for part in layer}

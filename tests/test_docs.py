@@ -2,6 +2,7 @@
 
 import importlib.util
 import itertools
+import json
 import re
 import shlex
 import subprocess
@@ -28,7 +29,11 @@ from psph.physics import catalogue
 from psph.physics.catalogue import Entry
 from psph.physics.trial import reads
 from psph.scene import Scene, check
-from psph.solver.plan import ALWAYS
+from psph.solver.outlook import outlook
+from psph.solver.plan import ALWAYS, make_plan
+from psph.stability.growth import is_stable
+from psph.stability.uniform import Settings
+from psph.stability.windows import SMOOTHINGS
 
 ROOT = Path(__file__).parents[1]
 PAGES = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
@@ -150,6 +155,28 @@ def test_cheap_commands_run(command, drop):
     assert job.returncode == 0 and not job.stderr and job.stdout
 
 
+@pytest.mark.parametrize(
+    "command", [c for c in commands("docs/stability.md") if "psph stability" in c]
+)
+def test_stability_commands_say_something(command, tmp_path):
+    """Each with its last line, or the files that it tells of."""
+    words = shlex.split(command.replace("results", str(tmp_path)))[1:]
+    job = subprocess.run(
+        [sys.executable, *words], cwd=ROOT, env=clean_environment(), stdin=subprocess.DEVNULL,
+        capture_output=True, text=True, timeout=150,
+    )
+    assert job.returncode == 0 and not job.stderr
+    last = job.stdout.splitlines()[-1]
+    if "--out" in words:
+        assert {path.name for path in (tmp_path / "stability").iterdir()} <= set(
+            re.findall(r"map\.\w+", last)
+        )
+    elif "--json" in words:
+        assert json.loads(last).keys() == {"growth_rate", "wave_vector", "stable"}
+    else:
+        assert "stable" in last
+
+
 def test_every_verb_is_in_the_readme():
     table = text("README.md").split("## Verbs")[1].split("##")[0]
     assert all(f"python -m psph {verb}" in table for verb in VERBS if verb != "run")
@@ -211,6 +238,32 @@ def test_growth_of_sound():
             left = np.polymul([1, 0, 0, 0, 0], [1, -2, 1])
             roots = np.roots(np.polyadd(left, float(theta) ** 2 * drift))
             assert float(told.replace("−", "-")) == pytest.approx(abs(roots).max() - 1, rel=0.05)
+
+
+# The map of docs/stability.md
+
+
+def test_windows_of_the_page():
+    """The table of h/dx that are stable, on the lattices of the plane whole, in 3D a sample."""
+    page = text("docs/stability.md")
+    lattices = re.search(r"^\| kernel ((?:\| \w+ )+)\|$", page, re.MULTILINE)[1].split()[1::2]
+    assert {"square", "hexagonal", "cubic", "fcc"} <= set(lattices)
+    for kernel in smoothing.KERNELS:
+        cells = re.findall(rf"^\| `{kernel}` \|(.*)\|$", page, re.MULTILINE)[0]
+        for lattice, cell in zip(lattices, cells.split("|"), strict=True):
+            told = [] if cell.strip() == "–" else [
+                [float(end) for end in run.split("–")] for run in cell.split(",")
+            ]
+            few = slice(None) if lattice in ("square", "hexagonal") else slice(0, 13, 6)
+            for h in SMOOTHINGS[few] if kernel != "fourth-order" else (1.0, 1.3):
+                inside = any(run[0] <= h <= run[-1] for run in told)
+                assert inside == is_stable(Settings(kernel, h, lattice, 1.0)), (kernel, lattice, h)
+
+
+def test_explain_of_the_page():
+    [block] = [b for b in fences("docs/stability.md", "text") if b.startswith("Stability of")]
+    scene = Scene(load(ROOT / "run/cases/hydrostatic.toml", ["space.smoothing=1.2"]))
+    assert block.splitlines() == list(outlook(scene, make_plan(scene)))
 
 
 # The examples of docs/contributing.md

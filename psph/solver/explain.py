@@ -10,6 +10,7 @@ from psph.particles.records import record_width
 from psph.particles.store import SPARE
 from psph.physics.count import flops_per_pair
 from psph.solver.hints import hints
+from psph.solver.outlook import outlook
 from psph.solver.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY = 8, 9, 12, 24, 4
@@ -26,6 +27,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from _rank_lines(scene, plan, particles, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
+    yield from outlook(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
 

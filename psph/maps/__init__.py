@@ -1,0 +1,1 @@
+"""Maps of stability: which kernels hold a lattice at which h/dx, as tables and pictures."""

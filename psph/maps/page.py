@@ -1,0 +1,73 @@
+"""The maps of a page: ``python -m psph.maps.page PAGE FOLDER...``.
+
+Each FOLDER holds the map of a lattice.  Between the markers of the page come the h/dx that are
+stable on each, the first map in full, and the pictures of all, which go into ``images/`` beside it.
+"""
+
+import csv
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from psph.maps.tables import CSV, PAGE, PICTURE
+from psph.output.errors import OutputError
+from psph.output.pages import renew
+from psph.stability import STATES
+from psph.stability.windows import windows
+
+MARKER = "map"
+
+Rows = list[dict[str, str]]
+
+
+def maps(page: Path, folders: Sequence[Path]) -> str:
+    """What the maps say; their pictures are copied.  OutputError: no map there."""
+    pictures, every = [], []
+    for folder in folders:
+        picture = page.parent / "images" / f"stability_{folder.name}.png"
+        try:
+            with open(folder / CSV, encoding="utf-8", newline="") as file:
+                every.append(list(csv.DictReader(file)))
+            shutil.copyfile(folder / PICTURE, picture)
+            first = (folders[0] / PAGE).read_text(encoding="utf-8")
+        except OSError as error:
+            raise OutputError(f"{folder}: {error.strerror}; give the folder of a map") from None
+        lattice = every[-1][0]["lattice"]
+        pictures.append(f"![Growth on the {lattice} lattice](images/{picture.name})")
+    return "\n".join([*_table(every), "", first, *(f"{one}\n" for one in pictures)])
+
+
+def _table(every: Sequence[Rows]) -> Iterator[str]:
+    """For each kernel the h/dx that are stable under compression, lattice by lattice."""
+    pressed = next(iter(STATES))
+    yield f"Stable under {pressed} at h/dx:"
+    yield ""
+    yield f"| kernel | {' | '.join(rows[0]['lattice'] for rows in every)} |"
+    yield "|---" * (1 + len(every)) + "|"
+    for kernel in dict.fromkeys(row["kernel"] for row in every[0]):
+        held = [_held(rows, kernel, pressed) for rows in every]
+        yield f"| `{kernel}` | {' | '.join(held)} |"
+
+
+def _held(rows: Rows, kernel: str, state: str) -> str:
+    mine = [row for row in rows if row["kernel"] == kernel and row["state"] == state]
+    return windows(float(row["smoothing"]) for row in mine if row["stable"] == "True") or "–"
+
+
+def main(arguments: list[str]) -> int:
+    """Renew a page; the exit code."""
+    if len(arguments) < 2:
+        print("python -m psph.maps.page PAGE FOLDER...", file=sys.stderr)
+        return 2
+    page, *folders = map(Path, arguments)
+    try:
+        renew(page, maps(page, folders), MARKER)
+    except OutputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,103 @@
+"""What linear theory foretells of the lattice that a scene starts from."""
+
+from collections.abc import Iterator
+
+from psph.physics.continuity import Continuity
+from psph.physics.gravity import Gravity
+from psph.physics.pressure import (
+    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
+)
+from psph.scene.materials import Start
+from psph.solver.plan import Plan, words
+from psph.stability import STATES, SYMMETRIC, remedies
+from psph.stability.growth import growth, is_stable
+from psph.stability.lattices import OF_SCENES
+from psph.stability.uniform import STIFF, Settings
+from psph.stability.windows import SMOOTHINGS, windows
+
+WITHIN = {
+    Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, BackgroundPressure,
+}
+"""Effects that the theory holds for; it leaves the others out."""
+
+NEAR = 1e-4
+"""Part of the density by which it is changed to see how the pressure answers."""
+
+
+def outlook(scene, plan: Plan) -> Iterator[str]:
+    """Whether small waves grow at the start, how fast, and which h/dx would hold."""
+    lattice, form = OF_SCENES[scene.dimensions], scene.case.physics.pressure_gradient
+    yield (
+        f"Stability of the {lattice} lattice at the start, {form} pressure gradient "
+        "(linear theory, docs/stability.md)"
+    )
+    background = scene.case.physics.background_pressure
+    if form != SYMMETRIC and background is None:
+        yield (
+            "  neutral             a uniform pressure drops out: no wave grows, at any h/dx, and "
+            "nothing brings particles back in order"
+        )
+    else:
+        for settings in _settings(scene, lattice, form, background):
+            yield f"  {_state(settings):<20}{_verdict(settings)}"
+    if left := [words(type(e).__name__) for e in plan.effects if type(e) not in WITHIN]:
+        yield f"  not in it           {', '.join(left)}"
+
+
+def _verdict(settings: Settings) -> str:
+    now = growth(settings)
+    pressure = f"p = {settings.pressure:.3g} Pa"
+    if now.stable:
+        return f"stable at h/dx {settings.smoothing:g}, {pressure}"
+    unit = (abs(settings.pressure) / settings.density) ** 0.5 / settings.spacing
+    tried = SMOOTHINGS[::2] if settings.lattice == OF_SCENES[3] else SMOOTHINGS  # in 3D slower
+    held = windows((h for h in tried if is_stable(settings._replace(smoothing=h))), tried)
+    return (
+        f"unstable at h/dx {settings.smoothing:g}, growth {now.rate / unit:.2g} √(|P|/ρ)/dx = "
+        f"{now.rate:.3g}/s at {pressure}; "
+        + (f"stable at h/dx {held}" if held else "no h/dx from 1 to 2 is stable")
+    )
+
+
+def _state(settings: Settings) -> str:
+    return next(name for name, sign in STATES.items() if sign * settings.pressure > 0.0)
+
+
+def _settings(scene, lattice: str, form: str, background) -> Iterator[Settings]:
+    """One for each sign that the pressure has at the start; both where it has none yet."""
+    added = (remedies.BackgroundPressure(background.pressure),) if background else ()
+    space = scene.case.space
+    for pressure, start in _extremes(scene):
+        density, stiffness = _state_at(start, pressure)
+        yield Settings(
+            space.kernel, space.smoothing, lattice, pressure, form, density, stiffness**0.5,
+            space.spacing, added,
+        )
+
+
+def _state_at(start, pressure: float) -> tuple[float, float]:
+    """ρ in kg/m^d and dp/dρ in m²/s² of a fluid under a pressure."""
+    state, constants = start.state, (start.rest_density, start.sound_speed)
+    density = float(state.density(pressure, *constants))
+    ends = [state.pressure(density * (1.0 + step), *constants) for step in (-NEAR, NEAR)]
+    return density, (ends[1] - ends[0]) / (2.0 * NEAR * density)
+
+
+def _extremes(scene) -> Iterator[tuple[float, Start]]:
+    """The largest pressure of each sign among the fluids, Pa, and the start of that fluid.
+
+    Where a fluid starts without pressure, or with one that differs from place to place, p of
+    both signs that c is made for: ρc²/100.
+    """
+    found: dict[bool, tuple[float, Start]] = {}
+    fluids = range(scene.layout.fluids)
+    for index, start in zip(fluids, scene.starts):
+        own = start.pressure
+        if start.weight:
+            own = start.weight * (start.surface - float(scene.census.bottom[index]))
+        expected = start.rest_density * (scene.sound_speed / STIFF) ** 2
+        for pressure in (own,) if own else (expected, -expected):
+            sign = pressure > 0.0
+            if sign not in found or abs(pressure) > abs(found[sign][0]):
+                found[sign] = pressure, start
+    return iter(found.values())
