@@ -1,12 +1,13 @@
 """Kernels against their definition and against the lattice sums of the prototype."""
 
 import math
+from itertools import product
 
 import numba
 import numpy as np
 import pytest
 
-from psph.smoothing import KERNELS, kernel, slope_over_r
+from psph.smoothing import KERNELS, kernel, normalised, slope_over_r
 
 H = 0.7
 ALL = [(name, dim) for name in KERNELS for dim in (1, 2, 3)]

@@ -14,6 +14,7 @@ from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
 
 BOX = """
+scheme = "sph"
 [space]
 dimensions = 3
 spacing = 0.05
