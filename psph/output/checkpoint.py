@@ -263,18 +263,18 @@ def _read_header(file) -> dict[str, Any]:
 
 def checksum(part: np.ndarray, first: int) -> int:
     """The sum over rows ``(n,)`` or ``(n, k)`` of which row ``first`` of all is the first."""
-    total = np.uint64(0)
-    width = part[:1].size
+    total, width = 0, part[:1].size
     for start in range(0, len(part), hdf5.CHUNK):
         piece = np.ascontiguousarray(part[start : start + hdf5.CHUNK]).reshape(-1)
         words = piece.view(np.uint64) if piece.itemsize == 8 else piece.astype(np.uint64)
-        total = _sum_words(words, np.uint64((first + start) * width), total)
-    return int(total)
+        total += int(_sum_of_mixed(words, np.uint64((first + start) * width)))
+    return total % 2**64
 
 
 @compiled
-def _sum_words(words, place, total):
-    """``total`` and the sum of mix(word ⊕ mix(place)), ``place`` that of the first word."""
+def _sum_of_mixed(words, place):
+    """The sum of mix(word ⊕ mix(place)), ``place`` that of the first word."""
+    total = np.uint64(0)
     for k in range(np.uint64(len(words))):
         total += _mix(words[k] ^ _mix(place + k))
     return total
