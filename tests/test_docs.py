@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jobs import clean_environment
+from jobs import clean_environment, mpirun
 from physics.pairs import H, OPEN, rates, view
 
 from psph import smoothing
@@ -89,7 +89,8 @@ def drop(tmp_path):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_short(page):
-    assert len(text(page).splitlines()) < 300
+    longest = 400 if page == "docs/case.md" else 300  # a reference is looked up, not read
+    assert len(text(page).splitlines()) < longest
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -148,6 +149,16 @@ def test_cheap_commands_run(command, drop):
         capture_output=True, text=True, timeout=120,
     )
     assert job.returncode == 0 and not job.stderr and job.stdout
+
+
+def test_the_commands_of_reliability_run(tmp_path):
+    for command in commands("docs/reliability.md"):
+        words = shlex.split(command.replace("results/", f"{tmp_path}/"))
+        ranks = int(words[2]) if words[0] == "mpirun" else 1
+        job = mpirun(ranks, words[words.index("python") + 1 :], cwd=ROOT)
+        assert job.returncode == 0, job.stderr
+    assert load(tmp_path / "kept/case.toml").time.end == 4e-3
+    assert len(list((tmp_path / "kept").glob("checkpoint-*.h5"))) == 2
 
 
 def test_every_verb_is_in_the_readme():

@@ -196,6 +196,8 @@ class Saved:
             with open(self.path, "rb") as file:
                 header = _read_header(file)
                 return header, next(self._objections(file, header, case), "")
+        except FileNotFoundError:
+            return {}, f"{self.path}: there is no such file"
         except (OSError, ValueError, KeyError, TypeError) as error:
             return {}, self._damaged(error)
 

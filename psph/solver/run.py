@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from psph.output.checkpoint import Saved, remove_checkpoints
+from psph.output.checkpoint import Saved, checkpoints, remove_checkpoints
 from psph.output.errors import OutputError, together
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
@@ -175,6 +175,8 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
         try:
             if (folder / f"{case.name}.h5").exists() and not overwrite:
                 trouble = f"{folder} holds a run of {case.name}: give --out or --overwrite"
+                if checkpoints(folder):
+                    trouble += f", or go on with it: `python -m psph resume {folder}`"
             else:
                 folder.mkdir(parents=True, exist_ok=True)
                 for name in (LOG, PROBES, ERRORS, "*.png"):

@@ -179,6 +179,23 @@ def test_the_case_that_a_run_leaves_is_the_same_case(path, tmp_path):
     assert case_digest(load(path, ["space.smoothing=1.41"])) != case_digest(case)
 
 
+def test_one_that_is_not_there_is_refused(whole):
+    with pytest.raises(CheckpointError, match="x.h5: there is no such file; checkpoint-90.h5, at"):
+        resume(whole, COMM, chosen="x.h5", **QUIET)
+
+
+def test_a_run_that_may_go_on_is_said_to_be_one(whole, case):
+    with pytest.raises(OutputError, match="--overwrite, or go on with it: `python -m psph resume"):
+        run(case, whole, COMM, **QUIET)
+
+
+def test_a_run_anew_leaves_no_checkpoint_of_the_old_one(whole, case, tmp_path):
+    folder = copy(whole, tmp_path / "run")
+    brief = {"time": case.time.model_copy(update={"end": 1e-3})}
+    run(case.model_copy(update=brief), folder, COMM, overwrite=True, **QUIET)
+    assert [path.name for path in checkpoints(folder)] == ["checkpoint-1.h5"]
+
+
 # Stopping
 
 
