@@ -13,12 +13,19 @@ from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
 
 BOX = """
-space = { dimensions = 2, spacing = 0.1, smoothing = 1.2, kernel = "hyperbolic", periodic = ["x"], lower = [0.0, 0.0], upper = [3.0, 1.5] }
 time = { end = 0.2, cfl = 0.4 }
 neighbours.skin = 0.3
 output = { frames = 0.02, probes = 0.005, log = 0.01 }
 parallel.axis = "x"
 checkpoint.every = 30
+[space]
+dimensions = 2
+spacing = 0.1
+smoothing = 1.2
+kernel = "hyperbolic"
+periodic = ["x"]
+lower = [0.0, 0.0]
+upper = [3.0, 1.5]
 [physics]
 sound_speed = 10.0
 artificial_viscosity = 0.1
