@@ -70,7 +70,9 @@ class Record:
         self.written = 0
         self.probes = probes_of(case)
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
-        self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES)) if names else None
+        self.probe_table = None
+        if names:
+            self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
         self.log = CsvTable(
             folder / LOG, diagnostics.columns(scene.dimensions), comm, sizes.get(LOG)
         )
