@@ -20,6 +20,9 @@ PATIENCE = 1.0
 
 BAD_INPUT, FAILED = 2, 3
 
+STOPPED = 75
+"""Told to stop, and to be resumed: EX_TEMPFAIL of sysexits.h, "try again"."""
+
 
 def main(arguments: list[str]) -> int:
     """Do what the command line asks; returns the exit code."""
@@ -52,6 +55,14 @@ def _run(options, comm) -> None:
     case = _load(options)
     folder = options.out or Path(case.name)
     run(case, folder, comm, options.overwrite)
+
+
+def _resume(options, comm) -> None:
+    from psph.solver.run import resume
+    from psph.threads import use_threads
+
+    use_threads(options.threads)
+    resume(options.folder, comm, options.extend, options.chosen)
 
 
 def _explain(options, comm) -> None:
@@ -143,6 +154,7 @@ def _warn(scene, comm) -> None:
 
 VERBS = {
     "run": (_run, "simulate a case (the verb may be left out)"),
+    "resume": (_resume, "go on with a run from its checkpoint, on any number of ranks"),
     "explain": (_explain, "what a case will simulate, why, and what it takes"),
     "check": (_check, "validate a case and do nothing else"),
     "schema": (_schema, "the JSON schema of a case file"),
@@ -174,7 +186,15 @@ def _parser() -> argparse.ArgumentParser:
     made["run"].add_argument(
         "--overwrite", action="store_true", help="replace an earlier run in the folder"
     )
-    for name in ("run", "bench", "study"):
+    made["resume"].add_argument("folder", type=Path, help="the folder of the run")
+    made["resume"].add_argument(
+        "--extend", action="append", default=[], metavar="KEY=VALUE",
+        help="go further: time.end=2.0, or a key of output or checkpoint (repeatable)",
+    )
+    made["resume"].add_argument(
+        "--from", dest="chosen", metavar="FILE", help="another checkpoint than the newest"
+    )
+    for name in ("run", "resume", "bench", "study"):
         made[name].add_argument("--threads", type=int, default=1, help="threads a rank (default: 1)")
     made["explain"].add_argument("--ranks", type=int, help="plan for so many ranks")
     made["explain"].add_argument(
@@ -262,21 +282,26 @@ def _foreseen(error: BaseException) -> tuple[str, int] | None:
     """The plain lines and exit code of an error that a user can do something about."""
     from psph.bench.errors import BenchError
     from psph.case import CaseError
+    from psph.output.checkpoint import CheckpointError
     from psph.output.errors import OutputError
     from psph.parallel.slabs import TooManyRanks
     from psph.particles.store import TooManyParticles
     from psph.solver.step import BlowUp
+    from psph.solver.watch import Stopped
     from psph.stability.errors import StabilityError
     from psph.study.errors import StudyError
     from psph.threads import TooManyThreads
 
     if isinstance(error, CaseError):
         return "\n".join(error.lines), BAD_INPUT
-    foreseen = (
-        BenchError, StabilityError, StudyError, TooManyRanks, TooManyThreads, TooManyParticles,
+    refused = (
+        BenchError, StabilityError, StudyError, CheckpointError, TooManyRanks, TooManyThreads,
+        TooManyParticles,
     )
-    if isinstance(error, foreseen):
+    if isinstance(error, refused):
         return str(error), BAD_INPUT
+    if isinstance(error, Stopped):
+        return str(error), STOPPED
     if isinstance(error, (OutputError, BlowUp)):
         return str(error), FAILED
     if isinstance(error, BrokenPipeError):

@@ -4,6 +4,8 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
+from pathlib import Path
 
 
 def mpirun(n, args, *, timeout=120, env=None, **popen):
@@ -14,10 +16,17 @@ def mpirun(n, args, *, timeout=120, env=None, **popen):
     ``stderr``.  A job that outlives ``timeout`` seconds is ended, with all its ranks, and
     `subprocess.TimeoutExpired` raised.
     """
+    with started(n, args, env=env, **popen) as job:
+        stdout, stderr = job.communicate(timeout=timeout)
+    return subprocess.CompletedProcess(job.args, job.returncode, stdout, stderr)
+
+
+@contextmanager
+def started(n, args, *, env=None, **popen):
+    """The running `subprocess.Popen` of such a job; it is ended when the body fails."""
     flags = ["--oversubscribe", "--bind-to", "none"] if _open_mpi() else []
-    command = ["mpirun", *flags, "-n", str(n), sys.executable, *map(str, args)]
     with subprocess.Popen(
-        command,
+        ["mpirun", *flags, "-n", str(n), sys.executable, *map(str, args)],
         env=clean_environment() | (env or {}),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
@@ -27,11 +36,16 @@ def mpirun(n, args, *, timeout=120, env=None, **popen):
         **popen,
     ) as job:
         try:
-            stdout, stderr = job.communicate(timeout=timeout)
+            yield job
         except BaseException:
             _end(job)
             raise
-    return subprocess.CompletedProcess(command, job.returncode, stdout, stderr)
+
+
+def ranks_of(job):
+    """The process ids of the ranks of a running job on this machine."""
+    children = Path(f"/proc/{job.pid}/task/{job.pid}/children")
+    return [int(pid) for pid in children.read_text().split()]
 
 
 def clean_environment():

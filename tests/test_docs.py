@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from jobs import clean_environment
+from jobs import clean_environment, mpirun
 from physics.pairs import H, OPEN, rates, view
 
 from psph import smoothing
@@ -94,7 +94,8 @@ def drop(tmp_path):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_short(page):
-    assert len(text(page).splitlines()) < 300
+    longest = 400 if page == "docs/case.md" else 300  # a reference is looked up, not read
+    assert len(text(page).splitlines()) < longest
 
 
 @pytest.mark.parametrize("page", PAGES)
@@ -175,6 +176,16 @@ def test_stability_commands_say_something(command, tmp_path):
         assert json.loads(last).keys() == {"growth_rate", "wave_vector", "stable"}
     else:
         assert "stable" in last
+
+
+def test_the_commands_of_reliability_run(tmp_path):
+    for command in commands("docs/reliability.md"):
+        words = shlex.split(command.replace("results/", f"{tmp_path}/"))
+        ranks = int(words[2]) if words[0] == "mpirun" else 1
+        job = mpirun(ranks, words[words.index("python") + 1 :], cwd=ROOT)
+        assert job.returncode == 0, job.stderr
+    assert load(tmp_path / "kept/case.toml").time.end == 4e-3
+    assert len(list((tmp_path / "kept").glob("checkpoint-*.h5"))) == 2
 
 
 def test_every_verb_is_in_the_readme():

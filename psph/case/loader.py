@@ -24,13 +24,13 @@ class Override(NamedTuple):
     made: tuple[str | int, ...]
 
 
-def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
+def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set") -> "Case":
     """The case in a TOML file, checked and with its defaults filled in.
 
     ``overrides`` are strings ``dotted.key=value`` with the value as in TOML; a bare word is a
-    text, and ``off`` takes the key out.  A profile or scheme gives way to the keys of the file that
-    names it; one that is an override has the file give way.  Raises CaseError with one line for every
-    fault found.
+    text, and ``off`` takes the key out; ``option`` is what the person gave them with.  A profile
+    or scheme gives way to the keys of the file that names it; one that is an override has the file
+    give way.  Raises CaseError with one line for every fault found.
     """
     # Only here: the model knows the effects, and these bring the compiler along.
     from pydantic import ValidationError
@@ -40,7 +40,7 @@ def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
 
     file = str(path)
     data = _read(file)
-    applied = [_override(file, data, text) for text in overrides]
+    applied = [_override(f"{file} with {option} {text}", data, text) for text in overrides]
     touched = [override.key for override in applied]
     filled = fill(data, touched)
 
@@ -48,7 +48,7 @@ def load(path: str | Path, overrides: Sequence[str] = ()) -> "Case":
         for override in reversed(applied):
             shared = min(len(loc), len(override.made))
             if loc[:shared] == override.made[:shared]:
-                return f"{file} with --set {override.text}"
+                return f"{file} with {option} {override.text}"
         by = next((by for key, by in filled.items() if loc[: len(key)] == key), None)
         return f"{file} with {by}" if by else file
 
@@ -89,9 +89,8 @@ def _syntax(file: str, text: str, says: str) -> str:
     )
 
 
-def _override(file: str, data: dict[str, Any], text: str) -> Override:
+def _override(where: str, data: dict[str, Any], text: str) -> Override:
     """Set one key in ``data``."""
-    where = f"{file} with --set {text}"
     path, equals, value = text.partition("=")
     keys: list[str | int] = [*path.strip().split(".")]
     if not equals or "" in keys:

@@ -173,6 +173,22 @@ class Output(Table):
     )
 
 
+class Checkpoint(Table):
+    """When a run leaves a checkpoint to go on from, beside that at a signal."""
+
+    every: int | None = key(
+        "steps from one checkpoint to the next", None, unit="1", otherwise="not by steps", ge=1
+    )
+    minutes: float | None = key(
+        "wall-clock time from one checkpoint to the next", None, unit="min",
+        otherwise="not by time", gt=0,
+    )
+    wall_clock: float | None = key(
+        "wall-clock time that the job has: shortly before its end the run leaves a checkpoint and "
+        "stops", None, unit="min", otherwise="no limit", gt=0,
+    )
+
+
 class Parallel(Table):
     """How the domain is divided among ranks."""
 
@@ -229,6 +245,9 @@ class Case(Table):
         "kicks to single particles", ()
     )
     output: Output = key("how often what is written", make=Output)
+    checkpoint: Checkpoint = key(
+        "when a run leaves a checkpoint to go on from, beside that at a signal", make=Checkpoint
+    )
     parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
     neighbours: Neighbours = key("the neighbour lists", make=Neighbours)
     exact: Exact = key("an exact solution of the case, to start from and to judge by", make=Exact)
@@ -268,6 +287,12 @@ class Case(Table):
         if isinstance(value, Table) and wanted != OFF:
             return name if value == type(value).model_validate(wanted) else None
         return name if (OFF if value is None else value) == wanted else None
+
+    def under(self, name: str) -> Self:
+        """This case as from a file of that ``name`` in the same folder."""
+        case = self.model_copy()
+        case._file = str(Path(self._file).with_name(f"{name}.toml"))
+        return case
 
     def to_toml(self) -> str:
         """This case as TOML that :func:`psph.case.load` reads back to an equal case."""

@@ -1,6 +1,7 @@
 """Numbers over time as CSV: a row is on the disk as soon as it is known."""
 
 import csv
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -13,18 +14,23 @@ LOG, PROBES, ERRORS = "log.csv", "probes.csv", "errors.csv"
 class CsvTable:
     """A CSV file with a line of names, written by rank 0; the other ranks may call it all the same.
 
-    Floats stand with all their digits: what is read back is what was computed.
+    Floats stand with all their digits: what is read back is what was computed.  Created anew here;
+    or, with ``kept``, the file of a run that goes on, cut back to so many bytes.
     Raises OutputError: on every rank when it is opened, on rank 0 when a row cannot be written.
     """
 
-    def __init__(self, path: Path, columns: Sequence[str], comm):
+    def __init__(self, path: Path, columns: Sequence[str], comm, kept: int | None = None):
         self.path, self.columns = Path(path), tuple(columns)
         self._file = None
         with together(comm, self.path):
             if comm.rank == 0:
-                self._file = open(self.path, "w", newline="", encoding="utf-8")
+                if kept is not None:
+                    _cut(self.path, kept)
+                mode = "w" if kept is None else "a"
+                self._file = open(self.path, mode, newline="", encoding="utf-8")
                 self._rows = csv.writer(self._file, lineterminator="\n")
-        self.write(self.columns)
+        if kept is None:
+            self.write(self.columns)
 
     def write(self, values: Iterable) -> None:
         """Append a row: one value for each column."""
@@ -38,8 +44,22 @@ class CsvTable:
                 f"{self.path}: cannot be written: {cause(error)}; see to the free space"
             ) from error
 
+    def size(self) -> int:
+        """Bytes so far, all of them on the disk; 0 on the other ranks."""
+        if self._file is None:
+            return 0
+        os.fsync(self._file.fileno())
+        return os.fstat(self._file.fileno()).st_size
+
     def close(self) -> None:
         """End the file; a second call does nothing."""
         if self._file is not None:
             self._file.close()
             self._file = None
+
+
+def _cut(path: Path, size: int) -> None:
+    """Take away what stands behind ``size`` bytes; raise OSError where there are fewer."""
+    if path.stat().st_size < size:
+        raise OSError(f"rows are missing, it had {size:,} bytes at the checkpoint")
+    os.truncate(path, size)

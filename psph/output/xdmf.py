@@ -62,6 +62,17 @@ class XdmfIndex:
             if name.startswith(f"{frame}/")
         }
         self._grids.append(self._grid(frame, float(time), fields))
+        self._write()
+
+    def restore(self, frames: list[tuple[str, float, dict[str, Kind]]]) -> None:
+        """List these frames and no others: (frame, time, kinds) as in :meth:`add`."""
+        self._grids = []
+        for frame, time, kinds in frames:
+            fields = {name.removeprefix(f"{frame}/"): kind for name, kind in kinds.items()}
+            self._grids.append(self._grid(frame, time, fields))
+        self._write()
+
+    def _write(self) -> None:
         fresh = self.path.with_name(self.path.name + ".new")
         fresh.write_text(_HEAD + "".join(self._grids) + _TAIL, encoding="utf-8")
         os.replace(fresh, self.path)

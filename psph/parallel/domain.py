@@ -55,6 +55,19 @@ class Domain:
         """
         self._wrap()
         self.grid = self._fit_grid()
+        self._arrange(spent)
+        self.rebuilds += 1
+
+    def relist(self, lower, upper) -> None:
+        """List the neighbours of particles where they stand, on the grid of an earlier rebuild.
+
+        ``lower`` and ``upper`` are the corners that the domain had then; collective.
+        """
+        self.lower, self.upper = tuple(lower), tuple(upper)
+        self.grid = make_grid(self.axis, self.cutoff, self.lower, self.upper, self.periods)
+        self._arrange(0.0)
+
+    def _arrange(self, spent: float) -> None:
         self._sort(self._balance_and_migrate(spent))
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
@@ -63,7 +76,6 @@ class Domain:
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[: self.store.total] = now[: self.store.total]
-        self.rebuilds += 1
 
     def interior(self) -> tuple[int, int]:
         """Columns of the owned particles that have no ghost among their neighbours."""

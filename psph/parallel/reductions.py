@@ -45,3 +45,10 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
     sums = np.array([math.ldexp(int(t), int(e) - room) for t, e in zip(total, exponents)])
     return np.where(finite, sums, np.nan)
+
+
+def wrapped_sums(comm: MPI.Comm, values) -> list[int]:
+    """Sums of whole numbers below 2⁶⁴ over all ranks, modulo 2⁶⁴; collective."""
+    total = np.array(values, dtype=np.uint64)
+    comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
+    return total.tolist()

@@ -12,6 +12,9 @@ PART_OF_PERIOD = 0.25
 """A particle strays from its listed place by less than this part of any period: the nearest image
 takes one period off at the most."""
 
+REMEMBERED = ("drifted", "_apart", "_since", "_closing", "_acceleration", "_shift")
+"""What is known of the lists since they were made."""
+
 
 class Skin:
     """Keeps the lists of ``domain`` until two neighbours could differ by ``width`` m.
@@ -34,6 +37,15 @@ class Skin:
         self.drifted = self._apart = self._since = 0.0
         self._closing: float | None = None
         self._acceleration = self._shift = 0.0
+
+    def state(self) -> dict[str, float | None]:
+        """All that the next answers rest on, but for the particles."""
+        return {name: getattr(self, name) for name in REMEMBERED}
+
+    def restore(self, state: dict[str, float | None]) -> None:
+        """Go on as if the lists had been in use since they were made."""
+        for name in REMEMBERED:
+            setattr(self, name, state[name])
 
     def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
         """Whether the lists still hold after a step of ``dt`` s; collective where it must measure.

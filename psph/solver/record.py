@@ -10,6 +10,7 @@ from psph.jit import processor
 from psph.case.tables import AXES
 from psph.output import diagnostics
 from psph.output.accuracy import Accuracy
+from psph.output.errors import together
 from psph.output.frames import FrameFile
 from psph.output.probes import Front, Probe
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
@@ -22,13 +23,13 @@ class Schedule:
     """Due at the first step at or after each multiple of ``interval`` s."""
 
     def __init__(self, interval: float):
-        self.interval, self._next = interval, 0.0
+        self.interval, self.next = interval, 0.0
 
     def due(self, time: float) -> bool:
         """Whether the next moment has come; asks for the one after it if so."""
-        if time < self._next * (1 - 1e-12):
+        if time < self.next * (1 - 1e-12):
             return False
-        self._next = self.interval * (math.floor(time / self.interval * (1 + 1e-12)) + 1)
+        self.next = self.interval * (math.floor(time / self.interval * (1 + 1e-12)) + 1)
         return True
 
 
@@ -41,9 +42,12 @@ def probes_of(case) -> list[Probe | Front]:
 
 
 class Record:
-    """The files of a run in ``folder``; every method is collective."""
+    """The files of a run in ``folder``; every method is collective.
 
-    def __init__(self, scene, simulation: Simulation, folder: Path):
+    ``kept`` is the state of the record of a run that goes on: what was written later is taken out.
+    """
+
+    def __init__(self, scene, simulation: Simulation, folder: Path, kept: dict | None = None):
         case, comm = scene.case, simulation.comm
         self.simulation, self.kernel = simulation, scene.kernel
         effects = simulation.plan.effects
@@ -60,17 +64,25 @@ class Record:
                 "dimensions": scene.dimensions,
                 "spacing": scene.spacing,
             },
+            kept and kept["written"],
         )
+        sizes = kept["sizes"] if kept else {}
         self.written = 0
         self.probes = probes_of(case)
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
-        self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm) if names else None
-        self.log = CsvTable(folder / LOG, diagnostics.columns(scene.dimensions), comm)
+        self.probe_table = None
+        if names:
+            self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
+        self.log = CsvTable(
+            folder / LOG, diagnostics.columns(scene.dimensions), comm, sizes.get(LOG)
+        )
         self.accuracy = self.errors = None
         self.latest_errors: list[float] = []
         if scene.exact:
             self.accuracy = Accuracy(simulation.domain, scene.exact, scene.setting)
-            self.errors = CsvTable(folder / ERRORS, ["time", *self.accuracy.columns()], comm)
+            self.errors = CsvTable(
+                folder / ERRORS, ["time", *self.accuracy.columns()], comm, sizes.get(ERRORS)
+            )
         out = case.output
         self.schedules = {
             self.write_frame: Schedule(out.frames),
@@ -78,6 +90,30 @@ class Record:
             self.write_log: Schedule(out.log),
         }
         self.last_written = dict.fromkeys(self.schedules, -1)
+        if kept:
+            self._restore(kept)
+
+    def state(self) -> dict:
+        """What is written and when something is due; all of it is on the disk after this.
+
+        On rank 0 alone it knows how long the tables are.
+        """
+        self.frames.sync()
+        with together(self.simulation.comm, self.log.path):
+            sizes = {table.path.name: table.size() for table in self.tables}
+        return {
+            "written": self.written,
+            "sizes": sizes,
+            "next": [when.next for when in self.schedules.values()],
+            "last": list(self.last_written.values()),
+            "errors": self.latest_errors,
+        }
+
+    def _restore(self, kept: dict) -> None:
+        self.written, self.latest_errors = kept["written"], kept["errors"]
+        for when, then in zip(self.schedules.values(), kept["next"], strict=True):
+            when.next = then
+        self.last_written = dict(zip(self.schedules, kept["last"], strict=True))
 
     def write_due(self) -> None:
         """Write what is due at the simulation's time."""

@@ -1,12 +1,15 @@
 """A case from the first line to the last."""
 
+import os
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from psph.output.errors import OutputError
+from psph.output.checkpoint import Saved, checkpoints, remove_checkpoints
+from psph.output.errors import OutputError, together
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
 from psph.output.progress import Progress
@@ -18,8 +21,10 @@ from psph.solver.cost import cost_lines
 from psph.solver.explain import slab_planes
 from psph.solver.plan import make_plan
 from psph.solver.record import Record
+from psph.solver.resume import listed_particles, take_up, write_checkpoint
 from psph.solver.setup import compile_ahead, create_particles
 from psph.solver.step import Simulation
+from psph.solver.watch import Call, Stopped, Watch
 
 WORTH_SAYING = 1.0
 """Seconds of compilation from which on it is mentioned."""
@@ -44,17 +49,46 @@ def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = Non
     """Simulate ``case`` on the ranks of ``comm`` and leave the files in ``folder``.
 
     ``say`` takes each line that is worth saying, on every rank; else rank 0 prints them, and shows
-    how far the run is.  Raises CaseError, TooManyRanks, BlowUp or OutputError, each on every rank.
+    how far the run is.  Raises CaseError, TooManyRanks, BlowUp, OutputError or Stopped, each on
+    every rank.
     """
-    begun = time.perf_counter()
+    with Watch(case.checkpoint) as watch:
+        scene = Scene(case)
+        for warning in check(scene):
+            (say or _speaker(comm))(f"warning: {warning}", sys.stderr)
+        return _simulate(
+            scene, folder, comm, say, watch, lambda: _prepare_folder(case, folder, comm, overwrite)
+        )
+
+
+def resume(
+    folder: Path, comm, extend: Sequence[str] = (), chosen: str | None = None,
+    say: Say | None = None,
+) -> Finished:
+    """Go on with the run in ``folder`` from its newest checkpoint, or the ``chosen`` one.
+
+    The ranks may be others than before: the files end as if it had never been stopped.
+    ``extend`` are keys ``time.end=...``, or of output or checkpoint.  Raises what :func:`run` does,
+    and CheckpointError.
+    """
+    case, saved = take_up(folder, comm, extend, chosen)
+    with Watch(case.checkpoint) as watch:
+        return _simulate(
+            Scene(case), folder, comm, say, watch, lambda: _reopen_folder(case, folder, saved),
+            saved,
+        )
+
+
+def _simulate(
+    scene, folder: Path, comm, say: Say | None, watch: Watch, prepare: Callable[[], None],
+    saved: Saved | None = None,
+) -> Finished:
+    begun, case = time.perf_counter(), scene.case
     lines, say = say is None, say or _speaker(comm)
-    scene = Scene(case)
-    for warning in check(scene):
-        say(f"warning: {warning}", sys.stderr)
     check_ranks(comm.size, slab_planes(scene))
     particles = int(scene.counts().sum())
     check_room(particles, comm.size)
-    _prepare_folder(case, folder, comm, overwrite)
+    prepare()
     plan = make_plan(scene)
     say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")
     for line in filter(None, [funnel_notice(comm)]):
@@ -62,31 +96,62 @@ def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = Non
     compiling = compile_ahead(scene, plan, comm)
     if compiling > WORTH_SAYING:
         say(f"compiled in {compiling:.1f} s (kept for the next run)")
-    simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
-    record = Record(scene, simulation, folder)
+    simulation, record = _begin(scene, plan, comm, folder, saved)
+    if saved:
+        say(f"goes on from {saved.path.name}: step {simulation.steps:,}, {simulation.time:.6g} s")
+    first = simulation.steps
     record.write_due()
     starting = time.perf_counter() - begun
     say(f"first step after {starting:.1f} s")
     simulation.ledger.seconds.clear()  # the start is not a step
     stepping = time.perf_counter()
-    progress = Progress(comm, case.time.end, case.title or case.name, particles, lines)
-    try:
+    with ExitStack() as at_last:
+        at_last.callback(record.close)
+        progress = Progress(comm, case.time.end, case.title or case.name, particles, lines)
+        at_last.callback(progress.close)
         while simulation.time < case.time.end:
+            simulation.word = float(watch.call())
             simulation.step()
             record.write_due()
             progress.update(simulation.time, simulation.steps, simulation.dt)
+            _attend(simulation, record, watch, case, folder)
+        if any(value is not None for _, value in case.checkpoint):
+            write_checkpoint(simulation, record, case, folder)
         record.write_last()
-    finally:
-        progress.close()
-        record.close()
     whole = time.perf_counter() - stepping
-    for line in _summary(scene, simulation, record, particles, whole):
+    for line in _summary(scene, simulation, record, particles, whole, simulation.steps - first):
         say(line)
     say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), {_tables(record)}")
     output = simulation.ledger.seconds["output"]
     return Finished(
         simulation, particles, compiling, starting - compiling, whole - output, output
     )
+
+
+def _begin(scene, plan, comm, folder: Path, saved: Saved | None) -> tuple[Simulation, Record]:
+    """A run at its start, or where ``saved`` was written."""
+    if saved is None:
+        simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
+        return simulation, Record(scene, simulation, folder)
+    particles = listed_particles(scene, plan, saved)
+    simulation = Simulation(scene, plan, particles, comm, Ledger(), saved)
+    return simulation, Record(scene, simulation, folder, saved.header["record"])
+
+
+def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: Path) -> None:
+    """Leave a checkpoint where one is due or asked for; raise Stopped where it is the last."""
+    call, every = Call(int(simulation.heard)), case.checkpoint.every
+    if call is Call.NOTHING and not (every and simulation.steps % every == 0):
+        return
+    begun = time.monotonic()
+    write_checkpoint(simulation, record, case, folder)
+    watch.wrote(time.monotonic() - begun)
+    if call.ends:
+        by = "checkpoint.wall_clock" if call is Call.WALL_CLOCK else call.name
+        raise Stopped(
+            f"stopped by {by} at t = {simulation.time:.6g} s: resume with "
+            f"`python -m psph resume {folder}`"
+        )
 
 
 def _speaker(comm) -> Say:
@@ -110,11 +175,14 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
         try:
             if (folder / f"{case.name}.h5").exists() and not overwrite:
                 trouble = f"{folder} holds a run of {case.name}: give --out or --overwrite"
+                if checkpoints(folder):
+                    trouble += f", or go on with it: `python -m psph resume {folder}`"
             else:
                 folder.mkdir(parents=True, exist_ok=True)
                 for name in (LOG, PROBES, ERRORS, "*.png"):
                     for old in folder.glob(name):
                         old.unlink()
+                remove_checkpoints(folder)
                 (folder / "case.toml").write_text(case.to_toml(), encoding="utf-8")
         except OSError as error:
             trouble = f"{folder}: {error.strerror}; choose another folder with --out"
@@ -123,13 +191,23 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
         raise OutputError(trouble)
 
 
+def _reopen_folder(case, folder: Path, saved: Saved) -> None:
+    """The case as it is now, and no checkpoint of what is to be simulated again."""
+    with together(saved.comm, folder):
+        if saved.comm.rank == 0:
+            fresh = folder / "case.toml.new"
+            fresh.write_text(case.to_toml(), encoding="utf-8")
+            os.replace(fresh, folder / "case.toml")
+            remove_checkpoints(folder, saved.state["steps"])
+
+
 def _summary(
-    scene, simulation: Simulation, record: Record, particles: int, seconds: float
+    scene, simulation: Simulation, record: Record, particles: int, seconds: float, steps: int
 ) -> Iterator[str]:
     """What the run cost, where the time went on rank 0, and how right it is where that is known."""
-    rate = particles * simulation.steps / seconds
+    rate = particles * steps / seconds
     yield (
-        f"{simulation.steps:,} steps in {seconds:.1f} s: {rate / 1e6:.2f} M particle-steps/s, "
+        f"{steps:,} steps in {seconds:.1f} s: {rate / 1e6:.2f} M particle-steps/s, "
         f"{simulation.domain.rebuilds} list rebuilds"
     )
     spent = dict(simulation.ledger.seconds)

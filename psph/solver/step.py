@@ -16,6 +16,9 @@ from psph.threads import in_threads
 TOO_FAST = 100.0
 """A particle at this many speeds of sound is a run that blew up."""
 
+CLOCK = ("time", "dt", "steps", "limited_by", "speed", "pace", "acceleration", "shift")
+"""Numbers of a simulation that its next step reads, or its user."""
+
 
 class BlowUp(ArithmeticError):
     """The numbers of a run left the finite, on whatever rank; raised on all."""
@@ -25,10 +28,13 @@ class Simulation:
     """Particles, domain and clock; ``step`` advances them.
 
     ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
-    scene.  ``time`` in s, ``dt`` the last step.
+    scene.  ``time`` in s, ``dt`` the last step.  ``word`` is a number from 0 on that a rank wants
+    all others to know; ``heard`` the largest of them in the last step, the same on every rank.
+    With ``saved`` it goes on from a checkpoint (psph.solver.resume), whose particles ``store``
+    holds where the lists were made.
     """
 
-    def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger):
+    def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger, saved=None):
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
         support = scene.kernel.support * scene.smoothing_length
         skin = scene.case.neighbours.skin * support
@@ -42,8 +48,12 @@ class Simulation:
         self.time, self.dt, self.steps = 0.0, 0.0, 0
         self.speed, self.pace = 0.0, 0.0
         self.limited_by = ""
+        self.word, self.heard = 0.0, 0.0
         self._paid = 0.0
-        self._start()
+        if saved is None:
+            self._start()
+        else:
+            self._restore(saved)
         self._spent_on_pairs()  # the first passes may have loaded compiled loops
 
     def step(self) -> None:
@@ -62,6 +72,12 @@ class Simulation:
             self._kick(self.dt)
         self.time += self.dt
         self.steps += 1
+
+    def state(self) -> dict:
+        """All that the next steps rest on but for the numbers of the particles."""
+        numbers = {name: getattr(self, name) for name in CLOCK}
+        corners = {"lower": self.domain.lower, "upper": self.domain.upper}
+        return numbers | corners | {"skin": self.skin.state()}
 
     def bytes_held(self) -> int:
         """Bytes of this rank's particles, records and lists."""
@@ -88,6 +104,17 @@ class Simulation:
         for older in ("density_rate_1", "density_rate_2"):
             self.store[older][:] = self.store["density_rate"]
         self._kick(0.0)
+
+    def _restore(self, saved) -> None:
+        """The lists as they were made, then everything as it was when ``saved`` was written."""
+        state = saved.state
+        self.domain.relist(state["lower"], state["upper"])
+        saved.fill(self.store)
+        self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
+        self.records.fill_all()
+        for name in CLOCK:
+            setattr(self, name, state[name])
+        self.skin.restore(state["skin"])
 
     def _rebuild(self) -> None:
         with self.ledger("rebuild"):
@@ -147,7 +174,7 @@ class Simulation:
         )
 
     def _kick(self, dt: float) -> None:
-        """Second kick; then the largest speed, acceleration and shift over all ranks."""
+        """Second kick; then the largest speed, acceleration, word and shift over all ranks."""
         s = self.store
         self.pace = self.speed  # the shifts of the next step are bounded before its speed is known
         parts = in_threads(
@@ -157,9 +184,10 @@ class Simulation:
         *mine, broken = np.max(parts, axis=0)
         lost = float(s.id[int(broken)]) + 1.0 if broken >= 0 else 0.0
         with self.ledger("limits"):
-            extremes = largest(self.comm, [*mine, lost, *self._own_shift()])
+            extremes = largest(self.comm, [*mine, lost, self.word, *self._own_shift()])
         self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()
-        self.shift = float(np.sqrt(extremes[3:]).sum())
+        self.heard = float(extremes[3])
+        self.shift = float(np.sqrt(extremes[4:]).sum())
         too_fast = self.speed > TOO_FAST * self.plan.constants["sound_speed"]
         if extremes[2] > 0.0 or too_fast:
             self._report_blow_up(int(extremes[2]) - 1)

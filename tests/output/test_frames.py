@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from viewers import padded, seen_by_meshio, seen_by_vtk
 
+from psph.output import rows as hdf5
 from psph.output.errors import OutputError
 from psph.output.frames import FrameFile, funnel_notice
 from psph.output.reader import Run
@@ -121,7 +122,7 @@ def test_interrupted_frame_does_not_count(tmp_path, alone, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(frames, "_fill", interrupt)
+    monkeypatch.setattr(hdf5, "fill", interrupt)
     with pytest.raises(KeyboardInterrupt):
         frames.write(1, 0.1, 1, cloud(5, 2))
     assert Run(tmp_path).times.tolist() == [0.0]

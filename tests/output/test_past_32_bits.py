@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from psph.output import frames as frames_module
+from psph.output import rows as hdf5
 from psph.output.frames import FrameFile
 from psph.output.xdmf import XdmfIndex
 
@@ -25,7 +25,7 @@ def reserved(monkeypatch):
         sizes.append(size)
         os.truncate(path, os.path.getsize(path) + size)
 
-    monkeypatch.setattr(frames_module, "_reserve", grow)
+    monkeypatch.setattr(hdf5, "reserve", grow)
     return sizes
 
 
@@ -41,11 +41,11 @@ class SecondRank:
 
 def test_a_rank_knows_its_rows_past_2_31(tmp_path, monkeypatch):
     filled = []
-    monkeypatch.setattr(FrameFile, "_fill", lambda self, *call: filled.append(call))
+    monkeypatch.setattr(hdf5, "fill", lambda *call: filled.append(call))
     frames = FrameFile(tmp_path / "tank.h5", SecondRank(), {})
     frames.write(0, 0.0, 0, {"position": np.ones((3, 2))})
-    [(rows, first, counts)] = filled
-    assert first == FIRST and counts == [FIRST, 3]
+    [(_, _, rows, counts)] = filled
+    assert counts == [FIRST, 3]
     connectivity = rows[f"connectivity/{FIRST + 3}"]
     assert connectivity.dtype == np.int64
     assert connectivity.tolist() == [FIRST, FIRST + 1, FIRST + 2]
@@ -63,7 +63,7 @@ def test_rows_past_2_31_land_in_their_place(tmp_path, alone, reserved):
     frames._lay_out("frames/00000", 7, shapes, rows)
     assert reserved[-1] > total * (24 + 8) > 2**36
     with h5py.File(frames.path, "r+", driver="mpio", comm=MPI.COMM_SELF) as file:
-        frames_module._fill_collectively(file, rows, FIRST)
+        hdf5.fill_collectively(file, rows, FIRST)
     assert os.path.getsize(frames.path) > total * (24 + 8)
     with h5py.File(frames.path) as file:
         frame = file["frames/00000"]
@@ -80,7 +80,7 @@ def test_space_past_2_31_bytes_is_taken(tmp_path, monkeypatch):
     path = tmp_path / "tank.h5"
     path.touch()
     os.truncate(path, 2**40)
-    frames_module._reserve(path, 2**37)
+    hdf5.reserve(path, 2**37)
     assert taken == [(2**40, 2**37)]
 
 

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from viewers import padded, seen_by_meshio, seen_by_vtk
 
-from psph.output import frames as frames_module
+from psph.output import rows as hdf5
 from psph.output.errors import OutputError, together
-from psph.output.frames import CHUNK, FrameFile, funnel_notice
+from psph.output.frames import FrameFile, funnel_notice
 from psph.output.reader import Run
+from psph.output.rows import CHUNK
 from psph.output.tables import CsvTable
 
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -31,7 +32,7 @@ def comm():
 def way(request, monkeypatch):
     """Both ways to the file; the parallel one needs an h5py that was built for it."""
     if request.param == "funnel":
-        monkeypatch.setattr(frames_module, "_parallel_hdf5", lambda: False)
+        monkeypatch.setattr(hdf5, "parallel_hdf5", lambda: False)
     elif not h5py.get_config().mpi:
         pytest.skip("h5py is built without MPI")
     return request.param
@@ -149,8 +150,8 @@ def test_disk_that_fills_up_meanwhile_is_noticed(comm, mpi_tmp_path, way, monkey
         pytest.skip("Open MPI 4.1 loses the error of a collective write on 3 ranks and more")
     frames = FrameFile(mpi_tmp_path / "tank.h5", comm, {})
     frames.write(0, 0.0, 0, share(cloud(100, 2), comm, (50, 50)))
-    monkeypatch.setattr(frames_module, "_reserve", lambda *_: None)
-    monkeypatch.setattr(frames, "_fill", full_disk()(frames._fill))
+    monkeypatch.setattr(hdf5, "reserve", lambda *_: None)
+    monkeypatch.setattr(hdf5, "fill", full_disk()(hdf5.fill))
     with pytest.raises(OutputError, match="tank.h5: cannot be written: .*; see to the folder"):
         frames.write(1, 0.1, 1, share(cloud(100_000, 2), comm, (50_000, 50_000)))
     assert Run(mpi_tmp_path).times.tolist() == [0.0]

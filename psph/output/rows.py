@@ -1,0 +1,146 @@
+"""Rows of all ranks in one HDF5 file: laid out by rank 0, filled by all at once.
+
+The space on the disk is taken beforehand, since no good comes of a full disk later: HDF5 crashes,
+hangs where several ranks have the file open, and Open MPI 4.1 loses the error of a collective write
+on three ranks and more.
+"""
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+
+CHUNK = 1 << 16
+"""Rows that travel at once to rank 0 when it writes for all."""
+
+MARGIN = 1 << 16
+"""Bytes for the structure of what is laid out: headers, names, attributes."""
+
+
+def parallel_hdf5() -> bool:
+    """Whether h5py was built with MPI."""
+    import h5py  # late: it starts MPI, which the verbs that simulate nothing do without
+
+    return h5py.get_config().mpi
+
+
+def open_file(path: Path, mode: str, **how):
+    """The file, unlocked: a viewer that has it open must not stop the run."""
+    import h5py
+
+    return h5py.File(path, mode, **({} if "driver" in how else {"locking": False}), **how)
+
+
+def reserve(path: Path, size: int) -> None:
+    """Take ``size`` more bytes of the disk, or raise OSError and leave the file as it was.
+
+    HDF5 gives back what it does not use when it closes the file.
+    """
+    if not hasattr(os, "posix_fallocate"):
+        return
+    with open(path, "r+b") as file:
+        end = file.seek(0, os.SEEK_END)
+        try:
+            os.posix_fallocate(file.fileno(), end, size)
+        except OSError:
+            file.truncate(end)
+            raise
+
+
+def sync(path: Path) -> None:
+    """Have the system put what it holds of the file, or of the folder, on the disk."""
+    number = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(number)
+    finally:
+        os.close(number)
+
+
+def size_of(shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> int:
+    """Bytes of the datasets: ``shapes`` over all ranks, types as in ``rows``."""
+    return sum(math.prod(shape) * rows[name].itemsize for name, shape in shapes.items())
+
+
+def create_datasets(file, shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> None:
+    """Datasets of these ``shapes``, contiguous, with the types of ``rows``; rank 0 alone."""
+    import h5py
+
+    # Space is taken now, so that filling changes nothing of the structure of the file.
+    taken = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    taken.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+    taken.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
+    for name, shape in shapes.items():
+        file.create_dataset(name, shape, rows[name].dtype, dcpl=taken)
+
+
+def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> None:
+    """Write the ``rows`` of this rank, by dataset, behind those of the ranks before it; collective.
+
+    ``counts`` are the rows of each rank.  Arrays may be views of any layout: one at a time is
+    copied, to spare memory.
+    """
+    if comm.size == 1:
+        with open_file(path, "r+") as file:
+            for name, part in rows.items():
+                file[name][...] = part
+    elif parallel_hdf5():
+        with open_file(path, "r+", driver="mpio", comm=comm) as file:
+            fill_collectively(file, rows, sum(counts[: comm.rank]))
+    elif comm.rank == 0:
+        _fill_for_all(path, comm, rows, counts)
+    else:
+        for part in rows.values():
+            for start in range(0, len(part), CHUNK):
+                comm.Send(np.ascontiguousarray(part[start : start + CHUNK]), dest=0)
+
+
+def fill_collectively(file, rows: dict[str, np.ndarray], first: int) -> None:
+    """Each rank writes its rows; one that fails goes on with the others to the end."""
+    import h5py
+
+    transfer = h5py.h5p.create(h5py.h5p.DATASET_XFER)
+    transfer.set_dxpl_mpio(h5py.h5fd.MPIO_COLLECTIVE)
+    failure = None
+    datasets = [file[name].id for name in rows]
+    for dataset, part in zip(datasets, rows.values(), strict=True):
+        space = dataset.get_space()
+        # h5py's own slicing skips the call when a rank has no row, and the others wait for ever.
+        if len(part):
+            space.select_hyperslab((first,) + (0,) * (part.ndim - 1), part.shape)
+        else:
+            space.select_none()
+        memory = h5py.h5s.create_simple(part.shape)
+        try:
+            dataset.write(memory, space, np.ascontiguousarray(part), dxpl=transfer)
+        except OSError as error:
+            failure = error
+    if failure:
+        raise failure
+
+
+def _fill_for_all(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> None:
+    """Rank 0 writes its own rows and those that arrive, never more than a piece in memory."""
+    pieces = _pieces(comm, rows, counts)
+    try:
+        with open_file(path, "r+") as file:
+            for name, start, piece in pieces:
+                file[name][start : start + len(piece)] = piece
+    finally:
+        # After a failure too: the other ranks must get rid of what they send.
+        for _ in pieces:
+            pass
+
+
+def _pieces(comm, rows: dict[str, np.ndarray], counts: list[int]):
+    """Yield (name, first row, rows) of rank 0 and of every other rank in turn."""
+    for name, part in rows.items():
+        yield name, 0, part
+        start = counts[0]
+        for source in range(1, comm.size):
+            end = start + counts[source]
+            while start < end:
+                piece = np.empty((min(CHUNK, end - start), *part.shape[1:]), part.dtype)
+                comm.Recv(piece, source)
+                yield name, start, piece
+                start += len(piece)

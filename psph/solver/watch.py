@@ -1,0 +1,83 @@
+"""What asks a run for a checkpoint, or for its end: signals and clocks, of whichever rank."""
+
+import signal
+import time
+from enum import IntEnum
+
+NOTICE = 0.01
+"""Part of the wall-clock limit that is left unused: the job began before psph did."""
+
+
+class Call(IntEnum):
+    """What a rank asks for; the largest of all ranks counts."""
+
+    NOTHING = 0
+    CHECKPOINT = 1
+    WALL_CLOCK = 2
+    SIGUSR1 = 3
+    SIGTERM = 4
+
+    @property
+    def ends(self) -> bool:
+        """Whether the run stops after the checkpoint."""
+        return self > Call.CHECKPOINT
+
+
+SIGNALS = {signal.SIGUSR1: Call.SIGUSR1, signal.SIGTERM: Call.SIGTERM}
+
+
+class Stopped(RuntimeError):
+    """A run that was told to stop, with a checkpoint to go on from; raised on every rank."""
+
+
+class Watch:
+    """Listens on this rank while it is open: ``with Watch(case.checkpoint) as watch``.
+
+    ``limits`` are the keys of the case; the clock starts here.  A signal does nothing but to be
+    remembered, so that the step goes on to its end.
+    """
+
+    def __init__(self, limits):
+        self.limits = limits
+        self._begun = self._saved = self._looked = time.monotonic()
+        self._signalled = Call.NOTHING
+        self._longest_step = self._longest_write = 0.0
+        self._before = {}
+
+    def __enter__(self) -> "Watch":
+        self._before = {number: signal.signal(number, self._remember) for number in SIGNALS}
+        return self
+
+    def __exit__(self, *exception) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _remember(self, number, frame) -> None:
+        self._signalled = max(self._signalled, SIGNALS[number])
+
+    def call(self) -> Call:
+        """What this rank asks for before its next step."""
+        now = time.monotonic()
+        self._longest_step = max(self._longest_step, now - self._looked)
+        self._looked = now
+        if self._signalled:
+            return self._signalled
+        if self._runs_out(now):
+            return Call.WALL_CLOCK
+        minutes = self.limits.minutes
+        if minutes is not None and now - self._saved >= 60.0 * minutes:
+            return Call.CHECKPOINT
+        return Call.NOTHING
+
+    def wrote(self, seconds: float) -> None:
+        """A checkpoint has been written just now, in so many seconds."""
+        self._longest_write = max(self._longest_write, seconds)
+        self._saved = self._looked = time.monotonic()
+
+    def _runs_out(self, now: float) -> bool:
+        """Whether the job could end before two more steps and a slow checkpoint."""
+        if self.limits.wall_clock is None:
+            return False
+        limit = 60.0 * self.limits.wall_clock
+        needed = NOTICE * limit + 2.0 * (self._longest_step + self._longest_write)
+        return now - self._begun > limit - needed
