@@ -2,11 +2,18 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from psph.physics.compose import Pair, ParticleView
 from psph.physics.continuity import Continuity
+from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
 from psph.physics.gravity import Gravity
+from psph.physics.potential import NeutralPotential
 from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
 )
+from psph.physics.surface import TensionFloor
+from psph.physics.viscosity import PairDamping
 from psph.scene.materials import Start
 from psph.solver.plan import Plan, words
 from psph.stability import STATES, SYMMETRIC, remedies
@@ -16,9 +23,33 @@ from psph.stability.uniform import STIFF, Settings
 from psph.stability.windows import SMOOTHINGS, windows
 
 WITHIN = {
-    Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, BackgroundPressure,
+    Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, TensionFloor,
 }
-"""Effects that the theory holds for; it leaves the others out."""
+"""Effects that the theory holds for as they are; the floor acts on no small disturbance."""
+
+
+def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
+    material = scene.materials[0]
+    particle = ParticleView(
+        position=None, mass=material.mass, rest_density=material.density,
+        sound_speed=scene.sound_speed,
+    )
+
+    def attraction(r):
+        pairs = (Pair(None, None, x * x, None, None, None) for x in r)
+        return -r * np.array([potential.radial(particle, particle, pair) for pair in pairs])
+
+    return remedies.PairForce(attraction)
+
+
+AS_REMEDY = {
+    BackgroundPressure: lambda effect, scene: remedies.BackgroundPressure(effect.pressure),
+    NeutralPotential: _pair_force,
+    PairDamping: lambda effect, scene: remedies.ArtificialViscosity(effect.alpha),
+    DensityDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
+    HydrostaticDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
+}
+"""Effects that change what the theory says, as it has them."""
 
 NEAR = 1e-4
 """Part of the density by which it is changed to see how the pressure answers."""
@@ -31,16 +62,23 @@ def outlook(scene, plan: Plan) -> Iterator[str]:
         f"Stability of the {lattice} lattice at the start, {form} pressure gradient "
         "(linear theory, docs/stability.md)"
     )
-    background = scene.case.physics.background_pressure
-    if form != SYMMETRIC and background is None:
+    added = tuple(
+        AS_REMEDY[type(e)](e, scene) for e in plan.effects if type(e) in AS_REMEDY
+    )
+    if scene.case.space.normalised:
+        added += (remedies.NormalisedGradient(),)
+    if form != SYMMETRIC and not added:
         yield (
             "  neutral             a uniform pressure drops out: no wave grows, at any h/dx, and "
             "nothing brings particles back in order"
         )
     else:
-        for settings in _settings(scene, lattice, form, background):
+        for settings in _settings(scene, lattice, form, added):
             yield f"  {_state(settings):<20}{_verdict(settings)}"
-    if left := [words(type(e).__name__) for e in plan.effects if type(e) not in WITHIN]:
+    left = [
+        words(type(e).__name__) for e in plan.effects if type(e) not in {*WITHIN, *AS_REMEDY}
+    ]
+    if left:
         yield f"  not in it           {', '.join(left)}"
 
 
@@ -63,9 +101,8 @@ def _state(settings: Settings) -> str:
     return next(name for name, sign in STATES.items() if sign * settings.pressure > 0.0)
 
 
-def _settings(scene, lattice: str, form: str, background) -> Iterator[Settings]:
+def _settings(scene, lattice: str, form: str, added: tuple) -> Iterator[Settings]:
     """One for each sign that the pressure has at the start; both where it has none yet."""
-    added = (remedies.BackgroundPressure(background.pressure),) if background else ()
     space = scene.case.space
     for pressure, start in _extremes(scene):
         density, stiffness = _state_at(start, pressure)

@@ -12,6 +12,7 @@ from psph.output.reader import Run
 from psph.output.tables import CsvTable
 
 CASE = """
+scheme = "sph"
 title = "{dimensions}D tank"
 [space]
 dimensions = {dimensions}

@@ -187,6 +187,7 @@ shape.union = [
 
 def test_a_wall_goes_on_across_a_periodic_edge(tmp_path):
     text = """
+scheme = "sph"
 [space]
 dimensions = 2
 spacing = 0.1
@@ -262,6 +263,7 @@ def test_a_large_jitter_is_warned_of(tmp_path):
 
 
 CLOSED = """
+scheme = "sph"
 [space]
 dimensions = 2
 spacing = 0.1

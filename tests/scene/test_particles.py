@@ -9,6 +9,7 @@ from psph.scene import Scene
 from psph.scene import lattice as lattices
 
 BLOCK = """
+scheme = "sph"
 [space]
 dimensions = 3
 spacing = 0.1
@@ -178,6 +179,7 @@ def test_two_kicks_to_one_particle_add_up(tmp_path):
 
 def test_lines_of_particles_in_one_dimension(tmp_path):
     text = """
+scheme = "sph"
 [space]
 dimensions = 1
 spacing = 0.5

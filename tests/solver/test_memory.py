@@ -50,6 +50,7 @@ print(json.dumps({
 """
 
 CUBE = """
+scheme = "sph"
 [space]
 dimensions = 3
 spacing = 0.0125

@@ -5,6 +5,7 @@ import json
 from jobs import mpirun
 
 LINE = """
+scheme = "sph"
 [space]
 dimensions = 1
 spacing = 0.1
