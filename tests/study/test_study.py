@@ -24,6 +24,7 @@ from psph.study.page import main as on_page
 from psph.study.study import fitting, foretold, pareto
 
 WAVE = """
+scheme = "sph"
 [space]
 dimensions = 1
 spacing = 0.025
