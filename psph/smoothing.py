@@ -224,6 +224,10 @@ class Hyperbolic(NamedTuple):
         a, b = max(2.0 - s, 0.0), max(1.0 - s, 0.0)
         return self.alpha * self.inverse_h * (6.0 * b * b - 3.0 * a * a)
 
+    def dw_r(self, r):
+        """W′/r; its division is one that forces along the pair share."""
+        return slope(self, r) * (1.0 / r)
+
 
 class FourthOrder(NamedTuple):
     """Two quintic splines, W = 2 W₅(h) − W₅(√2 h): errors of fourth order, for smooth flows alone.

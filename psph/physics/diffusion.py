@@ -66,7 +66,7 @@ def _spreading(delta, i, j, pair, weight):
     level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density) - weight
     excess = j.mass * (level * j.specific_volume - 1.0)
     strength = 2.0 * delta * h * i.sound_speed
-    return strength * excess * pair.r2 * pair.dw_r / (pair.r2 + SINGULARITY * h * h)
+    return strength * excess * pair.r2 * (pair.dw_r / (pair.r2 + SINGULARITY * h * h))
 
 
 def _longest_step(delta: float, scene) -> float:

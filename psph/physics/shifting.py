@@ -47,15 +47,23 @@ class ParticleShifting(NamedTuple):
 
     def start(self, i):
         """Kernel sum, Σ V ∇W and Σ V (WV)⁴ ∇W."""
-        return _alone(i)
+        return 0.0, zero_like(i.position), zero_like(i.position)
 
     def gather(self, total, i, j, pair):
         """Take neighbour j into all three."""
-        return _with_neighbour(total, j, pair)
+        volume = j.mass * j.specific_volume
+        share = pair.w * volume
+        gradient = scale(pair.x_ij, volume * pair.dw_r)
+        return total[0] + share, add(total[1], gradient), add(total[2], scale(gradient, share**4))
 
     def finish_value(self, total, i, kernel):
         """h Σ_j V_j [1 + 0.2 (W/W(dx))⁴] ∇W, zero at a surface; dx from the particle's volume."""
-        return _crowding(total, i, kernel, SURFACE)
+        volume = i.mass * i.specific_volume
+        spacing = volume ** (1.0 / len(i.position))
+        near = max((weight(kernel, spacing) * volume) ** 4, LEAST)
+        inside = where(total[0] + weight(kernel, 0.0) * volume < SURFACE, 0.0, 1.0)
+        crowding = add(total[1], scale(total[2], CROWDING / near))
+        return scale(crowding, inside * i.smoothing_length)
 
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
@@ -78,8 +86,9 @@ class PositionShift(NamedTuple):
 
     δx_i as in :class:`ParticleShifting`, with U no larger than the largest speed of the flow: still
     water is left alone, where the shift of a constant U would stir a lattice under tension.
-    Velocity and density go along unchanged, so that momentum is conserved to round-off.  Lind, Xu, Stansby & Rogers
-    (2012), J. Comput. Phys. 231, 1499; Sun et al. (2017), Comput. Methods Appl. Mech. Eng. 315, 25.
+    Velocity and density go along unchanged, so that momentum is conserved to round-off.  Lind, Xu,
+    Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun et al. (2017), Comput. Methods Appl.
+    Mech. Eng. 315, 25.
     """
 
     strength: Annotated[
@@ -90,46 +99,43 @@ class PositionShift(NamedTuple):
         ),
     ] = 0.1
 
+    def in_scene(self, scene):
+        """The shift against the weight of a neighbour one spacing away."""
+        return LatticeShift(self.strength, 1.0 / float(scene.kernel.w(scene.spacing)))
+
+
+class LatticeShift(NamedTuple):
+    """Particles shift from where they crowd to where they are few: see :class:`PositionShift`.
+
+    ``inverse_near`` is 1/W(dx), m^d.
+    """
+
+    strength: float
+    inverse_near: float
+
     writes = "crowding"
 
     def start(self, i):
-        """Kernel sum, Σ V ∇W and Σ V (WV)⁴ ∇W."""
-        return _alone(i)
+        """Kernel sum, and Σ V [1 + 0.2 (W/W(dx))⁴] ∇W."""
+        return 0.0, zero_like(i.position)
 
     def gather(self, total, i, j, pair):
-        """Take neighbour j into all three."""
-        return _with_neighbour(total, j, pair)
+        """Take neighbour j into both."""
+        volume = j.mass * j.specific_volume
+        near = pair.w * self.inverse_near
+        near = near * near
+        pull = volume * pair.dw_r * (1.0 + CROWDING * (near * near))
+        return total[0] + volume * pair.w, add(total[1], scale(pair.x_ij, pull))
 
     def finish_value(self, total, i, kernel):
-        """h Σ_j V_j [1 + 0.2 (W/W(dx))⁴] ∇W, zero at a surface; dx from the particle's volume."""
-        return _crowding(total, i, kernel, NEAR_SURFACE)
+        """h Σ_j V_j [1 + 0.2 (W/W(dx))⁴] ∇W, zero near a surface."""
+        own = i.mass * i.specific_volume * weight(kernel, 0.0)
+        inside = where(total[0] + own < NEAR_SURFACE, 0.0, 1.0)
+        return scale(total[1], inside * i.smoothing_length)
 
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
         return scale(_velocity(min(i.largest_speed, self.strength * i.sound_speed), i), dt)
-
-
-@register_jitable
-def _alone(i):
-    return 0.0, zero_like(i.position), zero_like(i.position)
-
-
-@register_jitable
-def _with_neighbour(total, j, pair):
-    volume = j.mass * j.specific_volume
-    share = pair.w * volume
-    gradient = scale(pair.x_ij, volume * pair.dw_r)
-    return total[0] + share, add(total[1], gradient), add(total[2], scale(gradient, share**4))
-
-
-@register_jitable
-def _crowding(total, i, kernel, surface):
-    volume = i.mass * i.specific_volume
-    spacing = volume ** (1.0 / len(i.position))
-    near = max((weight(kernel, spacing) * volume) ** 4, LEAST)
-    inside = where(total[0] + weight(kernel, 0.0) * volume < surface, 0.0, 1.0)
-    crowding = add(total[1], scale(total[2], CROWDING / near))
-    return scale(crowding, inside * i.smoothing_length)
 
 
 @register_jitable

@@ -100,9 +100,9 @@ class ArtificialViscosity(NamedTuple):
 class PairDamping(NamedTuple):
     """Numerical friction along the line of every pair, approaching or parting: it calms sound.
 
-    a_i = α c h Σ_j m_j/ρ̄ (u_ij·x_ij)/(r² + 0.01 h²) ∇W_ij.  Monaghan & Gingold (1983), J. Comput.
-    Phys. 52, 374; without the switch, Antuono, Colagrossi, Marrone & Molteni (2010), Comput. Phys.
-    Commun. 181, 532.  It conserves momentum and angular momentum, and acts as a viscosity of about
+    a_i = α c h ρ₀ Σ_j m_j/(ρ_i ρ_j) (u_ij·x_ij)/(r² + 0.01 h²) ∇W_ij.  Monaghan & Gingold (1983), J.
+    Comput. Phys. 52, 374; without the switch, Antuono, Colagrossi, Marrone & Molteni (2010), Comput.
+    Phys. Commun. 181, 532.  It conserves momentum and angular momentum, and acts as a viscosity of about
     αch/8.
     """
 
@@ -113,9 +113,10 @@ class PairDamping(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        under = (pair.r2 + SINGULARITY * h * h) * (v_i + v_j)
-        over = (2.0 * self.alpha * h * i.sound_speed) * j.mass * v_i * v_j * pair.u_dot_x
-        return over * pair.dw_r / under
+        # ρ̄ = ρ_i ρ_j/ρ₀; the quotient is that of the density diffusion: one division for both.
+        share = j.mass * v_j * (v_i * i.rest_density) * pair.u_dot_x
+        strength = self.alpha * h * i.sound_speed
+        return strength * share * (pair.dw_r / (pair.r2 + SINGULARITY * h * h))
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
