@@ -314,10 +314,14 @@ def kernel(name: str, smoothing_length: float, dimensions: int):
     return cls(1.0 / smoothing_length, *constants.tolist())
 
 
-def normalised(kernel, spacing: float, dimensions: int) -> Normalised:
-    """``kernel`` normalised on the row, square or cube lattice of ``spacing``, m."""
+def first_moment(kernel, spacing: float, dimensions: int) -> float:
+    """Σ dx^d r W′ over the row, square or cube lattice of ``spacing`` m; about −dimensions."""
     reach = math.ceil(kernel.support / (kernel.inverse_h * spacing))
     sites = product(range(-reach, reach + 1), repeat=dimensions)
     radii = (math.hypot(*site) * spacing for site in sites if any(site))
-    moment = -sum(r * kernel.dw(r) for r in radii) * spacing**dimensions / dimensions
-    return Normalised(kernel, 1.0 / moment)
+    return float(sum(r * kernel.dw(r) for r in radii)) * spacing**dimensions
+
+
+def normalised(kernel, spacing: float, dimensions: int) -> Normalised:
+    """``kernel`` normalised on the row, square or cube lattice of ``spacing``, m."""
+    return Normalised(kernel, -dimensions / first_moment(kernel, spacing, dimensions))

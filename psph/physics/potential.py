@@ -51,8 +51,9 @@ class PairPotential(NamedTuple):
 
 
 class NeutralPotential(NamedTuple):
-    """Near neighbours repel, farther ones attract: see :class:`PairPotential`.
+    """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
 
+    The form of :class:`PairPotential` for the lattice of a scene.
     ``core`` 1/R of the core, 1/m; ``repulsion`` its strength, 1/m^(d+1); ``curvatures`` 1/R_k², 1/m²,
     and ``weights`` of the smooth parts, 1/m^(d+2); all strengths over ρ₀c².
     """

@@ -57,8 +57,8 @@ def _too_many_sites(scene: Scene) -> str | None:
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but likely not as meant."""
     for kind in (
-        _thin_walls, _surface_threshold, _minimum_at_surface, _background_at_surface, _slow_sound,
-        _jitter,
+        _thin_walls, _surface_threshold, _minimum_at_surface, _minimum_in_disorder,
+        _background_at_surface, _slow_sound, _jitter,
     ):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
@@ -214,6 +214,20 @@ def _minimum_at_surface(scene: Scene) -> Iterator[str]:
         yield (
             'physics.pressure_gradient: "minimum" explodes at a free surface, where it only pushes '
             'outward, and the fluid has one; take "symmetric", or enclose the fluid'
+        )
+
+
+def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
+    physics = scene.case.physics
+    rubs = physics.artificial_viscosity or physics.pair_damping or any(
+        fluid.viscosity for fluid in scene.case.fluids.values()
+    )
+    disordered = any(fluid.jitter for fluid in scene.case.fluids.values())
+    if physics.pressure_gradient == "minimum" and disordered and not rubs:
+        yield (
+            'physics.pressure_gradient: "minimum" brings no particle back to its place, and the '
+            "fluid starts in disorder without any friction: it will heat up; give a viscosity, "
+            'physics.artificial_viscosity, or scheme = "stable"'
         )
 
 

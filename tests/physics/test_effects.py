@@ -18,14 +18,14 @@ from psph.physics.potential import neutral_potential
 from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
 )
-from psph.physics.shifting import ParticleShifting, PositionShift
+from psph.physics.shifting import LatticeShift, ParticleShifting
 from psph.physics.slip import NoSlip
 from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.trial import UnknownField, reads
 from psph.physics.viscosity import (
     ArtificialViscosity, CorrectedViscosity, LaminarViscosity, PairDamping,
 )
-from psph.smoothing import kernel
+from psph.smoothing import first_moment, kernel
 
 DIMENSIONS = (1, 2, 3)
 
@@ -203,6 +203,12 @@ def agree_compiled(one, dim):
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
+@pytest.mark.parametrize("one", [neutral_potential, LatticeShift])
+def test_forms_of_a_scene_are_compiled_as_they_are_plain(one, dim):
+    agree_compiled(one(0.5, 0.01, dim) if one is neutral_potential else one(0.1, -2.0, 1e-6), dim)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
 def test_difference_pressure(dim):
     p = view(dim=dim)
     x, _, _, _, grad_w = written_out(p, 0, 1)
@@ -329,7 +335,7 @@ def test_no_shift_at_a_surface():
 
 
 def test_a_position_shift_stops_with_the_flow():
-    effect = PositionShift(0.1)
+    effect = LatticeShift(0.1, -2.0, 1e-6)
     i = pair_of(view(), 0, 1)[0]
     fast = np.array(effect.displacement(i._replace(largest_speed=50.0), 1e-3))
     slow = np.array(effect.displacement(i._replace(largest_speed=2.0), 1e-3))
@@ -549,3 +555,27 @@ def test_a_floor_on_tension_for_water_and_for_walls():
     floor, i = TensionFloor(0.98), pair_of(view(), 0, 1)[0]
     assert [floor.limit_density(i, rho) for rho in (900.0, 985.0, 1001.0)] == [980.0, 985.0, 1001.0]
     assert [floor.limit_wall_density(i, rho) for rho in (985.0, 1001.0)] == [1000.0, 1001.0]
+
+
+def test_a_position_shift_sees_the_surface_and_what_crowds():
+    """Full, a lattice holds still; at its edge nothing shifts; a near pair parts."""
+    scene_kernel, dx = kernel("hyperbolic", H, 2), H / 1.3
+    full = first_moment(scene_kernel, dx, 2)
+    shift = LatticeShift(0.1, full, 1.0 / scene_kernel.dw_r(dx))
+    x = np.array([k for k in product(range(-3, 4), repeat=2)]) * dx
+    centre = int(np.flatnonzero((x == 0.0).all(axis=1))[0])
+
+    def stored(places):
+        p = view(n=len(places))._replace(
+            position=tuple(places.T), mass=np.full(len(places), 1000.0 * dx**2),
+            specific_volume=np.full(len(places), 1e-3),
+        )
+        return np.array(sums_of(shift, p, centre, "hyperbolic"))
+
+    assert stored(x) == pytest.approx((0.0, 0.0), abs=1e-12)
+    crowded = x.copy()
+    crowded[centre] += (0.3 * dx, 0.0)
+    assert stored(crowded)[0] > 0.1 and abs(stored(crowded)[1]) < 1e-12
+    edge = x.copy()
+    edge[x[:, 1] > 0.5 * dx] += 100.0
+    assert (stored(edge) == 0.0).all()

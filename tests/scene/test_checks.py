@@ -292,10 +292,18 @@ def test_minimum_pressure_without_one_is_silent(tmp_path, text, override):
     assert checked(tmp_path, text, override) == []
 
 
+def test_minimum_pressure_without_friction_is_warned_of_where_particles_start_in_disorder(tmp_path):
+    sets = "physics.pressure_gradient=minimum", "fluids.water.jitter=0.1"
+    [line] = checked(tmp_path, CLOSED, *sets)
+    assert "fluid starts in disorder without any friction" in line
+    assert checked(tmp_path, CLOSED, *sets, "fluids.water.viscosity=1e-3") == []
+
+
 def test_a_background_pressure_at_a_free_surface_is_warned_of(tmp_path):
     [line] = checked(tmp_path, TANK, "physics.background_pressure=100.0")
     assert line.startswith("case.toml: physics.background_pressure: blows a free surface apart")
     assert checked(tmp_path, CLOSED, "physics.background_pressure=100.0") == []
+    assert checked(tmp_path, TANK, "physics.background_pressure=auto") == []
 
 
 def test_a_slip_in_the_units_is_refused_at_once(tmp_path):
