@@ -1,5 +1,7 @@
 """The run's health in numbers: energies, momentum, largest speed, density error."""
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from mpi4py import MPI
 
@@ -29,6 +31,23 @@ def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ..
     kinetic = 0.5 * mass * (velocity**2).sum(axis=1)
     potential = -mass * (position @ np.asarray(gravity))
     return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
+
+
+def energy_and_mass(
+    comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable
+) -> tuple[float, float]:
+    """Energy of motion and height of the fluid and of compression of all, J; mass of the fluid, kg.
+
+    ``elastic`` takes densities and rest densities (n,) and gives J/kg.  Where a density is below
+    zero it is NaN.  The same bits on any number of ranks; collective.
+    """
+    kinetic, potential, *_ = energies_and_momentum(comm, store, gravity)
+    mass = store.shown("mass")
+    with np.errstate(invalid="ignore", divide="ignore"):
+        stored = mass * elastic(store.shown("density"), store.shown("rest_density"))
+    moving = np.where(store.shown("kind") == FLUID, mass, 0.0)
+    compressed, heavy = exact_sums(comm, np.column_stack([stored, moving]))
+    return float(kinetic + potential + compressed), float(heavy)
 
 
 def density_error(comm: MPI.Comm, store: Store) -> float:
