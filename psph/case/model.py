@@ -208,7 +208,7 @@ class Guards(Table):
     )
     energy: float = key(
         "energy that all particles may gain, in units of their kinetic energy at a tenth of the "
-        "speed of sound", 1.0, unit="1", gt=0,
+        "speed of sound", 2.0, unit="1", gt=0,
     )
 
 

@@ -111,13 +111,18 @@ class Guards:
         """Leave what tells of the trouble, and raise BlowUp."""
         sim, suspect = self.simulation, self._find(guard)
         verb = "lost a particle" if guard == "depth" else "blew up"
+        push = suspect.hardest()
         what = (
             f"the run {verb} at step {sim.steps}, time {sim.time:.6g} s: "
-            f"{self._words(guard, suspect)}"
+            f"{self._words(guard, suspect)}; "
+            + (f"pushed hardest by {push.name}" if push else "nothing pushes it now")
         )
-        tries = advice(self.scene, sim, guard, suspect)
+        tries = advice(self.scene, guard, suspect)
         try:
             left = self._keep_state()
+        except OutputError as trouble:
+            left = f"No checkpoint: {trouble}."
+        try:
             path = write_post_mortem(self.folder, self.scene, sim, what, suspect, tries, left)
             told = f"{path} tells more"
         except OutputError as trouble:
@@ -139,7 +144,7 @@ class Guards:
         self.record.write_last()
         return (
             f"`{path.name}` holds this state, and so does the last frame. `{again} --extend "
-            "'guards.on_trouble=\"warn\"'` goes on from it."
+            "guards.on_trouble=warn` goes on from it."
         )
 
     def _find(self, guard: str) -> Suspect:
@@ -148,11 +153,10 @@ class Guards:
     def _worst_by_finite(self) -> np.ndarray:
         store = self.simulation.store
         before, after = (
-            ~np.isfinite([store.shown(name).reshape(store.owned, -1).sum(axis=1) for name in names])
-            .all(axis=0)
+            np.column_stack([np.isfinite(store.shown(name)) for name in names]).all(axis=1)
             for names in (("position", "pressure"), ("velocity", "density", "acceleration"))
         )
-        return 2.0 * before + after
+        return 2.0 * ~before + ~after  # what the pass read comes before what it gave
 
     def _worst_by_speed(self) -> np.ndarray:
         return np.linalg.norm(self.simulation.store.shown("velocity"), axis=1) * self._fluid()

@@ -59,6 +59,7 @@ def _report(scene, simulation, what, suspect, tries, left) -> Iterator[str]:
 def _particle(scene, simulation, suspect: Suspect) -> Iterator[str]:
     speed, ratio = suspect.speed, suspect.value("density") / suspect.value("rest_density")
     kind = "fluid" if suspect.value("kind") == FLUID else "wall"
+    push, change = suspect.hardest(), suspect.fastest_change()
     rows = {
         "particle": f"{suspect.id}, {kind}",
         "place (m)": _vector(suspect.place),
@@ -68,8 +69,10 @@ def _particle(scene, simulation, suspect: Suspect) -> Iterator[str]:
         "density (kg/m³)": f"{suspect.value('density'):.5g}, {ratio:.4g} of rest",
         "pressure (Pa)": f"{suspect.value('pressure'):.4g}",
         "acceleration (m/s²)": _vector(suspect.value("acceleration")),
-        "pushed hardest by": suspect.hardest().name,
-        "density changed most by": suspect.fastest_change().name,
+        "pushed hardest by": f"{push.name}, {_length(push):.4g} m/s²" if push else "nothing",
+        "density changed most by": (
+            f"{change.name}, {change.density_rate:.4g} kg/(m³ s)" if change else "nothing"
+        ),
         "time step (s)": f"{simulation.dt:.4g}, set by {simulation.limited_by}",
     }
     yield "| what | value |\n|---|---|"

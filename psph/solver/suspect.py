@@ -51,13 +51,15 @@ class Suspect(NamedTuple):
         """Of each particle from it, m (n,)."""
         return np.linalg.norm(self.offset, axis=1)
 
-    def hardest(self) -> Share:
+    def hardest(self) -> Share | None:
         """The effect that pushes it hardest; one whose push is not finite before all others."""
-        return max(self.shares, key=lambda share: _size(share.acceleration))
+        first = max(self.shares, key=lambda share: _size(share.acceleration))
+        return first if _size(first.acceleration) else None
 
-    def fastest_change(self) -> Share:
+    def fastest_change(self) -> Share | None:
         """The effect that changes its density fastest."""
-        return max(self.shares, key=lambda share: _size([share.density_rate]))
+        first = max(self.shares, key=lambda share: _size([share.density_rate]))
+        return first if _size([first.density_rate]) else None
 
 
 def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
