@@ -33,21 +33,29 @@ def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ..
     return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
 
 
-def energy_and_mass(
+def total_energy(
     comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable
-) -> tuple[float, float]:
-    """Energy of motion and height of the fluid and of compression of all, J; mass of the fluid, kg.
+) -> float:
+    """Σ m (v²/2 − g·x) of the fluid and Σ m u of all particles, J.
 
-    ``elastic`` takes densities and rest densities (n,) and gives J/kg.  Where a density is below
-    zero it is NaN.  The same bits on any number of ranks; collective.
+    ``elastic`` takes densities and rest densities (n,) and gives u, J/kg.  NaN where a density is
+    below zero.  The same bits on any number of ranks; collective.
     """
-    kinetic, potential, *_ = energies_and_momentum(comm, store, gravity)
-    mass = store.shown("mass")
+    inner = store.inner
+    moved = sum(
+        x[inner] * -g + 0.5 * v[inner] ** 2
+        for x, v, g in zip(store["position"], store["velocity"], gravity)
+    )
     with np.errstate(invalid="ignore", divide="ignore"):
-        stored = mass * elastic(store.shown("density"), store.shown("rest_density"))
-    moving = np.where(store.shown("kind") == FLUID, mass, 0.0)
-    compressed, heavy = exact_sums(comm, np.column_stack([stored, moving]))
-    return float(kinetic + potential + compressed), float(heavy)
+        stored = elastic(store.shown("density"), store.shown("rest_density"))
+    energy = store.shown("mass") * (np.where(store.shown("kind") == FLUID, moved, 0.0) + stored)
+    return float(exact_sums(comm, energy[:, None])[0])
+
+
+def fluid_mass(comm: MPI.Comm, store: Store) -> float:
+    """Mass of the fluid, kg; the same bits on any number of ranks, collective."""
+    mass = np.where(store.shown("kind") == FLUID, store.shown("mass"), 0.0)
+    return float(exact_sums(comm, mass[:, None])[0])
 
 
 def density_error(comm: MPI.Comm, store: Store) -> float:

@@ -51,7 +51,7 @@ class Solid:
 
     def _inside(self, position: np.ndarray) -> np.ndarray:
         """True at points (n, dim) in a wall, or beyond a side that walls close."""
-        grid = [self._folded(d, x) for d, x in enumerate(position.T)]
+        grid = [self._folded(d, x.copy()) for d, x in enumerate(position.T)]  # unit stride
         held = self.layout.held(grid, grid[0].shape)
         found = (held >= self.layout.fluids) & (held < NONE)
         for d, (lower, upper) in enumerate(self.closed):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from psph.output.diagnostics import energy_and_mass
+from psph.output.diagnostics import fluid_mass, total_energy
 from psph.output.errors import OutputError
 from psph.parallel.reductions import largest
 from psph.particles.fields import FLUID
@@ -40,8 +40,10 @@ class Guards:
         self._gravity = [
             g if period is None else 0.0 for g, period in zip(scene.gravity, scene.periods)
         ]
+        mass = fluid_mass(simulation.comm, simulation.store)
+        self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
         if simulation.energy_at_start is None:
-            simulation.energy_at_start, _ = self._energy()
+            simulation.energy_at_start = self._energy()
 
     def step(self) -> None:
         """A step of the simulation, and a look at what came of it.
@@ -87,17 +89,15 @@ class Guards:
 
     def _gain(self) -> float:
         """Energy won since the start, in the unit of its bound."""
-        energy, unit = self._energy()
-        return (energy - self.simulation.energy_at_start) / unit
+        return (self._energy() - self.simulation.energy_at_start) / self._unit
 
-    def _energy(self) -> tuple[float, float]:
-        """Energy of motion, height and compression, J, and the unit in which a gain is told."""
-        sim, c = self.simulation, self.scene.sound_speed
-        energy, mass = energy_and_mass(
+    def _energy(self) -> float:
+        """Energy of motion, height and compression, J."""
+        sim, state, c = self.simulation, self.scene.state, self.scene.sound_speed
+        return total_energy(
             sim.comm, sim.store, self._gravity,
-            lambda density, rest: self.scene.state.energy(density, rest, c),
+            lambda density, rest: state.energy(density, rest, c),
         )
-        return energy, 0.5 * mass * (c / SOUND_OVER_SPEED) ** 2
 
     def _warn(self, guard: str) -> None:
         """Say so the first, second, fourth, eighth ... time."""
