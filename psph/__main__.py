@@ -189,7 +189,7 @@ def _parser() -> argparse.ArgumentParser:
     made["resume"].add_argument("folder", type=Path, help="the folder of the run")
     made["resume"].add_argument(
         "--extend", action="append", default=[], metavar="KEY=VALUE",
-        help="go further: time.end=2.0, or a key of output or checkpoint (repeatable)",
+        help="go further: time.end=2.0, or a key of output, checkpoint or guards (repeatable)",
     )
     made["resume"].add_argument(
         "--from", dest="chosen", metavar="FILE", help="another checkpoint than the newest"

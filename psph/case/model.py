@@ -189,6 +189,29 @@ class Checkpoint(Table):
     )
 
 
+class Guards(Table):
+    """What a run watches for in itself, and what it does then."""
+
+    on_trouble: Literal["stop", "warn"] = key(
+        "stop: end with a checkpoint and a post-mortem; warn: say so and go on", "stop"
+    )
+    speed: float = key(
+        "largest speed of a particle, in speeds of sound", 1.0, unit="1", gt=0, le=100
+    )
+    density: float = key(
+        "largest part by which a fluid's density may differ from its rest density", 0.5, unit="1",
+        gt=0,
+    )
+    depth: float = key(
+        "how far a fluid particle may get behind the face of a wall, in spacings", 1.0, unit="1",
+        gt=0,
+    )
+    energy: float = key(
+        "energy that all particles may gain, in units of their kinetic energy at a tenth of the "
+        "speed of sound", 2.0, unit="1", gt=0,
+    )
+
+
 class Parallel(Table):
     """How the domain is divided among ranks."""
 
@@ -247,6 +270,9 @@ class Case(Table):
     output: Output = key("how often what is written", make=Output)
     checkpoint: Checkpoint = key(
         "when a run leaves a checkpoint to go on from, beside that at a signal", make=Checkpoint
+    )
+    guards: Guards = key(
+        "what a run watches for in itself, and what it does then", make=Guards
     )
     parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
     neighbours: Neighbours = key("the neighbour lists", make=Neighbours)

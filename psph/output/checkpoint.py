@@ -31,7 +31,7 @@ from psph.output import rows as hdf5
 from psph.output.errors import cause, together
 from psph.parallel.reductions import wrapped_sums
 
-FORMAT = 1
+FORMAT = 2
 """Number of this form of a file; another one is refused."""
 
 KEPT = 2

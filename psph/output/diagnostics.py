@@ -1,5 +1,7 @@
 """The run's health in numbers: energies, momentum, largest speed, density error."""
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from mpi4py import MPI
 
@@ -29,6 +31,31 @@ def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ..
     kinetic = 0.5 * mass * (velocity**2).sum(axis=1)
     potential = -mass * (position @ np.asarray(gravity))
     return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
+
+
+def total_energy(
+    comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable
+) -> float:
+    """Σ m (v²/2 − g·x) of the fluid and Σ m u of all particles, J.
+
+    ``elastic`` takes densities and rest densities (n,) and gives u, J/kg.  NaN where a density is
+    below zero.  The same bits on any number of ranks; collective.
+    """
+    inner = store.inner
+    moved = sum(
+        x[inner] * -g + 0.5 * v[inner] ** 2
+        for x, v, g in zip(store["position"], store["velocity"], gravity)
+    )
+    with np.errstate(invalid="ignore", divide="ignore"):
+        stored = elastic(store.shown("density"), store.shown("rest_density"))
+    energy = store.shown("mass") * (np.where(store.shown("kind") == FLUID, moved, 0.0) + stored)
+    return float(exact_sums(comm, energy[:, None])[0])
+
+
+def fluid_mass(comm: MPI.Comm, store: Store) -> float:
+    """Mass of the fluid, kg; the same bits on any number of ranks, collective."""
+    mass = np.where(store.shown("kind") == FLUID, store.shown("mass"), 0.0)
+    return float(exact_sums(comm, mass[:, None])[0])
 
 
 def density_error(comm: MPI.Comm, store: Store) -> float:

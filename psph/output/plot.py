@@ -201,8 +201,8 @@ class Show:
             label = f"{self._name()} ({scale.unit})"
         else:
             places = frame["position"][:, [view.across, view.up]]
-            _circles(axes, places[~fluid], view.spacing, facecolors=style.WALLS)
-            drawn = _circles(axes, places[fluid], view.spacing, norm=scale.norm, cmap=scale.colours)
+            circles(axes, places[~fluid], view.spacing, facecolors=style.WALLS)
+            drawn = circles(axes, places[fluid], view.spacing, norm=scale.norm, cmap=scale.colours)
             drawn.set_array(values[fluid])
             axes.set_ylim(view.lower[1], view.upper[1])
             label = f"{'xyz'[view.up]} (m)"
@@ -269,15 +269,15 @@ def _grid(count: int, aspect: float) -> tuple[int, float, float]:
     return best
 
 
-def _circles(axes: Axes, places: np.ndarray, spacing: float, **colours) -> EllipseCollection:
+def circles(axes: Axes, places: np.ndarray, spacing: float, **colours) -> EllipseCollection:
     """Particles as circles that touch, or that leave no gap where they are too small to tell."""
     lower, upper = axes.get_xlim()
     points = 72 * style.width(axes) / (upper - lower) * spacing
     size = np.full(len(places), spacing * (1.05 if points > TELLING else 1.42))
     shape = {"units": "xy", "offsets": places, "offset_transform": axes.transData, "lw": 0}
     smooth = points > 1.0  # circles of about a pixel would make a pattern of their own
-    circles = EllipseCollection(size, size, 0 * size, antialiaseds=smooth, **shape, **colours)
-    return axes.add_collection(circles, autolim=False)
+    drawn = EllipseCollection(size, size, 0 * size, antialiaseds=smooth, **shape, **colours)
+    return axes.add_collection(drawn, autolim=False)
 
 
 def _dots(axes: Axes, places: np.ndarray, values: np.ndarray, fluid: np.ndarray) -> None:

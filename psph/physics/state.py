@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from psph.jit import call_by_type
 
 pressure = call_by_type("pressure")
@@ -22,6 +24,11 @@ class Linear(NamedTuple):
         """ρ in kg/m³, the inverse of :meth:`pressure`."""
         return rest_density + pressure / (sound_speed * sound_speed)
 
+    def energy(self, density, rest_density, sound_speed):
+        """Elastic energy ∫p/ρ² dρ from rest, J/kg, of arrays of densities in kg/m³."""
+        ratio = density / rest_density
+        return sound_speed * sound_speed * (np.log(ratio) + 1.0 / ratio - 1.0)
+
 
 class Tait(NamedTuple):
     """Water's stiff pressure law.
@@ -40,3 +47,9 @@ class Tait(NamedTuple):
         """ρ in kg/m³, the inverse of :meth:`pressure`; complex below p = −c²ρ₀/γ."""
         stiffness = sound_speed * sound_speed * rest_density / self.gamma
         return rest_density * (pressure / stiffness + 1.0) ** (1.0 / self.gamma)
+
+    def energy(self, density, rest_density, sound_speed):
+        """Elastic energy ∫p/ρ² dρ from rest, J/kg, of arrays of densities in kg/m³."""
+        ratio, less = density / rest_density, self.gamma - 1.0
+        stiffness = sound_speed * sound_speed / self.gamma
+        return stiffness * ((ratio**less - 1.0) / less + 1.0 / ratio - 1.0)

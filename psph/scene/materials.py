@@ -93,8 +93,11 @@ class Layout:
 
     def materials(self, first: int, last: int) -> np.ndarray:
         """Material of each site of some planes, uint8; the first that claims a site has it."""
-        shape = self.lattice.shape(first, last)
-        return _first_claim(self.masks(self.lattice.grid(first, last), shape), shape)
+        return self.held(self.lattice.grid(first, last), self.lattice.shape(first, last))
+
+    def held(self, grid: Grid, shape: tuple[int, ...]) -> np.ndarray:
+        """Material at any points, their coordinates broadcast to ``shape``; uint8."""
+        return _first_claim(self.masks(grid, shape), shape)
 
     def near(self, material: int, first: int, last: int, reach: int) -> np.ndarray:
         """True at the sites of some planes with a site of ``material`` at most ``reach`` away.

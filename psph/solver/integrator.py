@@ -73,12 +73,12 @@ def state_of(first, last, state, view, density, specific_volume, pressure):
 def kick(first, last, dt, effects, view, kind, position, velocity, acceleration, density, rate):
     """Kick by the second half of the step, with the new rates.
 
-    Returns the largest |v|² and |a|² over the columns ``first`` to ``last``, and the first column
-    with a number that is not finite, or −1.
+    Returns the largest |v|², |a|² and |ρ/ρ₀ − 1| of the fluid over the columns ``first`` to
+    ``last``; the last is infinite where any particle has a number that is not finite.
     """
     v2_max = 0.0
     a2_max = 0.0
-    broken = -1
+    strain_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         rho = density[k] + 0.5 * dt * rate[k]
@@ -88,14 +88,14 @@ def kick(first, last, dt, effects, view, kind, position, velocity, acceleration,
             put(velocity, k, v)
             rho = limit_density(effects, i, rho)
             v2, a2 = dot(v, v), dot(a, a)
-            v2_max = max(v2_max, v2)
-            a2_max = max(a2_max, a2)
             x = at(position, k)
-            if not v2 + a2 + dot(x, x) < np.inf and broken < 0:
-                broken = np.int64(k)
+            strain = abs(rho / i.rest_density - 1.0)
+            finite = v2 + a2 + dot(x, x) + strain < np.inf  # false for NaN too
+            v2_max = max(v2_max, v2 if finite else 0.0)
+            a2_max = max(a2_max, a2 if finite else 0.0)
+            strain_max = max(strain_max, strain if finite else np.inf)
         else:
             rho = limit_wall_density(effects, i, rho)
+            strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
         density[k] = rho
-        if not abs(rho) < np.inf and broken < 0:
-            broken = np.int64(k)
-    return v2_max, a2_max, broken
+    return v2_max, a2_max, strain_max

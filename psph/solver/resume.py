@@ -19,7 +19,7 @@ from psph.solver.plan import Plan
 from psph.solver.record import Record
 from psph.solver.step import Simulation
 
-MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True}
+MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": True}
 """Keys of a case that change no step: a run that goes on may have others."""
 
 
@@ -46,6 +46,12 @@ def write_checkpoint(simulation: Simulation, record: Record, case, folder: Path)
             },
         )
     return path
+
+
+def newest_checkpoint(folder: Path, comm) -> str | None:
+    """The name of the newest checkpoint in ``folder``, if any; collective."""
+    found = checkpoints(folder) if comm.rank == 0 else []
+    return comm.bcast(found[0].name if found else None)
 
 
 def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None = None):
@@ -75,8 +81,8 @@ def _allowed(extend: Sequence[str]) -> Sequence[str]:
         keys = MAY_CHANGE.get(table, ())
         if not name or (keys is not True and name not in keys):
             raise CaseError([
-                f"--extend {text}: would make it another run; give time.end, a key of output or of "
-                "checkpoint, or run the case anew"
+                f"--extend {text}: would make it another run; give time.end, a key of output, "
+                "checkpoint or guards, or run the case anew"
             ])
     return extend
 

@@ -19,7 +19,9 @@ from psph.particles.store import check_room
 from psph.scene import Scene, check
 from psph.solver.cost import cost_lines
 from psph.solver.explain import slab_planes
+from psph.solver.guards import Guards
 from psph.solver.plan import make_plan
+from psph.solver.post_mortem import remove_post_mortem
 from psph.solver.record import Record
 from psph.solver.resume import listed_particles, take_up, write_checkpoint
 from psph.solver.setup import compile_ahead, create_particles
@@ -101,6 +103,7 @@ def _simulate(
         say(f"goes on from {saved.path.name}: step {simulation.steps:,}, {simulation.time:.6g} s")
     first = simulation.steps
     record.write_due()
+    guards = Guards(scene, simulation, record, folder, lambda line: say(line, sys.stderr))
     starting = time.perf_counter() - begun
     say(f"first step after {starting:.1f} s")
     simulation.ledger.seconds.clear()  # the start is not a step
@@ -111,7 +114,7 @@ def _simulate(
         at_last.callback(progress.close)
         while simulation.time < case.time.end:
             simulation.word = float(watch.call())
-            simulation.step()
+            guards.step()
             record.write_due()
             progress.update(simulation.time, simulation.steps, simulation.dt)
             _attend(simulation, record, watch, case, folder)
@@ -120,6 +123,8 @@ def _simulate(
         record.write_last()
     whole = time.perf_counter() - stepping
     for line in _summary(scene, simulation, record, particles, whole, simulation.steps - first):
+        say(line)
+    for line in guards.summary():
         say(line)
     say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), {_tables(record)}")
     output = simulation.ledger.seconds["output"]
@@ -183,6 +188,7 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
                     for old in folder.glob(name):
                         old.unlink()
                 remove_checkpoints(folder)
+                remove_post_mortem(folder)
                 (folder / "case.toml").write_text(case.to_toml(), encoding="utf-8")
         except OSError as error:
             trouble = f"{folder}: {error.strerror}; choose another folder with --out"
@@ -199,6 +205,7 @@ def _reopen_folder(case, folder: Path, saved: Saved) -> None:
             fresh.write_text(case.to_toml(), encoding="utf-8")
             os.replace(fresh, folder / "case.toml")
             remove_checkpoints(folder, saved.state["steps"])
+            remove_post_mortem(folder)
 
 
 def _summary(

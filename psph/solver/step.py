@@ -14,22 +14,27 @@ from psph.solver.plan import Plan
 from psph.threads import in_threads
 
 TOO_FAST = 100.0
-"""A particle at this many speeds of sound is a run that blew up."""
+"""A particle at this many speeds of sound is a run that blew up, whatever the case allows."""
 
-CLOCK = ("time", "dt", "steps", "limited_by", "speed", "pace", "acceleration", "shift")
+CLOCK = (
+    "time", "dt", "steps", "limited_by", "speed", "pace", "acceleration", "shift",
+    "energy_at_start",
+)
 """Numbers of a simulation that its next step reads, or its user."""
 
 
 class BlowUp(ArithmeticError):
-    """The numbers of a run left the finite, on whatever rank; raised on all."""
+    """A run in trouble, on whatever rank; raised on all."""
 
 
 class Simulation:
     """Particles, domain and clock; ``step`` advances them.
 
     ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
-    scene.  ``time`` in s, ``dt`` the last step.  ``word`` is a number from 0 on that a rank wants
-    all others to know; ``heard`` the largest of them in the last step, the same on every rank.
+    scene.  ``time`` in s, ``dt`` the last step.  Over all ranks ``speed`` is the largest in m/s and
+    ``strain`` the largest |ρ/ρ₀ − 1| of the fluid after the last step, infinite where a number is
+    not finite.  ``word`` is a number from 0 on that a rank wants all others to know; ``heard`` the
+    largest of them in the last step, the same on every rank.
     With ``saved`` it goes on from a checkpoint (psph.solver.resume), whose particles ``store``
     holds where the lists were made.
     """
@@ -46,7 +51,8 @@ class Simulation:
         self.skin = Skin(self.domain, skin)
         self.records = Records(store, plan.neighbour_fields, plan.space)
         self.time, self.dt, self.steps = 0.0, 0.0, 0
-        self.speed, self.pace = 0.0, 0.0
+        self.speed, self.pace, self.strain = 0.0, 0.0, 0.0
+        self.energy_at_start: float | None = None
         self.limited_by = ""
         self.word, self.heard = 0.0, 0.0
         self._paid = 0.0
@@ -72,6 +78,7 @@ class Simulation:
             self._kick(self.dt)
         self.time += self.dt
         self.steps += 1
+        self._refuse_blow_up()
 
     def state(self) -> dict:
         """All that the next steps rest on but for the numbers of the particles."""
@@ -104,6 +111,7 @@ class Simulation:
         for older in ("density_rate_1", "density_rate_2"):
             self.store[older][:] = self.store["density_rate"]
         self._kick(0.0)
+        self._refuse_blow_up()
 
     def _restore(self, saved) -> None:
         """The lists as they were made, then everything as it was when ``saved`` was written."""
@@ -174,23 +182,19 @@ class Simulation:
         )
 
     def _kick(self, dt: float) -> None:
-        """Second kick; then the largest speed, acceleration, word and shift over all ranks."""
+        """Second kick; then the largest speed, acceleration, strain, word and shift over all ranks."""
         s = self.store
         self.pace = self.speed  # the shifts of the next step are bounded before its speed is known
         parts = in_threads(
             kick, s.low, s.low + s.owned, dt, self.plan.effects, s.view(), s.kind,
             s["position"], s["velocity"], s["acceleration"], s["density"], s["density_rate"],
         )
-        *mine, broken = np.max(parts, axis=0)
-        lost = float(s.id[int(broken)]) + 1.0 if broken >= 0 else 0.0
+        mine = np.max(parts, axis=0)
         with self.ledger("limits"):
-            extremes = largest(self.comm, [*mine, lost, self.word, *self._own_shift()])
+            extremes = largest(self.comm, [*mine, self.word, *self._own_shift()])
         self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()
-        self.heard = float(extremes[3])
+        self.strain, self.heard = extremes[2:4].tolist()
         self.shift = float(np.sqrt(extremes[4:]).sum())
-        too_fast = self.speed > TOO_FAST * self.plan.constants["sound_speed"]
-        if extremes[2] > 0.0 or too_fast:
-            self._report_blow_up(int(extremes[2]) - 1)
 
     def _own_shift(self) -> list[float]:
         """Square of this rank's fastest displacement, if any effect displaces."""
@@ -207,13 +211,12 @@ class Simulation:
         view = self.store.view()
         return view._replace(largest_speed=self.pace) if self.plan.displaces else view
 
-    def _report_blow_up(self, particle: int) -> None:
-        what = (
-            f"particle {particle} has a position, velocity or density that is not finite"
-            if particle >= 0
-            else f"a particle moves at {self.speed:.3g} m/s, over {TOO_FAST:g} speeds of sound"
-        )
-        raise BlowUp(
-            f"the run blew up at step {self.steps}, time {self.time:.6g} s: {what}; "
-            "try a smaller time.cfl, physics.artificial_viscosity or another scheme"
-        )
+    def _refuse_blow_up(self) -> None:
+        """Raise BlowUp where no step can follow: the extremes are the same on every rank."""
+        if not self.strain < np.inf:
+            what = "a position, velocity or density is not finite"
+        elif self.speed > TOO_FAST * self.plan.constants["sound_speed"]:
+            what = f"a particle moves at {self.speed:.3g} m/s, over {TOO_FAST:g} speeds of sound"
+        else:
+            return
+        raise BlowUp(f"the run blew up at step {self.steps}, time {self.time:.6g} s: {what}")

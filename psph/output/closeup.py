@@ -1,0 +1,109 @@
+"""A picture of the few particles around one of them: pressure, velocity, and the kernel's reach."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.patches import Circle
+
+from psph.output import style
+from psph.output.plot import circles
+from psph.particles.fields import FLUID
+
+SIZE = 4.6
+"""Of the panel, inches."""
+LONGEST = 1.6
+"""Spacings of the longest arrow."""
+SPREAD = (4.0, 96.0)
+"""Per cent of the pressures between which colours are told apart: a wild one must not hide all."""
+
+
+def draw(path: Path, title: str, time: float, scene, around, offset, column: int, place) -> Path:
+    """Draw the particles ``around`` (Store), at ``offset`` m (n, dim) from the one in ``column``.
+
+    That one is at ``place`` (dim,) m.  In 3D it is the slice through it that holds the direction of
+    gravity; in 1D the pressure stands upwards.
+    """
+    across, up, seen = _slice(scene, offset)
+    fluid = around.shown("kind") == FLUID
+    subtitle = f"particle {around.shown('id')[column]} and what is around it, t = {time:.6g} s"
+    with style.look():
+        figure = style.sheet(style.LEFT + SIZE + style.RIGHT, style.TOP + SIZE + style.BOTTOM,
+                             title, subtitle)
+        axes = style.panel(figure, style.LEFT, style.TOP, SIZE, SIZE)
+        reach = np.abs(offset).max(initial=scene.spacing) + 0.6 * scene.spacing
+        axes.set_xlim(place[across] - reach, place[across] + reach)
+        pressure = around.shown("pressure")
+        norm, factor, unit = _scale(pressure[seen & fluid])
+        if scene.dimensions == 1:
+            _line(axes, place[across] + offset[:, 0], pressure * factor, fluid, column)
+            axes.set_ylabel(f"pressure ({unit})")
+        else:
+            axes.set_ylim(place[up] - reach, place[up] + reach)
+            spots = place[[across, up]] + offset[:, [across, up]]
+            circles(axes, spots[seen & ~fluid], scene.spacing, facecolors=style.WALLS)
+            drawn = circles(axes, spots[seen & fluid], scene.spacing, norm=norm, cmap="coolwarm")
+            drawn.set_array(pressure[seen & fluid] * factor)
+            velocity = around.shown("velocity")[:, [across, up]]
+            _arrows(axes, spots, velocity, seen & fluid, scene.spacing)
+            _mark(axes, spots[column], scene)
+            bar = style.panel(figure, style.LEFT + SIZE + 0.15, style.TOP, 0.13, SIZE)
+            colours = figure.colorbar(ScalarMappable(norm, "coolwarm"), cax=bar, extend="both")
+            colours.outline.set_visible(False)
+            colours.set_label(f"pressure ({unit})")
+            axes.set_ylabel(f"{'xyz'[up]} (m)")
+        axes.set_xlabel(f"{'xyz'[across]} (m)")
+        style.ticks(axes.xaxis, 4)
+        style.ticks(axes.yaxis, 4)
+        return style.save(figure, path)
+
+
+def _slice(scene, offset: np.ndarray) -> tuple[int, int, np.ndarray]:
+    """The axes to the right and upwards, and which particles are seen."""
+    if scene.dimensions == 1:
+        return 0, 0, np.ones(len(offset), bool)
+    up = int(np.abs(scene.up).argmax()) if any(scene.up) else scene.dimensions - 1
+    across, *cut = (d for d in range(scene.dimensions) if d != up)
+    seen = np.ones(len(offset), bool)
+    for d in cut:
+        seen &= np.abs(offset[:, d]) < 0.75 * scene.spacing
+    return across, up, seen
+
+
+def _scale(pressure: np.ndarray) -> tuple[Normalize, float, str]:
+    """Colours around zero, and the factor and unit of their numbers."""
+    known = pressure[np.isfinite(pressure)]
+    largest = np.abs(np.percentile(known, SPREAD)).max() if len(known) else 0.0
+    largest = float(largest) or 1.0
+    factor, unit = style.readable("Pa", largest)
+    return Normalize(-largest * factor, largest * factor), factor, unit
+
+
+def _arrows(axes, spots, velocity, seen, spacing: float) -> None:
+    """Velocities, the fastest as long as ``LONGEST`` spacings; it is told below."""
+    speed = np.linalg.norm(velocity, axis=1)
+    seen = seen & np.isfinite(speed) & np.isfinite(spots).all(axis=1)
+    fastest = speed[seen].max(initial=0.0)
+    if fastest > 0.0:
+        arrows = axes.quiver(
+            *spots[seen].T, *velocity[seen].T, angles="xy", scale_units="xy", color=style.INK,
+            scale=fastest / (LONGEST * spacing), width=0.0035, zorder=3,
+        )
+        axes.quiverkey(arrows, 0.86, 1.03, fastest, f"{fastest:.3g} m/s", labelpos="W",
+                       fontproperties={"size": 9})
+
+
+def _mark(axes, spot, scene) -> None:
+    """A ring around the particle, and a broken one around the kernel's support."""
+    for radius, how in (
+        (0.75 * scene.spacing, {"lw": 1.8, "ec": style.LINES[1]}),
+        (scene.kernel.support * scene.smoothing_length, {"lw": 0.9, "ec": style.PALE, "ls": (0, (5, 3))}),
+    ):
+        axes.add_patch(Circle(spot, radius, fill=False, zorder=4, **how))
+
+
+def _line(axes, x, values, fluid, column: int) -> None:
+    for chosen, colour in ((~fluid, style.WALLS), (fluid, style.LINES[0])):
+        axes.plot(x[chosen], values[chosen], ".", ms=6, mew=0, color=colour)
+    axes.plot(x[column], values[column], "o", ms=11, mfc="none", mec=style.LINES[1], mew=1.8)

@@ -1,0 +1,73 @@
+"""Where no fluid can be: behind the face of a wall, and beyond a side that walls close."""
+
+from functools import cached_property
+
+import numpy as np
+
+from psph.scene.materials import NONE
+
+AT_ONCE = 1 << 15
+"""Points that are looked at together: what they need stays in the processor's cache."""
+
+
+class Solid:
+    """The walls of a scene, continued outwards where they close a whole side of its particles."""
+
+    def __init__(self, scene):
+        self.scene, self.layout, self.lattice = scene, scene.layout, scene.layout.lattice
+
+    def deep(self, position: np.ndarray, depth: float) -> np.ndarray:
+        """True where a point of ``position`` (n, dim) lies ``depth`` spacings behind every face.
+
+        A point that is inside, and so are the points so far away along each axis, both ways.
+        """
+        found = np.zeros(len(position), bool)
+        if not self.scene.case.walls:
+            return found
+        for first in range(0, len(position), AT_ONCE):
+            part = position[first : first + AT_ONCE]
+            found[first : first + AT_ONCE] = self._deep(part, depth * self.scene.spacing)
+        return found
+
+    @cached_property
+    def closed(self) -> tuple[tuple[bool, bool], ...]:
+        """For each axis whether walls close its lower and its upper side: every site there is one."""
+        return tuple(
+            (False, False) if period is not None else (self._all_wall(d, 0), self._all_wall(d, -1))
+            for d, period in enumerate(self.scene.periods)
+        )
+
+    def _deep(self, position: np.ndarray, depth: float) -> np.ndarray:
+        found = self._inside(position)
+        near = position[found]  # few: the rest is far from any wall's inside
+        held = np.ones(len(near), bool)
+        for d in range(self.scene.dimensions):
+            for away in (-depth, depth):
+                beside = near.copy()
+                beside[:, d] += away
+                held &= self._inside(beside)
+        found[found] = held
+        return found
+
+    def _inside(self, position: np.ndarray) -> np.ndarray:
+        """True at points (n, dim) in a wall, or beyond a side that walls close."""
+        grid = [self._folded(d, x.copy()) for d, x in enumerate(position.T)]  # unit stride
+        held = self.layout.held(grid, grid[0].shape)
+        found = (held >= self.layout.fluids) & (held < NONE)
+        for d, (lower, upper) in enumerate(self.closed):
+            if lower:
+                found |= grid[d] < self.lattice.lower[d]
+            if upper:
+                found |= grid[d] > self.lattice.upper[d]
+        return found
+
+    def _folded(self, d: int, x: np.ndarray) -> np.ndarray:
+        period, low = self.scene.periods[d], self.scene.lower[d]
+        return x if period is None else x - period * np.floor((x - low) / period)
+
+    def _all_wall(self, d: int, side: int) -> bool:
+        """Whether the outermost sites at this end of axis ``d`` are all wall."""
+        grid = self.lattice.grid(0, self.lattice.planes)
+        grid[d] = grid[d][[side]]
+        held = self.layout.held(grid, np.broadcast_shapes(*(x.shape for x in grid)))
+        return bool(((held >= self.layout.fluids) & (held < NONE)).all())

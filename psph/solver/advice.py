@@ -1,0 +1,93 @@
+"""What to try after a run got into trouble, by what is seen of the case and of the particle."""
+
+from collections.abc import Iterator
+
+from psph.case.schemes import STABLE
+from psph.particles.fields import FLUID
+from psph.scene.scene import SOUND_OVER_SPEED
+from psph.scene.walls import layers_needed, thinnest_walls
+
+FASTER = 2.0
+"""By so much the flow must pass the speed that c was made for until a larger c is proposed."""
+
+
+def advice(scene, guard: str, suspect) -> list[str]:
+    """Things to try, the most promising first; at least one."""
+    return [
+        *_long_step(scene), *_scheme(scene), *_pressure(scene, suspect),
+        *_walls(scene, guard, suspect), *_sound(scene, guard), *_friction(scene),
+        *_shorter_step(scene), *_bound(guard),
+    ]
+
+
+def _long_step(scene) -> Iterator[str]:
+    step, cfl = scene.case.time.step, scene.case.time.cfl
+    limit = cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
+    if step is not None and step > limit:
+        yield f"take out time.step = {step:g}: time.cfl = {cfl:g} would allow {limit:.2g} s"
+
+
+def _shorter_step(scene) -> Iterator[str]:
+    step, cfl = scene.case.time.step, scene.case.time.cfl
+    if step is None:
+        yield f"try a smaller time.cfl, {cfl / 2:g} instead of {cfl:g}"
+    else:
+        yield f"try a smaller time.step than {step:g} s"
+
+
+def _scheme(scene) -> Iterator[str]:
+    if scene.case.scheme != STABLE:
+        yield f'try scheme = "{STABLE}" in place of "{scene.case.scheme}" and its keys'
+
+
+def _pressure(scene, suspect) -> Iterator[str]:
+    physics, open_air = scene.case.physics, scene.has_free_surface
+    if physics.pressure_gradient == "minimum" and open_air:
+        yield (
+            'give physics.pressure_gradient = "symmetric": "minimum" (p⁻) does not hold where there '
+            "is a free surface"
+        )
+    if not (suspect.value("pressure") < 0.0 or scene.lowest_pressure < 0.0):
+        return
+    if open_air and physics.tension_floor is None:
+        yield "give physics.tension_floor = 0.98: tension tears the fluid"
+    elif not open_air and physics.background_pressure is None:
+        yield 'give physics.background_pressure = "auto": tension tears the fluid'
+
+
+def _friction(scene) -> Iterator[str]:
+    physics = scene.case.physics
+    viscous = any(material.viscosity for material in scene.materials)
+    if physics.artificial_viscosity is None and physics.pair_damping is None and not viscous:
+        yield "give physics.artificial_viscosity = 0.05: nothing damps this fluid"
+
+
+def _sound(scene, guard: str) -> Iterator[str]:
+    c = scene.sound_speed
+    expected = scene.expected_speed
+    if expected > FASTER * c / SOUND_OVER_SPEED:
+        yield (
+            f"raise physics.sound_speed to {SOUND_OVER_SPEED * expected:.3g} m/s, ten times the "
+            f"speed to expect; it is {c:g}"
+        )
+    elif guard == "density":
+        yield f"raise physics.sound_speed from {c:.4g} m/s: densities differ by (speed/c)²"
+
+
+def _walls(scene, guard: str, suspect) -> Iterator[str]:
+    near_wall = (suspect.around.shown("kind") != FLUID).any()
+    if guard != "depth" and not near_wall:
+        return
+    need, names = layers_needed(scene), [material.name for material in scene.materials]
+    for material, (layers, _) in thinnest_walls(scene).items():
+        yield f"make walls.{names[material]} thicker: {need} spacings instead of {layers}"
+    if guard == "depth":
+        yield "take a finer space.spacing: a fast particle then meets more of the wall"
+
+
+def _bound(guard: str) -> Iterator[str]:
+    if guard != "finite":
+        yield (
+            f'raise guards.{guard} if this is meant to be, or give guards.on_trouble = "warn" to '
+            "see what follows"
+        )
