@@ -7,7 +7,7 @@ import psph
 from psph.battery import picture, tables
 from psph.battery.errors import BatteryError
 from psph.battery.measures import measure
-from psph.battery.trials import BATTERY, QUICK, Trial
+from psph.battery.trials import BATTERY, OURS, QUICK, Trial
 from psph.battery.verdicts import Row, judged
 from psph.case import CaseError, load
 from psph.maps.tables import write
@@ -19,7 +19,9 @@ CASES = Path(psph.__file__).parents[1] / "run" / "cases" / "hard"
 FOLDER = Path("battery")
 
 
-def battery(comm, quick: bool, out: Path | None, trials: tuple[Trial, ...] | None = None) -> list[Row]:
+def battery(
+    comm, quick: bool, out: Path | None, trials: tuple[Trial, ...] | None = None
+) -> list[Row]:
     """Run the battery, or the quick part of it, into ``out``; rows on rank 0, collective.
 
     Runs that are finished there already are not done again.  Raises BatteryError where the cases
@@ -91,11 +93,11 @@ SNAPSHOTS = ("patch", "dam_break", "drop", "strip", "jets", "taylor_green", "slo
 """Cases whose end under our scheme is drawn beside the table."""
 
 
-def snapshots(folder: Path, trials: tuple[Trial, ...]) -> Iterator[tuple[str, dict, str]]:
-    """Name, last frame and units for the picture."""
+def snapshots(folder: Path, trials: tuple[Trial, ...]) -> Iterator[tuple[str, dict]]:
+    """Name and last frame of a run of each of these, under our scheme."""
     seen = set()
     for trial in trials:
-        place = folder_of(folder, trial, trial.schemes[0])
+        place = folder_of(folder, trial, OURS)
         if trial.case in SNAPSHOTS and trial.case not in seen and _has_frames(place):
             seen.add(trial.case)
-            yield trial.name, Run(place).frame(-1, "position", "kind", "pressure"), trial.schemes[0]
+            yield trial.name, Run(place).frame(-1, "position", "kind", "pressure")

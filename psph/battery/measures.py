@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from psph.battery.order import checkerboard, nearest, pieces, voids
+from psph.battery.walls import lost
 from psph.output.errors import OutputError
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
 from psph.particles.fields import FLUID
 from psph.scene import Scene
-from psph.battery.order import checkerboard, nearest, pieces, voids
-from psph.battery.walls import lost
 from psph.study.judge import read_experiment, window
 
 MEASURES = {
@@ -129,13 +129,15 @@ def _bound(scene, mass: float, fluid: dict) -> float:
 
 def _spin(fluid: dict) -> np.ndarray:
     """Σ x × v."""
-    x, v = (np.pad(fluid[name], ((0, 0), (0, 3 - fluid[name].shape[1]))) for name in ("position", "velocity"))
+    missing = ((0, 0), (0, 3 - fluid["position"].shape[1]))
+    x, v = (np.pad(fluid[name], missing) for name in ("position", "velocity"))
     return np.cross(x, v).sum(axis=0)
 
 
 def _lever(fluid: dict) -> float:
     """Σ |x| |v|."""
-    return float((np.linalg.norm(fluid["position"], axis=1) * np.linalg.norm(fluid["velocity"], axis=1)).sum())
+    far, fast = (np.linalg.norm(fluid[name], axis=1) for name in ("position", "velocity"))
+    return float((far * fast).sum())
 
 
 def _of_probes(run: Run, case, fluids) -> Iterator[tuple[str, float]]:

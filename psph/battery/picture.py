@@ -21,14 +21,14 @@ COLOURS = {
 DARK = (GOOD, BLEW_UP)
 """Verdicts whose colour takes white letters."""
 
-NAME, CELL, ROW, GAP, SNAPSHOT = 2.3, 0.92, 0.23, 0.4, 1.9
+NAME, CELL, ROW, GAP, SNAPSHOT = 3.1, 0.92, 0.23, 0.4, 1.9
 """Width of the names and of a cell, height of a row, a gap, the edge of a snapshot, inches."""
 
 
 def draw(
-    path: Path, trials: Sequence[Trial], rows: Sequence[Row], ends: Iterable[tuple[str, dict, str]]
+    path: Path, trials: Sequence[Trial], rows: Sequence[Row], ends: Iterable[tuple[str, dict]]
 ) -> Path:
-    """Write the picture; ``ends``: name, last frame and scheme of some runs."""
+    """Write the picture; ``ends``: name and last frame of some runs."""
     columns, ends = columns_of(trials), list(ends)
     wide, tall = CELL * len(columns), ROW * len(trials)
     left, top = 0.3 + NAME, style.TOP + 0.45
@@ -40,7 +40,7 @@ def draw(
             "each cell with what the trial is judged by; × and the time at which it blew up",
         )
         _matrix(style.panel(figure, left, top, wide, tall), trials, columns, rows)
-        for k, (name, frame, _) in enumerate(ends):
+        for k, (name, frame) in enumerate(ends):
             down, along = divmod(k, across)
             _end(
                 figure, 0.3 + along * (SNAPSHOT + 0.15),
@@ -61,11 +61,11 @@ def _matrix(axes, trials: Sequence[Trial], columns: list[str], rows: Sequence[Ro
     axes.set_xlim(0, len(columns))
     axes.set_ylim(len(trials), 0)
     axes.set_xticks(np.arange(len(columns)) + 0.5, columns)
-    axes.set_yticks(np.arange(len(trials)) + 0.5, [trial.name for trial in trials])
+    axes.set_yticks(np.arange(len(trials)) + 0.5, [f"{t.name}  ({t.shown.replace('_', ' ')})" for t in trials])
     axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=8)
     axes.spines[:].set_visible(False)
     axes.legend(
-        handles=[Patch(color=COLOURS[v], label=v) for v in VERDICTS if any(r.verdict == v for r in rows)],
+        handles=[Patch(color=COLOURS[v], label=v) for v in VERDICTS if v in {r.verdict for r in rows}],
         loc="upper left", bbox_to_anchor=(0, 0), borderaxespad=0.6, ncol=5, handlelength=1.0,
         handleheight=1.0,
     )

@@ -11,6 +11,9 @@ from psph.case.schemes import SCHEMES
 
 CSV, PAGE = "battery.csv", "battery.md"
 
+DETAILS = f"All that was measured of `{OURS}`:"
+"""Where the part of a page ends."""
+
 MARKS = {GOOD: "+", HOLDS: "~", FAILS: "−", BLEW_UP: "×", REFUSED: "?"}
 """A verdict in one character."""
 
@@ -35,7 +38,7 @@ def cell(row: Row | None) -> str:
     if row is None:
         return ""
     if row.verdict in (BLEW_UP, REFUSED):
-        return f"{MARKS[row.verdict]} {row.reached:.2g} s" if row.verdict == BLEW_UP else MARKS[REFUSED]
+        return f"{MARKS[BLEW_UP]} {row.reached:.2g} s" if row.verdict == BLEW_UP else MARKS[REFUSED]
     return f"{MARKS[row.verdict]} {number(row.found.get(row.shown))}"
 
 
@@ -65,7 +68,8 @@ def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
     head, *body = _body(trials, rows)
     yield from _table(["trial", *head[1:]], body)
     yield ""
-    yield "; ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items()) + "; × with the time it lived."
+    legend = "; ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
+    yield f"{legend}; beside × the time that it lived."
     shown = list(dict.fromkeys(trial.shown for trial in trials))
     yield "; ".join(f"`{name}`: {MEASURES[name]}" for name in shown) + "."
     yield ""
@@ -73,7 +77,7 @@ def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
     yield ""
     names = ("growth", "speed", "energy", "momentum", "angular", "near_least", "near_5", "pieces",
              "voids", "noise", "lost")
-    yield f"All of `{OURS}`:"
+    yield DETAILS
     yield ""
     yield from _table(
         ["trial", *(f"`{name}`" for name in names), "seconds"],
@@ -111,9 +115,10 @@ def sentences(rows: Sequence[Row]) -> Iterator[str]:
 def as_csv(rows: Sequence[Row]) -> str:
     """Every run with all that was measured; what a run lacks is empty."""
     out = io.StringIO()
-    names = ["trial", "scheme", "control", "verdict", "status", "reached", "seconds", *MEASURES, "broken"]
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(names)
+    writer.writerow([
+        "trial", "scheme", "control", "verdict", "status", "reached", "seconds", *MEASURES, "broken",
+    ])
     for row in rows:
         writer.writerow([
             row.trial, row.column, row.control, row.verdict, row.status, row.reached, row.seconds,

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 from psph.case.schemes import SCHEMES
 
-OURS, *OTHERS = SCHEMES
-"""The scheme that shall hold everywhere, and the paper's two."""
+OURS = next(iter(SCHEMES))
+"""The scheme that shall hold everywhere."""
 
 CONTROLS: dict[str, tuple[str, ...]] = {
     "no background": ("physics.background_pressure=0",),
@@ -54,7 +54,6 @@ class Trial(NamedTuple):
     goals: tuple[Bound, ...] = ()
     schemes: tuple[str, ...] = tuple(SCHEMES)
     fails: tuple[str, ...] = ()
-    fluctuating: bool = False
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -81,7 +80,10 @@ KICK = "perturbations=[{{position=[0.01, 0.01], velocity=[{}, 0.0]}}]"
 ALONE = (OURS,)
 
 
-def _box(name: str, *sets: str, goals=(Bound("late_speed", most=1e-4),), speed=1.0, **more) -> Trial:
+def _box(
+    name: str, *sets: str, goals=(Bound("late_speed", most=1e-4),), speed=1.0, **more
+) -> Trial:
+    """Case 4.2 in a variant."""
     return Trial(
         name, "box", "late_speed", speed, 2.0, 0.2, sets,
         holds=(Bound("late_speed", most=1e-2), Bound("near_least", least=0.6)), goals=goals, **more,
@@ -89,10 +91,12 @@ def _box(name: str, *sets: str, goals=(Bound("late_speed", most=1e-4),), speed=1
 
 
 def _jittered(share: float, *sets: str) -> tuple[str, ...]:
+    """In disorder instead of kicked."""
     return (f"fluids.fluid.jitter={share}", "perturbations=off", *sets)
 
 
 def _still(name: str, *sets: str, end=10.0, off=0.005, **more) -> Trial:
+    """Case 4.1 in a variant; ``off``: how far from theory the probes may be."""
     return Trial(
         name, "tank", "probe_error", 3.13, end, 10.0, sets,
         holds=(Bound("probe_error", most=0.05), Bound("noise", most=0.05)),
@@ -119,7 +123,7 @@ BATTERY = (
     _box("box, jitter 10 %", *_jittered(0.1), fails=("no background",)),
     _box("box, jitter 10 %, viscous", *_jittered(0.1, VISCOUS)),
     Trial(
-        "cube, jitter 10 %, 3D", "box_3d", "late_speed", 1.0, 0.3, 0.1,
+        "cube, jitter 10 %, 3D", "box_3d", "late_speed", 1.0, 1.0, 0.1,
         holds=(Bound("late_speed", most=1e-2), Bound("near_least", least=0.6)),
         goals=(Bound("late_speed", most=1e-4),), fails=("no background",),
     ),
@@ -155,7 +159,7 @@ BATTERY = (
     Trial(
         "dam break", "dam_break", "speed", 6.26, 2.0, 2.0,
         holds=(Bound("speed", most=2.5),),
-        goals=(Bound("speed", most=1.9), Bound("front_error", most=0.1)), fails=("no floor",),
+        goals=(Bound("speed", most=1.9), Bound("front_error", most=0.05)), fails=("no floor",),
     ),
     Trial(
         "dam break, 3D", "dam_break_3d", "speed", 2.8, 1.5, 1.5,
@@ -183,8 +187,8 @@ BATTERY = (
     ),
     Trial(
         "impinging jets", "jets", "speed", 1.0, 1.0, 1.0,
-        holds=(Bound("speed", most=2.0), Bound("energy", most=0.01)),
-        goals=(Bound("speed", most=1.3), Bound("momentum", most=1e-13)),
+        holds=(Bound("speed", most=4.5), Bound("energy", most=0.01)),  # √(2cU), the impact let go
+        goals=(Bound("speed", most=3.0), Bound("momentum", most=1e-13)),
     ),
     Trial(
         "driven cavity, Re 1000", "cavity", "ghia_error", 1.0, 20.0, 20.0,
@@ -208,7 +212,9 @@ BATTERY = (
 """Everything; lengths are such that a laptop takes the better part of an hour."""
 
 QUICK = (
-    BATTERY[0]._replace(end=0.1, other_end=0.02, schemes=ALONE, goals=(Bound("late_speed", most=1e-7),)),
+    BATTERY[0]._replace(
+        end=0.1, other_end=0.02, schemes=ALONE, goals=(Bound("late_speed", most=1e-7),)
+    ),
     BATTERY[6]._replace(end=0.1, other_end=0.1, schemes=ALONE, goals=()),
     Trial(
         "rotating patch, coarse", "patch", "kinetic", 0.7, 3.0, 3.0, ("space.spacing=0.04",),
@@ -217,12 +223,14 @@ QUICK = (
         schemes=ALONE, fails=("no potential", "no shift"),
     ),
     Trial(
-        "tank, coarse", "tank", "noise", 3.13, 1.5, 1.5, ("space.spacing=0.05",),
+        "tank, one second", "tank", "noise", 3.13, 1.0, 1.0,
         holds=(Bound("noise", most=0.02), Bound("probe_error", most=0.05)),
         schemes=ALONE, fails=("bare 1.2",),
     ),
     Trial(
-        "dam break, coarse", "dam_break", "speed", 6.26, 1.0, 1.0, ("space.spacing=0.1",),
+        "dam break, coarse", "dam_break", "speed", 6.26, 1.0, 1.0,
+        ("space.spacing=0.1",
+         "walls.tank.shape.difference.from.box={lower=[-0.3, -0.3], upper=[4.3, 3.0]}"),
         holds=(Bound("speed", most=2.0),), schemes=ALONE,
     ),
 )
