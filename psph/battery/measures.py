@@ -167,7 +167,7 @@ def _of_exact(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
 
 
 CAVITY, SIDE, OVER = "cavity", 1.0, 5
-"""The case that Ghia and others computed, the length of its side in m, and how many frames count."""
+"""The case that Ghia and others computed, its side in m, and how many frames count."""
 
 
 def _of_cavity(run: Run, case, fluids) -> Iterator[tuple[str, float]]:

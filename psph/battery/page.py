@@ -24,7 +24,8 @@ def part(page: Path, folder: Path) -> str:
         shutil.copyfile(folder / PICTURE, picture)
     except OSError as error:
         raise OutputError(f"{folder}: {error.strerror}; give the folder of a battery") from None
-    return f"{text.partition(DETAILS)[0].rstrip()}\n\n![Verdicts of the battery](images/{picture.name})\n"
+    told = text.partition(DETAILS)[0].rstrip()
+    return f"{told}\n\n![Verdicts of the battery](images/{picture.name})\n"
 
 
 def main(arguments: list[str]) -> int:

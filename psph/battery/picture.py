@@ -61,11 +61,13 @@ def _matrix(axes, trials: Sequence[Trial], columns: list[str], rows: Sequence[Ro
     axes.set_xlim(0, len(columns))
     axes.set_ylim(len(trials), 0)
     axes.set_xticks(np.arange(len(columns)) + 0.5, columns)
-    axes.set_yticks(np.arange(len(trials)) + 0.5, [f"{t.name}  ({t.shown.replace('_', ' ')})" for t in trials])
+    names = [f"{trial.name}  ({trial.shown.replace('_', ' ')})" for trial in trials]
+    axes.set_yticks(np.arange(len(trials)) + 0.5, names)
     axes.tick_params(length=0, labeltop=True, labelbottom=False, labelsize=8)
     axes.spines[:].set_visible(False)
+    found = {row.verdict for row in rows}
     axes.legend(
-        handles=[Patch(color=COLOURS[v], label=v) for v in VERDICTS if v in {r.verdict for r in rows}],
+        handles=[Patch(color=COLOURS[v], label=v) for v in VERDICTS if v in found],
         loc="upper left", bbox_to_anchor=(0, 0), borderaxespad=0.6, ncol=5, handlelength=1.0,
         handleheight=1.0,
     )

@@ -102,7 +102,7 @@ def sentences(rows: Sequence[Row]) -> Iterator[str]:
         if mine:
             held = sum(row.verdict in HELD for row in mine)
             good = sum(row.verdict == GOOD for row in mine)
-            yield f"- `{column}` holds in {held} of {len(mine)} trials, {good} of them with all goals."
+            yield f"- `{column}` holds in {held} of {len(mine)} trials, {good} with all goals."
     for row in rows:
         if row.column == OURS and row.verdict != GOOD:
             told = ", ".join(row.broken) or row.status
@@ -117,7 +117,8 @@ def as_csv(rows: Sequence[Row]) -> str:
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([
-        "trial", "scheme", "control", "verdict", "status", "reached", "seconds", *MEASURES, "broken",
+        "trial", "scheme", "control", "verdict", "status", "reached", "seconds", *MEASURES,
+        "broken",
     ])
     for row in rows:
         writer.writerow([

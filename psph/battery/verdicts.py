@@ -15,7 +15,7 @@ HELD = (GOOD, HOLDS)
 
 
 class Row(NamedTuple):
-    """A run of the battery: what was asked, how it ended, what was measured, which bounds it broke."""
+    """A run of the battery: what was asked, how it ended, what was measured, what it broke."""
 
     trial: str
     column: str
@@ -41,8 +41,8 @@ def judged(
     """The row of a run that ended as ``result`` says."""
     def row(verdict: str, broken: tuple[str, ...] = ()) -> Row:
         return Row(
-            trial.name, column, column in trial.fails, verdict, trial.shown, result["status"], found,
-            broken, reached, result.get("seconds"),
+            trial.name, column, column in trial.fails, verdict, trial.shown, result["status"],
+            found, broken, reached, result.get("seconds"),
         )
 
     if result["status"].startswith(REFUSED):

@@ -26,8 +26,8 @@ class Gravity(NamedTuple):
 class CentralForce(NamedTuple):
     """A pull towards a centre that grows with the distance, as that of a spring.
 
-    a_i = −B² (x_i − X).  Monaghan & Rafiee (2013), Int. J. Numer. Methods Fluids 71, 537, whose drop
-    swings in it between two ellipses.
+    a_i = −B² (x_i − X).  Monaghan & Rafiee (2013), Int. J. Numer. Methods Fluids 71, 537, whose
+    drop swings in it between two ellipses.
     """
 
     frequency: Annotated[
