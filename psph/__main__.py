@@ -134,6 +134,12 @@ def _study(options, comm) -> None:
 def _stability(options, comm) -> None:
     from psph.maps.command import Asked, stability
 
+    if options.battery or options.quick:
+        from psph.battery.command import battery
+
+        battery(comm, options.quick, options.out)
+        return
+
     asked = {name: getattr(options, name) for name in Asked._fields}
     stability(comm, Asked(**asked | {"remedies": tuple(options.remedies)}))
 
@@ -160,7 +166,7 @@ VERBS = {
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
     "study": (_study, "what accuracy costs in time: a case over a ladder of choices"),
-    "stability": (_stability, "which lattices fall apart under pressure, and how fast"),
+    "stability": (_stability, "which lattices fall apart under pressure; which schemes hold"),
     "bench": (_bench, "particle-steps and pairs per second of this machine"),
 }
 
@@ -254,7 +260,16 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
     stability.add_argument(
         "--box", type=int, metavar="N", help="N particles along an edge between fixed ones"
     )
-    stability.add_argument("--out", type=Path, help="folder of the map (default: stability)")
+    stability.add_argument(
+        "--battery", action="store_true", help="run the hard cases under every scheme instead"
+    )
+    stability.add_argument(
+        "--quick", action="store_true", help="of the battery the part that takes a minute"
+    )
+    stability.add_argument(
+        "--out", type=Path, help="folder of the map or the battery (default: their names); runs of "
+        "the battery that are finished there are kept"
+    )
     stability.add_argument("--json", action="store_true", help="one JSON object as the last line")
 
 
@@ -280,6 +295,7 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
 
 def _foreseen(error: BaseException) -> tuple[str, int] | None:
     """The plain lines and exit code of an error that a user can do something about."""
+    from psph.battery.errors import BatteryError
     from psph.bench.errors import BenchError
     from psph.case import CaseError
     from psph.output.checkpoint import CheckpointError
@@ -295,7 +311,7 @@ def _foreseen(error: BaseException) -> tuple[str, int] | None:
     if isinstance(error, CaseError):
         return "\n".join(error.lines), BAD_INPUT
     refused = (
-        BenchError, StabilityError, StudyError, CheckpointError, TooManyRanks, TooManyThreads,
+        BatteryError, BenchError, StabilityError, StudyError, CheckpointError, TooManyRanks, TooManyThreads,
         TooManyParticles,
     )
     if isinstance(error, refused):

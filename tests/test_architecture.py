@@ -20,6 +20,7 @@ LAYERS = [
     {"output"},
     {"solver"},
     {"bench", "maps", "study"},
+    {"battery"},
     {"__main__"},
 ]
 DEPTH = {part: depth for depth, layer in enumerate(LAYERS) for part in layer}

@@ -153,10 +153,15 @@ class Probe(Table):
 
 
 class Perturbation(Table):
-    """A kick to the fluid particle that is nearest to a place."""
+    """A kick or a shift of the fluid particle that is nearest to a place."""
 
     position: Vector = key("where", unit="m")
-    velocity: Vector = key("velocity added at the start", unit="m/s")
+    velocity: Vector | None = key(
+        "velocity added at the start", None, unit="m/s", otherwise="zeros"
+    )
+    shift: Vector | None = key(
+        "how far it is moved at the start, even onto another", None, unit="m", otherwise="zeros"
+    )
 
 
 class Output(Table):
@@ -265,7 +270,7 @@ class Case(Table):
         "the probes by name: places where fields are measured over time", {}
     )
     perturbations: Annotated[tuple[Perturbation, ...], Strict(False)] = key(
-        "kicks to single particles", ()
+        "kicks to single particles, and shifts of them", ()
     )
     output: Output = key("how often what is written", make=Output)
     checkpoint: Checkpoint = key(
@@ -343,6 +348,8 @@ class Case(Table):
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
         for fluid in self.fluids.values():
             _fill(fluid, velocity=zeros, velocity_center=zeros)
+        for one in self.perturbations:
+            _fill(one, velocity=zeros, shift=zeros)
         for wall in self.walls.values():
             _fill(wall, velocity=zeros, continues=next(iter(self.fluids)))
         return self

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from psph.physics.continuity import Continuity
 from psph.physics.correction import GradientCorrection
 from psph.physics.diffusion import DensityDiffusion
-from psph.physics.gravity import Gravity
+from psph.physics.gravity import CentralForce, Gravity
 from psph.physics.potential import PairPotential
 from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
@@ -40,6 +40,7 @@ CATALOGUE = (
     Entry("physics.pair_damping", PairDamping),
     Entry("physics.pair_potential", PairPotential),
     Entry("physics.gravity", Gravity),
+    Entry("physics.central_force", CentralForce),
     Entry("physics.free_surface", FreeSurface),
     Entry("physics.tension_floor", TensionFloor),
     Entry("physics.background_pressure", BackgroundPressure),

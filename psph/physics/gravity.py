@@ -4,6 +4,8 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.vectors import scale, subtract
+
 
 class Gravity(NamedTuple):
     """A uniform body force on every fluid particle.
@@ -19,3 +21,23 @@ class Gravity(NamedTuple):
     def body(self, i):
         """g, m/s²."""
         return self.acceleration
+
+
+class CentralForce(NamedTuple):
+    """A pull towards a centre that grows with the distance, as that of a spring.
+
+    a_i = −B² (x_i − X).  Monaghan & Rafiee (2013), Int. J. Numer. Methods Fluids 71, 537, whose
+    drop swings in it between two ellipses.
+    """
+
+    frequency: Annotated[
+        float, Field(description="B", json_schema_extra={"unit": "rad/s"})
+    ]
+    center: Annotated[
+        tuple[float, ...],
+        Field(description="X, one number per dimension", json_schema_extra={"unit": "m"}),
+    ]
+
+    def body(self, i):
+        """−B² (x − X), m/s²."""
+        return scale(subtract(i.position, self.center), -self.frequency * self.frequency)

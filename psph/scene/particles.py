@@ -89,10 +89,11 @@ def _dry(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> 
 
 
 def _kick(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> None:
-    for (plane, place), velocity in scene.kicks.items():
+    for (plane, place), (velocity, shift) in scene.kicks.items():
         if begin <= plane < end:
-            site = (plane - begin) * scene.lattice.sites_in_plane + place
-            chunk.velocity[np.searchsorted(sites, site)] += velocity
+            row = np.searchsorted(sites, (plane - begin) * scene.lattice.sites_in_plane + place)
+            chunk.velocity[row] += velocity
+            chunk.position[row] += shift
 
 
 def _shift(chunk: ParticleSet, scene) -> None:

@@ -184,17 +184,18 @@ class Scene:
 
     @cached_property
     def kicks(self) -> dict[tuple[int, int], np.ndarray]:
-        """Velocity added to the particle at (plane, place in the plane), m/s (dim,)."""
+        """For the particle at (plane, place in the plane) what is added to its velocity, m/s, and
+        to its position, m (2, dim)."""
         kicks: dict[tuple[int, int], np.ndarray] = {}
         for kick in self.case.perturbations:
             site = self._nearest_fluid_site(kick.position)
-            kicks[site] = kicks.get(site, 0.0) + np.array(kick.velocity)
+            kicks[site] = kicks.get(site, 0.0) + np.array([kick.velocity, kick.shift])
         return kicks
 
     @property
     def _kicked(self):
         """Velocities of the particles that got a kick."""
-        for (plane, place), kick in self.kicks.items():
+        for (plane, place), (kick, _) in self.kicks.items():
             material = self.layout.materials(plane, plane + 1).ravel()[place]
             yield kick + np.array(self.velocities[material])
 

@@ -13,7 +13,7 @@ from psph.physics.catalogue import CATALOGUE
 from psph.physics.continuity import Continuity
 from psph.physics.correction import DifferenceCorrection, GradientCorrection
 from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
-from psph.physics.gravity import Gravity
+from psph.physics.gravity import CentralForce, Gravity
 from psph.physics.potential import neutral_potential
 from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
@@ -174,6 +174,18 @@ def test_artificial_viscosity(approaching):
 
 def test_gravity():
     assert Gravity((0.0, -9.8)).body(pair_of(view(), 0, 1)[0]) == (0.0, -9.8)
+
+
+def test_a_central_force_pulls_to_its_centre():
+    """a = −B² (x − X): a particle at rest swings with the period 2π/B."""
+    force, h = CentralForce(3.0, (1.0, -2.0)), 1e-3
+    at = lambda x: force.body(view()._replace(position=x))
+    assert at((1.5, -2.0)) == pytest.approx((-4.5, 0.0)) and at((1.0, -2.0)) == (0.0, 0.0)
+    x, u = 1.5, 0.0
+    for _ in range(round(2.0 * math.pi / 3.0 / h)):
+        u += h * at((x, -2.0))[0]
+        x += h * u
+    assert x == pytest.approx(1.5, abs=1e-5)
 
 
 def test_free_surface():

@@ -171,6 +171,18 @@ def test_nearest_looks_across_a_periodic_edge(tmp_path):
     assert kicked(tmp_path, (1.8, 0.25), *text) == [pytest.approx((0.05, 0.25))]
 
 
+def test_a_particle_is_moved_onto_another(tmp_path):
+    still = everything(scene(tmp_path, WATER))
+    moved = everything(
+        scene(tmp_path, WATER, "perturbations=[{position=[0.05, 0.05], shift=[0.1, 0.0]}]")
+    )
+    [row] = np.flatnonzero((moved.position != still.position).any(axis=1))
+    assert still.position[row] == pytest.approx([0.05, 0.05])
+    [twin] = np.flatnonzero(np.isclose(still.position, [0.15, 0.05]).all(axis=1))
+    assert moved.position[row] == pytest.approx(moved.position[twin], abs=1e-15)
+    assert (moved.velocity == still.velocity).all() and moved.density[row] == still.density[row]
+
+
 def test_two_kicks_to_one_particle_add_up(tmp_path):
     kick = "{position=[0.05, 0.05], velocity=[1.0, 0.5]}"
     found = everything(scene(tmp_path, WATER, f"perturbations=[{kick}, {kick}]"))

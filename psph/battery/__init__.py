@@ -1,0 +1,1 @@
+"""The battery: hard cases under every scheme, and which of them hold."""

@@ -1,0 +1,128 @@
+"""The battery as text: for the terminal, as Markdown, as CSV."""
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+
+from psph.battery.measures import MEASURES
+from psph.battery.trials import CONTROLS, OURS, Trial
+from psph.battery.verdicts import BLEW_UP, FAILS, GOOD, HELD, HOLDS, REFUSED, Row
+from psph.case.schemes import SCHEMES
+
+CSV, PAGE = "battery.csv", "battery.md"
+
+DETAILS = f"All that was measured of `{OURS}`:"
+"""Where the part of a page ends."""
+
+MARKS = {GOOD: "+", HOLDS: "~", FAILS: "−", BLEW_UP: "×", REFUSED: "?"}
+"""A verdict in one character."""
+
+
+def line(row: Row) -> str:
+    """A run as it ends."""
+    told = "" if not row.broken else "; " + ", ".join(row.broken)
+    if row.verdict == REFUSED:
+        told = f"; {row.status}"
+    seconds = "" if row.seconds is None else f" in {row.seconds:.1f} s"
+    return f"{row.trial}, {row.column}: {row.verdict} at t = {row.reached:g} s{seconds}{told}"
+
+
+def columns_of(trials: Sequence[Trial]) -> list[str]:
+    """Schemes, then the controls that occur, in the order of the table."""
+    used = {column for trial in trials for column in trial.columns}
+    return [column for column in (*SCHEMES, *CONTROLS) if column in used]
+
+
+def cell(row: Row | None) -> str:
+    """The value of a trial's measure with the mark of the verdict."""
+    if row is None:
+        return ""
+    if row.verdict in (BLEW_UP, REFUSED):
+        return f"{MARKS[BLEW_UP]} {row.reached:.2g} s" if row.verdict == BLEW_UP else MARKS[REFUSED]
+    return f"{MARKS[row.verdict]} {number(row.found.get(row.shown))}"
+
+
+def number(value: float | None) -> str:
+    """Three digits, or a dash."""
+    return "–" if value is None or value != value else f"{value:.3g}"
+
+
+def _body(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[list[str]]:
+    columns, found = columns_of(trials), {(row.trial, row.column): row for row in rows}
+    yield ["", "what", *columns]
+    for trial in trials:
+        yield [trial.name, trial.shown, *(cell(found.get((trial.name, c))) for c in columns)]
+
+
+def matrix(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
+    """Trials × schemes for a terminal."""
+    body = list(_body(trials, rows))
+    widths = [max(map(len, column)) for column in zip(*body)]
+    for cells in body:
+        yield "  ".join(text.ljust(w) for text, w in zip(cells, widths)).rstrip()
+    yield "  ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
+
+
+def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
+    """The matrix, what its numbers are, what is left to do, and more of our own scheme."""
+    head, *body = _body(trials, rows)
+    yield from _table(["trial", *head[1:]], body)
+    yield ""
+    legend = "; ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
+    yield f"{legend}; beside × the time that it lived."
+    shown = list(dict.fromkeys(trial.shown for trial in trials))
+    yield "; ".join(f"`{name}`: {MEASURES[name]}" for name in shown) + "."
+    yield ""
+    yield from sentences(rows)
+    yield ""
+    names = ("growth", "speed", "energy", "momentum", "angular", "near_least", "near_5", "pieces",
+             "voids", "noise", "lost")
+    yield DETAILS
+    yield ""
+    yield from _table(
+        ["trial", *(f"`{name}`" for name in names), "seconds"],
+        [[row.trial, *(number(row.found.get(n)) for n in names), number(row.seconds)]
+         for row in rows if row.column == OURS],
+    )
+    yield ""
+    yield "; ".join(f"`{name}`: {MEASURES[name]}" for name in names if name not in shown) + "."
+
+
+def _table(head: Sequence[str], body) -> Iterator[str]:
+    yield f"| {' | '.join(head)} |"
+    yield "|---" * len(head) + "|"
+    for cells in body:
+        yield f"| {' | '.join(cells)} |"
+
+
+def sentences(rows: Sequence[Row]) -> Iterator[str]:
+    """What came of each scheme, where ours falls short, and which control did not fail."""
+    for column in SCHEMES:
+        mine = [row for row in rows if row.column == column and row.verdict != REFUSED]
+        if mine:
+            held = sum(row.verdict in HELD for row in mine)
+            good = sum(row.verdict == GOOD for row in mine)
+            yield f"- `{column}` holds in {held} of {len(mine)} trials, {good} with all goals."
+    for row in rows:
+        if row.column == OURS and row.verdict != GOOD:
+            told = ", ".join(row.broken) or row.status
+            yield f"- `{OURS}` {row.verdict} in {row.trial}: {told}."
+    for row in rows:
+        if not row.as_meant:
+            yield f"- The control {row.column} did not fail in {row.trial}."
+
+
+def as_csv(rows: Sequence[Row]) -> str:
+    """Every run with all that was measured; what a run lacks is empty."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([
+        "trial", "scheme", "control", "verdict", "status", "reached", "seconds", *MEASURES,
+        "broken",
+    ])
+    for row in rows:
+        writer.writerow([
+            row.trial, row.column, row.control, row.verdict, row.status, row.reached, row.seconds,
+            *(row.found.get(name) for name in MEASURES), "; ".join(row.broken),
+        ])
+    return out.getvalue()

@@ -1,0 +1,97 @@
+"""What the battery measures, on particles put by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from drafts import TANK, draft
+
+from psph.battery import measures
+from psph.battery.measures import ghia
+from psph.battery.order import checkerboard, nearest, pieces, voids
+from psph.battery.walls import lost
+from psph.output.errors import OutputError
+from psph.scene import Scene
+
+FREE = """
+[space]
+dimensions = 2
+spacing = 0.1
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
+"""
+PERIODIC = FREE.replace(
+    "spacing = 0.1", 'spacing = 0.1\nperiodic = ["x", "y"]\nlower = [0.0, 0.0]\nupper = [2.0, 1.0]'
+)
+
+
+def sites(nx=20, ny=10, dx=0.1):
+    """A block of the square lattice, (n, 2)."""
+    x, y = np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij")
+    return (np.stack([x.ravel(), y.ravel()], axis=1) + 0.5) * dx
+
+
+@pytest.fixture
+def free(tmp_path):
+    return Scene(draft(tmp_path, FREE))
+
+
+def test_distances_pieces_and_voids(free):
+    x = sites()
+    assert nearest(free, x) == pytest.approx(0.1)
+    assert pieces(free, x) == 1 and voids(free, x, x) == 0.0
+    cut = x[(x[:, 0] < 0.9) | (x[:, 0] > 1.1)]  # a gap of two columns
+    assert pieces(free, cut) == 2 and voids(free, cut, cut) == 0.0
+    hole = x[np.hypot(*(x - [1.0, 0.5]).T) > 0.25]
+    assert pieces(free, hole) == 1
+    open_area = math.pi * 0.2**2 / len(hole) / 0.01  # particles no nearer than a spacing
+    assert 0.1 * open_area < voids(free, hole, hole) < open_area
+    near = x.copy()
+    near[0] = near[1] + 0.01
+    assert nearest(free, near).min() == pytest.approx(0.01 * math.sqrt(2.0))
+
+
+def test_periods_count(tmp_path):
+    scene = Scene(draft(tmp_path, PERIODIC))
+    x = sites()
+    apart = x[(np.abs(x[:, 0] - 1.0) > 0.35)]  # connected across the edge alone
+    assert pieces(scene, apart) == 1
+    assert voids(scene, x, x) == 0.0 and voids(scene, apart, apart) > 0.1
+    assert nearest(scene, np.array([[0.01, 0.5], [1.99, 0.5]])) == pytest.approx(0.02)
+
+
+def test_noise_is_what_differs_from_the_surroundings(free):
+    x = sites()
+    frame = {"position": x, "pressure": 1000.0 * x[:, 1]}
+    assert checkerboard(free, frame, frame) < 1e-9  # a slope is no noise
+    lines = frame | {"pressure": np.where(np.round(x[:, 0] / 0.1 - 0.5) % 2, 1.0, -1.0)}
+    assert checkerboard(free, lines, lines) == pytest.approx(1.5, rel=0.05)
+
+
+def test_lost_particles(tmp_path):
+    scene = Scene(draft(tmp_path, TANK))
+    inside = np.array([[0.5, 0.2], [0.03, 0.2], [0.5, 5.0], [-0.02, 0.2]])
+    assert lost(scene, inside) == 0  # splashes above, and a wall's face is soft
+    gone = np.array([[-0.12, 0.2], [0.5, -0.15], [0.5, -3.0], [9.0, 0.2], [math.nan, 0.2]])
+    assert lost(scene, gone) == len(gone)
+
+
+def test_growth():
+    time = np.linspace(0.0, 1.0, 200)
+    risen = np.minimum(1e-9 * np.exp(40.0 * time), 1.0)
+    assert measures._growth(time, risen) == pytest.approx(40.0, rel=0.01)
+    assert measures._growth(time, 1e-3 * np.exp(-3.0 * time)) == 0.0
+    assert measures._growth(time, 1.0 + 0.5 * np.sin(20.0 * time)) == 0.0
+
+
+def test_ghia(tmp_path):
+    from psph.battery.command import CASES
+
+    place, u = ghia(CASES.parent / "experiments/ghia_1982_u.csv")
+    assert len(place) == 15 and u[place == 0.5] == pytest.approx(-0.0608)
+    with pytest.raises(OutputError, match="belongs beside the case"):
+        ghia(tmp_path / "none.csv")
