@@ -111,6 +111,11 @@ MORE = (
     "fluids.fluid.viscosity=1e-4",
 )
 
+LOCAL = (
+    "physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0",
+    "physics.conservative_smoothing=0.3",
+)
+
 
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize(
@@ -125,13 +130,21 @@ MORE = (
             )),
             MORE,
         ),
+        (
+            TENSION._replace(remedies=(
+                remedies.ArtificialStress(0.3), remedies.RiemannDissipation(),
+                remedies.ConservativeSmoothing(0.6),
+            )),
+            LOCAL,
+        ),
     ],
-    ids=["symmetric", "minimum", "all"],
+    ids=["symmetric", "minimum", "all", "local"],
 )
 def test_the_box_meets_the_forces_of_psph(settings, sets):
     """The numerical Jacobian of the solver's own loops, along random disturbances of all kinds.
 
-    Twice the viscosity, once the artificial one: of a(u) and −a(−u) each pair's comes once.
+    Twice the viscosity and the smoothing, once the artificial viscosity: of a(u) and −a(−u) each
+    pair's comes once.
     """
     case = load(
         "run/cases/negative_pressure_traditional.toml", ["perturbations=off", *sets]
