@@ -31,9 +31,9 @@ class ArtificialStress(NamedTuple):
 
 
 class NeighbourStress(NamedTuple):
-    """Near neighbours repel in a fluid under tension: see :class:`ArtificialStress`.
+    """Near neighbours repel in a fluid under tension, in proportion to its pressure.
 
-    ``inverse_near`` is 1/W(dx), m^d.
+    See :class:`ArtificialStress`; ``inverse_near`` is 1/W(dx), m^d.
     """
 
     epsilon: float

@@ -588,9 +588,9 @@ def test_tensile_control_takes_differences_under_tension_inside(pressure, inside
     assert found == pytest.approx(p.mass[1] / rho[1] * w)
 
 
-def test_tensile_control_sees_the_inside_and_what_touches_a_surface():
+def test_tensile_control_sees_a_surface_and_the_inside_of_a_disordered_fluid():
     p, effect = patch(2), TensileControl()
-    assert sums_of(effect, p, 0) == 1.0
+    assert sums_of(effect, p, 0) == 1.0 == sums_of(effect, patch(2, jitter=0.1), 0)
     above = p.position[1] > 0.1 * H
     assert sums_of(effect, p._replace(mass=np.where(above, 0.0, p.mass)), 0) == 0.0
 
