@@ -94,7 +94,7 @@ def drop(tmp_path):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_short(page):
-    longest = 400 if page == "docs/case.md" else 300  # a reference is looked up, not read
+    longest = 450 if page == "docs/case.md" else 300  # a reference is looked up, not read
     assert len(text(page).splitlines()) < longest
 
 

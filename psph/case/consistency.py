@@ -24,8 +24,8 @@ Finding = tuple[Location, Any, str]
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
-        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected, _shifted, _continued,
-        _no_slip, _probed, _names, _single,
+        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected,
+        _shifted, _carried, _stressed, _continued, _no_slip, _probed, _names, _single,
     )
     return [
         # The message goes in as a value: braces in it are not placeholders.
@@ -187,16 +187,45 @@ def _single(case: Case) -> Iterator[Finding]:
 
 
 def _corrected(case: Case) -> Iterator[Finding]:
-    physics = case.physics
-    if physics.gradient_correction is not None and physics.pressure_gradient == "minimum":
+    form = case.physics.pressure_gradient
+    if case.physics.gradient_correction is not None and form not in CORRECTED:
         yield ("physics", "gradient_correction"), ..., (
-            'cannot correct physics.pressure_gradient = "minimum"; take "symmetric" or "difference"'
+            f'cannot correct physics.pressure_gradient = "{form}"; take "symmetric" or "difference"'
         )
 
 
+CORRECTED = ("symmetric", "difference")
+"""Pressure gradients that take a corrected kernel's."""
+
+MOVERS = (
+    "particle_shifting", "transport_velocity", "generalised_transport_velocity", "position_shift",
+)
+"""Effects that move particles towards order: one is enough."""
+
+CARRIERS = ("xsph", "transport_velocity", "generalised_transport_velocity")
+"""Effects that have particles carried by another velocity: it is one."""
+
+
 def _shifted(case: Case) -> Iterator[Finding]:
-    physics = case.physics
-    if physics.particle_shifting is not None and physics.position_shift is not None:
-        yield ("physics", "particle_shifting"), ..., (
-            'physics.position_shift shifts them too; give it as "off", or take this one out'
+    yield from _one_of(case, MOVERS, "shifts them too")
+
+
+def _carried(case: Case) -> Iterator[Finding]:
+    yield from _one_of(case, CARRIERS, "moves them too")
+
+
+def _one_of(case: Case, names: tuple[str, ...], does: str) -> Iterator[Finding]:
+    present = [name for name in names if getattr(case.physics, name) is not None]
+    for extra in present[:-1]:
+        yield ("physics", extra), ..., (
+            f'physics.{present[-1]} {does}; give it as "off", or take this one out'
+        )
+
+
+def _stressed(case: Case) -> Iterator[Finding]:
+    form = case.physics.pressure_gradient
+    if case.physics.artificial_stress is not None and form != "symmetric":
+        yield ("physics", "artificial_stress"), ..., (
+            f'stands against pairs that pull, and none does under physics.pressure_gradient = '
+            f'"{form}"; take "symmetric", or take this one out'
         )

@@ -51,7 +51,9 @@ FIELDS = {
     "wall": Field("1", "1 in a wall, 0 in a fluid, as effects read it"),
     "no_slip": Field("1", "1 in a wall to which the fluid sticks, else 0"),
     "kernel_sum": Field("1", "sum of W m/rho over the support, the particle included"),
+    "inside": Field("1", "1 inside the fluid, 0 at a free surface"),
     "crowding": Field("1", "h times the gradient of how crowded it is", vector=True),
+    "transport": Field("m/s", "velocity of the particle minus that of the fluid", vector=True),
     "gradient_correction": Field("1", "correction of the kernel's gradient, L - 1", symmetric=True),
     "slip": Field(
         "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", vector=True

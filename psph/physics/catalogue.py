@@ -5,15 +5,19 @@ from typing import NamedTuple
 from psph.physics.continuity import Continuity
 from psph.physics.correction import GradientCorrection
 from psph.physics.diffusion import DensityDiffusion
+from psph.physics.filtering import ConservativeSmoothing
 from psph.physics.gravity import CentralForce, Gravity
 from psph.physics.potential import PairPotential
 from psph.physics.pressure import (
-    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
+    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure, TensileControl,
 )
+from psph.physics.riemann import RiemannDissipation
 from psph.physics.shifting import ParticleShifting, PositionShift
 from psph.physics.slip import NoSlip
 from psph.physics.state import Linear, Tait
+from psph.physics.stress import ArtificialStress
 from psph.physics.surface import FreeSurface, TensionFloor
+from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
 from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity, PairDamping
 
 
@@ -34,10 +38,14 @@ CATALOGUE = (
     Entry("physics.pressure_gradient=symmetric", SymmetricPressure),
     Entry("physics.pressure_gradient=minimum", MinimumPressure),
     Entry("physics.pressure_gradient=difference", DifferencePressure),
+    Entry("physics.pressure_gradient=tensile_control", TensileControl),
+    Entry("physics.artificial_stress", ArtificialStress),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("walls.*.no_slip", NoSlip),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.pair_damping", PairDamping),
+    Entry("physics.riemann_dissipation", RiemannDissipation),
+    Entry("physics.conservative_smoothing", ConservativeSmoothing),
     Entry("physics.pair_potential", PairPotential),
     Entry("physics.gravity", Gravity),
     Entry("physics.central_force", CentralForce),
@@ -47,6 +55,9 @@ CATALOGUE = (
     Entry("physics.density_diffusion", DensityDiffusion),
     Entry("physics.particle_shifting", ParticleShifting),
     Entry("physics.position_shift", PositionShift),
+    Entry("physics.xsph", XSPH),
+    Entry("physics.transport_velocity", TransportVelocity),
+    Entry("physics.generalised_transport_velocity", GeneralisedTransportVelocity),
     Entry("physics.gradient_correction", GradientCorrection),
 )
 

@@ -32,7 +32,9 @@ class ParticleView(NamedTuple):
     rest_density: Any = None
     viscosity: Any = None
     kernel_sum: Any = None
+    inside: Any = None
     crowding: Any = None
+    transport: Any = None
     gradient_correction: Any = None
     wall: Any = None
     no_slip: Any = None
@@ -60,7 +62,7 @@ class Pair(NamedTuple):
     """W′(r)/r, so that ∇W_ij = dw_r x_ij; negative inside the support, zero outside."""
 
 
-VECTORS = ("position", "velocity", "crowding", "slip", "x_ij", "u_ij")
+VECTORS = ("position", "velocity", "crowding", "transport", "slip", "x_ij", "u_ij")
 """Entries of a view or a pair with a number for each dimension."""
 
 MATRICES = ("gradient_correction",)

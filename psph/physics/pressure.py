@@ -5,6 +5,7 @@ from typing import Annotated, Literal, NamedTuple
 from pydantic import Field
 
 from psph.simd import where
+from psph.smoothing import weight
 from psph.vectors import add, scale, zero_like
 
 NOT_A_PRESSURE = 1e30
@@ -16,6 +17,11 @@ AUTO = "auto"
 
 MARGIN = 1.4
 """Such a pressure over what the scene is known to need."""
+
+
+EDGE = 0.9
+"""Kernel sum below which a particle is at a surface: the last row of a square lattice has 0.73 to
+0.88, one inside 0.91 or more, even in a lattice jittered by 10 %, over the kernels and h/dx in use."""
 
 
 class SymmetricPressure(NamedTuple):
@@ -76,6 +82,38 @@ class DifferencePressure(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
         return (i.pressure - j.pressure) * v_i * (j.mass * v_j * pair.dw_r)
+
+
+class TensileControl(NamedTuple):
+    """Pressure gradient that pulls no pair together inside a fluid under tension.
+
+    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j + s p_i) ∇W_ij, s = −1 where p_i < 0 inside the fluid, else 1.  The
+    tensile instability control of Sun, Colagrossi, Marrone, Antuono & Zhang (2018), Comput. Phys.
+    Commun. 224, 63.  Inside is where the kernel sum of the pass before, the particle
+    included, is at least 0.9; they tell a surface, and what is near it, by the eigenvalues of a
+    matrix, and shift particles besides.  Momentum is conserved where s = 1 alone.
+    """
+
+    writes = "inside"
+
+    def start(self, i):
+        """No neighbour yet."""
+        return 0.0
+
+    def gather(self, total, i, j, pair):
+        """Add W_ij m_j/ρ_j."""
+        return total + j.mass * j.specific_volume * pair.w
+
+    def finish_value(self, total, i, kernel):
+        """1 inside the fluid, 0 at a surface."""
+        own = weight(kernel, 0.0) * i.mass * i.specific_volume
+        return where(total + own < EDGE, 0.0, 1.0)
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        sign = where(i.pressure < 0.0, 1.0 - 2.0 * i.inside, 1.0)
+        both = (sign * i.pressure + j.pressure) * i.specific_volume
+        return -both * (j.mass * j.specific_volume * pair.dw_r)
 
 
 class BackgroundPressure(NamedTuple):

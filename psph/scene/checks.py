@@ -58,7 +58,7 @@ def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but likely not as meant."""
     for kind in (
         _thin_walls, _surface_threshold, _minimum_at_surface, _minimum_in_disorder,
-        _background_at_surface, _slow_sound, _jitter,
+        _background_at_surface, _transport_at_surface, _slow_sound, _jitter,
     ):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
@@ -237,6 +237,14 @@ def _background_at_surface(scene: Scene) -> Iterator[str]:
         yield (
             "physics.background_pressure: blows a free surface apart, and the fluid has one; "
             "leave it out, or enclose the fluid"
+        )
+
+
+def _transport_at_surface(scene: Scene) -> Iterator[str]:
+    if scene.case.physics.transport_velocity is not None and scene.has_free_surface:
+        yield (
+            "physics.transport_velocity: carries a free surface away, and the fluid has one; take "
+            "physics.generalised_transport_velocity, or enclose the fluid"
         )
 
 

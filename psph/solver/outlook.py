@@ -7,11 +7,14 @@ import numpy as np
 from psph.physics.compose import Pair, ParticleView
 from psph.physics.continuity import Continuity
 from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
+from psph.physics.filtering import ConservativeSmoothing
 from psph.physics.gravity import Gravity
 from psph.physics.potential import NeutralPotential
 from psph.physics.pressure import (
-    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
+    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure, TensileControl,
 )
+from psph.physics.riemann import RiemannDissipation
+from psph.physics.stress import NeighbourStress
 from psph.physics.surface import TensionFloor
 from psph.physics.viscosity import PairDamping
 from psph.scene.materials import Start
@@ -23,7 +26,8 @@ from psph.stability.uniform import STIFF, Settings
 from psph.stability.windows import SMOOTHINGS, windows
 
 WITHIN = {
-    Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, TensionFloor,
+    Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, TensileControl,
+    TensionFloor,
 }
 """Effects that the theory holds for as they are; the floor acts on no small disturbance."""
 
@@ -48,6 +52,9 @@ AS_REMEDY = {
     PairDamping: lambda effect, scene: remedies.ArtificialViscosity(effect.alpha),
     DensityDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
     HydrostaticDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
+    NeighbourStress: lambda effect, scene: remedies.ArtificialStress(effect.epsilon),
+    ConservativeSmoothing: lambda effect, scene: remedies.ConservativeSmoothing(effect.alpha),
+    RiemannDissipation: lambda effect, scene: remedies.RiemannDissipation(),
 }
 """Effects that change what the theory says, as it has them."""
 
@@ -67,14 +74,8 @@ def outlook(scene, plan: Plan) -> Iterator[str]:
     )
     if scene.case.space.normalised:
         added += (remedies.NormalisedGradient(),)
-    if form != SYMMETRIC and not added:
-        yield (
-            "  neutral             a uniform pressure drops out: no wave grows, at any h/dx, and "
-            "nothing brings particles back in order"
-        )
-    else:
-        for settings in _settings(scene, lattice, form, added):
-            yield f"  {_state(settings):<20}{_verdict(settings)}"
+    verdicts = [_verdict(s) for s in _settings(scene, lattice, form, added)]
+    yield from dict.fromkeys(f"  {state:<20}{says}" for state, says in verdicts)
     left = [
         words(type(e).__name__) for e in plan.effects if type(e) not in {*WITHIN, *AS_REMEDY}
     ]
@@ -82,15 +83,21 @@ def outlook(scene, plan: Plan) -> Iterator[str]:
         yield f"  not in it           {', '.join(left)}"
 
 
-def _verdict(settings: Settings) -> str:
+def _verdict(settings: Settings) -> tuple[str, str]:
+    """The state, or that it does not matter, and what becomes of it."""
+    if settings.form != SYMMETRIC and not settings.remedies:
+        return "neutral", (
+            "a uniform pressure drops out: no wave grows, at any h/dx, and nothing brings particles "
+            "back in order"
+        )
+    state, pressure = _state(settings), f"p = {settings.pressure:.3g} Pa"
     now = growth(settings)
-    pressure = f"p = {settings.pressure:.3g} Pa"
     if now.stable:
-        return f"stable at h/dx {settings.smoothing:g}, {pressure}"
+        return state, f"stable at h/dx {settings.smoothing:g}, {pressure}"
     unit = (abs(settings.pressure) / settings.density) ** 0.5 / settings.spacing
     tried = SMOOTHINGS[::2] if settings.lattice == OF_SCENES[3] else SMOOTHINGS  # in 3D slower
     held = windows((h for h in tried if is_stable(settings._replace(smoothing=h))), tried)
-    return (
+    return state, (
         f"unstable at h/dx {settings.smoothing:g}, growth {now.rate / unit:.2g} √(|P|/ρ)/dx = "
         f"{now.rate:.3g}/s at {pressure}; "
         + (f"stable at h/dx {held}" if held else "no h/dx from 1 to 2 is stable")
@@ -107,9 +114,16 @@ def _settings(scene, lattice: str, form: str, added: tuple) -> Iterator[Settings
     for pressure, start in _extremes(scene):
         density, stiffness = _state_at(start, pressure)
         yield Settings(
-            space.kernel, space.smoothing, lattice, pressure, form, density, stiffness**0.5,
-            space.spacing, added,
+            space.kernel, space.smoothing, lattice, pressure, _form(form, pressure), density,
+            stiffness**0.5, space.spacing, added,
         )
+
+
+def _form(form: str, pressure: float) -> str:
+    """The form that tensile control takes inside a fluid under a pressure; others stay."""
+    if form != "tensile_control":
+        return form
+    return SYMMETRIC if pressure > 0.0 else "difference"
 
 
 def _state_at(start, pressure: float) -> tuple[float, float]:

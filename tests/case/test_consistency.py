@@ -72,6 +72,27 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             'physics.gradient_correction: cannot correct physics.pressure_gradient = "minimum"; take',
         ),
         (
+            WATER.replace("[physics]", "[physics]\nparticle_shifting = 0.1\ntransport_velocity = 1.0"),
+            "physics.particle_shifting: physics.transport_velocity shifts them too; give it as",
+        ),
+        (
+            WATER.replace("[physics]", "[physics]\nxsph = 0.5\ntransport_velocity = 1.0"),
+            "physics.xsph: physics.transport_velocity moves them too; give it as \"off\", or take",
+        ),
+        (
+            WATER.replace(
+                "[physics]", '[physics]\npressure_gradient = "minimum"\nartificial_stress = 0.2'
+            ),
+            "physics.artificial_stress: stands against pairs that pull, and none does under",
+        ),
+        (
+            WATER.replace(
+                "[physics]",
+                '[physics]\npressure_gradient = "tensile_control"\ngradient_correction = 0.5',
+            ),
+            'physics.gradient_correction: cannot correct physics.pressure_gradient = "tensile_contr',
+        ),
+        (
             WATER + WALL + 'continues = "watre"',
             "walls.floor.continues: \"watre\": no fluid has this name; did you mean 'water'?",
         ),

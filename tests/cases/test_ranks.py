@@ -62,6 +62,19 @@ def test_same_bits_on_any_number_of_ranks(case, tmp_path):
                 assert path.read_text() == (results[n].folder / table).read_text()
 
 
+def test_same_bits_where_particles_are_carried_by_another_velocity(tmp_path):
+    """Its stored difference to the fluid's travels with the halo, one pass old."""
+    sets = ("physics.transport_velocity=1.0", "physics.pressure_gradient=tensile_control",
+            "fluids.fluid.jitter=0.1", "time.end=4e-3")
+    one, two = (
+        by_id(run("negative_pressure_traditional", n, tmp_path / str(n), *sets).frame(-1))
+        for n in (1, 2)
+    )
+    assert one["velocity"].any()
+    for name in one:
+        assert np.array_equal(one[name], two[name]), name
+
+
 def test_the_comparison_sees_the_last_bit(tmp_path):
     """The control: one unit in the last place of one number of the case."""
     one = by_id(run("minimal", 1, tmp_path / "a").frame(-1))

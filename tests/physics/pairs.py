@@ -33,8 +33,10 @@ def view(n=2, dim=2, seed=3):
         sound_speed=50.0,
         smoothing_length=H,
         largest_speed=2.0,
+        inside=np.resize((1.0, 0.0, 1.0), n),
         crowding=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
         gradient_correction=tuple(rng.normal(size=n) * 0.1 for _ in range(dim * (dim + 1) // 2)),
+        transport=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
     )
 
 

@@ -13,14 +13,18 @@ from psph.physics.catalogue import CATALOGUE
 from psph.physics.continuity import Continuity
 from psph.physics.correction import DifferenceCorrection, GradientCorrection
 from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
+from psph.physics.filtering import ConservativeSmoothing
 from psph.physics.gravity import CentralForce, Gravity
 from psph.physics.potential import neutral_potential
 from psph.physics.pressure import (
-    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure,
+    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure, TensileControl,
 )
+from psph.physics.riemann import RiemannDissipation
 from psph.physics.shifting import LatticeShift, ParticleShifting
 from psph.physics.slip import NoSlip
+from psph.physics.stress import NeighbourStress
 from psph.physics.surface import FreeSurface, TensionFloor
+from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
 from psph.physics.trial import UnknownField, reads
 from psph.physics.viscosity import (
     ArtificialViscosity, CorrectedViscosity, LaminarViscosity, PairDamping,
@@ -447,7 +451,11 @@ def test_corrected_viscosity_is_exact_on_a_lattice(dim):
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 @pytest.mark.parametrize(
-    "one", [DifferenceCorrection(0.5), CorrectedViscosity(), HydrostaticDiffusion],
+    "one",
+    [
+        DifferenceCorrection(0.5), CorrectedViscosity(), HydrostaticDiffusion,
+        NeighbourStress(0.2, 1e-4),
+    ],
     ids=lambda one: getattr(one, "__name__", type(one).__name__),
 )
 def test_forms_for_a_scene_are_the_same_compiled(one, dim):
@@ -471,7 +479,8 @@ def test_the_correction_fades_where_neighbours_are_missing(dim):
     "effect",
     [
         SymmetricPressure, LaminarViscosity, ArtificialViscosity, BackgroundPressure,
-        GradientCorrection, CorrectedViscosity, PairDamping,
+        GradientCorrection, CorrectedViscosity, PairDamping, NeighbourStress, RiemannDissipation,
+        TransportVelocity, GeneralisedTransportVelocity,
     ],
 )
 def test_conserves_momentum_where_the_formula_promises_it(effect):
@@ -591,3 +600,135 @@ def test_a_position_shift_sees_the_surface_and_what_crowds():
     edge = x.copy()
     edge[x[:, 1] > 0.5 * dx] += 100.0
     assert (stored(edge) == 0.0).all()
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+@pytest.mark.parametrize("signs", ((-1, -1), (-1, 1), (1, 1)))
+def test_artificial_stress(signs, dim):
+    p = view(dim=dim)
+    p = p._replace(pressure=np.array([700.0, 300.0]) * signs)
+    x, _, _, w, grad_w = written_out(p, 0, 1)
+    near = kernel("hyperbolic", H, dim).w(H / 1.3)
+    part = {(-1, -1): (0.2, 0.2), (-1, 1): (0.2, 0.0), (1, 1): (0.01, 0.01)}[signs]
+    r = np.array(part) @ (np.abs(p.pressure) * p.specific_volume**2)
+    i, j, pair = pair_of(p, 0, 1)
+    push = NeighbourStress(0.2, 1 / near).radial(i, j, pair)
+    assert push * x == pytest.approx(-p.mass[1] * r * (w / near) ** 4 * grad_w)
+    assert push > 0.0  # it repels, whatever the sign
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+@pytest.mark.parametrize("pressure, inside, sign", ((-7.0, 1.0, -1), (-7.0, 0.0, 1), (7.0, 1.0, 1)))
+def test_tensile_control_takes_differences_under_tension_inside(pressure, inside, sign, dim):
+    p = view(dim=dim)
+    _, _, _, w, grad_w = written_out(p, 0, 1)
+    i, j, pair = pair_of(p, 0, 1)
+    i, rho = i._replace(pressure=pressure, inside=inside), 1 / p.specific_volume
+    a = -p.mass[1] / (rho[0] * rho[1]) * (p.pressure[1] + sign * pressure) * grad_w
+    assert TensileControl().radial(i, j, pair) * np.array(pair.x_ij) == pytest.approx(a)
+    found = TensileControl().gather(TensileControl().start(i), i, j, pair)
+    assert found == pytest.approx(p.mass[1] / rho[1] * w)
+
+
+def test_tensile_control_sees_a_surface_and_the_inside_of_a_disordered_fluid():
+    p, effect = patch(2), TensileControl()
+    assert sums_of(effect, p, 0) == 1.0 == sums_of(effect, patch(2, jitter=0.1), 0)
+    above = p.position[1] > 0.1 * H
+    assert sums_of(effect, p._replace(mass=np.where(above, 0.0, p.mass)), 0) == 0.0
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+@pytest.mark.parametrize("approaching", (True, False))
+def test_riemann_dissipation(approaching, dim):
+    p, eta = view(dim=dim), 3.0
+    x, u, r, _, grad_w = written_out(p, 0, 1)
+    if (u @ x < 0) != approaching:
+        p = p._replace(velocity=tuple(-v for v in p.velocity))
+        u = -u
+    rho, c, jump = 1 / p.specific_volume, 50.0, -(u @ x) / r
+    for c in (50.0, 0.01):  # the limiter at work, and at its end
+        beta = min(eta * max(jump, 0.0), c)
+        i, j, pair = pair_of(p._replace(sound_speed=c), 0, 1)
+        star = 0.5 * beta * rho.mean() * jump
+        a = -2 * p.mass[1] / (rho[0] * rho[1]) * star * grad_w
+        assert RiemannDissipation(eta).radial(i, j, pair) * x == pytest.approx(a)
+        star = (p.pressure[0] - p.pressure[1]) / (2 * rho.mean() * c)
+        rate = 2 * rho[0] * p.mass[1] / rho[1] * star * (grad_w @ x) / r
+        assert RiemannDissipation(eta).density_rate(i, j, pair) == pytest.approx(rate)
+    assert (a != 0).all() == approaching
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_conservative_smoothing(dim):
+    p = view(dim=dim)._replace(wall=np.zeros(2))
+    _, u, _, w, _ = written_out(p, 0, 1)
+    effect, (i, j, pair) = ConservativeSmoothing(0.3), pair_of(p, 0, 1)
+    mean = (1 / p.specific_volume).mean()
+    a = -0.3 * 50.0 / H * p.mass[1] / mean * w * u
+    assert effect.shear(i, j, pair) * u == pytest.approx(a)
+    back = effect.shear(*pair_of(p, 1, 0)) * -u * p.mass[1]
+    assert back == pytest.approx(-p.mass[0] * a)
+    assert effect.shear(i, j._replace(wall=1.0), pair) == 0.0
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_xsph_moves_with_the_mean_and_keeps_both_momenta(dim):
+    p, effect = view(n=3, dim=dim)._replace(wall=np.zeros(3)), XSPH(0.4)
+    momentum, turning = np.zeros(dim), np.zeros((dim, dim))
+    for a in range(3):
+        expected = np.zeros(dim)
+        for b in set(range(3)) - {a}:
+            _, u, _, w, _ = written_out(p, a, b)
+            mean = 0.5 * (1 / p.specific_volume[a] + 1 / p.specific_volume[b])
+            expected -= 0.4 * p.mass[b] / mean * u * w
+        found = gathered(effect, p, a, *(set(range(3)) - {a}))
+        assert found == pytest.approx(expected)
+        i = pair_of(p, a, (a + 1) % 3)[0]._replace(transport=found)
+        assert effect.displacement(i, 1e-3) == pytest.approx(1e-3 * expected)
+        # dL/dt = Σ m ũ × u, and Σ m (ũ − u) is what particles carry past the fluid
+        momentum += p.mass[a] * np.array(found)
+        turning += p.mass[a] * np.outer(found, i.velocity)
+    assert momentum == pytest.approx(np.zeros(dim), abs=1e-12)
+    assert turning == pytest.approx(turning.T, abs=1e-12) and np.abs(turning).max() > 1e-6
+
+
+def test_xsph_leaves_walls_alone():
+    p, effect = view(n=3)._replace(wall=np.array([0.0, 1.0, 1.0])), XSPH(0.4)
+    assert gathered(effect, p, 0, 1, 2) == pytest.approx((0.0, 0.0), abs=0.0)
+    assert gathered(effect, p, 1, 0) == pytest.approx((0.0, 0.0), abs=0.0)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_transport_velocities(dim):
+    p = view(n=3, dim=dim)._replace(wall=np.zeros(3), pressure=np.array([3.0, -900.0, 4e6]))
+    rho, c = 1 / p.specific_volume, 50.0
+    both, own = np.zeros(dim), np.zeros(dim)
+    for b in (1, 2):
+        grad_w = written_out(p, 0, b)[4]
+        both -= H / (8 * c) * p.mass[b] * (1 / rho[0] ** 2 + 1 / rho[b] ** 2) * grad_w
+        own -= H / (8 * c) * p.mass[b] / rho[0] ** 2 * grad_w
+    found = gathered(TransportVelocity(0.3), p, 0, 1, 2)
+    assert found == pytest.approx(0.3 * 1000.0 * c * c * both)
+    effect = GeneralisedTransportVelocity(0.3)
+    assert gathered(effect, p, 0, 1, 2) == pytest.approx(30.0 * own)
+    p = p._replace(pressure=np.array([-4e6, 3.0, 3.0]))
+    assert gathered(effect, p, 0, 1, 2) == pytest.approx(0.3 * 1000.0 * c * c * own)
+    p = p._replace(wall=np.array([1.0, 0.0, 0.0]))
+    assert gathered(effect, p, 0, 1, 2) == pytest.approx((0.0,) * dim, abs=0.0)
+
+
+@pytest.mark.parametrize("effect", (TransportVelocity(), GeneralisedTransportVelocity(), XSPH()))
+def test_what_is_carried_by_a_transport_velocity(effect):
+    p = view(dim=3)
+    _, _, _, _, grad_w = written_out(p, 0, 1)
+    i, j, pair = pair_of(p, 0, 1)
+    moved = np.array(i.transport), np.array(j.transport)
+    assert effect.displacement(i, 1e-3) == pytest.approx(1e-3 * moved[0])
+    rate = p.mass[1] * (moved[0] - moved[1]) @ grad_w
+    assert effect.density_rate(i, j, pair) == pytest.approx(rate)
+    if hasattr(effect, "push"):
+        stress = sum(
+            np.outer(np.array(k.velocity), d) * k.specific_volume
+            for k, d in zip((i, j), moved)
+        )
+        assert effect.push(i, j, pair) == pytest.approx(p.mass[1] * stress @ grad_w)

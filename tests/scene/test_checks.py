@@ -306,6 +306,13 @@ def test_a_background_pressure_at_a_free_surface_is_warned_of(tmp_path):
     assert checked(tmp_path, TANK, "physics.background_pressure=auto") == []
 
 
+def test_a_transport_velocity_at_a_free_surface_is_warned_of(tmp_path):
+    [line] = checked(tmp_path, TANK, "physics.transport_velocity=1.0")
+    assert line.startswith("case.toml: physics.transport_velocity: carries a free surface away")
+    assert checked(tmp_path, CLOSED, "physics.transport_velocity=1.0") == []
+    assert checked(tmp_path, TANK, "physics.generalised_transport_velocity=1.0") == []
+
+
 def test_a_slip_in_the_units_is_refused_at_once(tmp_path):
     assert refused(tmp_path, TANK, "space.spacing=1e-8") == [
         "case.toml: space.spacing: 1e-08 m makes a lattice of 1.6e+16 sites, more than 1e+11; "

@@ -45,6 +45,24 @@ def test_p_minus_is_neutral():
     assert line.split()[0] == "neutral" and "nothing brings particles back" in line
 
 
+def test_tensile_control_is_neutral_under_tension_alone(tmp_path):
+    sets = ("physics.pressure_gradient=tensile_control", "space.smoothing=1.2")
+    _, pressed, drawn = said(draft(tmp_path, SQUARE, *sets))
+    assert "compression" in pressed and drawn.split()[0] == "neutral"
+    _, line = said(paper("negative_pressure_traditional", *sets))
+    assert line == drawn
+
+
+def test_artificial_stress_counts():
+    """Case 4.2: it slows the hyperbolic kernel's growth at 1.2, and holds it at 1.1."""
+    for h, held in ((1.2, False), (1.1, True)):
+        _, line = said(paper(
+            "negative_pressure_traditional", "space.kernel=hyperbolic", f"space.smoothing={h}",
+            "physics.artificial_stress=0.2",
+        ))
+        assert ("unstable" not in line) == held
+
+
 def test_a_background_pressure_counts():
     """It lifts −2500 Pa to +500, for either form."""
     for form in ("symmetric", "difference"):

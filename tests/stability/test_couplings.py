@@ -8,6 +8,8 @@ from stability.settings import TENSION, of
 from psph.case import load
 from psph.output.ledger import Ledger
 from psph.particles.fields import FLUID
+from psph.physics.compose import Pair, ParticleView
+from psph.physics.filtering import ConservativeSmoothing
 from psph.scene import Scene
 from psph.smoothing import kernel
 from psph.solver.plan import make_plan
@@ -111,7 +113,6 @@ MORE = (
     "fluids.fluid.viscosity=1e-4",
 )
 
-
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize(
     ("settings", "sets"),
@@ -125,8 +126,14 @@ MORE = (
             )),
             MORE,
         ),
+        (
+            TENSION._replace(remedies=(
+                remedies.ArtificialStress(0.3), remedies.RiemannDissipation(),
+            )),
+            ("physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0"),
+        ),
     ],
-    ids=["symmetric", "minimum", "all"],
+    ids=["symmetric", "minimum", "all", "stressed"],
 )
 def test_the_box_meets_the_forces_of_psph(settings, sets):
     """The numerical Jacobian of the solver's own loops, along random disturbances of all kinds.
@@ -170,3 +177,16 @@ def test_walls_beyond_the_reach_change_nothing():
     pairs = couplings(Uniform(TENSION))
     rates = [box_of(pairs, 4, layers)[0].urge() for layers in (2, 3, 4)]
     assert rates[1:] == pytest.approx(rates[:1] * 2) and rates[0] > 0.0
+
+
+def test_smoothing_is_that_of_the_effect():
+    """A pair in the fluid, a distance apart: the effect leaves walls out, the theory has none."""
+    uniform, r = Uniform(TENSION), np.array([0.7e-3, 1.6e-3])
+    along, anyhow = remedies.ConservativeSmoothing(0.3).damping(uniform, r)
+    particle = ParticleView(
+        position=None, mass=900.0 * uniform.volume, specific_volume=1 / 900.0, wall=0.0,
+        sound_speed=5.0, smoothing_length=uniform.smoothing_length,
+    )
+    pairs = [Pair(None, None, x * x, None, w, None) for x, w in zip(r, uniform.weight(r))]
+    found = [ConservativeSmoothing(0.3).shear(particle, particle, pair) for pair in pairs]
+    assert along == 0.0 and found == pytest.approx(-anyhow)
