@@ -153,8 +153,8 @@ def _refuse_unwritten(called, written: tuple[str, ...]) -> None:
 
 
 def words(name: str) -> str:
-    """``LaminarViscosity`` -> ``laminar viscosity``."""
-    return re.sub(r"(?<!^)(?=[A-Z])", " ", name).lower()
+    """``LaminarViscosity`` -> ``laminar viscosity``; an acronym stays one word."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
 
 
 def _read_of_neighbours(called) -> set[str]:

@@ -101,6 +101,11 @@ def test_explain_holds_it(tmp_path):
     assert any(line.startswith("Stability of the square lattice at the start") for line in lines)
 
 
+def test_an_acronym_is_one_word():
+    *_, left = said(paper("negative_pressure_traditional", "physics.xsph=0.5"))
+    assert left.split() == ["not", "in", "it", "xsph"]
+
+
 @pytest.mark.parametrize("case", ("dam_break", "dam_break_3d"))
 def test_it_takes_no_time(case):
     """Seconds of this process: 0.1 in 2D and 0.3 in 3D when nothing else runs."""
