@@ -96,9 +96,10 @@ def _arrows(axes, spots, velocity, seen, spacing: float) -> None:
 
 def _mark(axes, spot, scene) -> None:
     """A ring around the particle, and a broken one around the kernel's support."""
+    reach = scene.kernel.support * scene.smoothing_length
     for radius, how in (
         (0.75 * scene.spacing, {"lw": 1.8, "ec": style.LINES[1]}),
-        (scene.kernel.support * scene.smoothing_length, {"lw": 0.9, "ec": style.PALE, "ls": (0, (5, 3))}),
+        (reach, {"lw": 0.9, "ec": style.PALE, "ls": (0, (5, 3))}),
     ):
         axes.add_patch(Circle(spot, radius, fill=False, zorder=4, **how))
 

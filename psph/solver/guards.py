@@ -139,7 +139,9 @@ class Guards:
                     "The state is not finite, so there is no checkpoint of it; `checkpoint.every` "
                     "leaves some on the way."
                 )
-            return f"The state is not finite: `{kept}` is the last good one, `{again}` goes on there."
+            return (
+                f"The state is not finite: `{kept}` is the last good one, `{again}` goes on there."
+            )
         path = write_checkpoint(self.simulation, self.record, case, self.folder)
         self.record.write_last()
         return (

@@ -85,8 +85,8 @@ def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
 
 def _places(store: Store) -> np.ndarray:
     """Where the particles are (n, dim), or were when they were last seen anywhere."""
-    now = store.shown("position")
-    return np.where(np.isfinite(now).all(axis=1, keepdims=True), now, store.shown("listed_position"))
+    now, seen = store.shown("position"), store.shown("listed_position")
+    return np.where(np.isfinite(now).all(axis=1, keepdims=True), now, seen)
 
 
 def _away(places: np.ndarray, centre: np.ndarray, periods) -> np.ndarray:
