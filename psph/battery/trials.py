@@ -168,7 +168,8 @@ BATTERY = (
     Trial(
         "oscillating drop, 20 periods", "drop", "energy", 1.0, 96.5, 40.0,
         holds=(*ORDER, Bound("pieces", most=1)),
-        goals=(Bound("energy", least=-0.5, most=0.001), Bound("near_5", least=0.7)),
+        # Its swing holds MU²/4 at the start: half of it shall be left.
+        goals=(Bound("energy", least=-0.25, most=0.001), Bound("near_5", least=0.7)),
     ),
     Trial(
         "stretched strip", "strip", "kinetic", 0.55, 4.0, 4.0,
