@@ -8,9 +8,13 @@ from psph.parallel.domain import Domain
 from psph.parallel.reductions import largest
 from psph.particles.drift import bounding_boxes, largest_differences
 
+PART_OF_CUTOFF = 0.5
+"""A particle strays from its listed place by less than this part of the cutoff: two with two blocks
+of cells between them, each a cutoff wide, cannot meet before new lists."""
+
 PART_OF_PERIOD = 0.25
-"""A particle strays from its listed place by less than this part of any period: the nearest image
-takes one period off at the most."""
+"""Nor does it by more than this part of any period: the nearest image takes one period off at the
+most."""
 
 REMEMBERED = ("drifted", "_apart", "_since", "_closing", "_acceleration", "_shift")
 """What is known of the lists since they were made."""
@@ -20,16 +24,19 @@ class Skin:
     """Keeps the lists of ``domain`` until two neighbours could differ by ``width`` m.
 
     What counts is the displacement of neighbours relative to each other, not their speed: a body
-    of water that falls as one needs no new lists.  It is measured now and then; in between it is
-    bounded by |Δx| ≤ |Δx|₀ + t (|Δv|₀ + 2 s + 2 a (t + Δt)), with the largest acceleration a since
-    and the fastest shift s of a particle beside its velocity.
+    of water that falls as one needs new lists only now and then, lest it meet another one unseen.
+    It is measured now and then; in between it is bounded by |Δx| ≤ |Δx|₀ + t (|Δv|₀ + 2 s +
+    2 a (t + Δt)), with the largest acceleration a since and the fastest shift s of a particle
+    beside its velocity.
     The same on every rank.
     """
 
     def __init__(self, domain: Domain, width: float):
         self.domain, self.width = domain, width
         lengths = [p for p in domain.periods if p is not None]
-        self._farthest = PART_OF_PERIOD * min(lengths, default=math.inf)
+        self._farthest = min(
+            PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf)
+        )
         self.renew()
 
     def renew(self) -> None:
@@ -84,6 +91,8 @@ class Skin:
         boxes = bounding_boxes(
             store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach
         )
-        mine = largest_differences(boxes, domain.planes, grid.counts[1], grid.periodic)
+        mine = largest_differences(
+            boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
+        )
         self._apart, self._closing, self.drifted = np.sqrt(largest(domain.comm, mine)).tolist()
         self._since = 0.0

@@ -33,6 +33,11 @@ class Grid(NamedTuple):
         return {1: (planes,), 2: (planes, columns), 3: self.counts}[len(self.axes)]
 
     @property
+    def of_counts(self) -> tuple[int, int, int]:
+        """The axes of planes, rows and columns; where there is one row or column, any."""
+        return self.axes[0], self.axes[len(self.axes) // 2], self.axes[-1]
+
+    @property
     def plane_cells(self) -> int:
         """Cells of one plane."""
         return self.counts[1] * self.counts[2]

@@ -1,4 +1,4 @@
-"""How far neighbours have drifted apart since the lists were made."""
+"""How far particles have moved against each other since the lists were made."""
 
 import numpy as np
 
@@ -40,13 +40,16 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
 
 
 @compiled
-def largest_differences(boxes, planes, rows, periodic):
-    """Bounds over all pairs of a list: |Δ(x − x_listed)|² and |Δv|²; and the largest |x − x_listed|².
+def largest_differences(boxes, planes, rows, axes, periodic):
+    """Bounds over all pairs that matter: |Δ(x − x_listed)|² and |Δv|²; and the largest
+    |x − x_listed|².
 
-    A list reaches no farther than the next block: ranges of neighbouring blocks bound every pair.
-    Particles that move together stay neighbours, however fast they are.
+    A list reaches no farther than the next block: ranges of neighbouring blocks bound every pair
+    in it.  Particles that move together stay neighbours, however fast they are.  Of pairs with one
+    block between them, a cutoff wide at the least, none is listed: they count by how far they have
+    come nearer across it.  ``axes``: those of planes, of rows and of columns.
     """
-    blocks, dim = boxes.shape[1], boxes.shape[2]
+    blocks = boxes.shape[1]
     apart2 = closing2 = drifted2 = 0.0
     for line in range(len(boxes)):
         plane, row = divmod(line, rows)
@@ -55,20 +58,39 @@ def largest_differences(boxes, planes, rows, periodic):
             if own[0, 0] > own[0, 1]:
                 continue
             drifted2 = max(drifted2, reach2(own))
-            # Half of the 26 blocks around, and itself: the others look here.
-            for p in range(plane, min(plane + 2, planes + 2)):
-                for r in range(row - 1 if p > plane else row, row + 2):
+            # Half of the blocks around, and itself: the others look here.
+            for p in range(plane, min(plane + 3, planes + 2)):
+                for r in range(row - 2 if p > plane else row, row + 3):
                     if not (0 <= r < rows or periodic[1]):
                         continue
-                    for b in range(block - 1, block + 2):
+                    for b in range(block - 2, block + 3):
                         if not (0 <= b < blocks or periodic[2]):
                             continue
                         other = boxes[p * rows + r % rows, b % blocks]
                         if other[0, 0] > other[0, 1]:
                             continue
-                        apart2 = max(apart2, span2(own, other, 0))
-                        closing2 = max(closing2, span2(own, other, 2))
+                        if p - plane == 2:
+                            moved2, fast2 = approaches2(own, other, axes[0])
+                        elif r - row == 2:
+                            moved2, fast2 = approaches2(own, other, axes[1])
+                        elif row - r == 2:
+                            moved2, fast2 = approaches2(other, own, axes[1])
+                        elif b - block == 2:
+                            moved2, fast2 = approaches2(own, other, axes[2])
+                        elif block - b == 2:
+                            moved2, fast2 = approaches2(other, own, axes[2])
+                        else:
+                            moved2, fast2 = span2(own, other, 0), span2(own, other, 2)
+                        apart2, closing2 = max(apart2, moved2), max(closing2, fast2)
     return apart2, closing2, drifted2
+
+
+@compiled
+def approaches2(a, b, d):
+    """Squares of how far box ``a`` may have come nearer to box ``b``, ahead along axis ``d``, and
+    of how fast it does."""
+    moved, fast = max(a[d, 1] - b[d, 0], 0.0), max(a[d, 3] - b[d, 2], 0.0)
+    return moved * moved, fast * fast
 
 
 @compiled

@@ -1,5 +1,7 @@
 """How long lists hold: bounds against every listed pair, and the flows that keep or end them."""
 
+import math
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -39,7 +41,9 @@ def measured(domain):
         store.data, *(rows_of(store, name) for name in NAMES), domain.starts, domain.planes,
         grid.counts, grid.reach,
     )
-    return np.sqrt(largest_differences(boxes, domain.planes, grid.counts[1], grid.periodic))
+    return np.sqrt(largest_differences(
+        boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
+    ))
 
 
 def over_pairs(domain):
@@ -96,7 +100,40 @@ def steps_until_over(domain, velocity, dt=1e-3, most=200, beside=False):
 
 
 def test_a_body_that_moves_as_one_keeps_its_lists():
-    assert steps_until_over(domain_of(300, 2), lambda x: np.ones_like(x) * 3.0) == 200
+    """For half a cutoff, √2 · 3 m/s · 1 ms a step; the older rule gave half the skin."""
+    lasted = steps_until_over(domain_of(300, 2), lambda x: np.ones_like(x) * 3.0)
+    assert lasted == int(0.5 * CUTOFF / (math.sqrt(2.0) * 3e-3))
+
+
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("away", (0.2, 0.4, 0.55, 0.9))
+@pytest.mark.parametrize("slab", (0, 2))
+def test_bodies_that_were_far_apart_are_seen_in_time(axis, away, slab):
+    """Two particles alone, one flies towards the other: new lists before they feel each other."""
+    x = np.full((2, 3), 0.05)
+    x[1, axis] += away
+    store = Store(3, NAMES, {})
+    block = np.zeros((len(store.data), 2))
+    block[list(store.rows["position"])] = x.T
+    store.append(np.arange(2), np.zeros(2, np.uint8), block)
+    domain = Domain(
+        MPI.COMM_SELF, store, slab, CUTOFF, (0.0,) * 3, (1.0,) * 3, (None,) * 3, (),
+        ("position", "predicted_velocity"),
+    )
+    domain.rebuild()
+    flying = int(np.argmax(np.array(store["position"])[axis, store.inner]))
+    row = store.low + flying
+    store.data[store.rows["predicted_velocity"][axis], row] = -1.0
+    skin, support = Skin(domain, WIDE), CUTOFF - WIDE
+    listed = over_pairs(domain)[1] > 0.0
+    far = away
+    while skin.holds(1e-3, 1.0, 0.0):
+        store.data[store.rows["position"][axis], row] -= 1e-3
+        far -= 1e-3
+        assert listed or far > support
+    assert far < away  # not at once
+
+
 
 
 def test_a_body_that_shears_needs_new_ones_in_time():
