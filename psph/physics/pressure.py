@@ -123,8 +123,8 @@ class BackgroundPressure(NamedTuple):
     given and as saved, stays free of p_b.  Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
     Σ_j ∇W_ij/ρ_j would vanish for particles in perfect order; where it does not, p_b restores order
     at the price of noise.  It conserves momentum and, being constant, energy.  A free surface would
-    fly apart.  "auto" is 1.4 times what the start lacks to p = 0, or what a stop of its fastest flow
-    can lack, ρ₀v²; and nothing where there is a free surface.
+    fly apart.  "auto" is 1.4 times what the start lacks to p = 0, or what its fastest flow can make it
+    lack, ρ₀v²/2; and nothing where there is a free surface.
     """
 
     pressure: Annotated[
@@ -141,8 +141,8 @@ class BackgroundPressure(NamedTuple):
             return self
         if scene.has_free_surface:
             return None
-        stop = max(m.density for m in scene.materials) * scene.starting_speed**2
-        needed = MARGIN * max(-scene.lowest_pressure, stop)
+        dip = 0.5 * max(m.density for m in scene.materials) * scene.starting_speed**2
+        needed = MARGIN * max(-scene.lowest_pressure, dip)
         return BackgroundPressure(needed) if needed > 0.0 else None
 
     def radial(self, i, j, pair):
