@@ -50,6 +50,7 @@ def solution(run):
 # Walls without slip
 
 
+@pytest.mark.long
 def test_poiseuille_at_40_across_is_within_half_a_percent(ran):
     run = ran("poiseuille", "time.end=0.5", "output.frames=0.5")
     assert error(run, "velocity_linf", 0.1) < 0.004
@@ -66,6 +67,7 @@ def test_couette_at_40_across_is_within_a_tenth_of_a_percent(ran):
     ("case", "plates", "least"),
     [("poiseuille", ["plates"], 0.05), ("couette", ["lower", "upper"], 0.02)],
 )
+@pytest.mark.long
 def test_walls_as_they_are_let_the_fluid_slip(ran, case, plates, least):
     """The control: without the mirrored flow."""
     slipping = [f"walls.{name}.no_slip=false" for name in plates]
@@ -93,6 +95,7 @@ def test_sound_at_20_particles_a_wavelength(ran):
     assert error(run, "velocity_l2", 5.0) < 0.03 and error(run, "pressure_l2", 5.0) < 0.03
 
 
+@pytest.mark.long
 def test_sound_of_a_kernel_with_the_right_moment_is_of_second_order(ran):
     """And the control: at 20 particles the lattice itself is slow by 1.6 %."""
     coarse, fine = (
@@ -103,6 +106,7 @@ def test_sound_of_a_kernel_with_the_right_moment_is_of_second_order(ran):
     assert math.log2(coarse / fine) == pytest.approx(2.0, abs=0.05)
 
 
+@pytest.mark.long
 def test_sound_in_two_dimensions(ran):
     """The same wave on a square lattice."""
     run = ran(
@@ -131,6 +135,7 @@ def swing(run, time):
 WAVE = ("time.end=0.64", "output.frames=0.213")
 
 
+@pytest.mark.long
 def test_a_standing_wave_keeps_its_period(ran):
     run = ran("standing_wave", *WAVE)
     for time in (0.213, 0.639):  # where it turns: a shift of the phase shows most
@@ -139,6 +144,7 @@ def test_a_standing_wave_keeps_its_period(ran):
     assert error(run, "velocity_l2", 0.426) < 0.15
 
 
+@pytest.mark.long
 def test_a_kernel_that_feels_the_lattice_shortens_the_period(ran):
     """The control: at the default h/dx the kernel stiffens the water under pressure."""
     run = ran("standing_wave", "space.smoothing=1.4", "physics.density_diffusion=off", *WAVE)
@@ -155,6 +161,7 @@ def test_the_elliptic_drop_keeps_to_its_axes(ran):
         assert probes[name][-1] / probes[name][0] == pytest.approx(stretched, rel=0.02)
 
 
+@pytest.mark.long
 def test_the_elliptic_drop_is_noise_without_density_diffusion(ran):
     """The control."""
     run = ran("elliptic_drop", "physics.density_diffusion=off", "output.frames=0.0076")
@@ -162,12 +169,14 @@ def test_the_elliptic_drop_is_noise_without_density_diffusion(ran):
     assert error(run, "pressure_l2", 0.0076) > 5.0
 
 
+@pytest.mark.long
 def test_still_water_begins_with_its_pressure(ran):
     """It swings by what the kernel's moment is short of 1."""
     run = ran("hydrostatic", "time.end=0.05", "output.frames=0.05")
     assert max(error(run, "pressure_l2", t) for t in np.arange(0.0, 0.05, 0.005)) < 0.07
 
 
+@pytest.mark.long
 def test_water_that_begins_without_falls_first(ran):
     """The control of the hydrostatic start."""
     run = ran("hydrostatic", "time.end=0.05", "output.frames=0.05", "fluids.water.pressure=0.0")
@@ -186,6 +195,7 @@ def test_the_gresho_vortex_is_held_for_a_third_of_a_turn(ran):
     assert np.allclose(*momentum, atol=1e-12)
 
 
+@pytest.mark.long
 def test_the_gresho_vortex_is_torn_without_its_effects(ran):
     """The control: under tension the symmetric form lets particles clump."""
     off = (f"physics.{e}=off" for e in ("gradient_correction", "density_diffusion", "particle_shifting"))

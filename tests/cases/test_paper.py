@@ -81,6 +81,7 @@ def test_negative_pressure_by_symmetric_sph_explodes(ran, kernel):
 
 
 @pytest.mark.parametrize("kernel", ["cubic", "hyperbolic"])
+@pytest.mark.long
 def test_tension_from_round_off_grows_by_the_box_s_eigenvalue(ran, kernel):
     """Without a kick: until 1e-6 m/s the fastest mode has left the others behind."""
     run = ran(
@@ -125,6 +126,7 @@ def test_hydrostatic_by_ssph_swings_about_theory(ran):
     assert len(np.unique(run.frame(-1)["id"])) == 5678
 
 
+@pytest.mark.long
 def test_hydrostatic_by_symmetric_sph_breaks_into_lines(ran):
     """The control: the cubic spline at the same h/dx."""
     run = ran("hydrostatic_traditional", "time.end=6.0", "output.frames=0.5")
@@ -136,6 +138,7 @@ def test_hydrostatic_by_symmetric_sph_breaks_into_lines(ran):
     ("hydrostatic_traditional", "cubic", True),
     ("hydrostatic", "hyperbolic", False),
 ])
+@pytest.mark.long
 def test_the_contrast_is_a_window_in_h(ran, case, kernel, clean):
     """At h/dx 1.2 it is the other way round: the cubic spline is clean and SSPH is not."""
     run = ran(

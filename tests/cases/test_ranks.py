@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from cases.measures import CASES, by_id
 from jobs import mpirun
+from long import long_but_for
 
 from psph.output.reader import Run
 
@@ -45,7 +46,10 @@ def run(case, ranks, folder, *overrides):
     return Run(folder)
 
 
-@pytest.mark.parametrize("case", END)
+SHORT = ("negative_pressure_traditional", "dam_break", "gresho", "hard/patch_3d")
+
+
+@pytest.mark.parametrize("case", long_but_for(SHORT, END))
 def test_same_bits_on_any_number_of_ranks(case, tmp_path):
     results = {n: run(case, n, tmp_path / str(n)) for n in (1, 2, 3, 4)}
     last = by_id(results[1].frame(-1))
@@ -62,6 +66,7 @@ def test_same_bits_on_any_number_of_ranks(case, tmp_path):
                 assert path.read_text() == (results[n].folder / table).read_text()
 
 
+@pytest.mark.long
 def test_same_bits_where_particles_are_carried_by_another_velocity(tmp_path):
     """Its stored difference to the fluid's travels with the halo, one pass old."""
     sets = ("physics.transport_velocity=1.0", "physics.pressure_gradient=tensile_control",

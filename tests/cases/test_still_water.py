@@ -28,6 +28,7 @@ def still(tmp_path):
     return run
 
 
+@pytest.mark.long
 def test_the_reference_profile_is_within_one_percent(still):
     """Settled at 0.5 s.  To 4 s at spacing 0.02: +0.11 and 0.01 %, standard deviation 0.3 Pa."""
     run = still("reference")
@@ -38,6 +39,7 @@ def test_the_reference_profile_is_within_one_percent(still):
     assert checkerboard(run.frame(-1), 0.025, 4900.0) < 0.005
 
 
+@pytest.mark.long
 def test_without_gradient_correction_it_is_not(still):
     """The control: at h/dx 1.4 the kernel's first moment.  hydrostatic.toml: 2.7 % (test_paper)."""
     run = still("engineering", "physics.gradient_correction=off")

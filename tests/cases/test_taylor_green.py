@@ -39,6 +39,7 @@ def test_the_error_falls_with_more_than_the_square_of_the_spacing(error):
     assert 2.2 < np.log2(coarse / fine) < 2.7
 
 
+@pytest.mark.long
 def test_without_its_effects_the_flow_is_gone(error):
     """The control, 34 %: where the pressure is negative, the symmetric form tears the lattice."""
     assert error(0.04, *BOUGHT) > 0.3

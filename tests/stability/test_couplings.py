@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from long import LONG
 from mpi4py import MPI
 from stability.settings import TENSION, of
 
@@ -118,19 +119,21 @@ MORE = (
     ("settings", "sets"),
     [
         (TENSION, ()),
-        (TENSION._replace(form="minimum"), ("physics.pressure_gradient=minimum",)),
-        (
+        pytest.param(
+            TENSION._replace(form="minimum"), ("physics.pressure_gradient=minimum",), marks=LONG
+        ),
+        pytest.param(
             TENSION._replace(form="difference", remedies=(
                 remedies.BackgroundPressure(3000.0), remedies.DensityDiffusion(0.2),
                 remedies.ArtificialViscosity(0.3), remedies.Viscosity(2e-4),
             )),
-            MORE,
+            MORE, marks=LONG,
         ),
-        (
+        pytest.param(
             TENSION._replace(remedies=(
                 remedies.ArtificialStress(0.3), remedies.RiemannDissipation(),
             )),
-            ("physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0"),
+            ("physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0"), marks=LONG,
         ),
     ],
     ids=["symmetric", "minimum", "all", "stressed"],

@@ -161,6 +161,7 @@ def test_an_interrupted_study_goes_on_from_its_finished_runs(done):
     assert "done before" not in one.stdout
 
 
+@pytest.mark.long
 def test_a_study_that_is_killed_goes_on_where_it_was(tmp_path):
     file = tmp_path / "wave.toml"
     file.write_text(WAVE.replace("end = 0.1", "end = 3.0"))  # the last run takes long enough
@@ -210,6 +211,7 @@ def test_what_makes_no_sense_is_said_before_any_run(tmp_path, options, says):
     assert not (tmp_path / "out").exists() and "Traceback" not in job.stderr
 
 
+@pytest.mark.long
 def test_profiles_are_a_choice_that_can_be_pasted(tmp_path):
     """In place of the case's own kernel; the effects are kept alike, so that they compile once."""
     job = study(
@@ -230,6 +232,7 @@ def test_profiles_are_a_choice_that_can_be_pasted(tmp_path):
     assert 'kernel = "wendland-c2"' in answer
 
 
+@pytest.mark.long
 def test_effects_are_left_out_one_by_one(tmp_path):
     text = WAVE.replace("[fluids.air]", "artificial_viscosity = 0.05\n[fluids.air]").replace(
         "density = 1.0", "density = 1.0\nviscosity = 1e-9"
