@@ -13,11 +13,13 @@ from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
 
 BOX = """
+scheme = "sph"
 time = { end = 0.2, cfl = 0.4 }
 neighbours.skin = 0.3
 output = { frames = 0.02, probes = 0.005, log = 0.01 }
 parallel.axis = "x"
 checkpoint.every = 30
+guards = { speed = 10.0, density = 5.0, energy = 1e6 }
 [space]
 dimensions = 2
 spacing = 0.1
