@@ -16,7 +16,7 @@ CROWDING = 0.2
 SURFACE = 0.85
 """Kernel sum below which a particle counts as surface."""
 
-NEAR_SURFACE = 0.8
+NEAR_SURFACE = 0.7
 """Part of a full neighbourhood, by its first moment, below which a position shift stops: the row of
 a surface has 0.64, the next one 0.94."""
 
@@ -85,7 +85,7 @@ class PositionShift(NamedTuple):
     """Particles shift from where they crowd to where they are few, and keep their velocity.
 
     δx_i = −2 U Δt h Σ_j m_j/ρ_j [1 + 0.2 n⁴] ∇W_ij, |δx_i| ≤ U Δt, n = (W′/r)/(W′/r at dx) in place of
-    the kernel's own ratio, which costs more.  None where −Σ_j m_j/ρ_j r W′ is below 0.8 of what it
+    the kernel's own ratio, which costs more.  None where −Σ_j m_j/ρ_j r W′ is below 0.7 of what it
     is on the lattice.  U is no larger than the largest speed of the flow: still
     water is left alone, where the shift of a constant U would stir a lattice under tension.
     Velocity and density go along unchanged, so that momentum is conserved to round-off.  Lind, Xu,
