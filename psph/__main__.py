@@ -12,16 +12,12 @@ from mpi4py import MPI
 
 import psph
 from psph.bench import PROBLEMS
+from psph.errors import Failed, Foreseen
 from psph.stability import FORMS, STATES
 from psph.stability.lattices import LATTICES
 
 PATIENCE = 1.0
 """Seconds a failed rank waits for the others to fail alike before it ends them all."""
-
-BAD_INPUT, FAILED = 2, 3
-
-STOPPED = 75
-"""Told to stop, and to be resumed: EX_TEMPFAIL of sysexits.h, "try again"."""
 
 
 def main(arguments: list[str]) -> int:
@@ -293,38 +289,6 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
     bench.add_argument("--json", action="store_true", help="one JSON object as the last line")
 
 
-def _foreseen(error: BaseException) -> tuple[str, int] | None:
-    """The plain lines and exit code of an error that a user can do something about."""
-    from psph.battery.errors import BatteryError
-    from psph.bench.errors import BenchError
-    from psph.case import CaseError
-    from psph.output.checkpoint import CheckpointError
-    from psph.output.errors import OutputError
-    from psph.parallel.slabs import TooManyRanks
-    from psph.particles.store import TooManyParticles
-    from psph.solver.step import BlowUp
-    from psph.solver.watch import Stopped
-    from psph.stability.errors import StabilityError
-    from psph.study.errors import StudyError
-    from psph.threads import TooManyThreads
-
-    if isinstance(error, CaseError):
-        return "\n".join(error.lines), BAD_INPUT
-    refused = (
-        BatteryError, BenchError, StabilityError, StudyError, CheckpointError, TooManyRanks, TooManyThreads,
-        TooManyParticles,
-    )
-    if isinstance(error, refused):
-        return str(error), BAD_INPUT
-    if isinstance(error, Stopped):
-        return str(error), STOPPED
-    if isinstance(error, (OutputError, BlowUp)):
-        return str(error), FAILED
-    if isinstance(error, BrokenPipeError):
-        return "nobody reads the output any more", FAILED
-    return None
-
-
 def _end_all(comm, said: str, code: int):
     """End every rank with one message: at once where all failed alike, else by force.
 
@@ -355,8 +319,12 @@ def guarded(arguments: list[str]) -> None:
         _end_all(last_words, "" if numbered else leaving.code, leaving.code if numbered else 1)
     except KeyboardInterrupt:
         _end_all(last_words, "interrupted", 130)
-    except BaseException as error:
-        _end_all(last_words, *(_foreseen(error) or (traceback.format_exc(), 1)))
+    except Foreseen as error:
+        _end_all(last_words, str(error), error.exit_code)
+    except BrokenPipeError:
+        _end_all(last_words, "nobody reads the output any more", Failed.exit_code)
+    except BaseException:
+        _end_all(last_words, traceback.format_exc(), 1)
     sys.exit(code)
 
 

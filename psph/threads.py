@@ -7,11 +7,13 @@ column by itself: the bits do not depend on the number of threads.
 import os
 from concurrent.futures import ThreadPoolExecutor
 
+from psph.errors import Refused
+
 _pool: ThreadPoolExecutor | None = None
 _count = 1
 
 
-class TooManyThreads(ValueError):
+class TooManyThreads(Refused):
     """A number of threads that this rank cannot run."""
 
 

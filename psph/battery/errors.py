@@ -1,5 +1,7 @@
 """What was asked of the battery cannot be done."""
 
+from psph.errors import Refused
 
-class BatteryError(ValueError):
+
+class BatteryError(Refused):
     """One line that says what to do."""

@@ -1,7 +1,9 @@
 """What was asked of the bench cannot be done."""
 
+from psph.errors import Refused
 
-class BenchError(ValueError):
+
+class BenchError(Refused):
     """One line that names the option or the file and says what to do."""
 
 

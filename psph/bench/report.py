@@ -9,10 +9,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from psph.bench import PROBLEMS
-from psph.bench.errors import BenchError
 from psph.bench.results import read_runs
-from psph.output.errors import OutputError
-from psph.output.pages import renew
+from psph.output.pages import command
 
 PHASES = ("pairs", "rebuild", "halo", "limits")
 """Phases with a column of their own; the rest goes together."""
@@ -132,16 +130,7 @@ def _percent(share: float) -> str:
 
 def main(arguments: list[str]) -> int:
     """Renew a page; the exit code."""
-    if len(arguments) < 2:
-        print("python -m psph.bench.report PAGE FILE...", file=sys.stderr)
-        return 2
-    page, *files = map(Path, arguments)
-    try:
-        renew(page, tables(files))
-    except (BenchError, OutputError) as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+    return command("psph.bench.report PAGE FILE...", lambda _, files: tables(files), arguments)
 
 
 if __name__ == "__main__":

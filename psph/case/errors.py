@@ -3,8 +3,10 @@
 import difflib
 from collections.abc import Iterable
 
+from psph.errors import Refused
 
-class CaseError(ValueError):
+
+class CaseError(Refused):
     """A case that cannot be run.  ``lines``: one message each, with file, key and what to do."""
 
     def __init__(self, lines: Iterable[str]):

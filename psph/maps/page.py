@@ -5,14 +5,12 @@ stable on each, the first map in full, and the pictures of all, which go into ``
 """
 
 import csv
-import shutil
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from psph.maps.tables import CSV, PAGE, PICTURE
-from psph.output.errors import OutputError
-from psph.output.pages import renew
+from psph.output.pages import command, picture, results
 from psph.stability import STATES
 from psph.stability.windows import windows
 
@@ -25,16 +23,13 @@ def maps(page: Path, folders: Sequence[Path]) -> str:
     """What the maps say; their pictures are copied.  OutputError: no map there."""
     pictures, every = [], []
     for folder in folders:
-        picture = page.parent / "images" / f"stability_{folder.name}.png"
-        try:
+        with results(folder, "map"):
             with open(folder / CSV, encoding="utf-8", newline="") as file:
                 every.append(list(csv.DictReader(file)))
-            shutil.copyfile(folder / PICTURE, picture)
             first = (folders[0] / PAGE).read_text(encoding="utf-8")
-        except OSError as error:
-            raise OutputError(f"{folder}: {error.strerror}; give the folder of a map") from None
-        lattice = every[-1][0]["lattice"]
-        pictures.append(f"![Growth on the {lattice} lattice](images/{picture.name})")
+            caption = f"Growth on the {every[-1][0]['lattice']} lattice"
+            name = f"stability_{folder.name}"
+            pictures.append(picture(page, folder / PICTURE, name, caption))
     return "\n".join([*_table(every), "", first, *(f"{one}\n" for one in pictures)])
 
 
@@ -57,16 +52,7 @@ def _held(rows: Rows, kernel: str, state: str) -> str:
 
 def main(arguments: list[str]) -> int:
     """Renew a page; the exit code."""
-    if len(arguments) < 2:
-        print("python -m psph.maps.page PAGE FOLDER...", file=sys.stderr)
-        return 2
-    page, *folders = map(Path, arguments)
-    try:
-        renew(page, maps(page, folders), MARKER)
-    except OutputError as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+    return command("psph.maps.page PAGE FOLDER...", maps, arguments, MARKER)
 
 
 if __name__ == "__main__":

@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 import psph
+from psph.errors import Refused
 from psph.jit import compiled
 from psph.output import rows as hdf5
 from psph.output.errors import cause, together
@@ -46,7 +47,7 @@ _ROOM = 4096
 _NAME = re.compile(r"checkpoint-(\d+)\.h5")
 
 
-class CheckpointError(ValueError):
+class CheckpointError(Refused):
     """A checkpoint that no run can go on from; one line that says why and what to do."""
 
 

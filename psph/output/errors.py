@@ -4,8 +4,10 @@ import re
 from contextlib import contextmanager
 from pathlib import Path
 
+from psph.errors import Failed
 
-class OutputError(RuntimeError):
+
+class OutputError(Failed):
     """A file of the run cannot be written or read; the message is one line that says what to do."""
 
 

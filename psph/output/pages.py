@@ -1,7 +1,12 @@
 """Pages of the documentation with parts that are made: the text between two markers."""
 
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
+from psph.errors import Foreseen
 from psph.output.errors import OutputError
 
 MEASURED = "measured"
@@ -29,3 +34,42 @@ def renew(page: Path, made: str, name: str = MEASURED) -> None:
             f"{page}: no place for what was measured; add the lines {first} and {last}"
         )
     page.write_text(f"{before}{first}\n{made}\n{last}{after}", encoding="utf-8")
+
+
+@contextmanager
+def results(folder: Path, kind: str) -> Iterator[None]:
+    """Where a file is missing in the body: OutputError, ``folder`` shall be that of a ``kind``."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        said = getattr(error, "strerror", None) or error
+        raise OutputError(f"{folder}: {said}; give the folder of a {kind}") from None
+
+
+def picture(page: Path, file: Path, name: str, caption: str) -> str:
+    """Put a picture into ``images/`` beside the page; the line that shows it.  OSError: none there."""
+    kept = page.parent / "images" / f"{name}{file.suffix}"
+    shutil.copyfile(file, kept)
+    return f"![{caption}](images/{kept.name})"
+
+
+def command(
+    usage: str,
+    make: Callable[[Path, Sequence[Path]], str],
+    arguments: Sequence[str],
+    name: str = MEASURED,
+) -> int:
+    """``MODULE PAGE FOLDER...``: renew the part ``name`` of a page; the exit code.
+
+    ``make`` writes it from the page's path and what follows.
+    """
+    if len(arguments) < 2:
+        print(f"python -m {usage}", file=sys.stderr)
+        return 2
+    page, *sources = map(Path, arguments)
+    try:
+        renew(page, make(page, sources), name)
+    except Foreseen as error:
+        print(error, file=sys.stderr)
+        return 2
+    return 0

@@ -6,6 +6,8 @@ alike.
 
 import numpy as np
 
+from psph.errors import Refused
+
 TOLERATED = 1.05
 """A dearest slab this much above what a new partition would give is left as it is."""
 
@@ -22,7 +24,7 @@ WORTH_MEASURING = 1_000_000
 """Nanoseconds of all ranks together below which a measurement is but noise."""
 
 
-class TooManyRanks(ValueError):
+class TooManyRanks(Refused):
     """More ranks than planes of cells."""
 
 

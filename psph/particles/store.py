@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from psph.errors import Refused
 from psph.jit import compiled
 from psph.particles.fields import FIELDS
 from psph.physics.compose import ParticleView
@@ -25,7 +26,7 @@ def seen_as(name: str) -> str:
     return "predicted_velocity" if name == "velocity" else name
 
 
-class TooManyParticles(ValueError):
+class TooManyParticles(Refused):
     """More particles than the ranks can hold."""
 
 

@@ -17,6 +17,29 @@ OWN_PRESSURE = 10.0
 """Largest background pressure over |p| of the particle (Zhang, Hu & Adams 2017)."""
 
 
+def _no_neighbour(self, i):
+    """No neighbour yet."""
+    return zero_like(i.position)
+
+
+def _moved(self, i, dt):
+    """(ũ − u) Δt, m."""
+    return scale(i.transport, dt)
+
+
+def _density_rate(self, i, j, pair):
+    """What ũ − u adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
+    return j.mass * pair.dw_r * dot(subtract(i.transport, j.transport), pair.x_ij)
+
+
+def _carried(self, i, j, pair):
+    """The momentum that particles carry along, m/s²."""
+    own = i.specific_volume * dot(i.transport, pair.x_ij)
+    other = j.specific_volume * dot(j.transport, pair.x_ij)
+    carried = add(scale(i.velocity, own), scale(j.velocity, other))
+    return scale(carried, j.mass * pair.dw_r)
+
+
 class XSPH(NamedTuple):
     """Particles move with the mean velocity around them: they do not pass through each other.
 
@@ -32,9 +55,9 @@ class XSPH(NamedTuple):
 
     writes = "transport"
 
-    def start(self, i):
-        """No neighbour yet."""
-        return zero_like(i.position)
+    start = _no_neighbour
+    displacement = _moved
+    density_rate = _density_rate
 
     def gather(self, total, i, j, pair):
         """Add m_j/ρ̄_ij (u_j − u_i) W_ij of a fluid neighbour."""
@@ -45,14 +68,6 @@ class XSPH(NamedTuple):
     def finish_value(self, total, i, kernel):
         """ũ − u of a fluid particle, m/s."""
         return scale(total, self.epsilon * (1.0 - i.wall))
-
-    def displacement(self, i, dt):
-        """(ũ − u) Δt, m."""
-        return scale(i.transport, dt)
-
-    def density_rate(self, i, j, pair):
-        """What ũ − u adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return _density_rate(i, j, pair)
 
 
 class TransportVelocity(NamedTuple):
@@ -71,9 +86,10 @@ class TransportVelocity(NamedTuple):
 
     writes = "transport"
 
-    def start(self, i):
-        """No neighbour yet."""
-        return zero_like(i.position)
+    start = _no_neighbour
+    displacement = _moved
+    density_rate = _density_rate
+    push = _carried
 
     def gather(self, total, i, j, pair):
         """Add m_j (1/ρ_i² + 1/ρ_j²) ∇W_ij."""
@@ -83,18 +99,6 @@ class TransportVelocity(NamedTuple):
     def finish_value(self, total, i, kernel):
         """ũ − u of a fluid particle, m/s."""
         return _pushed(self.background * _stiffness(i), total, i)
-
-    def displacement(self, i, dt):
-        """(ũ − u) Δt, m."""
-        return scale(i.transport, dt)
-
-    def density_rate(self, i, j, pair):
-        """What ũ − u adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return _density_rate(i, j, pair)
-
-    def push(self, i, j, pair):
-        """The momentum that particles carry along, m/s²."""
-        return _carried(i, j, pair)
 
 
 class GeneralisedTransportVelocity(NamedTuple):
@@ -112,9 +116,10 @@ class GeneralisedTransportVelocity(NamedTuple):
 
     writes = "transport"
 
-    def start(self, i):
-        """No neighbour yet."""
-        return zero_like(i.position)
+    start = _no_neighbour
+    displacement = _moved
+    density_rate = _density_rate
+    push = _carried
 
     def gather(self, total, i, j, pair):
         """Add m_j/ρ_i² ∇W_ij."""
@@ -125,18 +130,6 @@ class GeneralisedTransportVelocity(NamedTuple):
         """ũ − u of a fluid particle, m/s."""
         background = min(OWN_PRESSURE * abs(i.pressure), self.background * _stiffness(i))
         return _pushed(background, total, i)
-
-    def displacement(self, i, dt):
-        """(ũ − u) Δt, m."""
-        return scale(i.transport, dt)
-
-    def density_rate(self, i, j, pair):
-        """What ũ − u adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return _density_rate(i, j, pair)
-
-    def push(self, i, j, pair):
-        """The momentum that particles carry along, m/s²."""
-        return _carried(i, j, pair)
 
 
 @register_jitable
@@ -150,16 +143,3 @@ def _pushed(background, total, i):
     """−(h/8c) p_b Σ, m/s; 0 in a wall."""
     span = HALF_STEP * i.smoothing_length / i.sound_speed
     return scale(total, -span * background * (1.0 - i.wall))
-
-
-@register_jitable
-def _density_rate(i, j, pair):
-    return j.mass * pair.dw_r * dot(subtract(i.transport, j.transport), pair.x_ij)
-
-
-@register_jitable
-def _carried(i, j, pair):
-    own = i.specific_volume * dot(i.transport, pair.x_ij)
-    other = j.specific_volume * dot(j.transport, pair.x_ij)
-    carried = add(scale(i.velocity, own), scale(j.velocity, other))
-    return scale(carried, j.mass * pair.dw_r)

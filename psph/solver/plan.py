@@ -22,6 +22,9 @@ ALWAYS = (
 PER_MATERIAL = ("mass", "rest_density", "viscosity", "wall", "no_slip")
 """Quantities fixed at the start: one number where all materials agree, else an array."""
 
+OF_STATE = ("position", "rest_density", "sound_speed")
+"""Quantities that kick, drift and the equation of state read of every particle."""
+
 FORCE_LIMIT = 0.25
 """Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
 
@@ -77,6 +80,17 @@ class Plan:
     def displaces(self) -> bool:
         """Whether an effect moves particles beside their velocity."""
         return any(hasattr(e, "displacement") for e in self.effects)
+
+    @cached_property
+    def carriers(self) -> tuple:
+        """The effects that have a part in kick and drift: scenes without share those loops."""
+        return tuple(call.effect for call in self.called if _carries(call))
+
+    @cached_property
+    def uncarried(self) -> dict[str, None]:
+        """What neither the equation of state nor the carriers read of a particle."""
+        read = set(OF_STATE).union(*(call.reads.own for call in self.called if _carries(call)))
+        return dict.fromkeys(name for name in ParticleView._fields if name not in read)
 
     def longest_step(self, speed: float, acceleration: float) -> tuple[float, str]:
         """Δt in s and the name of the limit that sets it, for the largest |v| and |a|."""
@@ -141,6 +155,12 @@ def make_plan(scene) -> Plan:
             **{n: max(material_value(m, n) for m in scene.materials) for n in PER_MATERIAL},
         ),
     )
+
+
+def _carries(call: Called) -> bool:
+    """Whether an effect has a part in kick and drift."""
+    parts = ("displacement", "limit_density", "limit_wall_density")
+    return any(hasattr(call.effect, name) for name in parts)
 
 
 def _refuse_unwritten(called, written: tuple[str, ...]) -> None:

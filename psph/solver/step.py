@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from psph.errors import Failed
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import largest
@@ -23,7 +24,7 @@ CLOCK = (
 """Numbers of a simulation that its next step reads, or its user."""
 
 
-class BlowUp(ArithmeticError):
+class BlowUp(Failed):
     """A run in trouble, on whatever rank; raised on all."""
 
 
@@ -95,7 +96,7 @@ class Simulation:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store
         state_of(
-            s.low, s.low + s.owned, self.plan.state, s.view(), s["density"],
+            s.low, s.low + s.owned, self.plan.state, self._view(), s["density"],
             s["specific_volume"], s["pressure"],
         )
 
@@ -163,7 +164,7 @@ class Simulation:
     def _predict(self, dt: float) -> None:
         s, plan = self.store, self.plan
         in_threads(
-            kick_drift_predict, s.low, s.low + s.owned, dt, plan.effects, plan.state, self._view(), s.kind,
+            kick_drift_predict, s.low, s.low + s.owned, dt, plan.carriers, plan.state, self._view(), s.kind,
             s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
             s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
             s["specific_volume"], s["pressure"],
@@ -186,7 +187,7 @@ class Simulation:
         s = self.store
         self.pace = self.speed  # the shifts of the next step are bounded before its speed is known
         parts = in_threads(
-            kick, s.low, s.low + s.owned, dt, self.plan.effects, s.view(), s.kind,
+            kick, s.low, s.low + s.owned, dt, self.plan.carriers, self._view(), s.kind,
             s["position"], s["velocity"], s["acceleration"], s["density"], s["density_rate"],
         )
         mine = np.max(parts, axis=0)
@@ -202,13 +203,13 @@ class Simulation:
             return []
         s = self.store
         parts = in_threads(
-            fastest_shift, s.low, s.low + s.owned, self.plan.effects, self._view(), s.kind
+            fastest_shift, s.low, s.low + s.owned, self.plan.carriers, self._view(), s.kind
         )
         return [float(np.max(parts))]
 
     def _view(self):
-        """The particles as effects see them; a displacement also sees the pace of the flow."""
-        view = self.store.view()
+        """The particles as the plan's carriers see them; a displacement also sees the pace."""
+        view = self.store.view()._replace(**self.plan.uncarried)
         return view._replace(largest_speed=self.pace) if self.plan.displaces else view
 
     def _refuse_blow_up(self) -> None:

@@ -4,6 +4,8 @@ import signal
 import time
 from enum import IntEnum
 
+from psph.errors import Failed
+
 NOTICE = 0.01
 """Part of the wall-clock limit that is left unused: the job began before psph did."""
 
@@ -26,8 +28,11 @@ class Call(IntEnum):
 SIGNALS = {signal.SIGUSR1: Call.SIGUSR1, signal.SIGTERM: Call.SIGTERM}
 
 
-class Stopped(RuntimeError):
+class Stopped(Failed):
     """A run that was told to stop, with a checkpoint to go on from; raised on every rank."""
+
+    exit_code = 75
+    """EX_TEMPFAIL of sysexits.h, "try again"."""
 
 
 class Watch:

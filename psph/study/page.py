@@ -5,14 +5,12 @@ the page, the pictures into ``images/`` beside it.  Of studies of the profiles o
 """
 
 import json
-import shutil
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from psph.case.profiles import PROFILES
-from psph.output.errors import OutputError
-from psph.output.pages import renew
+from psph.output.pages import command, picture, results
 from psph.study.ladder import PROFILE, SPACING, toml
 from psph.study.report import percent, seconds
 from psph.study.runs import DONE
@@ -28,10 +26,8 @@ def studies(page: Path, folders: Iterable[Path]) -> str:
 
 
 def _kept(folder: Path) -> dict:
-    try:
+    with results(folder, "study"):
         return json.loads((folder / KEPT).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise OutputError(f"{folder}: {error}; give the folder of a study") from None
 
 
 def _profiles(every: list[dict]) -> Iterator[str]:
@@ -57,34 +53,21 @@ def _cell(row: dict | None) -> str:
 
 
 def _one(page: Path, folder: Path) -> Iterator[str]:
-    picture = page.parent / "images" / f"accuracy_{folder.name}.png"
-    try:
+    shown = folder / PICTURE
+    with results(folder, "study"):
         text = (folder / PAGE).read_text(encoding="utf-8").rstrip()
-        if drawn := (folder / PICTURE).exists():
-            shutil.copyfile(folder / PICTURE, picture)
-    except OSError as error:
-        raise OutputError(f"{folder}: {error.strerror}; give the folder of a study") from None
     title, _, rest = text.partition("\n")
     yield f"#{title.removesuffix(': what accuracy costs')}"
     yield rest.strip("\n")
-    if drawn:
+    if shown.exists():
         yield ""
-        yield f"![Error against seconds](images/{picture.name})"
+        yield picture(page, shown, f"accuracy_{folder.name}", "Error against seconds")
     yield ""
 
 
 def main(arguments: list[str]) -> int:
     """Renew a page; the exit code."""
-    if len(arguments) < 2:
-        print("python -m psph.study.page PAGE FOLDER...", file=sys.stderr)
-        return 2
-    page, *folders = map(Path, arguments)
-    try:
-        renew(page, studies(page, folders))
-    except OutputError as error:
-        print(error, file=sys.stderr)
-        return 2
-    return 0
+    return command("psph.study.page PAGE FOLDER...", studies, arguments)
 
 
 if __name__ == "__main__":

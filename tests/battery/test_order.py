@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from drafts import TANK, draft
+from drafts import SQUARE, TANK, draft
 
 from psph.battery import measures
 from psph.battery.measures import ghia
@@ -13,17 +13,7 @@ from psph.battery.walls import lost
 from psph.output.errors import OutputError
 from psph.scene import Scene
 
-FREE = """
-[space]
-dimensions = 2
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-sound_speed = 10.0
-[fluids.water]
-shape.box = { lower = [0.0, 0.0], upper = [2.0, 1.0] }
-"""
+FREE = SQUARE.replace("[1.0, 1.0]", "[2.0, 1.0]")
 PERIODIC = FREE.replace(
     "spacing = 0.1", 'spacing = 0.1\nperiodic = ["x", "y"]\nlower = [0.0, 0.0]\nupper = [2.0, 1.0]'
 )

@@ -3,6 +3,7 @@
 from psph.case import load
 from psph.output.errors import together
 from psph.solver.run import run
+from psph.solver.step import BlowUp
 
 BOX = """
 scheme = "sph"
@@ -42,6 +43,6 @@ def started(case, folder, comm):
     said, trouble = [], None
     try:
         run(case, folder, comm, overwrite=True, say=lambda line, where=None: said.append(line))
-    except ArithmeticError as error:
+    except BlowUp as error:
         trouble = error
     return trouble, said

@@ -121,6 +121,16 @@ def state(simulation):
     return rows | {"state": repr(simulation.state())}
 
 
+def go_on_alike(simulation, again, count, rebuilds=1):
+    """Assert the same bits in two simulations, now and after so many steps and new lists."""
+    assert state(again) == state(simulation)
+    for _ in range(count):
+        simulation.step()
+        again.step()
+    assert again.domain.rebuilds >= rebuilds
+    assert state(again) == state(simulation)
+
+
 def same_files(folder, other):
     """Whether two runs left the same tables and XDMF to the byte, and the same frames."""
     for name in ("log.csv", "probes.csv", "box.xmf"):
