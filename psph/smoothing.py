@@ -10,9 +10,8 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
-from psph.jit import call_by_type, method_of
+from psph.jit import call_by_type, method_of, overload
 from psph.simd import where
 
 weight = call_by_type("w")

@@ -6,51 +6,47 @@ from the diagonal on: (xx), (xx, xy, yy), (xx, xy, xz, yy, yz, zz).
 """
 
 from numba.core import types
-from numba.extending import overload, register_jitable
+
+from psph.jit import overload, register_jitable, tuple_of, unrolled
 
 Vector = tuple[float, ...]
 
 
-def _elementwise(component):
-    """Compile ``function(a, b)``, written for plain tuples, by recursion over the axes."""
-    one = register_jitable(component)
+def _each(component: str):
+    """Compile ``function(a, b)``, written for plain tuples, from the text of its d-th component."""
 
     def attach(function):
         @overload(function)
         def typed(a, b):
-            if len(a) == 0:
-                return lambda a, b: ()
-            if isinstance(b, types.BaseTuple):
-                return lambda a, b: (one(a[0], b[0]),) + function(a[1:], b[1:])
-            return lambda a, b: (one(a[0], b),) + function(a[1:], b)
+            return unrolled("a, b", f"return {tuple_of(component.format(d=d) for d in range(len(a)))}")
 
         return function
 
     return attach
 
 
-@_elementwise(lambda a, b: a + b)
+@_each("a[{d}] + b[{d}]")
 def add(a: Vector, b: Vector) -> Vector:
     """a + b."""
     return tuple(x + y for x, y in zip(a, b))
 
 
-@_elementwise(lambda a, b: a - b)
+@_each("a[{d}] - b[{d}]")
 def subtract(a: Vector, b: Vector) -> Vector:
     """a − b."""
     return tuple(x - y for x, y in zip(a, b))
 
 
-@_elementwise(lambda a, b: a * b)
-def scale(a: Vector, factor: float) -> Vector:
-    """a · factor."""
-    return tuple(x * factor for x in a)
+@_each("a[{d}] * b")
+def scale(a: Vector, b: float) -> Vector:
+    """a · b."""
+    return tuple(x * b for x in a)
 
 
-@_elementwise(lambda a, b: a[b])
-def at(arrays: tuple, k: int) -> Vector:
-    """Component arrays → the vector of particle ``k``."""
-    return tuple(array[k] for array in arrays)
+@_each("a[{d}][b]")
+def at(a: tuple, b: int) -> Vector:
+    """Component arrays → the vector of particle ``b``."""
+    return tuple(array[b] for array in a)
 
 
 def dot(a: Vector, b: Vector) -> float:
@@ -60,9 +56,7 @@ def dot(a: Vector, b: Vector) -> float:
 
 @overload(dot)
 def _dot(a, b):
-    if len(a) == 1:
-        return lambda a, b: a[0] * b[0]
-    return lambda a, b: a[0] * b[0] + dot(a[1:], b[1:])
+    return unrolled("a, b", f"return {' + '.join(f'a[{d}] * b[{d}]' for d in range(len(a)))}")
 
 
 def zero_like(a: Vector) -> Vector:
@@ -72,9 +66,7 @@ def zero_like(a: Vector) -> Vector:
 
 @overload(zero_like)
 def _zero_like(a):
-    if len(a) == 0:
-        return lambda a: ()
-    return lambda a: (0.0,) + zero_like(a[1:])
+    return unrolled("a", f"return {tuple_of('0.0' for _ in a)}")
 
 
 def put(arrays: tuple, k: int, a: Vector) -> None:
@@ -85,14 +77,7 @@ def put(arrays: tuple, k: int, a: Vector) -> None:
 
 @overload(put)
 def _put(arrays, k, a):
-    if len(arrays) == 0:
-        return lambda arrays, k, a: None
-
-    def write(arrays, k, a):
-        arrays[0][k] = a[0]
-        put(arrays[1:], k, a[1:])
-
-    return write
+    return unrolled("arrays, k, a", *(f"arrays[{d}][k] = a[{d}]" for d in range(len(arrays))))
 
 
 def nearest_image(a: Vector, periods: tuple) -> Vector:
@@ -110,11 +95,11 @@ def _wrapped(x, period):
 
 @overload(nearest_image)
 def _nearest_image(a, periods):
-    if len(a) == 0:
-        return lambda a, periods: ()
-    if isinstance(periods[0], types.NoneType):
-        return lambda a, periods: (a[0],) + nearest_image(a[1:], periods[1:])
-    return lambda a, periods: (_wrapped(a[0], periods[0]),) + nearest_image(a[1:], periods[1:])
+    parts = (
+        f"a[{d}]" if isinstance(period, types.NoneType) else f"wrapped(a[{d}], periods[{d}])"
+        for d, period in enumerate(periods)
+    )
+    return unrolled("a, periods", f"return {tuple_of(parts)}", wrapped=_wrapped)
 
 
 def outer(a: Vector) -> Vector:
@@ -124,9 +109,8 @@ def outer(a: Vector) -> Vector:
 
 @overload(outer)
 def _outer(a):
-    if len(a) == 0:
-        return lambda a: ()
-    return lambda a: scale(a, a[0]) + outer(a[1:])
+    parts = (f"a[{d}] * a[{e}]" for d in range(len(a)) for e in range(d, len(a)))
+    return unrolled("a", f"return {tuple_of(parts)}")
 
 
 def _by_dimension(one, two, three):

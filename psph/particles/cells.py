@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
-from psph.jit import compiled
+from psph.jit import compiled, overload
 
 COLUMNS_PER_CUTOFF = 4
 """Along the fastest axis cells are that much finer, so that few candidates lie out of reach."""

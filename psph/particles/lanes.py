@@ -3,8 +3,9 @@
 import numpy as np
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic
 
+from psph.jit import overload, tuple_of, unrolled
 from psph.simd import bits, consecutive
 from psph.vectors import at, dot, nearest_image, subtract
 
@@ -49,11 +50,8 @@ def consecutive_each(arrays, first):
 
 @overload(consecutive_each)
 def _typed_consecutive_each(arrays, first):
-    if len(arrays) == 0:
-        return lambda arrays, first: ()
-    return lambda arrays, first: (
-        (consecutive(arrays[0], first),) + consecutive_each(arrays[1:], first)
-    )
+    parts = (f"consecutive(arrays[{d}], first)" for d in range(len(arrays)))
+    return unrolled("arrays, first", f"return {tuple_of(parts)}", consecutive=consecutive)
 
 
 def append_near(entries, end: int, column: int, bits: int) -> int:

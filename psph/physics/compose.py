@@ -1,17 +1,19 @@
 """Composition: a tuple of effects becomes one loop body, selected by the tuple's type.
 
 Each walker below exists twice: as plain Python (``NUMBA_DISABLE_JIT``, tests, the plan's trial
-call) and as a recursion over the tuple's type, which numba resolves while compiling.  An effect
+call) and written out for the tuple's type (psph.jit.unrolled) when numba compiles it.  An effect
 that lacks a method leaves no trace in the compiled loop.
 """
 
+import functools
+import itertools
+import operator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba.core import types
-from numba.extending import overload, register_jitable
 
-from psph.jit import method_of
+from psph.jit import method_of, overload, register_jitable, tuple_of, unrolled
 from psph.simd import fold, total, turning
 from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, at, dot, put, scale, subtract, zero_like
@@ -78,38 +80,22 @@ def components(name: str, dimensions: int) -> int | None:
 
 def take(view: ParticleView, k: int) -> ParticleView:
     """The values of particle ``k``."""
-    return ParticleView(*_take_each(tuple(view), k))
-
-
-def _take_each(entries, k):
-    return tuple(_entry(entry, k) for entry in entries)
-
-
-def _entry(entry, k):
-    if isinstance(entry, tuple):
-        return at(entry, k)
-    return entry[k] if isinstance(entry, np.ndarray) else entry
-
-
-@overload(_entry)
-def _typed_entry(entry, k):
-    if isinstance(entry, types.BaseTuple):
-        return lambda entry, k: at(entry, k)
-    if isinstance(entry, types.Array):
-        return lambda entry, k: entry[k]
-    return lambda entry, k: entry
-
-
-@overload(_take_each)
-def _typed_take_each(entries, k):
-    if len(entries) == 0:
-        return lambda entries, k: ()
-    return lambda entries, k: (_entry(entries[0], k),) + _take_each(entries[1:], k)
+    return ParticleView(*(
+        at(entry, k) if isinstance(entry, tuple)
+        else entry[k] if isinstance(entry, np.ndarray) else entry
+        for entry in view
+    ))
 
 
 @overload(take)
 def _typed_take(view, k):
-    return lambda view, k: ParticleView(*_take_each(tuple(view), k))
+    parts = (
+        tuple_of(f"view.{name}[{d}][k]" for d in range(len(kind)))
+        if isinstance(kind, types.BaseTuple)
+        else f"view.{name}[k]" if isinstance(kind, types.Array) else f"view.{name}"
+        for name, kind in zip(ParticleView._fields, view.types)
+    )
+    return unrolled("view, k", f"return ParticleView{tuple_of(parts)}", ParticleView=ParticleView)
 
 
 def fetch(view: ParticleView, records, lists, entry: int) -> ParticleView:
@@ -117,40 +103,28 @@ def fetch(view: ParticleView, records, lists, entry: int) -> ParticleView:
 
     Arrays of ``view`` say which quantities the records hold, in this order.
     """
-    return ParticleView(*_dealt(tuple(view), tuple(records[lists[entry]])))
-
-
-def _dealt(entries, numbers):
-    """Give each array among ``entries`` the next of the numbers."""
-    left = list(numbers)
-    return tuple(
+    left = list(records[lists[entry]])
+    return ParticleView(*(
         tuple(left.pop(0) for _ in entry) if isinstance(entry, tuple)
         else left.pop(0) if isinstance(entry, np.ndarray) else entry
-        for entry in entries
-    )
-
-
-@overload(_dealt)
-def _typed_dealt(entries, numbers):
-    if len(entries) == 0:
-        return lambda entries, numbers: ()
-    if isinstance(entries[0], types.BaseTuple):
-        n = len(entries[0])
-        return lambda entries, numbers: (numbers[:n],) + _dealt(entries[1:], numbers[n:])
-    if isinstance(entries[0], types.Array):
-        return lambda entries, numbers: (numbers[0],) + _dealt(entries[1:], numbers[1:])
-    return lambda entries, numbers: (entries[0],) + _dealt(entries[1:], numbers)
+        for entry in view
+    ))
 
 
 @overload(fetch)
 def _typed_fetch(view, records, lists, entry):
-    count = sum(
-        len(kind) if isinstance(kind, types.BaseTuple) else isinstance(kind, types.Array)
-        for kind in view.types
-    )
-    turn = turning(count)
-    return lambda view, records, lists, entry: ParticleView(
-        *_dealt(tuple(view), turn(records, lists, entry))
+    places = itertools.count()
+    parts = [
+        tuple_of(f"numbers[{next(places)}]" for _ in kind)
+        if isinstance(kind, types.BaseTuple)
+        else f"numbers[{next(places)}]" if isinstance(kind, types.Array) else f"view.{name}"
+        for name, kind in zip(ParticleView._fields, view.types)
+    ]
+    return unrolled(
+        "view, records, lists, entry",
+        "numbers = turn(records, lists, entry)",
+        f"return ParticleView{tuple_of(parts)}",
+        ParticleView=ParticleView, turn=turning(next(places)),
     )
 
 
@@ -163,47 +137,44 @@ def geometry(kernel, x_ij, tiny, i, j):
     return Pair(x_ij, u_ij, r2, dot(u_ij, x_ij), weight(kernel, r), slope_over_r(kernel, r))
 
 
-def _sum_of(name: str, first, join):
-    """A walker: the sum of ``effect.name(*args)`` over those effects that have such a method."""
-    empty, plus = register_jitable(first), register_jitable(join)
+def _methods(effects, name: str) -> dict[int, Any]:
+    """Place in the tuple's type → compiled method, of the effects that have it."""
+    found = ((place, method_of(kind, name)) for place, kind in enumerate(effects))
+    return {place: method for place, method in found if method is not None}
+
+
+def _calls(of: str, methods: dict[int, Any], arguments: str) -> list[str]:
+    """The text of each method's call; ``of`` is the name of the tuple."""
+    return [f"method_{place}({of}[{place}], {arguments})" for place in methods]
+
+
+def _named(methods: dict[int, Any]) -> dict[str, Any]:
+    """The names that the text of :func:`_calls` refers to."""
+    return {f"method_{place}": method for place, method in methods.items()}
+
+
+def _sum_of(name: str, arguments: str, empty, plus):
+    """A walker: the sum of ``effect.name(arguments)`` over those effects that have such a method.
+
+    ``empty(arguments)`` where none has.
+    """
 
     def summed(effects, *args):
-        value = first(*args)
-        for effect in effects:
-            if hasattr(effect, name):
-                value = join(value, getattr(effect, name)(*args))
-        return value
+        terms = [getattr(effect, name)(*args) for effect in effects if hasattr(effect, name)]
+        return functools.reduce(plus, terms) if terms else empty(*args)
 
-    @overload(summed)
+    @overload(summed, strict=False)
     def typed(effects, *args):
-        if len(effects) == 0:
-            return lambda effects, *args: empty(*args)
-        term = method_of(effects[0], name)
-        if term is None:
-            return lambda effects, *args: summed(effects[1:], *args)
-        return lambda effects, *args: plus(summed(effects[1:], *args), term(effects[0], *args))
+        methods = _methods(effects, name)
+        terms = _calls("effects", methods, arguments) or [f"empty({arguments})"]
+        # The last first: the pair loop of plain SPH is two instructions shorter so.
+        whole = functools.reduce(lambda a, b: f"plus({a}, {b})", reversed(terms))
+        return unrolled(
+            f"effects, {arguments}", f"return {whole}", plus=plus, empty=register_jitable(empty),
+            **_named(methods),
+        )
 
     return summed
-
-
-def _no_number(*args):
-    return 0.0
-
-
-def _nothing(*args):
-    return None
-
-
-def _plus(a, b):
-    return b if a is None else a + b
-
-
-def _no_vector(i, *args):
-    return zero_like(i.position)
-
-
-def _plus_vector(a, b):
-    return b if a is None else add(a, b)
 
 
 def added(a, b):
@@ -230,17 +201,21 @@ def _typed_pushed(a, direction, coefficient):
     return lambda a, direction, coefficient: add(a, scale(direction, coefficient))
 
 
-density_rate = _sum_of("density_rate", _no_number, _plus)
+def _no_vector(i, *args):
+    return zero_like(i.position)
+
+
+density_rate = _sum_of("density_rate", "i, j, pair", lambda i, j, pair: 0.0, operator.add)
 """(effects, i, j, pair) → a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-radial = _sum_of("radial", _nothing, _plus)
+radial = _sum_of("radial", "i, j, pair", lambda i, j, pair: None, operator.add)
 """(effects, i, j, pair) → coefficient of x_ij in the acceleration, 1/s², or None."""
-shear = _sum_of("shear", _nothing, _plus)
+shear = _sum_of("shear", "i, j, pair", lambda i, j, pair: None, operator.add)
 """(effects, i, j, pair) → coefficient of u_ij in the acceleration, 1/s, or None."""
-push = _sum_of("push", _nothing, _plus_vector)
+push = _sum_of("push", "i, j, pair", lambda i, j, pair: None, add)
 """(effects, i, j, pair) → an acceleration along neither, m/s², or None."""
-body = _sum_of("body", _no_vector, _plus_vector)
+body = _sum_of("body", "i", _no_vector, add)
 """(effects, i) → acceleration from outside, m/s²."""
-displacement = _sum_of("displacement", _no_vector, _plus_vector)
+displacement = _sum_of("displacement", "i, dt", _no_vector, add)
 """(effects, i, dt) → what a fluid particle moves beside its velocity in a step, m."""
 
 
@@ -255,12 +230,9 @@ def _limit_by(name: str):
 
     @overload(limited)
     def typed(effects, i, rho):
-        if len(effects) == 0:
-            return lambda effects, i, rho: rho
-        limit = method_of(effects[0], name)
-        if limit is None:
-            return lambda effects, i, rho: limited(effects[1:], i, rho)
-        return lambda effects, i, rho: limited(effects[1:], i, limit(effects[0], i, rho))
+        methods = _methods(effects, name)
+        lines = (f"rho = {call}" for call in _calls("effects", methods, "i, rho"))
+        return unrolled("effects, i, rho", *lines, "return rho", **_named(methods))
 
     return limited
 
@@ -281,10 +253,9 @@ def start(reductions, i):
 
 @overload(start)
 def _typed_start(reductions, i):
-    if len(reductions) == 0:
-        return lambda reductions, i: ()
-    first = method_of(reductions[0], "start")
-    return lambda reductions, i: (first(reductions[0], i),) + start(reductions[1:], i)
+    methods = _methods(reductions, "start")
+    sums = tuple_of(_calls("reductions", methods, "i"))
+    return unrolled("reductions, i", f"return {sums}", **_named(methods))
 
 
 def gather_each(reductions, totals, i, j, pair):
@@ -296,12 +267,12 @@ def gather_each(reductions, totals, i, j, pair):
 
 @overload(gather_each)
 def _typed_gather_each(reductions, totals, i, j, pair):
-    if len(reductions) == 0:
-        return lambda reductions, totals, i, j, pair: ()
-    first = method_of(reductions[0], "gather")
-    return lambda reductions, totals, i, j, pair: (
-        (first(reductions[0], totals[0], i, j, pair),)
-        + gather_each(reductions[1:], totals[1:], i, j, pair)
+    methods = _methods(reductions, "gather")
+    sums = (
+        f"method_{place}(reductions[{place}], totals[{place}], i, j, pair)" for place in methods
+    )
+    return unrolled(
+        "reductions, totals, i, j, pair", f"return {tuple_of(sums)}", **_named(methods)
     )
 
 
@@ -312,15 +283,14 @@ def fold_each(reductions, totals):
 
 @overload(fold_each)
 def _typed_fold_each(reductions, totals):
-    if len(reductions) == 0:
-        return lambda reductions, totals: ()
-    join = method_of(reductions[0], "join")
-    if join is None:
-        return lambda reductions, totals: (
-            (total(totals[0]),) + fold_each(reductions[1:], totals[1:])
-        )
-    return lambda reductions, totals: (
-        (fold(join, reductions[0], totals[0]),) + fold_each(reductions[1:], totals[1:])
+    joins = _methods(reductions, "join")
+    sums = (
+        f"fold(method_{place}, reductions[{place}], totals[{place}])"
+        if place in joins else f"total(totals[{place}])"
+        for place in range(len(reductions))
+    )
+    return unrolled(
+        "reductions, totals", f"return {tuple_of(sums)}", fold=fold, total=total, **_named(joins)
     )
 
 
@@ -335,13 +305,13 @@ def finish_acceleration(reductions, totals, i):
 
 @overload(finish_acceleration)
 def _typed_finish_acceleration(reductions, totals, i):
-    if len(reductions) == 0:
-        return lambda reductions, totals, i: zero_like(i.position)
-    finish = method_of(reductions[0], "finish_acceleration")
-    if finish is None:
-        return lambda reductions, totals, i: finish_acceleration(reductions[1:], totals[1:], i)
-    return lambda reductions, totals, i: add(
-        finish_acceleration(reductions[1:], totals[1:], i), finish(reductions[0], totals[0], i)
+    methods = _methods(reductions, "finish_acceleration")
+    lines = (
+        f"a = add(a, method_{place}(reductions[{place}], totals[{place}], i))" for place in methods
+    )
+    return unrolled(
+        "reductions, totals, i", "a = zero_like(i.position)", *lines, "return a",
+        add=add, zero_like=zero_like, **_named(methods),
     )
 
 
@@ -354,19 +324,16 @@ def finish_value(reductions, totals, i, kernel, k, written):
 
 @overload(finish_value)
 def _typed_finish_value(reductions, totals, i, kernel, k, written):
-    if len(reductions) == 0:
-        return lambda reductions, totals, i, kernel, k, written: None
-    finish = method_of(reductions[0], "finish_value")
-    if finish is None:
-        return lambda reductions, totals, i, kernel, k, written: finish_value(
-            reductions[1:], totals[1:], i, kernel, k, written[1:]
-        )
-
-    def store(reductions, totals, i, kernel, k, written):
-        _store(written[0], k, finish(reductions[0], totals[0], i, kernel))
-        finish_value(reductions[1:], totals[1:], i, kernel, k, written[1:])
-
-    return store
+    methods = _methods(reductions, "finish_value")
+    lines = (
+        f"store(written[{place}], k, "
+        f"method_{place}(reductions[{place}], totals[{place}], i, kernel))"
+        for place in methods
+    )
+    return unrolled(
+        "reductions, totals, i, kernel, k, written", *lines, "return",
+        store=_store, **_named(methods),
+    )
 
 
 def _store(arrays, k, value):

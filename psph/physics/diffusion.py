@@ -2,9 +2,9 @@
 
 from typing import Annotated, NamedTuple
 
-from numba.extending import register_jitable
 from pydantic import Field
 
+from psph.jit import register_jitable
 from psph.physics.viscosity import SINGULARITY
 from psph.vectors import dot
 

@@ -4,8 +4,9 @@ from itertools import product
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba.extending import overload, register_jitable
 from pydantic import Field
+
+from psph.jit import overload, register_jitable, unrolled
 
 CORES = (1.6, 1.6, 1.3228)
 """Range of the repelling core in spacings, in 1D, 2D and 3D."""
@@ -79,11 +80,8 @@ def _smooth(curvatures, weights, r2):
 
 @overload(_smooth)
 def _typed_smooth(curvatures, weights, r2):
-    if len(curvatures) == 1:
-        return lambda curvatures, weights, r2: _part(curvatures[0], weights[0], r2)
-    return lambda curvatures, weights, r2: (
-        _part(curvatures[0], weights[0], r2) + _smooth(curvatures[1:], weights[1:], r2)
-    )
+    parts = (f"part(curvatures[{n}], weights[{n}], r2)" for n in range(len(curvatures)))
+    return unrolled("curvatures, weights, r2", f"return {' + '.join(parts)}", part=_part)
 
 
 @register_jitable

@@ -3,9 +3,9 @@
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from pydantic import Field
 
+from psph.jit import register_jitable
 from psph.simd import where
 from psph.smoothing import first_moment, weight
 from psph.vectors import add, dot, scale, zero_like

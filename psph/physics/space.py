@@ -4,9 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba.core import types
-from numba.extending import overload
 
-from psph.jit import call_by_type
+from psph.jit import call_by_type, overload, tuple_of, unrolled
 from psph.simd import lanes_of, steps_between
 from psph.vectors import nearest_image, subtract
 
@@ -64,7 +63,7 @@ class FixedPoint(NamedTuple):
 
     def difference(self, i, j, records, k):
         """x_i − x_j to the nearest image, m."""
-        return steps_each(records, k, np.uint64(0), j.position, self.units)
+        return steps_each(records, k, j.position, self.units)
 
 
 def fixed_point(smoothing_length: float, periods) -> FixedPoint:
@@ -74,17 +73,20 @@ def fixed_point(smoothing_length: float, periods) -> FixedPoint:
     return FixedPoint(tuple(float(r / STEPS) for r in ranges))
 
 
-def steps_each(records, k, d, positions, units):
-    """Differences from axis d on."""
-    own = records[k, d : d + len(units)].view(np.int32)
+def steps_each(records, k, positions, units):
+    """Differences along each axis."""
+    own = records[k, : len(units)].view(np.int32)
     steps = own - np.array(positions, np.float32).view(np.int32)  # wraps around
     return tuple(float(n) * unit for n, unit in zip(steps, units))
 
 
 @overload(steps_each)
-def _typed_steps_each(records, k, d, positions, units):
-    if len(units) == 0:
-        return lambda records, k, d, positions, units: ()
-    return lambda records, k, d, positions, units: (
-        steps_between(records, k, d, positions[0], units[0]),
-    ) + steps_each(records, k, d + np.uint64(1), positions[1:], units[1:])
+def _typed_steps_each(records, k, positions, units):
+    parts = (
+        f"steps_between(records, k, axes[{d}], positions[{d}], units[{d}])"
+        for d in range(len(units))
+    )
+    return unrolled(
+        "records, k, positions, units", f"return {tuple_of(parts)}", steps_between=steps_between,
+        axes=tuple(np.arange(len(units), dtype=np.uint64)),
+    )

@@ -5,9 +5,9 @@ Each stores ũ − u as ``transport``, from the sums of the pass before.
 
 from typing import Annotated, NamedTuple
 
-from numba.extending import register_jitable
 from pydantic import Field
 
+from psph.jit import register_jitable
 from psph.vectors import add, dot, scale, subtract, zero_like
 
 HALF_STEP = 0.125

@@ -2,9 +2,9 @@
 
 from typing import Annotated, NamedTuple
 
-from numba.extending import register_jitable
 from pydantic import Field
 
+from psph.jit import register_jitable
 from psph.vectors import add, dot, times
 
 SINGULARITY = 0.01

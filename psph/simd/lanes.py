@@ -12,11 +12,9 @@ import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import (
-    intrinsic, lower_builtin, models, overload, register_model,
-)
+from numba.extending import intrinsic, lower_builtin, models, register_model
 
-from psph.jit import register_bits
+from psph.jit import overload, register_bits, tuple_of, unrolled
 
 WIDTH = register_bits() // 64
 """Doubles of a register."""
@@ -209,9 +207,8 @@ def spread(value, table):
 @overload(spread)
 def _typedspread_number(value, table):
     if isinstance(value, types.BaseTuple):
-        if len(value) == 0:
-            return lambda value, table: ()
-        return lambda value, table: (spread(value[0], table),) + spread(value[1:], table)
+        parts = (f"spread(value[{d}], table)" for d in range(len(value)))
+        return unrolled("value, table", f"return {tuple_of(parts)}", spread=spread)
     return lambda value, table: _spread_number(value, table)
 
 

@@ -2,8 +2,9 @@
 
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic, overload, register_jitable
+from numba.extending import intrinsic
 
+from psph.jit import overload, register_jitable, tuple_of, unrolled
 from psph.simd.lanes import Lanes
 
 
@@ -17,9 +18,8 @@ def _on_each(function):
     def typed(value):
         if not isinstance(value, types.BaseTuple):
             return lambda value: function(value)
-        if len(value) == 0:
-            return lambda value: ()
-        return lambda value: (each(value[0]),) + each(value[1:])
+        parts = (f"each(value[{d}])" for d in range(len(value)))
+        return unrolled("value", f"return {tuple_of(parts)}", each=each)
 
     return each
 
