@@ -24,7 +24,8 @@ class Foreign(NamedTuple):
 view = ParticleView(position=(np.zeros(3),), rest_density=1.0, sound_speed=1.0)
 for state in (Linear(), Foreign()) if "foreign" in sys.argv else (Linear(),):
     pressure = np.zeros(3)
-    state_of(0, 3, state, view, np.full(3, 2.0), np.zeros(3), pressure)
+    kind = np.zeros(3, np.uint8)
+    state_of(0, 3, (), state, view, kind, np.full(3, 2.0), np.zeros(3), pressure)
     print(pressure[0])
 print(sum(state_of.stats.cache_hits.values()), "from the cache")
 """

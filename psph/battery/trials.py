@@ -12,10 +12,12 @@ CONTROLS: dict[str, tuple[str, ...]] = {
     "no potential": ("physics.pair_potential=0",),
     "no shift": ("physics.position_shift=0",),
     "no floor": ("physics.tension_floor=off",),
+    "no impact": ("physics.impact_damping=0",),
     "cubic 1.3": ("scheme=sph", "space.smoothing=1.3"),
     "surface 1.3": ("scheme=ssph", "space.smoothing=1.3", "physics.free_surface=0.9"),
     "bare 1.2": (
         "space.smoothing=1.2", "physics.pair_potential=0", "physics.pair_damping=0",
+        "physics.impact_damping=0",
         "physics.density_diffusion=0", "physics.position_shift=0", "physics.tension_floor=0.01",
     ),
 }
@@ -208,6 +210,7 @@ BATTERY = (
     Trial(
         "particle thrown at a wall", "thrown", "speed", 200.0, 0.2, 0.2,
         holds=(Bound("speed", most=1.1),), goals=(Bound("late_speed", most=20.0),),
+        fails=("no impact",),
     ),
 )
 """Everything; lengths are such that a laptop takes the better part of an hour."""

@@ -13,6 +13,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.pressure_gradient": "symmetric",
         "physics.density_diffusion": 0.1,
         "physics.pair_damping": 0.02,
+        "physics.impact_damping": 2.0,
         "physics.pair_potential": 0.008,
         "physics.position_shift": 0.1,
         "physics.tension_floor": 0.98,

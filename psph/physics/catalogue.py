@@ -18,7 +18,9 @@ from psph.physics.state import Linear, Tait
 from psph.physics.stress import ArtificialStress
 from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
-from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity, PairDamping
+from psph.physics.viscosity import (
+    ArtificialViscosity, ImpactDamping, LaminarViscosity, PairDamping,
+)
 
 
 class Entry(NamedTuple):
@@ -44,6 +46,7 @@ CATALOGUE = (
     Entry("walls.*.no_slip", NoSlip),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.pair_damping", PairDamping),
+    Entry("physics.impact_damping", ImpactDamping),
     Entry("physics.riemann_dissipation", RiemannDissipation),
     Entry("physics.conservative_smoothing", ConservativeSmoothing),
     Entry("physics.pair_potential", PairPotential),

@@ -241,6 +241,11 @@ limit_density = _limit_by("limit_density")
 """(effects, i, rho) → ρ of a fluid particle after every effect that bounds it, kg/m^d."""
 limit_wall_density = _limit_by("limit_wall_density")
 """(effects, i, rho) → the same in a wall, kg/m^d."""
+bearing_density = _limit_by("bearing_density")
+"""(effects, i, rho) → ρ that gives a wall its pressure, kg/m^d."""
+
+OF_A_PARTICLE = ("displacement", "limit_density", "limit_wall_density", "bearing_density")
+"""Methods that are called for a particle by itself, in kick, drift and the equation of state."""
 
 
 # A reduction is an effect with a sum of its own: start -> gather, gather, ... -> finish.

@@ -42,9 +42,10 @@ class FreeSurface(NamedTuple):
 class TensionFloor(NamedTuple):
     """Water that is torn apart holds no more tension than this, and walls hold none.
 
-    ρ_i ≥ f ρ₀_i in the fluid, ρ_i ≥ ρ₀_i in walls: below, the density is set to it.  Where a fluid
-    has a free surface a splash would otherwise be held together, or pulled to a wall, by
-    pressures that water does not bear.
+    ρ_i ≥ f ρ₀_i: below, the density is set to it.  The pressure of a wall is that of max(ρ_i, ρ₀_i),
+    while its density stays what the water makes it: raised to ρ₀, it would feed the water by
+    diffusion.  Where a fluid has a free surface a splash would otherwise be held together, or
+    pulled to a wall, by pressures that water does not bear.
     """
 
     least: Annotated[
@@ -60,9 +61,11 @@ class TensionFloor(NamedTuple):
         return self if scene.has_free_surface else None
 
     def limit_density(self, i, rho):
-        """ρ or its floor in the fluid, kg/m^d."""
+        """ρ or its floor, kg/m^d."""
         return max(rho, self.least * i.rest_density)
 
-    def limit_wall_density(self, i, rho):
-        """ρ or its floor in a wall, kg/m^d."""
+    limit_wall_density = limit_density
+
+    def bearing_density(self, i, rho):
+        """ρ that a wall's pressure is taken from, kg/m^d."""
         return max(rho, i.rest_density)

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from psph.physics.compose import Pair, ParticleView, components
+from psph.physics.compose import OF_A_PARTICLE, Pair, ParticleView, components
 
 
 class Reads(NamedTuple):
@@ -61,8 +61,6 @@ def _call_all(effect, i, j, pair, kernel) -> None:
             effect.finish_value(total, i, kernel)
     if hasattr(effect, "body"):
         effect.body(i)
-    if hasattr(effect, "displacement"):
-        effect.displacement(i, 1.0)
-    for name in ("limit_density", "limit_wall_density"):
+    for name in OF_A_PARTICLE:
         if hasattr(effect, name):
             getattr(effect, name)(i, 1.0)

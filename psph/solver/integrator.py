@@ -14,9 +14,11 @@ sound on a lattice has ωΔt = 1.0 to 1.1 CFL for most kernels, 1.44 for Wendlan
 
 import numpy as np
 
-from psph.jit import compiled
+from psph.jit import compiled, register_jitable
 from psph.particles.fields import FLUID
-from psph.physics.compose import displacement, limit_density, limit_wall_density, take
+from psph.physics.compose import (
+    bearing_density, displacement, limit_density, limit_wall_density, take,
+)
 from psph.physics.state import pressure as state_pressure
 from psph.vectors import add, at, dot, put, scale
 
@@ -46,7 +48,7 @@ def kick_drift_predict(
         else:
             rho = limit_wall_density(effects, i, rho)
         specific_volume[k] = 1.0 / rho
-        pressure[k] = state_pressure(state, rho, i.rest_density, i.sound_speed)
+        pressure[k] = _pressure(effects, state, i, rho, kind[k])
 
 
 @compiled
@@ -61,12 +63,19 @@ def fastest_shift(first, last, effects, view, kind):
 
 
 @compiled
-def state_of(first, last, state, view, density, specific_volume, pressure):
+def state_of(first, last, effects, state, view, kind, density, specific_volume, pressure):
     """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         specific_volume[k] = 1.0 / density[k]
-        pressure[k] = state_pressure(state, density[k], i.rest_density, i.sound_speed)
+        pressure[k] = _pressure(effects, state, i, density[k], kind[k])
+
+
+@register_jitable
+def _pressure(effects, state, i, rho, kind):
+    """Pressure of a particle of density ``rho``, Pa."""
+    bearing = rho if kind == FLUID else bearing_density(effects, i, rho)
+    return state_pressure(state, bearing, i.rest_density, i.sound_speed)
 
 
 @compiled

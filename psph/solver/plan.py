@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from psph.case.parameters import as_numbers
 from psph.particles.fields import FIELDS
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
-from psph.physics.compose import ParticleView
+from psph.physics.compose import OF_A_PARTICLE, ParticleView
 from psph.physics.space import Metres, fixed_point
 from psph.physics.trial import Reads, UnknownField, reads
 
@@ -159,8 +159,7 @@ def make_plan(scene) -> Plan:
 
 def _carries(call: Called) -> bool:
     """Whether an effect has a part in kick and drift."""
-    parts = ("displacement", "limit_density", "limit_wall_density")
-    return any(hasattr(call.effect, name) for name in parts)
+    return any(hasattr(call.effect, name) for name in OF_A_PARTICLE)
 
 
 def _refuse_unwritten(called, written: tuple[str, ...]) -> None:

@@ -96,8 +96,8 @@ class Simulation:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store
         state_of(
-            s.low, s.low + s.owned, self.plan.state, self._view(), s["density"],
-            s["specific_volume"], s["pressure"],
+            s.low, s.low + s.owned, self.plan.carriers, self.plan.state, self._view(), s.kind,
+            s["density"], s["specific_volume"], s["pressure"],
         )
 
     def _start(self) -> None:

@@ -90,6 +90,7 @@ def rates(effects, reductions, k, periods, particles, a, b):
         compose.finish_acceleration(reductions, totals, i),
         compose.limit_density(effects, i, 987.0),
         compose.limit_wall_density(effects, i, 987.0),
+        compose.bearing_density(effects, i, 987.0),
         compose.displacement(effects, i, 1e-4),
         stored(reductions, totals, i, k),
     )

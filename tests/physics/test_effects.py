@@ -28,7 +28,7 @@ from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
 from psph.physics.trial import UnknownField, reads
 from psph.physics.viscosity import (
-    ArtificialViscosity, CorrectedViscosity, LaminarViscosity, PairDamping,
+    ArtificialViscosity, CorrectedViscosity, ImpactDamping, LaminarViscosity, PairDamping,
 )
 from psph.smoothing import first_moment, kernel
 
@@ -370,6 +370,18 @@ def test_pair_damping_acts_on_approaching_and_parting_pairs_alike(dim):
     assert there == pytest.approx(-back, rel=1e-13) and there != 0.0
 
 
+def test_impact_damping_acts_on_fast_approach_alone():
+    p = view()
+    i, j, pair = pair_of(p, 0, 1)
+    onset = 0.5 * i.sound_speed  # above that of the effect
+
+    def push(speed):
+        return ImpactDamping(2.0).radial(i, j, pair._replace(u_dot_x=speed * pair.r2 / H))
+
+    assert push(onset) == push(-0.15 * i.sound_speed) == 0.0
+    assert push(-4.0 * onset) > 4.0 * push(-2.0 * onset) > 0.0  # x_ij points away from j
+
+
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_corrected_gradients_are_exact_for_linear_fields(dim):
     effect, p = GradientCorrection(0.01), patch(dim, jitter=0.2)
@@ -480,7 +492,7 @@ def test_the_correction_fades_where_neighbours_are_missing(dim):
     "effect",
     [
         SymmetricPressure, LaminarViscosity, ArtificialViscosity, BackgroundPressure,
-        GradientCorrection, CorrectedViscosity, PairDamping, NeighbourStress, RiemannDissipation,
+        GradientCorrection, CorrectedViscosity, ImpactDamping, PairDamping, NeighbourStress, RiemannDissipation,
         TransportVelocity, GeneralisedTransportVelocity,
     ],
 )
@@ -576,7 +588,8 @@ def coefficient(potential, x):
 def test_a_floor_on_tension_for_water_and_for_walls():
     floor, i = TensionFloor(0.98), pair_of(view(), 0, 1)[0]
     assert [floor.limit_density(i, rho) for rho in (900.0, 985.0, 1001.0)] == [980.0, 985.0, 1001.0]
-    assert [floor.limit_wall_density(i, rho) for rho in (985.0, 1001.0)] == [1000.0, 1001.0]
+    assert [floor.limit_wall_density(i, rho) for rho in (900.0, 985.0)] == [980.0, 985.0]
+    assert [floor.bearing_density(i, rho) for rho in (985.0, 1001.0)] == [1000.0, 1001.0]
 
 
 def test_a_position_shift_sees_the_surface_and_what_crowds():
