@@ -140,7 +140,7 @@ def _begin(scene, plan, comm, folder: Path, saved: Saved | None) -> tuple[Simula
         return simulation, Record(scene, simulation, folder)
     particles = listed_particles(scene, plan, saved)
     simulation = Simulation(scene, plan, particles, comm, Ledger(), saved)
-    return simulation, Record(scene, simulation, folder, saved.header["record"])
+    return simulation, Record(scene, simulation, folder, saved)
 
 
 def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: Path) -> None:
