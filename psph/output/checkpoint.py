@@ -3,6 +3,7 @@
     psph checkpoint <bytes> <sha256>       a line, in the user block that HDF5 leaves alone
     {"format": 1, "psph": ..., ...}        the header, so many bytes of JSON
     /particles/position ...                a dataset a field, one row a particle
+    /frames                                what brings the frames' file back (`structure.py`)
 
 Nothing of the file is trusted before it is checked: the header by its SHA-256; all else that is no
 particle (what HDF5 itself keeps there: a flipped bit in it may hang HDF5) by a SHA-256 in the
@@ -32,13 +33,13 @@ from psph.output import rows as hdf5
 from psph.output.errors import cause, together
 from psph.parallel.reductions import wrapped_sums
 
-FORMAT = 2
+FORMAT = 3
 """Number of this form of a file; another one is refused."""
 
 KEPT = 2
 """Checkpoints that stay in a folder: the newest, and one before it."""
 
-GROUP = "particles"
+GROUP, FRAMES = "particles", "frames"
 _FIRST_LINE = re.compile(rb"psph checkpoint (\d{1,6}) ([0-9a-f]{64})\n")
 _LONGEST_LINE = 100
 _ROOM = 4096
@@ -72,12 +73,14 @@ def remove_checkpoints(folder: Path, after: int = -1) -> None:
         path.unlink()
 
 
-def write(path: Path, comm, arrays: dict[str, np.ndarray], header: dict[str, Any]) -> None:
+def write(
+    path: Path, comm, arrays: dict[str, np.ndarray], header: dict[str, Any], frames: bytes = b""
+) -> None:
     """Write a checkpoint; older ones stay whole until it is on the disk, ``KEPT`` in all stay.
 
     ``arrays`` are the rows of this rank, ``(n,)`` or ``(n, k)``, of 8 bytes or 1 a number, those
-    of all ranks one after another; ``header`` goes into JSON on rank 0.  Collective; raises
-    OutputError on every rank.
+    of all ranks one after another; ``header`` goes into JSON, ``frames`` as it is, both on rank 0.
+    Collective; raises OutputError on every rank.
     """
     path, fresh = Path(path), Path(f"{path}.new")
     counts = comm.allgather(len(arrays["id"]))
@@ -92,7 +95,7 @@ def write(path: Path, comm, arrays: dict[str, np.ndarray], header: dict[str, Any
     try:
         with together(comm, path):
             if comm.rank == 0:
-                room = _lay_out(fresh, shapes, rows, header)
+                room = _lay_out(fresh, shapes, rows, header, frames)
         with together(comm, path):
             hdf5.fill(fresh, comm, rows, counts)
         with together(comm, path):
@@ -109,15 +112,16 @@ def write(path: Path, comm, arrays: dict[str, np.ndarray], header: dict[str, Any
             fresh.unlink(missing_ok=True)
 
 
-def _lay_out(path: Path, shapes: dict, rows: dict, header: dict) -> int:
+def _lay_out(path: Path, shapes: dict, rows: dict, header: dict, frames: bytes) -> int:
     """A file with empty datasets; returns the bytes before that of HDF5: a power of two."""
     wanted = _LONGEST_LINE + len(json.dumps(header)) + _ROOM
     room = 1 << max(9, (wanted - 1).bit_length())
     path.unlink(missing_ok=True)
     path.touch()
-    hdf5.reserve(path, room + hdf5.MARGIN + hdf5.size_of(shapes, rows))
+    hdf5.reserve(path, room + hdf5.MARGIN + len(frames) + hdf5.size_of(shapes, rows))
     with hdf5.open_file(path, "w", userblock_size=room, libver="v110") as file:
         hdf5.create_datasets(file, shapes, rows)
+        file[FRAMES] = np.frombuffer(frames, np.uint8)
     return room
 
 
@@ -125,7 +129,7 @@ def _seal(path: Path, room: int, header: dict) -> None:
     """Put the header at the front of the filled file, and have all of it on the disk."""
     with hdf5.open_file(path, "r") as file:
         datasets = file[GROUP]
-        places = {n: [d.id.get_offset(), d.id.get_storage_size()] for n, d in datasets.items()}
+        places = {name: hdf5.place_of(dataset) for name, dataset in datasets.items()}
     with open(path, "r+b") as file:
         size = os.fstat(file.fileno()).st_size
         header = header | {"size": size, "room": room, "places": places}
@@ -168,6 +172,15 @@ class Saved:
     def state(self) -> dict[str, Any]:
         """What the simulation had beside its particles."""
         return self.header["state"]
+
+    def frames(self) -> bytes:
+        """What brings the frames' file back to what it was, on rank 0; collective."""
+
+        def read() -> bytes:
+            with hdf5.open_file(self.path, "r") as file:
+                return file[FRAMES][:].tobytes()
+
+        return self._agreed(lambda: read() if self.comm.rank == 0 else b"")
 
     def share(self, *names: str) -> list[np.ndarray]:
         """Rows of these datasets: about as many for each rank, in the order of the file."""

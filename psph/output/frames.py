@@ -1,8 +1,8 @@
 """All frames of a run in one HDF5 file, written by all ranks at once.
 
 Rank 0 alone lays a frame out (names, shapes, attributes: about a millisecond), all ranks fill it
-together, rank 0 puts the time on it.  So a frame with a time is whole, and a run that is killed
-leaves a file that opens.
+together, rank 0 puts the time on it.  So a frame with a time is whole.  A run that is killed in the
+millisecond of the layout may leave a file that does not open; a checkpoint brings it back.
 """
 
 import math
@@ -13,6 +13,7 @@ import numpy as np
 
 from psph.output import rows as hdf5
 from psph.output.errors import together
+from psph.output.structure import Place, copied, put_back
 from psph.output.xdmf import XdmfIndex
 from psph.particles.fields import FIELDS
 
@@ -36,15 +37,17 @@ class FrameFile:
     """The frames of a run: ``/frames/00000/position`` and so on, one row a particle.
 
     Open only while a frame is written: it can be read during the run.  Created anew here; or, with
-    ``kept``, the file of a run that goes on, which has so many frames: later ones are taken out.
+    ``kept``, the :meth:`structure` of then, the file of a run that goes on: as it was, in whatever
+    state it is now.
     ``attributes`` (numbers and text, such as the case) go to the root of the file.
     All methods are collective over ``comm`` and raise OutputError on every rank.
     """
 
-    def __init__(self, path: Path, comm, attributes: dict, kept: int | None = None):
+    def __init__(self, path: Path, comm, attributes: dict, kept: bytes | None = None):
         self.path, self.comm = Path(path), comm
         self._index = XdmfIndex(self.path)
         self._connected: set[int] = set()
+        self._places: list[Place] = []
         with together(comm, self.path):
             if comm.rank == 0 and kept is None:
                 self._create(attributes)
@@ -83,6 +86,11 @@ class FrameFile:
             if self.comm.rank == 0:
                 hdf5.sync(self._index.path)
 
+    def structure(self) -> bytes:
+        """All of the file but the numbers, on rank 0: with it they can be found again."""
+        with together(self.comm, self.path):
+            return copied(self.path, self._places) if self.comm.rank == 0 else b""
+
     def _rows(self, frame: str, arrays: dict, first: int, total: int) -> dict[str, np.ndarray]:
         """What this rank writes, by the name in the file; the same names on every rank."""
         count, dimensions = arrays["position"].shape
@@ -108,23 +116,24 @@ class FrameFile:
             file.create_group("frames")
         os.replace(fresh, self.path)
 
-    def _reopen(self, attributes: dict, kept: int) -> None:
-        """Take out the frames from number ``kept`` on; know the others."""
+    def _reopen(self, attributes: dict, kept: bytes) -> None:
+        """Take out what came after ``kept``, and know the frames of then."""
+        put_back(self.path, kept)
+        hdf5.reserve(self.path, hdf5.MARGIN + len(str(attributes)))
         with hdf5.open_file(self.path, "r+") as file:
             file.attrs.update(attributes)
-            frames, orders = file.require_group("frames"), file.require_group("connectivity")
-            for name in [name for name in frames if int(name) >= kept]:
-                del frames[name]
-            listed = [_found(file, f"frames/{k:05d}") for k in range(kept)]
-            self._connected = {kinds[f"{frame}/position"][0][0] for frame, _, kinds in listed}
-            for name in [name for name in orders if int(name) not in self._connected]:
-                del orders[name]
+            listed = [_found(file, f"frames/{name}") for name in sorted(file["frames"], key=int)]
+            orders = file.get("connectivity", {})
+            self._connected = {int(name) for name in orders}
+            self._places = [hdf5.place_of(dataset) for dataset in orders.values()]
+            for frame, _, _ in listed:
+                self._places += [hdf5.place_of(dataset) for dataset in file[frame].values()]
         self._index.restore(listed)
 
     def _lay_out(self, frame: str, step: int, shapes: dict, rows: dict) -> None:
         hdf5.reserve(self.path, hdf5.MARGIN + hdf5.size_of(shapes, rows))
         with hdf5.open_file(self.path, "r+") as file:
-            hdf5.create_datasets(file, shapes, rows)
+            self._places += hdf5.create_datasets(file, shapes, rows)
             for name in shapes:
                 unit, meaning = _describe(name)
                 file[name].attrs.update(unit=unit, meaning=meaning)

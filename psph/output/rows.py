@@ -62,16 +62,28 @@ def size_of(shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> int:
     return sum(math.prod(shape) * rows[name].itemsize for name, shape in shapes.items())
 
 
-def create_datasets(file, shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> None:
-    """Datasets of these ``shapes``, contiguous, with the types of ``rows``; rank 0 alone."""
+def create_datasets(
+    file, shapes: dict[str, tuple], rows: dict[str, np.ndarray]
+) -> list[tuple[int, int]]:
+    """Datasets of these ``shapes``, contiguous, with the types of ``rows``; rank 0 alone.
+
+    Returns where their numbers will lie.
+    """
     import h5py
 
     # Space is taken now, so that filling changes nothing of the structure of the file.
     taken = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     taken.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
     taken.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
-    for name, shape in shapes.items():
-        file.create_dataset(name, shape, rows[name].dtype, dcpl=taken)
+    return [
+        place_of(file.create_dataset(name, shape, rows[name].dtype, dcpl=taken))
+        for name, shape in shapes.items()
+    ]
+
+
+def place_of(dataset) -> tuple[int, int]:
+    """First byte and number of bytes of a contiguous dataset in its file."""
+    return dataset.id.get_offset() or 0, dataset.id.get_storage_size()
 
 
 def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> None:

@@ -3,6 +3,7 @@
 import csv
 import os
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from psph.output.errors import OutputError, cause, together
@@ -40,6 +41,8 @@ class CsvTable:
             self._rows.writerow(values)
             self._file.flush()
         except OSError as error:
+            with suppress(OSError):  # it tries once more to write what it holds
+                self.close()
             raise OutputError(
                 f"{self.path}: cannot be written: {cause(error)}; see to the free space"
             ) from error
@@ -54,8 +57,8 @@ class CsvTable:
     def close(self) -> None:
         """End the file; a second call does nothing."""
         if self._file is not None:
-            self._file.close()
-            self._file = None
+            file, self._file = self._file, None
+            file.close()
 
 
 def _cut(path: Path, size: int) -> None:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
 from psph.particles.cells import COLUMNS_PER_CUTOFF, make_grid
 from psph.particles.fields import FIELDS
@@ -24,7 +25,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     counts = scene.counts()
     particles = int(counts.sum())
     yield from _scene_lines(scene, particles)
-    yield from _rank_lines(scene, plan, particles, ranks)
+    yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
     yield from outlook(scene, plan)
@@ -45,6 +46,13 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     own += own / SPARE + record + SORTING + NUMBER * _cells_per_particle(scene)
     entries = _within(scene, _cutoff(scene)) + (plan.space.filling.multiple - 1) / 2
     return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+
+
+def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
+    """Memory of the particles, ghosts and lists of one of so many ranks, bytes."""
+    own, listed = bytes_per_particle(scene, plan)
+    share = float(scene.counts().sum()) / ranks
+    return own * (share + _neighbours(scene, ranks) * _ghosts_a_side(scene)) + listed * share
 
 
 def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
@@ -112,19 +120,23 @@ def _preset_lines(case) -> Iterator[str]:
                 yield f"              {key} = {value}"
 
 
-def _rank_lines(scene, plan: Plan, particles: int, ranks: int) -> Iterator[str]:
+def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
     planes = slab_planes(scene)
     check_ranks(ranks, planes)
     own, listed = bytes_per_particle(scene, plan)
-    ghosts = _neighbours(scene, ranks) * _ghosts_a_side(scene)
-    memory = (own * (particles / ranks + ghosts) + listed * particles / ranks) / 2**20
+    memory, free = bytes_of_rank(scene, plan, ranks), free_memory()
     each, sent = bytes_per_refresh(scene, plan, ranks)
     along = "xyz"[scene.axis]
     yield f"  ranks       {ranks}, at most {planes}: that many planes of cells along {along}"
     yield (
-        f"  memory      about {memory:.1f} MiB a rank, {own + listed:.0f} bytes a particle, "
+        f"  memory      about {memory / 2**20:.1f} MiB a rank, {own + listed:.0f} bytes a particle, "
         f"{listed:.0f} of them in its neighbour list"
     )
+    if ranks * memory > free:
+        yield (
+            f"              a run on this machine is refused: {ranks * memory / 2**30:.1f} GiB, and "
+            f"{free / 2**30:.1f} GiB are free"
+        )
     yield f"  arrays      {', '.join(plan.arrays)}"
     shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
     yield f"  shared      {shared}"

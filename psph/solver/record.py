@@ -10,6 +10,7 @@ from psph.jit import processor
 from psph.case.tables import AXES
 from psph.output import diagnostics
 from psph.output.accuracy import Accuracy
+from psph.output.checkpoint import Saved
 from psph.output.errors import together
 from psph.output.frames import FrameFile
 from psph.output.probes import Front, Probe
@@ -44,10 +45,10 @@ def probes_of(case) -> list[Probe | Front]:
 class Record:
     """The files of a run in ``folder``; every method is collective.
 
-    ``kept`` is the state of the record of a run that goes on: what was written later is taken out.
+    ``saved`` is where a run goes on from: what was written later is taken out.
     """
 
-    def __init__(self, scene, simulation: Simulation, folder: Path, kept: dict | None = None):
+    def __init__(self, scene, simulation: Simulation, folder: Path, saved: Saved | None = None):
         case, comm = scene.case, simulation.comm
         self.simulation, self.kernel = simulation, scene.kernel
         effects = simulation.plan.effects
@@ -64,8 +65,9 @@ class Record:
                 "dimensions": scene.dimensions,
                 "spacing": scene.spacing,
             },
-            kept and kept["written"],
+            saved and saved.frames(),
         )
+        kept = saved and saved.header["record"]
         sizes = kept["sizes"] if kept else {}
         self.written = 0
         self.probes = probes_of(case)

@@ -37,13 +37,15 @@ def write_checkpoint(simulation: Simulation, record: Record, case, folder: Path)
     path = checkpoint_path(folder, simulation.steps)
     store = simulation.store
     with simulation.ledger("output"):
+        kept = record.state()  # first: it has the frames on the disk
         checkpoint.write(
             path, simulation.comm,
             {name: store.shown(name) for name in ("id", "kind", *store.rows)},
             {
                 "case": case_digest(case), "name": case.name,
-                "state": simulation.state(), "record": record.state(),
+                "state": simulation.state(), "record": kept,
             },
+            record.frames.structure(),
         )
     return path
 

@@ -24,6 +24,7 @@ from psph.solver.plan import make_plan
 from psph.solver.post_mortem import remove_post_mortem
 from psph.solver.record import Record
 from psph.solver.resume import listed_particles, take_up, write_checkpoint
+from psph.solver.room import check_memory
 from psph.solver.setup import compile_ahead, create_particles
 from psph.solver.step import Simulation
 from psph.solver.watch import Call, Stopped, Watch
@@ -51,8 +52,8 @@ def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = Non
     """Simulate ``case`` on the ranks of ``comm`` and leave the files in ``folder``.
 
     ``say`` takes each line that is worth saying, on every rank; else rank 0 prints them, and shows
-    how far the run is.  Raises CaseError, TooManyRanks, BlowUp, OutputError or Stopped, each on
-    every rank.
+    how far the run is.  Raises CaseError, TooManyRanks, TooLittleMemory, BlowUp, OutputError or
+    Stopped, each on every rank.
     """
     with Watch(case.checkpoint) as watch:
         scene = Scene(case)
@@ -90,8 +91,9 @@ def _simulate(
     check_ranks(comm.size, slab_planes(scene))
     particles = int(scene.counts().sum())
     check_room(particles, comm.size)
-    prepare()
     plan = make_plan(scene)
+    check_memory(scene, plan, comm)
+    prepare()
     say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")
     for line in filter(None, [funnel_notice(comm)]):
         say(line)
@@ -140,7 +142,7 @@ def _begin(scene, plan, comm, folder: Path, saved: Saved | None) -> tuple[Simula
         return simulation, Record(scene, simulation, folder)
     particles = listed_particles(scene, plan, saved)
     simulation = Simulation(scene, plan, particles, comm, Ledger(), saved)
-    return simulation, Record(scene, simulation, folder, saved.header["record"])
+    return simulation, Record(scene, simulation, folder, saved)
 
 
 def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: Path) -> None:

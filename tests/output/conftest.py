@@ -4,7 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-ALONE = SimpleNamespace(rank=0, size=1, allgather=lambda value: [value])
+ALONE = SimpleNamespace(
+    rank=0, size=1, allgather=lambda value: [value], bcast=lambda value: value
+)
 """One rank, without MPI."""
 
 

@@ -92,8 +92,8 @@ def test_another_case_version_or_format_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(psph, "__version__", "99.1")
     assert "go on with the psph that wrote it" in objection(path)
     monkeypatch.undo()
-    monkeypatch.setattr(checkpoint, "FORMAT", 3)
-    assert "(format 2), this is psph" in objection(path)
+    monkeypatch.setattr(checkpoint, "FORMAT", checkpoint.FORMAT + 1)
+    assert f"(format {checkpoint.FORMAT - 1}), this is psph" in objection(path)
 
 
 def test_two_stay_and_what_is_left_of_a_broken_write_goes(tmp_path):

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -95,6 +96,20 @@ def test_what_was_written_after_the_checkpoint_is_written_again(whole, tmp_path)
     older = checkpoints(folder)[1]
     with open(folder / "log.csv", "a") as log:
         log.write("0.3,90,half a li")
+    resume(folder, COMM, chosen=older.name, **QUIET)
+    assert same_files(folder, whole)
+
+
+def test_frames_that_no_longer_open_are_what_they_were(whole, tmp_path):
+    """A rank was killed while HDF5 wrote: of the frames since the checkpoint nothing is known."""
+    folder = copy(whole, tmp_path / "run")
+    older = checkpoints(folder)[1]
+    frames = folder / "box.h5"
+    with open(frames, "r+b") as file:
+        file.write(b"\0" * 2000)
+        file.truncate(frames.stat().st_size - 100)
+    with pytest.raises(OSError):
+        h5py.File(frames)
     resume(folder, COMM, chosen=older.name, **QUIET)
     assert same_files(folder, whole)
 
