@@ -318,7 +318,7 @@ def _complain(said: str) -> None:
 def _trouble_with_output() -> str:
     """Why the standard output takes no more; empty where it does."""
     try:
-        sys.stdout.flush()  # what could not be written is still to be written
+        print(flush=True)  # a line more: what failed may be dropped, so that a flush would succeed
     except OSError as error:
         _send_to_nowhere(sys.stdout)
         if isinstance(error, BrokenPipeError):

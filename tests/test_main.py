@@ -1,6 +1,7 @@
 """The command line as a person meets it: real processes, real mpirun."""
 
 import json
+import signal
 import subprocess
 import sys
 import time
@@ -114,6 +115,19 @@ def test_a_run_that_blows_up_says_so_on_every_number_of_ranks(tmp_path):
         assert job.returncode == 3
         assert job.stderr.count("the run blew up at step") == 1
         assert "time.cfl" in job.stderr
+
+
+def test_an_interrupt_is_one_line_and_code_130(tmp_path):
+    words = [sys.executable, "-m", "psph", CASE, "--out", tmp_path, "--set", "time.end=100"]
+    with subprocess.Popen(
+        words, env=clean_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True,
+    ) as job:
+        while not job.stdout.readline().startswith("first step"):
+            assert job.poll() is None
+        job.send_signal(signal.SIGINT)
+        _, said = job.communicate(timeout=60)
+    assert (job.returncode, said) == (130, "interrupted\n")
 
 
 def shell(command):
