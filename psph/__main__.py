@@ -295,23 +295,52 @@ def _end_all(comm, said: str, code: int):
     A rank that leaves alone would keep the others waiting for ever.
     """
     if comm.rank == 0 and said:
-        print(said, file=sys.stderr, flush=True)
+        _complain(said)
     together = comm.Ibarrier()
     deadline = time.monotonic() + PATIENCE
     while not together.Test():
         if time.monotonic() > deadline:
             if comm.rank != 0:
-                print(f"rank {comm.rank}: {said}", file=sys.stderr, flush=True)
+                _complain(f"rank {comm.rank}: {said}")
             comm.Abort(code)
         time.sleep(0.01)
     sys.exit(code)
 
 
+def _complain(said: str) -> None:
+    """Say it on the standard error; that this cannot be written must not change the exit code."""
+    try:
+        print(said, file=sys.stderr, flush=True)
+    except OSError:
+        _send_to_nowhere(sys.stderr)
+
+
+def _trouble_with_output() -> str:
+    """Why the standard output takes no more; empty where it does."""
+    try:
+        print(flush=True)  # a line more: what failed may be dropped, so that a flush would succeed
+    except OSError as error:
+        _send_to_nowhere(sys.stdout)
+        if isinstance(error, BrokenPipeError):
+            return "nobody reads the output any more"
+        return f"the standard output cannot be written: {error.strerror}"
+    return ""
+
+
+def _send_to_nowhere(stream) -> None:
+    """Let the stream take all that is left in it: Python flushes it once more at the end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
 def guarded(arguments: list[str]) -> None:
     """Run the command line so that whatever ends one rank ends all of them."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # it was closed
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))
     last_words = MPI.COMM_WORLD.Dup()
     try:
         code = main(arguments)
+        sys.stdout.flush()
     except SystemExit as leaving:
         if not leaving.code:
             raise
@@ -321,9 +350,10 @@ def guarded(arguments: list[str]) -> None:
         _end_all(last_words, "interrupted", 130)
     except Foreseen as error:
         _end_all(last_words, str(error), error.exit_code)
-    except BrokenPipeError:
-        _end_all(last_words, "nobody reads the output any more", Failed.exit_code)
-    except BaseException:
+    except BaseException as error:
+        trouble = isinstance(error, OSError) and _trouble_with_output()
+        if trouble:
+            _end_all(last_words, trouble, Failed.exit_code)
         _end_all(last_words, traceback.format_exc(), 1)
     sys.exit(code)
 

@@ -1,6 +1,7 @@
 """The command line as a person meets it: real processes, real mpirun."""
 
 import json
+import signal
 import subprocess
 import sys
 import time
@@ -114,3 +115,51 @@ def test_a_run_that_blows_up_says_so_on_every_number_of_ranks(tmp_path):
         assert job.returncode == 3
         assert job.stderr.count("the run blew up at step") == 1
         assert "time.cfl" in job.stderr
+
+
+def test_an_interrupt_is_one_line_and_code_130(tmp_path):
+    words = [sys.executable, "-m", "psph", CASE, "--out", tmp_path, "--set", "time.end=100"]
+    with subprocess.Popen(
+        words, env=clean_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True,
+    ) as job:
+        while not job.stdout.readline().startswith("first step"):
+            assert job.poll() is None
+        job.send_signal(signal.SIGINT)
+        _, said = job.communicate(timeout=60)
+    assert (job.returncode, said) == (130, "interrupted\n")
+
+
+def shell(command):
+    """A finished line of bash; its code is that of the first command in a pipe that fails."""
+    return subprocess.run(
+        ["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True,
+        env=clean_environment() | {"PSPH": f"{sys.executable} -m psph"}, stdin=subprocess.DEVNULL,
+        timeout=120,
+    )
+
+
+@pytest.mark.parametrize(
+    "command, said",
+    [
+        ("$PSPH schema | true", "nobody reads the output any more"),
+        (f"$PSPH check {CASE} | true", "nobody reads the output any more"),  # buffered to the end
+        ("$PSPH schema >/dev/full", "the standard output cannot be written: No space left on device"),
+        (f"$PSPH {CASE} --out $OUT >/dev/full",
+         "the standard output cannot be written: No space left on device"),
+    ],
+)
+def test_output_that_cannot_be_written_is_one_line_and_code_3(tmp_path, command, said):
+    job = shell(command.replace("$OUT", str(tmp_path)))
+    assert (job.returncode, job.stderr) == (3, f"{said}\n")
+
+
+def test_a_closed_output_stops_nothing(tmp_path):
+    job = shell(f"$PSPH {CASE} --out {tmp_path}/run --set time.end=1e-3 >&- 2>&-")
+    assert job.returncode == 0
+    assert (tmp_path / "run/log.csv").read_text().splitlines()[-1].startswith("0.001")
+
+
+@pytest.mark.parametrize("closed", ("2>&-", "2>/dev/full"))
+def test_a_message_that_cannot_be_written_changes_no_code(closed):
+    assert shell(f"$PSPH check {CASE} --set space.spacing=-1 {closed}").returncode == 2

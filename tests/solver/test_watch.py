@@ -118,6 +118,19 @@ def test_a_signal_to_a_real_job_loses_nothing(box, tmp_path, number, to, ranks):
     assert same_files(folder, whole)
 
 
+@pytest.mark.parametrize("number", ("SIGTERM", "SIGINT"))
+def test_mpirun_that_is_told_to_end_lets_the_ranks_save(box, tmp_path, number):
+    slowly = tmp_path / "slowly.py"
+    slowly.write_text(SLOWLY, encoding="utf-8")
+    folder, patient = tmp_path / "run", {"OMPI_MCA_odls_base_sigkill_timeout": "10"}
+    with started(2, [slowly, box[0], "--out", folder, "--set", LATER], env=patient) as job:
+        begun(folder, 4)
+        os.kill(job.pid, getattr(signal, number))
+        _, said = job.communicate(timeout=60)
+    assert job.returncode == 1  # its own, not that of the ranks
+    assert said.count("stopped by SIGTERM at t = 0.") == 1 and len(checkpoints(folder)) >= 1
+
+
 SLOWLY = """
 import sys, time
 from psph.solver import step
