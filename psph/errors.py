@@ -5,7 +5,8 @@ import re
 UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 """What breaks a line, steers a terminal or is no character: control codes and half characters."""
 
-LONGEST_LINE = 1000
+LONGEST_LINE, LONGEST_QUOTE = 1000, 100
+"""Characters of a message, and of what it repeats of what a person wrote."""
 
 
 def one_line(text: str) -> str:

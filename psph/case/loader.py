@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from psph.case.errors import CaseError, dotted
 from psph.case.profiles import OFF, fill
-from psph.errors import shortened
+from psph.errors import LONGEST_QUOTE, shortened
 
 if TYPE_CHECKING:
     from psph.case.model import Case
@@ -32,9 +32,6 @@ TOO_DEEP_KEY = re.compile(rf"{PART}(?:[ \t]*+\.[ \t]*+{PART}){{{DEEPEST}}}")
 
 LARGEST = 2**63
 """TOML's whole numbers have 64 bits, Python's any number of them."""
-
-LONGEST_QUOTE = 100
-"""Characters that a message repeats of what a person wrote."""
 
 
 class Override(NamedTuple):

@@ -40,9 +40,9 @@ def check(scene: Scene) -> list[str]:
 
 def faults(scene: Scene) -> Iterator[str]:
     """Everything for which the scene cannot be run."""
-    if sizes := list(_size_faults(scene)):
-        yield from (f"{scene.case.file}: {line}" for line in sizes)
-        return
+    for line in _size_faults(scene):
+        yield f"{scene.case.file}: {line}"
+        return  # what follows from it says no more
     places = [
         *_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene), *_exact_faults(scene)
     ]
@@ -89,7 +89,6 @@ def _far_faults(scene: Scene) -> Iterator[str]:
                 f"{key}: places {far:.3g} m away, {far / scene.spacing:.2g} spacings, cannot be told "
                 "apart in double precision; bring them nearer to 0, or make space.spacing larger"
             )
-            return
 
 
 def warnings(scene: Scene) -> Iterator[str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import tomli_w
 
 from psph.case.profiles import OFF
+from psph.errors import LONGEST_QUOTE, shortened
 from psph.study.errors import StudyError
 
 SPACING = "space.spacing"
@@ -51,7 +52,8 @@ def _all(given: Sequence[str]) -> dict[str, list]:
 def _read(text: str) -> tuple[str, list]:
     key, equals, values = text.partition("=")
     if not equals or not key.strip() or not values.strip():
-        raise StudyError(f"study --vary {text}: no key and values; write it as key=value,value")
+        shown = shortened(text, LONGEST_QUOTE)
+        raise StudyError(f"study --vary {shown}: no key and values; write it as key=value,value")
     return key.strip(), [_value(word.strip()) for word in values.split(",")]
 
 

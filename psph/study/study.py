@@ -304,6 +304,18 @@ def fitting(spacing: float, periods: list[float]) -> float:
     return rounded
 
 
+MEASURED = (SPACING, "seconds", "particles", "steps")
+
+
+def _sound(found: list[dict]) -> list[dict]:
+    """The rows of a file, or ValueError where a run that is done has figures that none can have."""
+    for row in found:
+        figures = [float(row[name]) for name in MEASURED if row["status"] == DONE]
+        if not all(0.0 < x < math.inf for x in figures) or math.isinf(row["error_l2"]):
+            raise ValueError(f"a run of {figures}")
+    return found
+
+
 def foretold(folder: Path, case) -> Iterator[str]:
     """What a stored study says of a case: its error and its seconds; rank 0 alone.
 
@@ -311,7 +323,7 @@ def foretold(folder: Path, case) -> Iterator[str]:
     """
     try:
         kept = json.loads((folder / KEPT).read_text(encoding="utf-8"))
-        every = ladders_of(kept["rows"], kept["vary"], kept["dimensions"])
+        every = ladders_of(_sound(kept["rows"]), kept["vary"], kept["dimensions"])
         fits = [ladder for shared, _, ladder in every if ladder and not shared]
     except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError,
             RecursionError) as error:  # whatever may be wrong with a file that psph has not written
