@@ -12,7 +12,7 @@ from mpi4py import MPI
 
 import psph
 from psph.bench import PROBLEMS
-from psph.errors import Failed, Foreseen
+from psph.errors import Failed, Foreseen, one_line
 from psph.stability import FORMS, STATES
 from psph.stability.lattices import LATTICES
 
@@ -83,7 +83,8 @@ def _check(options, comm) -> None:
     _warn(scene, comm)
     if comm.rank == 0:
         count = int(scene.counts().sum())
-        print(f"{options.case}: good: {count:,} particles, at most {slab_planes(scene)} ranks")
+        good = f"{options.case}: good: {count:,} particles, at most {slab_planes(scene)} ranks"
+        print(one_line(good))
 
 
 def _schema(options, comm) -> None:
@@ -123,7 +124,7 @@ def _study(options, comm) -> None:
     use_threads(options.threads)
     study(
         comm, options.case, options.set, options.vary, options.grid, options.effects, options.out,
-        options.error, options.seconds,
+        options.error, options.seconds, options.files,
     )
 
 
@@ -219,6 +220,10 @@ def _add_study_options(study: argparse.ArgumentParser) -> None:
     study.add_argument("--grid", action="store_true", help="all combinations of the values")
     study.add_argument(
         "--effects", action="store_true", help="what each effect costs, and what it changes"
+    )
+    study.add_argument(
+        "--files", type=Path, metavar="DIR",
+        help="files that the case names may lie in DIR or below (default: the case's folder)",
     )
     study.add_argument("--error", type=float, help="which settings reach this relative error")
     study.add_argument("--seconds", type=float, help="which settings take so many seconds")

@@ -14,7 +14,8 @@ from psph.output.interpolation import interpolated
 from psph.output.reader import Run
 from psph.particles.fields import FLUID
 from psph.scene import Scene
-from psph.study.judge import read_experiment, window
+from psph.study.experiment import path_of, read_experiment
+from psph.study.judge import window
 
 MEASURES = {
     "speed": "largest speed over the case's own",
@@ -153,7 +154,7 @@ def _of_probes(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
 
 def _of_front(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
     for name, experiment in case.experiments.items():
-        time, value = read_experiment(case, name)
+        time, value = read_experiment(case, name, path_of(case).parent)
         table = run.probes()
         seen = window(case.study, time) & (time <= table["time"][-1])
         if seen.any():
@@ -176,7 +177,7 @@ def _of_cavity(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
     lid = max(np.linalg.norm(wall.velocity) for wall in case.walls.values())
     squares = []
     for axis, name in ((0, "u"), (1, "v")):
-        along, theirs = ghia(Path(case.file).parent.parent / f"experiments/ghia_1982_{name}.csv")
+        along, theirs = ghia(path_of(case).parent / f"experiments/ghia_1982_{name}.csv")
         at = np.full((len(along), 2), 0.5 * SIDE)
         at[:, 1 - axis] = along * SIDE
         ours = [

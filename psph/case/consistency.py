@@ -27,11 +27,11 @@ def contradictions(case: Case) -> list[InitErrorDetails]:
         _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected,
         _shifted, _carried, _stressed, _continued, _no_slip, _probed, _names, _single,
     )
+    found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
-        for rule in rules
-        for loc, value, says in rule(case)
+        for loc, value, says in found
     ]
 
 
@@ -47,6 +47,19 @@ def walk(value: Any, loc: Location = ()) -> Iterator[tuple[Location, Any]]:
     elif isinstance(value, tuple):
         for place, inner in enumerate(value):
             yield from walk(inner, (*loc, place))
+
+
+SMALLEST, LARGEST = 1e-30, 1e30
+"""Between these lie the sizes of all numbers of a case that are not 0: what is computed from them,
+fifth powers of lengths among it, then stays a number."""
+
+
+def _sizes(case: Case) -> Iterator[Finding]:
+    for loc, value in walk(case):
+        if isinstance(value, float) and value and not SMALLEST <= abs(value) <= LARGEST:
+            yield loc, value, (
+                f"psph computes with 0 and sizes from {SMALLEST:g} to {LARGEST:g}; give such a number"
+            )
 
 
 def _dimensions(case: Case) -> Iterator[Finding]:

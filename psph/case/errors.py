@@ -2,15 +2,21 @@
 
 import difflib
 from collections.abc import Iterable
+from itertools import islice
 
-from psph.errors import Refused
+from psph.errors import Refused, one_line, shortened
+
+MOST_LINES = 100
+"""Nobody reads more of them at once."""
+
+LONGEST_KEY = 60
 
 
 class CaseError(Refused):
     """A case that cannot be run.  ``lines``: one message each, with file, key and what to do."""
 
     def __init__(self, lines: Iterable[str]):
-        self.lines = list(lines)
+        self.lines = [one_line(line) for line in islice(lines, MOST_LINES)]
         super().__init__("\n".join(self.lines))
 
 
@@ -32,5 +38,5 @@ def dotted(keys: Iterable[str | int]) -> str:
     """Keys and positions as a person writes them: ``perturbations[0].velocity``."""
     text = ""
     for key in keys:
-        text += f"[{key}]" if isinstance(key, int) else f".{key}"
+        text += f"[{key}]" if isinstance(key, int) else f".{shortened(key, LONGEST_KEY)}"
     return text.removeprefix(".")

@@ -2,18 +2,36 @@
 
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from psph.case.errors import CaseError, dotted
 from psph.case.profiles import OFF, fill
+from psph.errors import LONGEST_QUOTE, shortened
 
 if TYPE_CHECKING:
     from psph.case.model import Case
 
 BARE_WORD = re.compile(r"[A-Za-z][\w.-]*")
+PLACE_IN_LIST = re.compile(r"[0-9]{1,9}")
+HALF = re.compile("[\ud800-\udfff]")
+"""Half a character: how Python shows bytes of the command line that are no UTF-8."""
+
 PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+MOST_BYTES = 1 << 20
+"""Of a case file: a few thousand are usual."""
+
+DEEPEST = 50
+"""Parts of a key; tomllib takes the square of them in time."""
+
+PART = r"""(?:(?<![\w-])[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+TOO_DEEP_KEY = re.compile(rf"{PART}(?:[ \t]*+\.[ \t]*+{PART}){{{DEEPEST}}}")
+"""Possessive throughout, or it would take the square of the file's length."""
+
+LARGEST = 2**63
+"""TOML's whole numbers have 64 bits, Python's any number of them."""
 
 
 class Override(NamedTuple):
@@ -40,7 +58,7 @@ def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set")
 
     file = str(path)
     data = _read(file)
-    applied = [_override(f"{file} with {option} {text}", data, text) for text in overrides]
+    applied = [_override(_with(file, option, text), data, text) for text in overrides]
     touched = [override.key for override in applied]
     filled = fill(data, touched)
 
@@ -48,7 +66,7 @@ def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set")
         for override in reversed(applied):
             shared = min(len(loc), len(override.made))
             if loc[:shared] == override.made[:shared]:
-                return f"{file} with {option} {override.text}"
+                return _with(file, option, override.text)
         by = next((by for key, by in filled.items() if loc[: len(key)] == key), None)
         return f"{file} with {by}" if by else file
 
@@ -60,19 +78,65 @@ def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set")
     return case
 
 
+def _with(file: str, option: str, text: str) -> str:
+    """What set a key that an override has a part in."""
+    return f"{file} with {option} {shortened(text, LONGEST_QUOTE)}"
+
+
 def _read(file: str) -> dict[str, Any]:
     try:
-        text = Path(file).read_text(encoding="utf-8-sig")
+        file.encode()
+        with open(file, "rb") as opened:
+            read = opened.read(MOST_BYTES + 1)
+        text = read.decode("utf-8-sig")
     except OSError as error:
         raise CaseError([f"{file}: {error.strerror}; give the path of a case in TOML"]) from None
+    except UnicodeEncodeError:
+        raise CaseError([f"{file}: a name that is not UTF-8; rename the file"]) from None
     except UnicodeDecodeError as error:
         raise CaseError(
             [f"{file}: byte {error.start} is not UTF-8; save the file as UTF-8 text"]
         ) from None
+    except ValueError as error:  # a NUL in the name
+        raise CaseError([f"{file}: {error}; give the path of a case in TOML"]) from None
+    if len(read) > MOST_BYTES:
+        raise CaseError([f"{file}: more than {MOST_BYTES:,} bytes; give the path of a case in TOML"])
     try:
-        return tomllib.loads(text)
+        return _parsed(file, text)
     except tomllib.TOMLDecodeError as error:
         raise CaseError([_syntax(file, text, str(error))]) from None
+
+
+def _parsed(where: str, text: str) -> dict[str, Any]:
+    """What the TOML says.  Raises TOMLDecodeError, or CaseError where Python knows more than TOML
+    or cannot follow it."""
+    if TOO_DEEP_KEY.search(text):
+        raise CaseError([f"{where}: a key of more than {DEEPEST} parts; no key of a case is so long"])
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except RecursionError:
+        raise CaseError(
+            [f"{where}: tables or lists nested too deep; no case needs so many brackets"]
+        ) from None
+    except ValueError:  # Python reads no whole number of more than 4300 digits
+        raise CaseError([f"{where}: a whole number of thousands of digits; {OF_64_BITS}"]) from None
+    for keys in _too_large(data):
+        raise CaseError([f"{where}: {dotted(keys)}: a whole number that is too large; {OF_64_BITS}"])
+    return data
+
+
+OF_64_BITS = "TOML's have 64 bits: give a smaller one"
+
+
+def _too_large(value: Any, keys: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """Where whole numbers stand that TOML does not know."""
+    if isinstance(value, int) and not -LARGEST <= value < LARGEST:
+        yield keys
+    inner = value.items() if isinstance(value, dict) else ()
+    for key, below in enumerate(value) if isinstance(value, list) else inner:
+        yield from _too_large(below, (*keys, key))
 
 
 def _syntax(file: str, text: str, says: str) -> str:
@@ -84,7 +148,8 @@ def _syntax(file: str, text: str, says: str) -> str:
     what = PLACE.sub("", says)
     written = lines[min(number, len(lines)) - 1].strip()
     return (
-        f"{file}: line {number}: '{written}': {what[:1].lower()}{what[1:]}{column}; correct this "
+        f"{file}: line {number}: '{shortened(written, LONGEST_QUOTE)}': "
+        f"{what[:1].lower()}{what[1:]}{column}; correct this "
         "line, for example: key = 1.0, key = \"text\", key = [0.0, 1.0]"
     )
 
@@ -93,11 +158,11 @@ def _override(where: str, data: dict[str, Any], text: str) -> Override:
     """Set one key in ``data``."""
     path, equals, value = text.partition("=")
     keys: list[str | int] = [*path.strip().split(".")]
-    if not equals or "" in keys:
+    if not equals or "" in keys or len(keys) > DEEPEST or HALF.search(text):
         raise CaseError([f"{where}: no key and value; write it as key.key=value"])
     table, made = data, None
     for depth, key in enumerate(keys):
-        if isinstance(table, list) and key.isdigit():
+        if isinstance(table, list) and PLACE_IN_LIST.fullmatch(key):
             keys[depth] = key = int(key)
         if not _can_hold(table, key):
             stands = dotted(keys[:depth])
@@ -128,11 +193,12 @@ def _can_hold(table: Any, key: str | int) -> bool:
 
 def _value(where: str, text: str) -> Any:
     try:
-        parsed = tomllib.loads(f"value = {text}")
+        parsed = _parsed(where, f"value = {text}")
     except tomllib.TOMLDecodeError:
         parsed = {}
     if list(parsed) == ["value"]:
         return parsed["value"]
     if BARE_WORD.fullmatch(text):
         return text
-    raise CaseError([f"{where}: {text!r} is no value; write it as in TOML: 1.0, [0, 1] or word"])
+    shown = repr(shortened(text, LONGEST_QUOTE))
+    raise CaseError([f"{where}: {shown} is no value; write it as in TOML: 1.0, [0, 1] or word"])

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from psph.case.consistency import Location
 from psph.case.errors import advise, dotted, nearest
 from psph.case.structure import alternatives, find, keys_of
+from psph.errors import shortened
 
 Details = dict[str, Any]
 
@@ -28,12 +29,15 @@ BOUNDS = {
 }
 LONGEST_VALUE = 40
 
+MOST_FINDINGS = 1000
+"""Each is compared with all others; a file with more faults is no case at all."""
+
 
 def messages(
     error: ValidationError, data: dict[str, Any], schema: Details, source: Callable[[Location], str]
 ) -> Iterator[str]:
     """One line for each finding; ``source`` names what set the key at a location."""
-    found = error.errors(include_url=False)
+    found = error.errors(include_url=False)[:MOST_FINDINGS]
     for details in found:
         if not _follows_from_another(details, found):
             loc = _as_written(details, data)
@@ -50,7 +54,7 @@ def plain(value: Any) -> str:
         text = f"[{', '.join(map(plain, value))}]"
     else:
         text = "{ ... }" if isinstance(value, dict) else str(value)
-    return text if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 4] + " ..."
+    return shortened(text, LONGEST_VALUE)
 
 
 def _follows_from_another(details: Details, found: list[Details]) -> bool:

@@ -17,7 +17,7 @@ from psph.case.profiles import OFF, PROFILES, choices
 from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
-from psph.case.tables import Axis, Name, Table, Vector, key
+from psph.case.tables import Axis, Name, Table, Text, Vector, key
 from psph.smoothing import KERNELS
 
 Physics = physics_table()
@@ -244,7 +244,7 @@ class Case(Table):
     Made by :func:`psph.case.load`.  ``file`` is where it came from, ``name`` its stem.
     """
 
-    title: str = key("what the case is, in one line", "")
+    title: Text = key("what the case is, in one line", "")
     scheme: Literal[tuple(SCHEMES)] = key(
         "what keeps the fluid stable: psph's own scheme, traditional SPH or SSPH; for the keys that "
         "the case does not give itself", STABLE,

@@ -19,6 +19,11 @@ A case is a TOML file that says what differs from the defaults. Units are SI. A 
 not know is refused, and so are a text where a number belongs and `nan` or `inf`. Lengths, places
 and velocities are lists with one number per dimension.
 
+Sizes of numbers that are not 0 lie between 1e-30 and 1e30. A case is data: no key holds a formula
+or a command, and nothing of it is executed. The only files that it can name are those of
+`[experiments]`, which `psph study` reads: they lie in the case's folder or below, links followed.
+`study --files DIR` allows another folder instead.
+
 A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a
 case and does nothing else; `run/cases/` holds examples.
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import Field, Strict, create_model
+from pydantic import Field, Strict, StringConstraints, create_model
 
 from psph.case.parameters import parameters, summary
-from psph.case.tables import Table, key
+from psph.case.tables import Table, Text, key
 from psph.solutions.catalogue import SOLUTIONS
 
 EXACT = "exact"
@@ -27,31 +27,36 @@ def exact_table(solutions: Mapping[str, type] = SOLUTIONS) -> type[Table]:
 class Experiment(Table):
     """A measured curve over time, to compare a column of probes.csv with."""
 
-    file: str = key("CSV file, beside the case; lines that begin with # are remarks", min_length=1)
-    time: str = key("its column of times")
-    value: str = key("its column of values")
-    probe: str = key("the column of probes.csv that it stands beside, such as tip.front")
+    file: Text = key(
+        "CSV file in the case's folder or below; lines that begin with # are remarks", min_length=1
+    )
+    time: Text = key("its column of times")
+    value: Text = key("its column of values")
+    probe: Text = key("the column of probes.csv that it stands beside, such as tip.front")
     time_unit: float = key("seconds in one of its times", 1.0, unit="s", gt=0)
     value_unit: float = key("what one of its values is in the probe's own unit", 1.0, unit="1")
 
 
-Choices = Annotated[tuple[float | int | bool | str, ...], Strict(False), Field(min_length=1)]
+Choices = Annotated[tuple[float | int | bool | Text, ...], Strict(False), Field(min_length=1)]
+
+Dotted = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)*$")]
+"""A key as ``--set`` takes it."""
 
 
 class Study(Table):
     """What ``psph study`` varies, and by what it judges."""
 
-    vary: dict[str, Choices] = key(
+    vary: dict[Dotted, Choices] = key(
         'keys and the values that each takes: { "space.spacing" = [0.02, 0.01] }; "off" takes a '
         "key out",
         {},
     )
     grid: bool = key("all combinations of the values, not one key at a time", False)
-    error: str | None = key(
+    error: Text | None = key(
         "what is compared: velocity, pressure or density of the fluid at the end, or a column of "
         "probes.csv over time", None, otherwise="what the reference knows first",
     )
-    against: str | None = key(
+    against: Text | None = key(
         'what it is compared with: "exact", "theory" (of a probe), "finest" (the run with the '
         "smallest spacing) or the name of an experiment", None,
         otherwise="the first of these that the case has",

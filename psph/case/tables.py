@@ -3,7 +3,10 @@
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, Strict, StringConstraints
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, StringConstraints
+from pydantic_core import PydanticCustomError
+
+from psph.errors import UNPRINTABLE
 
 AXES = ("x", "y", "z")
 """Names of the axes, in order."""
@@ -15,6 +18,16 @@ Vector = Annotated[tuple[float, ...], Strict(False), Field(min_length=1)]
 
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]+$")]
 """A name that a person gives; it stands in keys, files and columns."""
+
+
+def _one_line(text: str) -> str:
+    if UNPRINTABLE.search(text):
+        raise PydanticCustomError("psph", "holds a line break or a control character; take it out")
+    return text
+
+
+Text = Annotated[str, AfterValidator(_one_line)]
+"""A text that stands in messages, files and their names: one line of characters."""
 
 
 class Table(BaseModel):

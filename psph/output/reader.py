@@ -8,6 +8,7 @@ from typing import TypeVar
 import h5py
 import numpy as np
 
+from psph.errors import one_line
 from psph.output.errors import OutputError, cause
 from psph.output.tables import ERRORS, LOG, PROBES
 
@@ -108,8 +109,11 @@ def _whole(file: h5py.File) -> list[h5py.Group]:
 def _columns(path: Path) -> dict[str, np.ndarray]:
     if not path.exists():
         return {}
-    names, *rows = path.read_text(encoding="utf-8").splitlines(keepends=True)
-    names = names.strip().split(",")
-    rows = [row for row in rows if row.endswith("\n")]  # the last one may be on its way
-    table = np.loadtxt(rows, delimiter=",", ndmin=2) if rows else np.empty((0, len(names)))
-    return dict(zip(names, table.T, strict=True))
+    try:
+        names, *rows = path.read_text(encoding="utf-8").splitlines(keepends=True)
+        names = names.strip().split(",")
+        rows = [row for row in rows if row.endswith("\n")]  # the last one may be on its way
+        table = np.loadtxt(rows, delimiter=",", ndmin=2) if rows else np.empty((0, len(names)))
+        return dict(zip(names, table.T, strict=True))
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{path}: {one_line(str(error))}; is it a table of psph?") from None

@@ -20,6 +20,13 @@ particles of a cell have the same nearest image of a candidate (psph.particles.n
 MOST_SITES = 10**11
 """Sites of a lattice that are looked at one by one; a slip in the units gives far more."""
 
+MOST_IN_PLANE = 10**8
+"""Sites of a plane, which are looked at together: some gigabytes.  An axis that is not the longest
+can have more."""
+
+FARTHEST = 2e9
+"""Spacings from 0 at most: farther out a coordinate does not hold ``TOLERANCE`` of one."""
+
 LARGEST_QUIET_JITTER = 0.5
 """In spacings; beyond it neighbours may change places."""
 
@@ -33,9 +40,9 @@ def check(scene: Scene) -> list[str]:
 
 def faults(scene: Scene) -> Iterator[str]:
     """Everything for which the scene cannot be run."""
-    if sites := _too_many_sites(scene):
-        yield f"{scene.case.file}: {sites}"
-        return
+    for line in _size_faults(scene):
+        yield f"{scene.case.file}: {line}"
+        return  # what follows from it says no more
     places = [
         *_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene), *_exact_faults(scene)
     ]
@@ -43,15 +50,45 @@ def faults(scene: Scene) -> Iterator[str]:
         yield f"{scene.case.file}: {line}"
 
 
-def _too_many_sites(scene: Scene) -> str | None:
-    """Known before any site is looked at, which would take hours."""
-    sites = math.prod(scene.lattice.counts)
-    if sites <= MOST_SITES:
-        return None
-    return (
-        f"space.spacing: {scene.spacing:g} m makes a lattice of {sites:.2g} sites, more than "
-        f"{MOST_SITES:.0e}; make it larger, or the shapes smaller"
-    )
+def _size_faults(scene: Scene) -> Iterator[str]:
+    """Known before any site is looked at, which would take hours, and more memory than there is."""
+    dx, lattice = scene.spacing, scene.lattice
+    sites, in_plane = math.prod(lattice.counts), lattice.sites_in_plane
+    if sites > MOST_SITES:
+        yield (
+            f"space.spacing: {dx:g} m makes a lattice of {sites:.2g} sites, more than "
+            f"{MOST_SITES:.0e}; make it larger, or the shapes smaller"
+        )
+    elif in_plane > MOST_IN_PLANE:
+        yield (
+            f"parallel.axis: {in_plane:.2g} sites in a plane across {AXES[scene.axis]}, more than "
+            f"{MOST_IN_PLANE:.0e}; leave it out, or name a longer axis"
+        )
+    room = math.prod((up - low) / dx for low, up in zip(scene.lower, scene.upper))
+    if max(room, 0.0) > max(MOST_SITES, sites):
+        yield (
+            f"space.upper: the domain has room for {room:.2g} particles, more than {MOST_SITES:.0e}; "
+            "make it smaller, or space.spacing larger"
+        )
+    yield from _far_faults(scene)
+
+
+def _far_faults(scene: Scene) -> Iterator[str]:
+    case = scene.case
+    lengths = {
+        "space.origin": (*scene.lattice.lower, *scene.lattice.upper, *case.space.origin),
+        "space.lower": scene.lower,
+        "space.upper": scene.upper,
+        **{f"fluids.{n}.jitter": (f.jitter * scene.spacing,) for n, f in case.fluids.items()},
+        **{f"perturbations[{k}].shift": p.shift for k, p in enumerate(case.perturbations)},
+    }
+    for key, numbers in lengths.items():
+        far = max(map(abs, numbers))
+        if far > FARTHEST * scene.spacing:
+            yield (
+                f"{key}: places {far:.3g} m away, {far / scene.spacing:.2g} spacings, cannot be told "
+                "apart in double precision; bring them nearer to 0, or make space.spacing larger"
+            )
 
 
 def warnings(scene: Scene) -> Iterator[str]:

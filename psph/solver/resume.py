@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from psph.case import CaseError, load
+from psph.errors import LONGEST_QUOTE, shortened
 from psph.output import checkpoint
 from psph.output.checkpoint import CheckpointError, Saved, checkpoint_path, checkpoints
 from psph.particles.store import Store
@@ -83,7 +84,7 @@ def _allowed(extend: Sequence[str]) -> Sequence[str]:
         keys = MAY_CHANGE.get(table, ())
         if not name or (keys is not True and name not in keys):
             raise CaseError([
-                f"--extend {text}: would make it another run; give time.end, a key of output, "
+                f"--extend {shortened(text, LONGEST_QUOTE)}: would make it another run; give time.end, a key of output, "
                 "checkpoint or guards, or run the case anew"
             ])
     return extend

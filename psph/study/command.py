@@ -11,7 +11,7 @@ from psph.study.study import Study
 
 def study(
     comm, file, sets: list[str], vary: list[str], grid: bool, effects: bool, out: Path | None,
-    error: float | None, seconds: float | None,
+    error: float | None, seconds: float | None, files: Path | None = None,
 ) -> None:
     """Run what is asked for and print what it tells; collective.
 
@@ -29,7 +29,7 @@ def study(
     else:
         every = rows(wanted(case.study.vary, vary), grid or case.study.grid)
     folder = out or Path(f"{case.name}-study")
-    asked = Study(file, sets, every, folder, comm)
+    asked = Study(file, sets, every, folder, comm, files)
     if not effects:
         asked.refuse_nonsense()
 

@@ -1,6 +1,5 @@
 """How wrong a finished run is: its files against an exact solution, an experiment or another run."""
 
-import csv
 import math
 from collections.abc import Callable
 from functools import cached_property
@@ -18,6 +17,7 @@ from psph.scene import Scene
 from psph.solutions.catalogue import known
 from psph.solver.record import probes_of
 from psph.study.errors import StudyError
+from psph.study.experiment import read_experiment
 
 THEORY, FINEST = "theory", "finest"
 
@@ -37,11 +37,12 @@ class Judge:
     """What is compared with what, found in a case once; reads the files of its runs.
 
     ``what`` is a field at the end or a column of probes.csv, ``against`` the reference.  Raises
-    StudyError where the case has no such thing.
+    StudyError where the case has no such thing.  ``files`` is the folder that its files lie in or
+    below, where it is not that of the case.
     """
 
-    def __init__(self, case):
-        self.case, study = case, case.study
+    def __init__(self, case, files: Path | None = None):
+        self.case, self.files, study = case, files, case.study
         self.columns = _probe_columns(case)
         self.against = study.against or self._first_reference()
         self.what = study.error or self._first_known()
@@ -111,7 +112,7 @@ class Judge:
     def measured(self) -> tuple[np.ndarray, np.ndarray]:
         """Times in s and values of the experiment, in the probe's unit.  StudyError: no such file,
         or no such columns."""
-        return read_experiment(self.case, self.against)
+        return read_experiment(self.case, self.against, self.files)
 
     def _first_reference(self) -> str:
         if any(table is not None for _, table in self.case.exact):
@@ -179,29 +180,6 @@ class Judge:
 def _probe_columns(case) -> list[str]:
     """The columns of probes.csv that a case makes."""
     return [c for probe in probes_of(case) for c in probe.columns(case.space.dimensions)]
-
-
-def read_experiment(case, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Times in s and values of an experiment of the case, sorted by time.  Raises StudyError."""
-    experiment = case.experiments[name]
-    path = Path(case.file).parent / experiment.file
-    where = f"{case.file}: experiments.{name}"
-    try:
-        lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(f"{where}.file: {path}: {error}; give a CSV file beside the case") from None
-    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
-    try:
-        table = sorted((float(r[experiment.time]), float(r[experiment.value])) for r in rows)
-    except KeyError as error:
-        names = ", ".join(rows[0])
-        raise StudyError(f"{where}: {path} has no column {error}; give one of {names}") from None
-    except (TypeError, ValueError) as error:
-        raise StudyError(f"{where}: {path}: {error}; let each line hold numbers") from None
-    if not table:
-        raise StudyError(f"{where}: {path} holds no rows; give a CSV file with a line of names")
-    time, value = np.array(table).T
-    return time * experiment.time_unit, value * experiment.value_unit
 
 
 def window(study, time: np.ndarray) -> np.ndarray:

@@ -3,6 +3,10 @@
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 
+import tomli_w
+
+from psph.case.profiles import OFF
+from psph.errors import LONGEST_QUOTE, shortened
 from psph.study.errors import StudyError
 
 SPACING = "space.spacing"
@@ -20,7 +24,7 @@ def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, lis
 
     Raises StudyError where nothing varies, or a key has no second value.
     """
-    vary = dict(map(_read, given)) if given else {key: list(values) for key, values in table.items()}
+    vary = _all(given) if given else {key: list(values) for key, values in table.items()}
     if not vary:
         raise StudyError(
             "study: nothing varies; give the case a table [study] with "
@@ -31,13 +35,25 @@ def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, lis
             raise StudyError(f"study: {key}: a ladder of one value, {values[0]}; give a second one")
         if len(set(map(str, values))) < len(values):
             raise StudyError(f"study: {key}: {values}: a value stands there twice; take one out")
+    for word in vary.get(SPACING, ()):
+        if isinstance(word, str | bool):
+            raise StudyError(f"study: {SPACING}: {toml(word)} is not a number; give lengths in m")
     return vary
+
+
+def _all(given: Sequence[str]) -> dict[str, list]:
+    read = list(map(_read, given))
+    for key, _ in read:
+        if sum(key == other for other, _ in read) > 1:
+            raise StudyError(f"study --vary {key}: given twice; give all of its values at once")
+    return dict(read)
 
 
 def _read(text: str) -> tuple[str, list]:
     key, equals, values = text.partition("=")
     if not equals or not key.strip() or not values.strip():
-        raise StudyError(f"study --vary {text}: no key and values; write it as key=value,value")
+        shown = shortened(text, LONGEST_QUOTE)
+        raise StudyError(f"study --vary {shown}: no key and values; write it as key=value,value")
     return key.strip(), [_value(word.strip()) for word in values.split(",")]
 
 
@@ -70,8 +86,14 @@ def rows(vary: Mapping[str, Sequence], grid: bool) -> list[Settings]:
 
 
 def overrides(settings: Settings) -> list[str]:
-    """The settings as what ``--set`` takes."""
-    return [f"{key}={toml(value)}" for key, value in settings.items()]
+    """The settings as what ``--set`` takes; a text is one to it whatever it says."""
+    return [f"{key}={_quoted(value)}" for key, value in settings.items()]
+
+
+def _quoted(value) -> str:
+    if isinstance(value, str) and value != OFF:
+        return tomli_w.dumps({"value": value}).partition("=")[2].strip()
+    return toml(value)
 
 
 def toml(value) -> str:

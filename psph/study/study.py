@@ -22,15 +22,19 @@ CSV, PAGE, PICTURE, KEPT = "study.csv", "study.md", "study.png", "study.json"
 class Study:
     """The runs of a study in ``folder``; methods are collective but where they say otherwise.
 
-    ``file`` is the case, ``sets`` what ``--set`` gave, ``every`` the settings of each run.  Raises
-    CaseError or StudyError before anything is run.
+    ``file`` is the case, ``sets`` what ``--set`` gave, ``every`` the settings of each run, ``files``
+    the folder that the case's files may lie in, where it is not its own.  Raises CaseError or
+    StudyError before anything is run.
     """
 
-    def __init__(self, file, sets: list[str], every: list[Settings], folder: Path, comm):
+    def __init__(
+        self, file, sets: list[str], every: list[Settings], folder: Path, comm,
+        files: Path | None = None,
+    ):
         self.folder, self.comm, self.every = folder, comm, every
         self.case = load(file, sets)
         check(Scene(self.case))
-        self.judge = Judge(self.case)
+        self.judge = Judge(self.case, files)
         self.keys = list(dict.fromkeys(key for settings in every for key in settings))
         self.cases = cases(file, sets, every)
         self._merge()
@@ -300,6 +304,18 @@ def fitting(spacing: float, periods: list[float]) -> float:
     return rounded
 
 
+MEASURED = (SPACING, "seconds", "particles", "steps")
+
+
+def _sound(found: list[dict]) -> list[dict]:
+    """The rows of a file, or ValueError where a run that is done has figures that none can have."""
+    for row in found:
+        figures = [float(row[name]) for name in MEASURED if row["status"] == DONE]
+        if not all(0.0 < x < math.inf for x in figures) or math.isinf(row["error_l2"]):
+            raise ValueError(f"a run of {figures}")
+    return found
+
+
 def foretold(folder: Path, case) -> Iterator[str]:
     """What a stored study says of a case: its error and its seconds; rank 0 alone.
 
@@ -307,12 +323,13 @@ def foretold(folder: Path, case) -> Iterator[str]:
     """
     try:
         kept = json.loads((folder / KEPT).read_text(encoding="utf-8"))
-        found, keys, dimensions = kept["rows"], kept["vary"], kept["dimensions"]
-    except (OSError, ValueError, KeyError) as error:
+        every = ladders_of(_sound(kept["rows"]), kept["vary"], kept["dimensions"])
+        fits = [ladder for shared, _, ladder in every if ladder and not shared]
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError,
+            RecursionError) as error:  # whatever may be wrong with a file that psph has not written
         raise StudyError(
             f"{folder}: holds no study ({error}); give the folder that `study` wrote to"
         ) from None
-    fits = [ladder for shared, _, ladder in ladders_of(found, keys, dimensions) if ladder and not shared]
     if not fits or not fits[0].steady:
         raise StudyError(
             f"{folder}: its study has no ladder of spacings on which the error falls steadily; "

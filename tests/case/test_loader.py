@@ -7,6 +7,7 @@ import pytest
 from drafts import WATER, draft, refusal
 
 from psph.case import CaseError, load
+from psph.errors import one_line
 
 
 @pytest.mark.parametrize("name", ["load", "Case", "CaseError", "schema"])
@@ -124,7 +125,7 @@ def test_a_later_override_wins(tmp_path):
 )
 def test_a_bad_override_is_named(tmp_path, override, says):
     [line] = refusal(tmp_path, WATER, override)
-    assert line.startswith(f"case.toml with --set {override}: ")
+    assert line.startswith(f"case.toml with --set {one_line(override)}: ")
     assert says in line
 
 

@@ -1,0 +1,193 @@
+"""Random small scenes: shapes, motion, disorder and strengths drawn; what is compiled stays."""
+
+from typing import NamedTuple
+
+import numpy as np
+import tomli_w
+
+LENGTH, WIDTH, SPACING = 30, 12, 0.1
+"""Spacings along the slab axis and across; eight planes of cells for seven ranks."""
+
+REACH = 2.8
+"""Largest support of a kernel in spacings; with the skin a third of the width at the most."""
+
+
+class Family(NamedTuple):
+    """What scenes have in common, so that they share compiled loops.
+
+    ``along`` is the long axis, ``periodic`` the axes that repeat; ``physics`` holds keys with fixed
+    words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
+    a floor; ``fluids`` how many, of different densities.
+    """
+
+    dimensions: int
+    along: str = "x"
+    periodic: str = ""
+    scheme: str = "stable"
+    precision: str = "double"
+    walls: bool = False
+    fluids: int = 1
+    viscous: bool = False
+    kernel: str = ""
+    physics: dict = {}
+
+
+GRAVITY = {"gravity": "drawn"}
+
+FAMILIES = {
+    "tank": Family(2, walls=True, fluids=2, viscous=True, physics=GRAVITY),
+    "mixed block": Family(
+        3, along="y", periodic="xyz", scheme="ssph", precision="mixed",
+        physics={"artificial_viscosity": (0.0, 0.2)},
+    ),
+    "drops": Family(2, along="y", physics={"central_force": (0.0, 3.0)}),
+    "torus": Family(2, periodic="xy", fluids=2),
+    "channel": Family(2, periodic="x", walls=True, viscous=True, physics=GRAVITY),
+    "pool": Family(
+        2, along="y", periodic="x", scheme="sph",
+        physics={"free_surface": (0.8, 0.95), "artificial_viscosity": (0.0, 0.2), **GRAVITY},
+    ),
+    "shifted": Family(
+        2, periodic="xy", scheme="sph", kernel="wendland-c2",
+        physics={
+            "pressure_gradient": "difference", "density_diffusion": (0.0, 0.2),
+            "particle_shifting": (0.0, 0.2), "gradient_correction": (0.3, 1.0),
+        },
+    ),
+    "carried": Family(
+        2, along="y", periodic="y", scheme="sph", kernel="quintic",
+        physics={"pressure_gradient": "tensile_control", "transport_velocity": (0.0, 1.0)},
+    ),
+    "carried in 3D": Family(
+        3, scheme="sph", kernel="wendland-c4", precision="mixed",
+        physics={"generalised_transport_velocity": (0.0, 1.0), "riemann_dissipation": (0.0, 3.0)},
+    ),
+    "mean": Family(
+        2, scheme="sph", walls=True, fluids=2,
+        physics={
+            "xsph": (0.0, 0.5), "artificial_stress": (0.0, 0.3), "equation_of_state": "tait",
+            "conservative_smoothing": (0.0, 0.2), **GRAVITY,
+        },
+    ),
+    "row": Family(1, periodic="x", scheme="ssph", physics={"pair_damping": (0.0, 0.1)}),
+    "open row": Family(1),
+    "tank in 3D": Family(3, along="z", walls=True, physics=GRAVITY),
+    "pipe": Family(3, along="z", periodic="z", walls=True, viscous=True, fluids=2, physics=GRAVITY),
+    "mixed tank": Family(2, precision="mixed", walls=True, physics=GRAVITY),
+}
+
+
+def scene(family: Family, seed: int) -> str:
+    """The TOML of a scene; the same for the same seed."""
+    rng = np.random.default_rng(seed)
+    sizes = [LENGTH if name == family.along else WIDTH for name in axes(family)]
+    sizes = [n * SPACING for n in sizes]
+    case = {
+        "scheme": family.scheme, "precision": family.precision,
+        "space": _space(family, rng, sizes),
+        "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5)},
+        "neighbours": {"skin": _drawn(rng, 0.02, 0.3)},
+        "parallel": {"axis": family.along},
+        "physics": {"sound_speed": 10.0, **_physics(family, rng)},
+        "fluids": dict(_fluids(family, rng, sizes)),
+        "perturbations": [_perturbation(rng, sizes) for _ in range(rng.integers(0, 3))],
+    }
+    if family.walls:
+        case["walls"] = {"wall": {"shape": _wall(family, sizes), "no_slip": family.viscous}}
+    return tomli_w.dumps(case)
+
+
+def axes(family: Family) -> str:
+    """Names of its axes."""
+    return "xyz"[: family.dimensions]
+
+
+def _drawn(rng, low: float, high: float) -> float:
+    """Now and then one of the bounds."""
+    return float(rng.choice([low, high, *rng.uniform(low, high, 4).round(4)]))
+
+
+def _vector(rng, dimensions: int, largest: float) -> list[float]:
+    return rng.uniform(-largest, largest, dimensions).round(3).tolist()
+
+
+def _space(family: Family, rng, sizes) -> dict:
+    """Corners where an axis repeats; the others have room for walls and for a way to go."""
+    space = {"dimensions": family.dimensions, "spacing": SPACING}
+    if family.kernel:
+        support = {"quintic": 3.0}.get(family.kernel, 2.0)
+        space |= {"kernel": family.kernel, "smoothing": round(_drawn(rng, 1.1 * 2.0, REACH) / support, 3)}
+    if family.periodic:
+        room = 0.0 if not family.walls else 5 * SPACING
+        free = [0.0 if name in family.periodic else room for name in axes(family)]
+        space |= {
+            "periodic": list(family.periodic),
+            "lower": [-f for f in free],
+            "upper": [round(n + f, 9) for n, f in zip(sizes, free)],
+        }
+    return space
+
+
+def _physics(family: Family, rng) -> dict:
+    found = {}
+    for name, value in family.physics.items():
+        if name == "gravity":
+            value = _vector(rng, family.dimensions, 10.0)
+        elif name == "central_force":
+            value = {"frequency": _drawn(rng, *value), "center": [1.0] * family.dimensions}
+        found[name] = _drawn(rng, *value) if isinstance(value, tuple) else value
+    return found
+
+
+def _fluids(family: Family, rng, sizes):
+    """Parts of the block one behind the other along the first axis, with holes and notches."""
+    ends = np.linspace(0.0, sizes[0], family.fluids + 1).round(9).tolist()
+    for k, (low, high) in enumerate(zip(ends, ends[1:])):
+        lower, upper = [low, *[0.0] * (family.dimensions - 1)], [high, *sizes[1:]]
+        block = {"box": {"lower": lower, "upper": upper}}
+        holes = [_hole(rng, family.dimensions, lower, upper) for _ in range(rng.integers(0, 4))]
+        fluid = {
+            "shape": {"difference": {"from": block, "minus": holes}} if holes else block,
+            "density": 1000.0 if k == 0 else 800.0, "pressure": _drawn(rng, -500.0, 3000.0),
+            "jitter": _drawn(rng, 0.0, 0.3), "seed": int(rng.integers(0, 1000)),
+            "velocity": _vector(rng, family.dimensions, float(rng.choice([0.0, 3.0]))),
+        }
+        if family.viscous:
+            fluid["viscosity"] = _drawn(rng, 1e-6, 1e-2)
+        yield f"fluid_{k}", fluid
+
+
+def _hole(rng, dimensions: int, lower, upper) -> dict:
+    """Somewhere in the block, or over its edge."""
+    at = rng.uniform(lower, upper).round(3)
+    size = rng.uniform(0.05, 0.35, dimensions).round(3)
+    box = {"box": {"lower": (at - size).round(9).tolist(), "upper": (at + size).round(9).tolist()}}
+    if dimensions == 1 or rng.random() < 0.3:
+        return box
+    if dimensions == 3:
+        ball = {"center": at.tolist(), "radius": float(size[0])}
+        cylinder = {**ball, "axis": str(rng.choice(list("xyz"))), "height": float(size[1])}
+        return {"ball": ball} if rng.random() < 0.5 else {"cylinder": cylinder}
+    disc = {"disc": {"center": at.tolist(), "radius": float(size[0])}}
+    corners = [(at + size * way).round(9).tolist() for way in ([-1, -1], [1, -0.5], [0, 1])]
+    return {"union": [disc, {"polygon": {"points": corners}}]} if rng.random() < 0.3 else disc
+
+
+def _wall(family: Family, sizes) -> dict:
+    """A tank without a lid along the last axis; where an axis repeats it goes on."""
+    last = family.dimensions - 1
+    thick = [0.0 if name in family.periodic else 4 * SPACING for name in axes(family)]
+    outer = {
+        "lower": [-t for t in thick],
+        "upper": [round(n + (t if d != last else 0.0), 9) for d, (n, t) in enumerate(zip(sizes, thick))],
+    }
+    return {"difference": {
+        "from": {"box": outer}, "minus": [{"box": {"lower": [0.0] * len(sizes), "upper": sizes}}],
+    }}
+
+
+def _perturbation(rng, sizes) -> dict:
+    return {
+        "position": (rng.random(len(sizes)) * sizes).round(3).tolist(),
+        "velocity": _vector(rng, len(sizes), 2.0), "shift": _vector(rng, len(sizes), 0.05),
+    }
