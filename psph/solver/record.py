@@ -122,6 +122,7 @@ class Record:
     def write_last(self) -> None:
         """Write the state at the end where no cadence has just done so."""
         self._write([w for w in self.schedules if self.last_written[w] < self.simulation.steps])
+        self.frames.complete_index()
 
     def _write(self, due) -> None:
         if not due:
@@ -159,7 +160,8 @@ class Record:
             self.errors.write([sim.time, *self.latest_errors])
 
     def close(self) -> None:
-        """End the tables."""
+        """End the files."""
+        self.frames.close()
         for table in self.tables:
             table.close()
 
