@@ -83,7 +83,7 @@ class FrameFile:
                 self._index.complete()
 
     def close(self) -> None:
-        """What :meth:`complete_index` does, as far as it goes; not collective, a rank may be lost."""
+        """As :meth:`complete_index`, as far as it goes; not collective, a rank may be lost."""
         if self.comm.rank == 0:
             self._index.complete_if_possible()
 

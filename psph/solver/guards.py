@@ -196,8 +196,8 @@ class Guards:
             )
             pulled = np.linalg.norm(suspect.value("acceleration"))
             return (
-                f"a step of {step:.3g} s (limit: {limit}) is lost in the rounding of the time; {who} "
-                f"is accelerated most, by {pulled:.3g} m/s2"
+                f"a step of {step:.3g} s (limit: {limit}) is lost in the rounding of the time; "
+                f"{who} is accelerated most, by {pulled:.3g} m/s2"
             )
         bound = f" (guards.{guard} = {getattr(self.bounds, guard):g})"
         match guard:

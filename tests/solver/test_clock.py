@@ -1,4 +1,4 @@
-"""Time steps that the time cannot tell, and cadences: nothing drifts, nothing stands still unseen."""
+"""Time steps that the time cannot tell, and cadences: nothing drifts or stands still unseen."""
 
 import re
 
