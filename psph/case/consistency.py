@@ -25,7 +25,8 @@ def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
         _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected,
-        _shifted, _carried, _stressed, _continued, _no_slip, _probed, _names, _single,
+        _shifted, _carried, _stressed, _continued, _no_slip, _probed, _names, _single, _stepped,
+        _due,
     )
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
     return [
@@ -205,6 +206,35 @@ def _corrected(case: Case) -> Iterator[Finding]:
         yield ("physics", "gradient_correction"), ..., (
             f'cannot correct physics.pressure_gradient = "{form}"; take "symmetric" or "difference"'
         )
+
+
+LARGEST_LOSS = 1e-6
+"""Part of itself by which a time step may be rounded when it is added to the time."""
+
+MOST_STEPS = LARGEST_LOSS * 2.0**53
+"""Equal steps from zero on until they are: a time has 53 binary digits."""
+
+MOST_MOMENTS = 1e9
+"""Moments of one cadence: far below 1e12, where rounding would shift them."""
+
+
+def _stepped(case: Case) -> Iterator[Finding]:
+    end, step = case.time.end, case.time.step
+    if step is not None and end > MOST_STEPS * step:
+        yield ("time", "step"), step, (
+            f"lost in the rounding of a time of {end:g} s, after more than {MOST_STEPS:.1g} steps; "
+            f"give at least {1.1 * end / MOST_STEPS:.2g}"
+        )
+
+
+def _due(case: Case) -> Iterator[Finding]:
+    end = case.time.end
+    for name, interval in case.output:
+        if interval is not None and end > MOST_MOMENTS * interval:
+            yield ("output", name), interval, (
+                f"asks for more than {MOST_MOMENTS:.0e} moments until {end:g} s; give at least "
+                f"{1.1 * end / MOST_MOMENTS:.2g}: what is finer than the steps is due at each step"
+            )
 
 
 CORRECTED = ("symmetric", "difference")

@@ -79,8 +79,20 @@ class FrameFile:
                 kinds = {name: (shapes[name], part.dtype) for name, part in rows.items()}
                 self._index.add(frame, time, kinds)
 
+    def complete_index(self) -> None:
+        """Have all frames so far listed for viewers."""
+        with together(self.comm, self._index.path):
+            if self.comm.rank == 0:
+                self._index.complete()
+
+    def close(self) -> None:
+        """As :meth:`complete_index`, as far as it goes; not collective, a rank may be lost."""
+        if self.comm.rank == 0:
+            self._index.complete_if_possible()
+
     def sync(self) -> None:
-        """Have all frames so far on the disk, whatever becomes of the machine."""
+        """Have all frames so far listed and on the disk, whatever becomes of the machine."""
+        self.complete_index()
         with together(self.comm, self.path):
             hdf5.sync(self.path)
             if self.comm.rank == 0:

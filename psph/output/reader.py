@@ -47,7 +47,7 @@ class Run:
     def times(self) -> np.ndarray:
         """Times of the frames that are whole, s."""
         return _read(
-            self.path, lambda file: np.array([frame.attrs["time"] for frame in _whole(file)])
+            self.path, lambda file: np.array([_time(file, name) for name in _whole(file)])
         )
 
     def frame(self, k: int, *names: str) -> dict[str, np.ndarray]:
@@ -62,12 +62,13 @@ class Run:
                 raise OutputError(
                     f"{self.path}: frame: {k} is not one of the {len(frames)} frames so far"
                 )
-            saved = [name for name in frames[k] if name != "points"]
+            frame = file["frames"][frames[k]]
+            saved = [name for name in frame if name != "points"]
             for name in set(names) - set(saved):
                 raise OutputError(
                     f"{self.path}: field: {name} is not saved; choose of {', '.join(saved)}"
                 )
-            return {name: frames[k][name][...] for name in names or saved}
+            return {name: frame[name][...] for name in names or saved}
 
         return _read(self.path, read)
 
@@ -98,12 +99,21 @@ def _read(path: Path, what: Callable[[h5py.File], T]) -> T:
     raise OutputError(f"{path}: cannot be read: {cause(failure)}; is it a file of psph?")
 
 
-def _whole(file: h5py.File) -> list[h5py.Group]:
-    """Frames in their order; the time is the last thing that a frame gets."""
+def _whole(file: h5py.File) -> list[str]:
+    """Names of the frames in their order; the time is the last thing that a frame gets.
+
+    Only the last one can lack it, so that not all have to be opened.
+    """
     if "frames" not in file:
         raise OutputError(f"{file.filename}: holds no frames; is it a file of psph?")
-    frames = [file["frames"][name] for name in sorted(file["frames"], key=int)]
-    return [frame for frame in frames if np.isfinite(frame.attrs.get("time", np.nan))]
+    names = sorted(file["frames"], key=int)
+    while names and not np.isfinite(_time(file, names[-1])):
+        names.pop()
+    return names
+
+
+def _time(file: h5py.File, name: str) -> float:
+    return float(file["frames"][name].attrs.get("time", np.nan))
 
 
 def _columns(path: Path) -> dict[str, np.ndarray]:

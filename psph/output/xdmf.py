@@ -3,10 +3,16 @@
 XDMF 3, https://www.xdmf.org: a temporal collection of point clouds.  Two things that viewers
 need: an explicit connectivity (without it ParaView shows nothing), and shapes that agree with the
 HDF5 file.  2D positions stand as they are stored (XY); 1D ones have a dataset ``points`` beside.
+
+The file is replaced whole, in one step.  To write a frame over its last lines would cost less, but
+a reader that comes in between gets half a file, and half an XML file opens nowhere.
 """
 
 import os
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 from xml.sax.saxutils import escape
 
 import numpy as np
@@ -43,39 +49,78 @@ Kind = tuple[tuple[int, ...], np.dtype]
 """Shape and type of a dataset."""
 
 
+class _Frame(NamedTuple):
+    name: str
+    time: float
+    fields: dict[str, Kind]  # one for all frames that are alike: a run may have very many
+
+
 class XdmfIndex:
-    """The ``.xmf`` beside the HDF5 file ``frames``; it lists the frames that are whole."""
+    """The ``.xmf`` beside the HDF5 file ``frames``; it lists the frames that are whole.
+
+    It is written anew whenever the frames have grown by its own size since it was last: so all its
+    writings together are no more than the frames, however many.  Where frames are larger than
+    their lines here, that is at each frame; else it is behind until :meth:`complete`.
+    """
 
     def __init__(self, frames: Path):
         self.path = frames.with_suffix(".xmf")
-        self._file = frames.name
-        self._grids: list[str] = []
+        self._frames = frames
+        self._forget()
 
     def add(self, frame: str, time: float, kinds: dict[str, Kind]) -> None:
-        """List a frame; ``kinds`` holds its datasets by their name in the HDF5 file.
+        """List a frame; ``kinds`` holds its datasets by their name in the HDF5 file."""
+        self._list(frame, time, kinds)
+        if self._frames.stat().st_size - self._seen >= self._size:
+            self._write()
 
-        The whole file is replaced in one step, since half an XML file opens nowhere.
-        """
+    def restore(self, frames: list[tuple[str, float, dict[str, Kind]]]) -> None:
+        """List these frames and no others: (frame, time, kinds) as in :meth:`add`."""
+        self._forget()
+        for frame, time, kinds in frames:
+            self._list(frame, time, kinds)
+        self._write()
+
+    def complete(self) -> None:
+        """Have the frames in the file that it does not list yet."""
+        if self._behind:
+            self._write()
+
+    def complete_if_possible(self) -> None:
+        """The same at the end of a run in trouble, of which a second one would tell nothing new."""
+        with suppress(OSError):
+            self.complete()
+
+    def _forget(self) -> None:
+        self._listed: list[_Frame] = []
+        self._behind = False
+        self._size = len(_HEAD) + len(_TAIL)
+        self._seen = 0  # bytes of the frames when the index was last written
+
+    def _list(self, frame: str, time: float, kinds: dict[str, Kind]) -> None:
         fields = {
             name.removeprefix(f"{frame}/"): kind
             for name, kind in kinds.items()
             if name.startswith(f"{frame}/")
         }
-        self._grids.append(self._grid(frame, float(time), fields))
-        self._write()
-
-    def restore(self, frames: list[tuple[str, float, dict[str, Kind]]]) -> None:
-        """List these frames and no others: (frame, time, kinds) as in :meth:`add`."""
-        self._grids = []
-        for frame, time, kinds in frames:
-            fields = {name.removeprefix(f"{frame}/"): kind for name, kind in kinds.items()}
-            self._grids.append(self._grid(frame, time, fields))
-        self._write()
+        if self._listed and self._listed[-1].fields == fields:
+            fields = self._listed[-1].fields
+        self._listed.append(_Frame(frame, float(time), fields))
+        self._size += len(self._grid(*self._listed[-1]).encode())
+        self._behind = True
 
     def _write(self) -> None:
         fresh = self.path.with_name(self.path.name + ".new")
-        fresh.write_text(_HEAD + "".join(self._grids) + _TAIL, encoding="utf-8")
+        with open(fresh, "w", encoding="utf-8") as file:
+            file.writelines(self._lines())
         os.replace(fresh, self.path)
+        self._seen, self._behind = self._frames.stat().st_size, False
+
+    def _lines(self) -> Iterator[str]:
+        yield _HEAD
+        for frame in self._listed:
+            yield self._grid(*frame)
+        yield _TAIL
 
     def _grid(self, frame: str, time: float, fields: dict[str, Kind]) -> str:
         (count, dimensions), _ = fields["position"]
@@ -104,6 +149,6 @@ class XdmfIndex:
             shape=" ".join(map(str, shape)),
             number="UChar" if dtype == np.uint8 else {"f": "Float", "i": "Int"}[dtype.kind],
             bytes=dtype.itemsize,
-            file=escape(self._file),
+            file=escape(self._frames.name),
             name=name,
         )

@@ -5,6 +5,9 @@ import math
 import numpy as np
 from mpi4py import MPI
 
+CHUNK = 1 << 16
+"""Rows that are rounded at once: what that takes of memory does not grow with the particles."""
+
 BITS = 62
 """Bits of a signed 64-bit integer that a sum may fill."""
 
@@ -32,7 +35,7 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     extremes = np.zeros(terms.shape[1])
     if len(terms):
         with np.errstate(invalid="ignore"):
-            extremes[:] = np.abs(terms).max(axis=0)
+            extremes[:] = np.maximum(terms.max(axis=0), -terms.min(axis=0))
     extremes[np.isnan(extremes)] = np.inf
     count = np.array(len(terms), dtype=np.int64)
     peaks = largest(comm, extremes)
@@ -40,8 +43,10 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     finite = np.isfinite(peaks)
     room = BITS - max(int(count), 1).bit_length()
     exponents = np.array([math.frexp(x)[1] if x > 0 and ok else 0 for x, ok in zip(peaks, finite)])
-    whole = np.rint(np.ldexp(np.where(finite, terms, 0.0), room - exponents)).astype(np.int64)
-    total = whole.sum(axis=0)
+    total = np.zeros(terms.shape[1], np.int64)
+    for first in range(0, len(terms), CHUNK):
+        part = np.where(finite, terms[first : first + CHUNK], 0.0)
+        total += np.rint(np.ldexp(part, room - exponents)).astype(np.int64).sum(axis=0)
     comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
     sums = np.array([math.ldexp(int(t), int(e) - room) for t, e in zip(total, exponents)])
     return np.where(finite, sums, np.nan)

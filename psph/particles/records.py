@@ -34,6 +34,9 @@ class Records:
     def __init__(self, store: Store, names: tuple[str, ...], space):
         self.store = store
         self._names = tuple(n for n in map(seen_as, ParticleView._fields) if n in names)
+        self._shown = tuple(
+            (name, seen_as(name) in self._names) for name in ParticleView._fields
+        )
         rows = [row for name in self._names for row in store.rows[name]]
         self._rows = np.array(rows, np.uint64)
         self._fixed = isinstance(space, FixedPoint)
@@ -47,8 +50,8 @@ class Records:
         store = self.store
         return ParticleView(
             *(
-                store[seen_as(n)] if seen_as(n) in self._names else store.constants.get(n)
-                for n in ParticleView._fields
+                store[seen_as(name)] if recorded else store.constants.get(name)
+                for name, recorded in self._shown
             )
         )
 

@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 
 from psph.case import CaseError
+from psph.case.consistency import MOST_STEPS
 from psph.case.tables import AXES
 from psph.physics.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
@@ -196,6 +197,14 @@ def _state_faults(scene: Scene) -> Iterator[str]:
         for line in error.lines:
             yield line.removeprefix(f"{scene.case.file}: ")
         return
+    time = scene.case.time
+    longest = time.cfl * scene.smoothing_length / speed
+    if time.step is None and time.end > MOST_STEPS * longest:
+        yield (
+            f"time.end: {time.end:g} s takes more than {MOST_STEPS:.1g} steps, of {longest:.2g} s at "
+            "the most at this spacing and speed of sound, and they are lost in its rounding; give "
+            f"less than {0.9 * MOST_STEPS * longest:.2g}"
+        )
     for name, start in zip(scene.case.fluids, scene.starts):
         density = float(start.density(np.array([[0.0] * scene.dimensions]))[0])
         if not start.weight and not start.exact and not density > 0.0:

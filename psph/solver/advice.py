@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from psph.case.model import Guards
 from psph.case.schemes import STABLE
 from psph.particles.fields import FLUID
 from psph.scene.scene import SOUND_OVER_SPEED
@@ -86,7 +87,7 @@ def _walls(scene, guard: str, suspect) -> Iterator[str]:
 
 
 def _bound(guard: str) -> Iterator[str]:
-    if guard != "finite":
+    if guard in Guards.model_fields:
         yield (
             f'raise guards.{guard} if this is meant to be, or give guards.on_trouble = "warn" to '
             "see what follows"

@@ -12,6 +12,7 @@ from psph.particles.store import SPARE
 from psph.physics.count import flops_per_pair
 from psph.solver.hints import hints
 from psph.solver.outlook import outlook
+from psph.solver.outlay import output_lines
 from psph.solver.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY = 8, 9, 12, 24, 4
@@ -28,6 +29,8 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
+    neighbours = _within(scene, scene.kernel.support * scene.smoothing_length)
+    yield from output_lines(scene, neighbours, _steps_expected(scene, plan)[0])
     yield from outlook(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
@@ -175,11 +178,22 @@ def _first_line(effect) -> str:
 
 
 def _step_lines(scene, plan: Plan) -> Iterator[str]:
-    gravity = [e.acceleration for e in plan.effects if hasattr(e, "acceleration")]
-    pull = max((math.hypot(*g) for g in gravity), default=0.0)
+    pull = _pull(plan)
     yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
     for step, name in plan.step_limits(scene.expected_speed, pull):
         yield f"  {name:<22}{step:.3g} s"
-    step, name = plan.longest_step(scene.expected_speed, pull)
+    steps, name = _steps_expected(scene, plan)
     end = scene.case.time.end
-    yield f"  expected            {math.ceil(end / step):,} steps to {end:g} s, limited by {name}"
+    yield f"  expected            {steps:,} steps to {end:g} s, limited by {name}"
+
+
+def _pull(plan: Plan) -> float:
+    """The acceleration to expect, m/s²."""
+    gravity = [e.acceleration for e in plan.effects if hasattr(e, "acceleration")]
+    return max((math.hypot(*g) for g in gravity), default=0.0)
+
+
+def _steps_expected(scene, plan: Plan) -> tuple[int, str]:
+    """How many steps the run will take, about, and what limits them."""
+    step, name = plan.longest_step(scene.expected_speed, _pull(plan))
+    return math.ceil(scene.case.time.end / step), name

@@ -16,13 +16,17 @@ from psph.solver.advice import advice
 from psph.solver.post_mortem import write_post_mortem
 from psph.solver.record import Record
 from psph.solver.resume import newest_checkpoint, write_checkpoint
-from psph.solver.step import BlowUp, Simulation
+from psph.solver.step import BlowUp, Simulation, TimeLost
 from psph.solver.suspect import Suspect, find
 
 EVERY = 100
 """Steps from one look behind the walls and at the energy to the next."""
 
-STOP = "stop"
+STOP, CLOCK = "stop", "clock"
+
+
+VERBS = {"depth": "lost a particle", CLOCK: "stands still"}
+"""What the run did, by guard, where it is not that it blew up."""
 
 
 class Guards:
@@ -52,6 +56,8 @@ class Guards:
         """
         try:
             self.simulation.step()
+        except TimeLost:
+            self._stop(CLOCK)
         except BlowUp:
             self._stop("speed" if self.simulation.strain < np.inf else "finite")
         for guard in self._tripped():
@@ -110,7 +116,7 @@ class Guards:
     def _stop(self, guard: str) -> None:
         """Leave what tells of the trouble, and raise BlowUp."""
         sim, suspect = self.simulation, self._find(guard)
-        verb = "lost a particle" if guard == "depth" else "blew up"
+        verb = VERBS.get(guard, "blew up")
         push = suspect.hardest()
         what = (
             f"the run {verb} at step {sim.steps}, time {sim.time:.6g} s: "
@@ -119,7 +125,7 @@ class Guards:
         )
         tries = advice(self.scene, guard, suspect)
         try:
-            left = self._keep_state()
+            left = self._keep_state(guard)
         except OutputError as trouble:
             left = f"No checkpoint: {trouble}."
         try:
@@ -129,7 +135,7 @@ class Guards:
             told = str(trouble)
         raise BlowUp(f"{what}; {tries[0]}; {told}")
 
-    def _keep_state(self) -> str:
+    def _keep_state(self, guard: str) -> str:
         """A checkpoint and a frame of the state, where it is finite; words of what there is."""
         case, again = self.scene.case, f"python -m psph resume {self.folder}"
         if not self.simulation.strain < np.inf:
@@ -144,10 +150,10 @@ class Guards:
             )
         path = write_checkpoint(self.simulation, self.record, case, self.folder)
         self.record.write_last()
-        return (
-            f"`{path.name}` holds this state, and so does the last frame. `{again} --extend "
-            "guards.on_trouble=warn` goes on from it."
-        )
+        kept = f"`{path.name}` holds this state, and so does the last frame."
+        if guard == CLOCK:
+            return kept
+        return f"{kept} `{again} --extend guards.on_trouble=warn` goes on from it."
 
     def _find(self, guard: str) -> Suspect:
         return find(self.simulation, self.scene, getattr(self, f"_worst_by_{guard}")())
@@ -169,6 +175,9 @@ class Guards:
         store = self.simulation.store
         return np.abs(store.shown("density") / store.shown("rest_density") - 1.0) * self._fluid()
 
+    def _worst_by_clock(self) -> np.ndarray:
+        return np.linalg.norm(self.simulation.store.shown("acceleration"), axis=1) * self._fluid()
+
     def _worst_by_depth(self) -> np.ndarray:
         return self._hidden().astype(float)
 
@@ -181,6 +190,15 @@ class Guards:
         who = f"particle {suspect.id}"
         if guard == "finite":
             return f"{who} has a position, velocity or density that is not finite"
+        if guard == CLOCK:
+            step, limit = self.simulation.plan.longest_step(
+                self.simulation.speed, self.simulation.acceleration
+            )
+            pulled = np.linalg.norm(suspect.value("acceleration"))
+            return (
+                f"a step of {step:.3g} s (limit: {limit}) is lost in the rounding of the time; "
+                f"{who} is accelerated most, by {pulled:.3g} m/s2"
+            )
         bound = f" (guards.{guard} = {getattr(self.bounds, guard):g})"
         match guard:
             case "speed":

@@ -124,6 +124,7 @@ class Record:
     def write_last(self) -> None:
         """Write the state at the end where no cadence has just done so."""
         self._write([w for w in self.schedules if self.last_written[w] < self.simulation.steps])
+        self.frames.complete_index()
 
     def _write(self, due) -> None:
         if not due:
@@ -161,7 +162,8 @@ class Record:
             self.errors.write([sim.time, *self.latest_errors])
 
     def close(self) -> None:
-        """End the tables."""
+        """End the files."""
+        self.frames.close()
         for table in self.tables:
             table.close()
 

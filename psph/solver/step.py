@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from psph.case.consistency import LARGEST_LOSS
 from psph.errors import Failed
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain
@@ -26,6 +27,10 @@ CLOCK = (
 
 class BlowUp(Failed):
     """A run in trouble, on whatever rank; raised on all."""
+
+
+class TimeLost(BlowUp):
+    """A time step so short that the time cannot tell it; raised on all ranks before the step."""
 
 
 class Simulation:
@@ -65,7 +70,9 @@ class Simulation:
 
     def step(self) -> None:
         """Advance by one time step."""
-        self.dt, self.limited_by = self.plan.longest_step(self.speed, self.acceleration)
+        dt, limited_by = self.plan.longest_step(self.speed, self.acceleration)
+        self._refuse_lost(dt)
+        self.dt, self.limited_by = dt, limited_by
         with self.ledger("skin"):
             listed = self.skin.holds(self.dt, self.speed, self.acceleration, self.shift)
         with self.ledger("kick, drift, predict"):
@@ -211,6 +218,15 @@ class Simulation:
         """The particles as the plan's carriers see them; a displacement also sees the pace."""
         view = self.store.view()._replace(**self.plan.uncarried)
         return view._replace(largest_speed=self.pace) if self.plan.displaces else view
+
+    def _refuse_lost(self, dt: float) -> None:
+        """Raise TimeLost where rounding would make the time go on by another step than this."""
+        told = (self.time + dt) - self.time
+        if not abs(told - dt) < LARGEST_LOSS * dt:  # true for a step of zero too
+            raise TimeLost(
+                f"the run stands still at step {self.steps}, time {self.time:.6g} s: a step of "
+                f"{dt:.3g} s is lost in the rounding of the time"
+            )
 
     def _refuse_blow_up(self) -> None:
         """Raise BlowUp where no step can follow: the extremes are the same on every rank."""

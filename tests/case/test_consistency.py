@@ -104,6 +104,15 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             WATER + WALL.replace("floor", "water"),
             "walls.water: a fluid has this name too; give the wall another",
         ),
+        (
+            WATER.replace("end = 2.0", "end = 2.0\nstep = 1e-12"),
+            "time.step: 1e-12: lost in the rounding of a time of 2 s, after more than 9e+09 steps; "
+            "give at least 2.4e-10",
+        ),
+        (
+            WATER + "[output]\nframes = 1e-12",
+            "output.frames: 1e-12: asks for more than 1e+09 moments until 2 s; give at least 2.2e-09",
+        ),
     ],
 )
 def test_a_contradiction_is_one_line(tmp_path, text, says):
@@ -115,6 +124,14 @@ def test_all_contradictions_are_found_at_once(tmp_path):
     text = WATER + "velocity = [1.0]" + WALL + 'continues = "oil"'
     keys = [line.split(": ")[1] for line in refusal(tmp_path, text)]
     assert keys == ["fluids.water.velocity", "walls.floor.continues"]
+
+
+def test_the_proposals_are_accepted(tmp_path):
+    text = WATER.replace("end = 2.0", "end = 2.0\nstep = 2.4e-10")
+    assert draft(tmp_path, text + "[output]\nframes = 2.2e-9").output.frames == 2.2e-9
+    for key in ("probes", "log"):
+        [line] = refusal(tmp_path, WATER + f"[output]\n{key} = 1e-300")
+        assert f"output.{key}" in line
 
 
 def test_what_agrees_is_accepted(tmp_path):

@@ -318,3 +318,14 @@ def test_a_slip_in_the_units_is_refused_at_once(tmp_path):
         "case.toml: space.spacing: 1e-08 m makes a lattice of 1.6e+16 sites, more than 1e+11; "
         "make it larger, or the shapes smaller"
     ]
+
+
+def test_a_time_that_cannot_tell_its_steps_is_refused(tmp_path):
+    [line] = refused(tmp_path, TANK, "time.end=1e9")
+    assert line.startswith(
+        "case.toml: time.end: 1e+09 s takes more than 9e+09 steps, of 0.00083 s at the most at this "
+        "spacing and speed of sound, and they are lost in its rounding; give less than "
+    )
+    proposed = line.rsplit(" ", 1)[1]
+    assert checked(tmp_path, TANK, f"time.end={proposed}") == []
+    assert checked(tmp_path, TANK, "time.end=1e9", "time.step=0.2") == []  # it has another limit

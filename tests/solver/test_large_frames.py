@@ -1,0 +1,92 @@
+"""A frame of a million particles from two ranks: every number comes back, no rank holds it all."""
+
+import json
+
+import numpy as np
+import pytest
+from jobs import mpirun
+from long import LONG, tell
+from viewers import seen_by_vtk
+
+from psph.output.reader import Run
+
+SIDE = 1000
+
+CASE = f"""
+scheme = "sph"
+time = {{ end = 1e-5, step = 1e-5 }}
+[space]
+dimensions = 2
+spacing = {1.0 / SIDE}
+[physics]
+sound_speed = 10.0
+artificial_viscosity = 0.1
+[fluids.water]
+shape.box = {{ lower = [0.0, 0.0], upper = [1.0, 1.0] }}
+pressure = 1000.0
+velocity_gradient = [[0.0, -1.0], [1.0, 0.0]]
+"""
+
+SCRIPT = """
+import json, sys
+from pathlib import Path
+
+from mpi4py import MPI
+
+from psph.case import load
+from psph.output.ledger import Ledger
+from psph.scene import Scene
+from psph.solver.explain import bytes_per_particle
+from psph.solver.plan import make_plan
+from psph.solver.record import Record
+from psph.solver.setup import compile_ahead, create_particles
+from psph.solver.step import Simulation
+
+
+def memory(what):
+    [line] = [line for line in open("/proc/self/status") if line.startswith(what)]
+    return 1024 * int(line.split()[1])
+
+
+folder, comm = Path(sys.argv[1]), MPI.COMM_WORLD
+scene = Scene(load(folder / "million.toml"))
+plan, particles = make_plan(scene), int(scene.counts().sum())
+import h5py  # what a frame needs, apart from its bytes
+compile_ahead(scene, plan, comm)
+open("/proc/self/clear_refs", "w").write("5")  # forget the peak so far
+before = memory("VmRSS")
+simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
+record = Record(scene, simulation, folder)
+simulation.step()
+record.write_last()
+record.close()
+peak = comm.reduce(memory("VmHWM") - before, MPI.MAX)
+if comm.rank == 0:
+    foretold = sum(bytes_per_particle(scene, plan)) * particles / comm.size
+    print(json.dumps({"particles": particles, "peak": peak, "foretold": foretold}))
+"""
+
+
+@LONG
+@pytest.mark.timeout(900)
+def test_a_million_particles_come_back(tmp_path):
+    (tmp_path / "million.toml").write_text(CASE)
+    job = mpirun(2, ["-c", SCRIPT, tmp_path], timeout=900)
+    assert job.returncode == 0, job.stderr
+    found = json.loads(job.stdout.splitlines()[-1])
+    assert found["particles"] == SIDE**2
+    assert found["peak"] < 1.3 * found["foretold"]  # all of it, frames and log, not the step alone
+    frame = Run(tmp_path).frame(-1)
+    order = np.argsort(frame["id"])
+    assert np.array_equal(frame["id"][order], np.arange(SIDE**2))
+    x, v = frame["position"][order], frame["velocity"][order]
+    sites = (np.indices((SIDE, SIDE)).reshape(2, -1).T + 0.5) / SIDE
+    if not np.allclose(x[:SIDE], sites[:SIDE], atol=1e-4):
+        sites = sites[:, ::-1]  # ids may run along either axis
+    assert np.allclose(x, sites, atol=1e-4) and not np.array_equal(x, sites)
+    calm = np.all(np.abs(sites - 0.5) < 0.45, axis=1)  # no surface near
+    assert np.allclose(v[calm], np.stack([-sites[:, 1], sites[:, 0]], axis=1)[calm], atol=1e-3)
+    [(_, points, fields)] = seen_by_vtk(tmp_path / "million.xmf")
+    assert np.array_equal(points[:, :2], frame["position"])
+    assert np.array_equal(fields["pressure"], frame["pressure"])
+    tell("particles written in one frame and read back", SIDE**2)
