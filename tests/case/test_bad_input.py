@@ -135,13 +135,25 @@ RUNS_CODE = {"eval", "exec", "compile", "__import__", "breakpoint", "input"}
 MODULES = {"pickle", "shelve", "marshal", "runpy", "code", "codeop", "yaml"}
 
 
+BEFORE_CASES = {"jit.py", "vectors.py", "simd", "physics", "particles"}
+"""Parts of psph that know of no case (tests/test_architecture.py)."""
+
+
 def test_nothing_in_psph_could_execute_a_text():
-    """No call of an evaluator, no import by a name from outside, no unpickling, no shell."""
-    found = []
-    for path in sorted(Path(psph.__file__).parent.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    """No call of an evaluator, no import by a name from outside, no unpickling, no shell.
+
+    But for psph.jit.unrolled, which writes out the entries of tuples: by their types alone, since
+    who uses it knows of no case.
+    """
+    found, users = [], set()
+    package = Path(psph.__file__).parent
+    for path in sorted(package.rglob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(source)):
             found += [f"{path.name}: {what}" for what in _dangers(node)]
-    assert found == []
+        if "unrolled" in source:
+            users.add(path.relative_to(package).parts[0])
+    assert found == ["jit.py: exec"] and users <= BEFORE_CASES
 
 
 def _dangers(node):
