@@ -128,9 +128,9 @@ class PairDamping(NamedTuple):
 
 
 class ImpactDamping(NamedTuple):
-    """Numerical friction where neighbours meet at half the speed of sound: nothing flies through a wall.
+    """Numerical friction where neighbours meet fast: nothing flies through a wall.
 
-    a_i = −β ρ₀ Σ_j m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/(r² + 0.01 h²) − c/2, 0): over a length
+    a_i = −β ρ₀ Σ_j m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/(r² + 0.01 h²) − c/5, 0): over a length
     h of matter a speed falls by e^β.  von Neumann & Richtmyer (1950), J. Appl. Phys. 21, 232; for
     pairs, Monaghan (1989), J. Comput. Phys. 82, 1.  Theirs begins at once, and costs a rotating
     patch 1 % of its energy; with the onset water does not know of it.  It conserves momentum and
