@@ -75,7 +75,7 @@ def _as_written(details: Details, data: Any) -> Location:
     """The location in the keys of the file: pydantic's also names branches that no file has."""
     loc: list[str | int] = []
     for key in details["loc"]:
-        is_place = isinstance(data, (list, tuple)) and isinstance(key, int)
+        is_place = isinstance(data, list) and isinstance(key, int) and key < len(data)
         if is_place or isinstance(data, dict) and key in data:
             data = data[key]
             loc.append(key)
@@ -87,6 +87,8 @@ def _as_written(details: Details, data: Any) -> Location:
 def _sentence(details: Details, loc: Location, schema: Details) -> str:
     """What is wrong; what to do."""
     kind, value, node = details["type"], details["input"], find(schema, details["loc"])
+    if kind == "missing" and isinstance(place := details["loc"][-1], int):
+        return f"{plain(value)} is too short; give {place + 1} numbers at least"
     if kind == "missing":
         return f"missing; {_how_to_add(loc, schema)}"
     if kind == "extra_forbidden":

@@ -51,6 +51,10 @@ REFUSED = {
     "a key of a ladder that assigns itself": (
         WATER + '[study]\nvary = { "time.end=1#" = [1.0, 2.0] }', "study.vary.time.end=1#",
     ),
+    "a point of too few numbers": (
+        WATER + "[exact.gresho]\nspeed = 1.0\nradius = 1.0\ncentre = [0.5]",
+        "exact.gresho.centre: [0.5] is too short; give 2 numbers at least",
+    ),
     "a NUL in a file's name": (
         WATER + '[experiments.e]\nfile = "\\u0000"\ntime = "t"\nvalue = "v"\nprobe = "p"',
         "experiments.e.file",
