@@ -85,6 +85,7 @@ def test_space_past_2_31_bytes_is_taken(tmp_path, monkeypatch):
 
 
 def test_xdmf_tells_numbers_past_2_31(tmp_path):
+    (tmp_path / "tank.h5").touch()
     index = XdmfIndex(tmp_path / "tank.h5")
     kind = SimpleNamespace(vector=((2**33, 3), np.dtype(float)), whole=((2**33,), np.dtype("int64")))
     index.add("frames/00000", 0.0, {
