@@ -7,13 +7,14 @@ import pytest
 from jobs import mpirun
 from long import LONG, tell, tell_most
 
+pytestmark = pytest.mark.timeout(600)  # two ranks on a busy machine wait for each other
 WATCHED = Path(__file__).with_name("growth.py")
 MOST = {"bytes": 1_000_000, "files": 0, "requests": 0, "objects": 300}
-"""What may be more at the end than after a tenth of the run; a sample itself is an object, and memory
-comes from the system in pieces of half a megabyte."""
+"""What may be more at the end than after a tenth of the run; a sample itself is an object, and
+memory comes from the system in pieces of half a megabyte."""
 
 
-def growth(folder, ranks, steps, *how, timeout=170):
+def growth(folder, ranks, steps, *how, timeout=550):
     """What grew by how much from a tenth of the steps on, and how often lists were made."""
     job = mpirun(ranks, [WATCHED, folder, steps, *how], timeout=timeout)
     assert job.returncode == 0, job.stderr
