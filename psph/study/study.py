@@ -7,6 +7,7 @@ from pathlib import Path
 
 from psph.case import CaseError, load
 from psph.case.profiles import OFF, choices
+from psph.errors import one_line
 from psph.output.reader import Run as Folder
 from psph.scene import Scene, check
 from psph.study import fit, report, words
@@ -323,13 +324,20 @@ def foretold(folder: Path, case) -> Iterator[str]:
     """
     try:
         kept = json.loads((folder / KEPT).read_text(encoding="utf-8"))
-        every = ladders_of(_sound(kept["rows"]), kept["vary"], kept["dimensions"])
-        fits = [ladder for shared, _, ladder in every if ladder and not shared]
+        lines = list(_told(folder, kept, case))
+    except StudyError:
+        raise
     except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError,
             RecursionError) as error:  # whatever may be wrong with a file that psph has not written
         raise StudyError(
             f"{folder}: holds no study ({error}); give the folder that `study` wrote to"
         ) from None
+    yield from lines
+
+
+def _told(folder: Path, kept: dict, case) -> Iterator[str]:
+    every = ladders_of(_sound(kept["rows"]), kept["vary"], kept["dimensions"])
+    fits = [ladder for shared, _, ladder in every if ladder and not shared]
     if not fits or not fits[0].steady:
         raise StudyError(
             f"{folder}: its study has no ladder of spacings on which the error falls steadily; "
@@ -337,6 +345,8 @@ def foretold(folder: Path, case) -> Iterator[str]:
         )
     [ladder] = fits
     error, time = ladder.error(case.space.spacing), ladder.seconds(case.space.spacing)
-    yield f"From the study in {folder} ({kept['case']} on {kept['ranks']} ranks)"
-    yield f"  error       {report.percent(error.value)}{words.interval(error, report.percent)}, {kept['error']}"
+    yield one_line(f"From the study in {folder} ({kept['case']} on {kept['ranks']} ranks)")
+    yield one_line(
+        f"  error       {report.percent(error.value)}{words.interval(error, report.percent)}, {kept['error']}"
+    )
     yield f"  run time    {report.seconds(time.value)}{words.interval(time, report.seconds)}"
