@@ -35,7 +35,7 @@ SlurmctldPidFile={folder}/slurmctld.pid
 SlurmdPidFile={folder}/slurmd.pid
 SlurmctldLogFile={folder}/slurmctld.log
 SlurmdLogFile={folder}/slurmd.log
-NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} Boards=1 SocketsPerBoard=1 CoresPerSocket={cores} ThreadsPerCore=1
+NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} CoresPerSocket={cores}
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
 """
 

@@ -139,14 +139,16 @@ def shell(command):
     )
 
 
+FULL = "the standard output cannot be written: No space left on device"
+
+
 @pytest.mark.parametrize(
     "command, said",
     [
         ("$PSPH schema | true", "nobody reads the output any more"),
         (f"$PSPH check {CASE} | true", "nobody reads the output any more"),  # buffered to the end
-        ("$PSPH schema >/dev/full", "the standard output cannot be written: No space left on device"),
-        (f"$PSPH {CASE} --out $OUT >/dev/full",
-         "the standard output cannot be written: No space left on device"),
+        ("$PSPH schema >/dev/full", FULL),
+        (f"$PSPH {CASE} --out $OUT >/dev/full", FULL),
     ],
 )
 def test_output_that_cannot_be_written_is_one_line_and_code_3(tmp_path, command, said):

@@ -54,10 +54,14 @@ SMALLEST, LARGEST = 1e-30, 1e30
 """Between these lie the sizes of all numbers of a case that are not 0: what is computed from them,
 fifth powers of lengths among it, then stays a number."""
 
+SHORTEST_OUTPUT = 1e-4 * SMALLEST
+"""A thousandth of the shortest run, which is what a resolved case may hold, is taken too."""
+
 
 def _sizes(case: Case) -> Iterator[Finding]:
     for loc, value in walk(case):
-        if isinstance(value, float) and value and not SMALLEST <= abs(value) <= LARGEST:
+        least = SHORTEST_OUTPUT if loc[:1] == ("output",) else SMALLEST
+        if isinstance(value, float) and value and not least <= abs(value) <= LARGEST:
             yield loc, value, (
                 f"psph computes with 0 and sizes from {SMALLEST:g} to {LARGEST:g}; give such a number"
             )

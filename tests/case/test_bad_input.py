@@ -130,6 +130,8 @@ def test_what_is_near_the_bounds_is_taken(tmp_path):
     huge = SQUARE.replace("0.1", "1e19").replace("1.0, 1.0", "1e20, 1e20")
     assert Scene(draft(tmp_path, huge)).counts().sum() == 100
     assert draft(tmp_path, 'title = "Éau, 水"\n' + WATER).title == "Éau, 水"
+    short = draft(tmp_path, WATER, "time.end=1e-30")
+    assert draft(tmp_path, short.to_toml()).output == short.output
     keys = "a." * 45 + "a"
     [line] = refusal(tmp_path, f"[x]\n{keys} = 1\n" + WATER)
     assert "x: unknown key" in line

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 from jobs import mpirun, ranks_of, started
+from long import long_but_for
 from solver.resuming import BOX, same_files
 
 from psph.output.checkpoint import checkpoints
@@ -118,11 +119,11 @@ def test_a_signal_to_a_real_job_loses_nothing(box, tmp_path, number, to, ranks):
     assert same_files(folder, whole)
 
 
-@pytest.mark.parametrize("number", ("SIGTERM", "SIGINT"))
+@pytest.mark.parametrize("number", long_but_for(("SIGTERM",), ("SIGTERM", "SIGINT")))
 def test_mpirun_that_is_told_to_end_lets_the_ranks_save(box, tmp_path, number):
     slowly = tmp_path / "slowly.py"
     slowly.write_text(SLOWLY, encoding="utf-8")
-    folder, patient = tmp_path / "run", {"OMPI_MCA_odls_base_sigkill_timeout": "10"}
+    folder, patient = tmp_path / "run", {"OMPI_MCA_odls_base_sigkill_timeout": "3"}
     with started(2, [slowly, box[0], "--out", folder, "--set", LATER], env=patient) as job:
         begun(folder, 4)
         os.kill(job.pid, getattr(signal, number))
