@@ -101,7 +101,11 @@ def running(folder: Path):
         daemons.enter_context(_daemon(slurm, ["slurmctld", "-D"]))
         daemons.enter_context(_daemon(slurm, ["slurmd", "-D", "-N", host]))
         _until(lambda: "idle" in slurm.command("sinfo", "--noheader", "--format=%T"))
-        yield slurm
+        try:
+            yield slurm
+        finally:
+            slurm.command("scancel", "--user=root")  # what a failed test has left
+            _until(lambda: not slurm.command("squeue", "--noheader", "--states=R,CG"), 60.0)
 
 
 @contextmanager
@@ -119,8 +123,8 @@ def _daemon(slurm: Slurm, words):
                 process.kill()
 
 
-def _until(there):
-    deadline = time.monotonic() + PATIENCE
+def _until(there, seconds=PATIENCE):
+    deadline = time.monotonic() + seconds
     while True:
         try:
             if there():
@@ -128,7 +132,7 @@ def _until(there):
         except AssertionError:
             if time.monotonic() > deadline:
                 raise
-        assert time.monotonic() < deadline, "Slurm did not start"
+        assert time.monotonic() < deadline, "Slurm did not come so far"
         time.sleep(0.2)
 
 

@@ -21,6 +21,7 @@ from psph.output.checkpoint import checkpoints
 
 ROOT = Path(__file__).parents[1]
 SCRIPT = ROOT / "run/batch/psph.slurm"
+pytestmark = pytest.mark.timeout(400)  # whichever comes first compiles
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +91,7 @@ def turn_of(home, queue, *arguments, turn=0, number=77):
 def turn(*arguments, **named):
     """The same, finished: code, output and messages."""
     with turn_of(*arguments, **named) as job:
-        out, err = job.communicate(timeout=120)
+        out, err = job.communicate(timeout=300)
     return job.returncode, out, err
 
 
@@ -102,7 +103,6 @@ def asked(queue):
 ENDLESS = ("--set", "time.end=50.0", "--set", 'title="two words"')
 
 
-@pytest.mark.timeout(400)  # it compiles
 def test_warned_turns_go_back_into_the_queue_and_a_finished_one_rests(home, queue):
     folder = home / "results/box-77"
     for number in (0, 1):
