@@ -91,6 +91,7 @@ def test_xdmf_tells_numbers_past_2_31(tmp_path):
     index.add("frames/00000", 0.0, {
         "frames/00000/position": kind.vector, "frames/00000/id": kind.whole,
     })
+    index.complete()
     text = index.path.read_text()
     assert 'NumberOfElements="8589934592"' in text
     assert 'Dimensions="8589934592 3"' in text
