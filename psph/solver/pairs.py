@@ -10,10 +10,6 @@ from psph.physics.space import difference
 from psph.simd import spread, total, width_of
 from psph.vectors import add, put, zero_like
 
-TINY = 1e-20
-"""r² + TINY h² keeps two particles at one place from dividing by zero; too small to change any
-other distance."""
-
 
 @compiled
 def sum_over_neighbours(

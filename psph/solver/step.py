@@ -11,7 +11,7 @@ from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.solver.integrator import fastest_shift, kick, kick_drift_predict, state_of
-from psph.solver.pairs import TINY, sum_over_neighbours
+from psph.solver.pairs import sum_over_neighbours
 from psph.solver.plan import Plan
 from psph.threads import in_threads
 
@@ -49,7 +49,7 @@ class Simulation:
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
         support = scene.kernel.support * scene.smoothing_length
         skin = scene.case.neighbours.skin * support
-        self.tiny = TINY * scene.smoothing_length**2
+        self.tiny = plan.space.tiny * scene.smoothing_length**2
         self.domain = Domain(
             comm, store, scene.axis, support + skin, scene.lower, scene.upper,
             scene.periods, plan.ghost_fields, plan.refreshed, plan.space.filling,

@@ -7,6 +7,7 @@ each scene: what happened, and {"WAY on N": digest}.
 import hashlib
 import json
 import sys
+import traceback
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -184,8 +185,17 @@ def compare(path, steps):
             "digests": digests}
 
 
-if __name__ == "__main__":
-    for one in sorted(Path(sys.argv[1]).glob("*.toml")):
-        told = compare(one, int(sys.argv[2]))
+def main(folder, steps):
+    """A line for each scene of the folder."""
+    for one in sorted(folder.glob("*.toml")):
+        told = compare(one, steps)
         if WORLD.rank == 0:
             print(json.dumps(told), flush=True)
+
+
+if __name__ == "__main__":
+    try:
+        main(Path(sys.argv[1]), int(sys.argv[2]))
+    except BaseException:
+        traceback.print_exc()
+        WORLD.Abort(1)  # the others would wait for ever

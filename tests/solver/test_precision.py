@@ -6,8 +6,9 @@ import sys
 
 import numpy as np
 import pytest
-from long import long_but_for
+from drafts import WATER, draft
 from jobs import clean_environment
+from long import long_but_for
 from mpi4py import MPI
 
 from psph.case import Case
@@ -143,3 +144,17 @@ def test_without_compiling_psph_is_plain_python(tmp_path):
         case = box(2, precision, True, sides=9, free_surface=0.9, pressure_gradient="minimum")
         compiled = np.concatenate([x.ravel() for x in run(case, 2)])
         assert worst(np.load(tmp_path / f"{precision}.npy"), compiled) < close
+
+
+@pytest.mark.parametrize("scheme", long_but_for(("stable",), ("stable", "sph", "ssph")))
+@pytest.mark.parametrize("precision", ["mixed", "double"])
+def test_two_particles_may_start_at_one_place(precision, scheme, tmp_path):
+    """So does the rehearsal that compiles: the stable scheme in single precision once ended there."""
+    shift = "[[perturbations]]\nposition = [0.45, 0.25]\nshift = [0.1, 0.0]\n"
+    case = draft(tmp_path, WATER.replace('"sph"', f'"{scheme}"') + shift, f"precision={precision}")
+    alone = simulation(case)
+    places = alone.store.owned_rows("position").round(6).tolist()
+    assert len(set(map(tuple, places))) == len(places) - 1
+    for _ in range(5):
+        alone.step()
+    assert np.isfinite(alone.store.owned_rows("acceleration")).all()
