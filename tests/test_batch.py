@@ -28,10 +28,19 @@ pytestmark = pytest.mark.timeout(400)  # whichever comes first compiles
 def home(tmp_path_factory):
     """A folder to submit from: the environment, these sources, and a case."""
     folder = tmp_path_factory.mktemp("home")
-    (folder / ".venv").symlink_to(sys.prefix)
-    (folder / "psph").symlink_to(ROOT / "psph")
+    program(
+        folder / ".venv/bin/python",
+        f"export PYTHONPATH={shlex.quote(str(ROOT))}; exec {shlex.quote(sys.executable)} \"$@\"",
+    )
     (folder / "box.toml").write_text(BOX, encoding="utf-8")
     return folder
+
+
+def program(path, text):
+    """Leave a program of bash there."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"#!/bin/bash\n{text}\n", encoding="utf-8")
+    path.chmod(0o755)
 
 
 def rows(folder):
@@ -50,16 +59,10 @@ def until(there, seconds=150.0):
 
 # Without Slurm
 
-SCONTROL = """#!/bin/bash
-echo "$@" >>"$(dirname "$0")/asked"
-"""
-
-
 @pytest.fixture
 def queue(tmp_path):
     """A folder for PATH whose ``scontrol`` only writes to ``asked`` what it was asked for."""
-    (tmp_path / "scontrol").write_text(SCONTROL)
-    (tmp_path / "scontrol").chmod(0o755)
+    program(tmp_path / "scontrol", 'echo "$@" >>"$(dirname "$0")/asked"')
     return tmp_path
 
 
@@ -159,16 +162,14 @@ def test_wrong_arguments_are_one_line(home, queue, arguments):
 
 def test_a_turn_without_progress_or_without_a_queue_ends_the_job(home, queue, tmp_path):
     stopped = ("box.toml", "--set", "time.end=50.0", "--set", "checkpoint.wall_clock=0.01")
-    (queue / "scontrol").write_text("#!/bin/bash\nexit 1\n")
+    program(queue / "scontrol", "exit 1")
     code, _, err = turn(home, queue, *stopped, number=9)
     assert code == 75 and "stopped by checkpoint.wall_clock" in err
     way = "go on with: sbatch run/batch/psph.slurm resume results/box-9\n"
     assert err.endswith(f"Slurm does not take the job back; {way}")
 
     elsewhere = tmp_path / "elsewhere"  # where psph ends with code 75 and has done nothing
-    (elsewhere / ".venv/bin").mkdir(parents=True)
-    (elsewhere / ".venv/bin/python").write_text("#!/bin/bash\nexit 75\n")
-    (elsewhere / ".venv/bin/python").chmod(0o755)
+    program(elsewhere / ".venv/bin/python", "exit 75")
     shutil.copytree(home / "results", elsewhere / "results")
     code, _, err = turn(elsewhere, queue, *stopped, turn=1, number=9)
     assert code == 75 and err.endswith(f"came no step further: not put back into the queue; {way}")
