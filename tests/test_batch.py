@@ -221,7 +221,7 @@ class Job:
         if state == "PENDING" and (turn := self.turns()) > self.hastened:
             self.cluster.command("scontrol", "update", f"JobId={self.number}", "StartTime=now+3")
             self.hastened = turn
-        return state not in ("PENDING", "RUNNING", "COMPLETING")
+        return state in ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL")
 
     def end(self, seconds=300.0):
         """Its last state."""
