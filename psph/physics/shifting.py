@@ -7,7 +7,7 @@ from pydantic import Field
 
 from psph.jit import register_jitable
 from psph.simd import where
-from psph.smoothing import first_moment, weight
+from psph.smoothing import first_moment, slope_over_r, weight
 from psph.vectors import add, dot, scale, zero_like
 
 CROWDING = 0.2
@@ -104,9 +104,8 @@ class PositionShift(NamedTuple):
     def in_scene(self, scene):
         """The shift that knows what a full neighbourhood sums up to."""
         kernel, dx = scene.kernel, scene.spacing
-        return LatticeShift(
-            self.strength, first_moment(kernel, dx, scene.dimensions), 1.0 / float(kernel.dw_r(dx))
-        )
+        full = first_moment(kernel, dx, scene.dimensions)
+        return LatticeShift(self.strength, full, 1.0 / float(slope_over_r(kernel, dx)))
 
 
 class LatticeShift(NamedTuple):

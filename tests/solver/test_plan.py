@@ -13,6 +13,7 @@ from psph.physics.catalogue import Entry
 from psph.physics.diffusion import HydrostaticDiffusion
 from psph.physics.trial import UnknownField
 from psph.scene import Scene
+from psph.smoothing import KERNELS
 from psph.solver import plan as plan_module
 from psph.solver.explain import explain
 from psph.solver.plan import make_plan
@@ -138,6 +139,14 @@ def test_sums_of_the_pass_before_bring_their_fields(planned):
     assert {"crowding", "gradient_correction"} <= set(plan.arrays) and plan.starts_twice
     assert "gradient_correction" in plan.refreshed and "crowding" not in plan.refreshed
     assert plan.displaces and not planned("physics.gradient_correction=0.5")[1].displaces
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_the_scheme_takes_every_kernel(kernel, planned):
+    """A kernel need not have a W′/r of its own."""
+    _, plan = planned("scheme=stable", f"space.kernel={kernel}", "space.smoothing=1.4")
+    [shift] = (e for e in plan.effects if hasattr(e, "inverse_near"))
+    assert shift.full < 0.0 and np.isfinite(shift.inverse_near) and shift.inverse_near < 0.0
 
 
 @pytest.mark.parametrize("dimensions", [1, 2, 3])
