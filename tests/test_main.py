@@ -38,7 +38,9 @@ def test_the_resolved_case_runs_again_to_the_same_end(tmp_path):
 
 def test_a_run_is_not_overwritten_unasked(tmp_path):
     run = (CASE, "--out", tmp_path, "--set", "time.end=1e-4")
+    (tmp_path / "mine.png").touch()
     assert psph(*run).returncode == 0
+    assert (tmp_path / "mine.png").exists()  # there was no run whose picture it could be
     again = psph(*run)
     assert again.returncode == 3 and "--overwrite" in again.stderr
     assert len(again.stderr.strip().splitlines()) == 1

@@ -180,13 +180,15 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
     trouble = None
     if comm.rank == 0:
         try:
-            if (folder / f"{case.name}.h5").exists() and not overwrite:
+            ran = (folder / f"{case.name}.h5").exists()
+            if ran and not overwrite:
                 trouble = f"{folder} holds a run of {case.name}: give --out or --overwrite"
                 if checkpoints(folder):
                     trouble += f", or go on with it: `python -m psph resume {folder}`"
             else:
                 folder.mkdir(parents=True, exist_ok=True)
-                for name in (LOG, PROBES, ERRORS, "*.png"):
+                # Pictures in a folder without a run are none of ours.
+                for name in (LOG, PROBES, ERRORS, "*.png") if ran else ():
                     for old in folder.glob(name):
                         old.unlink()
                 remove_checkpoints(folder)
