@@ -72,3 +72,8 @@ def _end(job):
             return
         except (subprocess.TimeoutExpired, ProcessLookupError):
             continue
+
+
+def hears_interrupts():
+    """For ``preexec_fn``: a shell starts what it sends to the background deaf to SIGINT, tests too."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -7,7 +7,7 @@ import sys
 import time
 
 import pytest
-from jobs import clean_environment, mpirun
+from jobs import clean_environment, hears_interrupts, mpirun
 
 CASE = "run/cases/negative_pressure.toml"
 
@@ -123,7 +123,7 @@ def test_an_interrupt_is_one_line_and_code_130(tmp_path):
     words = [sys.executable, "-m", "psph", CASE, "--out", tmp_path, "--set", "time.end=100"]
     with subprocess.Popen(
         words, env=clean_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True,
+        stderr=subprocess.PIPE, text=True, preexec_fn=hears_interrupts,
     ) as job:
         while not job.stdout.readline().startswith("first step"):
             assert job.poll() is None

@@ -10,7 +10,7 @@ import sys
 
 import pytest
 from drafts import draft
-from jobs import clean_environment, mpirun
+from jobs import clean_environment, hears_interrupts, mpirun
 
 from psph.case import load
 from psph.case.profiles import PROFILES, choices
@@ -166,7 +166,10 @@ def test_a_study_that_is_killed_goes_on_where_it_was(tmp_path):
     file = tmp_path / "wave.toml"
     file.write_text(WAVE.replace("end = 0.1", "end = 3.0"))  # the last run takes long enough
     command = [sys.executable, "-m", "psph", "study", str(file), "--out", str(tmp_path / "out")]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=clean_environment()) as job:
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, env=clean_environment(),
+        preexec_fn=hears_interrupts,
+    ) as job:
         for line in job.stdout:
             if line.startswith("run 1 of 3") and "steps" in line:
                 job.send_signal(signal.SIGINT)
