@@ -171,7 +171,8 @@ class Simulation:
     def _predict(self, dt: float) -> None:
         s, plan = self.store, self.plan
         in_threads(
-            kick_drift_predict, s.low, s.low + s.owned, dt, plan.carriers, plan.state, self._view(), s.kind,
+            kick_drift_predict, s.low, s.low + s.owned, dt, plan.carriers, plan.state, self._view(),
+            s.kind,
             s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
             s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
             s["specific_volume"], s["pressure"],
@@ -216,8 +217,10 @@ class Simulation:
 
     def _view(self):
         """The particles as the plan's carriers see them; a displacement also sees the pace."""
-        view = self.store.view()._replace(**self.plan.uncarried)
-        return view._replace(largest_speed=self.pace) if self.plan.displaces else view
+        changed = self.plan.uncarried
+        if "largest_speed" not in changed:
+            changed = changed | {"largest_speed": self.pace}
+        return self.store.view()._replace(**changed)
 
     def _refuse_lost(self, dt: float) -> None:
         """Raise TimeLost where rounding would make the time go on by another step than this."""

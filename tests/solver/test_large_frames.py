@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from jobs import mpirun
 from long import LONG, tell
+from solver.footprint import START
 from viewers import seen_by_vtk
 
 from psph.output.reader import Run
@@ -27,36 +28,7 @@ pressure = 1000.0
 velocity_gradient = [[0.0, -1.0], [1.0, 0.0]]
 """
 
-SCRIPT = """
-import json, sys
-from pathlib import Path
-
-from mpi4py import MPI
-
-from psph.case import load
-from psph.output.ledger import Ledger
-from psph.scene import Scene
-from psph.solver.explain import bytes_per_particle
-from psph.solver.plan import make_plan
-from psph.solver.record import Record
-from psph.solver.setup import compile_ahead, create_particles
-from psph.solver.step import Simulation
-
-
-def memory(what):
-    [line] = [line for line in open("/proc/self/status") if line.startswith(what)]
-    return 1024 * int(line.split()[1])
-
-
-folder, comm = Path(sys.argv[1]), MPI.COMM_WORLD
-scene = Scene(load(folder / "million.toml"))
-plan, particles = make_plan(scene), int(scene.counts().sum())
-import h5py  # what a frame needs, apart from its bytes
-compile_ahead(scene, plan, comm)
-open("/proc/self/clear_refs", "w").write("5")  # forget the peak so far
-before = memory("VmRSS")
-simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
-record = Record(scene, simulation, folder)
+SCRIPT = START + """
 simulation.step()
 record.write_last()
 record.close()
@@ -71,7 +43,7 @@ if comm.rank == 0:
 @pytest.mark.timeout(900)
 def test_a_million_particles_come_back(tmp_path):
     (tmp_path / "million.toml").write_text(CASE)
-    job = mpirun(2, ["-c", SCRIPT, tmp_path], timeout=900)
+    job = mpirun(2, ["-c", SCRIPT, tmp_path / "million.toml"], timeout=900)
     assert job.returncode == 0, job.stderr
     found = json.loads(job.stdout.splitlines()[-1])
     assert found["particles"] == SIDE**2

@@ -5,38 +5,9 @@ import subprocess
 import sys
 
 from jobs import clean_environment
+from solver.footprint import START
 
-SCRIPT = """
-import json, sys
-from pathlib import Path
-
-from mpi4py import MPI
-
-from psph.case import load
-from psph.output.ledger import Ledger
-from psph.scene import Scene
-from psph.solver.explain import bytes_per_particle
-from psph.solver.plan import make_plan
-from psph.solver.record import Record
-from psph.solver.setup import compile_ahead, create_particles
-from psph.solver.step import Simulation
-
-
-def resident(what):
-    [line] = [line for line in open("/proc/self/status") if line.startswith(what)]
-    return 1024 * int(line.split()[1])
-
-
-folder, comm = Path(sys.argv[1]), MPI.COMM_SELF
-scene = Scene(load(folder / "cube.toml"))
-plan = make_plan(scene)
-particles = int(scene.counts().sum())
-import h5py  # what a frame needs, apart from its bytes
-compile_ahead(scene, plan, comm)
-open("/proc/self/clear_refs", "w").write("5")  # forget the peak so far
-before = resident("VmRSS")
-simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
-record = Record(scene, simulation, folder)
+SCRIPT = START + """
 record.write_frame()
 rebuilds = simulation.domain.rebuilds
 while simulation.domain.rebuilds < rebuilds + 2:
@@ -44,7 +15,7 @@ while simulation.domain.rebuilds < rebuilds + 2:
 record.write_frame()
 print(json.dumps({
     "particles": particles,
-    "measured": (resident("VmHWM") - before) / particles,
+    "measured": (memory("VmHWM") - before) / particles,
     "foretold": sum(bytes_per_particle(scene, plan)),
 }))
 """
@@ -70,7 +41,7 @@ pressure = 10000.0
 def test_bytes_a_particle_rebuilds_and_frames_included(tmp_path):
     (tmp_path / "cube.toml").write_text(CUBE)
     job = subprocess.run(
-        [sys.executable, "-c", SCRIPT, tmp_path], capture_output=True, text=True,
+        [sys.executable, "-c", SCRIPT, tmp_path / "cube.toml"], capture_output=True, text=True,
         env=clean_environment(),
     )
     assert job.returncode == 0, job.stderr
