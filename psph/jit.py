@@ -37,11 +37,15 @@ def source_digest() -> str:
     return digest.hexdigest()[:16]
 
 
+SOURCES = source_digest()
+"""That of the sources which this process has read, whatever is written into them meanwhile."""
+
+
 def cache_folder() -> Path:
     """Folder of the compiled loops: ``$PSPH_CACHE`` or the user's cache folder, one per digest."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     root = Path(os.environ.get("PSPH_CACHE") or Path(home) / "psph")
-    return root / source_digest()
+    return root / SOURCES
 
 
 def _configure() -> None:

@@ -25,7 +25,7 @@ def contradictions(case: Case) -> list[InitErrorDetails]:
     """Everything in which the keys of a case do not fit together."""
     rules = (
         _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected,
-        _shifted, _carried, _stressed, _continued, _no_slip, _probed, _names, _single, _stepped,
+        _shifted, _carried, _stressed, _continued, _friction, _probed, _names, _single, _stepped,
         _due,
     )
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
@@ -176,13 +176,22 @@ def _continued(case: Case) -> Iterator[Finding]:
             )
 
 
-def _no_slip(case: Case) -> Iterator[Finding]:
-    if any(fluid.viscosity for fluid in case.fluids.values()):
-        return
+def _friction(case: Case) -> Iterator[Finding]:
+    rubs = any(fluid.viscosity for fluid in case.fluids.values())
+    central = case.physics.central_friction is not None
+    if central and not rubs:
+        yield ("physics", "central_friction"), ..., (
+            "no fluid has any friction; give a fluid its viscosity, or take this out"
+        )
     for name, wall in case.walls.items():
-        if wall.no_slip:
+        if wall.no_slip and not rubs:
             yield ("walls", name, "no_slip"), True, (
                 "no fluid has any friction; give a fluid its viscosity, or take no_slip out"
+            )
+        elif wall.no_slip and central:
+            yield ("walls", name, "no_slip"), True, (
+                "mirrors the flow for friction that follows the velocity; take "
+                "physics.central_friction out, or no_slip"
             )
 
 

@@ -19,7 +19,7 @@ from psph.physics.stress import ArtificialStress
 from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
 from psph.physics.viscosity import (
-    ArtificialViscosity, ImpactDamping, LaminarViscosity, PairDamping,
+    ArtificialViscosity, CentralFriction, ImpactDamping, LaminarViscosity, PairDamping,
 )
 
 
@@ -43,6 +43,7 @@ CATALOGUE = (
     Entry("physics.pressure_gradient=tensile_control", TensileControl),
     Entry("physics.artificial_stress", ArtificialStress),
     Entry("fluids.*.viscosity", LaminarViscosity),
+    Entry("physics.central_friction", CentralFriction),
     Entry("walls.*.no_slip", NoSlip),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.pair_damping", PairDamping),

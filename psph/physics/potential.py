@@ -23,6 +23,11 @@ the square and hexagonal, or the cubic, body-centred and face-centred lattice: n
 NEAR = 0.75
 """Distance in spacings at which the strength is told."""
 
+AT_NEAR = (1.0, 1.0, 1.5)
+"""What −ψ′ is there, over dx^-(d+1).
+
+With 1.0 in 3D a rotating cube clumps: 5 % of its particles come nearer than 0.57 dx to another."""
+
 SOUND_OVER_SPEED = 10.0
 """Speed of sound over the largest speed that a weakly compressible flow should have."""
 
@@ -31,7 +36,7 @@ class PairPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
 
     a_i = −(2K/ρ₀²) Σ_j m_j ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊, scaled to
-    −ψ′ = dx^-(d+1) at r = ¾ dx; the last weight, negative, makes the virial Σ r ψ′ of the starting
+    −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial Σ r ψ′ of the starting
     lattice zero: no mean pressure.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
     artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  A potential, so momentum,
@@ -100,7 +105,8 @@ def neutral_potential(strength: float, dx: float, dimensions: int) -> NeutralPot
     weights = np.array([1.0, *WEIGHTS[dimensions - 1]])
     weights = np.append(weights, -(weights @ virials[:-1]) / virials[-1])
     near = NEAR * float(weights @ _forces_over_r(core, ranges, np.array([NEAR**2]))[:, 0])
-    weights *= 2.0 * strength / (SOUND_OVER_SPEED**2 * near * dx ** (dimensions + 2))
+    scale = AT_NEAR[dimensions - 1] / (near * dx ** (dimensions + 2))
+    weights *= 2.0 * strength / SOUND_OVER_SPEED**2 * scale
     return NeutralPotential(
         1.0 / (core * dx), float(weights[0]) * dx,
         tuple((1.0 / (ranges * dx) ** 2).tolist()), tuple(weights[1:].tolist()),

@@ -17,9 +17,15 @@ ONSET = 0.2
 @register_jitable
 def friction(i, j, pair):
     """Coefficient of a difference of velocities in the acceleration by the fluid's viscosity, 1/s."""
+    return _friction(i, j, pair, pair.r2)
+
+
+@register_jitable
+def _friction(i, j, pair, area):
+    """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``area``/(r² + 0.01 h²)."""
     v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
     # (μ_i + μ_j)/(ρ_i + ρ_j)² in specific volumes: one division in place of three.
-    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * pair.r2
+    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * area
     under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
     return 4.0 * j.mass * pair.dw_r * over / under
 
@@ -32,9 +38,11 @@ class LaminarViscosity(NamedTuple):
     """
 
     def in_scene(self, scene):
-        """With corrected gradients, the form that takes them."""
-        corrected = scene.case.physics.gradient_correction is not None
-        return CorrectedViscosity() if corrected else self
+        """With corrected gradients, the form that takes them; beside central friction, nothing."""
+        physics = scene.case.physics
+        if physics.central_friction is not None:
+            return None
+        return self if physics.gradient_correction is None else CorrectedViscosity()
 
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
@@ -61,6 +69,25 @@ class CorrectedViscosity(NamedTuple):
         stretch = 1.0 + 0.5 * dot(times(both, pair.x_ij), pair.x_ij) / pair.r2
         over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
         return 4.0 * j.mass * pair.dw_r * over * stretch / ((v_i + v_j) * (v_i + v_j))
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
+        return _longest_step(scene)
+
+
+class CentralFriction(NamedTuple):
+    """The fluids' viscosity acts along the line of each pair: a free surface bears no shear stress.
+
+    a_i = (d + 2) Σ_j 4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² (u_ij·x_ij)/(r² + 0.01 h²) ∇W_ij, in place of
+    :class:`LaminarViscosity`.  Monaghan & Gingold (1983), J. Comput. Phys. 52, 374; as a
+    viscosity, Monaghan (2005), Rep. Prog. Phys. 68, 1703.  It conserves angular momentum too.  At
+    a free surface that other one lets ∂u/∂n vanish in place of the stress, and takes half of what
+    a wave loses: Colagrossi, Antuono, Souto-Iglesias & Le Touzé (2011), Phys. Rev. E 84, 026705.
+    """
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        return (2.0 + len(pair.x_ij)) * _friction(i, j, pair, pair.u_dot_x)
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""

@@ -6,6 +6,7 @@ from drafts import WATER, draft, refusal
 BALL = "{ center = [0.0, 0.0, 0.0], radius = 1.0 }"
 BOX = "{ lower = [0.0, 0.0], upper = [1.0, 0.5] }"
 PERIODIC = 'spacing = 0.1\nperiodic = ["x"]\n'
+CENTRAL = "[physics]\ncentral_friction = {}"
 WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
 
 
@@ -99,6 +100,14 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
         (
             WATER + WALL + "no_slip = true",
             "walls.floor.no_slip: true: no fluid has any friction; give a fluid its viscosity, or",
+        ),
+        (
+            WATER.replace("[physics]", CENTRAL) + WALL + "no_slip = true",
+            "physics.central_friction: no fluid has any friction; give a fluid its viscosity, or",
+        ),
+        (
+            WATER.replace("[physics]", CENTRAL) + "viscosity = 1e-3" + WALL + "no_slip = true",
+            "walls.floor.no_slip: true: mirrors the flow for friction that follows the velocity; take",
         ),
         (
             WATER + WALL.replace("floor", "water"),

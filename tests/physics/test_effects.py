@@ -28,7 +28,8 @@ from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
 from psph.physics.trial import UnknownField, reads
 from psph.physics.viscosity import (
-    ArtificialViscosity, CorrectedViscosity, ImpactDamping, LaminarViscosity, PairDamping,
+    ArtificialViscosity, CentralFriction, CorrectedViscosity, ImpactDamping, LaminarViscosity,
+    PairDamping,
 )
 from psph.smoothing import first_moment, kernel
 
@@ -122,6 +123,18 @@ def test_laminar_viscosity(dim):
     a = 4 * p.mass[1] * (mu[0] + mu[1]) * (x @ grad_w) * u
     a /= (rho[0] + rho[1]) ** 2 * (r * r + 0.01 * H * H)
     assert LaminarViscosity().shear(*pair_of(p, 0, 1)) * u == pytest.approx(a)
+    assert a @ u < 0  # friction
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_central_friction_pulls_along_the_line_of_a_pair(dim):
+    p = view(dim=dim)
+    x, u, r, _, grad_w = written_out(p, 0, 1)
+    rho = 1 / p.specific_volume
+    mu = p.viscosity * rho
+    a = (dim + 2) * 4 * p.mass[1] * (mu[0] + mu[1]) * (u @ x) * grad_w
+    a /= (rho[0] + rho[1]) ** 2 * (r * r + 0.01 * H * H)
+    assert CentralFriction().radial(*pair_of(p, 0, 1)) * x == pytest.approx(a)
     assert a @ u < 0  # friction
 
 
@@ -491,7 +504,7 @@ def test_the_correction_fades_where_neighbours_are_missing(dim):
 @pytest.mark.parametrize(
     "effect",
     [
-        SymmetricPressure, LaminarViscosity, ArtificialViscosity, BackgroundPressure,
+        SymmetricPressure, LaminarViscosity, CentralFriction, ArtificialViscosity, BackgroundPressure,
         GradientCorrection, CorrectedViscosity, ImpactDamping, PairDamping, NeighbourStress, RiemannDissipation,
         TransportVelocity, GeneralisedTransportVelocity,
     ],
@@ -571,8 +584,8 @@ def test_the_pair_potential_bears_no_pressure_on_its_lattice_and_repels_near_pai
     assert abs(sum(f @ x for f, x in zip(forces, sites))) < 1e-12 * sum(pushes)
     near, far = (coefficient(potential, np.eye(dim)[0] * r * dx) for r in (0.75, 1.5))
     assert near > 0.0 > far
-    # K = f ρ₀ (c/10)²: a = 2K m/(ρ₀² dx^(d+1)) at three quarters of a spacing
-    k = 0.5 * 1000.0 * 5.0**2
+    # K = f ρ₀ (c/10)²: a = 2K m/(ρ₀² dx^(d+1)) at three quarters of a spacing, in 3D half as much again
+    k = 0.5 * 1000.0 * 5.0**2 * (1.5 if dim == 3 else 1.0)
     assert near * 0.75 * dx == pytest.approx(2 * k * 0.1 / 1000.0**2 / dx ** (dim + 1))
 
 
