@@ -102,7 +102,7 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             "walls.floor.no_slip: true: no fluid has any friction; give a fluid its viscosity, or",
         ),
         (
-            WATER.replace("[physics]", CENTRAL) + WALL + "no_slip = true",
+            WATER.replace("[physics]", CENTRAL),
             "physics.central_friction: no fluid has any friction; give a fluid its viscosity, or",
         ),
         (
