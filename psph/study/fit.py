@@ -1,6 +1,8 @@
 """From the runs of a ladder to those that were not made: error and seconds at any spacing.
 
-Errors follow C dx^p between two runs, and beyond the last as its neighbours say.  Seconds are
+Errors follow C dx^p between two runs, and E₀ + C dx^p beyond the finest: at a given h/dx a floor E₀
+is left, by disorder and by sums that stand for integrals (Quinlan, Basa & Lastiwka 2006, Int. J.
+Numer. Methods Eng. 66, 2064).  Seconds are
 those of a particle-step and those of a step, the same for all runs of a ladder; particle-steps
 follow from the spacing, since particles go with dx^-d and steps with dx^-1.
 """
@@ -8,6 +10,7 @@ follow from the spacing, since particles go with dx^-d and steps with dx^-1.
 import math
 import warnings
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +21,9 @@ CONFIDENCE = 0.9
 
 LAST = 3
 """Runs from which the error beyond the finest is foretold."""
+
+UNSEEN = 0.01
+"""A floor below this part of the finest run's error is none."""
 
 
 class Run(NamedTuple):
@@ -60,16 +66,33 @@ class Ladder:
         """Whether each finer run has the smaller error: only then there is a law to go by."""
         return bool(np.all(np.diff(self._log_error) < 0.0))
 
+    @cached_property
+    def floor(self) -> float | None:
+        """The error that the last runs leave however fine the spacing; None where they show none."""
+        found = self._towards_floor
+        seen = found and found.value.value > UNSEEN * self.runs[-1].error
+        return found.value.value if seen else None
+
+    @cached_property
+    def _towards_floor(self) -> "Extrapolated | None":
+        last = self.runs[-LAST:]
+        return richardson([r.spacing for r in last], [r.error for r in last])
+
     def error(self, spacing: float) -> Estimate:
-        """The error to expect at a spacing in m."""
+        """The error to expect at a spacing in m; with a floor, the interval holds the power law too."""
         x, where = math.log(spacing), self._log_dx[::-1]
+        reach = _scatter(self._log_dx, self._log_error, x)
         if where[0] <= x <= where[-1]:
-            middle = float(np.interp(x, where, self._log_error[::-1]))
-        else:
-            near = slice(None, LAST) if x > where[-1] else slice(-LAST, None)
-            slope, level = np.polyfit(self._log_dx[near], self._log_error[near], 1)
-            middle = level + slope * x
-        return _around(middle, _scatter(self._log_dx, self._log_error, x))
+            return _around(float(np.interp(x, where, self._log_error[::-1])), reach)
+        near = slice(None, LAST) if x > where[-1] else slice(-LAST, None)
+        slope, level = np.polyfit(self._log_dx[near], self._log_error[near], 1)
+        power = _around(level + slope * x, reach)
+        if x > where[-1] or not self.floor:
+            return power
+        finest, floor = self.runs[-1], self.floor
+        finer = (spacing / finest.spacing) ** self._towards_floor.order.value
+        floored = _around(math.log(floor + (finest.error - floor) * finer), reach)
+        return floored._replace(low=min(power.low, floored.low), high=max(power.high, floored.high))
 
     def seconds(self, spacing: float) -> Estimate:
         """The seconds to expect at a spacing in m."""
@@ -156,7 +179,8 @@ def richardson(spacings: Sequence[float], values: Sequence[float]) -> Extrapolat
     """
     dx, q = (np.array(x, float) for x in (spacings, values))
     order = np.argsort(-dx)
-    dx, q = dx[order] / dx.min(), q[order]
+    scale = np.abs(q).max() or 1.0
+    dx, q = dx[order] / dx.min(), q[order] / scale
     steps = np.diff(q)
     if len(q) < 3 or not (np.all(steps > 0.0) or np.all(steps < 0.0)):
         return None
@@ -175,5 +199,8 @@ def richardson(spacings: Sequence[float], values: Sequence[float]) -> Extrapolat
     free = len(q) - 3
     wide = stats.t.ppf(0.5 + CONFIDENCE / 2, free) if free else math.nan
     reach = wide * np.sqrt(np.diag(covariance)) if free else np.full(3, math.nan)
-    limit, p = (Estimate(best[k], best[k] - reach[k], best[k] + reach[k]) for k in (0, 2))
+    limit, p = (
+        Estimate(unit * best[k], unit * (best[k] - reach[k]), unit * (best[k] + reach[k]))
+        for k, unit in ((0, scale), (2, 1.0))
+    )
     return Extrapolated(limit, p)

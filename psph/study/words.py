@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from psph.study.fit import Estimate, Extrapolated, Ladder
+from psph.study.fit import LAST, Estimate, Extrapolated, Ladder
 from psph.study.ladder import SPACING, short, toml
 from psph.study.report import joined, percent, seconds
 
@@ -33,6 +33,11 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
         f"{beginning}the error falls with order {order.value:.2f}{within(order, '.2f')}"
         f"{unknown(order, len(ladder.runs))}."
     )
+    if ladder.floor:
+        yield (
+            f"{beginning}by the last {LAST} runs {percent(ladder.floor)} would be left however fine "
+            "the spacing; a larger space.smoothing may lower that."
+        )
     spacing = ladder.spacing_for_error(HALF * finest.error)
     if not math.isnan(spacing):
         longer = ladder.seconds(spacing).value / ladder.seconds(finest.spacing).value

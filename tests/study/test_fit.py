@@ -53,6 +53,35 @@ def test_an_error_that_levels_off_has_no_spacing_to_halve_it():
     assert not Ladder(runs, 2).steady and Ladder([run(0.04), run(0.02)], 2).steady
 
 
+MEASURED = {
+    "Taylor-Green, h/dx 2.0": ((1.59, 0.249, 0.0502), 0.0257),
+    "Taylor-Green, h/dx 1.6": ((0.99, 0.25, 0.077), 0.029),
+    "the Gresho vortex": ((4.38, 1.39, 0.499), 0.200),
+    "a stretched drop": ((5.68, 2.85, 1.88), 1.69),
+    "a standing wave": ((10.5, 4.04, 2.43), 2.48),
+}
+"""Errors in % at spacings that halve (docs/accuracy.md), and at half the finest of them."""
+
+
+@pytest.mark.parametrize("errors, truth", MEASURED.values(), ids=MEASURED)
+def test_errors_that_were_measured_are_foretold_within_a_factor(errors, truth):
+    runs = [run(dx)._replace(error=e / 100) for dx, e in zip((0.04, 0.02, 0.01), errors)]
+    ladder = Ladder(runs, 2)
+    foretold = ladder.error(0.005)
+    assert 1 / 1.5 < 100 * foretold.value / truth < 1.5
+    assert foretold.low < truth / 100 < foretold.high
+    assert 0.0 < ladder.floor < foretold.value
+
+
+def test_without_a_floor_the_error_goes_on_as_a_power():
+    assert Ladder([run(0.04), run(0.02), run(0.01, noise=0.8)], 2).floor is None
+    floored = [r._replace(error=r.error + 1e-3) for r in (run(0.04), run(0.02), run(0.01))]
+    ladder = Ladder(floored, 2)
+    assert ladder.floor == pytest.approx(1e-3, rel=1e-3)
+    assert ladder.error(0.002).value == pytest.approx(run(0.002).error + 1e-3, rel=1e-3)
+    assert math.isnan(ladder.spacing_for_error(0.9e-3))
+
+
 def test_richardson_finds_limit_and_order():
     dx = [0.04, 0.02, 0.01, 0.005]
     q = [3.0 - 7.0 * x**1.5 for x in dx]

@@ -19,6 +19,14 @@ def test_the_price_of_half_the_error():
     assert "spacing of 0.00707 m and costs 2.8 times as long" in half  # √2 finer, to the third power
 
 
+def test_a_floor_is_said_and_no_spacing_promised_below_it():
+    *_, floor = ladder_words(ladder(0.13, 0.07, 0.055), "")
+    assert floor == (
+        "by the last 3 runs 5 % would be left however fine the spacing; a larger space.smoothing may "
+        "lower that."
+    )
+
+
 def test_no_law_no_prediction():
     lines = list(ladder_words(ladder(0.02, 0.01, 0.03), "kernel cubic"))
     assert lines[1].startswith("kernel cubic: the error does not fall steadily: at 0.02 m")
