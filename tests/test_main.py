@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from jobs import clean_environment, hears_interrupts, mpirun
@@ -45,6 +46,15 @@ def test_a_run_is_not_overwritten_unasked(tmp_path):
     assert again.returncode == 3 and "--overwrite" in again.stderr
     assert len(again.stderr.strip().splitlines()) == 1
     assert psph(*run, "--overwrite").returncode == 0
+
+
+def test_a_case_of_one_s_own_is_not_replaced_by_the_resolved_one(tmp_path):
+    mine = tmp_path / "case.toml"
+    mine.write_text(Path(CASE).read_text(encoding="utf-8"), encoding="utf-8")
+    job = psph(mine, "--out", tmp_path, "--set", "time.end=1e-4")
+    assert job.returncode == 3 and "case.toml holds another case, which would be lost" in job.stderr
+    assert mine.read_text(encoding="utf-8") == Path(CASE).read_text(encoding="utf-8")
+    assert list(tmp_path.iterdir()) == [mine]
 
 
 def test_check_explain_schema():

@@ -36,6 +36,9 @@ from psph.parallel.reductions import wrapped_sums
 FORMAT = 3
 """Number of this form of a file; another one is refused."""
 
+COPY = "case.toml"
+"""The case as it was resolved, in the folder of a run."""
+
 KEPT = 2
 """Checkpoints that stay in a folder: the newest, and one before it."""
 
@@ -223,7 +226,7 @@ class Saved:
             )
         if header["case"] != case:
             yield (
-                f"{self.path}: belongs to another case than {self.path.with_name('case.toml')}: "
+                f"{self.path}: belongs to another case than {self.path.with_name(COPY)}: "
                 "put that file back as the run wrote it"
             )
         size = os.fstat(file.fileno()).st_size

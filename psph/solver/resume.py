@@ -14,7 +14,7 @@ import numpy as np
 from psph.case import CaseError, load
 from psph.errors import LONGEST_QUOTE, shortened
 from psph.output import checkpoint
-from psph.output.checkpoint import CheckpointError, Saved, checkpoint_path, checkpoints
+from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path, checkpoints
 from psph.particles.store import Store
 from psph.solver.plan import Plan
 from psph.solver.record import Record
@@ -64,7 +64,7 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
     Raises CaseError or CheckpointError on every rank.
     """
     folder = Path(folder)
-    case = load(folder / "case.toml", _allowed(extend), "--extend")
+    case = load(folder / COPY, _allowed(extend), "--extend")
     found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
     if not found:
         raise CheckpointError(f"{folder}: holds no checkpoint: run the case anew with --overwrite")

@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from psph.output.checkpoint import Saved, checkpoints, remove_checkpoints
+from psph.output.checkpoint import COPY, Saved, checkpoints, remove_checkpoints
 from psph.output.errors import OutputError, together
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
@@ -180,20 +180,17 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
     trouble = None
     if comm.rank == 0:
         try:
-            ran = (folder / f"{case.name}.h5").exists()
-            if ran and not overwrite:
-                trouble = f"{folder} holds a run of {case.name}: give --out or --overwrite"
-                if checkpoints(folder):
-                    trouble += f", or go on with it: `python -m psph resume {folder}`"
-            else:
+            trouble = None if overwrite else _in_the_way(case, folder)
+            if not trouble:
                 folder.mkdir(parents=True, exist_ok=True)
                 # Pictures in a folder without a run are none of ours.
+                ran = (folder / f"{case.name}.h5").exists()
                 for name in (LOG, PROBES, ERRORS, "*.png") if ran else ():
                     for old in folder.glob(name):
                         old.unlink()
                 remove_checkpoints(folder)
                 remove_post_mortem(folder)
-                (folder / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+                (folder / COPY).write_text(case.to_toml(), encoding="utf-8")
         except OSError as error:
             trouble = f"{folder}: {error.strerror}; choose another folder with --out"
     trouble = comm.bcast(trouble)
@@ -201,13 +198,24 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
         raise OutputError(trouble)
 
 
+def _in_the_way(case, folder: Path) -> str | None:
+    """What a run would replace in a folder, in words; None where that is nothing."""
+    copy = folder / COPY
+    if (folder / f"{case.name}.h5").exists():
+        resume = f", or go on with it: `python -m psph resume {folder}`" if checkpoints(folder) else ""
+        return f"{folder} holds a run of {case.name}: give --out or --overwrite{resume}"
+    if copy.exists() and copy.read_bytes() != case.to_toml().encode():
+        return f"{copy} holds another case, which would be lost: give --out or --overwrite"
+    return None
+
+
 def _reopen_folder(case, folder: Path, saved: Saved) -> None:
     """The case as it is now, and no checkpoint of what is to be simulated again."""
     with together(saved.comm, folder):
         if saved.comm.rank == 0:
-            fresh = folder / "case.toml.new"
+            fresh = folder / f"{COPY}.new"
             fresh.write_text(case.to_toml(), encoding="utf-8")
-            os.replace(fresh, folder / "case.toml")
+            os.replace(fresh, folder / COPY)
             remove_checkpoints(folder, saved.state["steps"])
             remove_post_mortem(folder)
 
