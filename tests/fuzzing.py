@@ -8,6 +8,7 @@ from collections import Counter
 
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
+from long import tell
 
 from psph.case.structure import alternatives
 
@@ -170,6 +171,12 @@ def _tables(schema, node):
 
 class Tally(Counter):
     """How many inputs came to which end."""
+
+    def tell(self):
+        """Say it, and in the sums of the long suite."""
+        print(self)
+        tell("wrong or odd inputs tried", self.total())
+        tell("of these refused, each in a line", self["refused"])
 
     def __str__(self):
         ends = ", ".join(f"{count:,} {end}" for end, count in sorted(self.items()))

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 import slurm
 from jobs import clean_environment, mpirun
-from long import LONG
+from long import LONG, tell
 from solver.resuming import BOX, same_files
 
 from psph.output.checkpoint import checkpoints
@@ -206,6 +206,7 @@ class Job:
         self.number = cluster.command("sbatch", "--parsable", *words, cwd=home)
         self.folder = home / f"results/box-{self.number}"
         self.hastened = 1  # the last turn that need not wait two minutes
+        tell("jobs given to a real Slurm")
 
     def state(self):
         """``PENDING``, ``RUNNING``, ``COMPLETED``, …"""
@@ -273,6 +274,7 @@ def test_a_job_that_is_warned_puts_itself_back_until_it_is_done(cluster, home, w
     assert job.turns() == TURNS, job.log()
     assert job.log().count("stopped by SIGUSR1") == job.log().count("goes on from checkpoint-") == 2
     assert same_files(job.folder, unbroken)
+    tell("turns of a job that Slurm warned, to the files of the unbroken run", job.turns())
 
     left = {path.name: path.read_bytes() for path in job.folder.iterdir()}
     cluster.command("scontrol", "requeue", job.number)
@@ -292,6 +294,7 @@ def test_slurm_itself_warns_before_the_time_is_over(cluster, home, whole):
     assert job.end(600) == "COMPLETED", job.log()
     assert job.turns() > 1 and job.log().count("stopped by SIGUSR1") == job.turns() - 1
     assert same_files(job.folder, whole(end)[0])
+    tell("turns of a job that Slurm warned, to the files of the unbroken run", job.turns())
 
 
 @LONG

@@ -124,7 +124,7 @@ def trial(folder, tally, data, *options):
 
 def survived(tally, examples):
     """Both ends were met, by so many inputs as asked for."""
-    print(tally)
+    tally.tell()
     assert tally.total() >= examples and min(tally["accepted"], tally["refused"]) > examples // 100
 
 
@@ -235,7 +235,7 @@ def test_extensions(examples, tmp_path):
         tally[end] += 1
 
     run()
-    print(tally)
+    tally.tell()
     assert tally["refused"] and tally["without a checkpoint"]
 
 
@@ -259,7 +259,7 @@ def test_real_processes(examples, tmp_path):
         tally["refused" if job.returncode else "accepted"] += 1
 
     run()
-    print(tally)
+    tally.tell()
 
 
 @pytest.mark.parametrize("written, resolved", [

@@ -114,6 +114,7 @@ def foretold(kernel):
     }
 
 
+@pytest.mark.long
 def test_hydrostatic_by_ssph_swings_about_theory(ran):
     run = ran("hydrostatic", "time.end=6.0", "output.frames=0.5")
     probes = run.probes()

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import h5py
 from jobs import mpirun, started
+from long import tell, tell_most
 from solver.killed import OF_RANK_0, PHASES, PLACES, board
 from solver.resuming import BOX, same_files
 
@@ -83,6 +84,7 @@ class Trials:
         assert same_files(run, self.whole)
         assert not list(run.glob("checkpoint-*.new"))
         self.finished += 1
+        tell("runs that went on from such deaths, to the files of the unbroken run")
         run.rename(self.folder / f"finished-{self.finished}")
 
     def _killed(self, run, blow):
@@ -112,6 +114,9 @@ class Trials:
         assert 0 <= lost <= EVERY and self._newest(run) >= since
         phase = PHASES[int(rows[rank][1])]
         self.fell.append(Fell(blow[0] if blow else "at random", phase, seconds, lost, _opens(run)))
+        tell("ranks killed")
+        tell_most("longest time from such a death to the end of the job, s", seconds)
+        tell_most("steps lost by it, a checkpoint every 5, at the most", lost)
         return True
 
     @staticmethod

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 import pytest
 from jobs import clean_environment, mpirun, started
+from long import tell
 from mpi4py import MPI
 from solver.resuming import BOX, same_files
 
@@ -166,4 +167,5 @@ def test_a_run_goes_on_while_its_frames_are_read(tmp_path):
         seen, _ = reader.communicate()
     assert job.returncode == 0, said
     assert int(seen.split()[-1]) > 3
+    tell("times that another process opened the frames of a run", int(seen.split()[-1]))
     assert same_files(folder, whole)

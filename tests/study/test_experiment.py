@@ -159,7 +159,7 @@ def test_spoilt_curves(examples, tmp_path):
             tally["accepted"] += 1
 
     run()
-    print(tally)
+    tally.tell()
     assert min(tally["accepted"], tally["refused"]) > examples // 50
 
 
@@ -189,7 +189,7 @@ def test_spoilt_tables_of_a_run_and_of_a_study(examples, tmp_path):
                 tally["refused"] += 1
 
     run()
-    print(tally)
+    tally.tell()
     assert tally["read"] and tally["refused"]
 
 
@@ -245,5 +245,5 @@ def test_ladders_on_the_command_line(examples, tmp_path):
             tally["accepted"] += 1
 
     run()
-    print(tally)
+    tally.tell()
     assert tally["accepted"] and tally["refused"]
