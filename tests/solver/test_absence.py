@@ -91,10 +91,9 @@ def without(entry):
     return [other for other in CATALOGUE if other is not entry]
 
 
-STICKY = (
-    "walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}, no_slip=true}",
-    "fluids.water.viscosity=0.001",
-)
+VISCOUS = "fluids.water.viscosity=0.001"
+
+STICKY = ("walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}, no_slip=true}", VISCOUS)
 """Overrides: a wall without slip, and the friction that it needs."""
 
 
@@ -109,7 +108,8 @@ def calling_for(entry) -> list[str]:
         return [f"{key.replace('*', 'water')}=0.001"]
     hints = get_type_hints(entry.effect)
     values = {n: [0.5, 0.5] if get_origin(hint) is tuple else 0.5 for n, hint in hints.items()}
-    return [f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"]
+    table = f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
+    return [table, VISCOUS] if key == "physics.central_friction" else [table]
 
 
 def not_calling_for(entry) -> list[str]:
