@@ -12,12 +12,13 @@ from mpi4py import MPI
 
 import psph
 from psph.bench import PROBLEMS
-from psph.errors import Failed, Foreseen, one_line
+from psph.errors import Failed, Foreseen, Refused, one_line
 from psph.stability import FORMS, STATES
 from psph.stability.lattices import LATTICES
 
-PATIENCE = 1.0
-"""Seconds a failed rank waits for the others to fail alike before it ends them all."""
+PATIENCE, BEFORE_THE_START = 1.0, 10.0
+"""Seconds a failed rank waits for the others to fail alike before it ends them all.  What is refused
+before anything starts is refused by all, on a busy machine one after the other."""
 
 
 def main(arguments: list[str]) -> int:
@@ -294,7 +295,7 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
     bench.add_argument("--json", action="store_true", help="one JSON object as the last line")
 
 
-def _end_all(comm, said: str, code: int):
+def _end_all(comm, said: str, code: int, patience: float = PATIENCE):
     """End every rank with one message: at once where all failed alike, else by force.
 
     A rank that leaves alone would keep the others waiting for ever.
@@ -302,7 +303,7 @@ def _end_all(comm, said: str, code: int):
     if comm.rank == 0 and said:
         _complain(said)
     together = comm.Ibarrier()
-    deadline = time.monotonic() + PATIENCE
+    deadline = time.monotonic() + patience
     while not together.Test():
         if time.monotonic() > deadline:
             if comm.rank != 0:
@@ -354,7 +355,8 @@ def guarded(arguments: list[str]) -> None:
     except KeyboardInterrupt:
         _end_all(last_words, "interrupted", 130)
     except Foreseen as error:
-        _end_all(last_words, str(error), error.exit_code)
+        patience = BEFORE_THE_START if isinstance(error, Refused) else PATIENCE
+        _end_all(last_words, str(error), error.exit_code, patience)
     except BaseException as error:
         trouble = isinstance(error, OSError) and _trouble_with_output()
         if trouble:
