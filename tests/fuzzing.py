@@ -160,6 +160,8 @@ def _tables(schema, node):
         below = next((n for n in named if isinstance(n, dict)), {})
         names = st.sampled_from(("water", "tank", "P1", "space.spacing", "a b"))
         return st.dictionaries(names, fitting(schema, below), max_size=2)
+    if not node["properties"]:  # an effect without parameters
+        return st.just({})
     keys = {name: fitting(schema, below) for name, below in node["properties"].items()}
     required = {name: keys[name] for name in node.get("required", ())}
     one = st.sampled_from(sorted(keys)).flatmap(lambda name: st.fixed_dictionaries({name: keys[name]}))
