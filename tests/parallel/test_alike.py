@@ -33,14 +33,14 @@ def test_same_bits_however_it_is_run(name, tmp_path):
         path = tmp_path / f"{seed}.toml"
         path.write_text(scene(FAMILIES[name], 1000 * list(FAMILIES).index(name) + seed))
     found = told(tmp_path, 30)
-    assert len(found) == len(seeds)
+    assert len(found) == len(seeds) and any(one["rebuilds"] > 1 for one in found)
     for one in found:
         print(one["scene"], one["particles"], "particles,", one["rebuilds"], "rebuilds")
         digests = one["digests"]
         assert {key.split()[-1] for key in digests} == {"1", "2", "3", "4", "7"}
         control = {key: digests.pop(key) for key in list(digests) if key.startswith("nudged")}
         expected = digests["plain on 1"]
-        assert "blew up" not in expected and one["rebuilds"] > 1
+        assert "blew up" not in expected
         assert {key: x for key, x in digests.items() if x != expected} == {}
         assert len(set(control.values())) == 1 and expected not in control.values()
         tell("random scenes, each on 1, 2, 3, 4 and 7 ranks")
