@@ -131,6 +131,7 @@ def test_warned_turns_go_back_into_the_queue_and_a_finished_one_rests(home, queu
         assert "psph: two words:" in out
 
 
+@LONG
 def test_a_finished_run_rests_until_it_shall_go_further(home, queue):
     case = ("box.toml", "--set", "time.end=0.01")
     assert turn(home, queue, *case, number=5)[0] == 0
@@ -147,6 +148,7 @@ def test_a_finished_run_rests_until_it_shall_go_further(home, queue):
     assert asked(queue) == []
 
 
+@LONG
 def test_a_turn_that_left_no_checkpoint_is_begun_anew(home, queue):
     case = ("box.toml", "--set", "time.end=0.01", "--set", "checkpoint.every=off")
     assert turn(home, queue, *case, number=8)[0] == 0

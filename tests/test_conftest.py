@@ -67,6 +67,7 @@ def test_failures_on_rank_1_alone_are_shown_by_rank_0(session):
         assert text in job.stdout
 
 
+@pytest.mark.long
 def test_failures_on_all_ranks_are_all_shown(session):
     job = session("def test_it(): assert comm.rank > 10")
     assert job.returncode != 0
@@ -105,6 +106,7 @@ def test_hang_in_which_nobody_fails_is_timed_out_with_all_stacks(session):
     assert "in meet" in job.stderr  # rank 1
 
 
+@pytest.mark.long
 def test_other_tests_on_one_rank_are_refused(session):
     job = session(
         """
@@ -117,6 +119,7 @@ def test_other_tests_on_one_rank_are_refused(session):
     assert "rank 1 has other tests than rank 0" in job.stdout
 
 
+@pytest.mark.long
 def test_collection_error_on_rank_1_alone_is_shown(session):
     job = session(
         """

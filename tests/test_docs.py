@@ -182,6 +182,7 @@ def test_stability_commands_say_something(command, tmp_path):
         assert "stable" in last
 
 
+@pytest.mark.long
 def test_the_commands_of_reliability_run(tmp_path):
     for command in commands("docs/reliability.md"):
         if command.startswith("sbatch"):

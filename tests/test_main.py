@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from jobs import clean_environment, hears_interrupts, mpirun
+from long import long_but_for
 
 CASE = "run/cases/negative_pressure.toml"
 
@@ -97,7 +98,7 @@ guarded(sys.argv[1:])
 """
 
 
-@pytest.mark.parametrize("rank", (0, 1))
+@pytest.mark.parametrize("rank", long_but_for(("1",), (0, 1)))
 @pytest.mark.parametrize(
     "how, code, said",
     [

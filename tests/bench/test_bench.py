@@ -78,6 +78,7 @@ def test_a_peer_that_fails_at_one_problem_does_not_end_the_set(result, monkeypat
         bench(alone(), [asked], None, "python", as_json=True)
 
 
+@pytest.mark.long
 def test_two_ranks_speak_with_one_voice():
     job = mpirun(
         2, ["-m", "psph", "bench", "--problem", "dam", "--dimensions", 2, "--particles", 3000,

@@ -37,7 +37,7 @@ if comm.rank == 0:
 """
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
+@pytest.mark.parametrize("ranks", [2, pytest.param(4, marks=pytest.mark.long)])
 def test_counts_of_real_runs(ranks):
     job = mpirun(ranks, ["-c", COUNTS])
     assert job.returncode == 0, job.stderr

@@ -128,7 +128,7 @@ def survived(tally, examples):
     assert tally.total() >= examples and min(tally["accepted"], tally["refused"]) > examples // 100
 
 
-SPOILT = (150, pytest.param(5000, marks=LONG))
+SPOILT = (100, pytest.param(5000, marks=LONG))
 
 
 @pytest.mark.timeout(1500)

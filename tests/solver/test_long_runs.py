@@ -28,7 +28,7 @@ def growth(folder, ranks, steps, *how, timeout=550):
     ("ranks", "steps"),
     [
         (1, 20_000),
-        (2, 1_000),
+        pytest.param(2, 1_000, marks=LONG),
         pytest.param(1, 1_000_000, marks=[LONG, pytest.mark.timeout(1500)]),
         pytest.param(2, 50_000, marks=[LONG, pytest.mark.timeout(1500)]),
     ],

@@ -49,6 +49,7 @@ def compilations(ranks, folder, cache):
     return json.loads(job.stdout.splitlines()[-1])
 
 
+@pytest.mark.long
 def test_one_rank_compiles_and_the_others_load(tmp_path):
     cache = tmp_path / "cache"
     first, second = compilations(2, tmp_path, cache)

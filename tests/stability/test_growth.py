@@ -202,6 +202,7 @@ def test_a_box_with_all_remedies_is_bounded_by_the_lattice():
     assert 0.3 * growth(settings).rate < box_growth(settings, 6).rate <= growth(settings).rate
 
 
+@pytest.mark.long
 def test_boxes_on_other_lattices():
     for name, cells in (("row", 40), ("hexagonal", 8), ("cubic", 6)):
         settings = of("cubic", 1.2, name, -1.0, sound_speed=2.0)

@@ -148,6 +148,7 @@ def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
         list(foretold(tmp_path, case))
 
 
+@pytest.mark.long
 def test_an_interrupted_study_goes_on_from_its_finished_runs(done):
     folder, _ = done
     before = rows_of(folder)
