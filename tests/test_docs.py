@@ -261,6 +261,7 @@ def test_growth_of_sound():
 # The map of docs/stability.md
 
 
+@pytest.mark.long
 def test_windows_of_the_page():
     """The table of h/dx that are stable, on the lattices of the plane whole, in 3D a sample."""
     page = text("docs/stability.md")

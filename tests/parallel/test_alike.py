@@ -11,7 +11,7 @@ from long import long_but_for, tell
 from parallel.scenes import FAMILIES, scene
 
 TESTS = Path(__file__).parents[1]
-SHORT = ("tank", "mixed block")
+SHORT = ("tank",)
 
 
 def told(folder, steps):

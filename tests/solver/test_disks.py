@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 import pytest
 from jobs import clean_environment, mpirun, started
-from long import tell
+from long import LONG, tell
 from mpi4py import MPI
 from solver.resuming import BOX, same_files
 
@@ -85,8 +85,8 @@ def quiet(*_):
     "often, file",
     [
         ("output.frames=0.02", "box.h5"),
-        ("checkpoint.every=12", "checkpoint-12.h5"),
-        ("output.log=1e-3", "log.csv"),
+        pytest.param("checkpoint.every=12", "checkpoint-12.h5", marks=LONG),
+        pytest.param("output.log=1e-3", "log.csv", marks=LONG),
     ],
 )
 def test_a_full_disk_is_one_line_and_the_run_goes_on_when_there_is_room(

@@ -41,6 +41,7 @@ def test_nothing_grows(tmp_path, ranks, steps):
     tell_most("growth of memory in such a run after its first tenth, bytes", grown["bytes"])
 
 
+@LONG
 def test_a_leak_would_be_seen(tmp_path):
     grown, _ = growth(tmp_path, 1, 20_000, "leak")
     assert grown["bytes"] > 2 * MOST["bytes"]
