@@ -36,8 +36,8 @@ class PairPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
 
     a_i = −(2K/ρ₀²) Σ_j m_j ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊, scaled to
-    −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial Σ r ψ′ of the starting
-    lattice zero: no mean pressure.
+    −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
+    Σ r ψ′ of the starting lattice zero: no mean pressure.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
     artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  A potential, so momentum,
     angular momentum and energy are conserved.

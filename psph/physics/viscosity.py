@@ -21,11 +21,11 @@ def friction(i, j, pair):
 
 
 @register_jitable
-def _friction(i, j, pair, area):
-    """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``area``/(r² + 0.01 h²)."""
+def _friction(i, j, pair, numerator):
+    """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``numerator``/(r² + 0.01 h²)."""
     v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
     # (μ_i + μ_j)/(ρ_i + ρ_j)² in specific volumes: one division in place of three.
-    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * area
+    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * numerator
     under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
     return 4.0 * j.mass * pair.dw_r * over / under
 

@@ -2,9 +2,9 @@
 
 Errors follow C dx^p between two runs, and E₀ + C dx^p beyond the finest: at a given h/dx a floor E₀
 is left, by disorder and by sums that stand for integrals (Quinlan, Basa & Lastiwka 2006, Int. J.
-Numer. Methods Eng. 66, 2064).  Seconds are
-those of a particle-step and those of a step, the same for all runs of a ladder; particle-steps
-follow from the spacing, since particles go with dx^-d and steps with dx^-1.
+Numer. Methods Eng. 66, 2064).  Seconds are those of a particle-step and those of a step, the same
+for all runs of a ladder; particle-steps follow from the spacing, since particles go with dx^-d and
+steps with dx^-1.
 """
 
 import math
