@@ -38,7 +38,7 @@ Say = Callable[..., None]
 
 class Finished(NamedTuple):
     """A run to its end, and what it cost in s: ``compiling``, ``set_up`` (the rest of the time
-    before the first step), ``output`` and ``stepping`` without it, on rank 0."""
+    before the first step), ``output`` and ``stepping`` without it, each of them as on rank 0."""
 
     simulation: Simulation
     particles: int
@@ -130,9 +130,8 @@ def _simulate(
         say(line)
     say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), {_tables(record)}")
     output = simulation.ledger.seconds["output"]
-    return Finished(
-        simulation, particles, compiling, starting - compiling, whole - output, output
-    )
+    took = comm.bcast((compiling, starting - compiling, whole - output, output))
+    return Finished(simulation, particles, *took)
 
 
 def _begin(scene, plan, comm, folder: Path, saved: Saved | None) -> tuple[Simulation, Record]:

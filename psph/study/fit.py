@@ -3,8 +3,8 @@
 Errors follow C dx^p between two runs, and E₀ + C dx^p beyond the finest: at a given h/dx a floor E₀
 is left, by disorder and by sums that stand for integrals (Quinlan, Basa & Lastiwka 2006, Int. J.
 Numer. Methods Eng. 66, 2064).  Seconds are those of a particle-step and those of a step, the same
-for all runs of a ladder; particle-steps follow from the spacing, since particles go with dx^-d and
-steps with dx^-1.
+for all runs of a ladder; particles go with dx^-d, and steps as they do along the ladder: with dx^-1
+where sound limits them, with dx^-2 where friction does.
 """
 
 import math
@@ -44,6 +44,14 @@ class Estimate(NamedTuple):
     high: float
 
 
+class Foretold(NamedTuple):
+    """A run, and what was to be expected of it by runs that are not it: error and seconds."""
+
+    run: Run
+    error: Estimate
+    seconds: Estimate
+
+
 class Ladder:
     """Runs of one case that differ in the spacing alone, at least two of them."""
 
@@ -75,8 +83,20 @@ class Ladder:
 
     @cached_property
     def _towards_floor(self) -> "Extrapolated | None":
+        """However steep: an error that came down at once and stays is its floor."""
         last = self.runs[-LAST:]
-        return richardson([r.spacing for r in last], [r.error for r in last])
+        return richardson([r.spacing for r in last], [r.error for r in last], steepest=math.inf)
+
+    @cached_property
+    def foretold(self) -> "Foretold | None":
+        """What the coarser runs foretell of the finest; None where they are too few or unsteady."""
+        *coarser, finest = self.runs
+        if len(coarser) < LAST:
+            return None
+        before = Ladder(coarser, self.dimensions)
+        if not before.steady:
+            return None
+        return Foretold(finest, before.error(finest.spacing), before.seconds(finest.spacing))
 
     def error(self, spacing: float) -> Estimate:
         """The error to expect at a spacing in m; with a floor, the interval holds the power law too."""
@@ -123,10 +143,12 @@ class Ladder:
         return math.exp(optimize.brentq(lambda x: math.log(ratio(x)), at[k], at[k + 1]))
 
     def _size(self, spacing: float) -> tuple[float, float]:
-        """Particles and steps, scaled from the nearest run."""
-        nearest = min(self.runs, key=lambda r: abs(math.log(r.spacing / spacing)))
-        finer = nearest.spacing / spacing
-        return nearest.particles * finer**self.dimensions, nearest.steps * finer
+        """Particles, scaled from the nearest run, and steps, as they grow between the nearest two."""
+        nearest, next_ = sorted(self.runs, key=lambda r: abs(math.log(r.spacing / spacing)))[:2]
+        finer = math.log(nearest.spacing / spacing)
+        growth = math.log(next_.steps / nearest.steps) / math.log(nearest.spacing / next_.spacing)
+        particles = nearest.particles * math.exp(self.dimensions * finer)
+        return particles, nearest.steps * math.exp(growth * finer)
 
     def _fit_costs(self) -> np.ndarray:
         """Seconds of a particle-step and of a step, none negative, relative errors least."""
@@ -171,8 +193,12 @@ class Extrapolated(NamedTuple):
     order: Estimate
 
 
-def richardson(spacings: Sequence[float], values: Sequence[float]) -> Extrapolated | None:
+def richardson(
+    spacings: Sequence[float], values: Sequence[float], steepest: float = 10.0
+) -> Extrapolated | None:
     """q₀ and p of q = q₀ + C dx^p through three runs or more; None where they do not converge.
+
+    Nor where p is above ``steepest``: no scheme has such an order.
 
     Richardson (1911), Philos. Trans. R. Soc. Lond. A 210, 307; the order from the runs as in
     Roache (1994), J. Fluids Eng. 116, 405.  With three runs there is no uncertainty.
@@ -194,7 +220,7 @@ def richardson(spacings: Sequence[float], values: Sequence[float]) -> Extrapolat
             best, covariance = optimize.curve_fit(curve, dx, q, p0=start, maxfev=10_000)
     except RuntimeError:
         return None
-    if not 0.1 < best[2] < 10.0:
+    if not 0.1 < best[2] < steepest:
         return None
     free = len(q) - 3
     wide = stats.t.ppf(0.5 + CONFIDENCE / 2, free) if free else math.nan

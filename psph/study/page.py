@@ -1,7 +1,8 @@
 """The measured part of a page: ``python -m psph.study.page PAGE FOLDER...``.
 
 Each FOLDER holds a study; its table, its sentences and its picture come between the markers of
-the page, the pictures into ``images/`` beside it.  Of studies of the profiles one table is made.
+the page, the pictures into ``images/`` beside it.  Two tables join the studies: what ladders
+foretold of their finest run, and what the profiles cost.
 """
 
 import json
@@ -14,20 +15,43 @@ from psph.output.pages import command, picture, results
 from psph.study.ladder import PROFILE, SPACING, toml
 from psph.study.report import percent, seconds
 from psph.study.runs import DONE
-from psph.study.study import KEPT, PAGE, PICTURE
+from psph.study.study import KEPT, PAGE, PICTURE, ladders_of
 
 
 def studies(page: Path, folders: Iterable[Path]) -> str:
     """What the studies say, for a page; their pictures are copied.  OutputError: no study there."""
     found = [(folder, _kept(folder)) for folder in folders]
-    lines = [line for folder, kept in found if PROFILE not in kept["vary"] for line in _one(page, folder)]
+    alone = [(folder, kept) for folder, kept in found if PROFILE not in kept["vary"]]
     of_profiles = [kept for _, kept in found if PROFILE in kept["vary"]]
-    return "\n".join([*lines, *(_profiles(of_profiles) if of_profiles else ())])
+    lines = [line for folder, _ in alone for line in _one(page, folder)]
+    return "\n".join([*lines, *_foretold(alone), *(_profiles(of_profiles) if of_profiles else ())])
 
 
 def _kept(folder: Path) -> dict:
     with results(folder, "study"):
         return json.loads((folder / KEPT).read_text(encoding="utf-8"))
+
+
+def _foretold(found: list[tuple[Path, dict]]) -> Iterator[str]:
+    """A line for each ladder whose coarser runs foretell its finest, and the head of the table."""
+    lines = [
+        (folder.name, ladder.foretold)
+        for folder, kept in found
+        for shared, _, ladder in ladders_of(kept["rows"], kept["vary"], kept["dimensions"])
+        if ladder and ladder.foretold and not shared
+    ]
+    if not lines:
+        return
+    yield "## Foretold of the finest run by the others"
+    yield ""
+    yield "| case | spacing | error foretold | came | seconds foretold | came |"
+    yield "|---" * 6 + "|"
+    for name, (run, error, took) in lines:
+        yield (
+            f"| {name} | {toml(run.spacing)} | {percent(error.value)} | {percent(run.error)} | "
+            f"{took.value:.3g} | {run.seconds:.3g} |"
+        )
+    yield ""
 
 
 def _profiles(every: list[dict]) -> Iterator[str]:

@@ -22,6 +22,10 @@ KEPT = "result.json"
 
 DONE = "done"
 
+TIMED = ("set_up", "stepping", "output")
+"""The parts of a run whose seconds count."""
+
+
 def cases(file: str, given: list[str], every: list[Settings]) -> list:
     """The case of each run, or the CaseError that speaks against it."""
     return [_case(file, [*given, *overrides(settings)]) for settings in every]
@@ -38,7 +42,7 @@ def _case(file: str, sets: list[str]):
 def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) -> dict:
     """What a run took and how it ended, from ``folder`` where it was done before; collective.
 
-    A short run is repeated, and its seconds are the median.
+    A short run is repeated, and the one with the median of the seconds stands for all.
     """
     if isinstance(case, CaseError):
         return {"status": f"refused: {'; '.join(case.lines)}"}
@@ -64,26 +68,28 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
 
 def _measured(found: list[Finished], comm) -> dict:
     """The figures of runs that came to their end."""
-    last, every = found[-1], comm.bcast([_seconds(one) for one in found])
-    steps, middle = last.simulation.steps, statistics.median(every)
-    parts = ("compiling", "set_up", "stepping", "output")
+    every = [_seconds(one) for one in found]
+    seconds = statistics.median_low(every)
+    middle = found[every.index(seconds)]
+    steps = middle.simulation.steps
     return {
         "status": DONE,
-        "particles": last.particles,
+        "particles": middle.particles,
         "steps": steps,
-        "particle_steps": last.particles * steps,
-        "seconds": middle,
-        "seconds_spread": (max(every) - min(every)) / middle if len(every) > 1 else None,
+        "particle_steps": middle.particles * steps,
+        "seconds": seconds,
+        "seconds_spread": (max(every) - min(every)) / seconds if len(every) > 1 else None,
         "timed": len(every),
-        **{f"{part}_seconds": comm.bcast(getattr(found[0], part)) for part in parts},
-        "bytes": comm.allreduce(last.simulation.bytes_held()),
-        "phases": comm.bcast(dict(last.simulation.ledger.seconds)),
+        "compiling_seconds": found[0].compiling,
+        **{f"{part}_seconds": getattr(middle, part) for part in TIMED},
+        "bytes": comm.allreduce(middle.simulation.bytes_held()),
+        "phases": comm.bcast(dict(middle.simulation.ledger.seconds)),
     }
 
 
 def _seconds(one: Finished) -> float:
     """What the run took, compiling apart."""
-    return one.set_up + one.stepping + one.output
+    return sum(getattr(one, part) for part in TIMED)
 
 
 def _silent(line: str, where=None) -> None:

@@ -38,6 +38,12 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
             f"{beginning}by the last {LAST} runs {percent(ladder.floor)} would be left however fine "
             "the spacing; a larger space.smoothing may lower that."
         )
+    if ladder.foretold:
+        _, error, took = ladder.foretold
+        yield (
+            f"{beginning}without the finest run {percent(error.value)} in {seconds(took.value)} would "
+            f"have been foretold of it."
+        )
     spacing = ladder.spacing_for_error(HALF * finest.error)
     if not math.isnan(spacing):
         longer = ladder.seconds(spacing).value / ladder.seconds(finest.spacing).value

@@ -6,6 +6,7 @@ from mpi4py import MPI
 from solver.guarded import THROWN, boxed, started
 
 from psph.solver.post_mortem import REPORT
+from psph.solver.run import run
 from psph.solver.step import BlowUp, Simulation
 
 COMM = MPI.COMM_WORLD
@@ -60,3 +61,10 @@ def test_warnings_are_the_same(mpi_tmp_path):
         said[name] = [line for line in told if line.startswith(("warning: step", "guards."))]
     together, alone = said.values()
     assert together == alone and len(together) > 3
+
+
+def test_all_ranks_agree_on_what_a_run_took(mpi_tmp_path):
+    """A study decides by it, on every rank, whether to run once more."""
+    case = boxed(mpi_tmp_path, COMM, "time.end=0.01")
+    took = run(case, mpi_tmp_path / "run", COMM, say=lambda line, where=None: None)[1:]
+    assert COMM.allgather(took) == [took] * COMM.size

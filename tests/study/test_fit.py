@@ -73,6 +73,40 @@ def test_errors_that_were_measured_are_foretold_within_a_factor(errors, truth):
     assert 0.0 < ladder.floor < foretold.value
 
 
+def test_steps_grow_as_along_the_ladder():
+    """Friction limits them by dx²: half the spacing takes four times as many."""
+
+    def slow(dx):
+        plain = run(dx)
+        steps = round(0.1 / dx**2)
+        return plain._replace(steps=steps, seconds=1e-7 * plain.particles * steps + 1e-4 * steps)
+
+    ladder = Ladder([slow(0.04), slow(0.02), slow(0.01)], 2)
+    for dx in (0.05, 0.015, 0.005):
+        assert ladder.seconds(dx).value == pytest.approx(slow(dx).seconds, rel=0.03)
+
+
+def test_an_error_that_came_down_at_once_stays():
+    errors = {0.025: 0.208, 0.02: 0.107, 0.0125: 0.101}  # still water: no power, a floor
+    ladder = Ladder([run(dx)._replace(error=e) for dx, e in errors.items()], 2)
+    assert ladder.floor == pytest.approx(0.101, rel=0.01)
+    assert ladder.error(0.00625).value == pytest.approx(0.101, rel=0.01)
+    assert math.isnan(ladder.spacing_for_error(0.05))
+    assert richardson(list(errors), list(errors.values())) is None  # not an order of a scheme
+
+
+def test_a_ladder_of_four_foretells_its_finest_run_by_the_others():
+    runs = [run(dx) for dx in (0.04, 0.02, 0.01)]
+    assert Ladder(runs, 2).foretold is None
+    finest = run(0.005, noise=2.0)
+    found = Ladder([finest, *runs], 2).foretold
+    assert found.run == finest
+    assert found.error.value == pytest.approx(finest.error / 2)
+    assert found.seconds.value == pytest.approx(finest.seconds, rel=0.02)
+    unsteady = runs[2]._replace(error=1.0)
+    assert Ladder([finest, *runs[:2], unsteady], 2).foretold is None
+
+
 def test_without_a_floor_the_error_goes_on_as_a_power():
     assert Ladder([run(0.04), run(0.02), run(0.01, noise=0.8)], 2).floor is None
     floored = [r._replace(error=r.error + 1e-3) for r in (run(0.04), run(0.02), run(0.01))]

@@ -27,6 +27,11 @@ def test_a_floor_is_said_and_no_spacing_promised_below_it():
     )
 
 
+def test_four_runs_say_what_three_would_have_foretold():
+    words = list(ladder_words(ladder(0.16, 0.04, 0.01, 0.003), ""))
+    assert words[3].startswith("without the finest run 0.25 % in 3.2 s would have been foretold")
+
+
 def test_no_law_no_prediction():
     lines = list(ladder_words(ladder(0.02, 0.01, 0.03), "kernel cubic"))
     assert lines[1].startswith("kernel cubic: the error does not fall steadily: at 0.02 m")
