@@ -21,7 +21,7 @@ from psph.output.checkpoint import checkpoints
 
 ROOT = Path(__file__).parents[1]
 SCRIPT = ROOT / "run/batch/psph.slurm"
-pytestmark = pytest.mark.timeout(400)  # whichever comes first compiles
+pytestmark = [pytest.mark.alone, pytest.mark.timeout(400)]  # whichever comes first compiles
 
 
 @pytest.fixture(scope="module")
@@ -115,12 +115,12 @@ ENDLESS = ("--set", "time.end=50.0", "--set", 'title="two words"')
 def test_warned_turns_go_back_into_the_queue_and_a_finished_one_rests(home, queue):
     folder = home / "results/box-77"
     for number in (0, 1):
-        with turn_of(
-            home, queue, "box.toml", *ENDLESS, turn=number
-        ) as job:
+        if number == 1:  # of a busy node
+            program(queue / "bash", 'sleep 2; exec /bin/bash "$@"')
+        with turn_of(home, queue, "box.toml", *ENDLESS, turn=number) as job:
             if number == 0:
                 until(lambda: rows(folder) > 2 or job.poll() is not None, 300)
-            else:  # before psph listens
+            else:  # before psph listens, and before a rank does
                 until(lambda: "mpirun" in children_of(job) or job.poll() is not None)
             os.kill(job.pid, signal.SIGUSR1)
             out, err = job.communicate(timeout=60)
@@ -129,6 +129,7 @@ def test_warned_turns_go_back_into_the_queue_and_a_finished_one_rests(home, queu
         assert f"turn {number + 2} goes on from results/box-77/checkpoint-" in out
         assert ("goes on from checkpoint-" in out.split("Back")[0]) == (number == 1)
         assert "psph: two words:" in out
+        assert not list(home.glob(".psph-*"))
 
 
 @LONG

@@ -15,7 +15,9 @@ class Gravity(NamedTuple):
 
     acceleration: Annotated[
         tuple[float, ...],
-        Field(description="g, one number per dimension", json_schema_extra={"unit": "m/s2"}),
+        Field(
+            min_length=1, description="g, one number per dimension", json_schema_extra={"unit": "m/s2"},
+        ),
     ]
 
     def body(self, i):
@@ -35,7 +37,9 @@ class CentralForce(NamedTuple):
     ]
     center: Annotated[
         tuple[float, ...],
-        Field(description="X, one number per dimension", json_schema_extra={"unit": "m"}),
+        Field(
+            min_length=1, description="X, one number per dimension", json_schema_extra={"unit": "m"},
+        ),
     ]
 
     def body(self, i):

@@ -2,6 +2,8 @@
 
 import contextlib
 import io
+import json
+import os
 import resource
 import subprocess
 import sys
@@ -13,11 +15,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tomli_w
+from drafts import SQUARE, TANK, WATER, refusal
 from fuzzing import VALUES, Tally, fitting, spoilt, thorough
 from hypothesis import given
 from hypothesis import strategies as st
 from jobs import clean_environment
-from long import LONG
+from long import LONG, tell
 
 from psph.__main__ import main
 from psph.case import CaseError, load, schema
@@ -146,11 +149,11 @@ def test_spoilt_texts(examples, tmp_path):
 
 
 @st.composite
-def rewritten(draw):
-    """A shipped case with one to three keys given anew, by what the schema says of them."""
-    case = tomllib.loads(draw(st.sampled_from(CORPUS)).decode())
+def rewritten(draw, corpus=CORPUS, often=()):
+    """A case with one to three keys given anew, by what the schema says of them."""
+    case = tomllib.loads(draw(st.sampled_from(corpus)).decode())
     for _ in range(draw(st.integers(1, 3))):
-        name = draw(st.sampled_from(sorted(SCHEMA["properties"])))
+        name = draw(st.sampled_from((*sorted(SCHEMA["properties"]), *often)))
         table, keys = case, (name,)
         if named := find(SCHEMA, (name, "NAME")):
             inner = draw(st.sampled_from([*case.get(name, {}), "new"]))
@@ -178,6 +181,67 @@ def test_values_that_the_schema_describes(examples, tmp_path):
 
     run()
     survived(tally, examples)
+
+
+SMALL = [
+    text.replace('scheme = "sph"', f'scheme = "{scheme}"').encode()
+    for text in (TANK, WATER, SQUARE) for scheme in ("sph", "stable")
+]
+FEW = 600
+"""Particles that plain Python can step."""
+
+
+@pytest.fixture
+def starts():
+    """A function: a case's file → how its first steps ended, and what was said."""
+    tests = Path(__file__).parents[1]
+    with subprocess.Popen(
+        [sys.executable, tests / "starting.py"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        env=clean_environment() | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
+    ) as job:
+
+        def ask(path):
+            job.stdin.write(f"{path}\n")
+            job.stdin.flush()
+            return json.loads(job.stdout.readline())
+
+        yield ask
+        job.stdin.close()
+
+
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("examples", (40, pytest.param(1200, marks=LONG)))
+def test_what_is_accepted_starts(examples, tmp_path, starts):
+    """No case that passed every check ends in a traceback: it runs, or is stopped in plain words."""
+    tally, path = Tally(), tmp_path / "case.toml"
+
+    @thorough(examples)
+    @given(rewritten(SMALL, often=["physics"] * 20))
+    def run(data):
+        path.write_bytes(data)
+        try:
+            scene = Scene(load(path))
+            checks.check(scene)
+        except CaseError:
+            tally["refused"] += 1
+            return
+        if scene.counts().sum() > FEW:
+            tally["large"] += 1
+            return
+        end, said = starts(path)
+        assert end != "broken", f"{data.decode()}\n{said}"
+        tally[end] += 1
+
+    run()
+    tally.tell()
+    tell("accepted cases started", tally["done"] + tally["stopped"])
+    assert tally["done"] > examples // 20
+
+
+@pytest.mark.parametrize("vector", ("gravity", "central_force.center"))
+def test_no_vector_is_empty(vector, tmp_path):
+    text = WATER.replace("gravity = [0.0, -9.8]", f"{vector} = []\ncentral_force.frequency = 1.0")
+    assert any(vector in line for line in refusal(tmp_path, text))
 
 
 def dotted_keys(node=SCHEMA, before=(), depth=3):

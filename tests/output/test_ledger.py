@@ -6,6 +6,8 @@ import pytest
 
 from psph.output.ledger import Ledger
 
+pytestmark = pytest.mark.alone
+
 
 def test_parts_add_up_to_the_whole():
     ledger = Ledger()

@@ -6,6 +6,8 @@ from jobs import mpirun
 from long import LONG
 from solver.faults import OFTEN, Trials, blows, table
 
+pytestmark = pytest.mark.alone
+
 
 @pytest.fixture(scope="module")
 def box(tmp_path_factory):

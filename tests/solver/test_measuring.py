@@ -2,6 +2,7 @@
 
 import time
 
+import pytest
 from mpi4py import MPI
 
 from psph.bench.box import Box
@@ -10,6 +11,8 @@ from psph.output.progress import Progress
 from psph.scene import Scene
 from psph.solver.plan import make_plan
 from psph.solver.step import Simulation
+
+pytestmark = pytest.mark.alone
 
 
 def test_measuring_takes_below_a_hundredth_of_a_step():

@@ -15,6 +15,8 @@ from psph.output.checkpoint import checkpoints
 from psph.solver import watch as module
 from psph.solver.watch import Call, Watch
 
+pytestmark = pytest.mark.alone
+
 
 def limits(minutes=None, wall_clock=None):
     return SimpleNamespace(minutes=minutes, wall_clock=wall_clock)
