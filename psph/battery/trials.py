@@ -115,6 +115,14 @@ VISCOUS = "fluids.fluid.viscosity=1e-6"
 CALM = (Bound("late_speed", most=1e-9),)
 ORDER = (Bound("near_5", least=0.6), Bound("speed", most=2.0))
 
+COARSE_PATCH = Trial(
+    "rotating patch, coarse", "patch", "kinetic", 0.7, 3.0, 3.0, ("space.spacing=0.04",),
+    holds=(*ORDER, Bound("pieces", most=1), Bound("kinetic", least=0.85)),
+    goals=(Bound("momentum", most=1e-13), Bound("angular", most=0.02)),
+    schemes=ALONE, fails=("no potential", "no shift"),
+)
+"""Torn by ωt = 3 where it lacks a part; at half the spacing the potential is missed later."""
+
 BATTERY = (
     _box("box, kick 1e-7 m/s", goals=CALM, fails=("no background",), speed=1e-7),
     _box("box, kick 1e-7, viscous", VISCOUS, goals=CALM, speed=1e-7),
@@ -147,8 +155,9 @@ BATTERY = (
             Bound("kinetic", least=0.93), Bound("angular", most=0.01),
             Bound("momentum", most=1e-13),
         ),
-        fails=("no potential", "no shift"),
+        fails=("no shift",),
     ),
+    COARSE_PATCH,
     Trial(
         "rotating cube, 3D", "patch_3d", "kinetic", 0.66, 2.0, 2.0,
         holds=(*ORDER, Bound("pieces", most=1), Bound("kinetic", least=0.7)),
@@ -162,7 +171,7 @@ BATTERY = (
         "dam break", "dam_break", "speed", 6.26, 3.0, 3.0,
         holds=(Bound("speed", most=2.5),),
         goals=(Bound("speed", most=1.9), Bound("front_error", most=0.05)),
-        fails=("no impact", "no impact, no floor"),
+        fails=("no impact, no floor",),
     ),
     Trial(
         "dam break, 3D", "dam_break_3d", "speed", 2.8, 1.5, 1.5,
@@ -221,12 +230,7 @@ QUICK = (
         end=0.1, other_end=0.02, schemes=ALONE, goals=(Bound("late_speed", most=1e-7),)
     ),
     BATTERY[6]._replace(end=0.1, other_end=0.1, schemes=ALONE, goals=()),
-    Trial(
-        "rotating patch, coarse", "patch", "kinetic", 0.7, 3.0, 3.0, ("space.spacing=0.04",),
-        holds=(*ORDER, Bound("pieces", most=1), Bound("kinetic", least=0.85)),
-        goals=(Bound("momentum", most=1e-13), Bound("angular", most=0.02)),
-        schemes=ALONE, fails=("no potential", "no shift"),
-    ),
+    COARSE_PATCH,
     Trial(
         "tank, one second", "tank", "noise", 3.13, 1.0, 1.0,
         holds=(Bound("noise", most=0.02), Bound("probe_error", most=0.05)),

@@ -6,15 +6,26 @@ a quantity would spread over many; the pair loop turns records into lanes (psph.
 
 import numpy as np
 
-from psph.jit import compiled
+from psph.jit import compiled, register_jitable
 from psph.particles.store import Store, seen_as
-from psph.physics.compose import ParticleView
+from psph.physics.compose import FOLDED, ParticleView
 from psph.physics.space import DUMMIES, FixedPoint
 from psph.simd import GROUP
 from psph.threads import in_threads
 
 LINE = 64
 """Bytes of a cache line."""
+
+NO_SIGN = (-1, -1)
+"""Row and place of a sign, where no record has one."""
+
+WALL, CARRIER = "wall", "specific_volume"
+"""A wall is told by the sign of a number that is positive: it takes no place of its own."""
+
+
+def recorded(names: tuple[str, ...]) -> tuple[str, ...]:
+    """The fields among ``names`` that take a place in a record."""
+    return tuple(name for name in names if name != WALL or CARRIER not in names)
 
 
 def record_width(numbers: int) -> int:
@@ -25,20 +36,26 @@ def record_width(numbers: int) -> int:
 class Records:
     """The records of one rank's particles.
 
-    ``names`` are the fields that vary and that pairs read of a neighbour.  ``table``
-    (columns, width) has the columns of the store, the dummies included; a record begins with a
-    cache line, or shares it with one other.  Where ``space`` is fixed point all is in single
-    precision, but for positions: whole steps of 32 bits, modulo their range.
+    ``names`` are the fields that vary and that pairs read of a neighbour; walls among them have a
+    negative specific volume (:data:`CARRIER`).  ``table`` (columns, width) has the columns of the
+    store, the dummies included; a record begins with a cache line, or shares it with one other.
+    Where ``space`` is fixed point all is in single precision, but for positions: whole steps of
+    32 bits, modulo their range.
     """
 
     def __init__(self, store: Store, names: tuple[str, ...], space):
         self.store = store
-        self._names = tuple(n for n in map(seen_as, ParticleView._fields) if n in names)
+        placed = recorded(names)
+        self._names = tuple(n for n in map(seen_as, ParticleView._fields) if n in placed)
         self._shown = tuple(
             (name, seen_as(name) in self._names) for name in ParticleView._fields
         )
         rows = [row for name in self._names for row in store.rows[name]]
         self._rows = np.array(rows, np.uint64)
+        self._folded = WALL in names and WALL not in placed
+        self._sign = (
+            (store.rows[WALL].start, rows.index(store.rows[CARRIER].start)) if self._folded else NO_SIGN
+        )
         self._fixed = isinstance(space, FixedPoint)
         self._steps_per_metre = 1.0 / np.array(space.units) if self._fixed else None
         self.width = record_width(len(rows))
@@ -46,14 +63,15 @@ class Records:
         self.table = np.zeros((0, self.width), self._type)
 
     def view(self) -> ParticleView:
-        """A neighbour: an array for what its record holds, else the shared value or None."""
+        """A neighbour: an array for what its record holds, else the shared value, FOLDED or None."""
         store = self.store
-        return ParticleView(
+        found = ParticleView(
             *(
-                store[seen_as(name)] if recorded else store.constants.get(name)
-                for name, recorded in self._shown
+                store[seen_as(name)] if placed else store.constants.get(name)
+                for name, placed in self._shown
             )
         )
+        return found._replace(wall=FOLDED) if self._folded else found
 
     def fill_all(self) -> None:
         """Records of owned particles, ghosts and dummies, after these found new columns."""
@@ -73,9 +91,12 @@ class Records:
         data, rows = self.store.data, self._rows
         if self._fixed:
             whole = self.table.view(np.int32)
-            in_threads(fill_fixed, first, last, data, rows, self._steps_per_metre, self.table, whole)
+            in_threads(
+                fill_fixed, first, last, data, rows, *self._sign, self._steps_per_metre,
+                self.table, whole,
+            )
         else:
-            in_threads(fill_records, first, last, data, rows, self.table)
+            in_threads(fill_records, first, last, data, rows, *self._sign, self.table)
 
 
 def _aligned(records: int, width: int, kind) -> np.ndarray:
@@ -87,15 +108,28 @@ def _aligned(records: int, width: int, kind) -> np.ndarray:
 
 
 @compiled
-def fill_records(first, last, data, rows, table):
-    """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``."""
+def fill_records(first, last, data, rows, flag, place, table):
+    """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``.
+
+    Then change the sign of ``table[k, place]`` where ``data[flag, k]`` is one; none with NO_SIGN.
+    """
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(np.uint64(len(rows))):
             table[k, f] = data[rows[f], k]
+    _fold(first, last, data, flag, place, table)
+
+
+@register_jitable
+def _fold(first, last, data, flag, place, table):
+    """Change the sign of ``table[k, place]`` where ``data[flag, k]`` is one."""
+    if flag >= 0:
+        for k in range(np.uint64(first), np.uint64(last)):
+            if data[np.uint64(flag), k] > 0.0:
+                table[k, np.uint64(place)] = -table[k, np.uint64(place)]
 
 
 @compiled
-def fill_fixed(first, last, data, rows, steps_per_metre, table, whole):
+def fill_fixed(first, last, data, rows, flag, place, steps_per_metre, table, whole):
     """The same in single precision, positions as whole steps; ``whole`` shows the table's bits."""
     axes = np.uint64(len(steps_per_metre))
     for k in range(np.uint64(first), np.uint64(last)):
@@ -103,3 +137,4 @@ def fill_fixed(first, last, data, rows, steps_per_metre, table, whole):
             whole[k, f] = np.int32(np.int64(np.rint(data[rows[f], k] * steps_per_metre[f])))
         for f in range(axes, np.uint64(len(rows))):
             table[k, f] = np.float32(data[rows[f], k])
+    _fold(first, last, data, flag, place, table)

@@ -14,7 +14,7 @@ import numpy as np
 from numba.core import types
 
 from psph.jit import method_of, overload, register_jitable, tuple_of, unrolled
-from psph.simd import fold, total, turning
+from psph.simd import fold, total, turning, where
 from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, at, dot, put, scale, subtract, zero_like
 
@@ -45,6 +45,10 @@ class ParticleView(NamedTuple):
     smoothing_length: Any = None
     largest_speed: Any = None
     """Of all fluid particles, a step old; for displacements alone."""
+
+
+FOLDED = True
+"""Stands for ``wall`` in a view of neighbours whose specific volume is negative in walls."""
 
 
 class Pair(NamedTuple):
@@ -104,27 +108,34 @@ def fetch(view: ParticleView, records, lists, entry: int) -> ParticleView:
     Arrays of ``view`` say which quantities the records hold, in this order.
     """
     left = list(records[lists[entry]])
-    return ParticleView(*(
+    found = ParticleView(*(
         tuple(left.pop(0) for _ in entry) if isinstance(entry, tuple)
         else left.pop(0) if isinstance(entry, np.ndarray) else entry
         for entry in view
     ))
+    if found.wall is not FOLDED:
+        return found
+    signed = found.specific_volume
+    return found._replace(specific_volume=abs(signed), wall=where(signed < 0.0, 1.0, 0.0))
 
 
 @overload(fetch)
 def _typed_fetch(view, records, lists, entry):
     places = itertools.count()
-    parts = [
-        tuple_of(f"numbers[{next(places)}]" for _ in kind)
+    parts = {
+        name: tuple_of(f"numbers[{next(places)}]" for _ in kind)
         if isinstance(kind, types.BaseTuple)
         else f"numbers[{next(places)}]" if isinstance(kind, types.Array) else f"view.{name}"
         for name, kind in zip(ParticleView._fields, view.types)
-    ]
+    }
+    if isinstance(view.types[ParticleView._fields.index("wall")], types.Boolean):
+        signed = parts["specific_volume"]
+        parts |= {"specific_volume": f"abs({signed})", "wall": f"where({signed} < 0.0, 1.0, 0.0)"}
     return unrolled(
         "view, records, lists, entry",
         "numbers = turn(records, lists, entry)",
-        f"return ParticleView{tuple_of(parts)}",
-        ParticleView=ParticleView, turn=turning(next(places)),
+        f"return ParticleView{tuple_of(parts.values())}",
+        ParticleView=ParticleView, turn=turning(next(places)), where=where,
     )
 
 

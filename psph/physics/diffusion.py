@@ -6,6 +6,7 @@ from pydantic import Field
 
 from psph.jit import register_jitable
 from psph.physics.viscosity import SINGULARITY
+from psph.simd import where
 from psph.vectors import dot
 
 STABLE = 0.03
@@ -16,8 +17,11 @@ STABLE = 0.03
 class DensityDiffusion(NamedTuple):
     """Density spreads between neighbours: the noise of the pressure fades.
 
-    dρ_i/dt = 2 δ h c Σ_j (m_j/ρ_j) [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j)] x_ij·∇W_ij / (r² + 0.01 h²).
-    Molteni & Colagrossi (2009), Comput. Phys. Commun. 180, 861.  Keeps Σ m_i/ρ_i dρ_i/dt = 0.
+    dρ_i/dt = 2 δ h c Σ_j (m_j/ρ_j) [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j)] x_ij·∇W_ij / max(r², 0.01 h²).
+    Molteni & Colagrossi (2009), Comput. Phys. Commun. 180, 861, with max(r², η²) for r² + η²: it is
+    W′/r but for the nearest, without a division.  Walls take part, but give the fluid nothing: a
+    drop that lies on one would lose to it the density that holds it off.  In the fluid it keeps
+    Σ m_i/ρ_i dρ_i/dt = 0.
     """
 
     delta: Annotated[
@@ -25,8 +29,9 @@ class DensityDiffusion(NamedTuple):
     ] = 0.1
 
     def in_scene(self, scene):
-        """Under gravity, the form that knows of weight."""
-        return HydrostaticDiffusion(self.delta, scene.gravity) if any(scene.gravity) else self
+        """Under gravity or beside walls, the form that knows of them."""
+        held = any(scene.gravity) or scene.case.walls
+        return TankDiffusion(self.delta, scene.gravity) if held else self
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
@@ -37,8 +42,8 @@ class DensityDiffusion(NamedTuple):
         return _longest_step(self.delta, scene)
 
 
-class HydrostaticDiffusion(NamedTuple):
-    """Density spreads between neighbours, but for what the weight of a still column asks for.
+class TankDiffusion(NamedTuple):
+    """Density spreads in the fluid, but for what the weight of a still column asks for.
 
     As :class:`DensityDiffusion` with (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ρ₀_i g·x_ij/c² in the bracket:
     the slope of density in a fluid at rest, linear in the depth, stays.  Antuono, Colagrossi,
@@ -51,7 +56,7 @@ class HydrostaticDiffusion(NamedTuple):
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         weight = i.rest_density / (i.sound_speed * i.sound_speed) * dot(pair.x_ij, self.gravity)
-        return _spreading(self.delta, i, j, pair, weight)
+        return where(j.wall > i.wall, 0.0, _spreading(self.delta, i, j, pair, weight))
 
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
@@ -66,7 +71,8 @@ def _spreading(delta, i, j, pair, weight):
     level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density) - weight
     excess = j.mass * (level * j.specific_volume - 1.0)
     strength = 2.0 * delta * h * i.sound_speed
-    return strength * excess * pair.r2 * (pair.dw_r / (pair.r2 + SINGULARITY * h * h))
+    nearness = min(pair.r2 * (1.0 / (SINGULARITY * h * h)), 1.0)
+    return strength * excess * nearness * pair.dw_r
 
 
 def _longest_step(delta: float, scene) -> float:

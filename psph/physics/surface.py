@@ -43,9 +43,8 @@ class TensionFloor(NamedTuple):
     """Water that is torn apart holds no more tension than this, and walls hold none.
 
     ρ_i ≥ f ρ₀_i: below, the density is set to it.  The pressure of a wall is that of max(ρ_i, ρ₀_i),
-    while its density stays what the water makes it: raised to ρ₀, it would feed the water by
-    diffusion.  Where a fluid has a free surface a splash would otherwise be held together, or
-    pulled to a wall, by pressures that water does not bear.
+    while its density stays what the water makes it.  Where a fluid has a free surface a splash would
+    otherwise be held together, or pulled to a wall, by pressures that water does not bear.
     """
 
     least: Annotated[

@@ -2,6 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
+import numpy as np
 from pydantic import Field
 
 from psph.jit import register_jitable
@@ -12,6 +13,13 @@ SINGULARITY = 0.01
 
 ONSET = 0.2
 """Speed of approach over c above which impact damping sets in."""
+
+
+@register_jitable
+def _inverse_square(r2, h):
+    """1/max(r², 0.01 h²), 1/m², by the division that forces along the pair share."""
+    inverse = 1.0 / np.sqrt(r2)
+    return min(inverse * inverse, 1.0 / (SINGULARITY * h * h))
 
 
 @register_jitable
@@ -130,7 +138,7 @@ class ArtificialViscosity(NamedTuple):
 class PairDamping(NamedTuple):
     """Numerical friction along the line of every pair, approaching or parting: it calms sound.
 
-    a_i = α c h ρ₀ Σ_j m_j/(ρ_i ρ_j) (u_ij·x_ij)/(r² + 0.01 h²) ∇W_ij.  Monaghan & Gingold (1983), J.
+    a_i = α c h ρ₀ Σ_j m_j/(ρ_i ρ_j) (u_ij·x_ij)/max(r², 0.01 h²) ∇W_ij.  Monaghan & Gingold (1983), J.
     Comput. Phys. 52, 374; without the switch, Antuono, Colagrossi, Marrone & Molteni (2010), Comput.
     Phys. Commun. 181, 532.  It conserves momentum and angular momentum, and acts as a viscosity of about
     αch/8.
@@ -143,10 +151,10 @@ class PairDamping(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        # ρ̄ = ρ_i ρ_j/ρ₀; the quotient is that of the density diffusion: one division for both.
+        # ρ̄ = ρ_i ρ_j/ρ₀
         share = j.mass * v_j * (v_i * i.rest_density) * pair.u_dot_x
         strength = self.alpha * h * i.sound_speed
-        return strength * share * (pair.dw_r / (pair.r2 + SINGULARITY * h * h))
+        return strength * share * (pair.dw_r * _inverse_square(pair.r2, h))
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
@@ -157,7 +165,7 @@ class PairDamping(NamedTuple):
 class ImpactDamping(NamedTuple):
     """Numerical friction where neighbours meet fast: nothing flies through a wall.
 
-    a_i = −β ρ₀ Σ_j m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/(r² + 0.01 h²) − c/5, 0): over a length
+    a_i = −β ρ₀ Σ_j m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0): over a length
     h of matter a speed falls by e^β.  von Neumann & Richtmyer (1950), J. Appl. Phys. 21, 232; for
     pairs, Monaghan (1989), J. Comput. Phys. 82, 1.  Theirs begins at once, and costs a rotating
     patch 1 % of its energy; with the onset water does not know of it.  It conserves momentum and
@@ -172,6 +180,6 @@ class ImpactDamping(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         share = j.mass * v_j * (v_i * i.rest_density)
-        approach = -h * pair.u_dot_x / (pair.r2 + SINGULARITY * h * h)
+        approach = -h * pair.u_dot_x * _inverse_square(pair.r2, h)
         excess = max(approach - ONSET * i.sound_speed, 0.0)
         return -self.beta * share * (excess * excess) * pair.dw_r

@@ -178,14 +178,14 @@ def where(condition, a, b):
 
 @overload(where)
 def _where(condition, a, b):
-    if isinstance(condition, Mask):
+    if isinstance(condition, Mask) or isinstance(a, Lanes) or isinstance(b, Lanes):
         return lambda condition, a, b: _select(condition, a, b)
     return lambda condition, a, b: a if condition else b
 
 
 @intrinsic
 def _select(typing, condition, a, b):
-    lanes = condition.lanes
+    lanes = next(k for k in (getattr(condition, "lanes", None), a, b) if isinstance(k, Lanes))
     kinds = [lanes if kind == lanes else lanes.element for kind in (a, b)]
 
     def build(context, builder, sig, args):

@@ -7,7 +7,7 @@ from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
 from psph.particles.cells import COLUMNS_PER_CUTOFF, make_grid
 from psph.particles.fields import FIELDS
-from psph.particles.records import record_width
+from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
 from psph.physics.count import flops_per_pair
 from psph.solver.hints import hints
@@ -45,7 +45,7 @@ def slab_planes(scene) -> int:
 def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     """Memory of a particle: its fields and what keeps them in order, and its neighbour list, bytes."""
     own = NUMBER * _rows(scene, plan.arrays) + IDENTITY
-    record = record_width(_rows(scene, plan.neighbour_fields)) * plan.space.record_type.itemsize
+    record = record_width(_rows(scene, recorded(plan.neighbour_fields))) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + NUMBER * _cells_per_particle(scene)
     entries = _within(scene, _cutoff(scene)) + (plan.space.filling.multiple - 1) / 2
     return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)

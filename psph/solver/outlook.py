@@ -6,7 +6,7 @@ import numpy as np
 
 from psph.physics.compose import Pair, ParticleView
 from psph.physics.continuity import Continuity
-from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
+from psph.physics.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.filtering import ConservativeSmoothing
 from psph.physics.gravity import Gravity
 from psph.physics.potential import NeutralPotential
@@ -51,7 +51,7 @@ AS_REMEDY = {
     NeutralPotential: _pair_force,
     PairDamping: lambda effect, scene: remedies.ArtificialViscosity(effect.alpha),
     DensityDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
-    HydrostaticDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
+    TankDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
     NeighbourStress: lambda effect, scene: remedies.ArtificialStress(effect.epsilon),
     ConservativeSmoothing: lambda effect, scene: remedies.ConservativeSmoothing(effect.alpha),
     RiemannDissipation: lambda effect, scene: remedies.RiemannDissipation(),

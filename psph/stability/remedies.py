@@ -99,14 +99,14 @@ class Viscosity(NamedTuple):
 
 
 class DensityDiffusion(NamedTuple):
-    """dρ_a/dt = 2 δ h c Σ V (ρ_a − ρ_b) x·∇W/(r² + 0.01 h²): Molteni & Colagrossi (2009)."""
+    """dρ_a/dt = 2 δ h c Σ V (ρ_a − ρ_b) x·∇W/r²: Molteni & Colagrossi (2009)."""
 
     delta: float = 0.1
 
     def diffusion(self, uniform, r):
         """Of density between neighbours."""
         strength = self.delta * uniform.smoothing_length * uniform.sound_speed
-        return 2.0 * strength * _rub(uniform, r)
+        return -2.0 * strength * uniform.volume * uniform.slope(r) / r
 
 
 class ConservativeSmoothing(NamedTuple):

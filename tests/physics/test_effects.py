@@ -13,7 +13,7 @@ from physics.pairs import H, OPEN, pair_of, rates, view
 from psph.physics.catalogue import CATALOGUE
 from psph.physics.continuity import Continuity
 from psph.physics.correction import DifferenceCorrection, GradientCorrection
-from psph.physics.diffusion import DensityDiffusion, HydrostaticDiffusion
+from psph.physics.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.filtering import ConservativeSmoothing
 from psph.physics.gravity import CentralForce, Gravity
 from psph.physics.potential import neutral_potential
@@ -273,7 +273,7 @@ def test_density_diffusion(dim):
     x, _, r, _, grad_w = written_out(p, 0, 1)
     rho = 1 / p.specific_volume
     rate = 2 * 0.3 * H * 50.0 * p.mass[1] / rho[1] * (rho[0] - rho[1]) * (x @ grad_w)
-    rate /= r * r + 0.01 * H * H
+    rate /= max(r * r, 0.01 * H * H)
     found = DensityDiffusion(0.3).density_rate(*pair_of(p, 0, 1))
     assert found == pytest.approx(rate)
     assert found * (rho[1] - rho[0]) > 0.0
@@ -294,12 +294,19 @@ def test_density_diffusion_leaves_two_fluids_apart():
 def test_hydrostatic_diffusion_leaves_a_still_column_alone(dim):
     p, g = view(dim=dim), (0.3, -9.8, 1.0)[:dim]
     depth = np.array(g) @ p.position
-    p = p._replace(specific_volume=1 / (1000.0 + 1000.0 * depth / 50.0**2))
+    p = p._replace(specific_volume=1 / (1000.0 + 1000.0 * depth / 50.0**2), wall=np.zeros(2))
     pair = pair_of(p, 0, 1)
     plain = DensityDiffusion(0.1).density_rate(*pair)
-    still = HydrostaticDiffusion(0.1, g).density_rate(*pair)
+    still = TankDiffusion(0.1, g).density_rate(*pair)
     assert abs(still) < 1e-9 * abs(plain)
-    assert HydrostaticDiffusion(0.1, (0.0,) * dim).density_rate(*pair) == pytest.approx(plain)
+    assert TankDiffusion(0.1, (0.0,) * dim).density_rate(*pair) == pytest.approx(plain)
+
+
+def test_walls_take_density_over_and_give_none():
+    tank, (i, j, pair) = TankDiffusion(0.1, (0.0, 0.0)), pair_of(view(), 0, 1)
+    for own, other in product((0.0, 1.0), repeat=2):
+        rate = tank.density_rate(i._replace(wall=own), j._replace(wall=other), pair)
+        assert (rate == 0.0) == (other > own)
 
 
 def sums_of(effect, p, b, name="wendland-c2"):
@@ -487,7 +494,7 @@ def test_corrected_viscosity_is_exact_on_a_lattice(dim):
 @pytest.mark.parametrize(
     "one",
     [
-        DifferenceCorrection(0.5), CorrectedViscosity(), HydrostaticDiffusion,
+        DifferenceCorrection(0.5), CorrectedViscosity(), TankDiffusion,
         NeighbourStress(0.2, 1e-4),
     ],
     ids=lambda one: getattr(one, "__name__", type(one).__name__),

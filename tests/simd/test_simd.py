@@ -57,6 +57,7 @@ def summed(formula, count=2):
         (lambda a, b: simd.where(a >= 1.0, 0.0, b), lambda a, b: np.where(a >= 1.0, 0.0, b)),
         (lambda a, b: simd.where(a > b, 1.0, 2.0), lambda a, b: np.where(a > b, 1.0, 2.0)),
         (lambda a, b: simd.where(a <= b, a, b), np.minimum),
+        (lambda a, b: simd.where(len((1, 2)) > 1, a, 5.0), lambda a, b: a),  # the same for all lanes
     ],
 )
 def test_formulas(records, lists, formula, numpys):

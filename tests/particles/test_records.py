@@ -1,0 +1,55 @@
+"""What a record holds of a particle, and what comes out of it."""
+
+import numba
+import numpy as np
+import pytest
+
+from psph.particles.records import Records, record_width, recorded
+from psph.particles.store import Store
+from psph.physics.compose import FOLDED, fetch
+from psph.physics.space import Metres, fixed_point
+from psph.simd import spread, total, width_of
+
+HELD = ("position", "predicted_velocity", "pressure", "specific_volume", "wall")
+SPACES = {"double": Metres((None, None)), "mixed": fixed_point(0.1, (None, None))}
+
+
+@numba.njit
+def sums(view, records, lists):
+    """Σ 1/ρ, Σ of the walls and Σ p over the listed particles."""
+    volume, walls, pressure = spread(0.0, records), spread(0.0, records), spread(0.0, records)
+    for n in range(np.uint64(0), np.uint64(len(lists)), width_of(records)):
+        j = fetch(view, records, lists, n)
+        volume = volume + j.specific_volume
+        walls = walls + j.wall
+        pressure = pressure + j.pressure * j.wall
+    return total(volume), total(walls), total(pressure)
+
+
+@pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
+def test_a_wall_is_told_by_a_sign_and_takes_no_place(space):
+    rng = np.random.default_rng(5)
+    store, n = Store(2, HELD, {}), 16
+    block = rng.uniform(0.5, 2.0, (7, n)).astype(np.float32).astype(float)
+    wall = block[-1] = rng.integers(0, 2, n)
+    store.append(np.arange(n), wall.astype(np.uint8), block)
+    store.reorder(np.arange(n), 0, 0)
+    records = Records(store, HELD, space)
+    records.fill_all()
+    assert records.width == record_width(6) == record_width(sum(len(store.rows[f]) for f in recorded(HELD)))
+    assert records.view().wall is FOLDED
+    found = sums(records.view(), records.table, np.arange(n, dtype=np.uint32))
+    volume, pressure = block[store.rows["specific_volume"].start], block[store.rows["pressure"].start]
+    assert found == pytest.approx((volume.sum(), wall.sum(), (pressure * wall).sum()), rel=1e-6)
+    j = fetch(records.view(), records.table, np.arange(n), int(np.argmax(wall)))
+    assert j.wall == 1.0 and j.specific_volume > 0.0
+
+
+def test_without_walls_the_records_are_as_they_stand():
+    names = HELD[:-1]
+    store = Store(2, names, {"wall": 0.0})
+    store.append(np.arange(3), np.zeros(3, np.uint8), np.full((6, 3), 2.0))
+    store.reorder(np.arange(3), 0, 0)
+    records = Records(store, names, SPACES["double"])
+    records.fill_all()
+    assert records.view().wall == 0.0 and (records.table[:3, :6] == 2.0).all()
