@@ -92,8 +92,9 @@ def test_a_row_holds_what_is_promised(done):
         assert float(row["particle_steps"]) == float(row["particles"]) * float(row["steps"])
         assert float(row["bytes"]) > 8 * 11 * float(row["particles"])
         timed = int(row["timed"])  # three times, unless a busy machine makes that ten seconds
-        assert timed == 3 or seconds * timed > 9.0
-        assert timed == 1 or float(row["seconds_spread"]) > 0.0
+        spread = float(row["seconds_spread"] or 0.0)
+        assert timed == 3 or seconds * (1.0 + spread) * timed >= 10.0
+        assert timed == 1 or spread > 0.0
     errors = [float(r["error_l2"]) for r in rows]
     assert errors[0] > 3.0 * errors[1] > 9.0 * errors[2]  # second order, nearly
 
