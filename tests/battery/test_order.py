@@ -1,17 +1,21 @@
 """What the battery measures, on particles put by hand."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from drafts import SQUARE, TANK, draft
 
 from psph.battery import measures
+from psph.battery.command import CASES
 from psph.battery.measures import ghia
 from psph.battery.order import checkerboard, nearest, pieces, voids
 from psph.battery.walls import lost
+from psph.case import load
 from psph.output.errors import OutputError
 from psph.scene import Scene
+from psph.study.experiment import path_of, read_experiment
 
 FREE = SQUARE.replace("[1.0, 1.0]", "[2.0, 1.0]")
 PERIODIC = FREE.replace(
@@ -85,3 +89,18 @@ def test_ghia(tmp_path):
     assert len(place) == 15 and u[place == 0.5] == pytest.approx(-0.0608)
     with pytest.raises(OutputError, match="belongs beside the case"):
         ghia(tmp_path / "none.csv")
+
+
+def test_a_front_that_is_early_is_told_from_one_that_is_fast():
+    case = load(CASES / "dam_break.toml")
+    time, place = read_experiment(case, "martin_moyce", path_of(case).parent)
+    moments = np.linspace(0.0, case.study.until, 200)
+
+    def found(places):
+        run = SimpleNamespace(probes=lambda: {"time": moments, "tip.front": places})
+        return dict(measures._of_front(run, case, None))
+
+    early = found(np.interp(moments + 0.05, time, place))
+    assert early["front_error"] > 0.1 > 0.01 > early["front_begun_later"]
+    fast = found(1.2 * np.interp(moments, time, place))
+    assert fast["front_error"] == pytest.approx(0.2, rel=0.02) and fast["front_begun_later"] > 0.02
