@@ -6,9 +6,11 @@ type selects the formula at compile time and inlines it; a new parameter value r
 a scene without an effect holds none of its code.
 """
 
+import gc
 import hashlib
 import os
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -78,6 +80,21 @@ def marker(loops: str, *examples) -> Path:
     build = (numba.__version__, sys.version, numba.config.CPU_NAME, numba.config.CPU_FEATURES)
     selected = (build, numba.config.DISABLE_JIT, loops, *map(numba.typeof, examples))
     return cache_folder() / f"{hashlib.sha256(str(selected).encode()).hexdigest()[:16]}.ready"
+
+
+@contextmanager
+def many_loops():
+    """Where many loops are compiled: numba's objects are not searched for rings meanwhile.
+
+    It makes some hundreds of thousands and keeps most of them; the searches take a tenth of the time.
+    """
+    used = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if used:
+            gc.enable()
 
 
 class OwnCache(FunctionCache):

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 CHUNK = 1 << 16
-"""Rows that travel at once to rank 0 when it writes for all."""
+"""Rows that are copied at once where a rank writes alone, or travel to rank 0 when it writes for all."""
 
 MARGIN = 1 << 16
 """Bytes for the structure of what is laid out: headers, names, attributes."""
@@ -90,12 +90,13 @@ def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> No
     """Write the ``rows`` of this rank, by dataset, behind those of the ranks before it; collective.
 
     ``counts`` are the rows of each rank.  Arrays may be views of any layout: one at a time is
-    copied, to spare memory.
+    copied, or a piece of it, to spare memory.
     """
     if comm.size == 1:
         with open_file(path, "r+") as file:
             for name, part in rows.items():
-                file[name][...] = part
+                for start in range(0, len(part), CHUNK):
+                    file[name][start : start + CHUNK] = part[start : start + CHUNK]
     elif parallel_hdf5():
         with open_file(path, "r+", driver="mpio", comm=comm) as file:
             fill_collectively(file, rows, sum(counts[: comm.rank]))

@@ -49,7 +49,7 @@ def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
 AS_REMEDY = {
     BackgroundPressure: lambda effect, scene: remedies.BackgroundPressure(effect.pressure),
     NeutralPotential: _pair_force,
-    PairDamping: lambda effect, scene: remedies.ArtificialViscosity(effect.alpha),
+    PairDamping: lambda effect, scene: remedies.PairDamping(effect.alpha),
     DensityDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
     TankDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
     NeighbourStress: lambda effect, scene: remedies.ArtificialStress(effect.epsilon),

@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 
-from psph.jit import marker
+from psph.jit import many_loops, marker
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
@@ -67,7 +67,8 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     )
     kept = comm.bcast(comm.rank == 0 and ready.exists())
     if kept or comm.rank == 0:
-        _rehearse(scene, plan, store)
+        with many_loops():
+            _rehearse(scene, plan, store)
     if comm.rank == 0 and not kept:
         ready.touch()
     comm.Barrier()

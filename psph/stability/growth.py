@@ -148,8 +148,9 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
     for k, step in enumerate(pairs.whole):
         a = np.flatnonzero(((sites + step >= 0) & (sites + step < shape)).all(axis=1))
         b = np.ravel_multi_index((sites[a] + step).T, shape)
-        diffusion[a, a] += pairs.diffusion[k]
-        diffusion[a, b] -= pairs.diffusion[k]
+        taken = pairs.diffusion[k] - pairs.spreading[k] * (inner[a] & ~inner[b])
+        diffusion[a, a] += taken
+        diffusion[a, b] -= taken
         towards = inner[b]
         pull[a[towards], own[b[towards]]] += pairs.pull[k]
         a, b = a[inner[a]], b[inner[a]]

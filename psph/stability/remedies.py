@@ -7,6 +7,7 @@ A remedy has those of these that it needs, each given the :class:`Uniform` that 
   a_a = −Σ_b f x_ab/r,
 - ``damping(uniform, r)``: (along, any): a_a = −Σ_b (along r̂ r̂ᵀ + any) u_ab, 1/s (sites,) or 0,
 - ``diffusion(uniform, r)``: dρ_a/dt = −Σ_b diffusion (ρ_a − ρ_b), 1/s (sites,),
+- ``spreading(uniform, r)``: the same, but for what a wall would give to the fluid, 1/s (sites,),
 - ``normalises``: gradients are divided by their first moment.
 """
 
@@ -88,6 +89,18 @@ class ArtificialViscosity(NamedTuple):
         return self.alpha * uniform.sound_speed * uniform.smoothing_length * _rub(uniform, r), 0.0
 
 
+class PairDamping(NamedTuple):
+    """Π = −α c h (u·x)/r² ρ₀/ρ², for every pair: Antuono and others (2010)."""
+
+    alpha: float = 0.02
+
+    def damping(self, uniform, r):
+        """Along the pair."""
+        rest = uniform.density - uniform.pressure / uniform.sound_speed**2
+        strength = self.alpha * uniform.sound_speed * uniform.smoothing_length * rest / uniform.density
+        return -strength * uniform.volume * uniform.slope(r) / r, 0.0
+
+
 class Viscosity(NamedTuple):
     """The fluid's own kinematic viscosity ν, m²/s, in the form of Morris, Fox & Zhu (1997)."""
 
@@ -103,8 +116,8 @@ class DensityDiffusion(NamedTuple):
 
     delta: float = 0.1
 
-    def diffusion(self, uniform, r):
-        """Of density between neighbours."""
+    def spreading(self, uniform, r):
+        """Of density in the fluid, and from it to walls."""
         strength = self.delta * uniform.smoothing_length * uniform.sound_speed
         return -2.0 * strength * uniform.volume * uniform.slope(r) / r
 
@@ -142,6 +155,7 @@ REMEDIES = {
     "background_pressure": BackgroundPressure,
     "artificial_stress": ArtificialStress,
     "artificial_viscosity": ArtificialViscosity,
+    "pair_damping": PairDamping,
     "viscosity": Viscosity,
     "density_diffusion": DensityDiffusion,
     "conservative_smoothing": ConservativeSmoothing,

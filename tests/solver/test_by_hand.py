@@ -10,14 +10,14 @@ from mpi4py import MPI
 from psph.bench.box import Box
 from psph.jit import FAST
 from psph.output.ledger import Ledger
+from psph.particles.neighbours import WIDTH
 from psph.physics.viscosity import ArtificialViscosity
 from psph.scene import Scene
-from psph.simd import spread, total, turning
+from psph.simd import spread, total, turning, width_of
 from psph.solver import pairs
 from psph.solver.plan import make_plan
 from psph.solver.step import Simulation
 
-LANES = 4
 READ = 8
 """Numbers of a neighbour: position, velocity, pressure, 1/ρ."""
 
@@ -39,8 +39,8 @@ def by_hand(
         own = p_i * q_i * q_i
         sx, sy, sz = spread(0.0, records), spread(0.0, records), spread(0.0, records)
         sr = spread(0.0, records)
-        end = begin[row] + np.uint64(blocks[row]) * np.uint64(LANES)
-        for n in range(begin[row], end, np.uint64(LANES)):
+        end = begin[row] + np.uint64(blocks[row]) * np.uint64(WIDTH)
+        for n in range(begin[row], end, width_of(records)):
             j = turn(records, lists, n)
             dx, dy, dz = x_i - j[0], y_i - j[1], z_i - j[2]
             du, dv, dw = u_i - j[3], v_i - j[4], w_i - j[5]
