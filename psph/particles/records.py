@@ -111,21 +111,12 @@ def _aligned(records: int, width: int, kind) -> np.ndarray:
 def fill_records(first, last, data, rows, flag, place, table):
     """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``.
 
-    Then change the sign of ``table[k, place]`` where ``data[flag, k]`` is one; none with NO_SIGN.
+    The sign of ``table[k, place]`` is changed where ``data[flag, k]`` is one; none with NO_SIGN.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(np.uint64(len(rows))):
             table[k, f] = data[rows[f], k]
-    _fold(first, last, data, flag, place, table)
-
-
-@register_jitable
-def _fold(first, last, data, flag, place, table):
-    """Change the sign of ``table[k, place]`` where ``data[flag, k]`` is one."""
-    if flag >= 0:
-        for k in range(np.uint64(first), np.uint64(last)):
-            if data[np.uint64(flag), k] > 0.0:
-                table[k, np.uint64(place)] = -table[k, np.uint64(place)]
+        _fold(k, data, flag, place, table)
 
 
 @compiled
@@ -137,4 +128,10 @@ def fill_fixed(first, last, data, rows, flag, place, steps_per_metre, table, who
             whole[k, f] = np.int32(np.int64(np.rint(data[rows[f], k] * steps_per_metre[f])))
         for f in range(axes, np.uint64(len(rows))):
             table[k, f] = np.float32(data[rows[f], k])
-    _fold(first, last, data, flag, place, table)
+        _fold(k, data, flag, place, table)
+
+
+@register_jitable
+def _fold(k, data, flag, place, table):
+    if flag >= 0 and data[np.uint64(flag), k] > 0.0:
+        table[k, np.uint64(place)] = -table[k, np.uint64(place)]

@@ -52,17 +52,6 @@ def kick_drift_predict(
 
 
 @compiled
-def fastest_shift(first, last, effects, view, kind):
-    """Largest square of a displacement over its time step, m²/s²."""
-    fastest = 0.0
-    for k in range(np.uint64(first), np.uint64(last)):
-        if kind[k] == FLUID:
-            shift = displacement(effects, take(view, k), 1.0)
-            fastest = max(fastest, dot(shift, shift))
-    return fastest
-
-
-@compiled
 def state_of(first, last, effects, state, view, kind, density, specific_volume, pressure):
     """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
     for k in range(np.uint64(first), np.uint64(last)):
@@ -82,12 +71,14 @@ def _pressure(effects, state, i, rho, kind):
 def kick(first, last, dt, effects, view, kind, position, velocity, acceleration, density, rate):
     """Kick by the second half of the step, with the new rates.
 
-    Returns the largest |v|², |a|² and |ρ/ρ₀ − 1| of the fluid over the columns ``first`` to
-    ``last``; the last is infinite where any particle has a number that is not finite.
+    Returns the largest |v|², |a|², |ρ/ρ₀ − 1| and square of a displacement over its time step, m²/s²,
+    of the fluid over the columns ``first`` to ``last``; the strain is infinite where any particle has
+    a number that is not finite.
     """
     v2_max = 0.0
     a2_max = 0.0
     strain_max = 0.0
+    shift2_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         rho = density[k] + 0.5 * dt * rate[k]
@@ -103,8 +94,10 @@ def kick(first, last, dt, effects, view, kind, position, velocity, acceleration,
             v2_max = max(v2_max, v2 if finite else 0.0)
             a2_max = max(a2_max, a2 if finite else 0.0)
             strain_max = max(strain_max, strain if finite else np.inf)
+            shift = displacement(effects, i, 1.0)
+            shift2_max = max(shift2_max, dot(shift, shift))
         else:
             rho = limit_wall_density(effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
         density[k] = rho
-    return v2_max, a2_max, strain_max
+    return v2_max, a2_max, strain_max, shift2_max

@@ -10,7 +10,7 @@ from psph.parallel.reductions import largest
 from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.solver.integrator import fastest_shift, kick, kick_drift_predict, state_of
+from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import sum_over_neighbours
 from psph.solver.plan import Plan
 from psph.threads import in_threads
@@ -198,22 +198,13 @@ class Simulation:
             kick, s.low, s.low + s.owned, dt, self.plan.carriers, self._view(), s.kind,
             s["position"], s["velocity"], s["acceleration"], s["density"], s["density_rate"],
         )
-        mine = np.max(parts, axis=0)
+        *mine, shift2 = np.max(parts, axis=0)
         with self.ledger("limits"):
-            extremes = largest(self.comm, [*mine, self.word, *self._own_shift()])
+            sent = [*mine, self.word, *([shift2] if self.plan.displaces else [])]
+            extremes = largest(self.comm, sent)
         self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()
         self.strain, self.heard = extremes[2:4].tolist()
         self.shift = float(np.sqrt(extremes[4:]).sum())
-
-    def _own_shift(self) -> list[float]:
-        """Square of this rank's fastest displacement, if any effect displaces."""
-        if not self.plan.displaces:
-            return []
-        s = self.store
-        parts = in_threads(
-            fastest_shift, s.low, s.low + s.owned, self.plan.carriers, self._view(), s.kind
-        )
-        return [float(np.max(parts))]
 
     def _view(self):
         """The particles as the plan's carriers see them; a displacement also sees the pace."""

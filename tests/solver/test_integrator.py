@@ -69,11 +69,11 @@ def test_walls_stay_and_lost_numbers_are_reported():
     kick_drift_predict(
         0, 2, 0.1, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
     )
-    *_, error = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
     assert x[0][0] == v[0][0] == 0.0 and error == np.inf
     a[0][1] = v[0][1] = 0.0
-    *_, error = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
     assert error == np.inf  # its place is lost
     x[0][1] = 1.0
-    *_, error = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
     assert error == abs(density - 1.0).max() < np.inf
