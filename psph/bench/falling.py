@@ -29,8 +29,9 @@ COARSEST = {2: 64, 3: 24}
 JITTER, SEED = 0.1, 1
 """Random shift in the new spacings (a lattice in each parent flatters), and where it is drawn."""
 
-NEAREST = 0.1
-"""A parent nearer to a wall, in its own spacings, is split as if it were so far away."""
+NEAREST = 0.5
+"""A parent nearer to a wall, in its own spacings, is split as if it were so far away: a film on a wall,
+squeezed into its room, would burst."""
 
 
 class Falling(NamedTuple):
@@ -74,7 +75,7 @@ class Falling(NamedTuple):
     def _split(self, parents: ParticleSet, first: int, first_id: int) -> ParticleSet:
         """The children of some parents, the ``first``-th on, numbered from ``first_id``.
 
-        On a lattice of the new spacing around the parent, and shaken; with the parent's density.  Near a wall the lattice is squeezed so that no child comes to lie in it.
+        On a lattice of the new spacing around the parent, and shaken; with the parent's density.
         """
         dimensions, times = self.coarse.dimensions, self.times
         along = (np.arange(times) + 0.5) / times - 0.5
@@ -84,21 +85,20 @@ class Falling(NamedTuple):
         source.advance(first * many)
         drawn = Generator(source).random((n, many, NUMBERS_PER_COUNT))[..., :dimensions]
         offsets = lattice + (2.0 * drawn - 1.0) * (JITTER / times)
-        centres, squeeze = self._off_the_walls(parents.position)
+        centres = self._off_the_walls(parents.position)
         made = ParticleSet(*(np.repeat(array, many, axis=0) for array in vars(parents).values()))
-        around = offsets * (squeeze * self.coarse.spacing)[:, None]
+        around = offsets * self.coarse.spacing
         made.position[:] = (centres[:, None] + around).reshape(-1, dimensions)
         made.id[:] = first_id + first * many + np.arange(n * many)
         made.mass[:] /= many
         return made
 
-    def _off_the_walls(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Parents inside the tank, and their room along each axis in coarse spacings, at most 1."""
+    def _off_the_walls(self, position: np.ndarray) -> np.ndarray:
+        """Places of parents, so far inside the tank that no child comes to lie in a wall."""
         dx = self.coarse.spacing
         upper = dx * np.array(self.coarse.hollow, dtype=float)
         upper[-1] = math.inf  # no lid
-        inside = np.clip(position, NEAREST * dx, upper - NEAREST * dx)
-        return inside, np.minimum(np.minimum(inside, upper - inside) / (0.5 * dx), 1.0)
+        return np.clip(position, NEAREST * dx, upper - NEAREST * dx)
 
 
 def fall(coarse: Scene, comm) -> ParticleSet:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from mpi4py import MPI
+from scipy.spatial.distance import pdist
 
 from psph.bench import falling
 from psph.bench.box import Box
@@ -14,6 +15,7 @@ from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.fields import FLUID
 from psph.scene import Scene
+from psph.scene.particles import ParticleSet
 from psph.scene.walls import thinnest_walls
 from psph.solver.plan import make_plan
 from psph.solver.step import Simulation
@@ -102,6 +104,19 @@ def test_split_particles_are_no_lattice():
     nearest = around.min(axis=0) / dx
     assert np.quantile(nearest, 0.05) > 0.3 and nearest.std() > 0.05
     assert len(np.unique(np.round(x[:, 0] / dx, 3))) > 0.5 * len(x)
+
+
+def test_a_film_on_a_wall_is_split_beside_it():
+    """Squeezed into the room between, its children would lie on each other, and burst."""
+    layout = Falling.nearest(3, 57, 30_000)
+    dx = layout.coarse.spacing
+    film = ParticleSet(
+        np.zeros(1, np.int64), np.full(1, FLUID, np.uint8), np.zeros(1, np.uint8),
+        dx * np.array([[0.05, 10.0, 20.0]]), np.zeros((1, 3)), np.full(1, 1000.0), np.ones(1),
+    )
+    x = layout._split(film, 0, 0).position
+    assert len(x) == layout.times**3 > 1 and x.min() > 0.0
+    assert pdist(x).min() > 0.5 * dx / layout.times
 
 
 @pytest.mark.mpi(min_size=2)
