@@ -74,16 +74,25 @@ def turning(count: int):
 
 def _transposed(builder, places, first: int):
     """Lanes of the numbers ``first`` to ``first + 4`` of the records at ``places``."""
-    blocks = len(places) // GROUP
+    doubles = isinstance(places[0].type.pointee, ir.DoubleType)
 
-    def mix(a, b, picks):
+    def mix(a, b, order):
+        """Lanes of a and b (those of b counted on), in an order."""
+        order = ir.Constant(ir.VectorType(ir.IntType(32), len(order)), order)
+        return builder.shuffle_vector(a, b, order)
+
+    def picked(a, b, picks):
         """Pick from a and b (4 to 7) in each block of four lanes."""
-        order = [
-            GROUP * block + pick % GROUP + (a.type.count if pick >= GROUP else 0)
-            for block in range(blocks)
-            for pick in picks
-        ]
-        return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(ir.IntType(32), len(order)), order))
+        width = a.type.count
+        return mix(a, b, [
+            block + pick % GROUP + (width if pick >= GROUP else 0)
+            for block in range(0, width, GROUP) for pick in picks
+        ])
+
+    def halves(a, b, odd: int):
+        """The first or the second pair in each block of four lanes of a, then of b."""
+        starts = range(2 * odd, 2 * a.type.count, GROUP)
+        return mix(a, b, [start + t for start in starts for t in range(2)])
 
     def load(place):
         group = ir.VectorType(place.type.pointee, GROUP)
@@ -92,31 +101,31 @@ def _transposed(builder, places, first: int):
         value.align = 4
         return value
 
-    def row(t):
-        """The groups of the records t, t + 4, ... side by side."""
-        groups = [load(place) for place in places[t::GROUP]]
+    def row(chosen):
+        """The groups of these records side by side."""
+        groups = [load(place) for place in chosen]
         while len(groups) > 1:
-            order = ir.Constant(
-                ir.VectorType(ir.IntType(32), 2 * groups[0].type.count),
-                list(range(2 * groups[0].type.count)),
-            )
-            groups = [builder.shuffle_vector(*two, order) for two in zip(groups[::2], groups[1::2])]
+            whole = list(range(2 * groups[0].type.count))
+            groups = [mix(*two, whole) for two in zip(groups[::2], groups[1::2])]
         return groups[0]
 
-    a, b, c, d = map(row, range(GROUP))
-    if isinstance(a.type.element, ir.DoubleType):  # what a processor does in one instruction
-        ab, cd = mix(a, b, [0, 4, 2, 6]), mix(c, d, [0, 4, 2, 6])
-        ab_odd, cd_odd = mix(a, b, [1, 5, 3, 7]), mix(c, d, [1, 5, 3, 7])
+    # In the shuffles that a processor has: for single precision within four lanes, for double within
+    # two, then pairs of lanes.
+    if not doubles:
+        a, b, c, d = (row(places[t::GROUP]) for t in range(GROUP))
+        ab, cd = picked(a, b, [0, 4, 1, 5]), picked(c, d, [0, 4, 1, 5])
+        ab_high, cd_high = picked(a, b, [2, 6, 3, 7]), picked(c, d, [2, 6, 3, 7])
         return [
-            mix(ab, cd, [0, 1, 4, 5]), mix(ab_odd, cd_odd, [0, 1, 4, 5]),
-            mix(ab, cd, [2, 3, 6, 7]), mix(ab_odd, cd_odd, [2, 3, 6, 7]),
+            picked(ab, cd, [0, 1, 4, 5]), picked(ab, cd, [2, 3, 6, 7]),
+            picked(ab_high, cd_high, [0, 1, 4, 5]), picked(ab_high, cd_high, [2, 3, 6, 7]),
         ]
-    ab, cd = mix(a, b, [0, 4, 1, 5]), mix(c, d, [0, 4, 1, 5])
-    ab_high, cd_high = mix(a, b, [2, 6, 3, 7]), mix(c, d, [2, 6, 3, 7])
-    return [
-        mix(ab, cd, [0, 1, 4, 5]), mix(ab, cd, [2, 3, 6, 7]),
-        mix(ab_high, cd_high, [0, 1, 4, 5]), mix(ab_high, cd_high, [2, 3, 6, 7]),
-    ]
+    half = len(places) // 2
+    a, b, c, d = (
+        row(part[t::2]) for part in (places[:half], places[half:]) for t in range(2)
+    )
+    ab, cd = picked(a, b, [0, 4, 2, 6]), picked(c, d, [0, 4, 2, 6])
+    ab_odd, cd_odd = picked(a, b, [1, 5, 3, 7]), picked(c, d, [1, 5, 3, 7])
+    return [halves(ab, cd, 0), halves(ab_odd, cd_odd, 0), halves(ab, cd, 1), halves(ab_odd, cd_odd, 1)]
 
 
 @intrinsic
