@@ -20,17 +20,17 @@ slope = call_by_type("dw")
 """(kernel, r) → W′(r), in compiled code and plain Python."""
 
 
-def slope_over_r(kernel, r):
-    """W′(r)/r, by the kernel's own ``dw_r`` where it can do without the division."""
-    return kernel.dw_r(r) if hasattr(kernel, "dw_r") else kernel.dw(r) / r
+def slope_over_r(kernel, r, inverse_r):
+    """W′(r)/r, by the kernel's own ``dw_r`` where it can do without 1/r."""
+    return kernel.dw_r(r, inverse_r) if hasattr(kernel, "dw_r") else kernel.dw(r) * inverse_r
 
 
 @overload(slope_over_r)
-def _typed_slope_over_r(kernel, r):
+def _typed_slope_over_r(kernel, r, inverse_r):
     own = method_of(kernel, "dw_r")
     if own is not None:
-        return lambda kernel, r: own(kernel, r)
-    return lambda kernel, r: slope(kernel, r) / r
+        return lambda kernel, r, inverse_r: own(kernel, r, inverse_r)
+    return lambda kernel, r, inverse_r: slope(kernel, r) * inverse_r
 
 
 class Cubic(NamedTuple):
@@ -107,7 +107,7 @@ class WendlandC2(NamedTuple):
         a = max(1.0 - 0.5 * s, 0.0)
         return -5.0 * self.alpha * self.inverse_h * s * (a * a * a)
 
-    def dw_r(self, r):
+    def dw_r(self, r, inverse_r):
         """W′/r, a polynomial."""
         a = max(1.0 - 0.5 * r * self.inverse_h, 0.0)
         return -5.0 * self.alpha * self.inverse_h * self.inverse_h * (a * a * a)
@@ -134,7 +134,7 @@ class WendlandC4(NamedTuple):
         a = max(1.0 - 0.5 * s, 0.0)
         return -(14 / 3) * self.alpha * self.inverse_h * s * a**5 * (1.0 + 2.5 * s)
 
-    def dw_r(self, r):
+    def dw_r(self, r, inverse_r):
         """W′/r, a polynomial."""
         s = r * self.inverse_h
         a = max(1.0 - 0.5 * s, 0.0)
@@ -162,7 +162,7 @@ class WendlandC6(NamedTuple):
         a = max(1.0 - 0.5 * s, 0.0)
         return -5.5 * self.alpha * self.inverse_h * s * a**7 * (1.0 + s * (3.5 + 4.0 * s))
 
-    def dw_r(self, r):
+    def dw_r(self, r, inverse_r):
         """W′/r, a polynomial."""
         s = r * self.inverse_h
         a = max(1.0 - 0.5 * s, 0.0)
@@ -222,10 +222,6 @@ class Hyperbolic(NamedTuple):
         s = r * self.inverse_h
         a, b = max(2.0 - s, 0.0), max(1.0 - s, 0.0)
         return self.alpha * self.inverse_h * (6.0 * b * b - 3.0 * a * a)
-
-    def dw_r(self, r):
-        """W′/r; its division is one that forces along the pair share."""
-        return slope(self, r) * (1.0 / r)
 
 
 class Quadratic(NamedTuple):
@@ -309,9 +305,9 @@ class Normalised(NamedTuple):
         """W′(r)/M."""
         return self.stretch * slope(self.kernel, r)
 
-    def dw_r(self, r):
+    def dw_r(self, r, inverse_r):
         """W′/(M r)."""
-        return self.stretch * slope_over_r(self.kernel, r)
+        return self.stretch * slope_over_r(self.kernel, r, inverse_r)
 
 
 KERNELS = {

@@ -60,6 +60,10 @@ class Pair(NamedTuple):
     """u_i − u_j, m/s."""
     r2: Any
     """|x_ij|², m²."""
+    r: Any
+    """|x_ij|, m."""
+    inverse_r: Any
+    """1/|x_ij|, 1/m."""
     u_dot_x: Any
     """u_ij·x_ij, m²/s."""
     w: Any
@@ -145,7 +149,10 @@ def geometry(kernel, x_ij, tiny, i, j):
     u_ij = subtract(i.velocity, j.velocity)
     r2 = dot(x_ij, x_ij) + tiny
     r = np.sqrt(r2)
-    return Pair(x_ij, u_ij, r2, dot(u_ij, x_ij), weight(kernel, r), slope_over_r(kernel, r))
+    inverse_r = 1.0 / r
+    return Pair(
+        x_ij, u_ij, r2, r, inverse_r, dot(u_ij, x_ij), weight(kernel, r), slope_over_r(kernel, r, inverse_r)
+    )
 
 
 def _methods(effects, name: str) -> dict[int, Any]:

@@ -71,9 +71,8 @@ class NeutralPotential(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        r = np.sqrt(pair.r2)
-        inside = max(1.0 - r * self.core, 0.0)
-        force = self.repulsion * (inside * inside) * (1.0 / r)
+        inside = max(1.0 - pair.r * self.core, 0.0)
+        force = self.repulsion * (inside * inside) * pair.inverse_r
         force = force + _smooth(self.curvatures, self.weights, pair.r2)
         return i.sound_speed * i.sound_speed / i.rest_density * j.mass * force
 

@@ -105,7 +105,7 @@ class PositionShift(NamedTuple):
         """The shift that knows what a full neighbourhood sums up to."""
         kernel, dx = scene.kernel, scene.spacing
         full = first_moment(kernel, dx, scene.dimensions)
-        return LatticeShift(self.strength, full, 1.0 / float(slope_over_r(kernel, dx)))
+        return LatticeShift(self.strength, full, 1.0 / float(slope_over_r(kernel, dx, 1.0 / dx)))
 
 
 class LatticeShift(NamedTuple):

@@ -16,10 +16,9 @@ ONSET = 0.2
 
 
 @register_jitable
-def _inverse_square(r2, h):
-    """1/max(r², 0.01 h²), 1/m², by the division that forces along the pair share."""
-    inverse = 1.0 / np.sqrt(r2)
-    return min(inverse * inverse, 1.0 / (SINGULARITY * h * h))
+def _inverse_square(pair, h):
+    """1/max(r², 0.01 h²), 1/m²."""
+    return min(pair.inverse_r * pair.inverse_r, 1.0 / (SINGULARITY * h * h))
 
 
 @register_jitable
@@ -154,7 +153,7 @@ class PairDamping(NamedTuple):
         # ρ̄ = ρ_i ρ_j/ρ₀
         share = j.mass * v_j * (v_i * i.rest_density) * pair.u_dot_x
         strength = self.alpha * h * i.sound_speed
-        return strength * share * (pair.dw_r * _inverse_square(pair.r2, h))
+        return strength * share * (pair.dw_r * _inverse_square(pair, h))
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
@@ -180,6 +179,6 @@ class ImpactDamping(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         share = j.mass * v_j * (v_i * i.rest_density)
-        approach = -h * pair.u_dot_x * _inverse_square(pair.r2, h)
+        approach = -h * pair.u_dot_x * _inverse_square(pair, h)
         excess = max(approach - ONSET * i.sound_speed, 0.0)
         return -self.beta * share * (excess * excess) * pair.dw_r
