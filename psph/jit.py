@@ -50,7 +50,13 @@ def cache_folder() -> Path:
     return root / SOURCES
 
 
+ALLOCATOR = "--regalloc=pbqp"
+"""How LLVM hands out registers: its own choice copies a third of the pair loop's numbers from one
+register to another, or spills them.  It changes no result."""
+
+
 def _configure() -> None:
+    llvm.set_option("psph", ALLOCATOR)
     numba.config.CACHE_DIR = str(cache_folder())
     numba.config.CPU_NAME = numba.config.CPU_NAME or llvm.get_host_cpu_name()
     if not numba.config.CPU_FEATURES:

@@ -9,6 +9,7 @@ from psph.particles.cells import Grid
 from psph.particles.lanes import LANES, append_near, near_bits
 from psph.particles.store import SPARE
 from psph.physics.space import DUMMIES, Filling
+from psph.simd import AHEAD
 from psph.threads import in_threads
 from psph.vectors import at
 
@@ -29,9 +30,12 @@ class Neighbours(NamedTuple):
 
 def empty(owned: int, entries: int) -> Neighbours:
     """Room for the rows of ``owned`` particles with ``entries`` neighbours in all."""
-    return Neighbours(
-        np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), np.zeros(entries, np.uint32)
-    )
+    return Neighbours(np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), _entries(entries))
+
+
+def _entries(count: int) -> np.ndarray:
+    """Zeros, and behind them as many as the pair loop looks ahead."""
+    return np.zeros(count + AHEAD, np.uint32)[:count]
 
 
 def build(
@@ -59,7 +63,7 @@ def build(
         )
         if needed == 0:
             return room
-        room = room._replace(lists=np.zeros(needed + needed // SPARE, np.uint32))
+        room = room._replace(lists=_entries(needed + needed // SPARE))
 
 
 def in_single_precision(store, grid: Grid, first: int, cutoff: float):

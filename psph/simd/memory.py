@@ -1,7 +1,7 @@
 """From memory to lanes: consecutive entries, records transposed, fixed-point differences."""
 
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from psph.simd.lanes import EIGHT, Lanes, lanes_of, spread_number
@@ -38,8 +38,14 @@ GROUP = 4
 """Numbers of a record that are loaded and turned at once."""
 
 
+AHEAD = 32
+"""Entries of a list by which records are fetched into the first cache before they are turned."""
+
+
 def turning(count: int):
     """A compiled function ``(table, lists, entry)`` that gives records as a tuple of lanes.
+
+    ``AHEAD`` entries behind the last must be there to be read, whatever they say.
 
     ``table`` (records, width), width the next multiple of ``GROUP`` from ``count``.  Lane t of
     number f is ``table[lists[entry + t], f]``.  Loading records whole and transposing them in
@@ -56,12 +62,16 @@ def turning(count: int):
                 for kind, value in zip(sig.args[:2], args[:2])
             )
             integer = ir.IntType(64)
-            places = []
-            for t in range(lanes.width):
+            width = integer(-(-count // GROUP) * GROUP)
+
+            def place(t):
                 at = builder.gep(listed, [builder.add(args[2], integer(t))])
                 j = builder.zext(builder.load(at), integer)
-                width = -(-count // GROUP) * GROUP
-                places.append(builder.gep(records, [builder.mul(j, integer(width))]))
+                return builder.gep(records, [builder.mul(j, width)])
+
+            for t in range(lanes.width):
+                _fetch_soon(builder, place(AHEAD + t))
+            places = [place(t) for t in range(lanes.width)]
             found = []
             for first in range(0, count, GROUP):
                 found += _transposed(builder, places, first)
@@ -70,6 +80,16 @@ def turning(count: int):
         return types.UniTuple(lanes, count)(table, lists, types.uint64), build
 
     return turn
+
+
+def _fetch_soon(builder, place):
+    """Bring the cache line at ``place`` into the first cache; a place that is not there is no error."""
+    byte, flag = ir.IntType(8).as_pointer(), ir.IntType(32)
+    call = cgutils.get_or_insert_function(
+        builder.module, ir.FunctionType(ir.VoidType(), [byte, flag, flag, flag]), "llvm.prefetch.p0i8"
+    )
+    to_read, to_keep, of_data = flag(0), flag(3), flag(1)
+    builder.call(call, [builder.bitcast(place, byte), to_read, to_keep, of_data])
 
 
 def _transposed(builder, places, first: int):
