@@ -221,7 +221,7 @@ class Hyperbolic(NamedTuple):
         """dW/dr, 1/m more than W."""
         s = r * self.inverse_h
         a, b = max(2.0 - s, 0.0), max(1.0 - s, 0.0)
-        return self.alpha * self.inverse_h * (6.0 * b * b - 3.0 * a * a)
+        return 3.0 * self.alpha * self.inverse_h * (2.0 * b * b - a * a)
 
 
 class Quadratic(NamedTuple):

@@ -70,6 +70,8 @@ class Pair(NamedTuple):
     """W_ij, 1/m^d."""
     dw_r: Any
     """W′(r)/r, so that ∇W_ij = dw_r x_ij; negative inside the support, zero outside."""
+    m_dw_r: Any
+    """m_j W′(r)/r: what neighbour j weighs in a sum over gradients.  All such sums share it."""
 
 
 VECTORS = ("position", "velocity", "crowding", "transport", "slip", "x_ij", "u_ij")
@@ -150,8 +152,9 @@ def geometry(kernel, x_ij, tiny, i, j):
     r2 = dot(x_ij, x_ij) + tiny
     r = np.sqrt(r2)
     inverse_r = 1.0 / r
+    dw_r = slope_over_r(kernel, r, inverse_r)
     return Pair(
-        x_ij, u_ij, r2, r, inverse_r, dot(u_ij, x_ij), weight(kernel, r), slope_over_r(kernel, r, inverse_r)
+        x_ij, u_ij, r2, r, inverse_r, dot(u_ij, x_ij), weight(kernel, r), dw_r, j.mass * dw_r
     )
 
 

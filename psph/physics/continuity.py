@@ -11,4 +11,4 @@ class Continuity(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return j.mass * pair.u_dot_x * pair.dw_r
+        return pair.u_dot_x * pair.m_dw_r

@@ -60,7 +60,7 @@ class GradientCorrection(NamedTuple):
             scale(i.gradient_correction, i.pressure * v_i * v_i),
             scale(j.gradient_correction, j.pressure * v_j * v_j),
         )
-        return scale(times(both, pair.x_ij), -j.mass * pair.dw_r)
+        return scale(times(both, pair.x_ij), -pair.m_dw_r)
 
 
 class DifferenceCorrection(NamedTuple):
@@ -93,7 +93,7 @@ class DifferenceCorrection(NamedTuple):
     def push(self, i, j, pair):
         """What L_i − 1 adds to the pressure gradient from differences, m/s²."""
         weight = (i.pressure - j.pressure) * i.specific_volume
-        weight = weight * (j.mass * j.specific_volume * pair.dw_r)
+        weight = weight * (j.specific_volume * pair.m_dw_r)
         return scale(times(i.gradient_correction, pair.x_ij), weight)
 
 
@@ -111,4 +111,4 @@ def _correction(total, least, like):
 
 @register_jitable
 def _density_rate(i, j, pair):
-    return j.mass * pair.dw_r * dot(pair.u_ij, times(i.gradient_correction, pair.x_ij))
+    return pair.m_dw_r * dot(pair.u_ij, times(i.gradient_correction, pair.x_ij))

@@ -69,10 +69,10 @@ def _spreading(delta, i, j, pair, weight):
     h = i.smoothing_length
     # m_j/ρ_j (a − ρ_j) as m_j (a/ρ_j − 1): no division by 1/ρ_j.
     level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density) - weight
-    excess = j.mass * (level * j.specific_volume - 1.0)
+    excess = level * j.specific_volume - 1.0
     strength = 2.0 * delta * h * i.sound_speed
-    nearness = min(pair.r2 * (1.0 / (SINGULARITY * h * h)), 1.0)
-    return strength * excess * nearness * pair.dw_r
+    nearness = min(pair.r2 * (strength / (SINGULARITY * h * h)), strength)
+    return excess * nearness * pair.m_dw_r
 
 
 def _longest_step(delta: float, scene) -> float:

@@ -33,7 +33,7 @@ class SymmetricPressure(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        return -j.mass * (i.pressure * v_i * v_i + j.pressure * v_j * v_j) * pair.dw_r
+        return -(i.pressure * v_i * v_i + j.pressure * v_j * v_j) * pair.m_dw_r
 
 
 class MinimumPressure(NamedTuple):
@@ -48,7 +48,7 @@ class MinimumPressure(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the part relative to p_i, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        return (i.pressure - j.pressure) * v_i * (j.mass * v_j * pair.dw_r)
+        return (i.pressure - j.pressure) * v_i * (v_j * pair.m_dw_r)
 
     def start(self, i):
         """Smallest pressure so far, and Σ_j m_j/ρ_j ∇W_ij."""
@@ -56,8 +56,8 @@ class MinimumPressure(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take neighbour j into both."""
-        inside = where(pair.dw_r < 0.0, j.pressure, NOT_A_PRESSURE)
-        gradient = scale(pair.x_ij, j.mass * j.specific_volume * pair.dw_r)
+        inside = where(pair.m_dw_r < 0.0, j.pressure, NOT_A_PRESSURE)
+        gradient = scale(pair.x_ij, j.specific_volume * pair.m_dw_r)
         return min(total[0], inside), add(total[1], gradient)
 
     def join(self, a, b):
@@ -81,7 +81,7 @@ class DifferencePressure(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        return (i.pressure - j.pressure) * v_i * (j.mass * v_j * pair.dw_r)
+        return (i.pressure - j.pressure) * v_i * (v_j * pair.m_dw_r)
 
 
 class TensileControl(NamedTuple):
@@ -113,7 +113,7 @@ class TensileControl(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         sign = where(i.pressure < 0.0, 1.0 - 2.0 * i.inside, 1.0)
         both = (sign * i.pressure + j.pressure) * i.specific_volume
-        return -both * (j.mass * j.specific_volume * pair.dw_r)
+        return -both * (j.specific_volume * pair.m_dw_r)
 
 
 class BackgroundPressure(NamedTuple):
@@ -148,4 +148,4 @@ class BackgroundPressure(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        return -j.mass * self.pressure * (v_i * v_i + v_j * v_j) * pair.dw_r
+        return -self.pressure * (v_i * v_i + v_j * v_j) * pair.m_dw_r

@@ -30,13 +30,13 @@ class RiemannDissipation(NamedTuple):
         closing = max(-pair.u_dot_x, 0.0) * pair.inverse_r
         limited = min(self.eta * closing, i.sound_speed)
         mean = 0.5 * (i.specific_volume + j.specific_volume)  # ρ̄/(ρ_i ρ_j)
-        return -j.mass * mean * limited * closing * pair.dw_r
+        return -mean * limited * closing * pair.m_dw_r
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         v_i, v_j = i.specific_volume, j.specific_volume
         jump = (i.pressure - j.pressure) / (i.sound_speed * (v_i + v_j))
-        return 2.0 * j.mass * v_j * v_j * jump * pair.r * pair.dw_r
+        return 2.0 * v_j * v_j * jump * pair.r * pair.m_dw_r
 
     def longest_step(self, scene):
         """Δt ≤ 0.075 h/c, s: see STABLE."""

@@ -53,7 +53,7 @@ class ParticleShifting(NamedTuple):
         """Take neighbour j into all three."""
         volume = j.mass * j.specific_volume
         share = pair.w * volume
-        gradient = scale(pair.x_ij, volume * pair.dw_r)
+        gradient = scale(pair.x_ij, j.specific_volume * pair.m_dw_r)
         return total[0] + share, add(total[1], gradient), add(total[2], scale(gradient, share**4))
 
     def finish_value(self, total, i, kernel):
@@ -72,13 +72,13 @@ class ParticleShifting(NamedTuple):
     def shear(self, i, j, pair):
         """Coefficient of u_ij in (δx/Δt·∇)u, 1/s."""
         along = dot(_velocity(self.strength * i.sound_speed, i), pair.x_ij)
-        return -j.mass * j.specific_volume * pair.dw_r * along
+        return -j.specific_volume * pair.m_dw_r * along
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of δx/Δt·∇ρ, kg/(m^d s)."""
         along = dot(_velocity(self.strength * i.sound_speed, i), pair.x_ij)
         excess = 1.0 - j.specific_volume * (1.0 / i.specific_volume)
-        return j.mass * excess * pair.dw_r * along
+        return excess * pair.m_dw_r * along
 
 
 class PositionShift(NamedTuple):
@@ -127,7 +127,7 @@ class LatticeShift(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take neighbour j into both."""
-        share = j.mass * j.specific_volume * pair.dw_r
+        share = j.specific_volume * pair.m_dw_r
         near = pair.dw_r * self.inverse_near
         near = near * near
         pull = share * (1.0 + CROWDING * (near * near))

@@ -46,4 +46,4 @@ class NeighbourStress(NamedTuple):
         pulled = -self.epsilon * (min(own, 0.0) + min(other, 0.0))
         pressed = where(min(own, other) > 0.0, COMPRESSED * (own + other), 0.0)
         nearness = pair.w * self.inverse_near
-        return -j.mass * (pulled + pressed) * nearness**4 * pair.dw_r
+        return -(pulled + pressed) * nearness**4 * pair.m_dw_r

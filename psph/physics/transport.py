@@ -29,7 +29,7 @@ def _moved(self, i, dt):
 
 def _density_rate(self, i, j, pair):
     """What ũ − u adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-    return j.mass * pair.dw_r * dot(subtract(i.transport, j.transport), pair.x_ij)
+    return pair.m_dw_r * dot(subtract(i.transport, j.transport), pair.x_ij)
 
 
 def _carried(self, i, j, pair):
@@ -37,7 +37,7 @@ def _carried(self, i, j, pair):
     own = i.specific_volume * dot(i.transport, pair.x_ij)
     other = j.specific_volume * dot(j.transport, pair.x_ij)
     carried = add(scale(i.velocity, own), scale(j.velocity, other))
-    return scale(carried, j.mass * pair.dw_r)
+    return scale(carried, pair.m_dw_r)
 
 
 class XSPH(NamedTuple):
@@ -94,7 +94,7 @@ class TransportVelocity(NamedTuple):
     def gather(self, total, i, j, pair):
         """Add m_j (1/ρ_i² + 1/ρ_j²) ∇W_ij."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        return add(total, scale(pair.x_ij, j.mass * (v_i * v_i + v_j * v_j) * pair.dw_r))
+        return add(total, scale(pair.x_ij, (v_i * v_i + v_j * v_j) * pair.m_dw_r))
 
     def finish_value(self, total, i, kernel):
         """ũ − u of a fluid particle, m/s."""
@@ -124,7 +124,7 @@ class GeneralisedTransportVelocity(NamedTuple):
     def gather(self, total, i, j, pair):
         """Add m_j/ρ_i² ∇W_ij."""
         own = i.specific_volume * i.specific_volume
-        return add(total, scale(pair.x_ij, j.mass * own * pair.dw_r))
+        return add(total, scale(pair.x_ij, own * pair.m_dw_r))
 
     def finish_value(self, total, i, kernel):
         """ũ − u of a fluid particle, m/s."""

@@ -21,6 +21,10 @@ VALUES = (1.0, 0.5)
 """What a trial answers: formulas compare with zero or a threshold, and each side is to be seen."""
 
 
+SLOPES = ("dw_r", "m_dw_r")
+"""Entries of a pair that are negative where its particles meet."""
+
+
 class _Recorder:
     """Answers every known name with a harmless value and remembers that it was asked."""
 
@@ -36,7 +40,7 @@ class _Recorder:
         self.read.add(name)
         if several := components(name, self._dimensions):
             return (self.value,) * several
-        return -self.value if name == "dw_r" and self.value != VALUES[0] else self.value
+        return -self.value if name in SLOPES and self.value != VALUES[0] else self.value
 
 
 def reads(effect, dimensions: int, kernel) -> Reads:
@@ -46,6 +50,8 @@ def reads(effect, dimensions: int, kernel) -> Reads:
     for value in VALUES:
         i.value = j.value = pair.value = value
         _call_all(effect, i, j, pair, kernel)
+    if "m_dw_r" in pair.read:
+        j.read.add("mass")
     return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read))
 
 

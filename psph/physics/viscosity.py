@@ -34,7 +34,7 @@ def _friction(i, j, pair, numerator):
     # (μ_i + μ_j)/(ρ_i + ρ_j)² in specific volumes: one division in place of three.
     over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * numerator
     under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
-    return 4.0 * j.mass * pair.dw_r * over / under
+    return 4.0 * pair.m_dw_r * over / under
 
 
 class LaminarViscosity(NamedTuple):
@@ -75,7 +75,7 @@ class CorrectedViscosity(NamedTuple):
         both = add(i.gradient_correction, j.gradient_correction)
         stretch = 1.0 + 0.5 * dot(times(both, pair.x_ij), pair.x_ij) / pair.r2
         over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
-        return 4.0 * j.mass * pair.dw_r * over * stretch / ((v_i + v_j) * (v_i + v_j))
+        return 4.0 * pair.m_dw_r * over * stretch / ((v_i + v_j) * (v_i + v_j))
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
@@ -126,7 +126,7 @@ class ArtificialViscosity(NamedTuple):
         # μ = h (v_i + v_j) q and μ/ρ̄ = 2 h v_i v_j q: one division for both.
         q = min(pair.u_dot_x, 0.0) / ((pair.r2 + SINGULARITY * h * h) * (v_i + v_j))
         strength = self.alpha * c - self.beta * h * ((v_i + v_j) * q)
-        return 2.0 * h * j.mass * v_i * (v_j * q) * strength * pair.dw_r
+        return 2.0 * h * v_i * (v_j * q) * strength * pair.m_dw_r
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
@@ -151,9 +151,8 @@ class PairDamping(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         # ρ̄ = ρ_i ρ_j/ρ₀
-        share = j.mass * v_j * (v_i * i.rest_density) * pair.u_dot_x
-        strength = self.alpha * h * i.sound_speed
-        return strength * share * (pair.dw_r * _inverse_square(pair, h))
+        strength = self.alpha * h * i.sound_speed * (v_i * i.rest_density)
+        return strength * v_j * (pair.u_dot_x * _inverse_square(pair, h)) * pair.m_dw_r
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
@@ -178,7 +177,7 @@ class ImpactDamping(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        share = j.mass * v_j * (v_i * i.rest_density)
+        strength = self.beta * (v_i * i.rest_density)
         approach = -h * pair.u_dot_x * _inverse_square(pair, h)
         excess = max(approach - ONSET * i.sound_speed, 0.0)
-        return -self.beta * share * (excess * excess) * pair.dw_r
+        return -strength * v_j * (excess * excess) * pair.m_dw_r

@@ -65,6 +65,8 @@ def test_geometry(dim):
     assert pair.r2 == pytest.approx(r * r) and pair.w == pytest.approx(w)
     assert pair.u_dot_x == pytest.approx(u @ x)
     assert np.multiply(pair.dw_r, pair.x_ij) == pytest.approx(grad_w)
+    assert pair.m_dw_r == pytest.approx(particles.mass[1] * pair.dw_r)
+    assert (pair.r, 1.0 / pair.inverse_r) == pytest.approx((r, r))
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
@@ -570,7 +572,7 @@ def test_reads_are_found_by_a_trial_call():
     found = reads(LaminarViscosity(), 2, kernel("cubic", H, 2))
     assert found.neighbour == {"mass", "specific_volume", "viscosity"}
     assert found.own == {"specific_volume", "viscosity", "smoothing_length"}
-    assert found.pair == {"r2", "dw_r"}
+    assert found.pair == {"r2", "m_dw_r"}
 
 
 def test_both_sides_of_a_comparison_are_tried():
@@ -624,7 +626,7 @@ def test_a_position_shift_sees_the_surface_and_what_crowds():
     """Full, a lattice holds still; at its edge nothing shifts; a near pair parts."""
     scene_kernel, dx = kernel("hyperbolic", H, 2), H / 1.3
     full = first_moment(scene_kernel, dx, 2)
-    shift = LatticeShift(0.1, full, 1.0 / scene_kernel.dw_r(dx))
+    shift = LatticeShift(0.1, full, dx / scene_kernel.dw(dx))
     x = np.array([k for k in product(range(-3, 4), repeat=2)]) * dx
     centre = int(np.flatnonzero((x == 0.0).all(axis=1))[0])
 
