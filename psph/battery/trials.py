@@ -203,7 +203,6 @@ BATTERY = (
             (f"fluids.water.viscosity={1.0 / re!r}",),
             holds=(*ORDER, Bound("voids", most=0.01), Bound("exact_error", most=0.5)),
             goals=(Bound("exact_error", most=0.2), Bound("near_5", least=0.7)),
-            fails=("no background",),
         )
         for re in (1000, 10_000)
     ),
