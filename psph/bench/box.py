@@ -35,23 +35,25 @@ class Box(NamedTuple):
 
     def case(self) -> Case:
         """The box as a case."""
+        return Case.model_validate(self.tables())
+
+    def tables(self) -> dict:
+        """The same as the tables of a case."""
         corners = {"lower": [0.0] * self.dimensions, "upper": [1.0] * self.dimensions}
-        return Case.model_validate(
-            {
-                "space": {
-                    "dimensions": self.dimensions,
-                    "spacing": 1.0 / self.sides,
-                    "smoothing": smoothing(self.neighbours, self.dimensions),
-                    "kernel": KERNEL,
-                    "periodic": ["x", "y", "z"][: self.dimensions],
-                    **corners,
-                },
-                "time": {"end": 1.0},
-                "scheme": PLAIN,
-                "physics": {"sound_speed": SPEED, "artificial_viscosity": VISCOSITY},
-                "fluids": {"water": {"shape": {"box": corners}, "jitter": JITTER, "seed": SEED}},
-            }
-        )
+        return {
+            "space": {
+                "dimensions": self.dimensions,
+                "spacing": 1.0 / self.sides,
+                "smoothing": smoothing(self.neighbours, self.dimensions),
+                "kernel": KERNEL,
+                "periodic": ["x", "y", "z"][: self.dimensions],
+                **corners,
+            },
+            "time": {"end": 1.0},
+            "scheme": PLAIN,
+            "physics": {"sound_speed": SPEED, "artificial_viscosity": VISCOSITY},
+            "fluids": {"water": {"shape": {"box": corners}, "jitter": JITTER, "seed": SEED}},
+        }
 
     def create(self, scene, plan: Plan, comm) -> Store:
         """This rank's share of the particles."""

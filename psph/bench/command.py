@@ -1,12 +1,13 @@
 """The verb ``bench``: what is asked for, measured and said."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from psph.bench import BOX, FALLING, PROBLEMS
 from psph.bench.compare import compared
 from psph.bench.errors import BenchError, PeerFailed
-from psph.bench.measure import Asked, measure
+from psph.bench.measure import AGAINST, PEER, Asked, measure
 from psph.bench.ranks import on_rank_0
 from psph.bench.results import read_runs
 from psph.bench.roofline import measure_ceiling
@@ -57,24 +58,26 @@ def standard(
 
 
 def bench(
-    comm, asked: list[Asked], compare: Path | None, peer_python: Path | None, as_json: bool
+    comm, asked: list[Asked], compare: Path | None, peer_python: Path | None, as_json: bool,
+    against: Sequence[str] = (),
 ) -> None:
     """Time each problem and print what it gave; collective.
 
-    ``compare``: a file with an earlier result; ``peer_python``: an interpreter that has LAMMPS.
+    ``compare``: a file with an earlier result; ``peer_python``: an interpreter that has LAMMPS;
+    ``against``: overrides that make the case which takes turns with each problem.
     """
     earlier = on_rank_0(comm, lambda: read_runs(compare)) if compare else None
     ceiling = measure_ceiling(comm)
     runs = []
     for problem in asked:
         try:
-            runs.append(measure(problem, comm, ceiling, peer_python))
+            runs.append(measure(problem, comm, ceiling, peer_python, against))
         except PeerFailed as failed:
             if len(asked) == 1:
                 raise
             if comm.rank == 0:
                 print(f"{failed}; without it:", flush=True)
-            runs.append(measure(problem, comm, ceiling, None))
+            runs.append(measure(problem, comm, ceiling, None, against))
         if comm.rank == 0:
             print("\n".join(lines(runs[-1])), flush=True)
     if comm.rank != 0:
@@ -104,8 +107,15 @@ def lines(run: dict) -> list[str]:
         f"  rebuilds    {run['rebuilds']} of the neighbour lists; compiled in "
         f"{run['compile_seconds']} s, not counted",
     ]
-    if "peer" in run:
-        peer = run["peer"]
+    if AGAINST in run:
+        other = run[AGAINST]
+        said.append(
+            f"  against     {', '.join(other['overrides'])}: {_pace(other)} in all, "
+            f"{other['neighbours']:.0f} neighbours; a step takes {other['ratio']:.2f} times as long "
+            f"(spread {100 * other['ratio_spread']:.0f} %)"
+        )
+    if PEER in run:
+        peer = run[PEER]
         said.append(
             f"  beside it   {peer['name']} {peer['version']} {peer['style']} on {peer['ranks']} "
             f"ranks: {_pace(peer)} in all (spread {100 * peer['spread']:.0f} %, skin {peer['skin']:g}); "

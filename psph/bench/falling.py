@@ -53,7 +53,11 @@ class Falling(NamedTuple):
 
     def case(self) -> Case:
         """The fine tank; its walls are there, its water still stands."""
-        return self.coarse.refined(self.times).case()
+        return Case.model_validate(self.tables())
+
+    def tables(self) -> dict:
+        """The same as the tables of a case."""
+        return self.coarse.refined(self.times).tables()
 
     def create(self, scene, plan: Plan, comm) -> Store:
         """This rank's share of the particles, the same for any number of ranks.  Collective."""

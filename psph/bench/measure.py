@@ -4,7 +4,9 @@ import os
 import platform
 import statistics
 import time
+from collections.abc import Sequence
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,10 +14,12 @@ import numpy as np
 
 from psph.bench import BOX, DAM, FALLING
 from psph.bench.box import Box
+from psph.bench.errors import BenchError
 from psph.bench.falling import Falling
 from psph.bench.peer import Peer
 from psph.bench.roofline import Ceiling, shares
 from psph.bench.tank import Tank
+from psph.case import checked
 from psph.jit import compiled, processor
 from psph.output.ledger import Ledger
 from psph.particles.neighbours import WIDTH
@@ -30,8 +34,18 @@ from psph.vectors import dot, nearest_image, subtract
 WARM_UP, REPEATS, STEPS = 20, 5, 20
 """Steps before the clock starts, blocks that are timed, and steps of a block."""
 
+TURNS = 15
+"""Blocks where two cases are compared: their difference may be small."""
+
 LAYOUTS = {BOX: Box.nearest, DAM: Tank.nearest, FALLING: Falling.nearest}
 """For each problem: (dimensions, neighbours, particles) to what lays it out."""
+
+
+OURS, PEER, AGAINST = "ours", "peer", "against"
+"""Who takes turns; the last two are keys of a result."""
+
+SITES = ("dimensions", "spacing", "lower", "upper", "periodic")
+"""Keys of ``space`` that say where particles are."""
 
 
 class Asked(NamedTuple):
@@ -44,30 +58,36 @@ class Asked(NamedTuple):
     precision: str
 
 
-def measure(asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None) -> dict:
+def measure(
+    asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None = None, against: Sequence[str] = ()
+) -> dict:
     """Figures of one problem, ready for JSON: rates are medians over blocks, of all ranks.
 
-    With ``peer_python`` the peer takes turns with psph, block by block.  Collective.
+    With ``peer_python`` the peer takes turns with psph, block by block; with overrides ``against``,
+    ``dotted.key=value``, the same particles under the case that these make.  Collective.
     """
     layout = LAYOUTS[asked.problem](asked.dimensions, asked.neighbours, asked.particles)
-    scene = Scene(layout.case().model_copy(update={"precision": asked.precision}))
-    plan = make_plan(scene)
-    compiling = compile_ahead(scene, plan, comm)
-    ledger = Ledger()
-    simulation = Simulation(scene, plan, layout.create(scene, plan, comm), comm, ledger)
-    for _ in range(WARM_UP):
-        simulation.step()
+    scene = _scene(asked, layout)
+    rival_scene = _scene(asked, layout, against) if against else None
+    simulation, compiling = _warmed_up(layout, scene, comm)
+    rival = _warmed_up(layout, rival_scene, comm)[0] if against else None
     count, pairs, entries = _work(simulation, scene)
     with Peer(peer_python, scene, simulation) if peer_python else nullcontext() as peer:
-        ledger.seconds.clear()
+        simulation.ledger.seconds.clear()
         rebuilds = simulation.domain.rebuilds
+        runners = {OURS: partial(_timed, simulation, comm)}
+        if peer:
+            runners[PEER] = partial(peer.timed, STEPS)
+        if rival:
+            runners[AGAINST] = partial(_timed, rival, comm)
         turns = [
-            (_timed(simulation, comm), peer.timed(STEPS) if peer else None) for _ in range(REPEATS)
+            {name: timed() for name, timed in runners.items()}
+            for _ in range(TURNS if rival else REPEATS)
         ]
         if peer:
             peer.check()
-    blocks = [ours for ours, _ in turns]
-    phases = _mean_over_ranks(ledger, comm)
+    blocks = [turn[OURS] for turn in turns]
+    phases = _mean_over_ranks(simulation.ledger, comm)
     rates = Rates.of(blocks, count)
     cores = comm.size * threads()
     result = {
@@ -85,12 +105,45 @@ def measure(asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None) -> d
         "rebuilds": simulation.domain.rebuilds - rebuilds,
         "share": {k: round(v / sum(blocks), 4) for k, v in sorted(phases.items())},
         "roofline": shares(
-            simulation, ceiling, pairs, entries, phases["pairs"] / (REPEATS * STEPS)
+            simulation, ceiling, pairs, entries, phases["pairs"] / (len(turns) * STEPS)
         ),
     }
     if peer:
-        result["peer"] = _beside(peer, turns, count, pairs / count)
+        result[PEER] = {**peer.described, **_beside(turns, PEER, count, pairs / count)}
+    if rival:
+        within = _work(rival, rival_scene)[1] / count
+        result[AGAINST] = {
+            "overrides": [*against], "neighbours": round(within, 1),
+            **_beside(turns, AGAINST, count, within),
+        }
     return result
+
+
+def _scene(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
+    """The problem's scene, with overrides; BenchError where its particles are not the same then."""
+    scene = Scene(checked(
+        f"bench --problem {asked.problem}", layout.tables() | {"precision": asked.precision},
+        against, "--against",
+    ))
+    like = Scene(layout.case())
+    moved = [name for name in SITES if getattr(scene.case.space, name) != getattr(like.case.space, name)]
+    if moved or scene.counts().tolist() != like.counts().tolist():
+        what = f"space.{moved[0]}" if moved else "the shapes"
+        raise BenchError(
+            f"bench --against {' '.join(against)}: not the same particles any more; leave {what} as in the "
+            "problem"
+        )
+    return scene
+
+
+def _warmed_up(layout, scene: Scene, comm) -> tuple[Simulation, float]:
+    """The problem after its first steps, and the seconds that were compiled; collective."""
+    plan = make_plan(scene)
+    compiling = compile_ahead(scene, plan, comm)
+    simulation = Simulation(scene, plan, layout.create(scene, plan, comm), comm, Ledger())
+    for _ in range(WARM_UP):
+        simulation.step()
+    return simulation, compiling
 
 
 class Rates(NamedTuple):
@@ -170,13 +223,12 @@ def count_inside(view, periods, support2, low, owned, begin, blocks, lists):
     return inside
 
 
-def _beside(peer: Peer, turns: list[tuple], particles: int, neighbours: float) -> dict:
-    """The peer's figures; ``ratio`` is psph's pace over the peer's, the median over the turns."""
-    ratios = [theirs / ours for ours, theirs in turns]
-    rates = Rates.of([theirs for _, theirs in turns], particles)
+def _beside(turns: list[dict], name: str, particles: int, neighbours: float) -> dict:
+    """Another's figures; ``ratio`` is its seconds over ours, the median over the turns."""
+    ratios = [turn[name] / turn[OURS] for turn in turns]
+    rates = Rates.of([turn[name] for turn in turns], particles)
     ratio = statistics.median(ratios)
     return {
-        **peer.described,
         **rates.figures(neighbours),
         "spread": rates.spread,
         "ratio": ratio,

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from psph.bench import PROBLEMS
+from psph.bench.measure import AGAINST
 from psph.bench.results import read_runs
 from psph.output.pages import command
 
@@ -29,7 +30,8 @@ def tables(files: Iterable[Path]) -> str:
 
 def _tables(runs: list[dict]) -> Iterator[str]:
     for machine in sorted({run["machine"] for run in runs}):
-        here = [run for run in runs if run["machine"] == machine]
+        all_here = [run for run in runs if run["machine"] == machine]
+        here = [run for run in all_here if AGAINST not in run] or all_here
         roofs = [run["roofline"] for run in here if run["ranks"] == here[0]["ranks"]]
         yield f"{machine}. On {_ranks(here[0])} a copy reaches {_best(roofs, 'copy_bytes')} GB/s,"
         yield f"multiply-adds {_best(roofs, 'multiply_add_flops')} Gflop/s."
@@ -55,6 +57,15 @@ def _tables(runs: list[dict]) -> Iterator[str]:
                 ("problem", "in the bulk", "precision", "particles on 1 rank", "particles", "ranks",
                  "times the pace", "efficiency", "spread", "halo and waiting"),
                 scaled,
+            )
+        if compared := [run for run in all_here if AGAINST in run]:
+            yield ""
+            yield "The same particles in turns, block by block in one run: what a choice costs."
+            yield ""
+            yield from _table(
+                ("problem", "particles", "neighbours", "ranks × threads", "M particle-steps/s",
+                 "against", "its neighbours", "M particle-steps/s", "a step takes, times", "spread"),
+                map(_against, compared),
             )
 
 
@@ -110,6 +121,16 @@ def _shares(run: dict) -> tuple[str, ...]:
     own = [share.get(phase, 0.0) for phase in PHASES]
     columns = [*own, 1.0 - sum(own), roof["flops_share"], roof["bytes_share"]]
     return (*_what(run), *map(_percent, columns))
+
+
+def _against(run: dict) -> tuple[str, ...]:
+    other = run[AGAINST]
+    return (
+        *_what(run), _millions(run["particle_steps_per_second"]),
+        ", ".join(f"`{override}`" for override in other["overrides"]), f"{other['neighbours']:.0f}",
+        _millions(other["particle_steps_per_second"]), f"{other['ratio']:.2f}",
+        _percent(other["ratio_spread"]),
+    )
 
 
 def _best(roofs: list[dict], what: str) -> str:

@@ -72,6 +72,10 @@ class Tank(NamedTuple):
 
     def case(self) -> Case:
         """The column at rest, its pressure hydrostatic, as the gate is drawn."""
+        return Case.model_validate(self.tables())
+
+    def tables(self) -> dict:
+        """The same as the tables of a case."""
         thick, zeros = self.layers * self.spacing, [0.0] * self.dimensions
         upper = [n * self.spacing for n in self.hollow]
         body = {
@@ -80,24 +84,22 @@ class Tank(NamedTuple):
         }
         column = {"lower": zeros, "upper": [HEIGHT] * self.dimensions}
         tank = {"from": {"box": body}, "minus": [{"box": {"lower": zeros, "upper": upper}}]}
-        return Case.model_validate(
-            {
-                "space": {
-                    "dimensions": self.dimensions,
-                    "spacing": self.spacing,
-                    "smoothing": smoothing(self.neighbours, self.dimensions),
-                    "kernel": KERNEL,
-                },
-                "time": {"end": 1.0},
-                "scheme": PLAIN,
-                "physics": {
-                    "gravity": [*zeros[1:], -GRAVITY],
-                    "artificial_viscosity": VISCOSITY,
-                },
-                "fluids": {"water": {"shape": {"box": column}, "pressure": "hydrostatic"}},
-                "walls": {"tank": {"shape": {"difference": tank}}},
-            }
-        )
+        return {
+            "space": {
+                "dimensions": self.dimensions,
+                "spacing": self.spacing,
+                "smoothing": smoothing(self.neighbours, self.dimensions),
+                "kernel": KERNEL,
+            },
+            "time": {"end": 1.0},
+            "scheme": PLAIN,
+            "physics": {
+                "gravity": [*zeros[1:], -GRAVITY],
+                "artificial_viscosity": VISCOSITY,
+            },
+            "fluids": {"water": {"shape": {"box": column}, "pressure": "hydrostatic"}},
+            "walls": {"tank": {"shape": {"difference": tank}}},
+        }
 
     def create(self, scene, plan: Plan, comm) -> Store:
         """This rank's share of the particles."""

@@ -7,12 +7,12 @@ with it the compiler, when they are first used.
 from typing import TYPE_CHECKING, Any
 
 from psph.case.errors import CaseError
-from psph.case.loader import load
+from psph.case.loader import checked, load
 
 if TYPE_CHECKING:
     from psph.case.model import Case, schema
 
-__all__ = ["Case", "CaseError", "load", "schema"]
+__all__ = ["Case", "CaseError", "checked", "load", "schema"]
 
 
 def __getattr__(name: str) -> Any:

@@ -50,14 +50,25 @@ def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set")
     or scheme gives way to the keys of the file that names it; one that is an override has the file
     give way.  Raises CaseError with one line for every fault found.
     """
+    file = str(path)
+    case = checked(file, _read(file), overrides, option)
+    case._file = file
+    return case
+
+
+def checked(
+    file: str, data: dict[str, Any], overrides: Sequence[str] = (), option: str = "--set"
+) -> "Case":
+    """The case that the tables ``data`` make, which are changed; as :func:`load`.
+
+    ``file`` is what messages call them.
+    """
     # Only here: the model knows the effects, and these bring the compiler along.
     from pydantic import ValidationError
 
     from psph.case.messages import messages
     from psph.case.model import Case, schema
 
-    file = str(path)
-    data = _read(file)
     applied = [_override(_with(file, option, text), data, text) for text in overrides]
     touched = [override.key for override in applied]
     filled = fill(data, touched)
@@ -71,11 +82,9 @@ def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set")
         return f"{file} with {by}" if by else file
 
     try:
-        case = Case.model_validate(data)
+        return Case.model_validate(data)
     except ValidationError as error:
         raise CaseError(messages(error, data, schema(), source)) from None
-    case._file = file
-    return case
 
 
 def _with(file: str, option: str, text: str) -> str:
