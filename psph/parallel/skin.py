@@ -89,10 +89,10 @@ class Skin:
         )
         grid = domain.grid
         boxes = bounding_boxes(
-            store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach
+            store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach, grid.periodic
         )
         mine = largest_differences(
-            boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
+            *boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
         )
         self._apart, self._closing, self.drifted = np.sqrt(largest(domain.comm, mine)).tolist()
         self._since = 0.0

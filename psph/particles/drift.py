@@ -4,43 +4,61 @@ import numpy as np
 
 from psph.jit import compiled
 
-LOW, HIGH = -1e300, 1e300
-"""No number of a particle lies outside."""
+LOW, HIGH = -1e150, 1e150
+"""No number of a particle lies outside, and their squares are numbers still."""
+
+AXES = 3
+"""Axes of a box; in 1D and 2D the boxes have no extent along the others."""
+
+MOVED, VELOCITY = 0, 1
+"""What a box is of."""
+
+
+MARGIN = 2
+"""Blocks before and behind each line, empty or periodic images: the farthest that count."""
 
 
 @compiled
-def bounding_boxes(data, position, listed, velocity, starts, planes, counts, reach):
+def bounding_boxes(data, position, listed, velocity, starts, planes, counts, reach, periodic):
     """Ranges of displacement and velocity in blocks of cells about as wide as the cutoff.
 
     ``position``, ``listed`` and ``velocity`` are rows of ``data``, one a dimension; the other
-    arguments as in psph.particles.neighbours.  Returns (lines, blocks, dim, 4): lowest and highest
-    x − x_listed, lowest and highest v of each block of each line of cells, ghosts included; an
-    empty block has its lowest above its highest.
+    arguments as in psph.particles.neighbours.  Returns two arrays (2, lines, AXES, blocks and
+    margins), the lowest and the highest x − x_listed and v of each block of each line of cells,
+    ghosts included; an empty block has its lowest above its highest.
     """
     columns = counts[2]
     wide = max(reach, 1)
     blocks = max(columns // wide, 1)
     lines = (planes + 2) * counts[1]
-    boxes = np.empty((lines, blocks, len(position), 4))
+    shape = (2, lines, AXES, blocks + 2 * MARGIN)
+    low, high = np.zeros(shape), np.zeros(shape)
+    low[:, :, : len(position)], high[:, :, : len(position)] = HIGH, LOW
     for line in range(lines):
         for block in range(blocks):
             end = columns if block == blocks - 1 else (block + 1) * wide
             first = np.uint64(starts[line * columns + block * wide])
             last = np.uint64(starts[line * columns + end])
             for d in range(len(position)):
-                low, high, v_low, v_high = HIGH, LOW, HIGH, LOW
+                least, most, v_least, v_most = HIGH, LOW, HIGH, LOW
                 for k in range(first, last):
                     moved = data[position[d], k] - data[listed[d], k]
                     v = data[velocity[d], k]
-                    low, high = min(low, moved), max(high, moved)
-                    v_low, v_high = min(v_low, v), max(v_high, v)
-                boxes[line, block, d, 0], boxes[line, block, d, 1] = low, high
-                boxes[line, block, d, 2], boxes[line, block, d, 3] = v_low, v_high
-    return boxes
+                    least, most = min(least, moved), max(most, moved)
+                    v_least, v_most = min(v_least, v), max(v_most, v)
+                n = block + MARGIN
+                low[MOVED, line, d, n], high[MOVED, line, d, n] = least, most
+                low[VELOCITY, line, d, n], high[VELOCITY, line, d, n] = v_least, v_most
+    if periodic[2]:
+        for m in range(2 * MARGIN):
+            n = m if m < MARGIN else m + blocks
+            image = (n - MARGIN) % blocks + MARGIN
+            low[:, :, :, n], high[:, :, :, n] = low[:, :, :, image], high[:, :, :, image]
+    return low, high
 
 
 @compiled
-def largest_differences(boxes, planes, rows, axes, periodic):
+def largest_differences(low, high, planes, rows, axes, periodic):
     """Bounds over all pairs that matter: |Δ(x − x_listed)|² and |Δv|²; and the largest
     |x − x_listed|².
 
@@ -49,65 +67,80 @@ def largest_differences(boxes, planes, rows, axes, periodic):
     block between them, a cutoff wide at the least, none is listed: they count by how far they have
     come nearer across it.  ``axes``: those of planes, of rows and of columns.
     """
-    blocks = boxes.shape[1]
-    apart2 = closing2 = drifted2 = 0.0
-    for line in range(len(boxes)):
-        plane, row = divmod(line, rows)
-        for block in range(blocks):
-            own = boxes[line, block]
-            if own[0, 0] > own[0, 1]:
-                continue
-            drifted2 = max(drifted2, reach2(own))
-            # Half of the blocks around, and itself: the others look here.
-            for p in range(plane, min(plane + 3, planes + 2)):
-                for r in range(row - 2 if p > plane else row, row + 3):
-                    if not (0 <= r < rows or periodic[1]):
-                        continue
-                    for b in range(block - 2, block + 3):
-                        if not (0 <= b < blocks or periodic[2]):
-                            continue
-                        other = boxes[p * rows + r % rows, b % blocks]
-                        if other[0, 0] > other[0, 1]:
-                            continue
-                        if p - plane == 2:
-                            moved2, fast2 = approaches2(own, other, axes[0])
-                        elif r - row == 2:
-                            moved2, fast2 = approaches2(own, other, axes[1])
-                        elif row - r == 2:
-                            moved2, fast2 = approaches2(other, own, axes[1])
-                        elif b - block == 2:
-                            moved2, fast2 = approaches2(own, other, axes[2])
-                        elif block - b == 2:
-                            moved2, fast2 = approaches2(other, own, axes[2])
-                        else:
-                            moved2, fast2 = span2(own, other, 0), span2(own, other, 2)
-                        apart2, closing2 = max(apart2, moved2), max(closing2, fast2)
-    return apart2, closing2, drifted2
+    lines, blocks = low.shape[1], low.shape[3] - 2 * MARGIN
+    largest2, drifted2 = np.zeros((2, blocks)), np.zeros(blocks)
+    for line in range(np.uint64(lines)):
+        plane, row = divmod(np.int64(line), rows)
+        raise_reaches(drifted2, low, high, line)
+        # Half of the blocks around, and itself: the others look here.
+        for p in range(plane, min(plane + 3, planes + 2)):
+            for r in range(row - 2 if p > plane else row, row + 3):
+                if not (0 <= r < rows or periodic[1]):
+                    continue
+                other = np.uint64(p * rows + r % rows)
+                for what in range(np.uint64(2)):
+                    best = largest2[what]
+                    if p - plane == 2:
+                        raise_approaches(best, low, high, what, line, other, axes[0])
+                    elif r - row == 2:
+                        raise_approaches(best, low, high, what, line, other, axes[1])
+                    elif row - r == 2:
+                        raise_approaches(best, low, high, what, other, line, axes[1])
+                    else:
+                        raise_spans(best, low, high, what, line, other, axes[2])
+    return largest2[MOVED].max(), largest2[VELOCITY].max(), drifted2.max()
+
+
+# Several blocks of a line go in a register: no branches, and no minimum or maximum that asks for NaN.
 
 
 @compiled
-def approaches2(a, b, d):
-    """Squares of how far box ``a`` may have come nearer to box ``b``, ahead along axis ``d``, and
-    of how fast it does."""
-    moved, fast = max(a[d, 1] - b[d, 0], 0.0), max(a[d, 3] - b[d, 2], 0.0)
-    return moved * moved, fast * fast
+def raise_spans(best, low, high, what, line, other, axis):
+    """Raise ``best`` to the squares of the longest vectors between points of the boxes of two lines
+    side by side; across a block by how far they come nearer along ``axis``, that of the lines."""
+    along, own = np.uint64(axis), np.uint64(MARGIN)
+    for n in range(np.uint64(len(best))):
+        largest = best[n]
+        for b in range(np.uint64(1), np.uint64(2 * MARGIN)):
+            total = 0.0
+            for d in range(np.uint64(AXES)):
+                one = high[what, line, d, n + own] - low[what, other, d, n + b]
+                reverse = high[what, other, d, n + b] - low[what, line, d, n + own]
+                longest = one if one > reverse else reverse
+                longest = longest if longest > 0.0 else 0.0  # beside an empty one
+                total += longest * longest
+            largest = total if total > largest else largest
+        ahead = high[what, line, along, n + own] - low[what, other, along, n + own + own]
+        behind = high[what, other, along, n] - low[what, line, along, n + own]
+        nearer = ahead if ahead > behind else behind
+        nearer = nearer if nearer > 0.0 else 0.0
+        best[n] = nearer * nearer if nearer * nearer > largest else largest
 
 
 @compiled
-def span2(a, b, first):
-    """Square of the longest vector between a point of box ``a`` and one of box ``b``."""
-    total = 0.0
-    for d in range(len(a)):
-        longest = max(a[d, first + 1] - b[d, first], b[d, first + 1] - a[d, first])
-        total += longest * longest
-    return total
+def raise_approaches(best, low, high, what, behind, ahead, axis):
+    """Raise ``best`` to the squares of how far boxes have come nearer, or of how fast they do, to
+    those of a line ``ahead`` of theirs along an axis."""
+    along, own = np.uint64(axis), np.uint64(MARGIN)
+    for n in range(np.uint64(len(best))):
+        first = low[what, ahead, along, n]
+        for b in range(np.uint64(1), np.uint64(2 * MARGIN + 1)):
+            one = low[what, ahead, along, n + b]
+            first = one if one < first else first
+        nearer = high[what, behind, along, n + own] - first
+        nearer = nearer if nearer > 0.0 else 0.0
+        best[n] = nearer * nearer if nearer * nearer > best[n] else best[n]
 
 
 @compiled
-def reach2(a):
-    """Square of the longest displacement in box ``a``."""
-    total = 0.0
-    for d in range(len(a)):
-        longest = max(a[d, 1], -a[d, 0])
-        total += longest * longest
-    return total
+def raise_reaches(best, low, high, line):
+    """Raise ``best`` to the squares of the longest displacements in the boxes of a line."""
+    for n in range(np.uint64(len(best))):
+        total = 0.0
+        for d in range(np.uint64(AXES)):
+            up = high[MOVED, line, d, n + np.uint64(MARGIN)]
+            down = -low[MOVED, line, d, n + np.uint64(MARGIN)]
+            longest = up if up > down else down
+            longest = longest if longest > 0.0 else 0.0
+            total += longest * longest
+        best[n] = total if total > best[n] else best[n]

@@ -39,10 +39,10 @@ def measured(domain):
     store, grid = domain.store, domain.grid
     boxes = bounding_boxes(
         store.data, *(rows_of(store, name) for name in NAMES), domain.starts, domain.planes,
-        grid.counts, grid.reach,
+        grid.counts, grid.reach, grid.periodic,
     )
     return np.sqrt(largest_differences(
-        boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
+        *boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
     ))
 
 
