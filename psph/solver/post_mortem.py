@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from psph.output import closeup
 from psph.output.errors import together
 from psph.particles.fields import FLUID
 from psph.solver.suspect import Suspect
@@ -33,6 +32,8 @@ def write_post_mortem(
     path = Path(folder) / REPORT
     with together(simulation.comm, path):
         if simulation.comm.rank == 0:
+            from psph.output import closeup  # late: what draws takes a while, and most runs are well
+
             closeup.draw(
                 path.with_name(PICTURE), scene.case.title or scene.case.name, simulation.time,
                 scene, suspect.around, suspect.offset, suspect.column, suspect.place,

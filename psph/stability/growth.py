@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize
 
 from psph.stability.couplings import Couplings, couplings
 from psph.stability.errors import StabilityError
@@ -180,6 +179,8 @@ def zone_grid(lattice: Lattice, count: int) -> np.ndarray:
 
 def _climb(height: Callable, starts: np.ndarray, step: float) -> np.ndarray:
     """Where ``height`` is largest: uphill from the best ``starts``, ``step`` apart."""
+    from scipy.optimize import minimize  # late: it takes a while, and runs go without
+
     heights = height(starts)
     scale = np.abs(heights).max()
     _, order = np.unique(-np.round(heights / scale, 9), return_index=True)
