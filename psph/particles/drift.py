@@ -10,15 +10,14 @@ LOW, HIGH = -1e150, 1e150
 AXES = 3
 """Axes of a box; in 1D and 2D the boxes have no extent along the others."""
 
-MOVED, VELOCITY = 0, 1
-"""What a box is of."""
+MOVED, VELOCITY, DRIFTED = 0, 1, 2
+"""What a box is of; and the largest there is of the first."""
 
 
 MARGIN = 2
 """Blocks before and behind each line, empty or periodic images: the farthest that count."""
 
 
-@compiled
 def bounding_boxes(data, position, listed, velocity, starts, planes, counts, reach, periodic):
     """Ranges of displacement and velocity in blocks of cells about as wide as the cutoff.
 
@@ -27,18 +26,29 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
     margins), the lowest and the highest x − x_listed and v of each block of each line of cells,
     ghosts included; an empty block has its lowest above its highest.
     """
-    columns = counts[2]
     wide = max(reach, 1)
-    blocks = max(columns // wide, 1)
-    lines = (planes + 2) * counts[1]
-    shape = (2, lines, AXES, blocks + 2 * MARGIN)
+    blocks = int(max(counts[2] // wide, 1))
+    shape = (2, (planes + 2) * counts[1], AXES, blocks + 2 * MARGIN)
     low, high = np.zeros(shape), np.zeros(shape)
     low[:, :, : len(position)], high[:, :, : len(position)] = HIGH, LOW
-    for line in range(lines):
+    fill_boxes(data, position, listed, velocity, starts, counts[2], wide, blocks, low, high)
+    if periodic[2]:
+        margins = np.r_[:MARGIN, blocks + MARGIN : blocks + 2 * MARGIN]
+        images = (margins - MARGIN) % blocks + MARGIN
+        for ends in (low, high):
+            ends[..., margins] = ends[..., images]
+    return low, high
+
+
+@compiled
+def fill_boxes(data, position, listed, velocity, starts, columns, wide, blocks, low, high):
+    """Fill in the blocks that are not in the margins."""
+    for line in range(low.shape[1]):
         for block in range(blocks):
             end = columns if block == blocks - 1 else (block + 1) * wide
             first = np.uint64(starts[line * columns + block * wide])
             last = np.uint64(starts[line * columns + end])
+            n = block + MARGIN
             for d in range(len(position)):
                 least, most, v_least, v_most = HIGH, LOW, HIGH, LOW
                 for k in range(first, last):
@@ -46,18 +56,10 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
                     v = data[velocity[d], k]
                     least, most = min(least, moved), max(most, moved)
                     v_least, v_most = min(v_least, v), max(v_most, v)
-                n = block + MARGIN
                 low[MOVED, line, d, n], high[MOVED, line, d, n] = least, most
                 low[VELOCITY, line, d, n], high[VELOCITY, line, d, n] = v_least, v_most
-    if periodic[2]:
-        for m in range(2 * MARGIN):
-            n = m if m < MARGIN else m + blocks
-            image = (n - MARGIN) % blocks + MARGIN
-            low[:, :, :, n], high[:, :, :, n] = low[:, :, :, image], high[:, :, :, image]
-    return low, high
 
 
-@compiled
 def largest_differences(low, high, planes, rows, axes, periodic):
     """Bounds over all pairs that matter: |Δ(x − x_listed)|² and |Δv|²; and the largest
     |x − x_listed|².
@@ -67,11 +69,17 @@ def largest_differences(low, high, planes, rows, axes, periodic):
     block between them, a cutoff wide at the least, none is listed: they count by how far they have
     come nearer across it.  ``axes``: those of planes, of rows and of columns.
     """
+    return compare_boxes(low, high, planes, rows, axes, periodic).max(axis=1)
+
+
+@compiled
+def compare_boxes(low, high, planes, rows, axes, periodic):
+    """These numbers by place in a line, (3, blocks)."""
     lines, blocks = low.shape[1], low.shape[3] - 2 * MARGIN
-    largest2, drifted2 = np.zeros((2, blocks)), np.zeros(blocks)
+    largest2 = np.zeros((3, blocks))
     for line in range(np.uint64(lines)):
         plane, row = divmod(np.int64(line), rows)
-        raise_reaches(drifted2, low, high, line)
+        raise_reaches(largest2[DRIFTED], low, high, line)
         # Half of the blocks around, and itself: the others look here.
         for p in range(plane, min(plane + 3, planes + 2)):
             for r in range(row - 2 if p > plane else row, row + 3):
@@ -88,7 +96,7 @@ def largest_differences(low, high, planes, rows, axes, periodic):
                         raise_approaches(best, low, high, what, other, line, axes[1])
                     else:
                         raise_spans(best, low, high, what, line, other, axes[2])
-    return largest2[MOVED].max(), largest2[VELOCITY].max(), drifted2.max()
+    return largest2
 
 
 # Several blocks of a line go in a register: no branches, and no minimum or maximum that asks for NaN.
