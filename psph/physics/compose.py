@@ -54,23 +54,23 @@ FOLDED = True
 class Pair(NamedTuple):
     """Geometry of an ordered pair; what no effect reads is not computed."""
 
-    x_ij: Any
+    x_ij: Any = None
     """x_i − x_j, m, nearest periodic image."""
-    u_ij: Any
+    u_ij: Any = None
     """u_i − u_j, m/s."""
-    r2: Any
+    r2: Any = None
     """|x_ij|², m²."""
-    r: Any
+    r: Any = None
     """|x_ij|, m."""
-    inverse_r: Any
+    inverse_r: Any = None
     """1/|x_ij|, 1/m."""
-    u_dot_x: Any
+    u_dot_x: Any = None
     """u_ij·x_ij, m²/s."""
-    w: Any
+    w: Any = None
     """W_ij, 1/m^d."""
-    dw_r: Any
+    dw_r: Any = None
     """W′(r)/r, so that ∇W_ij = dw_r x_ij; negative inside the support, zero outside."""
-    m_dw_r: Any
+    m_dw_r: Any = None
     """m_j W′(r)/r: what neighbour j weighs in a sum over gradients.  All such sums share it."""
 
 

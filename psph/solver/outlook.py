@@ -40,7 +40,7 @@ def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
     )
 
     def attraction(r):
-        pairs = (Pair(None, None, x * x, None, None, None) for x in r)
+        pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
         return -r * np.array([potential.radial(particle, particle, pair) for pair in pairs])
 
     return remedies.PairForce(attraction)

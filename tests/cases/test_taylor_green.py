@@ -33,10 +33,13 @@ def error(tmp_path):
 
 
 def test_the_error_falls_with_more_than_the_square_of_the_spacing(error):
-    """Measured: 1.53 and 0.282 %, order 2.44; to 0.005 it is 2.1."""
+    """Measured: 1.59 and 0.244 %, order 2.70; to 0.005 it is 2.1.
+
+    The finer one moves with the rounding of the sums: 0.282 % before they shared m W′/r.
+    """
     coarse, fine = error(0.04), error(0.02)
-    assert fine < 0.0032
-    assert 2.2 < np.log2(coarse / fine) < 2.7
+    assert coarse < 0.018 and fine < 0.0032
+    assert np.log2(coarse / fine) > 2.2
 
 
 @pytest.mark.long

@@ -192,7 +192,6 @@ def test_smoothing_is_that_of_the_effect():
         position=None, mass=900.0 * uniform.volume, specific_volume=1 / 900.0, wall=0.0,
         sound_speed=5.0, smoothing_length=uniform.smoothing_length,
     )
-    nothing = Pair(*[None] * len(Pair._fields))
-    pairs = [nothing._replace(r2=x * x, w=w) for x, w in zip(r, uniform.weight(r))]
+    pairs = [Pair(r2=x * x, w=w) for x, w in zip(r, uniform.weight(r))]
     found = [ConservativeSmoothing(0.3).shear(particle, particle, pair) for pair in pairs]
     assert along == 0.0 and found == pytest.approx(-anyhow)

@@ -12,15 +12,13 @@ from psph.stability.lattices import lattice
 ACROSS = 8
 """Waves along an edge of the reciprocal cell."""
 
-NOTHING = Pair(*[None] * len(Pair._fields))
-
 LATTICES = ("square", "hexagonal", "cubic", "bcc", "fcc")
 
 
 def attraction(potential, r):
     """f(r) of a_a = −Σ f x_ab/r, for a mass, a density and a speed of sound of one."""
     particle = ParticleView(position=None, mass=1.0, rest_density=1.0, sound_speed=1.0)
-    pairs = (NOTHING._replace(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
+    pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
     return -r * np.array([potential.radial(particle, particle, pair) for pair in pairs])
 
 
