@@ -112,7 +112,7 @@ def test_a_choice_takes_turns_with_the_problem(tmp_path):
     other = result["against"]
     assert other["overrides"] == choice and other["particle_steps_per_second"] > 1e4
     pace = result["particle_steps_per_second"] / other["particle_steps_per_second"]
-    assert other["ratio"] == pytest.approx(pace, rel=0.5) and other["ratio"] > 1.0
+    assert other["ratio"] == pytest.approx(pace, rel=0.5)
     assert f"a step takes {other['ratio']:.2f} times as long" in said[-1]
     (tmp_path / "turns").write_text(last)
     assert "| `scheme=stable`, `physics.artificial_viscosity=off` |" in tables([tmp_path / "turns"])
