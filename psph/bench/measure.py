@@ -125,6 +125,8 @@ def _scene(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
         f"bench --problem {asked.problem}", layout.tables() | {"precision": asked.precision},
         against, "--against",
     ))
+    if not against:
+        return scene
     like = Scene(layout.case())
     moved = [name for name in SITES if getattr(scene.case.space, name) != getattr(like.case.space, name)]
     if moved or scene.counts().tolist() != like.counts().tolist():
