@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.jit import register_jitable
-from psph.physics.viscosity import SINGULARITY
+from psph.physics.viscosity import inverse_square
 from psph.simd import where
 from psph.vectors import dot
 
@@ -35,7 +35,7 @@ class DensityDiffusion(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return _spreading(self.delta, i, j, pair, 0.0)
+        return _excess(self.delta, i, j, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
@@ -56,7 +56,7 @@ class TankDiffusion(NamedTuple):
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         weight = i.rest_density / (i.sound_speed * i.sound_speed) * dot(pair.x_ij, self.gravity)
-        return where(j.wall > i.wall, 0.0, _spreading(self.delta, i, j, pair, weight))
+        return where(j.wall > i.wall, 0.0, _excess(self.delta, i, j, weight)) * _nearness(i, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
@@ -64,15 +64,18 @@ class TankDiffusion(NamedTuple):
 
 
 @register_jitable
-def _spreading(delta, i, j, pair, weight):
-    """The sum's term with ``weight`` kg/m^d of the difference in densities left alone."""
-    h = i.smoothing_length
-    # m_j/ρ_j (a − ρ_j) as m_j (a/ρ_j − 1): no division by 1/ρ_j.
+def _excess(delta, i, j, weight):
+    """2δhc [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ``weight``]/ρ_j, m²/s."""
+    strength = 2.0 * delta * i.smoothing_length * i.sound_speed
+    # (a − ρ_j)/ρ_j as a/ρ_j − 1: no division by 1/ρ_j.
     level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density) - weight
-    excess = level * j.specific_volume - 1.0
-    strength = 2.0 * delta * h * i.sound_speed
-    nearness = min(pair.r2 * (strength / (SINGULARITY * h * h)), strength)
-    return excess * nearness * pair.m_dw_r
+    return (strength * level) * j.specific_volume - strength
+
+
+@register_jitable
+def _nearness(i, pair):
+    """m_j x_ij·∇W_ij/max(r², 0.01 h²), kg/m^(d+2)."""
+    return pair.r2 * inverse_square(pair, i.smoothing_length) * pair.m_dw_r
 
 
 def _longest_step(delta: float, scene) -> float:

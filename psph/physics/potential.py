@@ -1,5 +1,6 @@
 """A force between neighbours that keeps their order and bears no pressure."""
 
+import math
 from itertools import product
 from typing import Annotated, NamedTuple
 
@@ -59,39 +60,40 @@ class PairPotential(NamedTuple):
 class NeutralPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
 
-    The form of :class:`PairPotential` for the lattice of a scene.
-    ``core`` 1/R of the core, 1/m; ``repulsion`` its strength, 1/m^(d+1); ``curvatures`` 1/R_k², 1/m²,
-    and ``weights`` of the smooth parts, 1/m^(d+2); all strengths over ρ₀c².
+    The form of :class:`PairPotential` for the lattice of a scene: −ψ′/r as (``core`` − ``steepness`` r)²₊/r
+    + Σ_k ±(``heights`` − ``slopes`` r²)²₊, the last with a minus; over ρ₀c², 1/m^(d+2).
     """
 
     core: float
-    repulsion: float
-    curvatures: tuple[float, ...]
-    weights: tuple[float, ...]
+    steepness: float
+    heights: tuple[float, ...]
+    slopes: tuple[float, ...]
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        inside = max(1.0 - pair.r * self.core, 0.0)
-        force = self.repulsion * (inside * inside) * pair.inverse_r
-        force = force + _smooth(self.curvatures, self.weights, pair.r2)
+        force = _square(self.core, self.steepness, pair.r) * pair.inverse_r
+        force = _with_parts(force, self.heights, self.slopes, pair.r2)
         return i.sound_speed * i.sound_speed / i.rest_density * j.mass * force
 
 
-def _smooth(curvatures, weights, r2):
-    """Σ w (1 − r²/R²)²₊ over the smooth parts."""
-    return sum(_part(k, w, r2) for k, w in zip(curvatures, weights))
+def _with_parts(force, heights, slopes, r2):
+    """``force`` and the smooth parts, the last of which attracts."""
+    *repelling, attracting = (_square(h, s, r2) for h, s in zip(heights, slopes))
+    return force + sum(repelling) - attracting
 
 
-@overload(_smooth)
-def _typed_smooth(curvatures, weights, r2):
-    parts = (f"part(curvatures[{n}], weights[{n}], r2)" for n in range(len(curvatures)))
-    return unrolled("curvatures, weights, r2", f"return {' + '.join(parts)}", part=_part)
+@overload(_with_parts)
+def _typed_with_parts(force, heights, slopes, r2):
+    signs = [*"+" * (len(heights) - 1), "-"]
+    parts = (f"{sign} square(heights[{n}], slopes[{n}], r2)" for n, sign in enumerate(signs))
+    return unrolled("force, heights, slopes, r2", f"return force {' '.join(parts)}", square=_square)
 
 
 @register_jitable
-def _part(curvature, weight, r2):
-    inside = max(1.0 - r2 * curvature, 0.0)
-    return weight * (inside * inside)
+def _square(height, slope, x):
+    """(``height`` − ``slope`` x)²₊."""
+    inside = max(height - x * slope, 0.0)
+    return inside * inside
 
 
 def neutral_potential(strength: float, dx: float, dimensions: int) -> NeutralPotential:
@@ -106,9 +108,11 @@ def neutral_potential(strength: float, dx: float, dimensions: int) -> NeutralPot
     near = NEAR * float(weights @ _forces_over_r(core, ranges, np.array([NEAR**2]))[:, 0])
     scale = AT_NEAR[dimensions - 1] / (near * dx ** (dimensions + 2))
     weights *= 2.0 * strength / SOUND_OVER_SPEED**2 * scale
+    height = math.sqrt(float(weights[0]) * dx)
+    heights = np.sqrt(np.abs(weights[1:]))  # the last is below zero, the others are not
+    slopes = heights / (ranges * dx) ** 2
     return NeutralPotential(
-        1.0 / (core * dx), float(weights[0]) * dx,
-        tuple((1.0 / (ranges * dx) ** 2).tolist()), tuple(weights[1:].tolist()),
+        height, height / (core * dx), tuple(heights.tolist()), tuple(slopes.tolist())
     )
 
 

@@ -84,8 +84,8 @@ class ParticleShifting(NamedTuple):
 class PositionShift(NamedTuple):
     """Particles shift from where they crowd to where they are few, and keep their velocity.
 
-    δx_i = −2 U Δt h Σ_j m_j/ρ_j [1 + 0.2 n⁴] ∇W_ij, |δx_i| ≤ U Δt, n = (W′/r)/(W′/r at dx) in place of
-    the kernel's own ratio, which costs more.  None where −Σ_j m_j/ρ_j r W′ is below 0.7 of what it
+    δx_i = −2 U Δt h Σ_j m_j/ρ_j [1 + 0.2 n⁴] ∇W_ij, |δx_i| ≤ U Δt, n = m_j/ρ_j W′/r over what it is at
+    dx on the lattice, in place of the kernel's own ratio, which costs more.  None where −Σ_j m_j/ρ_j r W′ is below 0.7 of what it
     is on the lattice.  U is no larger than the largest speed of the flow: still
     water is left alone, where the shift of a constant U would stir a lattice under tension.
     Velocity and density go along unchanged, so that momentum is conserved to round-off.  Lind, Xu,
@@ -103,21 +103,19 @@ class PositionShift(NamedTuple):
 
     def in_scene(self, scene):
         """The shift that knows what a full neighbourhood sums up to."""
-        kernel, dx = scene.kernel, scene.spacing
-        full = first_moment(kernel, dx, scene.dimensions)
-        return LatticeShift(self.strength, full, 1.0 / float(slope_over_r(kernel, dx, 1.0 / dx)))
+        return lattice_shift(self.strength, scene.kernel, scene.spacing, scene.dimensions)
 
 
 class LatticeShift(NamedTuple):
     """Particles shift from where they crowd to where they are few, and keep their velocity.
 
     The form of :class:`PositionShift` for the lattice of a scene.
-    ``full`` is Σ dx^d r W′ over the lattice of the start, ``inverse_near`` dx/W′(dx), m^(d+2).
+    ``full`` is Σ dx^d r W′ over the lattice of the start; ``crowded`` 0.2^¼/(dx^d W′(dx)/dx), m².
     """
 
     strength: float
     full: float
-    inverse_near: float
+    crowded: float
 
     writes = "crowding"
 
@@ -128,9 +126,9 @@ class LatticeShift(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take neighbour j into both."""
         share = j.specific_volume * pair.m_dw_r
-        near = pair.dw_r * self.inverse_near
+        near = share * self.crowded
         near = near * near
-        pull = share * (1.0 + CROWDING * (near * near))
+        pull = share * (1.0 + near * near)
         return total[0] + share * pair.r2, add(total[1], scale(pair.x_ij, pull))
 
     def finish_value(self, total, i, kernel):
@@ -141,6 +139,12 @@ class LatticeShift(NamedTuple):
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
         return scale(_velocity(min(i.largest_speed, self.strength * i.sound_speed), i), dt)
+
+
+def lattice_shift(strength: float, kernel, dx: float, dimensions: int) -> LatticeShift:
+    """The shift of strength U/c on the row, square or cube lattice of spacing dx, m."""
+    near = dx**dimensions * float(slope_over_r(kernel, dx, 1.0 / dx))
+    return LatticeShift(strength, first_moment(kernel, dx, dimensions), CROWDING**0.25 / near)
 
 
 @register_jitable

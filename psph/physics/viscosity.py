@@ -16,7 +16,7 @@ ONSET = 0.2
 
 
 @register_jitable
-def _inverse_square(pair, h):
+def inverse_square(pair, h):
     """1/max(r², 0.01 h²), 1/m²."""
     return min(pair.inverse_r * pair.inverse_r, 1.0 / (SINGULARITY * h * h))
 
@@ -152,7 +152,7 @@ class PairDamping(NamedTuple):
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         # ρ̄ = ρ_i ρ_j/ρ₀
         strength = self.alpha * h * i.sound_speed * (v_i * i.rest_density)
-        return strength * v_j * (pair.u_dot_x * _inverse_square(pair, h)) * pair.m_dw_r
+        return strength * v_j * (pair.u_dot_x * inverse_square(pair, h)) * pair.m_dw_r
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
@@ -178,6 +178,6 @@ class ImpactDamping(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         strength = self.beta * (v_i * i.rest_density)
-        approach = -h * pair.u_dot_x * _inverse_square(pair, h)
+        approach = -h * pair.u_dot_x * inverse_square(pair, h)
         excess = max(approach - ONSET * i.sound_speed, 0.0)
         return -strength * v_j * (excess * excess) * pair.m_dw_r

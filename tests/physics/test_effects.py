@@ -21,7 +21,7 @@ from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure, TensileControl,
 )
 from psph.physics.riemann import RiemannDissipation
-from psph.physics.shifting import LatticeShift, ParticleShifting
+from psph.physics.shifting import LatticeShift, ParticleShifting, lattice_shift
 from psph.physics.slip import NoSlip
 from psph.physics.stress import NeighbourStress
 from psph.physics.surface import FreeSurface, TensionFloor
@@ -625,8 +625,7 @@ def test_a_floor_on_tension_for_water_and_for_walls():
 def test_a_position_shift_sees_the_surface_and_what_crowds():
     """Full, a lattice holds still; at its edge nothing shifts; a near pair parts."""
     scene_kernel, dx = kernel("hyperbolic", H, 2), H / 1.3
-    full = first_moment(scene_kernel, dx, 2)
-    shift = LatticeShift(0.1, full, dx / scene_kernel.dw(dx))
+    shift = lattice_shift(0.1, scene_kernel, dx, 2)
     x = np.array([k for k in product(range(-3, 4), repeat=2)]) * dx
     centre = int(np.flatnonzero((x == 0.0).all(axis=1))[0])
 

@@ -148,8 +148,8 @@ def test_sums_of_the_pass_before_bring_their_fields(planned):
 def test_the_scheme_takes_every_kernel(kernel, planned):
     """A kernel need not have a W′/r of its own."""
     _, plan = planned("scheme=stable", f"space.kernel={kernel}", "space.smoothing=1.4")
-    [shift] = (e for e in plan.effects if hasattr(e, "inverse_near"))
-    assert shift.full < 0.0 and np.isfinite(shift.inverse_near) and shift.inverse_near < 0.0
+    [shift] = (e for e in plan.effects if hasattr(e, "crowded"))
+    assert shift.full < 0.0 and np.isfinite(shift.crowded) and shift.crowded < 0.0
 
 
 @pytest.mark.parametrize("dimensions", [1, 2, 3])
