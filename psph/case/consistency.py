@@ -268,6 +268,13 @@ def _shifted(case: Case) -> Iterator[Finding]:
 
 def _carried(case: Case) -> Iterator[Finding]:
     yield from _one_of(case, CARRIERS, "moves them too")
+    form = case.physics.pressure_gradient
+    for name in CARRIERS:
+        if form == "stress_points" and getattr(case.physics, name) is not None:
+            yield ("physics", name), ..., (
+                f'physics.pressure_gradient = "{form}" moves half of them too; give it as "off", or '
+                "take this one out"
+            )
 
 
 def _one_of(case: Case, names: tuple[str, ...], does: str) -> Iterator[Finding]:
@@ -282,6 +289,6 @@ def _stressed(case: Case) -> Iterator[Finding]:
     form = case.physics.pressure_gradient
     if case.physics.artificial_stress is not None and form != "symmetric":
         yield ("physics", "artificial_stress"), ..., (
-            f'stands against pairs that pull, and none does under physics.pressure_gradient = '
-            f'"{form}"; take "symmetric", or take this one out'
+            f'stands against pairs that pull as "symmetric" has them, and physics.pressure_gradient = '
+            f'"{form}" is another form; take "symmetric", or take this one out'
         )

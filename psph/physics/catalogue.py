@@ -16,6 +16,7 @@ from psph.physics.shifting import ParticleShifting, PositionShift
 from psph.physics.slip import NoSlip
 from psph.physics.state import Linear, Tait
 from psph.physics.stress import ArtificialStress
+from psph.physics.stress_points import StressPoints
 from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
 from psph.physics.viscosity import (
@@ -41,6 +42,7 @@ CATALOGUE = (
     Entry("physics.pressure_gradient=minimum", MinimumPressure),
     Entry("physics.pressure_gradient=difference", DifferencePressure),
     Entry("physics.pressure_gradient=tensile_control", TensileControl),
+    Entry("physics.pressure_gradient=stress_points", StressPoints),
     Entry("physics.artificial_stress", ArtificialStress),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.central_friction", CentralFriction),

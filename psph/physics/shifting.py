@@ -150,7 +150,6 @@ def lattice_shift(strength: float, kernel, dx: float, dimensions: int) -> Lattic
 @register_jitable
 def _velocity(speed, i):
     """δx/Δt for U = ``speed``, m/s."""
-    size2 = 4.0 * dot(i.crowding, i.crowding)
-    if size2 > 1.0:  # for few: the others pay no root, which was 2 % of a step in 2D
-        speed = speed / np.sqrt(size2)
-    return scale(i.crowding, -2.0 * speed)
+    # Without a branch: beside one, loop bodies and their remainders rounded differently.
+    size = 2.0 * np.sqrt(dot(i.crowding, i.crowding))
+    return scale(i.crowding, -2.0 * speed / max(size, 1.0))

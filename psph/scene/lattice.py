@@ -64,6 +64,11 @@ class Lattice:
         k = self.first[d] + np.arange(self.counts[d])
         return self.origin[d] + (k + 0.5) * self.spacing
 
+    def odd(self, position: np.ndarray) -> np.ndarray:
+        """Whether the numbers k of the site around each position (n, dim) add up to an odd one."""
+        sites = np.floor((position - np.array(self.origin)) / self.spacing).astype(np.int64)
+        return sites.sum(axis=1) % 2 == 1
+
     def grid(self, first: int, last: int) -> list[np.ndarray]:
         """Coordinates x, y, z of the sites of some planes, broadcasting to ``shape``."""
         grid = []

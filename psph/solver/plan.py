@@ -22,6 +22,9 @@ ALWAYS = (
 PER_MATERIAL = ("mass", "rest_density", "viscosity", "wall", "no_slip")
 """Quantities fixed at the start: one number where all materials agree, else an array."""
 
+PER_SITE = ("stress_point",)
+"""Quantities fixed at the start by the place of a particle."""
+
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
 
@@ -164,7 +167,7 @@ def _carries(call: Called) -> bool:
 
 def _refuse_unwritten(called, written: tuple[str, ...]) -> None:
     """Raise UnknownField where an effect reads what only an absent effect would write."""
-    known = {"velocity", "sound_speed", "smoothing_length", "largest_speed", *ALWAYS, *PER_MATERIAL, *written}
+    known = {"velocity", "sound_speed", "smoothing_length", "largest_speed", *ALWAYS, *PER_MATERIAL, *PER_SITE, *written}
     for call in called:
         for name in sorted((call.reads.own | call.reads.neighbour) - known):
             effect = type(call.effect).__name__
@@ -184,7 +187,7 @@ def _read_of_neighbours(called) -> set[str]:
 
 
 def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Material quantities that the scene reads: shared values, and names of those that vary."""
+    """Quantities fixed at the start that the scene reads: shared values, and names of those that vary."""
     shared, varying = {}, []
     for name in PER_MATERIAL:
         values = {material_value(m, name) for m in scene.materials}
@@ -194,7 +197,7 @@ def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
             shared[name] = values.pop()
         else:
             varying.append(name)
-    return shared, tuple(varying)
+    return shared, (*varying, *(name for name in PER_SITE if name in names))
 
 
 def material_value(material, name: str) -> float:

@@ -47,6 +47,8 @@ def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
         if name in store:
             values = np.array([material_value(m, name) for m in scene.materials])
             block[store.rows[name].start] = values[found.material]
+    if "stress_point" in store:
+        block[store.rows["stress_point"].start] = scene.lattice.odd(found.position)
     if "kernel_sum" in store:
         block[store.rows["kernel_sum"].start] = NOT_YET_SUMMED
     store.append(found.id, found.kind, block)

@@ -84,7 +84,11 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             WATER.replace(
                 "[physics]", '[physics]\npressure_gradient = "minimum"\nartificial_stress = 0.2'
             ),
-            "physics.artificial_stress: stands against pairs that pull, and none does under",
+            'physics.artificial_stress: stands against pairs that pull as "symmetric" has them, and',
+        ),
+        (
+            WATER.replace("[physics]", '[physics]\npressure_gradient = "stress_points"\nxsph = 0.5'),
+            'physics.xsph: physics.pressure_gradient = "stress_points" moves half of them too; give it',
         ),
         (
             WATER.replace(

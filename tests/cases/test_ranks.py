@@ -68,10 +68,13 @@ def test_same_bits_on_any_number_of_ranks(case, tmp_path):
 
 
 @LONG
-def test_same_bits_where_particles_are_carried_by_another_velocity(tmp_path):
+@pytest.mark.parametrize("carried", [
+    ("physics.transport_velocity=1.0", "physics.pressure_gradient=tensile_control"),
+    ("physics.pressure_gradient=stress_points",),
+])
+def test_same_bits_where_particles_are_carried_by_another_velocity(carried, tmp_path):
     """Its stored difference to the fluid's travels with the halo, one pass old."""
-    sets = ("physics.transport_velocity=1.0", "physics.pressure_gradient=tensile_control",
-            "fluids.fluid.jitter=0.1", "time.end=4e-3")
+    sets = (*carried, "fluids.fluid.jitter=0.1", "time.end=4e-3")
     one, two = (
         by_id(run("negative_pressure_traditional", n, tmp_path / str(n), *sets).frame(-1))
         for n in (1, 2)

@@ -69,6 +69,10 @@ FAMILIES = {
             "conservative_smoothing": (0.0, 0.2), **GRAVITY,
         },
     ),
+    "halved": Family(
+        2, walls=True, scheme="sph", kernel="wendland-c2",
+        physics={"pressure_gradient": "stress_points", "density_diffusion": (0.0, 0.2), **GRAVITY},
+    ),
     "row": Family(1, periodic="x", scheme="ssph", physics={"pair_damping": (0.0, 0.1)}),
     "open row": Family(1),
     "tank in 3D": Family(3, along="z", walls=True, physics=GRAVITY),

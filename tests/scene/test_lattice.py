@@ -63,3 +63,11 @@ def test_chunks_cover_the_planes_once(monkeypatch):
     lattice = Lattice((0.0, 0.0), 1.0, (0, 0), (7, 5), axis=0)
     assert list(lattice.chunks()) == [(0, 2), (2, 4), (4, 6), (6, 7)]
     assert list(lattice.chunks(3, 6)) == [(3, 5), (5, 6)]
+
+
+def test_odd_sites_take_turns():
+    lattice = lattice_around([((0.0, 0.0), (0.4, 0.3))], (0.0, 0.0), 0.1, None)
+    sites = np.array([(x, y) for x in lattice.coordinates(0) for y in lattice.coordinates(1)])
+    odd = lattice.odd(sites).reshape(4, 3)
+    assert (odd[1:] != odd[:-1]).all() and (odd[:, 1:] != odd[:, :-1]).all()
+    assert (lattice.odd(sites + 0.04) == odd.ravel()).all()  # a jitter moves nobody to another site
