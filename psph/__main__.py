@@ -132,13 +132,19 @@ def _study(options, comm) -> None:
 
 
 def _stability(options, comm) -> None:
-    from psph.maps.command import Asked, stability
+    if options.judged:
+        from psph.battery.command import remedies
 
+        if options.battery or options.quick:
+            raise Refused("stability --remedies: stands alone; leave --battery and --quick out")
+        remedies(comm, options.out)
+        return
     if options.battery or options.quick:
         from psph.battery.command import battery
 
         battery(comm, options.quick, options.out)
         return
+    from psph.maps.command import Asked, stability
 
     asked = {name: getattr(options, name) for name in Asked._fields}
     stability(comm, Asked(**asked | {"remedies": tuple(options.remedies)}))
@@ -271,8 +277,12 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
         "--quick", action="store_true", help="of the battery the part that takes a minute"
     )
     stability.add_argument(
-        "--out", type=Path, help="folder of the map or the battery (default: their names); runs of "
-        "the battery that are finished there are kept"
+        "--remedies", dest="judged", action="store_true",
+        help="put each remedy alone to cases that tear plain SPH instead",
+    )
+    stability.add_argument(
+        "--out", type=Path, help="folder of the map, the battery or the remedies (default: their "
+        "names); runs that are finished there are kept"
     )
     stability.add_argument("--json", action="store_true", help="one JSON object as the last line")
 

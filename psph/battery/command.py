@@ -1,12 +1,14 @@
-"""The verb ``stability --battery``: run, measured, judged and said."""
+"""The verbs ``stability --battery`` and ``--remedies``: run, measured, judged and said."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import psph
-from psph.battery import picture, tables
+from psph.battery import judgement, picture, tables
 from psph.battery.errors import BatteryError
 from psph.battery.measures import measure
+from psph.battery.remedies import REMEDIES, Remedy
+from psph.battery.remedies import trials as trials_of
 from psph.battery.trials import BATTERY, OURS, QUICK, Trial
 from psph.battery.verdicts import Row, judged
 from psph.case import CaseError, load
@@ -16,7 +18,7 @@ from psph.output.reader import Run
 from psph.study.runs import perform
 
 CASES = Path(psph.__file__).parents[1] / "run" / "cases" / "hard"
-FOLDER = Path("battery")
+FOLDER, BESIDE = Path("battery"), Path("remedies")
 
 
 def battery(
@@ -29,29 +31,46 @@ def battery(
     """
     chosen = trials if trials is not None else QUICK if quick else BATTERY
     folder = out or FOLDER
-    if not CASES.is_dir():
-        raise BatteryError(
-            f"stability --battery: {CASES} is not there; run it from psph's own folder of sources"
-        )
-
-    def say(line: str) -> None:
-        if comm.rank == 0:
-            print(line, flush=True)
-
-    rows = []
-    for trial in chosen:
-        for column in trial.columns:
-            row = _run(comm, trial, column, folder, say)
-            if comm.rank == 0:
-                rows.append(row)
-                say(tables.line(row))
+    rows = _performed(comm, chosen, folder)
     if comm.rank == 0:
         _write(folder, chosen, rows)
-        say("")
-        for line in (*tables.matrix(chosen, rows), "", *tables.sentences(rows)):
-            say(line)
-        say(f"wrote {folder}: {tables.CSV}, {tables.PAGE}, {picture.PICTURE}")
+        _say("", *tables.matrix(chosen, rows), "", *tables.sentences(rows))
+        _say(f"wrote {folder}: {tables.CSV}, {tables.PAGE}, {picture.PICTURE}")
     return rows
+
+
+def remedies(comm, out: Path | None, chosen: Sequence[Remedy] = REMEDIES) -> list[Row]:
+    """Put remedies to their trials, each alone, as the battery is run; rows on rank 0."""
+    folder, every = out or BESIDE, trials_of(chosen)
+    rows = _performed(comm, every, folder)
+    if comm.rank == 0:
+        write(folder / judgement.CSV, tables.as_csv(rows))
+        write(folder / judgement.PAGE, "\n".join(judgement.markdown(every, rows)) + "\n")
+        _say("", *judgement.matrix(every, rows))
+        _say(f"wrote {folder}: {judgement.CSV}, {judgement.PAGE}")
+    return rows
+
+
+def _performed(comm, trials: Sequence[Trial], folder: Path) -> list[Row]:
+    """Every run of every trial, said as it ends; rows on rank 0."""
+    if not CASES.is_dir():
+        raise BatteryError(
+            f"stability: {CASES} is not there; run it from psph's own folder of sources"
+        )
+    rows = []
+    for trial in trials:
+        for column in trial.columns:
+            row = _run(comm, trial, column, folder)
+            if comm.rank == 0:
+                rows.append(row)
+                _say(tables.line(row))
+    return rows
+
+
+def _say(*lines: str) -> None:
+    """Lines at once; for rank 0."""
+    for line in lines:
+        print(line, flush=True)
 
 
 def folder_of(folder: Path, trial: Trial, column: str) -> Path:
@@ -60,7 +79,7 @@ def folder_of(folder: Path, trial: Trial, column: str) -> Path:
     return folder / "-".join(words.split())
 
 
-def _run(comm, trial: Trial, column: str, folder: Path, say: Callable[[str], None]) -> Row | None:
+def _run(comm, trial: Trial, column: str, folder: Path) -> Row | None:
     """One run; its row on rank 0."""
     place = folder_of(folder, trial, column)
     try:

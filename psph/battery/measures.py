@@ -21,7 +21,7 @@ from psph.study.judge import window
 MEASURES = {
     "speed": "largest speed over the case's own",
     "late_speed": "largest speed at the end, m/s",
-    "growth": "growth of the largest speed, 1/s; 0: none",
+    "growth": "growth of the largest speed, 1/s; 0: none; inf: at once",
     "kinetic": "energy of motion at the end over that at the start",
     "energy": "change of energy over MU²/2",
     "momentum": "change of momentum over Σm|v|",
@@ -44,8 +44,10 @@ MEASURES = {
 LATE = 0.1
 """Last part of a run that counts as its end, and, where probes are read, four times as much."""
 
-GROWN = 1e3
-"""A speed that rises by this factor grows; below it swings."""
+SPREAD, GROWN, FEW = 10.0, 1e3, 4
+"""A speed grows that rises from the first factor times its least through the second; or it swings.
+There a kick has spread over the waves and is still small.  What takes fewer rows of the log has not
+grown: it was pushed."""
 
 
 def measure(folder: Path, case, speed: float) -> dict[str, float]:
@@ -78,14 +80,17 @@ def _of_log(log: dict, speed: float, scene) -> dict[str, float]:
 
 
 def _growth(time: np.ndarray, fast: np.ndarray) -> float:
-    """The steepest exponential rise of a speed through a factor of ``GROWN``, 1/s, or 0."""
+    """The exponential rise of a speed through a factor of ``GROWN``, 1/s; or 0, or infinity."""
     top = int(np.argmax(fast >= 0.1 * fast.max()))
-    least = int(np.argmin(fast[: top + 1]))
-    begin = max(least, 1)  # at the start all may be at rest
-    if top - begin < 3 or fast[top] < GROWN * fast[begin]:
+    moving = np.where(fast > 0.0, fast, np.inf)  # at the start all may be at rest
+    least = int(np.argmin(moving[: top + 1]))
+    low = SPREAD * moving[least]
+    if not fast.max() >= GROWN * low:
         return 0.0
-    rise = slice(begin, top + 1)
-    return float(np.polyfit(time[rise], np.log(np.maximum(fast[rise], 1e-300)), 1)[0])
+    begin, end = (least + int(np.argmax(fast[least:] >= v)) for v in (low, GROWN * low))
+    if end - begin < FEW:
+        return float("inf")
+    return float(np.polyfit(time[begin:end], np.log(fast[begin:end]), 1)[0])
 
 
 def _of_particles(scene, frame: dict, fluid: dict, speed: float) -> dict[str, float]:

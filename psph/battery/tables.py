@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from psph.battery.measures import MEASURES
 from psph.battery.trials import CONTROLS, OURS, Trial
@@ -43,8 +43,10 @@ def cell(row: Row | None) -> str:
 
 
 def number(value: float | None) -> str:
-    """Three digits, or a dash."""
-    return "–" if value is None or value != value else f"{value:.3g}"
+    """Three digits, or as many as it has before the point, or a dash."""
+    if value is None or value != value:
+        return "–"
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
 def _body(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[list[str]]:
@@ -56,7 +58,11 @@ def _body(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[list[str]]:
 
 def matrix(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
     """Trials × schemes for a terminal."""
-    body = list(_body(trials, rows))
+    yield from columned(list(_body(trials, rows)))
+
+
+def columned(body: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Rows of cells for a terminal, and what the marks say."""
     widths = [max(map(len, column)) for column in zip(*body)]
     for cells in body:
         yield "  ".join(text.ljust(w) for text, w in zip(cells, widths)).rstrip()
@@ -66,12 +72,10 @@ def matrix(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
 def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
     """The matrix, what its numbers are, what is left to do, and more of our own scheme."""
     head, *body = _body(trials, rows)
-    yield from _table(["trial", *head[1:]], body)
+    yield from table(["trial", *head[1:]], body)
     yield ""
-    legend = "; ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
-    yield f"{legend}; beside × the time that it lived."
     shown = list(dict.fromkeys(trial.shown for trial in trials))
-    yield "; ".join(f"`{name}`: {MEASURES[name]}" for name in shown) + "."
+    yield from legend(shown)
     yield ""
     yield from sentences(rows)
     yield ""
@@ -79,16 +83,28 @@ def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
              "voids", "noise", "lost")
     yield DETAILS
     yield ""
-    yield from _table(
+    yield from table(
         ["trial", *(f"`{name}`" for name in names), "seconds"],
         [[row.trial, *(number(row.found.get(n)) for n in names), number(row.seconds)]
          for row in rows if row.column == OURS],
     )
     yield ""
-    yield "; ".join(f"`{name}`: {MEASURES[name]}" for name in names if name not in shown) + "."
+    yield _in_words(name for name in names if name not in shown)
 
 
-def _table(head: Sequence[str], body) -> Iterator[str]:
+def legend(shown: Iterable[str]) -> Iterator[str]:
+    """What the marks of a page say, and the names of measures."""
+    marks = "; ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
+    yield f"{marks}; beside × the time that it lived."
+    yield _in_words(shown)
+
+
+def _in_words(measures: Iterable[str]) -> str:
+    return "; ".join(f"`{name}`: {MEASURES[name]}" for name in measures) + "."
+
+
+def table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
+    """A table of Markdown."""
     yield f"| {' | '.join(head)} |"
     yield "|---" * len(head) + "|"
     for cells in body:

@@ -1,5 +1,7 @@
 """The trials: which case under which schemes, and within which bounds it holds."""
 
+import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from psph.case.schemes import SCHEMES
@@ -25,17 +27,26 @@ CONTROLS: dict[str, tuple[str, ...]] = {
 """Schemes that lack what the case needs, or have the paper's equation (14); strengths of zero share
 the compiled loops with the whole scheme."""
 
+CHANGES = {name: () if name == OURS else (f"scheme={name}",) for name in SCHEMES} | CONTROLS
+"""The keys of a case that each scheme and each control changes."""
+
 
 class Bound(NamedTuple):
     """Between which values a measure (psph.battery.measures) shall lie."""
 
     measure: str
-    least: float = float("-inf")
-    most: float = float("inf")
+    least: float = -math.inf
+    most: float = math.inf
 
     def holds(self, found: dict[str, float]) -> bool:
         """Whether it was measured and lies between."""
-        return self.least <= found.get(self.measure, float("nan")) <= self.most
+        return self.least <= found.get(self.measure, math.nan) <= self.most
+
+    @property
+    def limits(self) -> str:
+        """The ends that it has, as ``≥ 0.93``."""
+        ends = (("≥", self.least), ("≤", self.most))
+        return ", ".join(f"{sign} {x:g}" for sign, x in ends if math.isfinite(x))
 
 
 class Trial(NamedTuple):
@@ -43,7 +54,8 @@ class Trial(NamedTuple):
 
     ``shown`` is the measure that stands for it; ``speed`` what is fast in it, m/s; ``holds`` must
     be met for it to hold at all, ``goals`` to be good.  ``end``, s, for our scheme, and for the
-    ``fails`` (controls) and the paper's schemes, which have had time enough to fail.
+    ``fails`` (controls) and the paper's schemes, which have had time enough to fail.  ``changes``:
+    the keys that each of them changes, by its name.
     """
 
     name: str
@@ -57,6 +69,7 @@ class Trial(NamedTuple):
     goals: tuple[Bound, ...] = ()
     schemes: tuple[str, ...] = tuple(SCHEMES)
     fails: tuple[str, ...] = ()
+    changes: Mapping[str, tuple[str, ...]] = CHANGES
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -65,11 +78,10 @@ class Trial(NamedTuple):
 
     def overrides(self, column: str) -> list[str]:
         """The keys of the case that a run changes."""
-        chosen = CONTROLS.get(column) or ([f"scheme={column}"] if column != OURS else [])
         end = self.end if column == OURS else self.other_end
         return [
             f"time.end={end!r}", f"output.frames={end / FRAMES!r}", f"output.log={end / ROWS!r}",
-            *self.sets, *chosen,
+            *self.sets, *self.changes[column],
         ]
 
 

@@ -1,6 +1,5 @@
 """From a run's measures to a verdict."""
 
-import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -59,7 +58,5 @@ def _broken(bounds: tuple[Bound, ...], found: dict[str, float]) -> Iterator[str]
     for bound in bounds:
         if not bound.holds(found):
             value = found.get(bound.measure)
-            ends = (("≥", bound.least), ("≤", bound.most))
-            limits = [f"{sign} {x:g}" for sign, x in ends if math.isfinite(x)]
             told = "not measured" if value is None else f"{value:.3g}"
-            yield f"{bound.measure} {told} ({', '.join(limits)})"
+            yield f"{bound.measure} {told} ({bound.limits})"

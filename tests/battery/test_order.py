@@ -80,6 +80,17 @@ def test_growth():
     assert measures._growth(time, risen) == pytest.approx(40.0, rel=0.01)
     assert measures._growth(time, 1e-3 * np.exp(-3.0 * time)) == 0.0
     assert measures._growth(time, 1.0 + 0.5 * np.sin(20.0 * time)) == 0.0
+    assert measures._growth(time, 0.0 * time) == 0.0
+
+
+def test_growth_is_that_of_what_is_small():
+    """A kick spreads first; what is torn in the end grows no longer as it did."""
+    time = np.linspace(0.0, 1.0, 400)
+    kick, wave = 1e-7 * np.exp(-60.0 * time), 1e-9 * np.exp(40.0 * time)
+    torn = np.minimum(kick + wave, 1e-3) + 10.0 * np.maximum(time - 0.4, 0.0) ** 3
+    assert measures._growth(time, torn) == pytest.approx(40.0, rel=0.02)
+    assert measures._growth(time, np.where(time > 0.0, 1e-2, 1e-7)) == math.inf  # pushed
+    assert measures._growth(time, np.where(time > 0.0, 1e-2, 0.0)) == 0.0  # at rest before
 
 
 def test_ghia(tmp_path):
