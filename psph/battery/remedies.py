@@ -38,6 +38,8 @@ REMEDIES = (
     Remedy(("physics.pressure_gradient=tensile_control", "physics.particle_shifting=0.1")),
     Remedy(("physics.pressure_gradient=minimum",)),
     Remedy(("physics.pressure_gradient=difference",)),
+    Remedy(("physics.pressure_gradient=stress_points",)),
+    Remedy(("physics.pressure_gradient=stress_points", "space.smoothing=1.7")),
     Remedy(("physics.xsph=0.5",)),
     Remedy(("physics.transport_velocity=1.0",)),
     Remedy(("physics.generalised_transport_velocity=1.0",)),
