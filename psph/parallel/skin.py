@@ -12,6 +12,10 @@ PART_OF_CUTOFF = 0.5
 """A particle strays from its listed place by less than this part of the cutoff: two with two blocks
 of cells between them, each a cutoff wide, cannot meet before new lists."""
 
+WORN = 0.8
+"""Part of the skin beyond which new lists cost less than to measure, some steps running, that the old
+ones hold: of 0.7, 0.8 and 0.9 the best in a dam break in 2D."""
+
 PART_OF_PERIOD = 0.25
 """Nor does it by more than this part of any period: the nearest image takes one period off at the
 most."""
@@ -64,6 +68,8 @@ class Skin:
         if not shift <= self._shift:
             self._shift = shift
         if self._closing is None or not self._bounded(dt, speed):
+            if self._worn:
+                return False
             self._measure()
             self._acceleration, self._shift = acceleration, shift
             if not self._bounded(dt, speed):
@@ -71,6 +77,12 @@ class Skin:
         self._since += dt
         self.drifted += self._way(dt, speed)
         return True
+
+    @property
+    def _worn(self) -> bool:
+        """Whether hardly any skin is left, by what was measured last."""
+        known = self._closing is not None
+        return known and self._apart + self._since * self._closing > WORN * self.width
 
     def _bounded(self, dt: float, speed: float) -> bool:
         t = self._since + dt
