@@ -49,6 +49,17 @@ def at(a: tuple, b: int) -> Vector:
     return tuple(array[b] for array in a)
 
 
+def along(a: Vector, b: tuple[float | None, ...]) -> float:
+    """a · b, where None in ``b`` stands for a zero that costs nothing."""
+    return sum(x * y for x, y in zip(a, b) if y is not None)
+
+
+@overload(along)
+def _along(a, b):
+    terms = [f"a[{d}] * b[{d}]" for d, kind in enumerate(b) if not isinstance(kind, types.NoneType)]
+    return unrolled("a, b", f"return {' + '.join(terms) or '0.0'}")
+
+
 def dot(a: Vector, b: Vector) -> float:
     """a · b."""
     return sum(x * y for x, y in zip(a, b))

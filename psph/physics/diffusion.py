@@ -7,7 +7,7 @@ from pydantic import Field
 from psph.jit import register_jitable
 from psph.physics.viscosity import inverse_square
 from psph.simd import where
-from psph.vectors import dot
+from psph.vectors import along
 
 STABLE = 0.03
 """δcΔt/h must stay below.  The fastest mode of a lattice decays at 2Sδc/h, S ≤ 5.5 over the kernels
@@ -31,7 +31,8 @@ class DensityDiffusion(NamedTuple):
     def in_scene(self, scene):
         """Under gravity or beside walls, the form that knows of them."""
         held = any(scene.gravity) or scene.case.walls
-        return TankDiffusion(self.delta, scene.gravity) if held else self
+        pull = tuple(g or None for g in scene.gravity)
+        return TankDiffusion(self.delta, pull) if held else self
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
@@ -48,14 +49,15 @@ class TankDiffusion(NamedTuple):
     As :class:`DensityDiffusion` with (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ρ₀_i g·x_ij/c² in the bracket:
     the slope of density in a fluid at rest, linear in the depth, stays.  Antuono, Colagrossi,
     Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532, with the exact slope for theirs.
+    ``gravity`` in m/s², None on an axis without.
     """
 
     delta: float
-    gravity: tuple[float, ...]
+    gravity: tuple[float | None, ...]
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        weight = i.rest_density / (i.sound_speed * i.sound_speed) * dot(pair.x_ij, self.gravity)
+        weight = i.rest_density / (i.sound_speed * i.sound_speed) * along(pair.x_ij, self.gravity)
         return where(j.wall > i.wall, 0.0, _excess(self.delta, i, j, weight)) * _nearness(i, pair)
 
     def longest_step(self, scene):

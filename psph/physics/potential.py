@@ -36,12 +36,12 @@ SOUND_OVER_SPEED = 10.0
 class PairPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
 
-    a_i = −(2K/ρ₀²) Σ_j m_j ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊, scaled to
+    a_i = −(2K/ρ₀) dx^d Σ_j ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊, scaled to
     −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
     Σ r ψ′ of the starting lattice zero: no mean pressure.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
     artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  A potential, so momentum,
-    angular momentum and energy are conserved.
+    angular momentum and energy are conserved among particles of one mass.
     """
 
     strength: Annotated[
@@ -54,14 +54,16 @@ class PairPotential(NamedTuple):
 
     def in_scene(self, scene):
         """The potential of the scene's lattice."""
-        return neutral_potential(self.strength, scene.spacing, scene.dimensions)
+        return neutral_potential(
+            self.strength, scene.sound_speed, scene.spacing, scene.dimensions
+        )
 
 
 class NeutralPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
 
     The form of :class:`PairPotential` for the lattice of a scene: −ψ′/r as (``core`` − ``steepness`` r)²₊/r
-    + Σ_k ±(``heights`` − ``slopes`` r²)²₊, the last with a minus; over ρ₀c², 1/m^(d+2).
+    + Σ_k ±(``heights`` − ``slopes`` r²)²₊, the last with a minus; times 2K dx^d/ρ₀, 1/s².
     """
 
     core: float
@@ -72,8 +74,7 @@ class NeutralPotential(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         force = _square(self.core, self.steepness, pair.r) * pair.inverse_r
-        force = _with_parts(force, self.heights, self.slopes, pair.r2)
-        return i.sound_speed * i.sound_speed / i.rest_density * j.mass * force
+        return _with_parts(force, self.heights, self.slopes, pair.r2)
 
 
 def _with_parts(force, heights, slopes, r2):
@@ -96,8 +97,11 @@ def _square(height, slope, x):
     return inside * inside
 
 
-def neutral_potential(strength: float, dx: float, dimensions: int) -> NeutralPotential:
-    """The potential whose virial vanishes on the row, square or cube lattice of spacing dx, m."""
+def neutral_potential(
+    strength: float, sound_speed: float, dx: float, dimensions: int
+) -> NeutralPotential:
+    """The potential whose virial vanishes on the row, square or cube lattice of spacing dx, m;
+    ``strength`` f, ``sound_speed`` m/s."""
     core, ranges = CORES[dimensions - 1], np.array(RANGES[dimensions - 1])
     sites = (k for k in product(range(-3, 4), repeat=dimensions) if any(k))
     r2 = np.array([sum(n * n for n in k) for k in sites], float)
@@ -106,8 +110,8 @@ def neutral_potential(strength: float, dx: float, dimensions: int) -> NeutralPot
     weights = np.array([1.0, *WEIGHTS[dimensions - 1]])
     weights = np.append(weights, -(weights @ virials[:-1]) / virials[-1])
     near = NEAR * float(weights @ _forces_over_r(core, ranges, np.array([NEAR**2]))[:, 0])
-    scale = AT_NEAR[dimensions - 1] / (near * dx ** (dimensions + 2))
-    weights *= 2.0 * strength / SOUND_OVER_SPEED**2 * scale
+    weights *= 2.0 * strength * (sound_speed / SOUND_OVER_SPEED) ** 2
+    weights *= AT_NEAR[dimensions - 1] / (near * dx**2)
     height = math.sqrt(float(weights[0]) * dx)
     heights = np.sqrt(np.abs(weights[1:]))  # the last is below zero, the others are not
     slopes = heights / (ranges * dx) ** 2

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from psph.physics.compose import Pair, ParticleView
+from psph.physics.compose import Pair
 from psph.physics.continuity import Continuity
 from psph.physics.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.filtering import ConservativeSmoothing
@@ -33,15 +33,9 @@ WITHIN = {
 
 
 def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
-    material = scene.materials[0]
-    particle = ParticleView(
-        position=None, mass=material.mass, rest_density=material.density,
-        sound_speed=scene.sound_speed,
-    )
-
     def attraction(r):
         pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
-        return -r * np.array([potential.radial(particle, particle, pair) for pair in pairs])
+        return -r * np.array([potential.radial(None, None, pair) for pair in pairs])
 
     return remedies.PairForce(attraction)
 
