@@ -141,11 +141,11 @@ class _Trace:
         return self._noted[key]
 
     def parameters(self, value: Any) -> Any:
-        """Effects or a kernel with their parameters as numbers that do not vary."""
+        """Effects or a kernel with their parameters as numbers that do not vary, None as what it is."""
         if isinstance(value, tuple):
             inner = map(self.parameters, value)
             return type(value)(*inner) if hasattr(value, "_fields") else tuple(inner)
-        return self.leaf(value, False)
+        return None if value is None else self.leaf(value, False)
 
     def running(self, total: Any) -> Any:
         """Sums as they stand somewhere on the way: every number varies."""
