@@ -34,6 +34,7 @@ REMEDIES = (
     Remedy(("space.kernel=spiky",)),
     Remedy(("space.kernel=hyperbolic",)),
     Remedy(("physics.artificial_stress=0.2",)),
+    Remedy(("physics.artificial_stress=0.2", "physics.artificial_viscosity=0.05")),
     Remedy(("physics.pressure_gradient=tensile_control",)),
     Remedy(("physics.pressure_gradient=tensile_control", "physics.particle_shifting=0.1")),
     Remedy(("physics.pressure_gradient=minimum",)),
