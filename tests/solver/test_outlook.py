@@ -53,6 +53,12 @@ def test_tensile_control_is_neutral_under_tension_alone(tmp_path):
     assert line == drawn
 
 
+def test_of_stress_points_nothing_is_foretold():
+    """They are not neutral: at h/dx 1.2 the kick grows (tests/cases/test_remedies.py)."""
+    _, line = said(paper("negative_pressure_traditional", "physics.pressure_gradient=stress_points"))
+    assert line.split()[0] == "unknown"
+
+
 def test_artificial_stress_counts():
     """Case 4.2: it slows the hyperbolic kernel's growth at 1.2, and holds it at 1.1."""
     for h, held in ((1.2, False), (1.1, True)):
