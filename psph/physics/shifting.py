@@ -150,6 +150,6 @@ def lattice_shift(strength: float, kernel, dx: float, dimensions: int) -> Lattic
 @register_jitable
 def _velocity(speed, i):
     """δx/Δt for U = ``speed``, m/s."""
-    # Without a branch: beside one, loop bodies and their remainders rounded differently.
+    # Without a branch: with one here, numbers of ranks differed in the last bits.
     size = 2.0 * np.sqrt(dot(i.crowding, i.crowding))
     return scale(i.crowding, -2.0 * speed / max(size, 1.0))

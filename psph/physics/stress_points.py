@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from psph.physics.slip import NO_FLUID
+from psph.physics.transport import moved
 from psph.vectors import add, scale, zero_like
 
 TWICE = 2.0
@@ -9,9 +11,6 @@ TWICE = 2.0
 
 FOLLOWING = 2.0
 """h/c over the time in which a stress point takes the velocity around it."""
-
-NOBODY = 1e-300
-"""Keeps a sum without any velocity point from dividing by zero."""
 
 
 class StressPoints(NamedTuple):
@@ -37,6 +36,8 @@ class StressPoints(NamedTuple):
 
     writes = "transport"
 
+    displacement = moved
+
     def start(self, i):
         """Σ V W and Σ V (u_i − u_v) W over velocity points of the fluid."""
         return 0.0, zero_like(i.position)
@@ -49,15 +50,11 @@ class StressPoints(NamedTuple):
     def finish_acceleration(self, total, i):
         """What makes a stress point follow, m/s²."""
         rate = FOLLOWING * i.sound_speed / i.smoothing_length
-        return scale(total[1], -rate * i.stress_point / max(total[0], NOBODY))
+        return scale(total[1], -rate * i.stress_point / max(total[0], NO_FLUID))
 
     def finish_value(self, total, i, kernel):
         """ũ − u of a stress point, m/s."""
-        return scale(total[1], -i.stress_point / max(total[0], NOBODY))
-
-    def displacement(self, i, dt):
-        """(ũ − u) Δt, m."""
-        return scale(i.transport, dt)
+        return scale(total[1], -i.stress_point / max(total[0], NO_FLUID))
 
     def longest_step(self, scene):
         """Δt ≤ h/(4c), s: half of the time in which a stress point follows."""

@@ -22,7 +22,7 @@ def _no_neighbour(self, i):
     return zero_like(i.position)
 
 
-def _moved(self, i, dt):
+def moved(self, i, dt):
     """(ũ − u) Δt, m."""
     return scale(i.transport, dt)
 
@@ -56,7 +56,7 @@ class XSPH(NamedTuple):
     writes = "transport"
 
     start = _no_neighbour
-    displacement = _moved
+    displacement = moved
     density_rate = _density_rate
 
     def gather(self, total, i, j, pair):
@@ -87,7 +87,7 @@ class TransportVelocity(NamedTuple):
     writes = "transport"
 
     start = _no_neighbour
-    displacement = _moved
+    displacement = moved
     density_rate = _density_rate
     push = _carried
 
@@ -117,7 +117,7 @@ class GeneralisedTransportVelocity(NamedTuple):
     writes = "transport"
 
     start = _no_neighbour
-    displacement = _moved
+    displacement = moved
     density_rate = _density_rate
     push = _carried
 

@@ -23,7 +23,7 @@ PER_MATERIAL = ("mass", "rest_density", "viscosity", "wall", "no_slip")
 """Quantities fixed at the start: one number where all materials agree, else an array."""
 
 PER_SITE = ("stress_point",)
-"""Quantities fixed at the start by the place of a particle."""
+"""Quantities fixed at the start by the site of a particle: whether it is an odd one."""
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""

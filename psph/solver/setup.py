@@ -9,7 +9,7 @@ from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
 from psph.scene.particles import ParticleSet
-from psph.solver.plan import PER_MATERIAL, Plan, material_value
+from psph.solver.plan import PER_MATERIAL, PER_SITE, Plan, material_value
 from psph.solver.record import probes_of
 from psph.solver.step import Simulation
 
@@ -47,8 +47,9 @@ def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
         if name in store:
             values = np.array([material_value(m, name) for m in scene.materials])
             block[store.rows[name].start] = values[found.material]
-    if "stress_point" in store:
-        block[store.rows["stress_point"].start] = scene.lattice.odd(found.position)
+    for name in PER_SITE:
+        if name in store:
+            block[store.rows[name].start] = scene.lattice.odd(found.position)
     if "kernel_sum" in store:
         block[store.rows["kernel_sum"].start] = NOT_YET_SUMMED
     store.append(found.id, found.kind, block)
