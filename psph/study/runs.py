@@ -5,9 +5,8 @@ import statistics
 from collections.abc import Callable
 from pathlib import Path
 
-import psph
 from psph.case import CaseError, load
-from psph.jit import processor
+from psph.jit import SOURCES, processor
 from psph.output.errors import OutputError
 from psph.parallel.slabs import TooManyRanks
 from psph.solver.run import Finished, run
@@ -97,10 +96,10 @@ def _silent(line: str, where=None) -> None:
 
 
 def _key(case, comm) -> dict:
-    """What a result rests on: it holds for no other."""
+    """What a result depends on, psph's own sources included: it is used for no other."""
     text = case.model_copy(update={"study": type(case.study)()}).to_toml()
     return {
-        "case": text, "version": psph.__version__, "processor": processor(), "ranks": comm.size,
+        "case": text, "sources": SOURCES, "processor": processor(), "ranks": comm.size,
         "threads": threads(),
     }
 

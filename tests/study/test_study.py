@@ -17,6 +17,8 @@ from psph.case.profiles import PROFILES, choices
 from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
 from psph.parallel.reductions import alone
+from psph.solver.step import BlowUp
+from psph.study import runs
 from psph.study.effects import effects_words, without_each
 from psph.study.errors import StudyError
 from psph.study.judge import Judge, series_errors
@@ -147,6 +149,21 @@ def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
     assert "From the study in" in job.stdout and "velocity at the end" in job.stdout
     with pytest.raises(StudyError, match="holds no study"):
         list(foretold(tmp_path, case))
+
+
+def test_a_result_is_used_again_only_for_the_same_sources(tmp_path, monkeypatch):
+    (tmp_path / "wave.toml").write_text(WAVE)
+    case, performed = load(tmp_path / "wave.toml"), []
+
+    def blows_up(*_, **__):
+        performed.append(runs.SOURCES)
+        raise BlowUp("too fast")
+
+    monkeypatch.setattr(runs, "run", blows_up)
+    for sources in ("one", "one", "two"):
+        monkeypatch.setattr(runs, "SOURCES", sources, raising=False)
+        assert runs.perform(case, tmp_path / "out", alone(), 1, print)["status"] == "too fast"
+    assert performed == ["one", "two"]
 
 
 @pytest.mark.long
