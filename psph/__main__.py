@@ -71,9 +71,9 @@ def _explain(options, comm) -> None:
     if comm.rank == 0:
         print("\n".join(explain(scene, options.ranks or comm.size)))
         if options.study:
-            from psph.study.study import foretold
+            from psph.study.prediction import predicted
 
-            print("\n".join(foretold(options.study, scene.case)))
+            print("\n".join(predicted(options.study, scene.case)))
 
 
 def _check(options, comm) -> None:

@@ -2,16 +2,16 @@
 
 import json
 import statistics
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from psph.case import CaseError, load
+from psph.case import Case, CaseError, load
 from psph.jit import SOURCES, processor
 from psph.output.errors import OutputError
 from psph.parallel.slabs import TooManyRanks
 from psph.solver.run import Finished, run
 from psph.solver.step import BlowUp
-from psph.study.ladder import Settings, overrides
+from psph.study.ladder import SPACING, Settings, overrides
 from psph.threads import threads
 
 ENOUGH = 10.0
@@ -36,6 +36,34 @@ def _case(file: str, sets: list[str]):
         return load(file, [f"output.frames={end!r}", *sets])  # of use here: the first and the last
     except CaseError as error:
         return error
+
+
+ASIDE = (
+    "title", "scheme", "profile", "output", "checkpoint", "guards", "parallel", "study",
+)
+"""Tables and keys of a case that decide neither its answers nor, noticeably, its run time; what a
+scheme and a profile set stands in the tables that they set it in."""
+
+
+def conditions(case: Case | None) -> dict[str, object]:
+    """Dotted keys of a case with the values that its errors and times hold for, as JSON has them.
+
+    Without ``space.spacing``, along which both are known; empty without a case.
+    """
+    if case is None:
+        return {}
+    tables = case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    found = dict(_dotted({name: table for name, table in tables.items() if name not in ASIDE}))
+    del found[SPACING]
+    return found
+
+
+def _dotted(table: dict, path: str = "") -> Iterator[tuple[str, object]]:
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from _dotted(value, f"{path}{name}.")
+        else:
+            yield f"{path}{name}", value
 
 
 def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) -> dict:

@@ -5,9 +5,8 @@ import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from psph.case import CaseError, load
+from psph.case import Case, CaseError, load
 from psph.case.profiles import OFF, choices
-from psph.errors import one_line
 from psph.output.reader import Run as Folder
 from psph.scene import Scene, check
 from psph.study import fit, report, words
@@ -15,7 +14,7 @@ from psph.study.errors import StudyError
 from psph.study.judge import FINEST, Judge, Judgement, window
 from psph.study.ladder import PROFILE, SPACING, Settings, groups, name_of
 from psph.study.picture import draw
-from psph.study.runs import DONE, cases, perform
+from psph.study.runs import DONE, cases, conditions, perform
 
 CSV, PAGE, PICTURE, KEPT = "study.csv", "study.md", "study.png", "study.json"
 
@@ -130,6 +129,7 @@ class Study:
         report.write_json(self.folder / KEPT, {
             "case": self.case.file, "error": self.judge.in_words, "rows": found, "vary": keys,
             "dimensions": self.case.space.dimensions, "ranks": self.comm.size,
+            "conditions": [conditions(case) for case in self._first_of_each_ladder()],
         })
         good = [row for row in found if row["error_l2"] > 0.0]
         if good:
@@ -138,6 +138,12 @@ class Study:
         yield from report.plain(found, keys)
         yield from told
         yield from answer
+
+    def _first_of_each_ladder(self) -> Iterator[Case | None]:
+        """For each ladder a case of it that could be loaded, or None."""
+        for _, places in groups(self.every):
+            loaded = (self.cases[k] for k in places if not isinstance(self.cases[k], CaseError))
+            yield next(loaded, None)
 
     def _written_out(self, shared: Settings) -> Settings:
         """Settings with the keys of a profile in its place: what the case gives would win over it."""
@@ -303,50 +309,3 @@ def fitting(spacing: float, periods: list[float]) -> float:
         if all(abs(p / least - round(p / least)) < 1e-9 * p / least for p in periods):
             return least
     return rounded
-
-
-MEASURED = (SPACING, "seconds", "particles", "steps")
-
-
-def _sound(found: list[dict]) -> list[dict]:
-    """The rows of a file, or ValueError where a run that is done has figures that none can have."""
-    for row in found:
-        figures = [float(row[name]) for name in MEASURED if row["status"] == DONE]
-        if not all(0.0 < x < math.inf for x in figures) or math.isinf(row["error_l2"]):
-            raise ValueError(f"a run of {figures}")
-    return found
-
-
-def foretold(folder: Path, case) -> Iterator[str]:
-    """What a stored study says of a case: its error and its seconds; rank 0 alone.
-
-    Raises StudyError where the folder holds no study of it.
-    """
-    try:
-        kept = json.loads((folder / KEPT).read_text(encoding="utf-8"))
-        lines = list(_told(folder, kept, case))
-    except StudyError:
-        raise
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError,
-            RecursionError) as error:  # whatever may be wrong with a file that psph has not written
-        raise StudyError(
-            f"{folder}: holds no study ({error}); give the folder that `study` wrote to"
-        ) from None
-    yield from lines
-
-
-def _told(folder: Path, kept: dict, case) -> Iterator[str]:
-    every = ladders_of(_sound(kept["rows"]), kept["vary"], kept["dimensions"])
-    fits = [ladder for shared, _, ladder in every if ladder and not shared]
-    if not fits or not fits[0].steady:
-        raise StudyError(
-            f"{folder}: its study has no ladder of spacings on which the error falls steadily; "
-            "vary space.spacing over two values or more"
-        )
-    [ladder] = fits
-    error, time = ladder.error(case.space.spacing), ladder.seconds(case.space.spacing)
-    yield one_line(f"From the study in {folder} ({kept['case']} on {kept['ranks']} ranks)")
-    yield one_line(
-        f"  error       {report.percent(error.value)}{words.interval(error, report.percent)}, {kept['error']}"
-    )
-    yield f"  run time    {report.seconds(time.value)}{words.interval(time, report.seconds)}"

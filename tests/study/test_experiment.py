@@ -24,7 +24,9 @@ from psph.parallel.reductions import alone
 from psph.study.errors import StudyError
 from psph.study.experiment import read_experiment
 from psph.study.ladder import overrides, rows, wanted
-from psph.study.study import Study, foretold
+from psph.study.prediction import predicted
+from psph.study.runs import conditions
+from psph.study.study import Study
 
 CASES = Path(__file__).parents[2] / "run" / "cases"
 
@@ -173,14 +175,15 @@ def test_spoilt_tables_of_a_run_and_of_a_study(examples, tmp_path):
     kept = {"rows": [row, row | {"space.spacing": 0.05, "error_l2": 0.02, "seconds": 3.0}],
             "vary": ["space.spacing"], "dimensions": 1, "case": "a", "ranks": 1, "error": "of p"}
     case, tally = draft(tmp_path, CASE), Tally()
+    kept["conditions"] = [conditions(case)]
     (tmp_path / "box.h5").touch()
-    assert list(foretold(_written(tmp_path, json.dumps(kept).encode(), b"time,P.p\n0,1\n"), case))
+    assert list(predicted(_written(tmp_path, json.dumps(kept).encode(), b"time,P.p\n0,1\n"), case))
 
     @thorough(examples)
     @given(spoilt([json.dumps(kept, indent=1).encode()]), spoilt([b"time,P.p\n0.0,1.0\n0.1,2.0\n"]))
     def run(study, table):
         _written(tmp_path, study, table)
-        for what, kind in ((lambda: list(foretold(tmp_path, case)), StudyError),
+        for what, kind in ((lambda: list(predicted(tmp_path, case)), StudyError),
                            (lambda: Run(tmp_path).probes(), OutputError)):
             try:
                 tally["read" if what() else "empty"] += 1

@@ -23,7 +23,8 @@ from psph.study.effects import effects_words, without_each
 from psph.study.errors import StudyError
 from psph.study.judge import Judge, series_errors
 from psph.study.page import main as on_page
-from psph.study.study import fitting, foretold, pareto
+from psph.study.prediction import predicted
+from psph.study.study import fitting, pareto
 
 WAVE = """
 scheme = "sph"
@@ -135,7 +136,7 @@ def test_a_spacing_that_fits_all_periods():
 def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
     folder, _ = done
     case = load(folder / "wave.toml", ["space.spacing=0.00625"])
-    lines = list(foretold(folder / "out", case))
+    lines = list(predicted(folder / "out", case))
     foretold_error = float(lines[1].split()[1])
     job = study(tmp_path, "--vary", "space.spacing=0.00625,0.0125")
     assert job.returncode == 0, job.stderr
@@ -147,8 +148,13 @@ def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
         capture_output=True, text=True, env=clean_environment(), timeout=60,
     )
     assert "From the study in" in job.stdout and "velocity at the end" in job.stdout
+    with pytest.raises(StudyError, match=r"of .*wave\.toml, not of .*wave\.toml: fluids\.air\.density is"
+                       r" 1\.0 there and 2\.0 here; give the folder of a study of .*wave\.toml"):
+        list(predicted(folder / "out", load(folder / "wave.toml", ["fluids.air.density=2.0"])))
+    aside = load(folder / "wave.toml", ["output.log=0.05", "title=again", "study.repeats=1"])
+    assert list(predicted(folder / "out", aside))
     with pytest.raises(StudyError, match="holds no study"):
-        list(foretold(tmp_path, case))
+        list(predicted(tmp_path, case))
 
 
 def test_a_result_is_used_again_only_for_the_same_sources(tmp_path, monkeypatch):
