@@ -87,10 +87,10 @@ from mpi4py import MPI
 from psph.solver import step
 
 original = step.Simulation.step
-def failing(self):
+def failing(self, *end):
     if self.steps == 5 and MPI.COMM_WORLD.rank == {rank}:
         {how}
-    original(self)
+    original(self, *end)
 step.Simulation.step = failing
 
 from psph.__main__ import guarded

@@ -55,7 +55,7 @@ class Guards:
         Raises BlowUp, with a post-mortem in the folder, where the run cannot go on or must not.
         """
         try:
-            self.simulation.step()
+            self.simulation.step(self.scene.case.time.end)
         except TimeLost:
             self._stop(CLOCK)
         except BlowUp:

@@ -68,9 +68,9 @@ class Simulation:
             self._restore(saved)
         self._spent_on_pairs()  # the first passes may have loaded compiled loops
 
-    def step(self) -> None:
-        """Advance by one time step."""
-        dt, limited_by = self.plan.longest_step(self.speed, self.acceleration)
+    def step(self, end: float = np.inf) -> None:
+        """Advance by one time step; the last one before ``end`` (s) ends exactly there."""
+        dt, limited_by, then = self._next_step(end)
         self._refuse_lost(dt)
         self.dt, self.limited_by = dt, limited_by
         with self.ledger("skin"):
@@ -84,7 +84,7 @@ class Simulation:
             self._forces()
         with self.ledger("kick"):
             self._kick(self.dt)
-        self.time += self.dt
+        self.time = then
         self.steps += 1
         self._refuse_blow_up()
 
@@ -212,6 +212,20 @@ class Simulation:
         if "largest_speed" not in changed:
             changed = changed | {"largest_speed": self.pace}
         return self.store.view()._replace(**changed)
+
+    def _next_step(self, end: float) -> tuple[float, str, float]:
+        """Δt in s, the name of the limit that sets it, and the time after the step.
+
+        Where less than two of the longest steps are left, two equal ones follow, or one that is as
+        long as what is left: so no step is shorter than half of its limit.
+        """
+        dt, limited_by = self.plan.longest_step(self.speed, self.acceleration)
+        left = end - self.time
+        if left >= 2.0 * dt:
+            return dt, limited_by, self.time + dt
+        if left > (1.0 + LARGEST_LOSS) * dt:  # more than the rounding of many equal steps
+            return 0.5 * left, "time.end", self.time + 0.5 * left
+        return left, "time.end", end
 
     def _refuse_lost(self, dt: float) -> None:
         """Raise TimeLost where rounding would make the time go on by another step than this."""

@@ -39,12 +39,12 @@ def test_the_report_does_not_tell_the_number_of_ranks(lines, mpi_tmp_path):
 def test_one_rank_that_has_no_number_ends_all(mpi_tmp_path, monkeypatch):
     honest = Simulation.step
 
-    def injured(self):
+    def injured(self, *end):
         store = self.store
         if self.steps == 5:
             mine = np.flatnonzero(store.id[store.inner] == 60)
             store["velocity"][0][store.low + mine] = np.nan
-        honest(self)
+        honest(self, *end)
 
     monkeypatch.setattr(Simulation, "step", injured)
     together, alone = ends(mpi_tmp_path)

@@ -96,8 +96,8 @@ def main(folder, steps, leak):
         write_log(self)
         samples.append(sample(self.simulation))
 
-    def leaking(self):
-        step(self)
+    def leaking(self, *end):
+        step(self, *end)
         lost.append(bytes(LEAK))
 
     count_requests()

@@ -11,6 +11,7 @@ from psph.solver.record import Record
 from psph.solver.resume import case_digest, listed_particles, write_checkpoint
 from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
+from psph.solver.watch import Call, Watch
 
 BOX = """
 scheme = "sph"
@@ -58,6 +59,17 @@ class Counted(Simulation):
     def _rebuild(self):
         super()._rebuild()
         self.rebuilt = self.steps
+
+
+def stop_after(monkeypatch, count):
+    """Have the next runs told to stop by a signal during step ``count`` of each."""
+
+    class Told(Watch):
+        def call(self):
+            self.asked = getattr(self, "asked", 0) + 1
+            return Call.SIGUSR1 if self.asked >= count else super().call()
+
+    monkeypatch.setattr("psph.solver.run.Watch", Told)
 
 
 def steps(case, comm, count):

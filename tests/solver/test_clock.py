@@ -1,7 +1,9 @@
 """Time steps that the time cannot tell, and cadences: nothing drifts or stands still unseen."""
 
+import math
 import re
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 from solver.guarded import boxed, started
@@ -10,7 +12,9 @@ from solver.test_guards import push_once, report_of
 
 from psph.case.consistency import LARGEST_LOSS, MOST_MOMENTS, MOST_STEPS
 from psph.output.checkpoint import checkpoints
+from psph.output.reader import Run
 from psph.solver.record import Schedule
+from psph.solver.run import run
 from psph.solver.step import TimeLost
 
 COMM = MPI.COMM_SELF
@@ -55,6 +59,31 @@ def test_the_guard_knows_how_much_of_a_step_is_lost(tmp_path):
             lost[rounded] = True
     assert set(lost.values()) == {True, False}
     assert all(is_lost == (rounded >= LARGEST_LOSS) for rounded, is_lost in lost.items())
+
+
+@pytest.mark.parametrize("sets", [(), ("time.step=7.3e-4",)])
+def test_a_run_ends_on_its_end_and_no_step_vanishes(tmp_path, sets):
+    """Wherever the end lies between two steps, the last ones are at least half as long as others."""
+    case = boxed(tmp_path, COMM, *sets)
+    usual = steps(case, COMM, 3).dt
+    for end in (3.0 + np.array([-1e-9, 0.0, 1e-9, 1e-3, 0.3, 0.5, 0.999, 1.001, 1.5])) * usual:
+        simulation, taken = steps(case, COMM, 0), []
+        while simulation.time < end:
+            simulation.step(end)
+            taken.append(simulation.dt)
+        assert simulation.time == end
+        assert min(taken) > 0.499 * usual and max(taken) < usual * (1.0 + 1e-5)
+        assert len(taken) <= math.ceil(end / usual - 1e-6) + 1
+        assert sum(taken) == pytest.approx(end, rel=1e-14)
+
+
+def test_a_whole_number_of_fixed_steps_stays_that_number(tmp_path):
+    """The rounding of their sum makes no step more."""
+    case = boxed(tmp_path, COMM, "time.step=1e-3", "time.end=0.11")
+    finished = run(case, tmp_path / "run", COMM, say=lambda *_: None)
+    assert (finished.simulation.steps, finished.simulation.time) == (110, 0.11)
+    log = np.loadtxt(tmp_path / "run/log.csv", delimiter=",", skiprows=1)
+    assert log[-1, 0] == 0.11 and Run(tmp_path / "run").times[-1] == 0.11
 
 
 def test_frames_do_not_drift():

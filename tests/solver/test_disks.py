@@ -8,13 +8,14 @@ import pytest
 from jobs import clean_environment, mpirun, started
 from long import LONG, tell
 from mpi4py import MPI
-from solver.resuming import BOX, same_files
+from solver.resuming import BOX, same_files, stop_after
 
 from psph.case import load
 from psph.output.checkpoint import checkpoints
 from psph.output.errors import OutputError
 from psph.output.reader import Run
 from psph.solver.run import resume, run
+from psph.solver.watch import Stopped
 
 COMM = MPI.COMM_SELF
 
@@ -90,14 +91,17 @@ def quiet(*_):
     ],
 )
 def test_a_full_disk_is_one_line_and_the_run_goes_on_when_there_is_room(
-    small_disk, tmp_path, often, file
+    small_disk, tmp_path, monkeypatch, often, file
 ):
-    folder = simulate(small_disk / "run", *RARELY, often, "time.end=0.03")
+    with monkeypatch.context() as told, pytest.raises(Stopped):
+        stop_after(told, 10)
+        simulate(small_disk / "run", *RARELY, often, "time.end=0.1")
+    folder = small_disk / "run"
     whole = simulate(tmp_path / "whole", *RARELY, often, "time.end=0.1")
     before = {path: path.read_bytes() for path in checkpoints(folder)}
     ballast, program = small_disk / "ballast", tmp_path / "filled.py"
     program.write_text(FILLED, encoding="utf-8")
-    job = mpirun(2, [program, ballast, "resume", folder, "--extend", "time.end=0.1"])
+    job = mpirun(2, [program, ballast, "resume", folder])
     assert job.returncode == 3 and "Traceback" not in job.stderr, job.stderr
     [line] = [line for line in job.stderr.splitlines() if "cannot be written" in line]
     assert line.startswith(f"{folder / file}: cannot be written: No space left on device; see to ")
@@ -107,7 +111,7 @@ def test_a_full_disk_is_one_line_and_the_run_goes_on_when_there_is_room(
         resume(folder, COMM, say=quiet)
     assert {path: path.read_bytes() for path in checkpoints(folder)} == before
     ballast.unlink()
-    resume(folder, COMM, ["time.end=0.1"], say=quiet)
+    resume(folder, COMM, say=quiet)
     assert same_files(folder, whole)
 
 

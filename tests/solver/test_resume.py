@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 from solver.resuming import (
-    BOX, control, go_on_alike, keep, same_files, state, steps, taken_up, velocity_by_id,
+    BOX, control, go_on_alike, keep, same_files, state, steps, stop_after, taken_up,
+    velocity_by_id,
 )
 from solver.test_precision import box as precise_box
 
@@ -46,6 +47,11 @@ def copy(folder, to):
     for path in folder.iterdir():
         (to / path.name).write_bytes(path.read_bytes())
     return to
+
+
+def table(folder):
+    """The rows of a run's log."""
+    return np.genfromtxt(folder / "log.csv", delimiter=",", names=True)
 
 
 # The state
@@ -120,13 +126,29 @@ def test_a_finished_run_may_be_taken_up_again(whole, tmp_path):
     assert finished.simulation.steps == 90 and same_files(folder, whole)
 
 
-def test_a_run_that_is_extended_is_one_to_the_later_end(whole, case, tmp_path):
-    short = case.model_copy(update={"time": case.time.model_copy(update={"end": 0.09})})
-    run(short, tmp_path / "run", COMM, **QUIET)
+def to(case, end):
+    """The case with another end."""
+    return case.model_copy(update={"time": case.time.model_copy(update={"end": end})})
+
+
+def test_a_stopped_run_that_is_extended_is_one_to_the_later_end(whole, case, tmp_path, monkeypatch):
+    with monkeypatch.context() as told, pytest.raises(Stopped, match="SIGUSR1 at t = 0.1"):
+        stop_after(told, 40)
+        run(to(case, 0.15), tmp_path / "run", COMM, **QUIET)
     assert not same_files(tmp_path / "run", whole)
     resume(tmp_path / "run", COMM, extend=["time.end=0.2"], **QUIET)
     assert same_files(tmp_path / "run", whole)
     assert load(tmp_path / "run/case.toml").time.end == 0.2
+
+
+def test_a_finished_run_that_is_extended_has_shorter_steps_at_its_old_end(whole, case, tmp_path):
+    """Two at the most, up to exactly that end: it goes on from there as from any other state."""
+    run(to(case, 0.09), tmp_path / "run", COMM, **QUIET)
+    [last] = table(tmp_path / "run")[-1:]
+    assert last["time"] == 0.09
+    finished = resume(tmp_path / "run", COMM, extend=["time.end=0.2"], **QUIET)
+    assert finished.simulation.time == 0.2 == table(tmp_path / "run")["time"][-1]
+    assert abs(finished.simulation.steps - table(whole)["step"][-1]) <= 2
 
 
 def test_rows_that_are_missing_are_said(whole, tmp_path):
@@ -178,7 +200,7 @@ def test_only_what_changes_no_step_may_be_extended(whole, text):
 
 
 def test_an_end_that_is_past_is_refused(whole):
-    with pytest.raises(CheckpointError, match="time.end = 0.1 s lies before it, at 0.201"):
+    with pytest.raises(CheckpointError, match="time.end = 0.1 s lies before it, at 0.2 s"):
         take_up(whole, COMM, ["time.end=0.1"])
 
 
@@ -203,8 +225,7 @@ def test_a_run_that_may_go_on_is_said_to_be_one(whole, case):
 
 def test_a_run_anew_leaves_no_checkpoint_of_the_old_one(whole, case, tmp_path):
     folder = copy(whole, tmp_path / "run")
-    brief = {"time": case.time.model_copy(update={"end": 1e-3})}
-    run(case.model_copy(update=brief), folder, COMM, overwrite=True, **QUIET)
+    run(to(case, 1e-3), folder, COMM, overwrite=True, **QUIET)
     assert [path.name for path in checkpoints(folder)] == ["checkpoint-1.h5"]
 
 

@@ -139,8 +139,8 @@ import sys, time
 from psph.solver import step
 
 original = step.Simulation.step
-def slow(self):
-    original(self)
+def slow(self, *end):
+    original(self, *end)
     time.sleep(0.05)
 step.Simulation.step = slow
 
