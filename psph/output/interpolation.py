@@ -1,18 +1,24 @@
 """Values between particles."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 
 def interpolated(
-    position: np.ndarray, values: np.ndarray, at: np.ndarray, spacing: float
+    position: np.ndarray, values: np.ndarray, at: np.ndarray, spacing: float,
+    periods: Sequence[float | None],
 ) -> np.ndarray:
     """Values of particles at other places, averaged by the squares of (1 − r/2dx)₊.
 
-    Where no particle is that near, the nearest one's value.
+    ``position`` and ``at`` are (n, dim) in m, ``spacing`` is dx; r is the distance to the nearest
+    image, ``periods`` a length in m or None for each axis.  Where no particle is that near, the
+    nearest one's value.
     """
     from scipy.spatial import cKDTree
 
-    tree = cKDTree(position)
+    lengths = np.array([period or 0.0 for period in periods])  # 0: the axis does not repeat
+    tree = cKDTree(_folded(position, lengths), boxsize=lengths)
     distance, who = tree.query(at, k=4 ** position.shape[1], distance_upper_bound=2.0 * spacing)
     share = np.maximum(1.0 - distance / (2.0 * spacing), 0.0) ** 2
     near = share.sum(axis=1) > 0.0
@@ -21,3 +27,13 @@ def interpolated(
     found = np.einsum("nk,nk...->n...", share, padded[who])
     found[~near] = values[tree.query(at[~near])[1]]
     return found
+
+
+def _folded(position: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Positions from 0 to below the length along each axis that has one."""
+    folded = position.copy()
+    for x, length in zip(folded.T, lengths):
+        if length:
+            x -= length * np.floor(x / length)
+            x[x >= length] = 0.0  # rounding may land on the upper edge
+    return folded

@@ -74,7 +74,8 @@ class Judge:
         ours, theirs = (_fluid(r, self.what) for r in (run, Run(finest)))
         if run.folder == finest:
             return Judgement(math.nan, math.nan, math.nan)
-        return series_errors(ours[1], interpolated(*theirs, ours[0], self._spacing(finest)))
+        there = interpolated(*theirs, ours[0], self._spacing(finest), Scene(self.case).periods)
+        return series_errors(ours[1], there)
 
     @staticmethod
     def _spacing(folder: Path) -> float:

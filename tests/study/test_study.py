@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from drafts import draft
 from jobs import clean_environment, hears_interrupts, mpirun
@@ -16,7 +17,9 @@ from psph.case import load
 from psph.case.profiles import PROFILES, choices
 from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
+from psph.output.reader import Run
 from psph.parallel.reductions import alone
+from psph.solver.run import run
 from psph.solver.step import BlowUp
 from psph.study import runs
 from psph.study.effects import effects_words, without_each
@@ -323,15 +326,47 @@ value_unit = 10.0
 
 
 def test_norms_and_interpolation_by_hand():
-    import numpy as np
-
     found = series_errors(np.array([1.0, 2.0]), np.array([2.0, 2.0]))
     assert found == pytest.approx((0.25, math.sqrt(1 / 8), 0.5))
     grid = (np.indices((20, 20)).reshape(2, -1).T + 0.5) * 0.1
     at = np.array([[0.83, 1.21], [1.5, 0.5]])
-    linear = interpolated(grid, grid @ [2.0, 1.0], at, 0.1)
+    linear = interpolated(grid, grid @ [2.0, 1.0], at, 0.1, (None, None))
     assert linear == pytest.approx(at @ [2.0, 1.0], rel=0.02)
-    assert interpolated(grid, grid, np.array([[9.0, 9.0]]), 0.1) == pytest.approx(grid[-1:])
+    assert interpolated(grid, grid, np.array([[9.0, 9.0]]), 0.1, (None, None)) == pytest.approx(grid[-1:])
+
+
+def test_values_between_particles_know_of_the_period():
+    """A periodic field near the edges, from particles that stand on one side of each edge only."""
+    lower, periods = np.array([-0.3, 0.0]), (1.0, None)
+    grid = lower + (np.indices((20, 4)).reshape(2, -1).T + 0.5) * 0.05
+    wave = np.sin(2.0 * np.pi * (grid[:, 0] + 0.313))
+    at = np.array([[-0.299, 0.1], [0.699, 0.1], [-0.3, 0.1], [0.7 - 1e-17, 0.1]])
+    exact = np.sin(2.0 * np.pi * (at[:, 0] + 0.313))
+    assert interpolated(grid, wave, at, 0.05, periods) == pytest.approx(exact, abs=0.02)
+    assert np.abs(interpolated(grid, wave, at, 0.05, (None, None)) - exact).min() > 0.1
+    beyond = interpolated(grid, wave, np.array([[0.2, 0.25]]), 0.05, (None, 0.2))
+    assert beyond == pytest.approx(interpolated(grid, wave, np.array([[0.2, 0.05]]), 0.05, (None, 0.2)))
+
+
+def test_the_finest_run_is_compared_across_the_period(tmp_path):
+    """As if its particles stood there three times, side by side."""
+    text = WAVE.replace("velocity = \"exact\"", "velocity = [0.4]").replace("1e-4", "0.5")
+    (tmp_path / "wave.toml").write_text(text)
+    sets = ["study.against=finest", "study.error=pressure", "scheme=sph"]
+    found = {}
+    for spacing in (0.05, 0.025):
+        case = load(tmp_path / "wave.toml", [*sets, f"space.spacing={spacing}"])
+        run(case, tmp_path / f"{spacing}", alone(), say=lambda *_: None)
+        frame = Run(tmp_path / f"{spacing}").frame(-1, "position", "pressure")
+        found[spacing] = frame["position"], frame["pressure"]
+    coarse, (x, p) = found[0.05], found[0.025]
+    side_by_side = interpolated(
+        np.concatenate([x - 1.0, x, x + 1.0]), np.tile(p, 3), coarse[0], 0.025, (None,)
+    )
+    judged = Judge(case).errors(tmp_path / "0.05", tmp_path / "0.025")
+    assert judged == pytest.approx(series_errors(coarse[1], side_by_side), rel=1e-12)
+    one_sided = interpolated(x, p, coarse[0], 0.025, (None,))
+    assert judged.l1 < 0.999 * series_errors(coarse[1], one_sided).l1
 
 
 def test_the_finest_run_judges_where_nothing_else_does(tmp_path):
