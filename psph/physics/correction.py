@@ -22,6 +22,8 @@ class GradientCorrection(NamedTuple):
     L fades to 1 where neighbours are missing.  L is that of the pass before.
     """
 
+    conserves = ("momentum",)
+
     least: Annotated[
         float,
         Field(

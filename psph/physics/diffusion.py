@@ -46,8 +46,9 @@ class DensityDiffusion(NamedTuple):
 class TankDiffusion(NamedTuple):
     """Density spreads in the fluid, but for what the weight of a still column asks for.
 
-    As :class:`DensityDiffusion` with (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ρ₀_i g·x_ij/c² in the bracket:
-    the slope of density in a fluid at rest, linear in the depth, stays.  Antuono, Colagrossi,
+    As :class:`DensityDiffusion` with (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ρ̄₀ g·x_ij/c² in the bracket, ρ̄₀ the
+    mean of the pair's two rest densities: the slope of density in a fluid at rest, linear in the
+    depth, stays, and what one particle gains in volume the other loses.  Antuono, Colagrossi,
     Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532, with the exact slope for theirs.
     ``gravity`` in m/s², None on an axis without.
     """
@@ -57,7 +58,8 @@ class TankDiffusion(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        weight = i.rest_density / (i.sound_speed * i.sound_speed) * along(pair.x_ij, self.gravity)
+        mean = 0.5 * (i.rest_density + j.rest_density)
+        weight = mean / (i.sound_speed * i.sound_speed) * along(pair.x_ij, self.gravity)
         return where(j.wall > i.wall, 0.0, _excess(self.delta, i, j, weight)) * _nearness(i, pair)
 
     def longest_step(self, scene):

@@ -19,6 +19,8 @@ class ConservativeSmoothing(NamedTuple):
     it acts as a viscosity, on a rotation too.
     """
 
+    conserves = ("momentum",)
+
     alpha: Annotated[
         float,
         Field(

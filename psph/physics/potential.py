@@ -40,9 +40,12 @@ class PairPotential(NamedTuple):
     −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
     Σ r ψ′ of the starting lattice zero: no mean pressure.
     K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
-    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  A potential, so momentum,
-    angular momentum and energy are conserved among particles of one mass.
+    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  It is a potential, so
+    momentum, angular momentum and energy are conserved.  Between two masses the force is that
+    between two of the smaller mass: the heavier one is moved less.
     """
+
+    conserves = ("momentum", "angular momentum")
 
     strength: Annotated[
         float,
@@ -53,9 +56,10 @@ class PairPotential(NamedTuple):
     ] = 0.008
 
     def in_scene(self, scene):
-        """The potential of the scene's lattice."""
+        """The potential of the scene's lattice, for one mass or for several."""
+        alike = len({material.mass for material in scene.materials}) == 1
         return neutral_potential(
-            self.strength, scene.sound_speed, scene.spacing, scene.dimensions
+            self.strength, scene.sound_speed, scene.spacing, scene.dimensions, alike
         )
 
 
@@ -66,6 +70,8 @@ class NeutralPotential(NamedTuple):
     + Σ_k ±(``heights`` − ``slopes`` r²)²₊, the last with a minus; times 2K dx^d/ρ₀, 1/s².
     """
 
+    conserves = ("momentum", "angular momentum")
+
     core: float
     steepness: float
     heights: tuple[float, ...]
@@ -73,8 +79,25 @@ class NeutralPotential(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        force = _square(self.core, self.steepness, pair.r) * pair.inverse_r
-        return _with_parts(force, self.heights, self.slopes, pair.r2)
+        return _repulsion(self, pair)
+
+
+class UnequalPotential(NeutralPotential):
+    """Near neighbours repel, farther ones attract: pairs of different masses.
+
+    :class:`NeutralPotential` times min(m_i, m_j)/m_i.
+    """
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        return min(1.0, j.mass * (1.0 / i.mass)) * _repulsion(self, pair)
+
+
+@register_jitable
+def _repulsion(potential, pair):
+    """−ψ′/r of a pair of one mass, 1/s²."""
+    force = _square(potential.core, potential.steepness, pair.r) * pair.inverse_r
+    return _with_parts(force, potential.heights, potential.slopes, pair.r2)
 
 
 def _with_parts(force, heights, slopes, r2):
@@ -98,10 +121,10 @@ def _square(height, slope, x):
 
 
 def neutral_potential(
-    strength: float, sound_speed: float, dx: float, dimensions: int
+    strength: float, sound_speed: float, dx: float, dimensions: int, alike: bool = True
 ) -> NeutralPotential:
     """The potential whose virial vanishes on the row, square or cube lattice of spacing dx, m;
-    ``strength`` f, ``sound_speed`` m/s."""
+    ``strength`` f, ``sound_speed`` m/s, ``alike`` if all particles have one mass."""
     core, ranges = CORES[dimensions - 1], np.array(RANGES[dimensions - 1])
     sites = (k for k in product(range(-3, 4), repeat=dimensions) if any(k))
     r2 = np.array([sum(n * n for n in k) for k in sites], float)
@@ -115,7 +138,8 @@ def neutral_potential(
     height = math.sqrt(float(weights[0]) * dx)
     heights = np.sqrt(np.abs(weights[1:]))  # the last is below zero, the others are not
     slopes = heights / (ranges * dx) ** 2
-    return NeutralPotential(
+    form = NeutralPotential if alike else UnequalPotential
+    return form(
         height, height / (core * dx), tuple(heights.tolist()), tuple(slopes.tolist())
     )
 

@@ -30,6 +30,8 @@ class SymmetricPressure(NamedTuple):
     a_i = −Σ_j m_j (p_i/ρ_i² + p_j/ρ_j²) ∇W_ij.  SSPH paper, eq. (6); Monaghan (1992), eq. (3.3).
     """
 
+    conserves = ("momentum", "angular momentum")
+
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
@@ -126,6 +128,8 @@ class BackgroundPressure(NamedTuple):
     fly apart.  "auto" is 1.4 times what the start lacks to p = 0, or what its fastest flow can make it
     lack, ρ₀v²/2; and nothing where there is a free surface.
     """
+
+    conserves = ("momentum", "angular momentum")
 
     pressure: Annotated[
         Annotated[float, Field(ge=0)] | Literal["auto"],

@@ -21,6 +21,8 @@ class RiemannDissipation(NamedTuple):
     their own.
     """
 
+    conserves = ("momentum", "angular momentum")
+
     eta: Annotated[
         float, Field(ge=0, description="η of the limiter", json_schema_extra={"unit": "1"})
     ] = 3.0

@@ -93,6 +93,8 @@ class PositionShift(NamedTuple):
     Mech. Eng. 315, 25.
     """
 
+    conserves = ("momentum",)
+
     strength: Annotated[
         float,
         Field(
@@ -112,6 +114,8 @@ class LatticeShift(NamedTuple):
     The form of :class:`PositionShift` for the lattice of a scene.
     ``full`` is Σ dx^d r W′ over the lattice of the start; ``crowded`` 0.2^¼/(dx^d W′(dx)/dx), m².
     """
+
+    conserves = ("momentum",)
 
     strength: float
     full: float

@@ -20,6 +20,8 @@ class ArtificialStress(NamedTuple):
     energy: what a pair gains depends on the pressure around it.
     """
 
+    conserves = ("momentum", "angular momentum")
+
     epsilon: Annotated[
         float,
         Field(ge=0, description="ε: R over |p|/ρ² under tension", json_schema_extra={"unit": "1"}),
@@ -35,6 +37,8 @@ class NeighbourStress(NamedTuple):
 
     See :class:`ArtificialStress`; ``inverse_near`` is 1/W(dx), m^d.
     """
+
+    conserves = ("momentum", "angular momentum")
 
     epsilon: float
     inverse_near: float

@@ -48,6 +48,8 @@ class XSPH(NamedTuple):
     Astrophys. 30, 543.  Momentum and angular momentum are conserved, nothing is dissipated.
     """
 
+    conserves = ("momentum", "angular momentum")
+
     epsilon: Annotated[
         float,
         Field(ge=0, le=1, description="ε: part of the mean", json_schema_extra={"unit": "1"}),
@@ -80,6 +82,8 @@ class TransportVelocity(NamedTuple):
     would fly apart.  Momentum is conserved, angular momentum is not.
     """
 
+    conserves = ("momentum",)
+
     background: Annotated[
         float, Field(ge=0, description="p_b over ρ₀c²", json_schema_extra={"unit": "1"})
     ] = 1.0
@@ -109,6 +113,8 @@ class GeneralisedTransportVelocity(NamedTuple):
     J. Comput. Phys. 337, 216, eqs. (12), (17); theirs sums over half the support and renews the
     density now and then from Σ m W, this one does neither.
     """
+
+    conserves = ("momentum",)
 
     background: Annotated[
         float, Field(ge=0, description="largest p_b over ρ₀c²", json_schema_extra={"unit": "1"})

@@ -22,6 +22,16 @@ def inverse_square(pair, h):
 
 
 @register_jitable
+def lighter(i, j):
+    """The smaller of the two rest densities, kg/m^d.
+
+    A numerical friction takes it for its ρ₀ between two fluids: both feel the same force, and
+    neither is slowed faster than among its own kind, so that the limits of the time step hold.
+    """
+    return min(i.rest_density, j.rest_density)
+
+
+@register_jitable
 def friction(i, j, pair):
     """Coefficient of a difference of velocities in the acceleration by the fluid's viscosity, 1/s."""
     return _friction(i, j, pair, pair.r2)
@@ -43,6 +53,8 @@ class LaminarViscosity(NamedTuple):
     a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·∇W_ij / [(ρ_i + ρ_j)² (r² + 0.01 h²)] u_ij, μ = ρν.
     SSPH paper, eq. (6); Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
     """
+
+    conserves = ("momentum",)
 
     def in_scene(self, scene):
         """With corrected gradients, the form that takes them; beside central friction, nothing."""
@@ -69,6 +81,8 @@ class CorrectedViscosity(NamedTuple):
     spacing.
     """
 
+    conserves = ("momentum",)
+
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
         v_i, v_j = i.specific_volume, j.specific_volume
@@ -92,6 +106,8 @@ class CentralFriction(NamedTuple):
     a wave loses: Colagrossi, Antuono, Souto-Iglesias & Le Touzé (2011), Phys. Rev. E 84, 026705.
     """
 
+    conserves = ("momentum", "angular momentum")
+
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         return (2.0 + len(pair.x_ij)) * _friction(i, j, pair, pair.u_dot_x)
@@ -109,8 +125,11 @@ class ArtificialViscosity(NamedTuple):
     """Numerical friction between approaching particles: it spreads shocks and calms noise.
 
     a_i = −Σ_j m_j Π_ij ∇W_ij, Π = (−α c μ + β μ²)/ρ̄, μ = h u_ij·x_ij/(r² + 0.01 h²) where the pair
-    approaches, else 0.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30, 543, eq. (4.1).
+    approaches, else 0.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30, 543, eq. (4.1).  It
+    conserves momentum and angular momentum.
     """
+
+    conserves = ("momentum", "angular momentum")
 
     alpha: Annotated[
         float, Field(ge=0, description="linear coefficient α", json_schema_extra={"unit": "1"})
@@ -137,11 +156,14 @@ class ArtificialViscosity(NamedTuple):
 class PairDamping(NamedTuple):
     """Numerical friction along the line of every pair, approaching or parting: it calms sound.
 
-    a_i = α c h ρ₀ Σ_j m_j/(ρ_i ρ_j) (u_ij·x_ij)/max(r², 0.01 h²) ∇W_ij.  Monaghan & Gingold (1983), J.
+    a_i = α c h Σ_j ρ₀ m_j/(ρ_i ρ_j) (u_ij·x_ij)/max(r², 0.01 h²) ∇W_ij, ρ₀ the smaller of the
+    pair's two rest densities.  Monaghan & Gingold (1983), J.
     Comput. Phys. 52, 374; without the switch, Antuono, Colagrossi, Marrone & Molteni (2010), Comput.
     Phys. Commun. 181, 532.  It conserves momentum and angular momentum, and acts as a viscosity of about
     αch/8.
     """
+
+    conserves = ("momentum", "angular momentum")
 
     alpha: Annotated[
         float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})
@@ -151,7 +173,7 @@ class PairDamping(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         # ρ̄ = ρ_i ρ_j/ρ₀
-        strength = self.alpha * h * i.sound_speed * (v_i * i.rest_density)
+        strength = self.alpha * h * i.sound_speed * (v_i * lighter(i, j))
         return strength * v_j * (pair.u_dot_x * inverse_square(pair, h)) * pair.m_dw_r
 
     def longest_step(self, scene):
@@ -163,12 +185,14 @@ class PairDamping(NamedTuple):
 class ImpactDamping(NamedTuple):
     """Numerical friction where neighbours meet fast: nothing flies through a wall.
 
-    a_i = −β ρ₀ Σ_j m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0): over a length
-    h of matter a speed falls by e^β.  von Neumann & Richtmyer (1950), J. Appl. Phys. 21, 232; for
+    a_i = −β Σ_j ρ₀ m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0), ρ₀ the
+    smaller of the pair's two rest densities: over a length h of matter a speed falls by e^β.  von Neumann & Richtmyer (1950), J. Appl. Phys. 21, 232; for
     pairs, Monaghan (1989), J. Comput. Phys. 82, 1.  Theirs begins at once, and costs a rotating
     patch 1 % of its energy; with the onset water does not know of it.  It conserves momentum and
     angular momentum.
     """
+
+    conserves = ("momentum", "angular momentum")
 
     beta: Annotated[
         float, Field(ge=0, le=4, description="coefficient β", json_schema_extra={"unit": "1"})
@@ -177,7 +201,7 @@ class ImpactDamping(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        strength = self.beta * (v_i * i.rest_density)
+        strength = self.beta * (v_i * lighter(i, j))
         approach = -h * pair.u_dot_x * inverse_square(pair, h)
         excess = max(approach - ONSET * i.sound_speed, 0.0)
         return -strength * v_j * (excess * excess) * pair.m_dw_r

@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from psph.physics.compose import Pair
+from psph.physics.compose import Pair, ParticleView
 from psph.physics.continuity import Continuity
 from psph.physics.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.filtering import ConservativeSmoothing
 from psph.physics.gravity import Gravity
-from psph.physics.potential import NeutralPotential
+from psph.physics.potential import NeutralPotential, UnequalPotential
 from psph.physics.pressure import (
     BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure, TensileControl,
 )
@@ -33,9 +33,11 @@ WITHIN = {
 
 
 def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
+    one = ParticleView(position=None, mass=1.0)
+
     def attraction(r):
         pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
-        return -r * np.array([potential.radial(None, None, pair) for pair in pairs])
+        return -r * np.array([potential.radial(one, one, pair) for pair in pairs])
 
     return remedies.PairForce(attraction)
 
@@ -43,6 +45,7 @@ def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
 AS_REMEDY = {
     BackgroundPressure: lambda effect, scene: remedies.BackgroundPressure(effect.pressure),
     NeutralPotential: _pair_force,
+    UnequalPotential: _pair_force,
     PairDamping: lambda effect, scene: remedies.PairDamping(effect.alpha),
     DensityDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
     TankDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),

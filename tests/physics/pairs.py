@@ -13,6 +13,8 @@ from psph.vectors import nearest_image, subtract
 
 H = 0.013
 OPEN = (None, None, None)
+ONE_FOR_ALL = ("sound_speed", "smoothing_length", "largest_speed")
+"""Entries of a view that all particles of a scene share."""
 
 
 def view(n=2, dim=2, seed=3):
@@ -24,7 +26,6 @@ def view(n=2, dim=2, seed=3):
         pressure=rng.normal(size=n) * 1000,
         specific_volume=1 / rng.uniform(900, 1100, n),
         mass=rng.uniform(0.05, 0.1, n),
-        rest_density=1000.0,
         viscosity=rng.uniform(0.5, 1.0, n),
         kernel_sum=rng.uniform(0.8, 1.0, n),
         wall=np.resize((0.0, 1.0, 0.0), n),
@@ -38,6 +39,7 @@ def view(n=2, dim=2, seed=3):
         crowding=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
         gradient_correction=tuple(rng.normal(size=n) * 0.1 for _ in range(dim * (dim + 1) // 2)),
         transport=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
+        rest_density=rng.uniform(800, 1000, n),
     )
 
 
@@ -47,6 +49,17 @@ def pair_of(particles, a, b, name="hyperbolic"):
     i, j = take(particles, a), take(particles, b)
     x_ij = nearest_image(subtract(i.position, j.position), OPEN[:dim])
     return i, j, geometry(kernel(name, H, dim), x_ij, 1e-20 * H * H, i, j)
+
+
+def sums_of(effect, p, b, name="wendland-c2"):
+    """What ``effect`` stores of particle ``b`` with all other particles of ``p`` around it."""
+    i = pair_of(p, b, b, name)[0]
+    total = effect.start(i)
+    for k in range(len(p.mass)):
+        if k != b:
+            _, j, pair = pair_of(p, b, k, name)
+            total = effect.gather(total, i, j, pair)
+    return effect.finish_value(total, i, kernel(name, H, len(p.position)))
 
 
 def stored(reductions, totals, i, k):

@@ -1,0 +1,195 @@
+"""What effects say that they conserve, on hand-made particles and in a box of two fluids.
+
+The claims stand at the effects themselves, as ``conserves``.
+"""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from jobs import clean_environment
+from physics.pairs import ONE_FOR_ALL, pair_of, sums_of, view
+from physics.test_effects import made
+from solver.test_absence import calling_for
+
+from psph.physics.catalogue import CATALOGUE
+from psph.physics.compose import displacement, push, radial, shear
+from psph.physics.potential import PairPotential, neutral_potential
+from psph.physics.shifting import LatticeShift
+from psph.physics.stress import NeighbourStress
+from psph.physics.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
+
+MOMENTUM, ANGULAR = "momentum", "angular momentum"
+DRIFT = 1e-13
+"""Largest change of a momentum in a box, relative to that of one of its fluids."""
+
+
+def claiming(what):
+    """The effects of the catalogue that say that they conserve it."""
+    return [e.effect for e in CATALOGUE if what in getattr(e.effect, "conserves", ())]
+
+
+def in_a_scene(effect, dim):
+    """The form that acts in a scene: some effects of the catalogue are but their parameters."""
+    forms = {
+        "PairPotential": lambda: neutral_potential(0.5, 50.0, 0.01, dim, alike=False),
+        "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
+        "PositionShift": lambda: LatticeShift(0.1, -1e-4, 1e-6),
+    }
+    return forms.get(effect.__name__, lambda: made(effect, dim))()
+
+
+def test_the_two_ends_of_a_pair_differ_in_all_that_a_formula_reads():
+    for name, entry in view(dim=3)._asdict().items():
+        components = entry if isinstance(entry, tuple) else (entry,)
+        assert all(x is not None for x in components), name
+        alike = all(np.ndim(x) == 0 or x[0] == x[1] for x in components)
+        assert alike == (name in ONE_FOR_ALL), name
+
+
+def crowd(dim):
+    """Three fluid particles that differ in everything and run into each other."""
+    p = view(n=3, dim=dim)
+    inward = tuple(u - 3000.0 * x for u, x in zip(p.velocity, p.position))
+    return p._replace(wall=np.zeros(3), velocity=inward)
+
+
+def rates(effect, p):
+    """Forces (n, dim) N on particles that all are neighbours, and where the effect moves them, m/s."""
+    n, dim = len(p.mass), len(p.position)
+    if hasattr(effect, "writes"):
+        stored = [sums_of(effect, p, k) for k in range(n)]
+        p = p._replace(**{effect.writes: tuple(map(np.array, zip(*stored)))})
+    forces, moves = np.zeros((n, dim)), np.zeros((n, dim))
+    for a in range(n):
+        for b in set(range(n)) - {a}:
+            i, j, pair = pair_of(p, a, b)
+            along, drag = radial((effect,), i, j, pair), shear((effect,), i, j, pair)
+            forces[a] += (along or 0.0) * np.array(pair.x_ij) + (drag or 0.0) * np.array(pair.u_ij)
+            forces[a] += np.array(push((effect,), i, j, pair) or (0.0,) * dim)
+        forces[a] *= p.mass[a]
+        moves[a] = displacement((effect,), i, 1.0)
+    return forces, moves
+
+
+@pytest.mark.parametrize("dim", (1, 2, 3))
+@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedViscosity])
+def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
+    forces, moves = rates(in_a_scene(effect, dim), crowd(dim))
+    assert np.abs(forces).max() + np.abs(moves).max() > 0.0
+    assert np.abs(forces.sum(axis=0)).max() <= 1e-13 * np.abs(forces).max()
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+@pytest.mark.parametrize("effect", claiming(ANGULAR))
+def test_torques_between_different_particles_sum_up_to_nothing(effect, dim):
+    p = crowd(dim)
+    forces, moves = rates(in_a_scene(effect, dim), p)
+    turned = np.einsum("kn,nl->kl", p.position, forces)
+    turned += np.einsum("nk,ln,n->kl", moves, p.velocity, p.mass)  # d/dt Σ m x u of the move
+    assert np.abs(turned).max() > 0.0
+    assert np.abs(turned - turned.T).max() <= 1e-12 * np.abs(turned).max()
+
+
+@pytest.mark.parametrize("own, other", ((1.0, 1000.0), (1000.0, 1.0)))
+@pytest.mark.parametrize("effect", (PairDamping, ImpactDamping, PairPotential))
+def test_no_numerical_force_is_stronger_beside_another_fluid_than_in_ones_own(effect, own, other):
+    """So air beside water is not blown up, and the limits of the time step hold; water hardly feels air."""
+    one, volume, strengths = in_a_scene(effect, 2), 1e-4, {}
+    for beside in (own, other):
+        rho = np.array([own, beside])
+        p = crowd(2)._replace(rest_density=rho, specific_volume=1.0 / rho, mass=volume * rho)
+        strengths[beside] = abs(one.radial(*pair_of(p, 0, 1)))
+    assert strengths[own] > 0.0
+    assert strengths[other] == pytest.approx(min(1.0, other / own) * strengths[own], rel=1e-12)
+
+
+IN_PLAIN_PYTHON = """
+import json, sys
+from pathlib import Path
+from physics.test_conservation import after_steps
+
+for line in sys.stdin:
+    print(json.dumps(after_steps(Path(sys.argv[1]), *json.loads(line))), flush=True)
+"""
+
+BOX = """
+time.end = 1.0
+[space]
+dimensions = 2
+spacing = 0.1
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.2, 0.8]
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [0.6, 0.8] }
+jitter = 0.2
+velocity = [0.5, 0.1]
+[fluids.oil]
+shape.box = { lower = [0.6, 0.0], upper = [1.2, 0.8] }
+density = %r
+jitter = 0.2
+seed = 2
+velocity = [-0.5, 0.2]
+"""
+
+
+def after_steps(folder, scheme, density, overrides, steps=4):
+    """Momentum (2,) of a box of two fluids before and after some steps, and what the effects claim."""
+    from drafts import draft
+    from mpi4py import MPI
+
+    from psph.output.ledger import Ledger
+    from psph.scene import Scene
+    from psph.solver.plan import make_plan
+    from psph.solver.setup import create_particles
+    from psph.solver.step import Simulation
+
+    scene = Scene(draft(folder, f'scheme = "{scheme}"' + BOX % density, *overrides))
+    plan = make_plan(scene)
+    store = create_particles(scene, plan, MPI.COMM_SELF)
+
+    def momentum():
+        return (store.owned_rows("mass") @ store.owned_rows("velocity")).tolist()
+
+    before = momentum()
+    box = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    for _ in range(steps):
+        box.step()
+    claims = {type(e).__name__: list(getattr(e, "conserves", ())) for e in plan.effects}
+    return before, momentum(), claims
+
+
+def boxes():
+    """For each effect that claims momentum a box with it, and whole schemes: name, arguments."""
+    for entry in CATALOGUE:
+        if MOMENTUM in getattr(entry.effect, "conserves", ()):
+            overrides = [
+                o for text in calling_for(entry) for o in (text, text.replace("fluids.water", "fluids.oil"))
+            ]
+            yield entry.effect.__name__, ("sph", 800.0, sorted(set(overrides)))
+    yield "the stable scheme", ("stable", 800.0, [])
+    yield "the stable scheme, a light fluid", ("stable", 200.0, [])
+
+
+def test_two_fluids_in_a_box_keep_their_momentum(tmp_path):
+    """In plain Python: it takes a fraction of the time that compiling every effect would."""
+    named = dict(boxes())
+    job = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", IN_PLAIN_PYTHON, tmp_path], capture_output=True, text=True,
+        input="\n".join(map(json.dumps, named.values())),
+        env=clean_environment() | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    assert job.returncode == 0, job.stderr
+    drifts = {}
+    for name, line in zip(named, job.stdout.splitlines(), strict=True):
+        before, after, claims = json.loads(line)
+        assert sum(MOMENTUM in claim for claim in claims.values()) >= 1
+        drifts[name] = np.abs(np.subtract(after, before)).max() / 240.0  # kg m/s of the water
+    assert len(drifts) > 15
+    assert {name: d for name, d in drifts.items() if not d < DRIFT} == {}
