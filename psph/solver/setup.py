@@ -79,11 +79,12 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
 
 
 def _rehearse(scene, plan: Plan, store: Store) -> None:
-    """One step of two particles in ``store``: it has the types of the whole run."""
-    block = np.zeros((len(store.data), 2))
-    for name in ("density", *PER_MATERIAL):
+    """One step of two particles of the first fluid in ``store``: it has the types of the whole run."""
+    block, fluid = np.zeros((len(store.data), 2)), scene.materials[0]
+    block[store.rows["density"].start] = fluid.density
+    for name in PER_MATERIAL:
         if name in store:
-            block[store.rows[name].start] = 1.0
+            block[store.rows[name].start] = material_value(fluid, name)
     middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
     block[list(store.rows["position"])] = np.array(middle)[:, None]
     store.append(np.arange(2), np.zeros(2, np.uint8), block)

@@ -2,8 +2,14 @@
 
 import json
 
+import numpy as np
 import pytest
+from drafts import SQUARE, draft
 from jobs import mpirun
+
+from psph.scene import Scene
+from psph.solver import setup
+from psph.solver.plan import make_plan
 
 LINE = """
 scheme = "sph"
@@ -65,3 +71,26 @@ def test_one_rank_compiles_and_the_others_load(tmp_path):
     for kept in cache.rglob("*permute*"):
         kept.unlink()
     assert compilations(2, tmp_path, cache) == [1, 1]
+
+
+class Caught(Exception):
+    """In place of the rehearsal's first step."""
+
+
+def test_the_two_particles_of_the_rehearsal_are_as_large_as_those_of_the_scene(tmp_path, monkeypatch):
+    """With a density of 1 for 1000 kg/m³ a fourth power overflowed in single precision: every closed
+    box in mixed precision with the default scheme ended before its first step."""
+
+    def catch(scene, plan, store, *rest):
+        raise Caught(store)
+
+    monkeypatch.setattr(setup, "Simulation", catch)
+    oil = "fluids.oil={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, density=800.0}"
+    for overrides in ((), (oil,)):  # the mass is a constant of the scene, or an array
+        scene = Scene(draft(tmp_path, SQUARE, *overrides))
+        plan = make_plan(scene)
+        with pytest.raises(Caught) as caught:
+            setup._rehearse(scene, plan, setup.Store(2, plan.arrays, plan.constants))
+        [store] = caught.value.args
+        volumes = store.owned_rows("mass") / store.owned_rows("density")
+        assert volumes == pytest.approx(np.full(2, scene.spacing**2))
