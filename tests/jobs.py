@@ -21,13 +21,17 @@ def mpirun(n, args, *, timeout=120, env=None, **popen):
     return subprocess.CompletedProcess(job.args, job.returncode, stdout, stderr)
 
 
+YIELDING = {"OMPI_MCA_mpi_yield_when_idle": "1"}
+"""A rank that waits leaves its core to the others: there are more of them than cores, tests beside them."""
+
+
 @contextmanager
 def started(n, args, *, env=None, **popen):
     """The running `subprocess.Popen` of such a job; it is ended when the body fails."""
     flags = ["--oversubscribe", "--bind-to", "none"] if _open_mpi() else []
     with subprocess.Popen(
         ["mpirun", *flags, "-n", str(n), sys.executable, *map(str, args)],
-        env=clean_environment() | (env or {}),
+        env=clean_environment() | YIELDING | (env or {}),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -1,4 +1,4 @@
-"""The cases with an exact solution, at small size on 2 ranks: errors, and what fails beside them.
+"""The cases with an exact solution, at small size: errors, and what fails beside them.
 
 Bounds lie a little above what was measured; the heads of the cases say more.
 """
@@ -7,11 +7,9 @@ import math
 
 import numpy as np
 import pytest
-from cases.measures import CASES, by_id
-from jobs import mpirun
+from cases.measures import by_id, finished
 
 from psph.case import load
-from psph.output.reader import Run
 from psph.scene import Scene
 
 pytestmark = pytest.mark.timeout(300)
@@ -25,11 +23,7 @@ def ran(tmp_path_factory):
     def run(case, *overrides):
         key = (case, *overrides)
         if key not in done:
-            folder = tmp_path_factory.mktemp(case)
-            sets = [part for o in overrides for part in ("--set", o)]
-            job = mpirun(2, ["-m", "psph", f"{CASES}/{case}.toml", "--out", folder, *sets], timeout=250)
-            assert job.returncode == 0, job.stderr
-            done[key] = Run(folder)
+            done[key] = finished(case, tmp_path_factory.mktemp(case), *overrides)
         return done[key]
 
     return run

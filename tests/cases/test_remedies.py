@@ -1,10 +1,8 @@
 """Remedies in case 4.2, and what it does without them (docs/stability.md)."""
 
 import pytest
-from cases.measures import CASES, growth_rate
-from jobs import mpirun
+from cases.measures import finished, growth_rate
 
-from psph.output.reader import Run
 from psph.stability.growth import box_growth
 from psph.stability.remedies import ArtificialStress
 from psph.stability.uniform import Settings
@@ -16,11 +14,7 @@ BOX = 15
 
 
 def log(folder, *overrides):
-    sets = [part for o in overrides for part in ("--set", o)]
-    case = f"{CASES}/negative_pressure_traditional.toml"
-    job = mpirun(1, ["-m", "psph", case, "--out", folder, *sets])
-    assert job.returncode == 0, job.stderr
-    return Run(folder).log()
+    return finished("negative_pressure_traditional", folder, *overrides).log()
 
 
 def test_artificial_stress_slows_the_kick_as_linear_theory_says(tmp_path):
@@ -60,10 +54,8 @@ def test_stress_points_carry_sound(tmp_path):
     """To first order: the velocity of a stress point comes h/(2c) late."""
     def error(spacing):
         sets = ("space.kernel=cubic", "space.smoothing=2.0", f"space.spacing={spacing}", "time.end=1.0")
-        parts = [part for o in (*sets, STRESS_POINTS) for part in ("--set", o)]
-        job = mpirun(1, ["-m", "psph", f"{CASES}/sound_wave.toml", "--out", tmp_path / str(spacing), *parts])
-        assert job.returncode == 0, job.stderr
-        return Run(tmp_path / str(spacing)).errors()["velocity_l2"][-1]
+        run = finished("sound_wave", tmp_path / str(spacing), *sets, STRESS_POINTS)
+        return run.errors()["velocity_l2"][-1]
 
     coarse, fine = (error(dx) for dx in (0.0125, 0.00625))
     assert coarse > 1.8 * fine and fine < 0.05

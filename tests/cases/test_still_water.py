@@ -1,10 +1,7 @@
-"""Still water in an open tank by the profiles, on 2 ranks: the bias that correction removes."""
+"""Still water in an open tank by the profiles: the bias that correction removes."""
 
 import pytest
-from cases.measures import CASES, checkerboard, window
-from jobs import mpirun
-
-from psph.output.reader import Run
+from cases.measures import checkerboard, finished, window
 
 pytestmark = pytest.mark.timeout(600)
 
@@ -14,16 +11,10 @@ def still(tmp_path):
     """A function: profile and what is set besides → the finished run, 20 particles deep."""
 
     def run(profile, *sets):
-        out = tmp_path / profile
-        job = mpirun(
-            2,
-            ["-m", "psph", f"{CASES}/still_water.toml", "--out", out, "--set",
-             f"profile={profile}", "--set", "time.end=1.5", "--set", "output.frames=0.5",
-             "--set", "space.spacing=0.025", *(part for one in sets for part in ("--set", one))],
-            timeout=500,
+        return finished(
+            "still_water", tmp_path / profile, f"profile={profile}", "time.end=1.5",
+            "output.frames=0.5", "space.spacing=0.025", *sets,
         )
-        assert job.returncode == 0, job.stderr
-        return Run(out)
 
     return run
 

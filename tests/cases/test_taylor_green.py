@@ -1,15 +1,9 @@
 """Accuracy against an exact solution: what the case's effects buy, and what it is without them."""
 
-import tomllib
-from pathlib import Path
-
 import numpy as np
 import pytest
-import tomli_w
-from cases.measures import CASES
-from jobs import mpirun
+from cases.measures import finished
 
-CASE = Path(CASES) / "taylor_green.toml"
 BOUGHT = ("pressure_gradient", "gradient_correction", "density_diffusion", "particle_shifting")
 
 
@@ -18,14 +12,10 @@ def error(tmp_path):
     """A function: (spacing, keys of [physics] to leave out) → L2 error of the velocity at the end."""
 
     def run(spacing, *without):
-        case = tomllib.loads(CASE.read_text(encoding="utf-8"))
-        case["physics"] = {k: v for k, v in case["physics"].items() if k not in without}
-        case["space"]["spacing"] = spacing
-        path, out = tmp_path / "case.toml", tmp_path / f"out-{spacing}"
-        path.write_text(tomli_w.dumps(case), encoding="utf-8")
-        job = mpirun(1, ["-m", "psph", path, "--out", out])
-        assert job.returncode == 0, job.stderr
-        errors = np.genfromtxt(out / "errors.csv", delimiter=",", names=True)
+        off = (f"physics.{name}=off" for name in without)
+        errors = finished(
+            "taylor_green", tmp_path / f"out-{spacing}", f"space.spacing={spacing}", *off
+        ).errors()
         assert errors["time"][-1] == pytest.approx(1.0, abs=0.01)
         return errors["velocity_l2"][-1]
 
