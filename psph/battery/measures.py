@@ -36,13 +36,18 @@ MEASURES = {
     "probe_spread": "probes, standard deviation, Pa",
     "front_error": "front against experiment, largest relative error",
     "front_begun_later": "the same from the later start that makes it least",
+    "swing": "speed of a drop's swing after four periods over that at the start",
+    "energy_left": "energy of motion over that of the exact solution, where it differs most",
     "exact_error": "velocity against the exact solution, L2",
     "ghia_error": "velocity on the centre lines against Ghia and others, rms over the lid's",
 }
 """Every measure in words; a run has those that make sense for its case."""
 
 LATE = 0.1
-"""Last part of a run that counts as its end, and, where probes are read, four times as much."""
+"""Last part of a run that counts as its end."""
+
+SETTLED, SWINGING = 6.0, 0.6
+"""Probes are read from this time on, s, or, in shorter runs, when this part of it is over."""
 
 SPREAD, GROWN, FEW = 10.0, 1e3, 4
 """A speed grows that rises from the first factor times its least through the second; or it swings.
@@ -61,8 +66,9 @@ def measure(folder: Path, case, speed: float) -> dict[str, float]:
         return found
     found |= _of_particles(scene, frames[-1], fluids[-1], speed)
     found |= _conserved(scene, log, fluids[0], fluids[-1], speed)
-    for more in (_of_probes, _of_front, _of_exact, _of_cavity):
+    for more in (_of_probes, _of_front, _of_exact, _of_drop, _of_cavity):
         found.update(more(run, case, fluids))
+    found.update(_of_energy(run, scene, fluids))
     return found
 
 
@@ -153,7 +159,7 @@ def _of_probes(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
     if not told:
         return
     table = run.probes()
-    late = table["time"] >= (1.0 - 4.0 * LATE) * table["time"][-1]
+    late = table["time"] >= min(SETTLED, SWINGING * table["time"][-1])
     values = {name: table[f"{name}.pressure"][late] for name in told}
     yield "probe_error", float(max(abs(values[n].mean() / told[n] - 1.0) for n in told))
     yield "probe_spread", float(max(v.std() for v in values.values()))
@@ -181,6 +187,34 @@ def _of_front(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
 def _of_exact(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
     if "velocity_l2" in (errors := run.errors()):
         yield "exact_error", float(errors["velocity_l2"][-1])
+
+
+def _of_energy(run: Run, scene, fluids) -> Iterator[tuple[str, float]]:
+    if not hasattr(scene.exact, "velocity"):
+        return
+    ratios = []
+    for time, fluid in zip(run.times, fluids):
+        theirs = scene.exact.velocity(fluid["position"], time, scene.setting)
+        if (expected := float((theirs**2).sum())) > 0.0:
+            ratios.append(float((fluid["velocity"] ** 2).sum()) / expected)
+    if ratios:
+        yield "energy_left", max(ratios, key=lambda ratio: abs(ratio - 1.0))
+
+
+DROP, PERIOD, PERIODS = "drop", 4.827, 4
+"""The case of a drop in a central force, its period times the frequency of the force (Monaghan and
+Rafiee 2013, for a first swing as fast as that), and after how many of them its swing is looked at."""
+
+
+def _of_drop(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
+    if case.name != DROP:
+        return
+    log = run.log()
+    turns = log["time"] * case.physics.central_force.frequency / PERIOD
+    near = np.abs(turns - PERIODS) <= 0.25  # twice in a period it is round, and as fast as ever
+    if turns[-1] >= PERIODS + 0.25:
+        motion = log["kinetic_energy"]
+        yield "swing", math.sqrt(float(motion[near].max() / motion[0]))
 
 
 CAVITY, SIDE, OVER = "cavity", 1.0, 5

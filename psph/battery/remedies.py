@@ -73,8 +73,8 @@ def trials(remedies: Sequence[Remedy] = REMEDIES) -> tuple[Trial, ...]:
     inside = {one.name: one.sets for one in remedies}
     surface = {one.name: one.in_patch or one.sets for one in remedies}
     return (
-        _judging("4.2", KICKED, 0.1, inside)._replace(speed=1.0),
-        _judging("4.2, jitter", JITTERED, 0.1, inside, *BESIDES),
+        _judging("4.2", KICKED, 0.1, inside)._replace(speed=1.0, holds=JITTERED.holds),
+        _judging("4.2, jitter", JITTERED, 1.0, inside, *BESIDES),
         _judging("patch", PATCH, 2.0, surface, *BESIDES),
     )
 

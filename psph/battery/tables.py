@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from psph.battery.measures import MEASURES
 from psph.battery.trials import CONTROLS, OURS, Trial
-from psph.battery.verdicts import BLEW_UP, FAILS, GOOD, HELD, HOLDS, REFUSED, Row
+from psph.battery.verdicts import BLEW_UP, FAILS, GOOD, HELD, HOLDS, REFUSED, Row, without_effect
 from psph.case.schemes import SCHEMES
 
 CSV, PAGE = "battery.csv", "battery.md"
@@ -20,7 +20,7 @@ MARKS = {GOOD: "+", HOLDS: "~", FAILS: "−", BLEW_UP: "×", REFUSED: "?"}
 
 def line(row: Row) -> str:
     """A run as it ends."""
-    told = "" if not row.broken else "; " + ", ".join(row.broken)
+    told = "" if not row.broken else "; " + ", ".join(map(str, row.broken))
     if row.verdict == REFUSED:
         told = f"; {row.status}"
     seconds = "" if row.seconds is None else f" in {row.seconds:.1f} s"
@@ -121,11 +121,10 @@ def sentences(rows: Sequence[Row]) -> Iterator[str]:
             yield f"- `{column}` holds in {held} of {len(mine)} trials, {good} with all goals."
     for row in rows:
         if row.column == OURS and row.verdict != GOOD:
-            told = ", ".join(row.broken) or row.status
+            told = ", ".join(map(str, row.broken)) or row.status
             yield f"- `{OURS}` {row.verdict} in {row.trial}: {told}."
-    for row in rows:
-        if not row.as_meant:
-            yield f"- The control {row.column} did not fail in {row.trial}."
+    for row in without_effect(rows):
+        yield f"- The control {row.column} misses no bound in {row.trial} that `{OURS}` keeps."
 
 
 def as_csv(rows: Sequence[Row]) -> str:
@@ -139,6 +138,6 @@ def as_csv(rows: Sequence[Row]) -> str:
     for row in rows:
         writer.writerow([
             row.trial, row.column, row.control, row.verdict, row.status, row.reached, row.seconds,
-            *(row.found.get(name) for name in MEASURES), "; ".join(row.broken),
+            *(row.found.get(name) for name in MEASURES), "; ".join(map(str, row.broken)),
         ])
     return out.getvalue()

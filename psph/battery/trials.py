@@ -14,6 +14,7 @@ CONTROLS: dict[str, tuple[str, ...]] = {
     "no potential": ("physics.pair_potential=0",),
     "no shift": ("physics.position_shift=0",),
     "no impact": ("physics.impact_damping=0",),
+    "no floor": ("physics.tension_floor=off",),
     "no impact, no floor": ("physics.impact_damping=0", "physics.tension_floor=off"),
     "plain, 0.05": ("scheme=sph", "physics.artificial_viscosity=0.05"),
     "cubic 1.3": ("scheme=sph", "space.smoothing=1.3"),
@@ -52,8 +53,8 @@ class Bound(NamedTuple):
 class Trial(NamedTuple):
     """A hard case, what is changed in it, and what is asked of it.
 
-    ``shown`` is the measure that stands for it; ``speed`` what is fast in it, m/s; ``holds`` must
-    be met for it to hold at all, ``goals`` to be good.  ``end``, s, for our scheme, and for the
+    ``shown`` is the measure that stands for it; ``speed`` what is fast in it, m/s; a run that misses
+    one of ``holds`` fails, one that misses one of the ``goals`` is not good.  ``end``, s, for our scheme, and for the
     ``fails`` (controls) and the paper's schemes, which have had time enough to fail.  ``changes``:
     the keys that each of them changes, by its name.
     """
@@ -93,29 +94,27 @@ ALWAYS = (Bound("lost", most=0),)
 
 KICK = "perturbations=[{{position=[0.01, 0.01], velocity=[{}, 0.0]}}]"
 ALONE = (OURS,)
+AT_REST = (Bound("late_speed", most=1e-4),)
 
 
-def _box(
-    name: str, *sets: str, goals=(Bound("late_speed", most=1e-4),), speed=1.0, **more
-) -> Trial:
-    """Case 4.2 in a variant."""
+def _box(name: str, *sets: str, bounds=AT_REST, speed=1.0, case="box", **more) -> Trial:
+    """Case 4.2 in a variant; every scheme has two seconds, since disorder tears p⁻ late."""
     return Trial(
-        name, "box", "late_speed", speed, 2.0, 0.2, sets,
-        holds=(Bound("late_speed", most=1e-2), Bound("near_least", least=0.6)), goals=goals, **more,
+        name, case, "late_speed", speed, 2.0, 2.0, sets,
+        holds=(*bounds, Bound("near_least", least=0.6)), **more,
     )
 
 
 def _jittered(share: float, *sets: str) -> tuple[str, ...]:
-    """In disorder instead of kicked."""
-    return (f"fluids.fluid.jitter={share}", "perturbations=off", *sets)
+    """In disorder, and kicked as the paper does: without the kick p⁻ has nothing to compute."""
+    return (f"fluids.fluid.jitter={share}", *sets)
 
 
 def _still(name: str, *sets: str, end=20.0, off=0.005, **more) -> Trial:
     """Case 4.1 in a variant; ``off``: how far from theory the probes may be."""
     return Trial(
         name, "tank", "probe_error", 3.13, end, 10.0, sets,
-        holds=(Bound("probe_error", most=0.05), Bound("noise", most=0.05)),
-        goals=(
+        holds=(
             Bound("probe_error", most=off), Bound("probe_spread", most=5.0),
             Bound("noise", most=0.005),
         ),
@@ -125,8 +124,31 @@ def _still(name: str, *sets: str, end=20.0, off=0.005, **more) -> Trial:
 
 UNIFORM = "fluids.water.pressure=0"
 VISCOUS = "fluids.fluid.viscosity=1e-6"
-CALM = (Bound("late_speed", most=1e-9),)
+CALM = (Bound("speed", most=1.0), Bound("late_speed", most=1e-9))
+"""The kick dies away, and nothing is ever faster than it was."""
+
 ORDER = (Bound("near_5", least=0.6), Bound("speed", most=2.0))
+
+LEFT_OF_A_SWING = Bound("swing", least=0.9)
+"""Without friction a drop swings for ever.  After four periods a user shall see it swing as at the
+start, but for a tenth."""
+
+LEFT_OF_THE_VORTICES = Bound("energy_left", 0.95, 1.05)
+"""Over what the exact solution has: by theory 0.85 of the energy is left at Re 1000 and t = 1, and
+a user who simulates vortices wants to read their decay from the run to a twentieth."""
+
+
+def _patch(name: str, *sets: str, least: float, case="patch", **more) -> Trial:
+    """A rotating patch to ωt = 4, with at ``least`` so much of its energy of motion."""
+    return Trial(
+        name, case, "kinetic", 0.7, 4.0, 4.0, sets,
+        holds=(
+            *ORDER, Bound("pieces", most=1), Bound("kinetic", least=least),
+            Bound("angular", most=0.01), Bound("momentum", most=1e-13),
+        ),
+        **more,
+    )
+
 
 COARSE_PATCH = Trial(
     "rotating patch, coarse", "patch", "kinetic", 0.7, 3.0, 3.0, ("space.spacing=0.04",),
@@ -137,57 +159,36 @@ COARSE_PATCH = Trial(
 """Torn by ωt = 3 where it lacks a part; at half the spacing the potential is missed later."""
 
 BATTERY = (
-    _box("box, kick 1e-7 m/s", goals=CALM, fails=("no background",), speed=1e-7),
-    _box("box, kick 1e-7, viscous", VISCOUS, goals=CALM, speed=1e-7),
+    _box("box, kick 1e-7 m/s", bounds=CALM, fails=("no background",), speed=1e-7),
+    _box("box, kick 1e-7, viscous", VISCOUS, bounds=CALM, speed=1e-7),
     _box("box, kick 1e-3 m/s", KICK.format(1e-3), schemes=ALONE, speed=1e-3),
     _box("box, kick 1 m/s", KICK.format(1.0)),
     _box("box, jitter 1 %", *_jittered(0.01)),
     _box("box, jitter 5 %", *_jittered(0.05), schemes=ALONE),
     _box("box, jitter 10 %", *_jittered(0.1), fails=("no background",)),
     _box("box, jitter 10 %, viscous", *_jittered(0.1, VISCOUS)),
-    Trial(
-        "cube, jitter 10 %, 3D", "box_3d", "late_speed", 1.0, 1.0, 0.1,
-        holds=(Bound("late_speed", most=1e-2), Bound("near_least", least=0.6)),
-        goals=(Bound("late_speed", most=1e-4),), fails=("no background",),
-    ),
+    _box("cube, jitter 10 %, 3D", case="box_3d", fails=("no background",)),
     Trial(
         "two particles at one place", "twins", "late_speed", 1.0, 0.5, 0.2,
-        holds=(Bound("late_speed", most=0.1),), goals=(Bound("late_speed", most=1e-4),),
+        holds=(Bound("late_speed", most=0.1),), goals=AT_REST,
     ),
     _still("tank, hydrostatic", fails=("surface 1.3", "cubic 1.3")),
     _still("tank, hydrostatic, 60 s", end=60.0, schemes=ALONE),
     _still("tank, uniform density", UNIFORM, off=0.01, fails=("surface 1.3", "cubic 1.3")),
+    _still("tank, uniform density, 60 s", UNIFORM, off=0.01, end=60.0, schemes=ALONE),
     *(
         _still(f"tank, h/dx {h:g}", f"space.smoothing={h}", schemes=ALONE)
         for h in (1.0, 1.1, 1.2, 1.4, 1.5)
     ),
-    Trial(
-        "rotating patch", "patch", "kinetic", 0.7, 4.0, 4.0,
-        holds=(*ORDER, Bound("pieces", most=1), Bound("kinetic", least=0.8)),
-        goals=(
-            Bound("kinetic", least=0.93), Bound("angular", most=0.01),
-            Bound("momentum", most=1e-13),
-        ),
-        fails=("no shift",),
-    ),
+    _patch("rotating patch", least=0.93, fails=("no potential", "no shift")),
+    _patch("rotating patch, fine", "space.spacing=0.01", least=0.95, schemes=ALONE),
     COARSE_PATCH,
-    Trial(
-        "rotating cube, 3D", "patch_3d", "kinetic", 0.66, 2.0, 2.0,
-        holds=(*ORDER, Bound("pieces", most=1), Bound("kinetic", least=0.7)),
-        goals=(
-            Bound("kinetic", least=0.9), Bound("angular", most=0.02),
-            Bound("momentum", most=1e-13),
-        ),
-        fails=("no shift",),
-    ),
+    _patch("rotating cube, 3D", case="patch_3d", least=0.93, fails=("no shift",)),
     Trial(
         "dam break", "dam_break", "speed", 6.26, 3.0, 3.0,
-        holds=(Bound("speed", most=2.5),),
-        goals=(
-            Bound("speed", most=1.9), Bound("front_error", most=0.05),
-            Bound("front_begun_later", most=0.05),
-        ),
-        fails=("no impact, no floor",),
+        holds=(Bound("speed", most=2.5), Bound("front_error", most=0.05)),
+        goals=(Bound("speed", most=1.9), Bound("front_begun_later", most=0.05)),
+        fails=("no floor", "no impact, no floor"),
     ),
     Trial(
         "dam break, pressure", "dam_break", "noise", 6.26, 0.8, 0.8,
@@ -199,8 +200,8 @@ BATTERY = (
         holds=(Bound("speed", most=2.5),), goals=(Bound("speed", most=1.9),),
     ),
     Trial(
-        "oscillating drop, 20 periods", "drop", "energy", 1.0, 96.5, 40.0,
-        holds=(*ORDER, Bound("pieces", most=1)),
+        "oscillating drop, 20 periods", "drop", "swing", 1.0, 96.5, 40.0, ("output.log=0.02",),
+        holds=(*ORDER, Bound("pieces", most=1), LEFT_OF_A_SWING),
         # Its swing holds MU²/4 at the start: half of it shall be left.
         goals=(Bound("energy", least=-0.25, most=0.001), Bound("near_5", least=0.7)),
     ),
@@ -211,9 +212,12 @@ BATTERY = (
     ),
     *(
         Trial(
-            f"Taylor–Green, Re {re:,}", "taylor_green", "exact_error", 1.0, 2.0, 2.0,
+            f"Taylor–Green, Re {re:,}", "taylor_green", "energy_left", 1.0, 2.0, 2.0,
             (f"fluids.water.viscosity={1.0 / re!r}",),
-            holds=(*ORDER, Bound("voids", most=0.01), Bound("exact_error", most=0.5)),
+            holds=(
+                *ORDER, Bound("voids", most=0.01), Bound("exact_error", most=0.5),
+                LEFT_OF_THE_VORTICES,
+            ),
             goals=(Bound("exact_error", most=0.2), Bound("near_5", least=0.7)),
         )
         for re in (1000, 10_000)
@@ -245,11 +249,15 @@ BATTERY = (
 )
 """Everything; lengths are such that a laptop takes the better part of an hour."""
 
+SOON = (Bound("late_speed", most=1e-2), Bound("near_least", least=0.6))
+"""What a box shall hold before it has come to rest."""
+
 QUICK = (
     BATTERY[0]._replace(
-        end=0.1, other_end=0.02, schemes=ALONE, goals=(Bound("late_speed", most=1e-7),)
+        end=0.1, other_end=0.02, schemes=ALONE, holds=(*SOON, CALM[0]),
+        goals=(Bound("late_speed", most=1e-7),),
     ),
-    BATTERY[6]._replace(end=0.1, other_end=0.1, schemes=ALONE, goals=()),
+    BATTERY[6]._replace(end=0.1, other_end=0.1, schemes=ALONE, holds=SOON),
     COARSE_PATCH,
     Trial(
         "tank, one second", "tank", "noise", 3.13, 1.0, 1.0,

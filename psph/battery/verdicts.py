@@ -1,9 +1,9 @@
 """From a run's measures to a verdict."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from psph.battery.trials import ALWAYS, Bound, Trial
+from psph.battery.trials import ALWAYS, OURS, Bound, Trial
 from psph.study.runs import DONE
 
 GOOD, HOLDS, FAILS, BLEW_UP, REFUSED = "good", "holds", "fails", "blew up", "refused"
@@ -11,6 +11,20 @@ VERDICTS = (GOOD, HOLDS, FAILS, BLEW_UP, REFUSED)
 """From all goals met, by all bounds met, to none looked at."""
 
 HELD = (GOOD, HOLDS)
+
+
+class Broken(NamedTuple):
+    """A bound that a run does not meet, and what was measured in its place; ``None``: nothing."""
+
+    bound: Bound
+    value: float | None
+    goal: bool
+    """Whether it is one of the goals: then the trial is held all the same."""
+
+    def __str__(self) -> str:
+        """As ``kinetic 0.9 (≥ 0.93)``."""
+        told = "not measured" if self.value is None else f"{self.value:.3g}"
+        return f"{self.bound.measure} {told} ({self.bound.limits})"
 
 
 class Row(NamedTuple):
@@ -23,22 +37,17 @@ class Row(NamedTuple):
     shown: str
     status: str
     found: dict[str, float]
-    broken: tuple[str, ...]
+    broken: tuple[Broken, ...]
     reached: float
     """Simulated time in s."""
     seconds: float | None
-
-    @property
-    def as_meant(self) -> bool:
-        """Whether a control fails; true of all that is no control."""
-        return not self.control or self.verdict not in HELD
 
 
 def judged(
     trial: Trial, column: str, result: dict, found: dict[str, float], reached: float
 ) -> Row:
     """The row of a run that ended as ``result`` says."""
-    def row(verdict: str, broken: tuple[str, ...] = ()) -> Row:
+    def row(verdict: str, broken: tuple[Broken, ...] = ()) -> Row:
         return Row(
             trial.name, column, column in trial.fails, verdict, trial.shown, result["status"],
             found, broken, reached, result.get("seconds"),
@@ -49,14 +58,24 @@ def judged(
     if result["status"] != DONE:
         return row(BLEW_UP, tuple(_broken(trial.holds, found)))
     fatal = tuple(_broken((*ALWAYS, *trial.holds), found))
-    missed = tuple(_broken(trial.goals, found))
+    missed = tuple(_broken(trial.goals, found, goal=True))
     return row(FAILS if fatal else HOLDS if missed else GOOD, fatal + missed)
 
 
-def _broken(bounds: tuple[Bound, ...], found: dict[str, float]) -> Iterator[str]:
-    """Each bound that is not met, as ``kinetic 0.9 (≥ 0.93)``."""
+def _broken(bounds: tuple[Bound, ...], found: dict[str, float], goal=False) -> Iterator[Broken]:
     for bound in bounds:
         if not bound.holds(found):
-            value = found.get(bound.measure)
-            told = "not measured" if value is None else f"{value:.3g}"
-            yield f"{bound.measure} {told} ({bound.limits})"
+            yield Broken(bound, found.get(bound.measure), goal)
+
+
+def without_effect(rows: Sequence[Row]) -> Iterator[Row]:
+    """The controls that came to their end and missed no bound but those that our scheme misses too."""
+    ours = {row.trial: set(_fatal(row)) for row in rows if row.column == OURS}
+    for row in rows:
+        if row.control and row.verdict in (GOOD, HOLDS, FAILS):
+            if not set(_fatal(row)) - ours.get(row.trial, set()):
+                yield row
+
+
+def _fatal(row: Row) -> Iterator[Bound]:
+    return (broken.bound for broken in row.broken if not broken.goal)

@@ -102,6 +102,33 @@ def test_ghia(tmp_path):
         ghia(tmp_path / "none.csv")
 
 
+def test_swing_of_a_drop_after_four_periods():
+    case = load(CASES / "drop.toml")
+    time = np.linspace(0.0, 25.0, 5000)
+    motion = 3.0 * np.exp(-0.02 * time) * np.cos(2.0 * math.pi * time / measures.PERIOD) ** 2
+    run = SimpleNamespace(log=lambda: {"time": time, "kinetic_energy": motion})
+    [(name, swing)] = measures._of_drop(run, case, None)
+    expected = math.exp(-0.01 * measures.PERIODS * measures.PERIOD)
+    assert name == "swing" and swing == pytest.approx(expected, rel=1e-3) and swing < 0.9
+    early = SimpleNamespace(log=lambda: {"time": time[:3000], "kinetic_energy": motion[:3000]})
+    assert not list(measures._of_drop(early, case, None))
+    assert not list(measures._of_drop(run, load(CASES / "patch.toml"), None))
+
+
+def test_energy_left_is_told_over_that_of_the_exact_solution():
+    scene = Scene(load(CASES / "taylor_green.toml"))
+    x = (np.indices((50, 50)).reshape(2, -1).T + 0.5) * 0.02
+    times = np.array([0.0, 0.5, 1.0])
+    exact = [{"position": x, "velocity": scene.exact.velocity(x, t, scene.setting)} for t in times]
+    energy = [float((f["velocity"] ** 2).sum()) for f in exact]
+    assert energy[2] / energy[0] == pytest.approx(0.854, abs=1e-3)  # exp(-16 π² ν)
+    worn = [exact[0], exact[1], exact[2] | {"velocity": 0.8 * exact[2]["velocity"]}]
+    run = SimpleNamespace(times=times)
+    assert dict(measures._of_energy(run, scene, exact)) == {"energy_left": pytest.approx(1.0)}
+    assert dict(measures._of_energy(run, scene, worn)) == {"energy_left": pytest.approx(0.64)}
+    assert not dict(measures._of_energy(run, Scene(load(CASES / "patch.toml")), exact))
+
+
 def test_a_front_that_is_early_is_told_from_one_that_is_fast():
     case = load(CASES / "dam_break.toml")
     time, place = read_experiment(case, "martin_moyce", path_of(case).parent)
