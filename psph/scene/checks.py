@@ -11,6 +11,7 @@ from psph.case.consistency import MOST_STEPS
 from psph.case.tables import AXES
 from psph.physics.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
+from psph.scene.multiples import misfits
 from psph.scene.scene import SOUND_OVER_SPEED, Scene
 from psph.scene.walls import layers_needed, thinnest_walls
 
@@ -96,7 +97,7 @@ def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but likely not as meant."""
     for kind in (
         _thin_walls, _surface_threshold, _minimum_at_surface, _minimum_in_disorder,
-        _background_at_surface, _transport_at_surface, _slow_sound, _jitter,
+        _background_at_surface, _transport_at_surface, _slow_sound, _jitter, misfits,
     ):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"

@@ -95,7 +95,7 @@ def lattice_around(
     ``axis`` None: the longest one, of equals the first.  No site at all gives counts of 0.
     """
     ranges = [
-        [_sites(*ends, o, spacing) for *ends, o in zip(lower, upper, origin)]
+        [sites_between(*ends, o, spacing) for *ends, o in zip(lower, upper, origin)]
         for lower, upper in boxes
     ]
     found = [box for box in ranges if all(low < end for low, end in box)]
@@ -107,7 +107,7 @@ def lattice_around(
     return Lattice(origin, spacing, first, counts, axis)
 
 
-def _sites(lower: float, upper: float, origin: float, spacing: float) -> tuple[int, int]:
-    """First k inside and first k beyond, along one axis."""
+def sites_between(lower: float, upper: float, origin: float, spacing: float) -> tuple[int, int]:
+    """First k inside and first k beyond of the sites between two coordinates, along one axis."""
     low, end = ((x - origin) / spacing - 0.5 - TOLERANCE for x in (lower, upper))
     return math.ceil(low), math.ceil(end)

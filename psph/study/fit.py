@@ -53,13 +53,18 @@ class Foretold(NamedTuple):
 
 
 class Ladder:
-    """Runs of one case that differ in the spacing alone, at least two of them."""
+    """Runs of one case that differ in the spacing alone, at least two of them.
 
-    def __init__(self, runs: Sequence[Run], dimensions: int):
+    ``estimated``: their errors hold that of the finest run, which :func:`own_error` has told from
+    the same runs.  They know one number less then: neither a floor nor a check of the prediction.
+    """
+
+    def __init__(self, runs: Sequence[Run], dimensions: int, estimated: bool = False):
         self.runs = sorted((r for r in runs if r.error > 0.0), key=lambda r: -r.spacing)
         if len(self.runs) < 2:
             raise ValueError("a ladder needs two runs with an error")
-        self.dimensions = dimensions
+        self.dimensions, self.estimated = dimensions, estimated
+        self._fitted = LINE + estimated
         self._log_dx = np.log([r.spacing for r in self.runs])
         self._log_error = np.log([r.error for r in self.runs])
         self._costs = self._fit_costs()
@@ -67,7 +72,7 @@ class Ladder:
     @property
     def order(self) -> Estimate:
         """The observed order p of the error C dx^p, over all runs, and its uncertainty."""
-        return _slope(self._log_dx, self._log_error)
+        return _slope(self._log_dx, self._log_error, self._fitted)
 
     @property
     def steady(self) -> bool:
@@ -84,6 +89,8 @@ class Ladder:
     @cached_property
     def _towards_floor(self) -> "Extrapolated | None":
         """However steep: an error that came down at once and stays is its floor."""
+        if self.estimated:
+            return None
         last = self.runs[-LAST:]
         return richardson([r.spacing for r in last], [r.error for r in last], steepest=math.inf)
 
@@ -91,7 +98,7 @@ class Ladder:
     def foretold(self) -> "Foretold | None":
         """What the coarser runs foretell of the finest; None where they are too few or unsteady."""
         *coarser, finest = self.runs
-        if len(coarser) < LAST:
+        if len(coarser) < LAST or self.estimated:
             return None
         before = Ladder(coarser, self.dimensions)
         if not before.steady:
@@ -101,7 +108,7 @@ class Ladder:
     def error(self, spacing: float) -> Estimate:
         """The error to expect at a spacing in m; with a floor, the interval holds the power law too."""
         x, where = math.log(spacing), self._log_dx[::-1]
-        reach = _scatter(self._log_dx, self._log_error, x)
+        reach = _scatter(self._log_dx, self._log_error, x, self._fitted)
         if where[0] <= x <= where[-1]:
             return _around(float(np.interp(x, where, self._log_error[::-1])), reach)
         near = slice(None, LAST) if x > where[-1] else slice(-LAST, None)
@@ -161,25 +168,34 @@ class Ladder:
         return float(self._costs @ (particles * steps, steps))
 
 
-def _slope(x: np.ndarray, y: np.ndarray) -> Estimate:
+LINE = 2
+"""Numbers that a straight line takes of the runs."""
+
+
+def _slope(x: np.ndarray, y: np.ndarray, fitted: int) -> Estimate:
     fit = stats.linregress(x, y)
-    reach = _quantile(len(x)) * fit.stderr if len(x) > 2 else math.nan
+    free = len(x) - fitted
+    # linregress divides by n - 2, whatever else was fitted.
+    wide = math.sqrt((len(x) - LINE) / free) if free > 0 else math.nan
+    reach = _quantile(free) * wide * fit.stderr
     return Estimate(fit.slope, fit.slope - reach, fit.slope + reach)
 
 
-def _scatter(x: np.ndarray, y: np.ndarray, at: float) -> float:
+def _scatter(x: np.ndarray, y: np.ndarray, at: float, fitted: int) -> float:
     """Half the interval of a single new value at ``at`` around the line through all."""
-    if len(x) < 3:
+    free = len(x) - fitted
+    if free < 1:
         return math.nan
     slope, level = np.polyfit(x, y, 1)
     rest = y - level - slope * x
-    spread = math.sqrt(rest @ rest / (len(x) - 2))
+    spread = math.sqrt(rest @ rest / free)
     away = (at - x.mean()) ** 2 / ((x - x.mean()) ** 2).sum()
-    return _quantile(len(x)) * spread * math.sqrt(1.0 + 1.0 / len(x) + away)
+    return _quantile(free) * spread * math.sqrt(1.0 + 1.0 / len(x) + away)
 
 
-def _quantile(count: int) -> float:
-    return float(stats.t.ppf(0.5 + CONFIDENCE / 2, count - 2))
+def _quantile(free: int) -> float:
+    """Student's t for so many degrees of freedom; NaN without any."""
+    return float(stats.t.ppf(0.5 + CONFIDENCE / 2, free)) if free > 0 else math.nan
 
 
 def _around(log_middle: float, reach: float) -> Estimate:
@@ -230,3 +246,52 @@ def richardson(
         for k, unit in ((0, scale), (2, 1.0))
     )
     return Extrapolated(limit, p)
+
+
+SLOWEST, STEEPEST = 0.5, 2.0
+"""Orders between which that of a run's own error is looked for: sums over particles have no higher
+one, and below the lower the runs do not yet tell where they go."""
+
+ASSUMED = 1.0
+"""The order where one difference alone is known."""
+
+
+class OwnError(NamedTuple):
+    """The finest run's own relative error, and the order at which errors fall by it.
+
+    ``told``: whether the runs tell the order; else it is assumed.
+    """
+
+    error: float
+    order: float
+    told: bool
+
+
+def own_error(spacings: Sequence[float], differences: Sequence[float]) -> OwnError | None:
+    """The error of the finest run by how much the coarser differ from it; None: nothing to go by.
+
+    With errors C dx^p a run at dx differs from that at dx₀ by C (dx^p − dx₀^p); C and p through the
+    last three differences, p between SLOWEST and STEEPEST.  ``differences`` are relative; that of
+    the finest run is not looked at.
+    """
+    finest = min(spacings, default=math.nan)
+    known = sorted((dx, d) for dx, d in zip(spacings, differences) if dx > finest)[:LAST]
+    known = [(dx, d) for dx, d in known if d >= 0.0]
+    if not known:
+        return None
+    if any(d == 0.0 for _, d in known):
+        return OwnError(0.0, ASSUMED, False)  # nothing changes with the spacing
+    ratio = np.array([dx / finest for dx, _ in known])
+    log_d = np.log([d for _, d in known])
+
+    def heights(p: float) -> np.ndarray:
+        """log C dx₀^p by each difference."""
+        return log_d - np.log(ratio**p - 1.0)
+
+    p, told = ASSUMED, len(known) > 1
+    if told:
+        p = optimize.minimize_scalar(
+            lambda p: np.var(heights(p)), bounds=(SLOWEST, STEEPEST), method="bounded"
+        ).x
+        told = SLOWEST + UNSEEN < p < STEEPEST - UNSEEN
+    return OwnError(float(np.exp(heights(p).mean())), float(p), told)

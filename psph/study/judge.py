@@ -51,7 +51,7 @@ class Judge:
     @property
     def in_words(self) -> str:
         """``velocity at the end against the exact solution``."""
-        names = {EXACT: "the exact solution", THEORY: "theory", FINEST: "the finest run"}
+        names = {EXACT: "the exact solution", THEORY: "theory", FINEST: "the finest run, its own error added"}
         at = " at the end" if self.what in AT_THE_END else ""
         return f"{self.what}{at} against {names.get(self.against, f'experiment {self.against}')}"
 

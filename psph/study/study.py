@@ -9,7 +9,9 @@ from psph.case import Case, CaseError, load
 from psph.case.profiles import OFF, choices
 from psph.output.reader import Run as Folder
 from psph.scene import Scene, check
+from psph.scene.multiples import misfits
 from psph.study import fit, report, words
+from psph.study.answer import answers
 from psph.study.errors import StudyError
 from psph.study.judge import FINEST, Judge, Judgement, window
 from psph.study.ladder import PROFILE, SPACING, Settings, groups, name_of
@@ -37,6 +39,7 @@ class Study:
         self.judge = Judge(self.case, files)
         self.keys = list(dict.fromkeys(key for settings in every for key in settings))
         self.cases = cases(file, sets, every)
+        self.own_errors: dict[str, fit.OwnError | None] = {}
         self._merge()
 
     def _merge(self) -> None:
@@ -62,6 +65,8 @@ class Study:
     def run(self, say: Callable[[str], None]) -> list[dict]:
         """Every run, then a row for each: on all ranks, errors on rank 0."""
         results = []
+        for line in self._misfits():
+            say(f"warning: {line}")
         for k, (settings, case) in enumerate(zip(self.every, self.cases)):
             told = f"run {k + 1} of {len(self.every)}: {name_of(settings)}"
             say(f"{told} ...{self._left(results, k)}")
@@ -71,6 +76,12 @@ class Study:
             results.append(result)
             say(f"{told}: {_outcome(result)}")
         return self._rows(results) if self.comm.rank == 0 else []
+
+    def _misfits(self) -> Iterator[str]:
+        """Widths of the case that a spacing of the study changes: its error holds that change too."""
+        loaded = [case for case in self.cases if not isinstance(case, CaseError)]
+        for case in {case.space.spacing: case for case in loaded}.values():
+            yield from misfits(Scene(case))
 
     def _left(self, results: list[dict], k: int) -> str:
         """How long the rest may take, from the particle-steps of the runs so far."""
@@ -89,28 +100,45 @@ class Study:
     def _rows(self, results: list[dict]) -> list[dict]:
         """Settings, errors and figures of each run, flat; rank 0 alone."""
         finest = self._finest(results)
+        reference = self.folder / f"run-{finest + 1:02d}" if finest is not None else None
         found = []
         for k, (settings, result) in enumerate(zip(self.every, results)):
             own = settings | ({SPACING: self.cases[k].space.spacing} if result["status"] == DONE else {})
             folder = self.folder / f"run-{k + 1:02d}"
             if result["status"] == DONE:
-                errors = self.judge.errors(folder, finest)
+                errors = self.judge.errors(folder, reference)
                 more = vitals(Folder(folder), self.case.study)
             else:
                 errors, more = Judgement(math.nan, math.nan, math.nan), {}
             figures = {name: x for name, x in result.items() if not isinstance(x, dict)}
             norms = {f"error_{norm}": x for norm, x in errors._asdict().items()}
             found.append({**own, **norms, **figures, **more})
+        if self.judge.against == FINEST and finest is not None:
+            self._add_own_errors(found, finest)
         return found
 
-    def _finest(self, results: list[dict]) -> Path | None:
-        """The folder of the run with the smallest spacing and nothing else changed."""
+    def _add_own_errors(self, found: list[dict], finest: int) -> None:
+        """Errors against the finest run become differences from it, and errors hold its own too."""
+        shared = {k: v for k, v in self.every[finest].items() if k != SPACING}
+        ladder = [
+            row for row, settings in zip(found, self.every)
+            if row["status"] == DONE and {k: v for k, v in settings.items() if k != SPACING} == shared
+        ]
+        for norm in Judgement._fields:
+            error, difference = f"error_{norm}", f"{DIFFERENCE}{norm}"
+            self.own_errors[norm] = own = fit.own_error([row[SPACING] for row in ladder], [row[error] for row in ladder])
+            for row in found if own else ():
+                row[difference] = 0.0 if row is found[finest] else row[error]
+                row[error] = row[difference] + own.error
+
+    def _finest(self, results: list[dict]) -> int | None:
+        """The run with the smallest spacing and nothing else changed."""
         done = [
             (case.space.spacing, len(self.every[k]), k)
             for k, (case, result) in enumerate(zip(self.cases, results))
             if result["status"] == DONE
         ]
-        return self.folder / f"run-{min(done)[2] + 1:02d}" if done else None
+        return min(done)[2] if done else None
 
     def conclude(
         self, found: list[dict], told: list[str], error: float | None, seconds: float | None
@@ -118,9 +146,9 @@ class Study:
         """Write the files and yield what to tell, the sentences ``told`` among it; rank 0 alone."""
         keys = self.keys
         ladders = list(self.ladders(found))
-        periods = [length for length in Scene(self.case).periods if length is not None]
         pasted = [(self._written_out(shared), *rest) for shared, *rest in ladders]
-        answer = list(_answer(pasted, periods, error, seconds)) if error or seconds else []
+        scene = Scene(self.case)
+        answer = list(answers(pasted, scene, error, seconds)) if error or seconds else []
         title = f"{self.case.title or self.case.name}: what accuracy costs"
         page = [f"# {title}", "", f"Error: {self.judge.in_words}.", "",
                 *report.markdown(found, keys), "", *(f"- {line}" for line in told), ""]
@@ -162,6 +190,8 @@ class Study:
         """What the rows tell in words."""
         ladders = list(self.ladders(found))
         several = sum(ladder is not None for *_, ladder in ladders) > 1
+        if own := self.own_errors.get("l2"):
+            yield words.own_error_words(own)
         for shared, _, ladder in ladders:
             if ladder:
                 yield from words.ladder_words(ladder, name_of(shared) if several else "")
@@ -226,6 +256,9 @@ def _outcome(result: dict) -> str:
     )
 
 
+DIFFERENCE = "difference_"
+"""Columns of a row: its difference from the finest run, in three norms, where that run is the reference."""
+
 MEAN, SPREAD = "mean ", "spread "
 """Columns of a row: a probe's mean and standard deviation over time."""
 
@@ -260,7 +293,9 @@ def ladders_of(
             fit.Run(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part
         ]
         enough = len({run.spacing for run in runs if run.error > 0.0}) > 1
-        yield shared, [found[k] for k in places], fit.Ladder(runs, dimensions) if enough else None
+        estimated = any(f"{DIFFERENCE}l2" in row for row in part)
+        ladder = fit.Ladder(runs, dimensions, estimated) if enough else None
+        yield shared, [found[k] for k in places], ladder
 
 
 def pareto(found: list[dict]) -> list[dict]:
@@ -271,41 +306,3 @@ def pareto(found: list[dict]) -> list[dict]:
         if not front or row["error_l2"] < front[-1]["error_l2"]:
             front.append(row)
     return front
-
-
-def _answer(
-    ladders, periods: list[float], error: float | None, seconds: float | None
-) -> Iterator[str]:
-    """Which settings reach an error, or what so many seconds buy."""
-    fits = [(shared, ladder) for shared, _, ladder in ladders if ladder and ladder.steady]
-    if not fits:
-        yield "no answer: it takes two runs that differ in the spacing alone, the finer the better."
-        return
-    found = []
-    for shared, ladder in fits:
-        dx = ladder.spacing_for_error(error) if error else ladder.spacing_for_seconds(seconds)
-        if not math.isnan(dx):
-            dx = fitting(dx, periods)
-            found.append(({SPACING: dx, **shared}, ladder.error(dx), ladder.seconds(dx)))
-    if not found:
-        asked = report.percent(error) if error else report.seconds(seconds)
-        yield f"no answer: {asked} lies beyond what these runs can tell."
-        return
-    best = min(found, key=lambda f: (f[2] if error else f[1]).value)
-    asked = f"an error of {report.percent(error)}" if error else f"{report.seconds(seconds)}"
-    yield f"For {asked}, " + next(lines := words.advice(*best))
-    yield from lines
-
-
-TRIES = 1000
-"""Spacings that are looked at for one that divides all periods."""
-
-
-def fitting(spacing: float, periods: list[float]) -> float:
-    """A spacing in m at most so large that all periods are whole multiples of it; else rounded."""
-    rounded = float(f"{spacing:.3g}")
-    for n in range(TRIES) if periods else ():
-        least = periods[0] / (math.ceil(periods[0] / spacing - 1e-9) + n)
-        if all(abs(p / least - round(p / least)) < 1e-9 * p / least for p in periods):
-            return least
-    return rounded

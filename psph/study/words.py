@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from psph.study.fit import LAST, Estimate, Extrapolated, Ladder
+from psph.study.fit import LAST, Estimate, Extrapolated, Ladder, OwnError
 from psph.study.ladder import SPACING, short, toml
 from psph.study.report import joined, percent, seconds
 
@@ -51,6 +51,15 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
             f"{beginning}half that error is to be expected at a spacing of {spacing:.3g} m and "
             f"costs {longer:.1f} times as long."
         )
+
+
+def own_error_words(own: OwnError) -> str:
+    """What was added to the differences from the finest run, and how it is known."""
+    how = (
+        f"by the order {own.order:.2f} at which differences from it fall"
+        if own.told else f"for an order of {own.order:.1f}, assumed since these runs do not tell it"
+    )
+    return f"The errors hold that of the finest run itself, estimated as {percent(own.error)} {how}."
 
 
 def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:

@@ -43,6 +43,23 @@ def test_a_scene_without_any_site_is_refused(tmp_path):
     assert line.startswith("case.toml: fluids.water.shape: no lattice site lies in it")
 
 
+def test_a_width_that_is_no_multiple_of_the_spacing_is_warned_of(tmp_path):
+    box = "fluids.water.shape.box.upper=[{}, 0.5]"
+    [line] = checked(tmp_path, WATER, "space.spacing=0.03", box.format(0.25), "fluids.water.shape.box.lower=[0.0, 0.2]")
+    assert line == (
+        "case.toml: fluids.water is 0.25 m wide along x, which is 8.333 spacings of 0.03 m: the "
+        "lattice makes it 8; space.spacing = 0.025 fits"
+    )
+    assert checked(tmp_path, WATER, "space.spacing=0.03125", box.format(0.25)) == []
+    lines = checked(tmp_path, TANK, "walls.tank.shape.difference.minus=[{ box = { lower = [0.0, 0.0], "
+                    "upper = [1.05, 0.7] } }]")
+    assert lines[0].startswith("case.toml: walls.tank is 1.05 m wide along x, which is 10.5 spacings")
+
+
+def test_an_open_rim_may_have_any_height(tmp_path):
+    assert checked(tmp_path, TANK.replace("0.7]", "0.73]")) == []
+
+
 def test_overlapping_fluids_are_refused(tmp_path):
     [line] = refused(tmp_path, WATER + OIL.format(low=0.4))
     assert line == (

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from psph.study.fit import Ladder, Run, richardson
+from psph.study.fit import Ladder, Run, own_error, richardson
 
 
 def run(dx: float, order: float = 2.0, noise: float = 1.0) -> Run:
@@ -126,3 +126,36 @@ def test_richardson_finds_limit_and_order():
     assert found.value.low < 3.0 < found.value.high
     assert richardson(dx[:2], q[:2]) is None
     assert richardson(dx, [1.0, 2.0, 1.5, 1.7]) is None  # it does not converge
+
+
+@pytest.mark.parametrize("order", [0.7, 1.0, 1.9])
+@pytest.mark.parametrize("spacings", [(0.03, 0.02, 0.01), (0.01, 0.04, 0.02, 0.005)])
+def test_the_finest_runs_own_error_from_how_others_differ_from_it(spacings, order):
+    finest = min(spacings)
+    differences = [5.0 * (dx**order - finest**order) if dx > finest else math.nan for dx in spacings]
+    own = own_error(spacings, differences)
+    assert own.told and own.order == pytest.approx(order, abs=1e-4)
+    assert own.error == pytest.approx(5.0 * finest**order, rel=1e-3)
+
+
+def test_one_difference_leaves_the_order_to_be_assumed():
+    own = own_error([0.02, 0.01], [0.03, math.nan])
+    assert not own.told and own.order == 1.0 and own.error == pytest.approx(0.03)
+    assert own_error([0.01], [math.nan]) is None and own_error([], []) is None
+    assert own_error([0.02, 0.01], [0.0, math.nan]).error == 0.0
+
+
+@pytest.mark.parametrize("differences, order", [((0.05, 0.045), 0.5), ((0.5, 0.01), 2.0)])
+def test_an_order_that_no_scheme_has_is_none_that_runs_tell(differences, order):
+    own = own_error([0.04, 0.02, 0.01], [*differences, math.nan])
+    assert not own.told and own.order == pytest.approx(order, abs=0.01)
+
+
+def test_errors_that_hold_an_estimate_tell_less():
+    runs = [run(0.04), run(0.02, noise=1.1), run(0.01)]
+    assert math.isnan(Ladder(runs, 2, estimated=True).order.low)
+    four = [*runs, run(0.005)]
+    plain, estimated = Ladder(four, 2), Ladder(four, 2, estimated=True)
+    assert estimated.order.value == plain.order.value and estimated.order.low < plain.order.low
+    assert estimated.error(0.0025).high > plain.error(0.0025).high
+    assert estimated.floor is None is estimated.foretold and plain.foretold

@@ -27,7 +27,8 @@ from psph.study.errors import StudyError
 from psph.study.judge import Judge, series_errors
 from psph.study.page import main as on_page
 from psph.study.prediction import predicted
-from psph.study.study import fitting, pareto
+from psph.study.study import pareto
+from psph.study.answer import fitting
 
 WAVE = """
 scheme = "sph"
@@ -129,11 +130,14 @@ def test_an_error_is_answered_with_settings_to_paste(done, tmp_path):
     assert round(1.0 / spacing) == pytest.approx(1.0 / spacing)  # the period is a multiple of it
 
 
-def test_a_spacing_that_fits_all_periods():
-    assert fitting(0.123, []) == 0.123
+def test_a_spacing_that_fits_and_stays_within_what_was_asked():
+    assert fitting(0.123, []) == 0.123 and fitting(0.12385, []) == 0.123
+    assert fitting(0.12385, [], coarser=True) == 0.124
     assert fitting(0.123, [1.0]) == 1.0 / 9 and fitting(0.5, [1.0]) == 0.5
-    assert fitting(0.3, [1.0, 0.6]) == 0.2
-    assert fitting(0.3, [1.0, 2**0.5]) == 0.3  # nothing fits: check will say so
+    assert fitting(0.123, [1.0], coarser=True) == 1.0 / 8
+    assert fitting(0.3, [1.0, 0.6]) == pytest.approx(0.2)
+    assert fitting(0.3, [1.0, 2**0.5], [1.0]) == 0.25  # not all: then what comes next
+    assert fitting(0.3, [1.0, 2**0.5]) == 0.3  # nothing fits: a warning says so
 
 
 def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
@@ -375,10 +379,30 @@ def test_the_finest_run_judges_where_nothing_else_does(tmp_path):
     job = study(tmp_path, text=text)
     assert job.returncode == 0, job.stderr
     errors = [r["error_l2"] for r in rows_of(tmp_path)]
-    assert errors[2] == "nan" and float(errors[0]) < 1e-12  # a uniform flow stays one
+    assert max(map(float, errors)) < 1e-12  # a uniform flow stays one
     case = load(tmp_path / "wave.toml")
-    assert Judge(case).in_words == "velocity at the end against the finest run"
+    assert Judge(case).in_words == (
+        "velocity at the end against the finest run, its own error added"
+    )
     assert alone().size == 1 and json.loads((tmp_path / "out" / "study.json").read_text())["ranks"] == 1
+
+
+def test_errors_against_the_finest_run_hold_its_own(done, tmp_path):
+    """By a wave whose exact solution is known: what is promised without it holds against it."""
+    asked = 0.01
+    job = study(tmp_path, "--set", "study.against=finest", "--set", "study.error=velocity",
+                "--error", str(asked))
+    assert job.returncode == 0, job.stderr
+    true = {float(r["space.spacing"]): float(r["error_l2"]) for r in rows_of(done[0])}
+    rows = {float(r["space.spacing"]): r for r in rows_of(tmp_path)}
+    for dx, row in rows.items():
+        assert 1 / 1.3 < float(row["error_l2"]) / true[dx] < 1.3
+    assert float(rows[0.025]["difference_l2"]) < 0.85 * true[0.025]  # what was told as its error
+    assert "The errors hold that of the finest run itself, estimated as" in job.stdout
+    answer = job.stdout[job.stdout.index("For an error of 1 %") :].splitlines()
+    spacing = float(answer[2].removeprefix("spacing = "))
+    order = math.log(true[0.05] / true[0.0125]) / math.log(4.0)
+    assert 0.5 * asked < true[0.0125] * (spacing / 0.0125) ** order < 1.1 * asked
 
 
 def test_a_study_comes_onto_a_page_with_its_picture(done, tmp_path):

@@ -1,0 +1,123 @@
+"""Widths of a case against its spacing: a box that is no whole number of spacings wide changes size."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from psph.case.shapes import Box, Difference, Shape
+from psph.case.tables import AXES
+from psph.scene.lattice import TOLERANCE, sites_between
+from psph.scene.shapes import bounds
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+WIDEST_MISFIT = 1e-3
+"""Part of a width that the lattice may change without a warning: far below the errors of a run."""
+
+FARTHEST = 1.5
+"""A spacing that fits is looked for up to this factor away."""
+
+
+class Width(NamedTuple):
+    """The width of a box, or a period, along an axis; ``key`` of the case, ends in m."""
+
+    key: str
+    axis: int
+    lower: float
+    upper: float
+
+    @property
+    def length(self) -> float:
+        """In m."""
+        return self.upper - self.lower
+
+
+def widths(scene: "Scene") -> list[Width]:
+    """Of every box of a fluid and every closed room in a wall, and the periods of the domain."""
+    case = scene.case
+    found = [
+        Width("space.upper", d, low, low + period)
+        for d, (low, period) in enumerate(zip(scene.lower, scene.periods)) if period is not None
+    ]
+    for name, fluid in case.fluids.items():
+        boxes = _boxes(fluid.shape)
+        found += (Width(f"fluids.{name}", *side) for box in boxes for side in _sides(box))
+    for name, wall in case.walls.items():
+        found += (Width(f"walls.{name}", *side) for side in _cavities(wall.shape))
+    return found
+
+
+def misfits(scene: "Scene", spacing: float | None = None) -> Iterator[str]:
+    """A line for each fluid, wall and axis whose width the lattice changes noticeably.
+
+    At a ``spacing`` in m, by default that of the scene.
+    """
+    every, dx = widths(scene), spacing or scene.spacing
+    said = set()
+    for width in every:
+        number = width.length / dx
+        low, end = sites_between(width.lower, width.upper, scene.case.space.origin[width.axis], dx)
+        change = abs((end - low) * dx / width.length - 1.0)
+        if change < WIDEST_MISFIT or (width.key, width.axis) in said:
+            continue
+        said.add((width.key, width.axis))
+        nearest = nearest_fit(dx, [other.length for other in every])
+        fits = f"{nearest:.6g} fits" if nearest else f"{width.length / max(1, round(number)):.6g} fits it"
+        yield (
+            f"{width.key} is {width.length:.6g} m wide along {AXES[width.axis]}, which is {number:.4g} "
+            f"spacings of {dx:.6g} m: the lattice makes it {end - low}; space.spacing = {fits}"
+        )
+
+
+def fits(spacing: float, lengths: Sequence[float]) -> bool:
+    """Whether every length is a whole number of spacings."""
+    numbers = [length / spacing for length in lengths]
+    return all(round(n) >= 1 and abs(n - round(n)) <= TOLERANCE * max(1.0, n) for n in numbers)
+
+
+def nearest_fit(
+    spacing: float, lengths: Sequence[float], least: float = 1.0 / FARTHEST, most: float = FARTHEST
+) -> float | None:
+    """The spacing in m nearest to ``spacing`` of which all lengths are whole multiples, or None.
+
+    Between ``least`` and ``most`` times ``spacing``.
+    """
+    shortest = min(lengths)
+    first = math.ceil(shortest / (most * spacing) - TOLERANCE)
+    last = math.floor(shortest / (least * spacing) + TOLERANCE)
+    tried = (shortest / n for n in range(max(first, 1), last + 1))
+    return min(
+        (x for x in tried if fits(x, lengths)), key=lambda x: abs(math.log(x / spacing)), default=None
+    )
+
+
+def _boxes(shape: Shape) -> Iterator[Box]:
+    """The boxes that a shape is made of."""
+    match shape.form:
+        case tuple() as shapes:
+            for one in shapes:
+                yield from _boxes(one)
+        case Difference(base=base):
+            yield from _boxes(base)
+        case Box() as box:
+            yield box
+
+
+def _sides(box: Box) -> Iterator[tuple[int, float, float]]:
+    for d, (low, up) in enumerate(zip(box.lower, box.upper)):
+        yield d, low, up
+
+
+def _cavities(shape: Shape) -> Iterator[tuple[int, float, float]]:
+    """Axis and ends of the rooms that a shape leaves; not along an axis where a room is open."""
+    match shape.form:
+        case tuple() as shapes:
+            for one in shapes:
+                yield from _cavities(one)
+        case Difference(base=base, minus=minus):
+            yield from _cavities(base)
+            lower, upper = bounds(base)
+            for box in (box for one in minus for box in _boxes(one)):
+                yield from (side for side in _sides(box)
+                            if lower[side[0]] < side[1] and side[2] < upper[side[0]])
