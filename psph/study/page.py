@@ -2,7 +2,7 @@
 
 Each FOLDER holds a study; its table, its sentences and its picture come between the markers of
 the page, the pictures into ``images/`` beside it.  Two tables join the studies: what ladders
-foretold of their finest run, and what the profiles cost.
+predict for their finest run, and what the profiles cost.
 """
 
 import json
@@ -19,12 +19,12 @@ from psph.study.study import KEPT, PAGE, PICTURE, ladders_of
 
 
 def studies(page: Path, folders: Iterable[Path]) -> str:
-    """What the studies say, for a page; their pictures are copied.  OutputError: no study there."""
+    """The results of the studies, for a page; their pictures are copied.  OutputError: no study there."""
     found = [(folder, _kept(folder)) for folder in folders]
     alone = [(folder, kept) for folder, kept in found if PROFILE not in kept["vary"]]
     of_profiles = [kept for _, kept in found if PROFILE in kept["vary"]]
     lines = [line for folder, _ in alone for line in _one(page, folder)]
-    return "\n".join([*lines, *_foretold(alone), *(_profiles(of_profiles) if of_profiles else ())])
+    return "\n".join([*lines, *_predictions(alone), *(_profiles(of_profiles) if of_profiles else ())])
 
 
 def _kept(folder: Path) -> dict:
@@ -32,8 +32,8 @@ def _kept(folder: Path) -> dict:
         return json.loads((folder / KEPT).read_text(encoding="utf-8"))
 
 
-def _foretold(found: list[tuple[Path, dict]]) -> Iterator[str]:
-    """A line for each ladder whose coarser runs foretell its finest, and the head of the table."""
+def _predictions(found: list[tuple[Path, dict]]) -> Iterator[str]:
+    """A line for each ladder whose coarser runs predict its finest, and the head of the table."""
     lines = [
         (folder.name, ladder.foretold)
         for folder, kept in found
@@ -42,9 +42,9 @@ def _foretold(found: list[tuple[Path, dict]]) -> Iterator[str]:
     ]
     if not lines:
         return
-    yield "## Foretold of the finest run by the others"
+    yield "## Prediction of the finest run by the others"
     yield ""
-    yield "| case | spacing | error foretold | came | seconds foretold | came |"
+    yield "| case | spacing | error predicted | measured | seconds predicted | measured |"
     yield "|---" * 6 + "|"
     for name, (run, error, took) in lines:
         yield (
@@ -56,7 +56,7 @@ def _foretold(found: list[tuple[Path, dict]]) -> Iterator[str]:
 
 def _profiles(every: list[dict]) -> Iterator[str]:
     """A line for each case and spacing: error and seconds of each profile."""
-    yield "## The price of profiles"
+    yield "## The cost of profiles"
     yield ""
     yield f"| case | error of | spacing | {' | '.join(PROFILES)} |"
     yield "|---" * (3 + len(PROFILES)) + "|"

@@ -1,4 +1,4 @@
-"""What a study found, in plain sentences.  Each follows from its table."""
+"""The conclusions of a study, in sentences.  Each follows from its table."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,7 +14,7 @@ HALF = 0.5
 
 
 def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
-    """The price of accuracy along a ladder of spacings."""
+    """What a given error costs in a series of spacings."""
     finest = ladder.runs[-1]
     beginning = f"{name}: " if name else ""
     yield (
@@ -24,8 +24,8 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
     if not ladder.steady:
         best = min(ladder.runs, key=lambda run: run.error)
         yield (
-            f"{beginning}the error does not fall steadily: at {best.spacing:g} m it is smallest, "
-            f"{percent(best.error)}. Something else than the spacing sets it, and nothing is foretold."
+            f"{beginning}the error does not fall steadily: it is smallest at {best.spacing:g} m, "
+            f"{percent(best.error)}. It depends on more than the spacing, so nothing is predicted."
         )
         return
     order = ladder.order
@@ -35,21 +35,21 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
     )
     if ladder.floor:
         yield (
-            f"{beginning}by the last {LAST} runs {percent(ladder.floor)} would be left however fine "
-            "the spacing; a larger space.smoothing may lower that."
+            f"{beginning}extrapolated from the last {LAST} runs, {percent(ladder.floor)} remains at zero "
+            "spacing; a larger space.smoothing may lower that."
         )
     if ladder.foretold:
         _, error, took = ladder.foretold
         yield (
-            f"{beginning}without the finest run {percent(error.value)} in {seconds(took.value)} would "
-            f"have been foretold of it."
+            f"{beginning}the other runs predict {percent(error.value)} in {seconds(took.value)} for the "
+            "finest one."
         )
     spacing = ladder.spacing_for_error(HALF * finest.error)
     if not math.isnan(spacing):
         longer = ladder.seconds(spacing).value / ladder.seconds(finest.spacing).value
         yield (
-            f"{beginning}half that error is to be expected at a spacing of {spacing:.3g} m and "
-            f"costs {longer:.1f} times as long."
+            f"{beginning}half that error is expected at a spacing of {spacing:.3g} m, in {longer:.1f} times "
+            "the time."
         )
 
 
@@ -70,7 +70,7 @@ def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
     time, error = row["seconds"] / base["seconds"], row["error_l2"] / base["error_l2"]
     same = f"{what} takes {time:.2f} times as long and has {error:.2f} times the error"
     if abs(error - 1.0) < SAME:
-        same = f"{what} takes {time:.2f} times as long and leaves the error as it is"
+        same = f"{what} takes {time:.2f} times as long and has the same error"
     if ladder is None or not ladder.steady or not error > 0.0:
         return f"{same}."
     spacing = base[SPACING] * (1.0 / error) ** (1.0 / ladder.order.value)
@@ -91,17 +91,17 @@ def limit_words(what: str, found: Extrapolated, finest: float, runs: int) -> str
 
 
 def failed_words(rows: Sequence[dict]) -> Iterator[str]:
-    """The runs that did not come to their end."""
+    """The runs that did not finish."""
     failed = [row for row in rows if row["status"] != "done"]
     if failed:
-        yield f"{len(failed)} of {len(rows)} runs did not end well: their status says why."
+        yield f"{len(failed)} of {len(rows)} runs did not finish: see their status."
 
 
 def advice(settings: dict, error: Estimate, time: Estimate) -> Iterator[str]:
-    """Which settings to use, and what to expect of them; the last lines go into the case."""
+    """Which settings to use, with their error and time; the last lines can be put into the case."""
     yield (
         f"expect an error of {percent(error.value)}{interval(error, percent)} in "
-        f"{seconds(time.value)}{interval(time, seconds)}, compiling apart, with:"
+        f"{seconds(time.value)}{interval(time, seconds)}, without compiling, with:"
     )
     tables: dict[str, list[str]] = {}
     for key, value in settings.items():
@@ -123,8 +123,8 @@ def within(estimate: Estimate, form: str) -> str:
 
 
 def unknown(estimate: Estimate, runs: int) -> str:
-    """What is said of a value whose uncertainty so few runs do not tell."""
-    return f"; {runs} runs leave its uncertainty unknown" if math.isnan(estimate.low) else ""
+    """A remark on a value from too few runs to estimate its uncertainty."""
+    return f"; its uncertainty is unknown with {runs} runs" if math.isnan(estimate.low) else ""
 
 
 def interval(estimate: Estimate, write) -> str:

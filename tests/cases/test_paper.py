@@ -65,7 +65,7 @@ def test_negative_pressure_by_symmetric_sph_explodes(ran, kernel):
     )
     log = run.log()
     assert 0.85 < growth_rate(log) / box_growth(tension(kernel), BOX).rate < 1.0
-    assert growth_rate(log) == pytest.approx(growth_rate(foretold(kernel)), rel=0.01)
+    assert growth_rate(log) == pytest.approx(growth_rate(predicted(kernel)), rel=0.01)
     assert 0.005 < log["time"][np.argmax(log["largest_speed"] > 0.1)] < 0.012
     assert 0.8 < log["largest_speed"].max() < 4.0
 
@@ -90,7 +90,7 @@ def tension(kernel):
     )
 
 
-def foretold(kernel):
+def predicted(kernel):
     """The log of the kicked box by linear theory: a sum over all its modes."""
     system, sites = box_of(couplings(Uniform(tension(kernel))), BOX, 3)
     squares, modes = np.linalg.eigh(system.squares)

@@ -21,8 +21,8 @@ def test_artificial_stress_slows_the_kick_as_linear_theory_says(tmp_path):
     slowed = growth_rate(log(tmp_path / "a", "physics.artificial_stress=0.2", "time.end=0.02"))
     plain = growth_rate(log(tmp_path / "b", "time.end=0.01"))
     settings = TENSION._replace(remedies=(ArtificialStress(0.2),))
-    foretold = box_growth(settings, BOX).rate
-    assert slowed == pytest.approx(foretold, rel=0.15)
+    predicted = box_growth(settings, BOX).rate
+    assert slowed == pytest.approx(predicted, rel=0.15)
     assert plain > 2.0 * slowed
 
 

@@ -1,4 +1,4 @@
-"""What explain foretells against what a run then holds and sends."""
+"""What explain predicts against what a run then holds and sends."""
 
 import re
 

@@ -34,8 +34,8 @@ record.write_last()
 record.close()
 peak = comm.reduce(memory("VmHWM") - before, MPI.MAX)
 if comm.rank == 0:
-    foretold = sum(bytes_per_particle(scene, plan)) * particles / comm.size
-    print(json.dumps({"particles": particles, "peak": peak, "foretold": foretold}))
+    predicted = sum(bytes_per_particle(scene, plan)) * particles / comm.size
+    print(json.dumps({"particles": particles, "peak": peak, "predicted": predicted}))
 """
 
 
@@ -50,7 +50,7 @@ def test_a_million_particles_come_back(tmp_path):
     assert job.returncode == 0, job.stderr
     found = json.loads(job.stdout.splitlines()[-1])
     assert found["particles"] == SIDE**2
-    assert found["peak"] < 1.3 * found["foretold"]  # all of it, frames and log, not the step alone
+    assert found["peak"] < 1.3 * found["predicted"]  # all of it, frames and log, not the step alone
     frame = Run(tmp_path).frame(-1)
     order = np.argsort(frame["id"])
     assert np.array_equal(frame["id"][order], np.arange(SIDE**2))

@@ -16,7 +16,7 @@ record.write_frame()
 print(json.dumps({
     "particles": particles,
     "measured": (memory("VmHWM") - before) / particles,
-    "foretold": sum(bytes_per_particle(scene, plan)),
+    "predicted": sum(bytes_per_particle(scene, plan)),
 }))
 """
 
@@ -48,4 +48,4 @@ def test_bytes_a_particle_rebuilds_and_frames_included(tmp_path):
     found = json.loads(job.stdout.splitlines()[-1])
     assert found["particles"] == 80**3
     assert 300 < found["measured"] <= 600
-    assert abs(found["measured"] / found["foretold"] - 1.0) < 0.15
+    assert abs(found["measured"] / found["predicted"] - 1.0) < 0.15

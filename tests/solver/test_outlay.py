@@ -1,4 +1,4 @@
-"""What explain foretells of the files of a run, against the files."""
+"""What explain predicts of the files of a run, against the files."""
 
 import re
 import time
@@ -54,7 +54,7 @@ def said(case, what):
     ]
 
 
-def test_frames_and_rows_are_as_many_as_foretold(finished):
+def test_frames_and_rows_are_as_many_as_predicted(finished):
     case, folder, _ = finished
     assert abs(said(case, "frames")[0][0] - len(Run(folder).times)) <= 1
     assert abs(said(case, "log.csv")[0][0] - len(Run(folder).log()["time"])) <= 1
@@ -65,13 +65,13 @@ def test_frames_and_rows_are_as_many_as_foretold(finished):
     assert (probes, looked) == (PROBES, PROBES * 252) and 5 * 252 < pairs < 50 * 252
 
 
-def test_a_frame_takes_as_many_bytes_as_foretold(finished):
+def test_a_frame_takes_as_many_bytes_as_predicted(finished):
     case, folder, _ = finished
     size = (folder / "box.h5").stat().st_size / len(Run(folder).times)
     assert bytes_per_frame(Scene(case)) == pytest.approx(size, rel=0.15)
 
 
-def test_a_cadence_finer_than_the_steps_is_foretold_as_what_it_is(tmp_path):
+def test_a_cadence_finer_than_the_steps_is_predicted_as_what_it_is(tmp_path):
     case = probed(tmp_path, 1, "output.frames=1e-6")
     steps = said(case, "expected")[0][0]
     assert said(case, "frames")[0][0] == steps + 1

@@ -53,7 +53,7 @@ def test_tensile_control_is_neutral_under_tension_alone(tmp_path):
     assert line == drawn
 
 
-def test_of_stress_points_nothing_is_foretold():
+def test_of_stress_points_nothing_is_predicted():
     """They are not neutral: at h/dx 1.2 the kick grows (tests/cases/test_remedies.py)."""
     _, line = said(paper("negative_pressure_traditional", "physics.pressure_gradient=stress_points"))
     assert line.split()[0] == "unknown"

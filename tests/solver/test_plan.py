@@ -116,7 +116,7 @@ def test_the_surface_effect_brings_its_field_and_no_message(planned):
     assert len(plan.reductions) == 1 and plan.starts_twice
 
 
-def test_memory_and_steps_are_foretold(planned):
+def test_memory_and_steps_are_predicted(planned):
     scene, plan = planned("physics.gravity=[0.0,-9.8]")
     text = "\n".join(explain(scene, 1))
     assert "100 in 2D" in text and "sound (CFL)" in text and "at most" in text

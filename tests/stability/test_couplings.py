@@ -70,7 +70,7 @@ def test_a_wave_meets_the_force_of_the_sums(name, pressure, form):
     pair = remedies.PairForce(lambda r: extra(r))
     settings = of("quintic", 1.15, name, pressure, form=form, sound_speed=C, remedies=(pair,))
     wave = np.array([0.31, 0.17, 0.43])[: made.dimensions] @ made.reciprocal
-    foretold = waves_of(couplings(Uniform(settings)).halved, wave[None]).squares[0]
+    predicted = waves_of(couplings(Uniform(settings)).halved, wave[None]).squares[0]
     found = []
     for unit in np.eye(made.dimensions):
         def places(x, size, unit=unit):
@@ -81,7 +81,7 @@ def test_a_wave_meets_the_force_of_the_sums(name, pressure, form):
             for size in (SMALL, -SMALL)
         ]
         found.append((ends[0] - ends[1]) / (2.0 * SMALL))
-    assert -np.array(found).T == pytest.approx(foretold, rel=1e-5, abs=1e-5 * abs(foretold).max())
+    assert -np.array(found).T == pytest.approx(predicted, rel=1e-5, abs=1e-5 * abs(predicted).max())
 
 
 def forces(case, positions, densities, velocities):
@@ -162,9 +162,9 @@ def test_the_box_meets_the_forces_of_psph(settings, sets):
     def slope(size, plus, minus):
         return (plus - minus) / (2.0 * size)
 
-    def close(found, foretold):
+    def close(found, predicted):
         # some 1e-5: at its knots, and only there, W″ of the step differs
-        assert found.ravel() == pytest.approx(foretold, abs=1e-4 * abs(foretold).max())
+        assert found.ravel() == pytest.approx(predicted, abs=1e-4 * abs(predicted).max())
 
     plus, minus = ends(x, thin, still, 1e-9)
     close(slope(1e-9, plus[0], minus[0]), -system.stiffness @ x.ravel())

@@ -140,15 +140,15 @@ def test_a_spacing_that_fits_and_stays_within_what_was_asked():
     assert fitting(0.3, [1.0, 2**0.5]) == 0.3  # nothing fits: a warning says so
 
 
-def test_a_stored_study_foretells_a_run_outside_the_fit(done, tmp_path):
+def test_a_stored_study_predicts_a_run_outside_the_fit(done, tmp_path):
     folder, _ = done
     case = load(folder / "wave.toml", ["space.spacing=0.00625"])
     lines = list(predicted(folder / "out", case))
-    foretold_error = float(lines[1].split()[1])
+    predicted_error = float(lines[1].split()[1])
     job = study(tmp_path, "--vary", "space.spacing=0.00625,0.0125")
     assert job.returncode == 0, job.stderr
     [finest] = [r for r in rows_of(tmp_path) if float(r["space.spacing"]) == 0.00625]
-    assert 1 / 1.5 < foretold_error / (100 * float(finest["error_l2"])) < 1.5
+    assert 1 / 1.5 < predicted_error / (100 * float(finest["error_l2"])) < 1.5
     job = subprocess.run(
         [sys.executable, "-m", "psph", "explain", str(folder / "wave.toml"), "--study",
          str(folder / "out")],
@@ -226,7 +226,7 @@ def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
     when_and_why = r"blew up at step \d+, time [\d.e-]+ s: .*(speeds of sound|not finite|of its rest density)"
     assert re.search(when_and_why, status["0.025", "0.02"])
     assert status["0.0124", ""].startswith("refused: ") and "whole number" in status["0.0124", ""]
-    assert "2 of 5 runs did not end well" in job.stdout
+    assert "2 of 5 runs did not finish" in job.stdout
 
 
 @pytest.mark.parametrize(
@@ -435,7 +435,7 @@ def test_studies_of_profiles_come_as_one_table(done, tmp_path):
     assert text.index("## wave") < text.index("## The price") and text.count("## ") == 2
 
 
-def test_what_ladders_foretold_of_their_finest_run_is_a_table(tmp_path):
+def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
     (tmp_path / "images").mkdir()
     page, kept = tmp_path / "page.md", tmp_path / "vortex"
     page.write_text(f"{BEGIN}\n{END}\n")
