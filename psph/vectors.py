@@ -92,10 +92,7 @@ def _put(arrays, k, a):
 
 
 def nearest_image(a: Vector, periods: tuple) -> Vector:
-    """Difference of positions between nearest periodic images; ``None`` marks an open axis.
-
-    One period at the most is added to x_i − x_j, so that a dummy at +1e30 m stays far.
-    """
+    """Difference of positions between nearest periodic images; ``None`` marks an open axis."""
     return tuple(x if p is None else _wrapped(x, p) for x, p in zip(a, periods))
 
 

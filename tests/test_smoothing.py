@@ -7,6 +7,7 @@ import numba
 import numpy as np
 import pytest
 
+from psph.physics.space import BEYOND
 from psph.smoothing import KERNELS, kernel, normalised, slope_over_r
 
 H = 0.7
@@ -53,9 +54,9 @@ def test_slope_over_r(name, dim):
 
 
 @pytest.mark.parametrize("name, dim", ALL)
-def test_is_zero_beyond_its_support_and_for_the_dummy(name, dim):
+def test_is_zero_beyond_its_support_and_where_rows_are_filled_up(name, dim):
     k = kernel(name, H, dim)
-    for r in (k.support * H * (1 + 1e-12), 5 * H, 1e30):
+    for r in (k.support * H * (1 + 1e-12), 5 * H, BEYOND * H, 1e30):
         assert abs(k.w(r)) <= 1e-30 and abs(k.dw(r)) <= 1e-20
 
 

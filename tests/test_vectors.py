@@ -78,6 +78,5 @@ def test_nearest_image(compiled):
     assert wrap((0.9, 0.9), (1.0, None)) == pytest.approx((-0.1, 0.9))
     assert wrap((-0.9, 0.2), (1.0, 1.0)) == pytest.approx((0.1, 0.2))
     assert wrap((0.4,), (1.0,)) == (0.4,)
-    assert wrap((-1e30,), (1.0,))[0] < -1e29  # x_ij of the dummy, which stays far
     for x in np.random.default_rng(1).uniform(-1, 1, 100):
         assert wrap((x,), (1.0,))[0] == -wrap((-x,), (1.0,))[0]

@@ -22,7 +22,6 @@ from psph.bench.tank import Tank
 from psph.case import checked
 from psph.jit import compiled, processor
 from psph.output.ledger import Ledger
-from psph.particles.neighbours import WIDTH
 from psph.physics.compose import take
 from psph.scene import Scene
 from psph.solver.plan import make_plan
@@ -207,19 +206,19 @@ def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
     support = scene.kernel.support * scene.smoothing_length
     inside = count_inside(
         store.view(), simulation.domain.periods, support * support, store.low, store.owned,
-        lists.begin, lists.blocks, lists.lists,
+        lists.begin, lists.lengths, lists.lists,
     )
-    entries = WIDTH * int(lists.blocks[: store.owned].sum())
+    entries = int(lists.lengths[: store.owned].sum())
     return tuple(comm.allreduce(n) for n in (store.owned, int(inside), entries))
 
 
 @compiled
-def count_inside(view, periods, support2, low, owned, begin, blocks, lists):
+def count_inside(view, periods, support2, low, owned, begin, lengths, lists):
     """Entries of the lists that lie within the support."""
     inside = 0
     for k in range(owned):
         i = take(view, low + k)
-        for n in range(begin[k], begin[k] + np.uint64(blocks[k]) * np.uint64(WIDTH)):
+        for n in range(begin[k], begin[k] + np.uint64(lengths[k])):
             x_ij = nearest_image(subtract(i.position, take(view, lists[n]).position), periods)
             inside += dot(x_ij, x_ij) < support2
     return inside

@@ -87,9 +87,9 @@ def shares(simulation, ceiling: Ceiling, pairs: int, entries: int, seconds: floa
     view = [x for entry in store.view() for x in (entry if isinstance(entry, tuple) else (entry,))]
     read = sum(isinstance(x, np.ndarray) for x in view)
     written = store.dimensions + 1 + sum(hasattr(e, "writes") for e in plan.reductions)
-    begin_and_blocks = 2
+    begin_and_lengths = 2
     particles = simulation.comm.allreduce(store.owned)
-    moved = 4 * entries + 8 * (read + written + begin_and_blocks) * particles
+    moved = 4 * entries + 8 * (read + written + begin_and_lengths) * particles
     return {
         "copy_bytes_per_second": ceiling.bytes_per_second,
         "multiply_add_flops_per_second": ceiling.flops_per_second,

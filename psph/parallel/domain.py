@@ -9,7 +9,7 @@ from psph.parallel.slabs import Prices, rebalanced
 from psph.particles import neighbours
 from psph.particles.cells import Grid, make_grid, number_cells, planes_of, sort_by_cell
 from psph.particles.store import Store
-from psph.physics.space import Filling, Metres
+from psph.physics.space import Metres
 
 GROWTH = 3.0
 """The grid follows particles that leave the domain up to this many of its lengths outside."""
@@ -20,20 +20,20 @@ class Domain:
 
     ``cutoff`` is the kernel's support and the skin together, m; ``lower`` and ``upper`` the
     corners of the domain, m; ``periods`` a length or None for each axis; ``ghost_fields`` what
-    ghosts need once at a rebuild and ``refreshed`` what they need in each step; ``filling``
-    is how the rows of the lists are filled up.
+    ghosts need once at a rebuild and ``refreshed`` what they need in each step; ``lanes``
+    is how many entries of a list the pair loop takes at once.
     """
 
     def __init__(
         self, comm: MPI.Comm, store: Store, axis: int, cutoff: float, lower, upper, periods,
-        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...], filling: Filling = Metres.filling,
+        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...], lanes: int = Metres.lanes,
     ):
         self.comm, self.store = comm, store
         self.axis, self.cutoff, self.periods = axis, cutoff, tuple(periods)
         self.lower, self.upper = tuple(lower), tuple(upper)
         self._home = (self.lower, self.upper)
         self.ghost_fields, self.refreshed = ghost_fields, refreshed
-        self.filling = filling
+        self.lanes = lanes
         self.bounds: np.ndarray | None = None
         self.prices = Prices(comm.size)
         self.grid: Grid | None = None
@@ -72,7 +72,7 @@ class Domain:
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
             self._used_lists(), self.store, self.grid, self.starts, self.planes, self.cutoff,
-            self.periods, self.filling,
+            self.periods, self.lanes,
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[: self.store.total] = now[: self.store.total]

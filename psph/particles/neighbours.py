@@ -8,23 +8,22 @@ from psph.jit import compiled
 from psph.particles.cells import Grid
 from psph.particles.lanes import LANES, append_near, near_bits
 from psph.particles.store import SPARE
-from psph.physics.space import DUMMIES, Filling
 from psph.simd import AHEAD
 from psph.threads import in_threads
 from psph.vectors import at
-
-WIDTH = 4
-"""The rows' lengths are counted in this many entries."""
 
 ROUNDING = 1e-6
 """Relative error of a distance in single precision, generously."""
 
 
 class Neighbours(NamedTuple):
-    """Row k belongs to owned particle ``low + k``: ``lists[begin[k] : begin[k] + 4 blocks[k]]``."""
+    """Row k belongs to owned particle ``low + k``: ``lists[begin[k] : begin[k] + lengths[k]]``.
+
+    Behind it the particle itself fills the last register of the row up.
+    """
 
     begin: np.ndarray
-    blocks: np.ndarray
+    lengths: np.ndarray
     lists: np.ndarray
 
 
@@ -40,13 +39,13 @@ def _entries(count: int) -> np.ndarray:
 
 def build(
     room: Neighbours, store, grid: Grid, starts, planes: int, cutoff: float, periods,
-    filling: Filling,
+    lanes: int,
 ):
     """Lists of every owned particle, in the global order of cells, then ids.
 
     ``starts`` are the first columns of the cells of ``planes`` owned planes and one ghost plane
-    on either side.  ``room`` is used again where it is large enough.  Rows are filled up with the
-    dummy that is farthest along the first axis.
+    on either side.  ``room`` is used again where it is large enough.  Rows are filled up to a
+    multiple of ``lanes``.
     """
     owned = store.owned
     position, cutoff = in_single_precision(store, grid, int(starts[0]), cutoff)
@@ -56,9 +55,8 @@ def build(
         needed = max(
             in_threads(
                 fill_lists, 1, planes + 1, position, periods, cutoff * cutoff, grid.counts,
-                grid.periodic, grid.reach, starts, store.low, owned, store.total,
-                store["position"][0], 1.0 / filling.dummies_apart, filling.multiple,
-                room.begin, room.blocks, room.lists,
+                grid.periodic, grid.reach, starts, store.low, owned,
+                lanes, room.begin, room.lengths, room.lists,
             )
         )
         if needed == 0:
@@ -87,7 +85,7 @@ def in_single_precision(store, grid: Grid, first: int, cutoff: float):
 @compiled
 def fill_lists(
     first_plane, last_plane, position, periods, cutoff2, counts, periodic, reach, starts, low,
-    owned, dummy, along, dummies_per_metre, multiple, begin, blocks, lists,
+    owned, multiple, begin, lengths, lists,
 ):
     """Fill the rows of some planes; returns 0, or about how many entries are needed for all.
 
@@ -137,19 +135,12 @@ def fill_lists(
                         bits = near_bits(position, column_g, x_i, periods, cutoff2) & valid[g]
                         end = append_near(lists, end, column_g, bits)
                     valid[own_group] ^= own_bit
-                    farthest = dummy + farthest_dummy(along[i] * dummies_per_metre)
-                    while (end - first) % np.uint64(multiple) != np.uint64(0):
-                        lists[end] = farthest
-                        end += np.uint64(1)
                     begin[i - np.uint64(low)] = first
-                    blocks[i - np.uint64(low)] = (end - first) // np.uint64(WIDTH)
+                    lengths[i - np.uint64(low)] = end - first
+                    while (end - first) % np.uint64(multiple) != np.uint64(0):
+                        lists[end] = i
+                        end += np.uint64(1)
     return np.int64(0)
-
-
-@compiled
-def farthest_dummy(x):
-    """Number of the dummy nearest to the point opposite to ``x``, both in distances of dummies."""
-    return np.int64(np.floor(x + 0.5 * DUMMIES + 0.5)) % DUMMIES
 
 
 @compiled

@@ -9,7 +9,7 @@ import numpy as np
 from psph.jit import compiled, register_jitable
 from psph.particles.store import Store, seen_as
 from psph.physics.compose import FOLDED, ParticleView
-from psph.physics.space import DUMMIES, FixedPoint
+from psph.physics.space import FixedPoint
 from psph.simd import GROUP
 from psph.threads import in_threads
 
@@ -38,7 +38,7 @@ class Records:
 
     ``names`` are the fields that vary and that pairs read of a neighbour; walls among them have a
     negative specific volume (:data:`CARRIER`).  ``table`` (columns, width) has the columns of the
-    store, the dummies included; a record begins with a cache line, or shares it with one other.
+    store; a record begins with a cache line, or shares it with one other.
     Where ``space`` is fixed point all is in single precision, but for positions: whole steps of
     32 bits, modulo their range.
     """
@@ -74,17 +74,10 @@ class Records:
         return found._replace(wall=FOLDED) if self._folded else found
 
     def fill_all(self) -> None:
-        """Records of owned particles, ghosts and dummies, after these found new columns."""
+        """Records of owned particles and ghosts, after these found new columns."""
         if len(self.table) < self.store.capacity:
             self.table = _aligned(self.store.capacity, self.width, self._type)
-        total = self.store.total
-        self.fill(0, total)
-        if self._fixed:
-            whole = self.table.view(np.uint32)
-            self.table[total : total + DUMMIES] = 1.0
-            whole[total : total + DUMMIES, 0] = np.arange(DUMMIES) * (2**32 // DUMMIES)
-        else:
-            self.fill(total, total + DUMMIES)
+        self.fill(0, self.store.total)
 
     def fill(self, first: int, last: int) -> None:
         """Bring the records of the columns ``first`` to ``last`` up to date."""

@@ -6,7 +6,6 @@ from psph.errors import Refused
 from psph.jit import compiled
 from psph.particles.fields import FIELDS
 from psph.physics.compose import ParticleView
-from psph.physics.space import DUMMIES
 
 SLACK = 64
 """Entries past the last particle: a vector load may touch them."""
@@ -16,9 +15,6 @@ SPARE = 64
 
 MOST = 2**32 - SLACK
 """Particles and ghosts that a rank can hold: neighbour lists name them by 32-bit columns."""
-
-FAR = 1e30
-"""Coordinate of the dummy neighbour that pads the rows of a list, m: outside every support."""
 
 
 def seen_as(name: str) -> str:
@@ -44,7 +40,7 @@ class Store:
 
     ``data`` (rows, capacity) float64 holds the fields named; ``id`` (int64) and ``kind`` (uint8)
     stand beside it.  Owned particles fill columns ``low`` to ``low + owned``, ghosts lie before
-    and behind, and a few dummy particles follow the last ghost.  ``constants`` are quantities that
+    and behind.  ``constants`` are quantities that
     the whole scene shares: they need no array.
     """
 
@@ -83,7 +79,7 @@ class Store:
 
     @property
     def total(self) -> int:
-        """Owned particles and ghosts; also the column of the first dummy."""
+        """Owned particles and ghosts."""
         return self.low + self.owned + self.high
 
     @property
@@ -124,7 +120,7 @@ class Store:
         return values
 
     def reserve(self, columns: int) -> None:
-        """Make room for so many particles and the dummy; contents stay.
+        """Make room for so many particles; contents stay.
 
         Raises TooManyParticles where their columns would not fit into 32 bits.
         """
@@ -162,14 +158,6 @@ class Store:
         for array in (self.id, self.kind):
             array[low : low + n] = array[order]
         self.low, self.owned, self.high = low, n, high
-        self._place_dummy()
-
-    def _place_dummy(self) -> None:
-        # Harmless as a neighbour: outside every support and, being 1, safe to divide by.
-        dummies = slice(self.total, self.total + DUMMIES)
-        self.data[:, dummies] = 1.0
-        for row in self.rows["position"]:
-            self.data[row, dummies] = FAR
 
 
 @compiled

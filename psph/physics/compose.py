@@ -147,10 +147,10 @@ def _typed_fetch(view, records, lists, entry):
 
 
 @register_jitable
-def geometry(kernel, x_ij, tiny, i, j):
-    """Pair of the particle views ``i`` and ``j``, ``x_ij`` m apart; ``tiny`` (m²) keeps r from zero."""
+def geometry(kernel, x_ij, softening, i, j):
+    """Pair of the particle views ``i`` and ``j``, ``x_ij`` m apart; ``softening`` (m²) keeps r from zero."""
     u_ij = subtract(i.velocity, j.velocity)
-    r2 = dot(x_ij, x_ij) + tiny
+    r2 = dot(x_ij, x_ij) + softening
     r = np.sqrt(r2)
     inverse_r = 1.0 / r
     dw_r = slope_over_r(kernel, r, inverse_r)

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numba.core import types
 
-from psph.jit import call_by_type, overload, tuple_of, unrolled
-from psph.simd import lanes_of, steps_between
+from psph.jit import call_by_type, overload, register_jitable, tuple_of, unrolled
+from psph.simd import EIGHT, consecutive, lanes_of, steps_between
 from psph.vectors import nearest_image, subtract
 
 difference = call_by_type("difference")
@@ -18,17 +18,9 @@ RANGE = 256.0
 STEPS = 2.0**32
 """Steps of a fixed-point coordinate."""
 
-DUMMIES = 4
-"""Dummy particles a quarter of the range apart: one is out of reach of any particle."""
-
-
-class Filling(NamedTuple):
-    """How the rows of a neighbour list are filled up: to whole registers, with far dummies."""
-
-    multiple: int
-    """Entries of a row are a multiple of this."""
-    dummies_apart: float
-    """Distance of the dummy particles along the first axis, m."""
+BEYOND = 64.0
+"""Distance over h that lanes behind the end of a row get: beyond the support of every kernel, and its
+powers are numbers in single precision."""
 
 
 class Metres(NamedTuple):
@@ -36,7 +28,7 @@ class Metres(NamedTuple):
 
     periods: tuple
 
-    filling = Filling(lanes_of(types.float64).width, np.inf)
+    lanes = lanes_of(types.float64).width
     record_type = np.dtype(np.float64)
     tiny = 1e-20
     """r² + tiny h² keeps two particles at one place from dividing by zero; too small to change any
@@ -57,15 +49,11 @@ class FixedPoint(NamedTuple):
 
     units: tuple
 
+    lanes = lanes_of(types.float32).width
     record_type = np.dtype(np.float32)
     tiny = 1e-12
     """Fourth powers of h/r at one place are still numbers in single precision; it changes no distance
     above 0.004 h."""
-
-    @property
-    def filling(self) -> Filling:
-        """Rows of single-precision lanes; dummies a quarter of the range apart."""
-        return Filling(lanes_of(types.float32).width, self.units[0] * STEPS / DUMMIES)
 
     def difference(self, i, j, records, k):
         """x_i − x_j to the nearest image, m."""
@@ -77,6 +65,23 @@ def fixed_point(smoothing_length: float, periods) -> FixedPoint:
     most = RANGE * smoothing_length
     ranges = (most if p is None else p / max(1.0, np.ceil(p / most)) for p in periods)
     return FixedPoint(tuple(float(r / STEPS) for r in ranges))
+
+
+def softening(space, smoothing_length: float, longest: int) -> np.ndarray:
+    """What the pair loop adds to r², m², entry by entry of a row of ``longest`` neighbours.
+
+    ``space.tiny`` h², and (64 h)² for the lanes behind the end of a row: by their number, they are out
+    of reach, wherever a period or the range of a fixed-point coordinate puts them.
+    """
+    added = np.full(longest + EIGHT, space.tiny * smoothing_length**2, space.record_type)
+    added[longest:] = (BEYOND * smoothing_length) ** 2
+    return added
+
+
+@register_jitable
+def softened(softening, left):
+    """What is added to r² in the register that begins ``left`` entries before the end of a row."""
+    return consecutive(softening, np.uint64(len(softening) - EIGHT) - left)
 
 
 def steps_each(records, k, positions, units):

@@ -4,13 +4,22 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from psph.simd.lanes import EIGHT, Lanes, lanes_of, spread_number
+from psph.jit import overload
+from psph.simd.lanes import lanes_of, spread_number
+
+def consecutive(array, first: int):
+    """The entries of an array from ``first`` on, a register of them."""
+    return array[first]
+
+
+@overload(consecutive)
+def _typed_consecutive(array, first):
+    return lambda array, first: _load(array, first)
 
 
 @intrinsic
-def consecutive(typing, array, first):
-    """Eight entries of an array from ``first`` on."""
-    lanes = Lanes(array.dtype, EIGHT)
+def _load(typing, array, first):
+    lanes = lanes_of(array.dtype)
 
     def build(context, builder, sig, args):
         data = context.make_array(sig.args[0])(context, builder, args[0]).data

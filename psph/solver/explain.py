@@ -47,7 +47,7 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     own = NUMBER * _rows(scene, plan.arrays) + IDENTITY
     record = record_width(_rows(scene, recorded(plan.neighbour_fields))) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + NUMBER * _cells_per_particle(scene)
-    entries = _within(scene, _cutoff(scene)) + (plan.space.filling.multiple - 1) / 2
+    entries = _within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
     return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
 
 

@@ -3,24 +3,24 @@
 import numpy as np
 
 from psph.jit import compiled
-from psph.particles.neighbours import WIDTH
 from psph.physics import compose
 from psph.physics.compose import added, fetch, geometry, pushed, take
-from psph.physics.space import difference
+from psph.physics.space import difference, softened
 from psph.simd import spread, total, width_of
 from psph.vectors import add, put, zero_like
 
 
 @compiled
 def sum_over_neighbours(
-    first, last, effects, reductions, kernel, space, tiny, view, neighbour_view, records, low,
-    begin, blocks, lists, acceleration, density_rate, written,
+    first, last, effects, reductions, kernel, space, softening, view, neighbour_view, records,
+    low, begin, lengths, lists, acceleration, density_rate, written,
 ):
     """Rates of the particles in columns ``first`` to ``last``.
 
     ``view`` shows the particles themselves, ``records`` what is read of neighbours, as
     ``neighbour_view`` says.  ``effects`` is the scene's tuple, ``reductions`` those with a sum of their own and ``written``
-    the array, or None, that each of these fills.  Sums are in gather form and in the order of the
+    the array, or None, that each of these fills.  ``softening`` (psph.physics.space) puts lanes
+    behind the end of a row out of reach.  Sums are in gather form and in the order of the
     lists, so that they are the same on any number of ranks.
     """
     for k in range(np.uint64(first), np.uint64(last)):
@@ -29,10 +29,11 @@ def sum_over_neighbours(
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
         totals = spread(compose.start(reductions, i), records)
-        end = begin[row] + np.uint64(blocks[row]) * np.uint64(WIDTH)
+        end = begin[row] + np.uint64(lengths[row])
         for n in range(begin[row], end, width_of(records)):
+            added_to_r2 = softened(softening, end - n)
             j = fetch(neighbour_view, records, lists, n)
-            pair = geometry(kernel, difference(space, i, j, records, k), tiny, i, j)
+            pair = geometry(kernel, difference(space, i, j, records, k), added_to_r2, i, j)
             rate = rate + compose.density_rate(effects, i, j, pair)
             a = pushed(a, pair.x_ij, compose.radial(effects, i, j, pair))
             a = pushed(a, pair.u_ij, compose.shear(effects, i, j, pair))

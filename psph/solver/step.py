@@ -10,6 +10,7 @@ from psph.parallel.reductions import largest
 from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
+from psph.physics.space import softening
 from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import sum_over_neighbours
 from psph.solver.plan import Plan
@@ -49,10 +50,9 @@ class Simulation:
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
         support = scene.kernel.support * scene.smoothing_length
         skin = scene.case.neighbours.skin * support
-        self.tiny = plan.space.tiny * scene.smoothing_length**2
         self.domain = Domain(
             comm, store, scene.axis, support + skin, scene.lower, scene.upper,
-            scene.periods, plan.ghost_fields, plan.refreshed, plan.space.filling,
+            scene.periods, plan.ghost_fields, plan.refreshed, plan.space.lanes,
         )
         self.skin = Skin(self.domain, skin)
         self.records = Records(store, plan.neighbour_fields, plan.space)
@@ -127,7 +127,7 @@ class Simulation:
         self.domain.relist(state["lower"], state["upper"])
         saved.fill(self.store)
         self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
-        self.records.fill_all()
+        self._fill_records()
         for name in CLOCK:
             setattr(self, name, state[name])
         self.skin.restore(state["skin"])
@@ -144,9 +144,16 @@ class Simulation:
 
     def _forces(self) -> None:
         with self.ledger("records"):
-            self.records.fill_all()
+            self._fill_records()
         with self.ledger("pairs"):
             self._sum(self.store.low, self.store.low + self.store.owned)
+
+    def _fill_records(self) -> None:
+        """What the pair loop reads, for new lists."""
+        self.records.fill_all()
+        plan, rows = self.plan, self.domain.lists.lengths[: self.store.owned]
+        longest = int(rows.max(initial=0))
+        self.softening = softening(plan.space, plan.smoothing_length, longest)
 
     def _forces_while_refreshing(self) -> None:
         """Interior particles are computed while the halo travels, then the rim."""
@@ -186,8 +193,8 @@ class Simulation:
         written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
         in_threads(
             sum_over_neighbours, first, last, plan.effects, plan.reductions, plan.kernel,
-            plan.space, self.tiny, s.view(), self.records.view(), self.records.table, s.low,
-            lists.begin, lists.blocks, lists.lists, s["acceleration"], s["density_rate"], written,
+            plan.space, self.softening, s.view(), self.records.view(), self.records.table, s.low,
+            lists.begin, lists.lengths, lists.lists, s["acceleration"], s["density_rate"], written,
         )
 
     def _kick(self, dt: float) -> None:

@@ -126,7 +126,7 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
         for k in near[near != column]:
             j = take(view, k)
             x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
-            pairs.append((j, geometry(scene.kernel, x_ij, simulation.tiny, i, j)))
+            pairs.append((j, geometry(scene.kernel, x_ij, simulation.softening[0], i, j)))
         return tuple(
             _share(effect, i, pairs, simulation.dt) for effect in simulation.plan.effects
         )

@@ -10,7 +10,6 @@ from parallel.test_simulation import box, start
 from psph.output.ledger import Ledger
 from psph.parallel import halo as halo_module
 from psph.particles.fields import FIELDS
-from psph.particles.neighbours import WIDTH
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -162,7 +161,7 @@ def test_the_halo_travels_while_the_interior_is_computed(name, watched):
     assert COMM.allreduce(last - first) > 0 or name == "3D"
     store, lists = simulation.store, simulation.domain.lists
     for k in range(first - store.low, last - store.low):
-        begin, n = int(lists.begin[k]), int(lists.blocks[k]) * WIDTH
+        begin, n = int(lists.begin[k]), int(lists.lengths[k])
         row = lists.lists[begin : begin + n]
         row = row[row < store.total]
         assert ((row >= store.low) & (row < store.low + store.owned)).all()

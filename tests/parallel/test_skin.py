@@ -9,7 +9,6 @@ from mpi4py import MPI
 from psph.parallel.domain import Domain
 from psph.parallel.skin import Skin
 from psph.particles.drift import bounding_boxes, largest_differences
-from psph.particles.neighbours import WIDTH
 from psph.particles.store import Store
 
 NAMES = ("position", "listed_position", "predicted_velocity")
@@ -54,7 +53,7 @@ def over_pairs(domain):
     apart = closing = 0.0
     for k in range(store.owned):
         begin = int(lists.begin[k])
-        row = lists.lists[begin : begin + int(lists.blocks[k]) * WIDTH].astype(int)
+        row = lists.lists[begin : begin + int(lists.lengths[k])].astype(int)
         row, i = row[row < store.total], store.low + k
         if len(row):
             apart = max(apart, np.linalg.norm(moved[:, [i]] - moved[:, row], axis=0).max())

@@ -5,8 +5,8 @@ import pytest
 from mpi4py import MPI
 
 from psph.parallel.domain import Domain
-from psph.particles.neighbours import WIDTH
-from psph.particles.store import FAR, Store
+from psph.particles.store import Store
+from psph.physics.space import Metres
 
 NAMES = ("position", "listed_position", "density")
 
@@ -32,9 +32,8 @@ def neighbours_by_id(domain):
     store, lists = domain.store, domain.lists
     found = {}
     for k in range(store.owned):
-        begin, entries = int(lists.begin[k]), int(lists.blocks[k]) * WIDTH
-        row = lists.lists[begin : begin + entries]
-        row = row[row < store.total].astype(int)
+        begin = int(lists.begin[k])
+        row = lists.lists[begin : begin + int(lists.lengths[k])].astype(int)
         found[int(store.id[store.low + k])] = store["density"][row].astype(int).tolist()
     return found
 
@@ -89,13 +88,16 @@ def test_particles_outside_the_domain_keep_their_neighbours():
     assert {i: set(row) for i, row in found.items()} == brute_force(positions, 0.9, (None, None))
 
 
-def test_rows_are_padded_with_the_far_dummy():
+def test_rows_are_filled_up_to_whole_registers_with_the_particle_itself():
     domain = domain_of(np.random.default_rng(1).uniform(0, 1, (50, 2)), 0.3, (0, 0), (1, 1), (None,) * 2)
-    store = domain.store
-    assert all(x[store.total] == FAR for x in store["position"])
-    assert domain.lists.lists.dtype == np.uint32 and domain.lists.begin.dtype == np.uint64
-    rows = [int(b) * WIDTH for b in domain.lists.blocks[: store.owned]]
-    assert list(np.cumsum([0, *rows[:-1]])) == domain.lists.begin[: store.owned].tolist()
+    store, lists = domain.store, domain.lists
+    assert lists.lists.dtype == np.uint32 and lists.begin.dtype == np.uint64
+    lengths = lists.lengths[: store.owned].astype(int)
+    rows = -(-lengths // Metres.lanes) * Metres.lanes
+    assert list(np.cumsum([0, *rows[:-1]])) == lists.begin[: store.owned].tolist()
+    assert (lengths % Metres.lanes).any()  # some have something to fill up
+    for k, (begin, entries, whole) in enumerate(zip(lists.begin.astype(int), lengths, rows)):
+        assert (lists.lists[begin + entries : begin + whole] == store.low + k).all()
 
 
 def test_order_is_by_cell_then_id():

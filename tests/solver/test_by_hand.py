@@ -10,7 +10,7 @@ from mpi4py import MPI
 from psph.bench.box import Box
 from psph.jit import FAST
 from psph.output.ledger import Ledger
-from psph.particles.neighbours import WIDTH
+from psph.physics.space import softened
 from psph.physics.viscosity import ArtificialViscosity
 from psph.scene import Scene
 from psph.simd import spread, total, turning, width_of
@@ -25,8 +25,8 @@ turn = turning(READ)
 
 
 def by_hand(
-    first, last, records, low, begin, blocks, lists, x, y, z, u, v, w, pressure, volume, m, h, c,
-    alpha, beta, inverse_h, kernel_alpha, tiny, ax, ay, az, rate,
+    first, last, records, low, begin, lengths, lists, x, y, z, u, v, w, pressure, volume, m, h, c,
+    alpha, beta, inverse_h, kernel_alpha, softening, ax, ay, az, rate,
 ):
     """Continuity, symmetric pressure and artificial viscosity with Wendland's C2 in an open box."""
     front, half = -5.0 * kernel_alpha * inverse_h * inverse_h * m, 0.5 * inverse_h
@@ -39,13 +39,13 @@ def by_hand(
         own = p_i * q_i * q_i
         sx, sy, sz = spread(0.0, records), spread(0.0, records), spread(0.0, records)
         sr = spread(0.0, records)
-        end = begin[row] + np.uint64(blocks[row]) * np.uint64(WIDTH)
+        end = begin[row] + np.uint64(lengths[row])
         for n in range(begin[row], end, width_of(records)):
             j = turn(records, lists, n)
             dx, dy, dz = x_i - j[0], y_i - j[1], z_i - j[2]
             du, dv, dw = u_i - j[3], v_i - j[4], w_i - j[5]
             p_j, q_j = j[6], j[7]
-            r2 = dx * dx + dy * dy + dz * dz + tiny
+            r2 = dx * dx + dy * dy + dz * dz + softened(softening, end - n)
             approach = du * dx + dv * dy + dw * dz
             a = max(1.0 - np.sqrt(r2) * half, 0.0)
             g = front * (a * a * a)
@@ -83,10 +83,10 @@ def call_by_hand(s: Simulation) -> tuple:
     [friction] = [e for e in s.plan.effects if isinstance(e, ArtificialViscosity)]
     c = store.constants
     return (
-        store.low, store.low + store.owned, s.records.table, store.low, lists.begin, lists.blocks,
+        store.low, store.low + store.owned, s.records.table, store.low, lists.begin, lists.lengths,
         lists.lists, *store["position"], *store["predicted_velocity"], store["pressure"],
         store["specific_volume"], c["mass"], c["smoothing_length"], c["sound_speed"],
-        friction.alpha, friction.beta, kernel.inverse_h, kernel.alpha, s.tiny,
+        friction.alpha, friction.beta, kernel.inverse_h, kernel.alpha, s.softening,
         *(np.zeros_like(store["pressure"]) for _ in range(4)),
     )
 
