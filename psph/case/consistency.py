@@ -1,4 +1,4 @@
-"""What no key can see alone: rules between the keys of a case."""
+"""Rules between the keys of a case."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 Location = tuple[str | int, ...]
 Finding = tuple[Location, Any, str]
-"""Where, the value there, and what is wrong with it and to do."""
+"""Location, value, and a message that says what is wrong and what to do."""
 
 
 def contradictions(case: Case) -> list[InitErrorDetails]:
-    """Everything in which the keys of a case do not fit together."""
+    """All contradictions between the keys of a case."""
     rules = (
         _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected,
         _shifted, _carried, _stressed, _continued, _friction, _probed, _names, _single, _stepped,
@@ -37,7 +37,7 @@ def contradictions(case: Case) -> list[InitErrorDetails]:
 
 
 def walk(value: Any, loc: Location = ()) -> Iterator[tuple[Location, Any]]:
-    """Every table and list in a case, with where it stands."""
+    """Every table and list in a case, with its location."""
     yield loc, value
     if isinstance(value, Table):
         for name, field in type(value).model_fields.items():
@@ -142,13 +142,13 @@ def _hydrostatic(case: Case) -> Iterator[Finding]:
 def _exact(case: Case) -> Iterator[Finding]:
     given = [name for name, value in case.exact if value is not None]
     for extra in given[1:]:
-        yield ("exact", extra), ..., f"a case has one exact solution, here {given[0]}; take one out"
+        yield ("exact", extra), ..., f"a case has one exact solution at most, and also has {given[0]}; remove one"
     fields = known(SOLUTIONS[given[0]]) if given else ()
     for name, fluid in case.fluids.items():
         for field in ("velocity", "pressure"):
             if getattr(fluid, field) == EXACT and field not in fields:
                 yield ("fluids", name, field), EXACT, (
-                    f"{given[0]} does not know it; give numbers" if given
+                    f"the exact solution {given[0]} has no {field}; give numbers" if given
                     else "the case has no exact solution; give [exact], or numbers"
                 )
 
@@ -163,8 +163,8 @@ def _attracting(case: Case) -> Iterator[Finding]:
     kernel, form = case.space.kernel, case.physics.pressure_gradient
     if form == "minimum" and not getattr(KERNELS[kernel], "repels", True):
         yield ("physics", "pressure_gradient"), form, (
-            f"takes the minimum over neighbours that repel, and pairs attract where the kernel "
-            f"{kernel} rises; take another kernel"
+            f"needs a kernel whose pairs only repel, and pairs attract in a part of the kernel "
+            f"{kernel}; choose another kernel"
         )
 
 
@@ -181,17 +181,16 @@ def _friction(case: Case) -> Iterator[Finding]:
     central = case.physics.central_friction is not None
     if central and not rubs:
         yield ("physics", "central_friction"), ..., (
-            "no fluid has any friction; give a fluid its viscosity, or take this out"
+            "no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key"
         )
     for name, wall in case.walls.items():
         if wall.no_slip and not rubs:
             yield ("walls", name, "no_slip"), True, (
-                "no fluid has any friction; give a fluid its viscosity, or take no_slip out"
+                "no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip"
             )
         elif wall.no_slip and central:
             yield ("walls", name, "no_slip"), True, (
-                "mirrors the flow for friction that follows the velocity; take "
-                "physics.central_friction out, or no_slip"
+                "does not work with physics.central_friction; remove one of the two"
             )
 
 
@@ -217,7 +216,7 @@ def _corrected(case: Case) -> Iterator[Finding]:
     form = case.physics.pressure_gradient
     if case.physics.gradient_correction is not None and form not in CORRECTED:
         yield ("physics", "gradient_correction"), ..., (
-            f'cannot correct physics.pressure_gradient = "{form}"; take "symmetric" or "difference"'
+            f'does not work with physics.pressure_gradient = "{form}"; use "symmetric" or "difference"'
         )
 
 
@@ -235,7 +234,7 @@ def _stepped(case: Case) -> Iterator[Finding]:
     end, step = case.time.end, case.time.step
     if step is not None and end > MOST_STEPS * step:
         yield ("time", "step"), step, (
-            f"lost in the rounding of a time of {end:g} s, after more than {MOST_STEPS:.1g} steps; "
+            f"too short for {end:g} s: more than {MOST_STEPS:.1g} steps, lost in the rounding of the time; "
             f"give at least {1.1 * end / MOST_STEPS:.2g}"
         )
 
@@ -245,35 +244,35 @@ def _due(case: Case) -> Iterator[Finding]:
     for name, interval in case.output:
         if interval is not None and end > MOST_MOMENTS * interval:
             yield ("output", name), interval, (
-                f"asks for more than {MOST_MOMENTS:.0e} moments until {end:g} s; give at least "
-                f"{1.1 * end / MOST_MOMENTS:.2g}: what is finer than the steps is due at each step"
+                f"gives more than {MOST_MOMENTS:.0e} outputs until {end:g} s; give at least "
+                f"{1.1 * end / MOST_MOMENTS:.2g} (an interval below the time step writes every step)"
             )
 
 
 CORRECTED = ("symmetric", "difference")
-"""Pressure gradients that take a corrected kernel's."""
+"""Pressure gradients that work with a corrected kernel gradient."""
 
 MOVERS = (
     "particle_shifting", "transport_velocity", "generalised_transport_velocity", "position_shift",
 )
-"""Effects that move particles towards order: one is enough."""
+"""Effects that shift particles into order; a case has one of them at most."""
 
 CARRIERS = ("xsph", "transport_velocity", "generalised_transport_velocity")
-"""Effects that have particles carried by another velocity: it is one."""
+"""Effects that move particles with another velocity; a case has one of them at most."""
 
 
 def _shifted(case: Case) -> Iterator[Finding]:
-    yield from _one_of(case, MOVERS, "shifts them too")
+    yield from _one_of(case, MOVERS, "shifts particles too")
 
 
 def _carried(case: Case) -> Iterator[Finding]:
-    yield from _one_of(case, CARRIERS, "moves them too")
+    yield from _one_of(case, CARRIERS, "moves particles too")
     form = case.physics.pressure_gradient
     for name in CARRIERS:
         if form == "stress_points" and getattr(case.physics, name) is not None:
             yield ("physics", name), ..., (
-                f'physics.pressure_gradient = "{form}" moves half of them too; give it as "off", or '
-                "take this one out"
+                f'physics.pressure_gradient = "{form}" moves half of the particles too; choose another '
+                "form, or remove this key"
             )
 
 
@@ -281,7 +280,7 @@ def _one_of(case: Case, names: tuple[str, ...], does: str) -> Iterator[Finding]:
     present = [name for name in names if getattr(case.physics, name) is not None]
     for extra in present[:-1]:
         yield ("physics", extra), ..., (
-            f'physics.{present[-1]} {does}; give it as "off", or take this one out'
+            f'physics.{present[-1]} {does}; set it to "off", or remove this key'
         )
 
 
@@ -289,6 +288,6 @@ def _stressed(case: Case) -> Iterator[Finding]:
     form = case.physics.pressure_gradient
     if case.physics.artificial_stress is not None and form != "symmetric":
         yield ("physics", "artificial_stress"), ..., (
-            f'stands against pairs that pull as "symmetric" has them, and physics.pressure_gradient = '
-            f'"{form}" is another form; take "symmetric", or take this one out'
+            f'works only with physics.pressure_gradient = "symmetric", and here it is "{form}"; '
+            'use "symmetric", or remove this key'
         )

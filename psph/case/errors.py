@@ -1,4 +1,4 @@
-"""What is wrong with a case, in lines that a person can act on."""
+"""Errors of a case, one line each, with what to do."""
 
 import difflib
 from collections.abc import Iterable
@@ -7,7 +7,7 @@ from itertools import islice
 from psph.errors import Refused, one_line, shortened
 
 MOST_LINES = 100
-"""Nobody reads more of them at once."""
+"""More are left out."""
 
 LONGEST_KEY = 60
 

@@ -88,7 +88,7 @@ def checked(
 
 
 def _with(file: str, option: str, text: str) -> str:
-    """What set a key that an override has a part in."""
+    """The file and the override that set a key."""
     return f"{file} with {option} {shortened(text, LONGEST_QUOTE)}"
 
 
@@ -117,8 +117,8 @@ def _read(file: str) -> dict[str, Any]:
 
 
 def _parsed(where: str, text: str) -> dict[str, Any]:
-    """What the TOML says.  Raises TOMLDecodeError, or CaseError where Python knows more than TOML
-    or cannot follow it."""
+    """The tables of a TOML text.  Raises TOMLDecodeError, or CaseError where Python's parser reads
+    more than TOML allows or fails."""
     if TOO_DEEP_KEY.search(text):
         raise CaseError([f"{where}: a key of more than {DEEPEST} parts; no key of a case is so long"])
     try:
@@ -210,4 +210,4 @@ def _value(where: str, text: str) -> Any:
     if BARE_WORD.fullmatch(text):
         return text
     shown = repr(shortened(text, LONGEST_QUOTE))
-    raise CaseError([f"{where}: {shown} is no value; write it as in TOML: 1.0, [0, 1] or word"])
+    raise CaseError([f"{where}: {shown} is not a value; write it as in TOML: 1.0, [0, 1] or word"])

@@ -1,4 +1,4 @@
-"""From pydantic's findings to lines that a newcomer understands."""
+"""Pydantic's errors as one-line messages."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -30,7 +30,7 @@ BOUNDS = {
 LONGEST_VALUE = 40
 
 MOST_FINDINGS = 1000
-"""Each is compared with all others; a file with more faults is no case at all."""
+"""Each is compared with all others; more would take too long."""
 
 
 def messages(
@@ -72,7 +72,7 @@ def _follows_from_another(details: Details, found: list[Details]) -> bool:
 
 
 def _as_written(details: Details, data: Any) -> Location:
-    """The location in the keys of the file: pydantic's also names branches that no file has."""
+    """The location in the keys of the file, without the branches that pydantic adds."""
     loc: list[str | int] = []
     for key in details["loc"]:
         is_place = isinstance(data, list) and isinstance(key, int) and key < len(data)

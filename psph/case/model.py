@@ -1,4 +1,4 @@
-"""A case: everything that a person says about a run, typed and frozen."""
+"""A case: all keys of a case file, typed and frozen."""
 
 import re
 from functools import cached_property
@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 from psph.case.consistency import contradictions
 from psph.case.physics import physics_table
 from psph.case.profiles import OFF, PROFILES, choices
-from psph.case.schemes import SCHEMES, STABLE, scheme_keys
+from psph.case.schemes import SCHEMES, STABLE, by_default, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.case.tables import Axis, Name, Table, Text, Vector, key
@@ -29,7 +29,7 @@ LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
 
 
 def _velocity(value: Any, validate) -> Any:
-    """One message for all that is no velocity at all; a list has the messages of its numbers."""
+    """One message for anything that is not a velocity; a list gets the messages of its numbers."""
     if isinstance(value, str) and value != EXACT:
         raise PydanticCustomError(
             "psph", 'not a velocity; give one number per dimension in m/s, or "exact"'
@@ -38,7 +38,7 @@ def _velocity(value: Any, validate) -> Any:
 
 
 def _pressure(value: Any, validate) -> Any:
-    """One message for all that a pressure can be."""
+    """One message for anything that is not a pressure."""
     try:
         return validate(value)
     except ValidationError as error:
@@ -53,13 +53,17 @@ class Space(Table):
     dimensions: int = key("number of dimensions, 1 to 3", ge=1, le=3)
     spacing: float = key("distance between particles at the start", unit="m", gt=0)
     smoothing: float = key(
-        "smoothing length h in units of the spacing, h/dx", 1.4, unit="1", ge=0.6, le=4
+        "smoothing length h in units of the spacing, h/dx", 1.4, unit="1", ge=0.6, le=4,
+        otherwise=by_default("space.smoothing"),
     )
-    kernel: Literal[tuple(KERNELS)] = key("smoothing kernel", next(iter(KERNELS)))
+    kernel: Literal[tuple(KERNELS)] = key(
+        "smoothing kernel", next(iter(KERNELS)), otherwise=by_default("space.kernel")
+    )
     normalised: bool = key(
-        "divide the kernel's slope by its first moment on the lattice of the start", False
+        "divide the kernel gradient by its first moment on the initial lattice", False,
+        otherwise=by_default("space.normalised"),
     )
-    periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("axes along which it repeats", ())
+    periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("periodic axes", ())
     lower: Vector | None = key(
         "lowest corner of the domain; required where an axis is periodic", None, unit="m",
         otherwise="found from the shapes",
@@ -75,7 +79,7 @@ class Space(Table):
 
 
 class Time(Table):
-    """How long and in which steps."""
+    """Simulated time and time steps."""
 
     end: float = key("simulated time at which the run ends", unit="s", gt=0)
     cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.5)
@@ -97,12 +101,12 @@ class Fluid(Table):
         otherwise="zeros",
     )
     velocity_gradient: tuple[Vector, ...] | None = key(
-        "gradient of the velocity at the start, a row a component: u = velocity + gradient (x - "
+        "gradient of the velocity at the start, one row per component: u = velocity + gradient (x - "
         "velocity_center); [[0, -1], [1, 0]] turns at 1 rad/s", None, unit="1/s", otherwise="zeros",
         strict=False, min_length=1,
     )
     velocity_center: Vector | None = key(
-        "where velocity_gradient adds nothing", None, unit="m", otherwise="zeros"
+        "the point where velocity_gradient adds zero", None, unit="m", otherwise="zeros"
     )
     pressure: Annotated[Literal["hydrostatic", EXACT] | float, WrapValidator(_pressure)] = key(
         'pressure at the start: a number, "hydrostatic" (needs gravity) or "exact" (needs [exact])',
@@ -119,25 +123,25 @@ class Fluid(Table):
 
 
 class Wall(Table):
-    """A wall: particles that stay where they are."""
+    """A wall: particles that do not move."""
 
     shape: Shape = key("where the wall is")
     velocity: Vector | None = key(
-        "velocity that the fluid beside it feels, as that of a belt: the wall stays where it is",
+        "velocity of the wall's surface in the viscous force, as that of a belt: the wall does not move",
         None, unit="m/s", otherwise="zeros",
     )
     no_slip: bool = key(
-        "the fluid's friction holds it at the wall's velocity right at the face; needs a viscosity",
+        "the fluid has the wall's velocity at the face of the wall; needs a viscosity",
         False,
     )
     continues: Name | None = key(
-        "fluid whose density and pressure at the start go on in the wall", None,
+        "the fluid whose density and initial pressure the wall has", None,
         otherwise="the first fluid",
     )
 
 
 class Probe(Table):
-    """What is measured over time: fields at a place, or how far the fluid reaches."""
+    """Measurements over time: fields at a point, or the front of the fluid."""
 
     position: Vector | None = key("where", None, unit="m", otherwise="give front")
     front: Axis | None = key(
@@ -153,19 +157,19 @@ class Probe(Table):
 
 
 class Perturbation(Table):
-    """A kick or a shift of the fluid particle that is nearest to a place."""
+    """A kick or a shift of the fluid particle nearest to a point."""
 
     position: Vector = key("where", unit="m")
     velocity: Vector | None = key(
         "velocity added at the start", None, unit="m/s", otherwise="zeros"
     )
     shift: Vector | None = key(
-        "how far it is moved at the start, even onto another", None, unit="m", otherwise="zeros"
+        "displacement at the start, even onto another particle", None, unit="m", otherwise="zeros"
     )
 
 
 class Output(Table):
-    """How often what is written."""
+    """Intervals of output."""
 
     frames: float | None = key(
         "time between frames", None, unit="s", otherwise="time.end / 50", gt=0
@@ -179,7 +183,7 @@ class Output(Table):
 
 
 class Checkpoint(Table):
-    """When a run leaves a checkpoint to go on from, beside that at a signal."""
+    """When a run writes a checkpoint, besides the one at a signal."""
 
     every: int | None = key(
         "steps from one checkpoint to the next", None, unit="1", otherwise="not by steps", ge=1
@@ -189,22 +193,22 @@ class Checkpoint(Table):
         otherwise="not by time", gt=0,
     )
     wall_clock: float | None = key(
-        "wall-clock time that the job has: shortly before its end the run leaves a checkpoint and "
+        "wall-clock time of the job: shortly before its end the run writes a checkpoint and "
         "stops", None, unit="min", otherwise="no limit", gt=0,
     )
 
 
 class Guards(Table):
-    """What a run watches for in itself, and what it does then."""
+    """Bounds that a run checks, and what it does when one is exceeded."""
 
     on_trouble: Literal["stop", "warn"] = key(
-        "stop: end with a checkpoint and a post-mortem; warn: say so and go on", "stop"
+        "stop: end with a checkpoint and a post-mortem; warn: print a warning and continue", "stop"
     )
     speed: float = key(
         "largest speed of a particle, in speeds of sound", 1.0, unit="1", gt=0, le=100
     )
     density: float = key(
-        "largest part by which a fluid's density may differ from its rest density", 0.5, unit="1",
+        "largest relative difference of a fluid's density from its rest density", 0.5, unit="1",
         gt=0,
     )
     depth: float = key(
@@ -229,7 +233,7 @@ class Neighbours(Table):
     """The neighbour lists."""
 
     skin: float = key(
-        "how far a list looks beyond the kernel's support, as a fraction of it", 0.08, unit="1",
+        "how far a list reaches beyond the kernel's support, as a fraction of it", 0.08, unit="1",
         ge=0, le=1,
     )
 
@@ -239,15 +243,15 @@ MANY = 100
 
 
 class Case(Table):
-    """A case as it was resolved: every default that does not need the particles is filled in.
+    """A case with every default filled in that does not depend on the particles.
 
     Made by :func:`psph.case.load`.  ``file`` is where it came from, ``name`` its stem.
     """
 
-    title: Text = key("what the case is, in one line", "")
+    title: Text = key("title of the case, one line", "")
     scheme: Literal[tuple(SCHEMES)] = key(
-        "what keeps the fluid stable: psph's own scheme, traditional SPH or SSPH; for the keys that "
-        "the case does not give itself", STABLE,
+        "stable: the default scheme; sph: plain SPH; ssph: the paper's; for the keys that the case "
+        "does not give itself", STABLE,
     )
     profile: Literal[tuple(PROFILES)] | None = key(
         "numerical choices by one name, for the keys that the case does not give itself", None,
@@ -257,35 +261,35 @@ class Case(Table):
         "mixed: pairs in single precision, particles and time integration in double", "double"
     )
     space: Space = key("dimensions, resolution and extent")
-    time: Time = key("how long and in which steps")
-    physics: Physics = key("what acts on the fluids", make=Physics)
+    time: Time = key("simulated time and time steps")
+    physics: Physics = key("forces and other effects on the fluids", make=Physics)
     fluids: dict[Name, Fluid] = key(
         "the fluids by name: where each is at the start, and what it is", min_length=1,
         max_length=MANY,
     )
     walls: dict[Name, Wall] = key(
-        "the walls by name: particles that stay where they are", {}, max_length=MANY
+        "the walls by name: particles that do not move", {}, max_length=MANY
     )
     probes: dict[Name, Probe] = key(
-        "the probes by name: places where fields are measured over time", {}
+        "the probes by name: points where fields are measured over time", {}
     )
     perturbations: Annotated[tuple[Perturbation, ...], Strict(False)] = key(
-        "kicks to single particles, and shifts of them", ()
+        "kicks and shifts of single particles", ()
     )
-    output: Output = key("how often what is written", make=Output)
+    output: Output = key("intervals of output", make=Output)
     checkpoint: Checkpoint = key(
-        "when a run leaves a checkpoint to go on from, beside that at a signal", make=Checkpoint
+        "when a run writes a checkpoint, besides the one at a signal", make=Checkpoint
     )
     guards: Guards = key(
-        "what a run watches for in itself, and what it does then", make=Guards
+        "bounds that a run checks, and what it does when one is exceeded", make=Guards
     )
     parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
     neighbours: Neighbours = key("the neighbour lists", make=Neighbours)
-    exact: Exact = key("an exact solution of the case, to start from and to judge by", make=Exact)
+    exact: Exact = key("an exact solution of the case, for its initial state and its errors", make=Exact)
     experiments: dict[Name, Experiment] = key(
-        "experiments by name: measured curves to judge by", {}
+        "experiments by name: measured curves to compare with", {}
     )
-    study: Study = key("what `psph study` varies, and by what it judges", make=Study)
+    study: Study = key("the keys that `psph study` varies, and its measure of error", make=Study)
 
     _file: str = PrivateAttr("case")
 
@@ -301,7 +305,7 @@ class Case(Table):
 
     @cached_property
     def presets(self) -> dict[str, tuple[str, Any]]:
-        """Dotted keys that the case's profile or scheme has a say in: whose, and what it says."""
+        """Dotted keys that the case's profile or scheme sets: the name of that, and the value."""
         space, surface = self.space, self.physics.free_surface is not None
         named = [(f"scheme {self.scheme}", scheme_keys(self.scheme, surface))]
         if self.profile:
@@ -310,7 +314,7 @@ class Case(Table):
         return {key: (name, value) for name, keys in named for key, value in keys.items()}
 
     def preset(self, dotted: str) -> str | None:
-        """The profile or scheme whose value stands at a key, or None."""
+        """The profile or scheme that gave a key its value, or None."""
         name, wanted = self.presets.get(dotted, (None, None))
         if name is None:
             return None
@@ -330,7 +334,7 @@ class Case(Table):
         tables = self.model_dump(by_alias=True, exclude_none=True)
         for name in self.presets:
             table, _, effect = name.rpartition(".")
-            if table:  # what the case lacks shall not come back with a profile or scheme
+            if table:  # what the case switched off must not return with a profile or scheme
                 tables[table].setdefault(effect, OFF)
         text = tomli_w.dumps({name: value for name, value in tables.items() if value})
         return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)
@@ -359,7 +363,7 @@ def _fill(table: Table, **defaults: Any) -> None:
     """Give keys that were left out what depends on other tables."""
     for name, value in defaults.items():
         if getattr(table, name) is None:
-            table.__dict__[name] = value  # past the freeze: the case is still in the making
+            table.__dict__[name] = value  # the table is frozen, but the case is not complete yet
 
 
 def schema() -> dict[str, Any]:

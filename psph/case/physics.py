@@ -8,13 +8,14 @@ from pydantic import BeforeValidator, create_model
 
 from psph.case.parameters import parameters, summary
 from psph.case.profiles import OFF as TAKEN_OUT
+from psph.case.schemes import by_default
 from psph.case.tables import Table, key
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 
 PREFIX = "physics."
 
 OFF = "the effect is off"
-"""What holds without the key of an optional effect."""
+"""The default of an optional effect in the reference."""
 
 
 def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -> type[Table]:
@@ -24,15 +25,15 @@ def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -
             float | None,
             key(
                 "numerical speed of sound, at least ten times the largest speed", None, unit="m/s",
-                otherwise="ten times the speed to expect: free fall over the fluid's height, or "
+                otherwise="ten times the expected speed: free fall over the fluid's height, or "
                 "the largest initial speed", gt=0,
             ),
         )
     }
-    mine = [entry for entry in catalogue if entry.key.startswith(PREFIX)]
-    for name, entries in groupby(mine, lambda entry: entry.key[len(PREFIX) :].partition("=")[0]):
+    optional = [entry for entry in catalogue if entry.key.startswith(PREFIX)]
+    for name, entries in groupby(optional, lambda entry: entry.key[len(PREFIX) :].partition("=")[0]):
         fields[name] = _field(list(entries))
-    return create_model("Physics", __base__=Table, __doc__="What acts on the fluids.", **fields)
+    return create_model("Physics", __base__=Table, __doc__="Forces and other effects on the fluids.", **fields)
 
 
 def _field(entries: list[Entry]) -> tuple[Any, Any]:
@@ -46,9 +47,10 @@ def _field(entries: list[Entry]) -> tuple[Any, Any]:
     off = BeforeValidator(
         _taken_out, json_schema_input_type=table | Literal[TAKEN_OUT] | None
     )
-    return Annotated[table | None, off], key(summary(effect), None, otherwise=OFF)
+    otherwise = "; ".join(filter(None, (OFF, by_default(entries[0].key))))
+    return Annotated[table | None, off], key(summary(effect), None, otherwise=otherwise)
 
 
 def _taken_out(value: Any) -> Any:
-    """An effect that a file switches off, since a profile would bring it, is not there."""
+    """None for an effect that a file switches off, against its profile or scheme."""
     return None if value == TAKEN_OUT else value

@@ -1,4 +1,4 @@
-"""Profiles: the numerical choices of a case by one name, for keys that it does not give itself."""
+"""Profiles: numerical choices under one name, for the keys that a case does not give itself."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from psph.case.schemes import SCHEMES, scheme_keys, scheme_of
 
 OFF = "off"
-"""The value that takes a key out of the case."""
+"""The value that removes a key from the case."""
 
 PROFILES: dict[str, dict[str, Any]] = {
     "quick": {
@@ -40,8 +40,8 @@ PROFILES: dict[str, dict[str, Any]] = {
         "physics.gradient_correction": 0.5,
     },
 }
-"""Keys and values; docs/accuracy.md has what each costs and gives.  A free surface goes with neither
-shifting nor pressure from differences yet: here a profile does without.  Half these steps change no
+"""Keys and values; docs/accuracy.md has the error and cost of each.  Neither shifting nor pressure
+from differences works at a free surface yet, so these profiles use neither.  Half these steps change no
 error of the cases by more than 2 % of itself, sound apart."""
 
 PERIODIC: dict[str, dict[str, Any]] = {
@@ -59,8 +59,8 @@ PERIODIC: dict[str, dict[str, Any]] = {
         "physics.particle_shifting": 0.1,
     },
 }
-"""What differs in a domain that is periodic along every axis: the fluid cannot have a surface, and
-whatever is under tension tears without shifting."""
+"""The keys that differ in a domain that is periodic along every axis: the fluid has no surface, and
+under tension particles clump without shifting."""
 
 
 def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[str, Any]:
@@ -72,12 +72,12 @@ def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[st
 def fill(
     data: dict[str, Any], touched: list[tuple[str | int, ...]]
 ) -> dict[tuple[str, ...], str]:
-    """Put the profile and the scheme of ``data`` under its keys; what filled which location.
+    """Add the keys of the profile and the scheme to ``data``; which of them set which location.
 
     Keys at, above or below those ``touched`` stay as they are.  A profile or a scheme that is
     itself among these takes the place of all others.
     """
-    found: dict[tuple[str, ...], str] = {}
+    filled: dict[tuple[str, ...], str] = {}
     data["scheme"] = scheme_of(data)
     for name, keys in (("profile", _profile_keys(data)), ("scheme", _scheme_keys(data))):
         for key, value in keys.items():
@@ -89,12 +89,12 @@ def fill(
                 table.pop(path[-1], None)
             elif value != OFF and ((name,) in touched or path[-1] not in table):
                 table[path[-1]] = value
-                found[path] = f"{name} {data[name]}"
-    return found
+                filled[path] = f"{name} {data[name]}"
+    return filled
 
 
 def _profile_keys(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys of the profile that a file names; what is wrong with the file is said elsewhere."""
+    """The keys of the profile that a file names; empty if the file is wrong, which is reported elsewhere."""
     name, space = data.get("profile"), data.get("space")
     if not isinstance(name, str) or name not in PROFILES:
         return {}

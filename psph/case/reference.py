@@ -1,6 +1,6 @@
 """The case reference, docs/case.md, from the schema.
 
-``python -m psph.case.reference > docs/case.md`` writes it anew.
+``python -m psph.case.reference > docs/case.md`` renews it.
 """
 
 from collections.abc import Iterator
@@ -15,24 +15,25 @@ HEAD = """\
 
 <!-- Written by `python -m psph.case.reference > docs/case.md`; change the models instead. -->
 
-A case is a TOML file that says what differs from the defaults. Units are SI. A key that psph does
-not know is refused, and so are a text where a number belongs and `nan` or `inf`. Lengths, places
-and velocities are lists with one number per dimension.
+A case is a TOML file with the keys that differ from the defaults. Units are SI. psph refuses unknown
+keys, texts in place of numbers, and `nan` or `inf`. Lengths, points and velocities are lists with one
+number per dimension. Numbers other than 0 have sizes between 1e-30 and 1e30.
 
-Sizes of numbers that are not 0 lie between 1e-30 and 1e30. A case is data: no key holds a formula
-or a command, and nothing of it is executed. The only files that it can name are those of
-`[experiments]`, which `psph study` reads: they lie in the case's folder or below, links followed.
-`study --files DIR` allows another folder instead.
+A case is data: no key holds a formula or a command, and nothing in it is executed. The only files that
+it can name are those of `[experiments]`, which `psph study` reads: they must be in the case's folder or
+below, after links are resolved. `study --files DIR` allows another folder instead.
 
 A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a
-case and does nothing else; `run/cases/` holds examples.
+case without running it; `run/cases/` holds examples.
 
 An effect is on when its key is there; `{}` takes all its defaults. A bare value stands for the
 first key of its table: `free_surface = 0.9` means `free_surface = { threshold = 0.9 }`.
 
-A `profile` fills in the numerical choices that the case does not give; an effect of it that the
-case shall not have is `"off"`. Given for one run, `--set profile=reference`, it takes the place of
-what the file says. [accuracy.md](accuracy.md#profiles) has what each profile holds and costs.
+A `scheme` sets the keys that the case does not give itself; without one it is `"stable"`, the default
+scheme ([scheme.md](scheme.md)). A `profile` sets further numerical choices and replaces the default
+scheme by plain SPH: [accuracy.md](accuracy.md#profiles) has the keys of each profile and what they cost.
+`"off"` switches off an effect of either. Given for one run, `--set profile=reference` or `--set
+scheme=sph`, they replace the keys of the file.
 """
 
 COLUMNS = ("key", "value", "default", "unit", "meaning")
@@ -61,7 +62,7 @@ def _document() -> Iterator[str]:
 
 
 def _table(whole: Node, name: str, node: Node) -> tuple[str, Node | None]:
-    """How a file opens the table, and the node of its keys; None for a plain key."""
+    """The heading of a table in a file, and the node of its keys; None for a plain key."""
     for branch in alternatives(whole, node):
         if "properties" in branch:
             return f"[{name}]", branch
@@ -76,7 +77,7 @@ def _table(whole: Node, name: str, node: Node) -> tuple[str, Node | None]:
 def _effects(whole: Node, table: Node) -> Iterator[str]:
     """The parameters of the effects that a table can switch on."""
     for name, node in table["properties"].items():
-        if node.get("otherwise") == OFF:
+        if node.get("otherwise", "").startswith(OFF):
             inner = next(b for b in alternatives(whole, node) if "properties" in b)
             title, meaning = f"`[physics.{name}]`", _sentence(node["description"])
             yield from _section(title, meaning, _rows(whole, inner), level=3)
@@ -119,7 +120,7 @@ def _row(whole: Node, name: str, node: Node, required: bool) -> str:
 
 
 def _type(whole: Node, node: Node) -> str:
-    """What may stand at a key, in words."""
+    """The values that a key may have, in words."""
     kinds = [_kind(whole, branch) for branch in alternatives(whole, node)]
     return " or ".join(dict.fromkeys(kinds))
 

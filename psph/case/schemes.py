@@ -1,5 +1,6 @@
-"""Schemes: what keeps a fluid stable, by one name, for keys that a case does not give itself."""
+"""Schemes: numerical choices under one name, for the keys that a case does not give itself."""
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -30,15 +31,23 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.pressure_gradient": "minimum",
     },
 }
-"""psph's own scheme, and the two of Acta Phys. Sin. 61, 224701 (2012): traditional SPH, eqs. (5) to
-(7) with (9), and SSPH, (13) and (15).  docs/stability.md has what each of them bears."""
+"""The default scheme, and the two of Acta Phys. Sin. 61, 224701 (2012): plain SPH, eqs. (5) to (7)
+with (9), and SSPH, (13) and (15).  docs/stability.md has the results of each."""
 
 SURFACE = "physics.free_surface"
 """With the paper's free-surface condition, eq. (14), its pressure gradient is eq. (6)."""
 
 
+def by_default(key: str) -> str:
+    """What the reference says of a key that the default scheme sets; empty: it does not."""
+    value = SCHEMES[STABLE].get(key)
+    if value is None:
+        return ""
+    return f"`{json.dumps(value)}` in the default scheme"
+
+
 def scheme_of(data: Mapping[str, Any]) -> Any:
-    """The scheme that a file names; else ours, or the plain one beside a profile."""
+    """The scheme that a file names; else the default scheme, or plain SPH with a profile."""
     return data.get("scheme", PLAIN if "profile" in data else STABLE)
 
 

@@ -1,4 +1,4 @@
-"""Find one's way in the JSON schema of a case by the keys of a file."""
+"""Nodes of the JSON schema of a case, found by the keys of a file."""
 
 from collections.abc import Iterator
 from typing import Any

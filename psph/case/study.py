@@ -1,4 +1,4 @@
-"""What a run is judged by, and what a study varies: ``[exact]``, ``[experiments]``, ``[study]``."""
+"""References for errors, and what a study varies: ``[exact]``, ``[experiments]``, ``[study]``."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any
@@ -10,7 +10,7 @@ from psph.case.tables import Table, Text, key
 from psph.solutions.catalogue import SOLUTIONS
 
 EXACT = "exact"
-"""In place of a velocity or a pressure: as the exact solution has it at the start."""
+"""In place of a velocity or a pressure: that of the exact solution at the start."""
 
 
 def exact_table(solutions: Mapping[str, type] = SOLUTIONS) -> type[Table]:
@@ -28,13 +28,13 @@ class Experiment(Table):
     """A measured curve over time, to compare a column of probes.csv with."""
 
     file: Text = key(
-        "CSV file in the case's folder or below; lines that begin with # are remarks", min_length=1
+        "CSV file in the case's folder or below; lines that begin with # are comments", min_length=1
     )
-    time: Text = key("its column of times")
-    value: Text = key("its column of values")
-    probe: Text = key("the column of probes.csv that it stands beside, such as tip.front")
-    time_unit: float = key("seconds in one of its times", 1.0, unit="s", gt=0)
-    value_unit: float = key("what one of its values is in the probe's own unit", 1.0, unit="1")
+    time: Text = key("name of its column of times")
+    value: Text = key("name of its column of values")
+    probe: Text = key("the column of probes.csv to compare with, such as tip.front")
+    time_unit: float = key("seconds per unit of its times", 1.0, unit="s", gt=0)
+    value_unit: float = key("its unit of values, in the probe's unit", 1.0, unit="1")
 
 
 Choices = Annotated[tuple[float | int | bool | Text, ...], Strict(False), Field(min_length=1)]
@@ -44,17 +44,17 @@ Dotted = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]+(\.[A-Za-z0-9
 
 
 class Study(Table):
-    """What ``psph study`` varies, and by what it judges."""
+    """The keys that ``psph study`` varies, and its measure of error."""
 
     vary: dict[Dotted, Choices] = key(
-        'keys and the values that each takes: { "space.spacing" = [0.02, 0.01] }; "off" takes a '
-        "key out",
+        'keys and the values that each takes: { "space.spacing" = [0.02, 0.01] }; "off" removes '
+        "a key",
         {},
     )
     grid: bool = key("all combinations of the values, not one key at a time", False)
     error: Text | None = key(
         "what is compared: velocity, pressure or density of the fluid at the end, or a column of "
-        "probes.csv over time", None, otherwise="what the reference knows first",
+        "probes.csv over time", None, otherwise="the first that the reference has",
     )
     against: Text | None = key(
         'what it is compared with: "exact", "theory" (of a probe), "finest" (the run with the '
@@ -65,4 +65,4 @@ class Study(Table):
     until: float | None = key(
         "probes are compared up to this time", None, unit="s", otherwise="the end", gt=0
     )
-    repeats: int = key("a short run is timed so many times", 3, ge=1)
+    repeats: int = key("number of times that a short run is timed", 3, ge=1)

@@ -1,4 +1,4 @@
-"""What the tables of a case are made of: strict models, described keys, vectors."""
+"""Base of the tables of a case: strict models, described keys, vectors."""
 
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
@@ -47,8 +47,8 @@ def key(
 ) -> Any:
     """A key of a table: its meaning, its default (none: it is required) and its unit.
 
-    ``make`` makes the default anew for each case.  ``otherwise`` says in words what holds where
-    the key is absent and no constant can stand for it.  ``rules`` are pydantic's (``gt=0``,
+    ``make`` creates the default for each case.  ``otherwise`` describes a default that is no
+    constant.  ``rules`` are pydantic's (``gt=0``,
     ``alias=...``).
     """
     extra = {"unit": unit} if unit else {}

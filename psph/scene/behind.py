@@ -1,4 +1,4 @@
-"""Where no fluid can be: behind the face of a wall, and beyond a side that walls close."""
+"""The region without fluid: behind the face of a wall, and beyond a side that walls close."""
 
 from functools import cached_property
 
@@ -7,7 +7,7 @@ import numpy as np
 from psph.scene.materials import NONE
 
 AT_ONCE = 1 << 15
-"""Points that are looked at together: what they need stays in the processor's cache."""
+"""Points that are processed together: their arrays fit into the processor's cache."""
 
 
 class Solid:

@@ -1,4 +1,4 @@
-"""What is wrong with a scene, and what is suspicious about it, in lines that say what to do."""
+"""Errors of a scene, and warnings, in lines that say what to do."""
 
 import math
 from collections.abc import Iterator
@@ -20,10 +20,10 @@ SLABS_IN_A_PERIOD = 3
 particles of a cell have the same nearest image of a candidate (psph.particles.neighbours)."""
 
 MOST_SITES = 10**11
-"""Sites of a lattice that are looked at one by one; a slip in the units gives far more."""
+"""Sites of a lattice that are visited one by one; a mistake in the units gives far more."""
 
 MOST_IN_PLANE = 10**8
-"""Sites of a plane, which are looked at together: some gigabytes.  An axis that is not the longest
+"""Sites of a plane, which are visited together: some gigabytes.  An axis that is not the longest
 can have more."""
 
 FARTHEST = 2e9
@@ -41,10 +41,10 @@ def check(scene: Scene) -> list[str]:
 
 
 def faults(scene: Scene) -> Iterator[str]:
-    """Everything for which the scene cannot be run."""
+    """Every error for which the scene cannot be run."""
     for line in _size_faults(scene):
         yield f"{scene.case.file}: {line}"
-        return  # what follows from it says no more
+        return  # the others would only follow from it
     places = [
         *_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene), *_exact_faults(scene)
     ]
@@ -53,7 +53,7 @@ def faults(scene: Scene) -> Iterator[str]:
 
 
 def _size_faults(scene: Scene) -> Iterator[str]:
-    """Known before any site is looked at, which would take hours, and more memory than there is."""
+    """Checks before the sites are visited, which could take hours and too much memory."""
     dx, lattice = scene.spacing, scene.lattice
     sites, in_plane = math.prod(lattice.counts), lattice.sites_in_plane
     if sites > MOST_SITES:
@@ -88,13 +88,13 @@ def _far_faults(scene: Scene) -> Iterator[str]:
         far = max(map(abs, numbers))
         if far > FARTHEST * scene.spacing:
             yield (
-                f"{key}: places {far:.3g} m away, {far / scene.spacing:.2g} spacings, cannot be told "
-                "apart in double precision; bring them nearer to 0, or make space.spacing larger"
+                f"{key}: positions {far:.3g} m from 0, {far / scene.spacing:.2g} spacings, are too far for "
+                "double precision; move them nearer to 0, or make space.spacing larger"
             )
 
 
 def warnings(scene: Scene) -> Iterator[str]:
-    """Everything that will run, but likely not as meant."""
+    """Everything that will run, but probably not as intended."""
     for kind in (
         _thin_walls, _surface_threshold, _minimum_at_surface, _minimum_in_disorder,
         _background_at_surface, _transport_at_surface, _slow_sound, _jitter, misfits,
@@ -147,13 +147,13 @@ def _site_faults(scene: Scene) -> Iterator[str]:
     for (one, other), site in sorted(census.clashes.items()):
         if one < walls <= other:
             yield (
-                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; take "
-                "the fluid out with shape = { difference = { from = ..., minus = [...] } }"
+                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; subtract "
+                "the fluid with shape = { difference = { from = ..., minus = [...] } }"
             )
         elif other < walls:
             yield (
-                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; take "
-                "one out of the other with difference"
+                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; subtract "
+                "one from the other with difference"
             )
     yield from _particles_outside(scene)
 
@@ -202,8 +202,8 @@ def _state_faults(scene: Scene) -> Iterator[str]:
     longest = time.cfl * scene.smoothing_length / speed
     if time.step is None and time.end > MOST_STEPS * longest:
         yield (
-            f"time.end: {time.end:g} s takes more than {MOST_STEPS:.1g} steps, of {longest:.2g} s at "
-            "the most at this spacing and speed of sound, and they are lost in its rounding; give "
+            f"time.end: {time.end:g} s takes more than {MOST_STEPS:.1g} steps of at most {longest:.2g} s "
+            "(by this spacing and speed of sound), lost in the rounding of the time; give "
             f"less than {0.9 * MOST_STEPS * longest:.2g}"
         )
     for name, start in zip(scene.case.fluids, scene.starts):
@@ -247,11 +247,11 @@ def _surface_threshold(scene: Scene) -> Iterator[str]:
     between = f"a value between {surface:.3f} and {interior:.3f}, or another space.smoothing"
     if surface >= effect.threshold:
         yield (
-            f"physics.free_surface: {effect.threshold:g} sees no surface, {sums}; give {between}"
+            f"physics.free_surface: {effect.threshold:g} detects no surface, {sums}; give {between}"
         )
     elif interior < effect.threshold:
         yield (
-            f"physics.free_surface: {effect.threshold:g} takes every particle for surface, {sums}; "
+            f"physics.free_surface: {effect.threshold:g} treats every particle as surface, {sums}; "
             f"give {between}"
         )
 
@@ -259,8 +259,8 @@ def _surface_threshold(scene: Scene) -> Iterator[str]:
 def _minimum_at_surface(scene: Scene) -> Iterator[str]:
     if scene.case.physics.pressure_gradient == "minimum" and scene.has_free_surface:
         yield (
-            'physics.pressure_gradient: "minimum" explodes at a free surface, where it only pushes '
-            'outward, and the fluid has one; take "symmetric", or enclose the fluid'
+            'physics.pressure_gradient: "minimum" is unstable at a free surface, where it only pushes '
+            'outward, and the fluid has one; use "symmetric", or enclose the fluid'
         )
 
 
@@ -272,8 +272,8 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
     disordered = any(fluid.jitter for fluid in scene.case.fluids.values())
     if physics.pressure_gradient == "minimum" and disordered and not rubs:
         yield (
-            'physics.pressure_gradient: "minimum" brings no particle back to its place, and the '
-            "fluid starts in disorder without any friction: it will heat up; give a viscosity, "
+            'physics.pressure_gradient: "minimum" does not restore order, and the fluid starts '
+            "disordered and without friction: its particles will speed up; give a viscosity, "
             'physics.artificial_viscosity, or scheme = "stable"'
         )
 
@@ -290,7 +290,7 @@ def _background_at_surface(scene: Scene) -> Iterator[str]:
 def _transport_at_surface(scene: Scene) -> Iterator[str]:
     if scene.case.physics.transport_velocity is not None and scene.has_free_surface:
         yield (
-            "physics.transport_velocity: carries a free surface away, and the fluid has one; take "
+            "physics.transport_velocity: moves a free surface outwards, and the fluid has one; use "
             "physics.generalised_transport_velocity, or enclose the fluid"
         )
 
@@ -299,7 +299,7 @@ def _slow_sound(scene: Scene) -> Iterator[str]:
     least = SOUND_OVER_SPEED * scene.expected_speed
     if scene.sound_speed < least * (1.0 - TOLERANCE):
         yield (
-            f"physics.sound_speed: {scene.sound_speed:g} is below ten times the speed to expect, "
+            f"physics.sound_speed: {scene.sound_speed:g} is below ten times the expected speed, "
             f"{scene.expected_speed:.3g} m/s, so density will vary by more than 1 %; "
             f"raise it to {least:.3g}"
         )

@@ -27,7 +27,7 @@ SOUND_OVER_SPEED = 10.0
 
 
 class Scene:
-    """A cheap description of what a case starts with; particles are made when asked for.
+    """A description of the initial state of a case; particles are created on request.
 
     The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the
     domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
@@ -82,7 +82,7 @@ class Scene:
 
     @cached_property
     def census(self) -> Census:
-        """What one look at every site tells: counts, extents, overlaps."""
+        """Counts, extents and overlaps, from one visit of every site."""
         return take_census(self.layout, self.up)
 
     @cached_property
@@ -110,9 +110,9 @@ class Scene:
         given = self.case.physics.sound_speed
         if given is None and not self.expected_speed > 0.0:
             raise CaseError([
-                f"{self.case.file}: physics.sound_speed: missing, and nothing falls or moves at "
-                "the start that it could follow from; give it, ten times the largest speed that "
-                "you expect"
+                f"{self.case.file}: physics.sound_speed: missing, and it cannot be derived since "
+                "nothing moves at the start and there is no gravity; give ten times the largest "
+                "speed that you expect"
             ])
         return given or SOUND_OVER_SPEED * self.expected_speed
 
@@ -143,7 +143,7 @@ class Scene:
 
     @cached_property
     def setting(self) -> Setting:
-        """What the exact solution has to know of the scene: its first fluid and the domain."""
+        """The properties of the scene that the exact solution needs: its first fluid and the domain."""
         return self._setting(self.sound_speed)
 
     @property
@@ -207,7 +207,7 @@ class Scene:
 
     @property
     def wall_reach(self) -> int:
-        """Sites into a wall that a fluid can feel, and one more."""
+        """Depth in sites to which a wall acts on a fluid, and one more."""
         return math.ceil(self.kernel.support * self.smoothing_length / self.spacing) + 1
 
     @property

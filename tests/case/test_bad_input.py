@@ -42,8 +42,8 @@ REFUSED = {
         WATER.replace("0.1", "1e-4").replace("[1.0, 0.5]", "[1e-3, 1.5e5]") + '[parallel]\naxis = "x"',
         "parallel.axis: 1.5e+09 sites in a plane across x",
     ),
-    "places that are all the same number": (FAR, "cannot be told apart"),
-    "a jitter out of this world": (WATER + "jitter = 1e10", "fluids.water.jitter: places 1e+09 m away"),
+    "places that are all the same number": (FAR, "too far for double precision"),
+    "a jitter out of this world": (WATER + "jitter = 1e10", "fluids.water.jitter: positions 1e+09 m from 0"),
     "a shift out of this world": (
         WATER + "[[perturbations]]\nposition = [0.0, 0.0]\nshift = [1e25, 0.0]", "perturbations[0].shift",
     ),
@@ -94,7 +94,7 @@ KICK = WATER + "[[perturbations]]\nposition = [0.0, 0.0]\n"
     (f"fluids.water.seed={2**64}", "value: a whole number that is too large"),
     ("t\udcff=1", "no key and value"),
     ("title='\udcff'", "no key and value"),
-    ("time.end=1\nstep = 2", "is no value"),
+    ("time.end=1\nstep = 2", "is not a value"),
 ])
 def test_a_refused_override(override, says, tmp_path):
     [line] = refusal(tmp_path, KICK, override)

@@ -70,32 +70,32 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             WATER.replace(
                 "[physics]", '[physics]\npressure_gradient = "minimum"\ngradient_correction = 0.5'
             ),
-            'physics.gradient_correction: cannot correct physics.pressure_gradient = "minimum"; take',
+            'physics.gradient_correction: does not work with physics.pressure_gradient = "minimum"; use',
         ),
         (
             WATER.replace("[physics]", "[physics]\nparticle_shifting = 0.1\ntransport_velocity = 1.0"),
-            "physics.particle_shifting: physics.transport_velocity shifts them too; give it as",
+            "physics.particle_shifting: physics.transport_velocity shifts particles too; set it to",
         ),
         (
             WATER.replace("[physics]", "[physics]\nxsph = 0.5\ntransport_velocity = 1.0"),
-            "physics.xsph: physics.transport_velocity moves them too; give it as \"off\", or take",
+            "physics.xsph: physics.transport_velocity moves particles too; set it to \"off\", or remove",
         ),
         (
             WATER.replace(
                 "[physics]", '[physics]\npressure_gradient = "minimum"\nartificial_stress = 0.2'
             ),
-            'physics.artificial_stress: stands against pairs that pull as "symmetric" has them, and',
+            'physics.artificial_stress: works only with physics.pressure_gradient = "symmetric", and',
         ),
         (
             WATER.replace("[physics]", '[physics]\npressure_gradient = "stress_points"\nxsph = 0.5'),
-            'physics.xsph: physics.pressure_gradient = "stress_points" moves half of them too; give it',
+            'physics.xsph: physics.pressure_gradient = "stress_points" moves half of the particles too; choose',
         ),
         (
             WATER.replace(
                 "[physics]",
                 '[physics]\npressure_gradient = "tensile_control"\ngradient_correction = 0.5',
             ),
-            'physics.gradient_correction: cannot correct physics.pressure_gradient = "tensile_contr',
+            'physics.gradient_correction: does not work with physics.pressure_gradient = "tensile_contr',
         ),
         (
             WATER + WALL + 'continues = "watre"',
@@ -103,15 +103,15 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
         ),
         (
             WATER + WALL + "no_slip = true",
-            "walls.floor.no_slip: true: no fluid has any friction; give a fluid its viscosity, or",
+            "walls.floor.no_slip: true: no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip",
         ),
         (
             WATER.replace("[physics]", CENTRAL),
-            "physics.central_friction: no fluid has any friction; give a fluid its viscosity, or",
+            "physics.central_friction: no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key",
         ),
         (
             WATER.replace("[physics]", CENTRAL) + "viscosity = 1e-3" + WALL + "no_slip = true",
-            "walls.floor.no_slip: true: mirrors the flow for friction that follows the velocity; take",
+            "walls.floor.no_slip: true: does not work with physics.central_friction; remove one of the two",
         ),
         (
             WATER + WALL.replace("floor", "water"),
@@ -119,12 +119,12 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
         ),
         (
             WATER.replace("end = 2.0", "end = 2.0\nstep = 1e-12"),
-            "time.step: 1e-12: lost in the rounding of a time of 2 s, after more than 9e+09 steps; "
+            "time.step: 1e-12: too short for 2 s: more than 9e+09 steps, lost in the rounding of the time; "
             "give at least 2.4e-10",
         ),
         (
             WATER + "[output]\nframes = 1e-12",
-            "output.frames: 1e-12: asks for more than 1e+09 moments until 2 s; give at least 2.2e-09",
+            "output.frames: 1e-12: gives more than 1e+09 outputs until 2 s; give at least 2.2e-09",
         ),
     ],
 )

@@ -94,7 +94,7 @@ def test_a_syntax_error_is_one_line_with_its_place(tmp_path, text, says):
 def test_an_override_replaces_a_key(tmp_path, override, found):
     if found is None:
         [line] = refusal(tmp_path, WATER, override)
-        assert "'a b = c' is no value; write it as in TOML" in line
+        assert "'a b = c' is not a value; write it as in TOML" in line
     else:
         assert found(draft(tmp_path, WATER, override))
 
@@ -114,8 +114,8 @@ def test_a_later_override_wins(tmp_path):
     [
         ("time.end", "no key and value; write it as key.key=value"),
         ("time..end=1", "no key and value; write it as key.key=value"),
-        ("time.end=1..2", "'1..2' is no value; write it as in TOML"),
-        ("time.end=1\nstep = 2", "is no value; write it as in TOML"),
+        ("time.end=1..2", "'1..2' is not a value; write it as in TOML"),
+        ("time.end=1\nstep = 2", "is not a value; write it as in TOML"),
         ("time.end.x=1", "time.end: has no x inside; override time.end itself"),
         ("time.cfl=2", "time.cfl: 2 is out of range"),
         ("time.cfll=0.2", "time.cfll: unknown key; did you mean 'cfl'?"),

@@ -47,7 +47,7 @@ FAULTS = {
     ),
     "a missing table": (
         replaced("[time]\nend = 2.0", ""),
-        "time: missing; add the table [time] (how long and in which steps)",
+        "time: missing; add the table [time] (simulated time and time steps)",
     ),
     "no fluid": (
         WATER[: WATER.index("[fluids")],
@@ -136,7 +136,7 @@ FAULTS = {
     ),
     "an axis that is no list": (
         replaced("spacing = 0.1", 'spacing = 0.1\nperiodic = "x"'),
-        'space.periodic: "x" is not a list; give a list such as ["x"] (axes along which',
+        'space.periodic: "x" is not a list; give a list such as ["x"] (periodic axes)',
     ),
     "one perturbation in place of a list": (
         WATER + "[perturbations]\nposition = [0.0, 0.0]",
@@ -144,11 +144,11 @@ FAULTS = {
     ),
     "a number for a table": (
         "time = 2.0\n" + replaced("[time]\nend = 2.0", ""),
-        "time: 2.0 is not a table; write [time] and its keys below it (how long",
+        "time: 2.0 is not a table; write [time] and its keys below it (simulated time",
     ),
     "a number for a title": (
         "title = 3\n" + WATER,
-        "title: 3 is not a text in quotes; give a text in quotes (what the case is",
+        "title: 3 is not a text in quotes; give a text in quotes (title of the case",
     ),
     "a name with a blank": (
         WATER + f"[fluids.'salt water']\n{BOX}",

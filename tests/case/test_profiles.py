@@ -83,7 +83,7 @@ def test_no_profile_is_no_difference(tmp_path):
         (named("referenc", CLOSED), "profile: \"referenc\" is not known; did you mean 'reference'?"),
         (
             named("reference", CLOSED.replace("sound", 'pressure_gradient = "minimum"\nsound')),
-            "case.toml with profile reference: physics.gradient_correction: cannot correct",
+            "case.toml with profile reference: physics.gradient_correction: does not work",
         ),
         ("profile = 3\n" + CLOSED, "profile: 3 is not known"),
         ('profile = "quick"\nspace = 3\n[time]\nend = 1.0', "space: 3 is not a table"),

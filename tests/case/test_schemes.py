@@ -57,4 +57,4 @@ def test_ssph_has_the_pressure_gradient_that_the_paper_has_for_the_case(tmp_path
 
 def test_two_shifts_are_refused(tmp_path):
     [line] = refusal(tmp_path, BARE.replace("[physics]", "[physics]\nparticle_shifting = 0.1"))
-    assert "physics.particle_shifting" in line and 'give it as "off"' in line
+    assert "physics.particle_shifting" in line and 'set it to "off"' in line
