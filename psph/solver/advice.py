@@ -1,4 +1,4 @@
-"""What to try after a run got into trouble, by what is seen of the case and of the particle."""
+"""What to try after a guard stopped a run, from the case and the particle at fault."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ from psph.scene.scene import SOUND_OVER_SPEED
 from psph.scene.walls import layers_needed, thinnest_walls
 
 FASTER = 2.0
-"""By so much the flow must pass the speed that c was made for until a larger c is proposed."""
+"""A larger c is proposed if the expected speed exceeds c/10 by this factor."""
 
 
 def advice(scene, guard: str, suspect) -> list[str]:
@@ -25,7 +25,7 @@ def _long_step(scene) -> Iterator[str]:
     step, cfl = scene.case.time.step, scene.case.time.cfl
     limit = cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
     if step is not None and step > limit:
-        yield f"take out time.step = {step:g}: time.cfl = {cfl:g} would allow {limit:.2g} s"
+        yield f"remove time.step = {step:g}: time.cfl = {cfl:g} would allow {limit:.2g} s"
 
 
 def _shorter_step(scene) -> Iterator[str]:
@@ -45,22 +45,22 @@ def _pressure(scene, suspect) -> Iterator[str]:
     physics, open_air = scene.case.physics, scene.has_free_surface
     if physics.pressure_gradient == "minimum" and open_air:
         yield (
-            'give physics.pressure_gradient = "symmetric": "minimum" (p⁻) does not hold where there '
-            "is a free surface"
+            'give physics.pressure_gradient = "symmetric": "minimum" (p⁻) is unstable at a '
+            "free surface"
         )
     if not (suspect.value("pressure") < 0.0 or scene.lowest_pressure < 0.0):
         return
     if open_air and physics.tension_floor is None:
-        yield "give physics.tension_floor = 0.98: tension tears the fluid"
+        yield "give physics.tension_floor = 0.98: the fluid is under tension"
     elif not open_air and physics.background_pressure is None:
-        yield 'give physics.background_pressure = "auto": tension tears the fluid'
+        yield 'give physics.background_pressure = "auto": the fluid is under tension'
 
 
 def _friction(scene) -> Iterator[str]:
     physics = scene.case.physics
     viscous = any(material.viscosity for material in scene.materials)
     if physics.artificial_viscosity is None and physics.pair_damping is None and not viscous:
-        yield "give physics.artificial_viscosity = 0.05: nothing damps this fluid"
+        yield "give physics.artificial_viscosity = 0.05: this fluid has no damping"
 
 
 def _sound(scene, guard: str) -> Iterator[str]:
@@ -69,7 +69,7 @@ def _sound(scene, guard: str) -> Iterator[str]:
     if expected > FASTER * c / SOUND_OVER_SPEED:
         yield (
             f"raise physics.sound_speed to {SOUND_OVER_SPEED * expected:.3g} m/s, ten times the "
-            f"speed to expect; it is {c:g}"
+            f"expected speed; it is {c:g}"
         )
     elif guard == "density":
         yield f"raise physics.sound_speed from {c:.4g} m/s: densities differ by (speed/c)²"
@@ -83,12 +83,12 @@ def _walls(scene, guard: str, suspect) -> Iterator[str]:
     for material, (layers, _) in thinnest_walls(scene).items():
         yield f"make walls.{names[material]} thicker: {need} spacings instead of {layers}"
     if guard == "depth":
-        yield "take a finer space.spacing: a fast particle then meets more of the wall"
+        yield "use a finer space.spacing: a fast particle then interacts with more wall particles"
 
 
 def _bound(guard: str) -> Iterator[str]:
     if guard in Guards.model_fields:
         yield (
-            f'raise guards.{guard} if this is meant to be, or give guards.on_trouble = "warn" to '
-            "see what follows"
+            f'raise guards.{guard} if this is intended, or give guards.on_trouble = "warn" to '
+            "continue in spite of it"
         )

@@ -1,4 +1,4 @@
-"""The plan in words: what will be simulated, why, and what it will take."""
+"""The plan in words: what will be simulated, why, and its cost."""
 
 import math
 from collections.abc import Iterator
@@ -16,8 +16,8 @@ from psph.solver.outlay import output_lines
 from psph.solver.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY = 8, 9, 12, 24, 4
-"""Bytes of a number; of a particle's id and kind; of where its list stands; of what a rebuild sorts
-it with; and of a neighbour in a list."""
+"""Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
+rebuild sorts with; and of a neighbour in a list."""
 
 
 def explain(scene, ranks: int) -> Iterator[str]:
@@ -43,7 +43,7 @@ def slab_planes(scene) -> int:
 
 
 def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
-    """Memory of a particle: its fields and what keeps them in order, and its neighbour list, bytes."""
+    """Memory of a particle: its fields with the arrays to sort them, and its neighbour list, bytes."""
     own = NUMBER * _rows(scene, plan.arrays) + IDENTITY
     record = record_width(_rows(scene, recorded(plan.neighbour_fields))) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + NUMBER * _cells_per_particle(scene)
@@ -59,7 +59,7 @@ def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
 
 
 def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
-    """What a refresh of the halo moves: bytes a ghost, and bytes that a rank sends in all."""
+    """Messages of a halo refresh: bytes per ghost, and bytes that a rank sends in all."""
     each = NUMBER * _rows(scene, plan.refreshed)
     return each, each * _neighbours(scene, ranks) * _ghosts_a_side(scene)
 
@@ -111,13 +111,13 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
 
 
 def _preset_lines(case) -> Iterator[str]:
-    """The scheme and the profile: what they set, and what the case gives otherwise."""
+    """The scheme and the profile: the keys that they set, and those that the case overrides."""
     names = dict.fromkeys((f"scheme {case.scheme}", *(name for name, _ in case.presets.values())))
     for name in names:
         keys = {key: value for key, (of, value) in case.presets.items() if of == name}
         own = [key for key in keys if not case.preset(key)]
         what, _, which = name.partition(" ")
-        yield f"  {what:<11} {which}" + (f", but for {', '.join(own)}" if own else "")
+        yield f"  {what:<11} {which}" + (f", except {', '.join(own)}" if own else "")
         for key, value in keys.items():
             if key not in own:
                 yield f"              {key} = {value}"
@@ -137,7 +137,7 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
     )
     if ranks * memory > free:
         yield (
-            f"              a run on this machine is refused: {ranks * memory / 2**30:.1f} GiB, and "
+            f"              too much for this machine: {ranks * memory / 2**30:.1f} GiB, and "
             f"{free / 2**30:.1f} GiB are free"
         )
     yield f"  arrays      {', '.join(plan.arrays)}"
@@ -188,12 +188,12 @@ def _step_lines(scene, plan: Plan) -> Iterator[str]:
 
 
 def _pull(plan: Plan) -> float:
-    """The acceleration to expect, m/s²."""
+    """The expected acceleration, m/s²."""
     gravity = [e.acceleration for e in plan.effects if hasattr(e, "acceleration")]
     return max((math.hypot(*g) for g in gravity), default=0.0)
 
 
 def _steps_expected(scene, plan: Plan) -> tuple[int, str]:
-    """How many steps the run will take, about, and what limits them."""
+    """The approximate number of steps, and what limits the step."""
     step, name = plan.longest_step(scene.expected_speed, _pull(plan))
     return math.ceil(scene.case.time.end / step), name

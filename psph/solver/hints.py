@@ -1,4 +1,4 @@
-"""Effects that a scene calls for and that nothing in it can feel."""
+"""Effects of a scene that have no influence on it."""
 
 from collections.abc import Iterator
 
@@ -8,11 +8,11 @@ from psph.physics.viscosity import ArtificialViscosity, LaminarViscosity
 from psph.solver.plan import Plan, words
 
 UNSEEN = 0.01
-"""A fluid's own friction below this part of the numerical one is lost in it."""
+"""A fluid's viscosity below this part of the numerical one is negligible."""
 
 
 def hints(scene, plan: Plan) -> Iterator[str]:
-    """One line for each such effect: why, and what to take out."""
+    """One line for each such effect: why, and what to remove."""
     present = {type(effect): effect for effect in plan.effects}
     for kind, look in LOOKS.items():
         if kind in present and (why := look(scene, plan, present)):
@@ -22,15 +22,15 @@ def hints(scene, plan: Plan) -> Iterator[str]:
 def _gravity(scene, plan: Plan, present: dict) -> str | None:
     if any(scene.gravity):
         return None
-    return "physics.gravity is zero along every axis; the case can do without the key"
+    return "physics.gravity is zero along every axis; remove the key"
 
 
 def _surface(scene, plan: Plan, present: dict) -> str | None:
     if scene.has_free_surface:
         return None
     return (
-        "fluid, walls and periods leave no free surface at the start; without physics.free_surface "
-        "the pair loop has one sum less"
+        "the fluid has no free surface at the start; remove physics.free_surface, and the pair loop "
+        "has one sum less"
     )
 
 
@@ -38,12 +38,12 @@ def _numerical(scene, plan: Plan, present: dict) -> str | None:
     friction = present[ArtificialViscosity]
     if friction.alpha or friction.beta:
         return None
-    return "both of its coefficients are zero; take physics.artificial_viscosity out"
+    return "both of its coefficients are zero; remove physics.artificial_viscosity"
 
 
 def _laminar(scene, plan: Plan, present: dict) -> str | None:
     if not scene.expected_speed > 0.0 and not any(scene.gravity):
-        return "nothing moves at the start and nothing falls; there is no velocity gradient to feel it"
+        return "nothing moves at the start and there is no gravity, so it has nothing to act on"
     if ArtificialViscosity not in present:
         return None
     own = plan.extremes.viscosity
@@ -51,8 +51,8 @@ def _laminar(scene, plan: Plan, present: dict) -> str | None:
     if own > UNSEEN * numerical:
         return None
     return (
-        f"its {own:g} m2/s are lost in the {numerical:.2g} m2/s that physics.artificial_viscosity "
-        "stands for (alpha c h/8); take fluids.*.viscosity out, or lower alpha"
+        f"its {own:g} m2/s are negligible beside the {numerical:.2g} m2/s of "
+        "physics.artificial_viscosity (alpha c h/8); remove fluids.*.viscosity, or lower alpha"
     )
 
 
@@ -62,4 +62,4 @@ LOOKS = {
     ArtificialViscosity: _numerical,
     LaminarViscosity: _laminar,
 }
-"""For each effect the look at the scene that may find it idle."""
+"""For each effect the check whether it is idle in a scene."""

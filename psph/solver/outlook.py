@@ -1,4 +1,4 @@
-"""What linear theory foretells of the lattice that a scene starts from."""
+"""The prediction of linear theory for the initial lattice of a scene."""
 
 from collections.abc import Iterator
 
@@ -29,7 +29,7 @@ WITHIN = {
     Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, TensileControl,
     TensionFloor,
 }
-"""Effects that the theory holds for as they are; the floor acts on no small disturbance."""
+"""Effects that the theory includes; the tension floor does not act on a small disturbance."""
 
 
 def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
@@ -53,24 +53,24 @@ AS_REMEDY = {
     ConservativeSmoothing: lambda effect, scene: remedies.ConservativeSmoothing(effect.alpha),
     RiemannDissipation: lambda effect, scene: remedies.RiemannDissipation(),
 }
-"""Effects that change what the theory says, as it has them."""
+"""Effects that change the result of the theory, in its terms."""
 
 BY_SIGN = "tensile_control"
-"""The form that is one of the theory's under compression and another under tension."""
+"""The form that is one of the theory's forms under compression and another under tension."""
 
 NEAR = 1e-4
-"""Part of the density by which it is changed to see how the pressure answers."""
+"""Relative change of density for the derivative of the pressure."""
 
 
 def outlook(scene, plan: Plan) -> Iterator[str]:
-    """Whether small waves grow at the start, how fast, and which h/dx would hold."""
+    """Whether small waves grow at the start, how fast, and which h/dx is stable."""
     lattice, form = OF_SCENES[scene.dimensions], scene.case.physics.pressure_gradient
     yield (
         f"Stability of the {lattice} lattice at the start, {form} pressure gradient "
         "(linear theory, docs/stability.md)"
     )
     if form not in (*FORMS, BY_SIGN):
-        yield f"  {'unknown':<20}the theory does not know this form; docs/scheme.md has runs with it"
+        yield f"  {'no forecast':<20}linear theory does not cover this form; docs/scheme.md has runs with it"
         return
     added = tuple(
         AS_REMEDY[type(e)](e, scene) for e in plan.effects if type(e) in AS_REMEDY
@@ -83,15 +83,15 @@ def outlook(scene, plan: Plan) -> Iterator[str]:
         words(type(e).__name__) for e in plan.effects if type(e) not in {*WITHIN, *AS_REMEDY}
     ]
     if left:
-        yield f"  not in it           {', '.join(left)}"
+        yield f"  not included        {', '.join(left)}"
 
 
 def _verdict(settings: Settings) -> tuple[str, str]:
-    """The state, or that it does not matter, and what becomes of it."""
+    """The state (tension, compression or neutral), and whether the lattice is stable in it."""
     if settings.form != SYMMETRIC and not settings.remedies:
         return "neutral", (
-            "a uniform pressure drops out: no wave grows, at any h/dx, and nothing brings particles "
-            "back in order"
+            "a uniform pressure cancels: no wave grows, at any h/dx, and nothing restores the order "
+            "of particles"
         )
     state, pressure = _state(settings), f"p = {settings.pressure:.3g} Pa"
     now = growth(settings)
@@ -123,7 +123,7 @@ def _settings(scene, lattice: str, form: str, added: tuple) -> Iterator[Settings
 
 
 def _form(form: str, pressure: float) -> str:
-    """The form that tensile control takes inside a fluid under a pressure; others stay."""
+    """The form of tensile control inside a fluid under a pressure; other forms as they are."""
     if form != BY_SIGN:
         return form
     return SYMMETRIC if pressure > 0.0 else "difference"

@@ -84,7 +84,7 @@ def test_one_rank_of_an_open_domain_sends_nothing_and_two_send_to_one_side(tmp_p
 def test_explain_says_what_comes_from_the_profile(tmp_path):
     text = 'profile = "reference"\n' + BOX.replace("jitter", "viscosity = 1e-3\njitter")
     lines = list(explain(Scene(draft(tmp_path, text, "space.smoothing=1.2")), 1))
-    assert "  profile     reference, but for space.smoothing" in lines
+    assert "  profile     reference, except space.smoothing" in lines
     assert "              physics.gradient_correction = 0.5" in lines
     assert not any("space.smoothing =" in line for line in lines)
     because = [line for line in lines if "because:" in line and "profile reference" in line]

@@ -97,7 +97,7 @@ def test_the_square_under_tension(tmp_path):
     text, table = report_of(tmp_path)
     assert table["pushed hardest by"].startswith("symmetric pressure, ")
     assert table["density changed most by"].startswith("continuity, ")
-    assert 'physics.background_pressure = "auto": tension tears the fluid' in text
+    assert 'physics.background_pressure = "auto": the fluid is under tension' in text
     calm, _ = started(
         load(TENSION, ["guards.on_trouble=stop", "time.end=0.005"]), tmp_path, COMM
     )

@@ -44,7 +44,7 @@ def test_one_that_fits_is_not_refused(needed, monkeypatch):
 
 def test_explain_foresees_it(needed, monkeypatch):
     case, size = needed
-    refused = "a run on this machine is refused: "
+    refused = "too much for this machine: "
     for free, said in ((size, False), (size - 1.0, True)):
         monkeypatch.setattr(words, "free_memory", lambda: free)
         assert any(refused in line for line in explain(Scene(case), 1)) == said
