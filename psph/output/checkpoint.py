@@ -286,6 +286,7 @@ def checksum(part: np.ndarray, first: int) -> int:
     for start in range(0, len(part), hdf5.CHUNK):
         piece = np.ascontiguousarray(part[start : start + hdf5.CHUNK]).reshape(-1)
         words = piece.view(np.uint64) if piece.itemsize == 8 else piece.astype(np.uint64)
+        words.flags.writeable = False  # one type for all, so that it is compiled once
         total += int(_sum_of_mixed(words, np.uint64((first + start) * width)))
     return total % 2**64
 

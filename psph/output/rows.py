@@ -14,6 +14,10 @@ import numpy as np
 CHUNK = 1 << 16
 """Rows that are copied at once where a rank writes alone, or travel to rank 0 when it writes for all."""
 
+AT_ONCE = 1 << 24
+"""Bytes of all rows up to which rank 0 takes them from all ranks at once and writes them alone: where
+all write so little together they wait for each other rather than for the disk."""
+
 MARGIN = 1 << 16
 """Bytes for the structure of what is laid out: headers, names, attributes."""
 
@@ -97,6 +101,8 @@ def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> No
             for name, part in rows.items():
                 for start in range(0, len(part), CHUNK):
                     file[name][start : start + CHUNK] = part[start : start + CHUNK]
+    elif sum(counts) * _bytes_per_row(rows) <= AT_ONCE:
+        _fill_at_once(path, comm, rows)
     elif parallel_hdf5():
         with open_file(path, "r+", driver="mpio", comm=comm) as file:
             fill_collectively(file, rows, sum(counts[: comm.rank]))
@@ -106,6 +112,20 @@ def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> No
         for part in rows.values():
             for start in range(0, len(part), CHUNK):
                 comm.Send(np.ascontiguousarray(part[start : start + CHUNK]), dest=0)
+
+
+def _bytes_per_row(rows: dict[str, np.ndarray]) -> int:
+    """The same on every rank, whether it has a row or none."""
+    return sum(math.prod(part.shape[1:]) * part.itemsize for part in rows.values())
+
+
+def _fill_at_once(path: Path, comm, rows: dict[str, np.ndarray]) -> None:
+    """Rank 0 gathers the rows of all ranks in one message each, and writes them."""
+    shares = comm.gather([np.ascontiguousarray(part) for part in rows.values()])
+    if comm.rank == 0:
+        with open_file(path, "r+") as file:
+            for name, parts in zip(rows, zip(*shares, strict=True), strict=True):
+                file[name][...] = np.concatenate(parts)
 
 
 def fill_collectively(file, rows: dict[str, np.ndarray], first: int) -> None:

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
+from psph.case.model import Checkpoint
 from psph.output.checkpoint import COPY, Saved, checkpoints, remove_checkpoints
 from psph.output.errors import OutputError, together
 from psph.output.frames import funnel_notice
@@ -114,13 +115,13 @@ def _simulate(
         at_last.callback(record.close)
         progress = Progress(comm, case.time.end, case.title or case.name, particles, lines)
         at_last.callback(progress.close)
+        simulation.word = watch.call
         while simulation.time < case.time.end:
-            simulation.word = float(watch.call())
             guards.step()
             record.write_due()
             progress.update(simulation.time, simulation.steps, simulation.dt)
             _attend(simulation, record, watch, case, folder)
-        if any(value is not None for _, value in case.checkpoint):
+        if saved or watch.wrote_any or case.checkpoint != Checkpoint():
             write_checkpoint(simulation, record, case, folder)
         record.write_last()
     whole = time.perf_counter() - stepping

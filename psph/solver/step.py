@@ -1,5 +1,7 @@
 """The simulation of one rank, and its step."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from psph.case.consistency import LARGEST_LOSS
@@ -40,8 +42,8 @@ class Simulation:
     ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
     scene.  ``time`` in s, ``dt`` the last step.  Over all ranks ``speed`` is the largest in m/s and
     ``strain`` the largest |ρ/ρ₀ − 1| of the fluid after the last step, infinite where a number is
-    not finite.  ``word`` is a number from 0 on that a rank wants all others to know; ``heard`` the
-    largest of them in the last step, the same on every rank.
+    not finite.  ``word`` is asked at the end of each step for a number from 0 on that a rank wants
+    all others to know; ``heard`` is the largest of them, the same on every rank.
     With ``saved`` it goes on from a checkpoint (psph.solver.resume), whose particles ``store``
     holds where the lists were made.
     """
@@ -60,7 +62,8 @@ class Simulation:
         self.speed, self.pace, self.strain = 0.0, 0.0, 0.0
         self.energy_at_start: float | None = None
         self.limited_by = ""
-        self.word, self.heard = 0.0, 0.0
+        self.word: Callable[[], float] = float
+        self.heard = 0.0
         self._paid = 0.0
         if saved is None:
             self._start()
@@ -207,7 +210,7 @@ class Simulation:
         )
         *mine, shift2 = np.max(parts, axis=0)
         with self.ledger("limits"):
-            sent = [*mine, self.word, *([shift2] if self.plan.displaces else [])]
+            sent = [*mine, self.word(), *([shift2] if self.plan.displaces else [])]
             extremes = largest(self.comm, sent)
         self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()
         self.strain, self.heard = extremes[2:4].tolist()

@@ -60,8 +60,13 @@ class Watch:
     def _remember(self, number, frame) -> None:
         self._signalled = max(self._signalled, SIGNALS[number])
 
+    @property
+    def wrote_any(self) -> bool:
+        """Whether a checkpoint has been written since this is open."""
+        return self._longest_write > 0.0
+
     def call(self) -> Call:
-        """What this rank asks for before its next step."""
+        """What this rank asks for at the end of a step."""
         now = time.monotonic()
         self._longest_step = max(self._longest_step, now - self._looked)
         self._looked = now
@@ -69,8 +74,7 @@ class Watch:
             return self._signalled
         if self._runs_out(now):
             return Call.WALL_CLOCK
-        minutes = self.limits.minutes
-        if minutes is not None and now - self._saved >= 60.0 * minutes:
+        if now - self._saved >= 60.0 * self.limits.minutes:
             return Call.CHECKPOINT
         return Call.NOTHING
 
@@ -80,7 +84,7 @@ class Watch:
         self._saved = self._looked = time.monotonic()
 
     def _runs_out(self, now: float) -> bool:
-        """Whether the job could end before two more steps and a slow checkpoint."""
+        """Whether the job could end before two more steps and two slow checkpoints."""
         if self.limits.wall_clock is None:
             return False
         limit = 60.0 * self.limits.wall_clock

@@ -4,7 +4,7 @@ import os
 import resource
 import subprocess
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
 import h5py
 import numpy as np
@@ -28,9 +28,10 @@ def comm():
     return MPI.COMM_WORLD
 
 
-@pytest.fixture(params=["parallel", "funnel"])
+@pytest.fixture(params=["at once", "parallel", "funnel"])
 def way(request, monkeypatch):
-    """Both ways to the file; the parallel one needs an h5py that was built for it."""
+    """All ways to the file; the parallel one needs an h5py that was built for it."""
+    monkeypatch.setattr(hdf5, "AT_ONCE", 1 << 30 if request.param == "at once" else 0)
     if request.param == "funnel":
         monkeypatch.setattr(hdf5, "parallel_hdf5", lambda: False)
     elif not h5py.get_config().mpi:
@@ -105,6 +106,25 @@ def test_many_rows_travel_in_pieces(comm, mpi_tmp_path, way):
         assert np.array_equal(frame[name], rows)
 
 
+def test_little_is_written_by_rank_0_alone(comm, mpi_tmp_path, monkeypatch):
+    """All ranks at once would wait for each other: a run that is told to end has a second."""
+    monkeypatch.setattr(hdf5, "AT_ONCE", 20 * (8 + 1 + 3 * 8 + 3 * 8 + 8 + 8))
+    monkeypatch.setattr(hdf5, "parallel_hdf5", lambda: True)
+    together = []
+    monkeypatch.setattr(hdf5, "fill_collectively", lambda *_: together.append(True))
+    rows = share(cloud(20, 3), comm, (20, 0)) | {"connectivity": np.arange(20 * (comm.rank == 0))}
+    opened = nullcontext({name: np.zeros_like(part) for name, part in rows.items()})
+    monkeypatch.setattr(hdf5, "open_file", lambda *_, **how: opened)
+    counts = comm.allgather(len(rows["id"]))
+    hdf5.fill(mpi_tmp_path / "tank.h5", comm, rows, counts)
+    assert not together
+    if comm.rank == 0:
+        assert all(np.array_equal(opened.enter_result[name], part) for name, part in rows.items())
+    monkeypatch.setattr(hdf5, "AT_ONCE", hdf5.AT_ONCE - 1)
+    hdf5.fill(mpi_tmp_path / "tank.h5", comm, rows, counts)
+    assert together
+
+
 def test_viewer_with_the_file_open_stops_nothing(comm, mpi_tmp_path, way):
     frames = FrameFile(mpi_tmp_path / "tank.h5", comm, {})
     if comm.rank == 0:
@@ -173,7 +193,7 @@ def test_missing_folder_is_one_line_on_every_rank(comm, mpi_tmp_path):
 
 def test_notice_when_rank_0_writes_for_all(comm, way):
     notice = funnel_notice(comm)
-    assert (notice is None) == (way == "parallel")
+    assert (notice is None) == (way != "funnel")
     assert notice is None or f"all {comm.size} ranks" in notice
 
 

@@ -49,7 +49,9 @@ def test_the_file_does_not_tell_how_many_ranks_wrote_it(mpi_tmp_path, monkeypatc
     """Nor whether rank 0 wrote for all."""
     case = cases(mpi_tmp_path)["surface"]
     headers = []
-    for way, comm in (("alone", MPI.COMM_SELF), ("parallel", COMM), ("funnel", COMM)):
+    ways = (("alone", MPI.COMM_SELF), ("at once", COMM), ("parallel", COMM), ("funnel", COMM))
+    for way, comm in ways:
+        monkeypatch.setattr(hdf5, "AT_ONCE", 1 << 30 if way == "at once" else 0)
         if way == "funnel":
             monkeypatch.setattr(hdf5, "parallel_hdf5", lambda: False)
         folder = mpi_tmp_path / (f"alone{COMM.rank}" if way == "alone" else way)

@@ -44,12 +44,12 @@ if MPI.COMM_WORLD.rank == 0:
 """
 
 
-def compilations(ranks, folder, cache):
+def compilations(ranks, folder, cache, more=""):
     """How many loops each rank compiled for a short run."""
     script = folder / "script.py"
     case = folder / "line.toml"
     script.write_text(SCRIPT)
-    case.write_text(LINE)
+    case.write_text(more + LINE)
     out = folder / f"run{len(list(folder.iterdir()))}"
     job = mpirun(ranks, [script, case, out], env={"PSPH_CACHE": str(cache)})
     assert job.returncode == 0, job.stderr
@@ -63,6 +63,7 @@ def test_one_rank_compiles_and_the_others_load(tmp_path):
     assert first > 0 and second == 0
     [ready] = cache.glob("*/*.ready")
     assert compilations(2, tmp_path, cache) == [0, 0]
+    assert compilations(2, tmp_path, cache, "checkpoint.every = 1\n") == [0, 0]
 
     # Without a marker rank 0 looks first; a wrong one costs what is missing, on every rank.
     ready.unlink()

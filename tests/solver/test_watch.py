@@ -9,16 +9,20 @@ from types import SimpleNamespace
 import pytest
 from jobs import mpirun, ranks_of, started
 from long import long_but_for
+from mpi4py import MPI
+from solver.guarded import boxed
 from solver.resuming import BOX, same_files
 
 from psph.output.checkpoint import checkpoints
 from psph.solver import watch as module
-from psph.solver.watch import Call, Watch
+from psph.solver.run import run
+from psph.solver.step import Simulation
+from psph.solver.watch import Call, Stopped, Watch
 
 pytestmark = pytest.mark.alone
 
 
-def limits(minutes=None, wall_clock=None):
+def limits(minutes=1e9, wall_clock=None):
     return SimpleNamespace(minutes=minutes, wall_clock=wall_clock)
 
 
@@ -69,6 +73,43 @@ def test_the_limit_leaves_room_for_a_slow_step_and_a_slow_checkpoint(clock):
     clock.now += 0.1
     watch._looked = clock.now - 20.0
     assert watch.call() is Call.WALL_CLOCK
+
+
+def test_a_signal_in_the_midst_of_a_step_is_heard_at_its_end(tmp_path, monkeypatch):
+    """Not a step later: mpirun that is told to end kills within about a second."""
+    honest = Simulation._kick
+
+    def interrupted(self, dt):
+        if self.steps == 4:
+            os.kill(os.getpid(), signal.SIGUSR1)
+        honest(self, dt)
+
+    monkeypatch.setattr(Simulation, "_kick", interrupted)
+    with pytest.raises(Stopped, match="stopped by SIGUSR1"):
+        run(boxed(tmp_path, MPI.COMM_SELF), tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
+    assert [path.name for path in checkpoints(tmp_path / "run")] == ["checkpoint-5.h5"]
+
+
+@pytest.mark.parametrize("sets, last", [((), 20), (("checkpoint.minutes=12.0",), 24)])
+def test_a_long_run_leaves_a_checkpoint_every_ten_minutes(tmp_path, clock, sets, last):
+    """A minute passes from one look at the clock to the next, and each step has one."""
+
+    def later():
+        clock.now += 60.0
+        return clock.now
+
+    module.time.monotonic = later
+    case = boxed(tmp_path, MPI.COMM_SELF, "time.step=2e-3", "time.end=0.05", *sets)
+    run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
+    found = [path.name for path in checkpoints(tmp_path / "run")]
+    assert found == ["checkpoint-25.h5", f"checkpoint-{last}.h5"]
+
+
+def test_a_short_run_leaves_none(tmp_path):
+    case = boxed(tmp_path, MPI.COMM_SELF, "time.end=0.01")
+    assert case.checkpoint.minutes == 10.0
+    run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
+    assert checkpoints(tmp_path / "run") == []
 
 
 # Real jobs
