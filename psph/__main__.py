@@ -158,8 +158,10 @@ def _load(options):
 
 def _warn(scene, comm) -> None:
     from psph.scene import check
+    from psph.solver.forecast import long_run
+    from psph.solver.plan import make_plan
 
-    for warning in check(scene):
+    for warning in (*check(scene), *long_run(scene, make_plan(scene), comm.size)):
         if comm.rank == 0:
             print(f"warning: {warning}", file=sys.stderr)
 

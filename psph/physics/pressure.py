@@ -149,6 +149,12 @@ class BackgroundPressure(NamedTuple):
         needed = MARGIN * max(-scene.lowest_pressure, dip)
         return BackgroundPressure(needed) if needed > 0.0 else None
 
+    def why_absent(self, scene):
+        """Why "auto" gives none."""
+        if scene.has_free_surface:
+            return "the fluid has a free surface, which it would blow apart"
+        return "no pressure is negative at the start, and nothing moves"
+
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume

@@ -59,6 +59,10 @@ class TensionFloor(NamedTuple):
         """None in a closed domain, where a fluid may be under tension."""
         return self if scene.has_free_surface else None
 
+    def why_absent(self, scene):
+        """What the fluid lacks."""
+        return "the fluid has no free surface, and in a closed domain it may be under tension"
+
     def limit_density(self, i, rho):
         """ρ or its floor, kg/m^d."""
         return max(rho, self.least * i.rest_density)

@@ -63,6 +63,10 @@ class LaminarViscosity(NamedTuple):
             return None
         return self if physics.gradient_correction is None else CorrectedViscosity()
 
+    def why_absent(self, scene):
+        """What takes its place."""
+        return "physics.central_friction takes its place"
+
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
         return friction(i, j, pair)

@@ -13,6 +13,7 @@ from psph.physics.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
 from psph.scene.multiples import misfits
 from psph.scene.scene import SOUND_OVER_SPEED, Scene
+from psph.scene.units import slips
 from psph.scene.walls import layers_needed, thinnest_walls
 
 SLABS_IN_A_PERIOD = 3
@@ -97,7 +98,7 @@ def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
     for kind in (
         _thin_walls, _surface_threshold, _minimum_at_surface, _minimum_in_disorder,
-        _background_at_surface, _transport_at_surface, _slow_sound, _jitter, misfits,
+        _background_at_surface, _transport_at_surface, _slow_sound, _jitter, misfits, slips,
     ):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"

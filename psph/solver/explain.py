@@ -1,7 +1,6 @@
 """The plan in words: what will be simulated, why, and its cost."""
 
-import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
@@ -10,6 +9,7 @@ from psph.particles.fields import FIELDS
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
 from psph.physics.count import flops_per_pair
+from psph.solver.forecast import forecast, forecast_lines, pull, sites_within
 from psph.solver.hints import hints
 from psph.solver.outlook import outlook
 from psph.solver.outlay import output_lines
@@ -29,8 +29,10 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
-    neighbours = _within(scene, scene.kernel.support * scene.smoothing_length)
-    yield from output_lines(scene, neighbours, _steps_expected(scene, plan)[0])
+    found = forecast(scene, plan, ranks)
+    yield from forecast_lines(found, ranks, scene.case.time.end)
+    neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
+    yield from output_lines(scene, neighbours, found.steps)
     yield from outlook(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
@@ -47,7 +49,7 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     own = NUMBER * _rows(scene, plan.arrays) + IDENTITY
     record = record_width(_rows(scene, recorded(plan.neighbour_fields))) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + NUMBER * _cells_per_particle(scene)
-    entries = _within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
+    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
     return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
 
 
@@ -89,12 +91,6 @@ def _cutoff(scene) -> float:
     return support * (1.0 + scene.case.neighbours.skin)
 
 
-def _within(scene, radius: float) -> float:
-    """Lattice sites within ``radius`` m of a particle in the bulk."""
-    ball = {1: 2.0, 2: math.pi, 3: 4.0 / 3.0 * math.pi}[scene.dimensions]
-    return ball * (radius / scene.spacing) ** scene.dimensions - 1.0
-
-
 def _scene_lines(scene, particles: int) -> Iterator[str]:
     case = scene.case
     support = scene.kernel.support * scene.smoothing_length
@@ -106,7 +102,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     yield (
         f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
         f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
-        f"about {_within(scene, support):.0f} neighbours"
+        f"about {sites_within(scene, support):.0f} neighbours"
     )
 
 
@@ -157,15 +153,28 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
         plan.effects, plan.reductions, plan.kernel, plan.constants, scene.periods
     )
     yield f"Pass over the neighbours, one a step, {flops} flops a pair"
-    for call in plan.called:
-        yield f"  {type(call.effect).__name__:<22}{_first_line(call.effect)}"
-        yield f"  {'':<22}because: {call.reason}"
+    state = type(plan.state).__name__
+    names = [type(call.effect).__name__ for call in plan.called]
+    width = _column([*names, state, *(entry.effect.__name__ for entry in plan.absent)])
+    for name, call in zip(names, plan.called):
+        yield f"  {name:<{width}}{_first_line(call.effect)}"
+        yield f"  {'':<{width}}because: {call.reason}"
     yield "Equation of state"
-    yield f"  {type(plan.state).__name__:<22}{_first_line(plan.state)}"
-    yield f"  {'':<22}because: {plan.state_reason}"
+    yield f"  {state:<{width}}{_first_line(plan.state)}"
+    yield f"  {'':<{width}}because: {plan.state_reason}"
     yield "Not simulated"
     for entry in plan.absent:
-        yield f"  {entry.effect.__name__:<22}the case does not say {_asked_by(entry.key)}"
+        why = plan.dropped.get(entry.effect.__name__) or f"the case does not say {_asked_by(entry.key)}"
+        yield f"  {entry.effect.__name__:<{width}}{why}"
+
+
+def _column(names: Iterable[str]) -> int:
+    """Width of a column of names, with room behind the longest."""
+    return max(NARROWEST, 2 + max(map(len, names)))
+
+
+NARROWEST = 22
+"""Characters of a column of names."""
 
 
 def _asked_by(key: str) -> str:
@@ -178,22 +187,8 @@ def _first_line(effect) -> str:
 
 
 def _step_lines(scene, plan: Plan) -> Iterator[str]:
-    pull = _pull(plan)
     yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
-    for step, name in plan.step_limits(scene.expected_speed, pull):
-        yield f"  {name:<22}{step:.3g} s"
-    steps, name = _steps_expected(scene, plan)
-    end = scene.case.time.end
-    yield f"  expected            {steps:,} steps to {end:g} s, limited by {name}"
-
-
-def _pull(plan: Plan) -> float:
-    """The expected acceleration, m/s²."""
-    gravity = [e.acceleration for e in plan.effects if hasattr(e, "acceleration")]
-    return max((math.hypot(*g) for g in gravity), default=0.0)
-
-
-def _steps_expected(scene, plan: Plan) -> tuple[int, str]:
-    """The approximate number of steps, and what limits the step."""
-    step, name = plan.longest_step(scene.expected_speed, _pull(plan))
-    return math.ceil(scene.case.time.end / step), name
+    limits = list(plan.step_limits(scene.expected_speed, pull(plan)))
+    width = _column(name for _, name in limits)
+    for step, name in limits:
+        yield f"  {name:<{width}}{step:.3g} s"

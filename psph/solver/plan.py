@@ -46,6 +46,8 @@ class Plan:
 
     called: tuple[Called, ...]
     absent: tuple[Entry, ...]
+    dropped: dict[str, str]
+    """Of effects that the case asks for and the scene has no use for: by their names, why."""
     kernel: Any
     state: Any
     state_reason: str
@@ -117,10 +119,8 @@ def make_plan(scene) -> Plan:
     """The plan of a scene (psph.scene.Scene)."""
     case = scene.case
     calls = [(entry, *found) for entry in CATALOGUE if (found := _called_for(case, entry))]
-    fitted = [
-        (entry, fits, reason)
-        for entry, effect, reason in calls if (fits := _in_scene(effect, scene)) is not None
-    ]
+    fits = [(entry, _in_scene(effect, scene), reason) for entry, effect, reason in calls]
+    fitted = [fit for fit in fits if fit[1] is not None]
     called = tuple(
         Called(effect, reason, reads(effect, scene.dimensions, scene.kernel))
         for _, effect, reason in fitted
@@ -135,6 +135,10 @@ def make_plan(scene) -> Plan:
     return Plan(
         called=called,
         absent=tuple(e for e in CATALOGUE if e not in present),
+        dropped={
+            entry.effect.__name__: _why_dropped(effect, scene, reason)
+            for entry, effect, reason in calls if entry not in present
+        },
         kernel=scene.kernel,
         state=state,
         precision=case.precision,
@@ -208,6 +212,12 @@ def material_value(material, name: str) -> float:
 def _in_scene(effect, scene):
     """The form of an effect that a scene calls for, or None."""
     return effect.in_scene(scene) if hasattr(effect, "in_scene") else effect
+
+
+def _why_dropped(effect, scene, reason: str) -> str:
+    """Why an effect that ``reason`` calls for has no form in a scene."""
+    why = effect.why_absent(scene) if hasattr(effect, "why_absent") else "this scene has no use for it"
+    return f"left out, though {reason}: {why}"
 
 
 def _called_for(case, entry: Entry) -> tuple[Any, str] | None:

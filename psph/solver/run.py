@@ -20,6 +20,7 @@ from psph.particles.store import check_room
 from psph.scene import Scene, check
 from psph.solver.cost import cost_lines
 from psph.solver.explain import slab_planes
+from psph.solver.forecast import long_run
 from psph.solver.guards import Guards
 from psph.solver.plan import make_plan
 from psph.solver.post_mortem import remove_post_mortem
@@ -93,6 +94,8 @@ def _simulate(
     particles = int(scene.counts().sum())
     check_room(particles, comm.size)
     plan = make_plan(scene)
+    for warning in long_run(scene, plan, comm.size):
+        say(f"warning: {warning}", sys.stderr)
     check_memory(scene, plan, comm)
     prepare()
     say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")

@@ -90,7 +90,7 @@ def test_a_given_sound_speed_holds(tmp_path):
 
 def test_nothing_that_moves_asks_for_the_sound_speed(tmp_path):
     still = scene(tmp_path, WATER, "physics.gravity=[0.0, 0.0]")
-    with pytest.raises(CaseError, match="sound_speed: missing.*give it, ten times") as found:
+    with pytest.raises(CaseError, match="sound_speed: missing.*give ten times") as found:
         still.sound_speed
     assert len(found.value.lines) == 1
 

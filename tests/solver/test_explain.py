@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from drafts import draft
+from drafts import TANK, draft
 from mpi4py import MPI
 
 from psph.output.ledger import Ledger
@@ -91,3 +91,38 @@ def test_explain_says_what_comes_from_the_profile(tmp_path):
     assert any("physics.density_diffusion = { delta = " in line for line in because)
     assert not any("viscosity" in line for line in because)
     assert not any("profile" in line for line in explain(Scene(draft(tmp_path, BOX)), 1))
+
+
+def not_simulated(tmp_path, text, *overrides) -> dict[str, str]:
+    """What explain says of each effect that is absent."""
+    lines = list(explain(Scene(draft(tmp_path, text, *overrides)), 1))
+    end = next(k for k, line in enumerate(lines) if line.startswith("Time step"))
+    return dict(line.split(maxsplit=1) for line in lines[lines.index("Not simulated") + 1 : end])
+
+
+def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
+    by = "left out, though physics.{} (scheme stable): "
+    tank = not_simulated(tmp_path, TANK, "scheme=stable")
+    assert tank["BackgroundPressure"] == by.format("background_pressure = { pressure = auto }") + (
+        "the fluid has a free surface, which it would blow apart"
+    )
+    closed = not_simulated(tmp_path, BOX, "scheme=stable")
+    assert closed["TensionFloor"].startswith("left out, though physics.tension_floor = ")
+    assert closed["TensionFloor"].endswith(
+        ": the fluid has no free surface, and in a closed domain it may be under tension"
+    )
+    assert closed["BackgroundPressure"].endswith(": no pressure is negative at the start, and nothing moves")
+    assert closed["XSPH"] == "the case does not say physics.xsph"
+    rubbed = not_simulated(
+        tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.central_friction={}"
+    )
+    assert rubbed["LaminarViscosity"].endswith(": physics.central_friction takes its place")
+
+
+def test_names_and_what_is_said_of_them_stand_in_two_columns(tmp_path):
+    lines = list(explain(Scene(draft(tmp_path, TANK)), 1))
+    [line] = [line for line in lines if "GeneralisedTransportVelocity" in line]
+    assert "GeneralisedTransportVelocity  the case" in line
+    begins = line.index("the case")
+    [because] = [one for one in lines if one.endswith("because: every scene")]
+    assert because.index("because") == begins

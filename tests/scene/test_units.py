@@ -1,0 +1,68 @@
+"""Slips in units and signs that `check` warns of; the shipped cases have none."""
+
+import pytest
+from drafts import TANK, WATER, draft
+
+from psph.scene import Scene, check
+
+
+def checked(folder, text, *overrides):
+    """The warnings on a text, without its folder."""
+    return [w.replace(f"{folder}/case.toml: ", "") for w in check(Scene(draft(folder, text, *overrides)))]
+
+
+@pytest.mark.parametrize("density, than", [(1e-3, "lighter than any gas"), (1e6, "heavier than any metal")])
+def test_a_density_of_no_substance_is_warned_of(tmp_path, density, than):
+    [line] = checked(tmp_path, TANK, f"fluids.water.density={density}")
+    assert line == (
+        f"fluids.water.density: {density:g} kg/m³ is {than}; densities are in kg/m³: water has 1000, "
+        "air 1.2"
+    )
+    assert checked(tmp_path, TANK, "fluids.water.density=1.2") == []
+
+
+
+def in_millimetres(text: str) -> str:
+    """A tank of a metre with the millimetres of its lengths taken for metres."""
+    for one, thousand in (
+        ("spacing = 0.1", "spacing = 100.0"), ("[1.0, 0.5]", "[1000.0, 500.0]"),
+        ("[-0.3, -0.3]", "[-300.0, -300.0]"), ("[1.3, 0.7]", "[1300.0, 700.0]"),
+        ("[1.0, 0.7]", "[1000.0, 700.0]"),
+    ):
+        text = text.replace(one, thousand)
+    return text
+
+
+def test_millimetres_taken_for_metres_are_warned_of(tmp_path):
+    [line] = checked(tmp_path, in_millimetres(TANK))
+    assert line == (
+        "walls.tank.shape: 1600 m long, and no wave flume is longer than 300 m; lengths are in m: if "
+        "they were meant in mm, divide all of them by 1000"
+    )
+    weightless = in_millimetres(TANK).replace("gravity = [0.0, -9.8]", "sound_speed = 10.0").replace(
+        'pressure = "hydrostatic"', ""
+    )
+    assert checked(tmp_path, weightless) == []  # lengths may be in any unit
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_gravity_that_pulls_the_fluid_out_is_warned_of(tmp_path, axis):
+    """Planes of sites across either axis; only the pull towards the open top is warned of."""
+    slab = f"parallel.axis={axis}"
+    still = TANK.replace('pressure = "hydrostatic"', "")
+    [line] = checked(tmp_path, still, slab, "physics.gravity=[0.0, 9.8]")
+    assert line == (
+        "physics.gravity: [0.0, 9.8] m/s² pulls towards +y, where no wall holds 100% of the fluid: it "
+        "leaves the scene; turn gravity round, or give a wall there"
+    )
+    for gravity in ("[0.0, -9.8]", "[9.8, 0.0]", "[-9.8, 0.0]"):
+        assert checked(tmp_path, still, slab, f"physics.gravity={gravity}") == []
+    lid = "\n[walls.lid]\nshape.box = { lower = [-0.3, 0.7], upper = [1.3, 1.0] }"
+    assert checked(tmp_path, still + lid, slab, "physics.gravity=[0.0, 9.8]") == []
+    half = lid.replace("1.3, 1.0", "0.4, 1.0")  # holds four of ten columns
+    [line] = checked(tmp_path, still + half, slab, "physics.gravity=[0.0, 9.8]")
+    assert "no wall holds 60% of the fluid" in line
+
+
+def test_free_fall_without_walls_is_silent(tmp_path):
+    assert checked(tmp_path, WATER, "physics.gravity=[0.0, 9.8]") == []
