@@ -212,7 +212,7 @@ def _parser() -> argparse.ArgumentParser:
         made[name].add_argument("--threads", type=int, default=1, help="threads a rank (default: 1)")
     made["explain"].add_argument("--ranks", type=int, help="plan for so many ranks")
     made["explain"].add_argument(
-        "--study", type=Path, metavar="DIR", help="foretell error and run time from a study"
+        "--study", type=Path, metavar="DIR", help="predict error and run time from a study"
     )
     made["plot"].add_argument("folder", type=Path, help="the folder of a run")
     made["plot"].add_argument("--times", type=float, nargs="+", help="moments to show, s")

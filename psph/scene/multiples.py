@@ -1,4 +1,4 @@
-"""Widths of a case against its spacing: a box that is no whole number of spacings wide changes size."""
+"""Widths of a case against its spacing: a box whose width is not a whole number of spacings changes size."""
 
 import math
 from collections.abc import Iterator, Sequence

@@ -10,14 +10,14 @@ from psph.study.ladder import SPACING
 
 
 def answers(ladders, scene: Scene, error: float | None, seconds: float | None) -> Iterator[str]:
-    """Which settings reach an error, or what so many seconds buy, in lines.
+    """The settings that reach an error, or the error that so many seconds reach, in lines.
 
     ``ladders`` as of Study.ladders; the spacing keeps within what was asked for, and divides the
     widths of the ``scene`` where such a spacing is near.
     """
     steady = [(shared, ladder) for shared, _, ladder in ladders if ladder and ladder.steady]
     if not steady:
-        yield "no answer: it takes two runs that differ in the spacing alone, the finer the better."
+        yield "no answer: this needs two runs that differ in the spacing alone."
         return
     found = []
     for shared, ladder in steady:
@@ -27,7 +27,7 @@ def answers(ladders, scene: Scene, error: float | None, seconds: float | None) -
             found.append(({SPACING: dx, **shared}, ladder.error(dx), ladder.seconds(dx)))
     if not found:
         asked = report.percent(error) if error else report.seconds(seconds)
-        yield f"no answer: {asked} lies beyond what these runs can tell."
+        yield f"no answer: {asked} cannot be extrapolated from these runs."
         return
     best = min(found, key=lambda f: (f[2] if error else f[1]).value)
     asked = f"an error of {report.percent(error)}" if error else f"{report.seconds(seconds)}"
@@ -58,7 +58,7 @@ def fitting(spacing: float, *wanted: list[float], coarser: bool = False) -> floa
 
 
 DIGITS = 3
-"""Of a spacing that has nothing to divide."""
+"""For a spacing that has no widths to divide."""
 
 
 def _rounded(x: float, to) -> float:

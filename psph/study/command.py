@@ -1,4 +1,4 @@
-"""The verb ``study``: what is asked for, run and said."""
+"""The verb ``study``."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ def study(
     comm, file, sets: list[str], vary: list[str], grid: bool, effects: bool, out: Path | None,
     error: float | None, seconds: float | None, files: Path | None = None,
 ) -> None:
-    """Run what is asked for and print what it tells; collective.
+    """Run the study and print its results; collective.
 
     Raises CaseError or StudyError before the first run.
     """
@@ -24,7 +24,7 @@ def study(
     if effects:
         named = without_each(case)
         if not named:
-            raise StudyError(f"{file}: study --effects: no effect that it could do without")
+            raise StudyError(f"{file}: study --effects: the case has no effect that can be switched off")
         every = [{}, *named.values()]
     else:
         every = rows(wanted(case.study.vary, vary), grid or case.study.grid)
@@ -39,8 +39,8 @@ def study(
 
     found = asked.run(say)
     if comm.rank == 0:
-        told = effects_words(named, found) if effects else asked.sentences(found)
+        sentences = effects_words(named, found) if effects else asked.sentences(found)
         say("")
-        for line in asked.conclude(found, list(told), error, seconds):
+        for line in asked.conclude(found, list(sentences), error, seconds):
             say(line)
         say(f"wrote {folder}: {', '.join(p.name for p in sorted(folder.glob('study.*')))}")

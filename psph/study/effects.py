@@ -1,4 +1,4 @@
-"""What each effect of a case costs, and what the answer would be without it."""
+"""The cost of each effect of a case, and the answers without it."""
 
 import math
 from collections.abc import Iterator
@@ -13,11 +13,11 @@ from psph.study.runs import DONE
 from psph.study.study import MEAN
 
 NOTHING = 1e-3
-"""A relative change of every answer below this is none that a person would look at."""
+"""A relative change of an answer below this is negligible."""
 
 
 def without_each(case) -> dict[str, Settings]:
-    """For each effect that the case could do without: its name, and what takes it out."""
+    """For each effect that can be switched off: its name, and the keys that do so."""
     absent = make_plan(Scene(case)).absent
     found = {}
     for entry in CATALOGUE:
@@ -42,20 +42,20 @@ def effects_words(named: dict[str, Settings], rows: list[dict]) -> Iterator[str]
     """A line or two for each effect; the first of the rows has them all, the others lack one."""
     base, *lacking = rows
     if base["status"] != DONE:
-        yield f"the case itself does not come to its end: {base['status']}."
+        yield f"the case itself does not finish: {base['status']}."
         return
     for name, row in zip(named, lacking):
         yield from _words(name, row, base)
 
 
 def _words(name: str, row: dict, base: dict) -> Iterator[str]:
-    """What the effect takes of the time, and what it changes."""
+    """The share of time of an effect, and the changes without it."""
     if row["status"] != DONE:
-        yield f"{name}: the case needs it; without, {row['status']}."
+        yield f"{name}: the case needs it; without it, {row['status']}."
         return
     saved = 1.0 - row["seconds"] / base["seconds"]
     changed = answers(row, base)
-    told = ", ".join(f"{what} by {percent(-by)}" for what, by in changed.items())
-    yield f"{name}: {percent(max(saved, 0.0))} of the time; it changes {told or 'nothing asked for'}."
+    changes = ", ".join(f"{what} by {percent(-by)}" for what, by in changed.items())
+    yield f"{name}: {percent(max(saved, 0.0))} of the time; it changes {changes or 'no answer'}."
     if all(abs(by) < NOTHING for by in changed.values()):
-        yield f"{name}: nothing that this case asks for feels it; the case can do without."
+        yield f"{name}: it changes no answer of this case noticeably; the case does not need it."

@@ -1,4 +1,4 @@
-"""What was asked of a study cannot be done."""
+"""Errors of a study."""
 
 from psph.errors import Refused, one_line
 

@@ -1,4 +1,4 @@
-"""Measured curves that a case names: CSV files in its folder, read with suspicion."""
+"""Measured curves that a case names: CSV files in its folder, checked when read."""
 
 import csv
 import math
@@ -44,7 +44,7 @@ def _refuse_outside(path: Path, files: Path, where: str) -> None:
     try:
         inside = path.resolve().is_relative_to(files.resolve())
     except (OSError, RuntimeError) as error:  # links in a circle
-        raise StudyError(f"{where}: {path}: {error}; give a CSV file beside the case") from None
+        raise StudyError(f"{where}: {path}: {error}; give a CSV file in the case's folder") from None
     if not inside:
         raise StudyError(
             f"{where}: {path} lies outside {files}; move it into that folder, or allow another one "
@@ -56,10 +56,10 @@ def _lines(path: Path, where: str) -> list[str]:
     """The lines of a plain file: a pipe or a device might never end."""
     try:
         if path.exists() and not path.is_file():
-            raise StudyError(f"{where}: {path} is no plain file; give a CSV file beside the case")
+            raise StudyError(f"{where}: {path} is not a regular file; give a CSV file in the case's folder")
         return path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(f"{where}: {path}: {error}; give a CSV file beside the case") from None
+        raise StudyError(f"{where}: {path}: {error}; give a CSV file in the case's folder") from None
 
 
 def _cells(lines: list[str], where: str) -> list[list[str]]:

@@ -20,7 +20,7 @@ CONFIDENCE = 0.9
 """Of the intervals."""
 
 LAST = 3
-"""Runs from which the error beyond the finest is foretold."""
+"""Runs from which the error beyond the finest is predicted."""
 
 UNSEEN = 0.01
 """A floor below this part of the finest run's error is none."""
@@ -44,7 +44,7 @@ class Estimate(NamedTuple):
     high: float
 
 
-class Foretold(NamedTuple):
+class Prediction(NamedTuple):
     """A run, and what was to be expected of it by runs that are not it: error and seconds."""
 
     run: Run
@@ -55,7 +55,7 @@ class Foretold(NamedTuple):
 class Ladder:
     """Runs of one case that differ in the spacing alone, at least two of them.
 
-    ``estimated``: their errors hold that of the finest run, which :func:`own_error` has told from
+    ``estimated``: their errors hold that of the finest run, which :func:`own_error` estimated from
     the same runs.  They know one number less then: neither a floor nor a check of the prediction.
     """
 
@@ -95,15 +95,15 @@ class Ladder:
         return richardson([r.spacing for r in last], [r.error for r in last], steepest=math.inf)
 
     @cached_property
-    def foretold(self) -> "Foretold | None":
-        """What the coarser runs foretell of the finest; None where they are too few or unsteady."""
+    def prediction(self) -> "Prediction | None":
+        """The prediction of the coarser runs for the finest; None if they are too few or unsteady."""
         *coarser, finest = self.runs
         if len(coarser) < LAST or self.estimated:
             return None
         before = Ladder(coarser, self.dimensions)
         if not before.steady:
             return None
-        return Foretold(finest, before.error(finest.spacing), before.seconds(finest.spacing))
+        return Prediction(finest, before.error(finest.spacing), before.seconds(finest.spacing))
 
     def error(self, spacing: float) -> Estimate:
         """The error to expect at a spacing in m; with a floor, the interval holds the power law too."""
@@ -259,12 +259,12 @@ ASSUMED = 1.0
 class OwnError(NamedTuple):
     """The finest run's own relative error, and the order at which errors fall by it.
 
-    ``told``: whether the runs tell the order; else it is assumed.
+    ``measured``: whether the runs determine the order; else it is assumed.
     """
 
     error: float
     order: float
-    told: bool
+    measured: bool
 
 
 def own_error(spacings: Sequence[float], differences: Sequence[float]) -> OwnError | None:
@@ -288,10 +288,10 @@ def own_error(spacings: Sequence[float], differences: Sequence[float]) -> OwnErr
         """log C dx₀^p by each difference."""
         return log_d - np.log(ratio**p - 1.0)
 
-    p, told = ASSUMED, len(known) > 1
-    if told:
+    p, measured = ASSUMED, len(known) > 1
+    if measured:
         p = optimize.minimize_scalar(
             lambda p: np.var(heights(p)), bounds=(SLOWEST, STEEPEST), method="bounded"
         ).x
-        told = SLOWEST + UNSEEN < p < STEEPEST - UNSEEN
-    return OwnError(float(np.exp(heights(p).mean())), float(p), told)
+        measured = SLOWEST + UNSEEN < p < STEEPEST - UNSEEN
+    return OwnError(float(np.exp(heights(p).mean())), float(p), measured)

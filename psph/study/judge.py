@@ -1,4 +1,4 @@
-"""How wrong a finished run is: its files against an exact solution, an experiment or another run."""
+"""Errors of a finished run: its files against an exact solution, an experiment or another run."""
 
 import math
 from collections.abc import Callable
@@ -34,7 +34,7 @@ class Judgement(NamedTuple):
 
 
 class Judge:
-    """What is compared with what, found in a case once; reads the files of its runs.
+    """The quantity and the reference of a case's errors; reads the files of its runs.
 
     ``what`` is a field at the end or a column of probes.csv, ``against`` the reference.  Raises
     StudyError where the case has no such thing.  ``files`` is the folder that its files lie in or
@@ -141,7 +141,7 @@ class Judge:
         known_here = self._references_of(what)
         if self.against not in known_here:
             raise StudyError(
-                f"{file}: study.against: {self.against} does not know {what}; give one of "
+                f"{file}: study.against: {self.against} has no {what}; give one of "
                 f"{', '.join(known_here)}"
             )
         if what not in AT_THE_END:
@@ -153,7 +153,7 @@ class Judge:
         last = min(self.case.time.end, math.inf if study.until is None else study.until)
         if study.after >= last:
             raise StudyError(
-                f"{file}: study.after: {study.after:g} s leaves nothing to compare, which ends at "
+                f"{file}: study.after: {study.after:g} s leaves nothing to compare, since the comparison ends at "
                 f"{last:g} s; give an earlier time"
             )
         if name not in self.case.experiments:
@@ -166,7 +166,7 @@ class Judge:
             )
 
     def _references_of(self, what: str) -> list[str]:
-        """Whatever of the case can judge ``what``."""
+        """The references of the case that have ``what``."""
         found = [n for n, e in self.case.experiments.items() if e.probe == what]
         solution = Scene(self.case).exact
         name, _, quantity = what.partition(".")

@@ -20,7 +20,7 @@ Settings = dict[str, object]
 
 
 def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, list]:
-    """What varies: the case's table, or what the command line gives as ``key=value,value``.
+    """The keys that vary and their values, from the case's table or from ``key=value,value``.
 
     Raises StudyError where nothing varies, or a key has no second value.
     """
@@ -32,9 +32,9 @@ def wanted(table: Mapping[str, Sequence], given: Sequence[str]) -> dict[str, lis
         )
     for key, values in vary.items():
         if len(set(map(str, values))) < 2:
-            raise StudyError(f"study: {key}: a ladder of one value, {values[0]}; give a second one")
+            raise StudyError(f"study: {key}: one value only, {values[0]}; give a second one")
         if len(set(map(str, values))) < len(values):
-            raise StudyError(f"study: {key}: {values}: a value stands there twice; take one out")
+            raise StudyError(f"study: {key}: {values}: a value appears twice; remove one")
     for word in vary.get(SPACING, ()):
         if isinstance(word, str | bool):
             raise StudyError(f"study: {SPACING}: {toml(word)} is not a number; give lengths in m")
@@ -102,7 +102,7 @@ def toml(value) -> str:
 
 
 def name_of(settings: Settings) -> str:
-    """What a person calls the run: ``spacing 0.01, kernel wendland-c4``."""
+    """The name of a run: ``spacing 0.01, kernel wendland-c4``."""
     return ", ".join(f"{short(key)} {toml(value)}" for key, value in settings.items()) or "as it is"
 
 

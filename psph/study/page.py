@@ -35,10 +35,10 @@ def _kept(folder: Path) -> dict:
 def _predictions(found: list[tuple[Path, dict]]) -> Iterator[str]:
     """A line for each ladder whose coarser runs predict its finest, and the head of the table."""
     lines = [
-        (folder.name, ladder.foretold)
+        (folder.name, ladder.prediction)
         for folder, kept in found
         for shared, _, ladder in ladders_of(kept["rows"], kept["vary"], kept["dimensions"])
-        if ladder and ladder.foretold and not shared
+        if ladder and ladder.prediction and not shared
     ]
     if not lines:
         return

@@ -15,11 +15,11 @@ SHOWN = (
     ("error_l2", "error L2"), ("error_linf", "error L∞"), ("seconds", "seconds"),
     ("particle_steps", "particle-steps"), ("bytes", "memory"), ("status", "status"),
 )
-"""Columns of a row that people look at first."""
+"""The main columns of a row, shown in tables."""
 
 
 def write_csv(path: Path, rows: Sequence[dict]) -> None:
-    """Every row with all that was measured; a column that a row lacks is empty."""
+    """Every row with all measured values; a column that a row lacks is empty."""
     columns = list(dict.fromkeys(name for row in rows for name in row))
     out = io.StringIO()
     writer = csv.DictWriter(out, columns, lineterminator="\n")
@@ -29,7 +29,7 @@ def write_csv(path: Path, rows: Sequence[dict]) -> None:
 
 
 def write(path: Path, text: str) -> None:
-    """Put the text into the file whole.  Raises OutputError."""
+    """Write the text to the file in one step.  Raises OutputError."""
     try:
         beside = path.with_name(f"{path.name}.part")
         beside.write_text(text, encoding="utf-8")
@@ -39,12 +39,12 @@ def write(path: Path, text: str) -> None:
 
 
 def write_json(path: Path, study: dict) -> None:
-    """What ``explain --study`` reads again."""
+    """The file that ``explain --study`` reads."""
     write(path, json.dumps(study, indent=1))
 
 
 def table(rows: Sequence[dict], keys: Sequence[str]) -> tuple[list[str], list[list[str]]]:
-    """Head and body in words: the keys that vary, then what people look at first."""
+    """Head and body in words: the keys that vary, then the main columns."""
     head = [*keys, *(title for _, title in SHOWN)]
     return head, [
         [toml(row[key]) if key in row else "" for key in keys]

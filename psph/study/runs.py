@@ -1,4 +1,4 @@
-"""The runs of a study: each done once, timed, and kept for the next time."""
+"""The runs of a study: each done once, timed, and stored."""
 
 import json
 import statistics
@@ -26,7 +26,7 @@ TIMED = ("set_up", "stepping", "output")
 
 
 def cases(file: str, given: list[str], every: list[Settings]) -> list:
-    """The case of each run, or the CaseError that speaks against it."""
+    """The case of each run, or the CaseError that refuses it."""
     return [_case(file, [*given, *overrides(settings)]) for settings in every]
 
 
@@ -67,7 +67,7 @@ def _dotted(table: dict, path: str = "") -> Iterator[tuple[str, object]]:
 
 
 def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) -> dict:
-    """What a run took and how it ended, from ``folder`` where it was done before; collective.
+    """Times and status of a run, from ``folder`` if it was done before; collective.
 
     A short run is repeated, and the one with the median of the seconds stands for all.
     """
@@ -94,7 +94,7 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
 
 
 def _measured(found: list[Finished], comm) -> dict:
-    """The figures of runs that came to their end."""
+    """The figures of finished runs."""
     every = [_seconds(one) for one in found]
     seconds = statistics.median_low(every)
     middle = found[every.index(seconds)]
@@ -115,12 +115,12 @@ def _measured(found: list[Finished], comm) -> dict:
 
 
 def _seconds(one: Finished) -> float:
-    """What the run took, compiling apart."""
+    """Seconds of the run without compiling."""
     return sum(getattr(one, part) for part in TIMED)
 
 
 def _silent(line: str, where=None) -> None:
-    """A run among many has nothing to say."""
+    """A run of a study prints nothing."""
 
 
 def _key(case, comm) -> dict:

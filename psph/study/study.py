@@ -1,4 +1,4 @@
-"""A study from its question to its files."""
+"""A study: its runs, their rows, its files."""
 
 import json
 import math
@@ -58,7 +58,7 @@ class Study:
                 raise with_it[0]
         if self.judge.against == FINEST and len({s.get(SPACING) for s in self.every}) < 2:
             raise StudyError(
-                f"{self.case.file}: study: no reference, and no finer run to stand for one; give "
+                f"{self.case.file}: study: no reference, and no finer run to compare with; give "
                 "[exact], an experiment, a probe's theory, or two values of space.spacing"
             )
 
@@ -68,13 +68,13 @@ class Study:
         for line in self._misfits():
             say(f"warning: {line}")
         for k, (settings, case) in enumerate(zip(self.every, self.cases)):
-            told = f"run {k + 1} of {len(self.every)}: {name_of(settings)}"
-            say(f"{told} ...{self._left(results, k)}")
+            title = f"run {k + 1} of {len(self.every)}: {name_of(settings)}"
+            say(f"{title} ...{self._left(results, k)}")
             result = perform(
                 case, self.folder / f"run-{k + 1:02d}", self.comm, self.case.study.repeats, say
             )
             results.append(result)
-            say(f"{told}: {_outcome(result)}")
+            say(f"{title}: {_outcome(result)}")
         return self._rows(results) if self.comm.rank == 0 else []
 
     def _misfits(self) -> Iterator[str]:
@@ -95,7 +95,7 @@ class Study:
 
         case, result = done[-1]
         left = sum(map(size, self.cases[k:])) / size(case) * result["seconds"]
-        return f" about {report.seconds(left)} to go"
+        return f" about {report.seconds(left)} left"
 
     def _rows(self, results: list[dict]) -> list[dict]:
         """Settings, errors and figures of each run, flat; rank 0 alone."""
@@ -141,9 +141,9 @@ class Study:
         return min(done)[2] if done else None
 
     def conclude(
-        self, found: list[dict], told: list[str], error: float | None, seconds: float | None
+        self, found: list[dict], sentences: list[str], error: float | None, seconds: float | None
     ) -> Iterator[str]:
-        """Write the files and yield what to tell, the sentences ``told`` among it; rank 0 alone."""
+        """Write the files and yield the lines to print, ``sentences`` among them; rank 0 alone."""
         keys = self.keys
         ladders = list(self.ladders(found))
         pasted = [(self._written_out(shared), *rest) for shared, *rest in ladders]
@@ -151,7 +151,7 @@ class Study:
         answer = list(answers(pasted, scene, error, seconds)) if error or seconds else []
         title = f"{self.case.title or self.case.name}: what accuracy costs"
         page = [f"# {title}", "", f"Error: {self.judge.in_words}.", "",
-                *report.markdown(found, keys), "", *(f"- {line}" for line in told), ""]
+                *report.markdown(found, keys), "", *(f"- {line}" for line in sentences), ""]
         report.write_csv(self.folder / CSV, found)
         report.write(self.folder / PAGE, "\n".join(page))
         report.write_json(self.folder / KEPT, {
@@ -164,7 +164,7 @@ class Study:
             self._draw(title, found, good, error)
         yield f"error: {self.judge.in_words}"
         yield from report.plain(found, keys)
-        yield from told
+        yield from sentences
         yield from answer
 
     def _first_of_each_ladder(self) -> Iterator[Case | None]:
@@ -187,7 +187,7 @@ class Study:
         yield from ladders_of(found, self.keys, self.case.space.dimensions)
 
     def sentences(self, found: list[dict]) -> Iterator[str]:
-        """What the rows tell in words."""
+        """The conclusions from the rows, in sentences."""
         ladders = list(self.ladders(found))
         several = sum(ladder is not None for *_, ladder in ladders) > 1
         if own := self.own_errors.get("l2"):
@@ -219,7 +219,7 @@ class Study:
                 yield words.against_base(row, plain[0], own[0], ladder)
 
     def _limits(self, found: list[dict]) -> Iterator[str]:
-        """Means of the probes at zero spacing, where three runs tell."""
+        """Means of the probes at zero spacing, from three runs or more."""
         alone = [
             row for row in found
             if row["status"] == DONE and not any(k in row for k in self.keys if k != SPACING)
@@ -269,8 +269,8 @@ def vitals(run: Folder, study) -> dict[str, float]:
     table = run.probes()
     for name, values in table.items():
         if name != "time":
-            told = values[window(study, table["time"])]
-            found[MEAN + name], found[SPREAD + name] = float(told.mean()), float(told.std())
+            compared = values[window(study, table["time"])]
+            found[MEAN + name], found[SPREAD + name] = float(compared.mean()), float(compared.std())
     log = run.log()
     energy = log["kinetic_energy"] + log["potential_energy"]
     momentum = [values for name, values in log.items() if name.startswith("momentum")]

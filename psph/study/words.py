@@ -38,8 +38,8 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
             f"{beginning}extrapolated from the last {LAST} runs, {percent(ladder.floor)} remains at zero "
             "spacing; a larger space.smoothing may lower that."
         )
-    if ladder.foretold:
-        _, error, took = ladder.foretold
+    if ladder.prediction:
+        _, error, took = ladder.prediction
         yield (
             f"{beginning}the other runs predict {percent(error.value)} in {seconds(took.value)} for the "
             "finest one."
@@ -57,7 +57,7 @@ def own_error_words(own: OwnError) -> str:
     """What was added to the differences from the finest run, and how it is known."""
     how = (
         f"by the order {own.order:.2f} at which differences from it fall"
-        if own.told else f"for an order of {own.order:.1f}, assumed since these runs do not tell it"
+        if own.measured else f"for an order of {own.order:.1f}, assumed since these runs do not tell it"
     )
     return f"The errors hold that of the finest run itself, estimated as {percent(own.error)} {how}."
 

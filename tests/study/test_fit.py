@@ -1,4 +1,4 @@
-"""What is foretold from a ladder whose law is known."""
+"""What is predicted from a ladder whose law is known."""
 
 import math
 
@@ -32,10 +32,10 @@ def test_scatter_makes_the_interval_that_holds_the_truth():
     for _ in range(200):
         noise = np.exp(0.1 * rng.standard_normal(5))
         runs = [run(dx, noise=x) for dx, x in zip((0.08, 0.04, 0.02, 0.01), noise)]
-        foretold = Ladder(runs, 2).error(0.005)
+        predicted = Ladder(runs, 2).error(0.005)
         truth = run(0.005, noise=noise[-1]).error
-        held += foretold.low <= truth <= foretold.high
-        assert foretold.low < foretold.value < foretold.high
+        held += predicted.low <= truth <= predicted.high
+        assert predicted.low < predicted.value < predicted.high
     assert 160 < held  # 90 % are promised, of the line through all; three points place the middle
 
 
@@ -64,13 +64,13 @@ MEASURED = {
 
 
 @pytest.mark.parametrize("errors, truth", MEASURED.values(), ids=MEASURED)
-def test_errors_that_were_measured_are_foretold_within_a_factor(errors, truth):
+def test_errors_that_were_measured_are_predicted_within_a_factor(errors, truth):
     runs = [run(dx)._replace(error=e / 100) for dx, e in zip((0.04, 0.02, 0.01), errors)]
     ladder = Ladder(runs, 2)
-    foretold = ladder.error(0.005)
-    assert 1 / 1.5 < 100 * foretold.value / truth < 1.5
-    assert foretold.low < truth / 100 < foretold.high
-    assert 0.0 < ladder.floor < foretold.value
+    predicted = ladder.error(0.005)
+    assert 1 / 1.5 < 100 * predicted.value / truth < 1.5
+    assert predicted.low < truth / 100 < predicted.high
+    assert 0.0 < ladder.floor < predicted.value
 
 
 def test_steps_grow_as_along_the_ladder():
@@ -95,16 +95,16 @@ def test_an_error_that_came_down_at_once_stays():
     assert richardson(list(errors), list(errors.values())) is None  # not an order of a scheme
 
 
-def test_a_ladder_of_four_foretells_its_finest_run_by_the_others():
+def test_a_ladder_of_four_predicts_its_finest_run_by_the_others():
     runs = [run(dx) for dx in (0.04, 0.02, 0.01)]
-    assert Ladder(runs, 2).foretold is None
+    assert Ladder(runs, 2).prediction is None
     finest = run(0.005, noise=2.0)
-    found = Ladder([finest, *runs], 2).foretold
+    found = Ladder([finest, *runs], 2).prediction
     assert found.run == finest
     assert found.error.value == pytest.approx(finest.error / 2)
     assert found.seconds.value == pytest.approx(finest.seconds, rel=0.02)
     unsteady = runs[2]._replace(error=1.0)
-    assert Ladder([finest, *runs[:2], unsteady], 2).foretold is None
+    assert Ladder([finest, *runs[:2], unsteady], 2).prediction is None
 
 
 def test_without_a_floor_the_error_goes_on_as_a_power():
@@ -134,13 +134,13 @@ def test_the_finest_runs_own_error_from_how_others_differ_from_it(spacings, orde
     finest = min(spacings)
     differences = [5.0 * (dx**order - finest**order) if dx > finest else math.nan for dx in spacings]
     own = own_error(spacings, differences)
-    assert own.told and own.order == pytest.approx(order, abs=1e-4)
+    assert own.measured and own.order == pytest.approx(order, abs=1e-4)
     assert own.error == pytest.approx(5.0 * finest**order, rel=1e-3)
 
 
 def test_one_difference_leaves_the_order_to_be_assumed():
     own = own_error([0.02, 0.01], [0.03, math.nan])
-    assert not own.told and own.order == 1.0 and own.error == pytest.approx(0.03)
+    assert not own.measured and own.order == 1.0 and own.error == pytest.approx(0.03)
     assert own_error([0.01], [math.nan]) is None and own_error([], []) is None
     assert own_error([0.02, 0.01], [0.0, math.nan]).error == 0.0
 
@@ -148,7 +148,7 @@ def test_one_difference_leaves_the_order_to_be_assumed():
 @pytest.mark.parametrize("differences, order", [((0.05, 0.045), 0.5), ((0.5, 0.01), 2.0)])
 def test_an_order_that_no_scheme_has_is_none_that_runs_tell(differences, order):
     own = own_error([0.04, 0.02, 0.01], [*differences, math.nan])
-    assert not own.told and own.order == pytest.approx(order, abs=0.01)
+    assert not own.measured and own.order == pytest.approx(order, abs=0.01)
 
 
 def test_errors_that_hold_an_estimate_tell_less():
@@ -158,4 +158,4 @@ def test_errors_that_hold_an_estimate_tell_less():
     plain, estimated = Ladder(four, 2), Ladder(four, 2, estimated=True)
     assert estimated.order.value == plain.order.value and estimated.order.low < plain.order.low
     assert estimated.error(0.0025).high > plain.error(0.0025).high
-    assert estimated.floor is None is estimated.foretold and plain.foretold
+    assert estimated.floor is None is estimated.prediction and plain.prediction

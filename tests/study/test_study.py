@@ -235,7 +235,7 @@ def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
         (["--vary", "space.spacing=0.1"], "a ladder of one value"),
         (["--vary", "space.spacin=0.1,0.2"], "spacin"),
         (["--set", "study.error=heat"], "study.error: heat is not measured; give one of velocity"),
-        (["--set", "study.against=theory"], "study.against: theory does not know velocity"),
+        (["--set", "study.against=theory"], "study.against: theory has no velocity"),
         (["--set", "exact.sound_wave.length=0.7"], "exact.sound_wave: repeats every 0.7 m"),
         (["--error", "-1"], "study --error -1: give a number above zero"),
         (["--set", "exact=off", "--set", "fluids.air.velocity=[1.0]", "--set",
@@ -277,7 +277,7 @@ def test_effects_are_left_out_one_by_one(tmp_path):
     job = study(tmp_path, "--effects", text=text)
     assert job.returncode == 0, job.stderr
     assert [r["status"] for r in rows_of(tmp_path)] == ["done"] * 3
-    assert "laminar viscosity: nothing that this case asks for feels it" in job.stdout
+    assert "laminar viscosity: it changes no answer of this case" in job.stdout
     assert "artificial viscosity: nothing" not in job.stdout  # it damps the wave
     case = load(tmp_path / "wave.toml")
     assert set(without_each(case)) == {"laminar viscosity", "artificial viscosity"}
@@ -287,7 +287,7 @@ def test_words_of_an_effect_that_a_case_needs():
     base = {"status": "done", "seconds": 2.0, "mean P": 10.0, "error_l2": math.nan}
     rows = [base, {"status": "it blew up"}, base | {"seconds": 1.0, "mean P": 9.0}]
     lines = list(effects_words({"gravity": {}, "friction": {}}, rows))
-    assert lines[0] == "gravity: the case needs it; without, it blew up."
+    assert lines[0] == "gravity: the case needs it; without it, it blew up."
     assert lines[1] == "friction: 50 % of the time; it changes P by 10 %."
     assert list(effects_words({}, [{"status": "it blew up"}]))[0].endswith("its end: it blew up.")
 
@@ -315,7 +315,7 @@ value_unit = 10.0
     for change, says in (
         ("experiments.gauge.file=none.csv", "No such file"),
         ("experiments.gauge.time=Time", "has no column 'Time'; give one of T, Z"),
-        ("study.after=0.2", "study.after: 0.2 s leaves nothing to compare, which ends at 0.1 s"),
+        ("study.after=0.2", "study.after: 0.2 s leaves nothing to compare, since the comparison ends at 0.1 s"),
         ("study.until=0.05", None),  # its first time is enough
     ):
         sets = ["study.error=P.pressure", "study.against=gauge", change]
