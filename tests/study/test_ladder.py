@@ -19,7 +19,7 @@ def test_what_varies_comes_from_the_case_or_the_command_line():
     [
         ({}, [], "nothing varies"),
         ({"space.spacing": (0.1,)}, [], "one value only, 0.1"),
-        ({}, ["space.spacing=0.1,0.1"], "a ladder of one value"),
+        ({}, ["space.spacing=0.1,0.1"], "one value only"),
         ({}, ["space.spacing=0.1,0.2,0.1"], "appears twice"),
         ({}, ["space.spacing"], "write it as key=value,value"),
         ({}, ["=1,2"], "write it as key=value,value"),

@@ -232,7 +232,7 @@ def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--vary", "space.spacing=0.1"], "a ladder of one value"),
+        (["--vary", "space.spacing=0.1"], "one value only"),
         (["--vary", "space.spacin=0.1,0.2"], "spacin"),
         (["--set", "study.error=heat"], "study.error: heat is not measured; give one of velocity"),
         (["--set", "study.against=theory"], "study.against: theory has no velocity"),
@@ -289,7 +289,7 @@ def test_words_of_an_effect_that_a_case_needs():
     lines = list(effects_words({"gravity": {}, "friction": {}}, rows))
     assert lines[0] == "gravity: the case needs it; without it, it blew up."
     assert lines[1] == "friction: 50 % of the time; it changes P by 10 %."
-    assert list(effects_words({}, [{"status": "it blew up"}]))[0].endswith("its end: it blew up.")
+    assert list(effects_words({}, [{"status": "it blew up"}]))[0].endswith("does not finish: it blew up.")
 
 
 def test_the_front_holds_what_nothing_beats():
