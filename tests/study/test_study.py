@@ -432,7 +432,7 @@ def test_studies_of_profiles_come_as_one_table(done, tmp_path):
     assert on_page([str(page), str(kept), str(folder / "out")]) == 0
     text = page.read_text()
     assert "| wave | velocity | 0.02 | 1.23 % in 4.2 s | – | the run blew up at step 3 |" in text
-    assert text.index("## wave") < text.index("## The price") and text.count("## ") == 2
+    assert text.index("## wave") < text.index("## The cost") and text.count("## ") == 2
 
 
 def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
