@@ -106,10 +106,16 @@ def _plot(options, comm) -> None:
 
 
 def _bench(options, comm) -> None:
-    from psph.bench.command import bench, one, standard
+    from psph.bench.command import bench, one, prices, standard
     from psph.threads import use_threads
 
     use_threads(options.threads)
+    if options.price:
+        others = ("problem", "neighbours", "standard", "compare", "peer", "against")
+        if given := [name for name in others if getattr(options, name)]:
+            raise Refused(f"bench --price: has its own dam break; leave --{given[0]} out")
+        prices(comm, options.dimensions, options.particles, options.turns, options.json)
+        return
     choose = standard if options.standard else one
     asked = choose(
         options.problem, options.dimensions, options.particles, options.neighbours,
@@ -312,6 +318,10 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
     bench.add_argument(
         "--against", action="append", default=[], metavar="KEY=VALUE",
         help="the same particles with this key changed take turns; repeatable",
+    )
+    bench.add_argument(
+        "--price", action="store_true",
+        help="what the default scheme costs beside plain SPH, a step and a second of flow",
     )
     bench.add_argument("--json", action="store_true", help="one JSON object as the last line")
 

@@ -4,7 +4,6 @@ import json
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -111,9 +110,7 @@ def test_one_rank_that_fails_ends_all_within_seconds(tmp_path, rank, how, code, 
     script = tmp_path / "failing.py"
     script.write_text(FAILING.format(rank=rank, how=how))
     arguments = [script, CASE, "--set", "time.end=100", "--out", tmp_path / "run"]
-    begun = time.monotonic()
-    job = mpirun(2, arguments, timeout=90)
-    assert time.monotonic() - begun < 60  # compilation included
+    job = mpirun(2, arguments, timeout=90)  # by itself it takes many minutes
     assert job.returncode == code
     assert said in job.stderr
 

@@ -225,13 +225,13 @@ def _of_cavity(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
     if case.name != CAVITY:
         return
     lid = max(np.linalg.norm(wall.velocity) for wall in case.walls.values())
-    squares = []
+    squares, periods = [], Scene(case).periods
     for axis, name in ((0, "u"), (1, "v")):
         along, theirs = ghia(path_of(case).parent / f"experiments/ghia_1982_{name}.csv")
         at = np.full((len(along), 2), 0.5 * SIDE)
         at[:, 1 - axis] = along * SIDE
         ours = [
-            interpolated(f["position"], f["velocity"][:, axis], at, case.space.spacing)
+            interpolated(f["position"], f["velocity"][:, axis], at, case.space.spacing, periods)
             for f in fluids[-OVER:]
         ]
         squares.append((np.mean(ours, axis=0) / lid - theirs) ** 2)

@@ -91,6 +91,21 @@ def bench(
         print(json.dumps(runs[0] if len(asked) == 1 else {"runs": runs}), flush=True)
 
 
+def prices(
+    comm, dimensions: int | None, particles: int | None, turns: int | None, as_json: bool
+) -> None:
+    """Print what the default scheme costs beside plain SPH, in 2D and 3D or in one of them; collective."""
+    from psph.bench.price import price, words
+
+    found = []
+    for dim in (dimensions,) if dimensions else sorted(NEIGHBOURS):
+        found.append(price(comm, dim, particles, turns))
+        if comm.rank == 0:
+            print("\n".join(words(found[-1])), flush=True)
+    if as_json and comm.rank == 0:
+        print(json.dumps({"prices": found}), flush=True)
+
+
 def lines(run: dict) -> list[str]:
     """A result in words."""
     shares = sorted(run["share"].items(), key=lambda phase: -phase[1])

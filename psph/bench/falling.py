@@ -71,7 +71,7 @@ class Falling(NamedTuple):
         mine = water.rows(shares[comm.rank], shares[comm.rank + 1])
         children = self._split(mine, int(shares[comm.rank]), int(scene.counts().sum()))
         children.velocity[:] = interpolated(  # else a list would wear at once where parents meet
-            water.position, water.velocity, children.position, self.coarse.spacing
+            water.position, water.velocity, children.position, self.coarse.spacing, coarse.periods
         )
         both = zip(vars(children).values(), vars(walls).values())
         return store_of(scene, plan, ParticleSet(*map(np.concatenate, both)))

@@ -68,10 +68,10 @@ def measure(
     place of REPEATS, or TURNS where two cases are compared.  Collective.
     """
     layout = LAYOUTS[asked.problem](asked.dimensions, asked.neighbours, asked.particles)
-    scene = _scene(asked, layout)
-    rival_scene = _scene(asked, layout, against) if against else None
-    simulation, compiling = _warmed_up(layout, scene, comm)
-    rival = _warmed_up(layout, rival_scene, comm)[0] if against else None
+    scene = scene_of(asked, layout)
+    rival_scene = scene_of(asked, layout, against) if against else None
+    simulation, compiling = warmed_up(layout, scene, comm)
+    rival = warmed_up(layout, rival_scene, comm)[0] if against else None
     count, pairs, entries = _work(simulation, scene)
     with Peer(peer_python, scene, simulation) if peer_python else nullcontext() as peer:
         simulation.ledger.seconds.clear()
@@ -118,7 +118,7 @@ def measure(
     return result
 
 
-def _scene(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
+def scene_of(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
     """The problem's scene, with overrides; BenchError where its particles are not the same then."""
     scene = Scene(checked(
         f"bench --problem {asked.problem}", layout.tables() | {"precision": asked.precision},
@@ -137,7 +137,7 @@ def _scene(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
     return scene
 
 
-def _warmed_up(layout, scene: Scene, comm) -> tuple[Simulation, float]:
+def warmed_up(layout, scene: Scene, comm) -> tuple[Simulation, float]:
     """The problem after its first steps, and the seconds that were compiled; collective."""
     plan = make_plan(scene)
     compiling = compile_ahead(scene, plan, comm)

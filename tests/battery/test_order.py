@@ -102,6 +102,21 @@ def test_ghia(tmp_path):
         ghia(tmp_path / "none.csv")
 
 
+def test_a_cavity_is_read_on_its_centre_lines():
+    case = load(CASES / "cavity.toml")
+    x = (np.indices((50, 50)).reshape(2, -1).T + 0.5) * 0.02
+    places, u = ghia(CASES.parent / "experiments/ghia_1982_u.csv")
+    along, v = ghia(CASES.parent / "experiments/ghia_1982_v.csv")
+    curves = [(x[:, 1], places, u), (x[:, 0], along, v)]
+    flow = np.stack([
+        np.interp(at, np.sort(p), w[np.argsort(p)]) for at, p, w in curves
+    ], axis=1)
+    for scale, expected in ((1.0, 0.0), (0.0, math.sqrt((u @ u + v @ v) / (len(u) + len(v))))):
+        frame = {"position": x, "velocity": scale * flow}
+        [(name, error)] = measures._of_cavity(None, case, [frame])
+        assert name == "ghia_error" and error == pytest.approx(expected, abs=0.02)
+
+
 def test_swing_of_a_drop_after_four_periods():
     case = load(CASES / "drop.toml")
     time = np.linspace(0.0, 25.0, 5000)

@@ -11,7 +11,7 @@ from psph.bench import command
 from psph.bench.command import bench
 from psph.bench.compare import compared
 from psph.bench.errors import BenchError, PeerFailed
-from psph.bench.measure import Asked
+from psph.bench.measure import OURS, STEPS, Asked, _beside
 from psph.bench.report import tables
 from psph.bench.results import KEYS, read_runs
 from psph.output.errors import OutputError
@@ -44,7 +44,6 @@ def test_the_object_holds_what_is_promised(result):
     assert (result["ranks"], result["threads"], result["precision"]) == (1, 1, "double")
     assert result["particles"] == pytest.approx(5000, rel=0.1)
     assert result["neighbours"] == pytest.approx(57, rel=0.1)
-    assert result["particle_steps_per_second"] > 1e4
     pairs = result["particle_steps_per_second"] * result["neighbours"]
     assert result["pairs_per_second"] == pytest.approx(pairs, rel=1e-3)
     assert result["per_core"]["pairs_per_second"] == result["pairs_per_second"]
@@ -52,14 +51,15 @@ def test_the_object_holds_what_is_promised(result):
     assert result["spread"] > 0.0
 
 
-def test_the_pair_loop_stays_under_the_roof(result):
+def test_the_pair_loop_is_told_against_the_roof(result):
     roof = result["roofline"]
-    assert 1e8 < roof["copy_bytes_per_second"] < 1e13
-    assert 1e9 < roof["multiply_add_flops_per_second"] < 1e13
-    assert 0.0 < roof["flops_share"] < 1.2 and 0.0 < roof["bytes_share"] < 1.2
-    whole_step = result["pairs_per_second"] * roof["flops_per_pair"]
-    slowest, fastest = (whole_step * (1.0 + sign * result["spread"]) for sign in (-1, 1))
-    assert slowest < roof["flops_per_second"] < 2.0 * fastest  # rates are medians, this is a mean
+    for what, reached in (("flops", "multiply_add_flops"), ("bytes", "copy_bytes")):
+        share = roof[f"{what}_per_second"] / roof[f"{reached}_per_second"]
+        assert roof[f"{what}_share"] == pytest.approx(share) and share > 0.0
+    # One pass over the pairs: what is computed and what is moved take the same time.
+    seconds = roof["bytes_per_pass"] / roof["bytes_per_second"]
+    pairs = result["particles"] * result["neighbours"]
+    assert roof["flops_per_second"] * seconds == pytest.approx(roof["flops_per_pair"] * pairs, rel=1e-3)
 
 
 def test_a_peer_that_fails_at_one_problem_does_not_end_the_set(result, monkeypatch, capsys):
@@ -110,12 +110,18 @@ def test_a_choice_takes_turns_with_the_problem(tmp_path):
     *said, last = job.stdout.splitlines()
     result = json.loads(last)
     other = result["against"]
-    assert other["overrides"] == choice and other["particle_steps_per_second"] > 1e4
-    pace = result["particle_steps_per_second"] / other["particle_steps_per_second"]
-    assert other["ratio"] == pytest.approx(pace, rel=0.5)
+    assert other["overrides"] == choice and other["particle_steps_per_second"] > 0.0
     assert f"a step takes {other['ratio']:.2f} times as long" in said[-1]
     (tmp_path / "turns").write_text(last)
     assert "| `scheme=stable`, `physics.artificial_viscosity=off` |" in tables([tmp_path / "turns"])
+
+
+def test_the_figures_of_another_are_medians_over_the_turns():
+    turns = [{OURS: 1.0, "other": other} for other in (2.0, 4.0, 2.0, 2.5, 2.0)]
+    found = _beside(turns, "other", 10, 7.0)
+    assert found["ratio"] == 2.0 and found["ratio_spread"] == 1.0
+    assert found["particle_steps_per_second"] == 10 * STEPS / 2.0 and found["spread"] == 0.5
+    assert found["pairs_per_second"] == 7.0 * found["particle_steps_per_second"]
 
 
 @pytest.mark.parametrize(

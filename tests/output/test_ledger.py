@@ -1,22 +1,23 @@
 """The ledger of time."""
 
-import time
+from types import SimpleNamespace
 
 import pytest
 
+from psph.output import ledger as module
 from psph.output.ledger import Ledger
 
-pytestmark = pytest.mark.alone
 
-
-def test_parts_add_up_to_the_whole():
+def test_parts_add_up_to_the_whole(monkeypatch):
+    clock = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: clock.now))
     ledger = Ledger()
-    begun = time.perf_counter()
     for _ in range(2):
         with ledger("outer"):
-            time.sleep(0.01)
+            clock.now += 0.01
             with ledger("inner"):
-                time.sleep(0.03)
-    whole = time.perf_counter() - begun
-    assert sum(ledger.seconds.values()) == pytest.approx(whole, rel=0.05)
-    assert ledger.seconds["inner"] > 0.06 and 0.02 < ledger.seconds["outer"] < whole - 0.06
+                clock.now += 0.03
+            clock.now += 0.002
+    assert sum(ledger.seconds.values()) == pytest.approx(clock.now) == pytest.approx(0.084)
+    assert ledger.seconds["inner"] == pytest.approx(0.06)
+    assert ledger.seconds["outer"] == pytest.approx(0.024)

@@ -1,4 +1,4 @@
-"""The loop that is composed from effects against the same sums written out by hand."""
+"""The loop that is composed from effects against the same sums written out by hand, and its instructions."""
 
 import re
 
@@ -7,14 +7,18 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from psph.bench import DAM
 from psph.bench.box import Box
-from psph.jit import FAST
+from psph.bench.measure import LAYOUTS, Asked, scene_of
+from psph.bench.price import DEFAULT, SETTINGS, USUAL
+from psph.jit import FAST, register_bits
 from psph.output.ledger import Ledger
 from psph.physics.space import softened
 from psph.physics.viscosity import ArtificialViscosity
 from psph.scene import Scene
 from psph.simd import spread, total, turning, width_of
 from psph.solver import pairs
+from psph.solver import step as step_module
 from psph.solver.plan import make_plan
 from psph.solver.step import Simulation
 
@@ -126,3 +130,29 @@ def test_composed_is_as_lean_as_by_hand_and_gives_the_same(simulation):
     [hand_code], [composed_code] = hand.inspect_asm().values(), composed.inspect_asm().values()
     lean, made = in_the_loop(hand_code), in_the_loop(composed_code)
     assert 60 < lean < 120 and made <= 1.05 * lean, (made, lean)
+
+
+COUNTED = {
+    512: {(2, USUAL): 106, (2, DEFAULT): 141, (3, USUAL): 114, (3, DEFAULT): 154},
+    256: {(2, USUAL): 79, (2, DEFAULT): 131, (3, USUAL): 93, (3, DEFAULT): 156},
+}
+"""Instructions that a group of neighbours takes, as many as a register holds numbers, by its bits:
+dam breaks in 2D and 3D under plain SPH and under the default scheme."""
+
+
+@pytest.mark.parametrize(("dim", "setting"), COUNTED[512])
+def test_the_standard_loops_take_no_more_instructions_than_counted(dim, setting, monkeypatch):
+    """What the pace rests on, and what no other job on the machine can change."""
+    calls = []
+    monkeypatch.setattr(step_module, "sum_over_neighbours", lambda *call: calls.append(call))
+    neighbours = {2: 20, 3: 57}[dim]
+    layout = LAYOUTS[DAM](dim, neighbours, 1500)
+    scene = scene_of(Asked(DAM, dim, 1500, neighbours, "double"), layout, SETTINGS[setting])
+    plan = make_plan(scene)
+    store = layout.create(scene, plan, MPI.COMM_SELF)
+    Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())  # its start sums once: types suffice
+    loop = numba.njit(fastmath=FAST, error_model="numpy")(pairs.sum_over_neighbours.py_func)
+    kinds = tuple(map(numba.typeof, calls[0]))
+    loop.compile(kinds)
+    made = in_the_loop(loop.inspect_asm(kinds))
+    assert 50 < made <= COUNTED[register_bits()][dim, setting], made
