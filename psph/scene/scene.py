@@ -75,6 +75,14 @@ class Scene:
         return gravity.acceleration if gravity else (0.0,) * self.dimensions
 
     @cached_property
+    def height_gravity(self) -> tuple[float, ...]:
+        """g in m/s² along the axes that do not repeat, else zero: across a period there is no height,
+        so a potential energy −m g·x would jump where a particle passes it."""
+        return tuple(
+            g if period is None else 0.0 for g, period in zip(self.gravity, self.periods)
+        )
+
+    @cached_property
     def up(self) -> tuple[float, ...]:
         """The unit vector against gravity; zeros without."""
         pull = math.hypot(*self.gravity)

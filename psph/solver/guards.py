@@ -41,9 +41,6 @@ class Guards:
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
         self.solid = Solid(scene)
         self.seen: Counter[str] = Counter()
-        self._gravity = [
-            g if period is None else 0.0 for g, period in zip(scene.gravity, scene.periods)
-        ]
         mass = fluid_mass(simulation.comm, simulation.store)
         self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
         if simulation.energy_at_start is None:
@@ -101,7 +98,7 @@ class Guards:
         """Energy of motion, height and compression, J."""
         sim, state, c = self.simulation, self.scene.state, self.scene.sound_speed
         return total_energy(
-            sim.comm, sim.store, self._gravity,
+            sim.comm, sim.store, self.scene.height_gravity,
             lambda density, rest: state.energy(density, rest, c),
         )
 

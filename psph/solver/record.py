@@ -16,7 +16,6 @@ from psph.output.frames import FrameFile
 from psph.output.probes import Front, Probe
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
 from psph.particles.fields import FIELDS
-from psph.physics.gravity import Gravity
 from psph.solver.step import Simulation
 
 
@@ -51,9 +50,7 @@ class Record:
     def __init__(self, scene, simulation: Simulation, folder: Path, saved: Saved | None = None):
         case, comm = scene.case, simulation.comm
         self.simulation, self.kernel = simulation, scene.kernel
-        effects = simulation.plan.effects
-        still = (0.0,) * scene.dimensions
-        self.gravity = next((e.acceleration for e in effects if isinstance(e, Gravity)), still)
+        self.gravity = scene.height_gravity
         self.frames = FrameFile(
             folder / f"{case.name}.h5",
             comm,
