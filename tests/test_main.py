@@ -45,7 +45,12 @@ def test_a_run_is_not_overwritten_unasked(tmp_path):
     again = psph(*run)
     assert again.returncode == 3 and "--overwrite" in again.stderr
     assert len(again.stderr.strip().splitlines()) == 1
+    mine = {"mine.png", "pressure.png", "pressure_1.png", "my_pressure_00000.png"}
+    drawn = {"overview.png", "log.png", "pressure_00000.png", "velocity_00012.png"}
+    for name in mine | drawn:
+        (tmp_path / name).touch()
     assert psph(*run, "--overwrite").returncode == 0
+    assert {path.name for path in tmp_path.glob("*.png")} == mine
 
 
 def test_a_case_of_one_s_own_is_not_replaced_by_the_resolved_one(tmp_path):

@@ -12,7 +12,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from psph.output import charts, style
+from psph.output import charts, pictures, style
 from psph.output.errors import OutputError
 from psph.output.reader import Run
 from psph.particles.fields import FIELDS, FLUID
@@ -38,21 +38,19 @@ def plot(folder: Path, times: Sequence[float] | None = None, field: str = "press
     to draw or no such field.
     """
     show = Show(Run(folder), times, field)
-    pictures = {f"{field}_{k:05d}": show.picture([k]) for k in show.chosen}
+    made = {pictures.name_of(field, k): show.picture([k]) for k in show.chosen}
     if column := charts.probe_charts(show.run, show.case):
-        pictures["probes"] = charts.picture(column, show.title, "probes")
+        made[pictures.PROBES] = charts.picture(column, show.title, "probes")
     if column := charts.log_charts(show.run, show.view.dimensions):
-        pictures["log"] = charts.picture(column, show.title, "log")
-    pictures["overview"] = show.overview()
-    return [
-        style.save(figure, show.run.folder / f"{name}.png") for name, figure in pictures.items()
-    ]
+        made[pictures.LOG] = charts.picture(column, show.title, "log")
+    made[pictures.OVERVIEW] = show.overview()
+    return [style.save(figure, show.run.folder / name) for name, figure in made.items()]
 
 
 def overview(folder: Path, times: Sequence[float] | None = None, field: str = "pressure") -> Path:
     """Draw ``overview.png``: ``field`` at ``times`` side by side, below what probes read of it."""
     show = Show(Run(folder), times, field)
-    return style.save(show.overview(), show.run.folder / "overview.png")
+    return style.save(show.overview(), show.run.folder / pictures.OVERVIEW)
 
 
 class View(NamedTuple):

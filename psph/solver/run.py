@@ -13,6 +13,7 @@ from psph.output.checkpoint import COPY, Saved, checkpoints, remove_checkpoints
 from psph.output.errors import OutputError, together
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
+from psph.output.pictures import remove_pictures
 from psph.output.progress import Progress
 from psph.output.tables import ERRORS, LOG, PROBES
 from psph.parallel.slabs import check_ranks
@@ -186,11 +187,11 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
             trouble = None if overwrite else _in_the_way(case, folder)
             if not trouble:
                 folder.mkdir(parents=True, exist_ok=True)
-                # Pictures in a folder without a run are none of ours.
-                ran = (folder / f"{case.name}.h5").exists()
-                for name in (LOG, PROBES, ERRORS, "*.png") if ran else ():
-                    for old in folder.glob(name):
-                        old.unlink()
+                # What has such a name in a folder without a run is none of ours.
+                if (folder / f"{case.name}.h5").exists():
+                    for name in (LOG, PROBES, ERRORS):
+                        (folder / name).unlink(missing_ok=True)
+                    remove_pictures(folder)
                 remove_checkpoints(folder)
                 remove_post_mortem(folder)
                 (folder / COPY).write_text(case.to_toml(), encoding="utf-8")
