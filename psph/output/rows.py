@@ -5,6 +5,8 @@ hangs where several ranks have the file open, and Open MPI 4.1 loses the error o
 on three ranks and more.
 """
 
+import ctypes
+import errno
 import math
 import os
 from pathlib import Path
@@ -39,17 +41,34 @@ def open_file(path: Path, mode: str, **how):
 def reserve(path: Path, size: int) -> None:
     """Take ``size`` more bytes of the disk, or raise OSError and leave the file as it was.
 
-    HDF5 gives back what it does not use when it closes the file.
+    HDF5 gives back what it does not use when it closes the file.  Where the file system cannot
+    allocate, it is only asked whether so much is free.
     """
-    if not hasattr(os, "posix_fallocate"):
-        return
     with open(path, "r+b") as file:
         end = file.seek(0, os.SEEK_END)
-        try:
-            os.posix_fallocate(file.fileno(), end, size)
-        except OSError:
+        failure = _allocate(file.fileno(), end, size)
+        if failure in (errno.EOPNOTSUPP, errno.ENOSYS):
+            disk = os.fstatvfs(file.fileno())
+            failure = errno.ENOSPC if disk.f_bavail * disk.f_frsize < size else 0
+        if failure:
             file.truncate(end)
-            raise
+            raise OSError(failure, os.strerror(failure))
+
+
+def _allocate(number: int, offset: int, size: int) -> int:
+    """Linux's fallocate on an open file; returns the number of its error, 0 for none.
+
+    ``os.posix_fallocate`` will not do: where the file system cannot allocate, glibc writes to every
+    block in its place, gigabytes for a large frame.
+    """
+    call = getattr(ctypes.CDLL(None, use_errno=True), "fallocate", None)
+    if call is None:
+        return errno.ENOSYS
+    call.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_int64, ctypes.c_int64]
+    while call(number, 0, offset, size) != 0:
+        if ctypes.get_errno() != errno.EINTR:  # a signal: psph remembers it, and tries again
+            return ctypes.get_errno()
+    return 0
 
 
 def sync(path: Path) -> None:

@@ -1,5 +1,6 @@
 """Frames on one rank: what stands in the file, and what other programs see of it."""
 
+import errno
 import os
 import resource
 import subprocess
@@ -162,3 +163,26 @@ def test_rows_must_agree(tmp_path, alone):
 
 def test_one_rank_needs_no_notice(alone):
     assert funnel_notice(alone) is None
+
+
+def test_room_on_a_disk_that_cannot_allocate_is_asked_for_not_written(tmp_path, monkeypatch):
+    """glibc would write to every block of it: gigabytes for a large frame."""
+    monkeypatch.setattr(hdf5, "_allocate", lambda *_: errno.EOPNOTSUPP)
+    monkeypatch.delattr(os, "posix_fallocate")
+    path = tmp_path / "tank.h5"
+    path.write_bytes(b"head")
+    hdf5.reserve(path, 1 << 26)
+    assert path.read_bytes() == b"head"
+    with pytest.raises(OSError, match="No space left on device"):
+        hdf5.reserve(path, 1 << 60)
+    assert path.read_bytes() == b"head"
+
+
+def test_room_on_the_disk_is_taken_or_refused(tmp_path):
+    path = tmp_path / "tank.h5"
+    path.write_bytes(b"head")
+    hdf5.reserve(path, 1 << 20)
+    assert path.stat().st_size == (1 << 20) + 4 and 512 * path.stat().st_blocks >= 1 << 20
+    with pytest.raises(OSError):
+        hdf5.reserve(path, 1 << 60)
+    assert path.stat().st_size == (1 << 20) + 4
