@@ -9,6 +9,7 @@ from psph.case import Case, CaseError, load
 from psph.jit import SOURCES, processor
 from psph.output.errors import OutputError
 from psph.parallel.slabs import TooManyRanks
+from psph.solver.room import TooLittleMemory
 from psph.solver.run import Finished, run
 from psph.solver.step import BlowUp
 from psph.study.ladder import SPACING, Settings, overrides
@@ -84,6 +85,8 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
             found.append(run(case, folder, comm, overwrite=True, say=_silent))
     except BlowUp as trouble:
         result = {"status": str(trouble)}
+    except TooLittleMemory as trouble:
+        return {"status": f"not possible here: {trouble}"}  # not kept: more may be free next time
     except (CaseError, TooManyRanks) as trouble:
         result = {"status": f"refused: {trouble}"}
     else:

@@ -19,6 +19,10 @@ from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
+from psph.scene import Scene
+from psph.solver import room
+from psph.solver.explain import bytes_of_rank
+from psph.solver.plan import make_plan
 from psph.solver.run import run
 from psph.solver.step import BlowUp
 from psph.study import runs
@@ -27,7 +31,7 @@ from psph.study.errors import StudyError
 from psph.study.judge import Judge, series_errors
 from psph.study.page import main as on_page
 from psph.study.prediction import predicted
-from psph.study.study import pareto
+from psph.study.study import Study, pareto
 from psph.study.answer import fitting
 
 WAVE = """
@@ -281,6 +285,27 @@ def test_effects_are_left_out_one_by_one(tmp_path):
     assert "artificial viscosity: nothing" not in job.stdout  # it damps the wave
     case = load(tmp_path / "wave.toml")
     assert set(without_each(case)) == {"laminar viscosity", "artificial viscosity"}
+
+
+def test_a_run_that_does_not_fit_into_the_memory_does_not_end_the_study(tmp_path, monkeypatch):
+    """Nor is it kept as impossible: more memory may be free the next time."""
+    (tmp_path / "wave.toml").write_text(WAVE)
+    every = [{"space.spacing": dx} for dx in (0.05, 0.00125, 0.025)]
+    case = load(tmp_path / "wave.toml", ["space.spacing=0.00125"])
+    needed = bytes_of_rank(Scene(case), make_plan(Scene(case)), 1)
+
+    def statuses():
+        made = Study(tmp_path / "wave.toml", ["study.repeats=1"], every, tmp_path / "out", alone())
+        return [row["status"] for row in made.run(lambda line: None)]
+
+    monkeypatch.setattr(room, "free_memory", lambda: 0.9 * needed)
+    first, lacking, last = statuses()
+    assert first == last == "done"
+    assert re.fullmatch(
+        r"not possible here: wave: 800 particles need about [\d.]+ GiB on one machine, .*", lacking
+    )
+    monkeypatch.undo()
+    assert statuses() == ["done"] * 3
 
 
 def test_words_of_an_effect_that_a_case_needs():
