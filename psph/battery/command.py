@@ -1,4 +1,4 @@
-"""The verbs ``stability --battery`` and ``--remedies``: run, measured, judged and said."""
+"""The verbs ``stability --battery`` and ``--remedies``."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -40,7 +40,7 @@ def battery(
 
 
 def remedies(comm, out: Path | None, chosen: Sequence[Remedy] = REMEDIES) -> list[Row]:
-    """Put remedies to their trials, each alone, as the battery is run; rows on rank 0."""
+    """Run the trials of the remedies, each alone; rows on rank 0."""
     folder, every = out or BESIDE, trials_of(chosen)
     rows = _performed(comm, every, folder)
     if comm.rank == 0:
@@ -109,11 +109,11 @@ def _write(folder: Path, trials: tuple[Trial, ...], rows: list[Row]) -> None:
 
 
 SNAPSHOTS = ("patch", "dam_break", "drop", "strip", "jets", "taylor_green", "sloshing", "cavity")
-"""Cases whose end under our scheme is drawn beside the table."""
+"""Cases whose end under the default scheme is drawn beside the table."""
 
 
 def snapshots(folder: Path, trials: tuple[Trial, ...]) -> Iterator[tuple[str, dict]]:
-    """Name and last frame of a run of each of these, under our scheme."""
+    """Name and last frame of a run of each of these, under the default scheme."""
     seen = set()
     for trial in trials:
         place = folder_of(folder, trial, OURS)

@@ -1,4 +1,4 @@
-"""What was asked of the battery cannot be done."""
+"""Errors of the battery."""
 
 from psph.errors import Refused
 

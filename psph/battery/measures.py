@@ -1,4 +1,4 @@
-"""What a finished run of the battery tells, read from its files."""
+"""Measures of a finished run of the battery, from its files."""
 
 import csv
 import math
@@ -41,7 +41,7 @@ MEASURES = {
     "exact_error": "velocity against the exact solution, L2",
     "ghia_error": "velocity on the centre lines against Ghia and others, rms over the lid's",
 }
-"""Every measure in words; a run has those that make sense for its case."""
+"""Every measure in words; a run has those that apply to its case."""
 
 LATE = 0.1
 """Last part of a run that counts as its end."""

@@ -1,4 +1,4 @@
-"""The battery as a picture: trials × schemes by verdict, and how our scheme's runs end."""
+"""The battery as a picture: trials × schemes by verdict, and the last frames of the default scheme."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path

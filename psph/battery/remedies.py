@@ -1,4 +1,4 @@
-"""Remedies: what a user adds to plain SPH, each alone, and the trials that tear it."""
+"""Remedies: single additions to plain SPH, and the trials in which plain SPH fails."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -16,7 +16,7 @@ class Remedy(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What a user writes."""
+        """The keys as a user writes them."""
         keys = ", ".join(f"{key} = {value}" for key, value in map(_written, self.sets))
         others = ", ".join(value for _, value in map(_written, self.in_patch))
         return f"{keys}, in the patch {others}" if others else keys
@@ -53,10 +53,10 @@ REMEDIES = (
     Remedy(("physics.background_pressure=3000",), ("physics.background_pressure=20",)),
     Remedy(("scheme=stable",)),
 )
-"""Nothing first, psph's own scheme last."""
+"""Plain SPH first, the default scheme last."""
 
 BESIDES = ("physics.density_diffusion=0.1", "physics.pair_damping=0.02")
-"""What noise dies of, in disorder; the own scheme has both, as strong."""
+"""Damping of noise in disordered trials; the default scheme has both, with the same strengths."""
 
 KICKED, JITTERED, PATCH, *_ = QUICK
 
@@ -65,7 +65,7 @@ SHOWN = {
     "4.2, jitter": ("speed", "late_speed"),
     "patch": ("kinetic", "angular", "pieces", "near_5"),
 }
-"""Trials and what is told of each, first what stands for it."""
+"""Trials and the measures shown of each, the main one first."""
 
 
 def trials(remedies: Sequence[Remedy] = REMEDIES) -> tuple[Trial, ...]:
@@ -82,7 +82,7 @@ def trials(remedies: Sequence[Remedy] = REMEDIES) -> tuple[Trial, ...]:
 def _judging(
     name: str, trial: Trial, end: float, changes: dict[str, tuple[str, ...]], *besides: str
 ) -> Trial:
-    """A trial of the battery under remedies; a run goes on in trouble, so that the end is told."""
+    """A trial of the battery under remedies; a run continues in spite of its guards."""
     return trial._replace(
         name=name, shown=SHOWN[name][0], end=end, other_end=end, schemes=tuple(changes), fails=(),
         sets=(*trial.sets, PLAIN, "guards.on_trouble=warn", *besides), changes=changes,

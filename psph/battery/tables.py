@@ -19,12 +19,12 @@ MARKS = {GOOD: "+", HOLDS: "~", FAILS: "−", BLEW_UP: "×", REFUSED: "?"}
 
 
 def line(row: Row) -> str:
-    """A run as it ends."""
-    told = "" if not row.broken else "; " + ", ".join(map(str, row.broken))
+    """A line for a finished run."""
+    remark = "" if not row.broken else "; " + ", ".join(map(str, row.broken))
     if row.verdict == REFUSED:
-        told = f"; {row.status}"
+        remark = f"; {row.status}"
     seconds = "" if row.seconds is None else f" in {row.seconds:.1f} s"
-    return f"{row.trial}, {row.column}: {row.verdict} at t = {row.reached:g} s{seconds}{told}"
+    return f"{row.trial}, {row.column}: {row.verdict} at t = {row.reached:g} s{seconds}{remark}"
 
 
 def columns_of(trials: Sequence[Trial]) -> list[str]:
@@ -62,7 +62,7 @@ def matrix(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
 
 
 def columned(body: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Rows of cells for a terminal, and what the marks say."""
+    """Rows of cells for a terminal, and the meaning of the marks."""
     widths = [max(map(len, column)) for column in zip(*body)]
     for cells in body:
         yield "  ".join(text.ljust(w) for text, w in zip(cells, widths)).rstrip()
@@ -70,7 +70,7 @@ def columned(body: Sequence[Sequence[str]]) -> Iterator[str]:
 
 
 def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
-    """The matrix, what its numbers are, what is left to do, and more of our own scheme."""
+    """The matrix, the meaning of its numbers, broken bounds, and more measures of the default scheme."""
     head, *body = _body(trials, rows)
     yield from table(["trial", *head[1:]], body)
     yield ""
@@ -93,9 +93,9 @@ def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
 
 
 def legend(shown: Iterable[str]) -> Iterator[str]:
-    """What the marks of a page say, and the names of measures."""
+    """The meaning of the marks of a page, and of the measures."""
     marks = "; ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
-    yield f"{marks}; beside × the time that it lived."
+    yield f"{marks}; after ×: the simulated time until then."
     yield _in_words(shown)
 
 
@@ -112,23 +112,23 @@ def table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
 
 
 def sentences(rows: Sequence[Row]) -> Iterator[str]:
-    """What came of each scheme, where ours falls short, and which control did not fail."""
+    """Trials held by each scheme, bounds missed by the default scheme, controls that did not fail."""
     for column in SCHEMES:
-        mine = [row for row in rows if row.column == column and row.verdict != REFUSED]
-        if mine:
-            held = sum(row.verdict in HELD for row in mine)
-            good = sum(row.verdict == GOOD for row in mine)
-            yield f"- `{column}` holds in {held} of {len(mine)} trials, {good} with all goals."
+        runs = [row for row in rows if row.column == column and row.verdict != REFUSED]
+        if runs:
+            held = sum(row.verdict in HELD for row in runs)
+            good = sum(row.verdict == GOOD for row in runs)
+            yield f"- `{column}` holds in {held} of {len(runs)} trials, {good} with all goals."
     for row in rows:
         if row.column == OURS and row.verdict != GOOD:
-            told = ", ".join(map(str, row.broken)) or row.status
-            yield f"- `{OURS}` {row.verdict} in {row.trial}: {told}."
+            missed = ", ".join(map(str, row.broken)) or row.status
+            yield f"- `{OURS}` {row.verdict} in {row.trial}: {missed}."
     for row in without_effect(rows):
         yield f"- The control {row.column} misses no bound in {row.trial} that `{OURS}` keeps."
 
 
 def as_csv(rows: Sequence[Row]) -> str:
-    """Every run with all that was measured; what a run lacks is empty."""
+    """Every run with all measures; a measure that a run lacks is empty."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([

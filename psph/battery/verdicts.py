@@ -8,13 +8,13 @@ from psph.study.runs import DONE
 
 GOOD, HOLDS, FAILS, BLEW_UP, REFUSED = "good", "holds", "fails", "blew up", "refused"
 VERDICTS = (GOOD, HOLDS, FAILS, BLEW_UP, REFUSED)
-"""From all goals met, by all bounds met, to none looked at."""
+"""From all goals met, over all bounds met, to not run."""
 
 HELD = (GOOD, HOLDS)
 
 
 class Broken(NamedTuple):
-    """A bound that a run does not meet, and what was measured in its place; ``None``: nothing."""
+    """A bound that a run does not meet, and the measured value; ``None``: not measured."""
 
     bound: Bound
     value: float | None
@@ -23,12 +23,12 @@ class Broken(NamedTuple):
 
     def __str__(self) -> str:
         """As ``kinetic 0.9 (≥ 0.93)``."""
-        told = "not measured" if self.value is None else f"{self.value:.3g}"
-        return f"{self.bound.measure} {told} ({self.bound.limits})"
+        value = "not measured" if self.value is None else f"{self.value:.3g}"
+        return f"{self.bound.measure} {value} ({self.bound.limits})"
 
 
 class Row(NamedTuple):
-    """A run of the battery: what was asked, how it ended, what was measured, what it broke."""
+    """A run of the battery: its trial, status, measures and broken bounds."""
 
     trial: str
     column: str
@@ -69,7 +69,7 @@ def _broken(bounds: tuple[Bound, ...], found: dict[str, float], goal=False) -> I
 
 
 def without_effect(rows: Sequence[Row]) -> Iterator[Row]:
-    """The controls that came to their end and missed no bound but those that our scheme misses too."""
+    """The controls that came to their end and missed no bound but those that the default scheme misses too."""
     ours = {row.trial: set(_fatal(row)) for row in rows if row.column == OURS}
     for row in rows:
         if row.control and row.verdict in (GOOD, HOLDS, FAILS):

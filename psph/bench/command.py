@@ -1,4 +1,4 @@
-"""The verb ``bench``: what is asked for, measured and said."""
+"""The verb ``bench``."""
 
 import json
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from psph.bench.roofline import measure_ceiling
 
 PARTICLES, DIMENSIONS = 200_000, 3
 NEIGHBOURS = {2: 20, 3: 57}
-"""What is measured where nothing else is asked for."""
+"""The defaults of the options."""
 
 TENTH, FIVEFOLD, MANY_NEIGHBOURS = 0.1, 5, 110
 """The standard set looks at other sizes, and at more neighbours, too."""
@@ -61,7 +61,7 @@ def bench(
     comm, asked: list[Asked], compare: Path | None, peer_python: Path | None, as_json: bool,
     against: Sequence[str] = (), turns: int | None = None,
 ) -> None:
-    """Time each problem and print what it gave; collective.
+    """Time each problem and print the results; collective.
 
     ``compare``: a file with an earlier result; ``peer_python``: an interpreter that has LAMMPS;
     ``against``: overrides that make the case which takes turns with each problem; ``turns``: how
@@ -107,7 +107,7 @@ def prices(
 
 
 def lines(run: dict) -> list[str]:
-    """A result in words."""
+    """A result as lines of text."""
     shares = sorted(run["share"].items(), key=lambda phase: -phase[1])
     roof, core = run["roofline"], run["per_core"]
     said = [
@@ -119,9 +119,9 @@ def lines(run: dict) -> list[str]:
         f"  in all      {_pace(run)}",
         f"  share       {', '.join(f'{k} {100 * v:.1f} %' for k, v in shares if v > 5e-4)}",
         f"  pair loop   {roof['flops_per_second'] / 1e9:.1f} Gflop/s, "
-        f"{100 * roof['flops_share']:.0f} % of what multiply-adds reach; "
+        f"{100 * roof['flops_share']:.0f} % of the rate of multiply-adds; "
         f"{roof['bytes_per_second'] / 1e9:.1f} GB/s, "
-        f"{100 * roof['bytes_share']:.0f} % of what a copy reaches",
+        f"{100 * roof['bytes_share']:.0f} % of the rate of a copy",
         f"  rebuilds    {run['rebuilds']} of the neighbour lists; compiled in "
         f"{run['compile_seconds']} s, not counted",
     ]

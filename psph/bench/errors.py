@@ -1,4 +1,4 @@
-"""What was asked of the bench cannot be done."""
+"""Errors of the bench."""
 
 from psph.errors import Refused
 

@@ -1,1 +1,1 @@
-"""Maps of stability: which kernels hold a lattice at which h/dx, as tables and pictures."""
+"""Maps of stability: the h/dx at which each kernel is stable on a lattice, as tables and pictures."""

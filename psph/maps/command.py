@@ -1,4 +1,4 @@
-"""The verb ``stability``: what is asked for, computed and said."""
+"""The verb ``stability``."""
 
 import json
 from pathlib import Path
@@ -20,7 +20,7 @@ from psph.stability.uniform import STIFF, Settings
 from psph.stability.windows import SMOOTHINGS
 
 SMOOTHING, LATTICE, FOLDER = 1.4, "square", Path("stability")
-"""Where nothing else is asked for; h/dx as in a case."""
+"""Defaults; h/dx as in a case."""
 
 NARROWEST, WIDEST = 0.6, 4.0
 """h/dx, the bounds of a case."""
@@ -45,7 +45,7 @@ class Asked(NamedTuple):
 
 
 def stability(comm, asked: Asked) -> None:
-    """Compute what is asked for and print it, on rank 0.
+    """Compute and print the growth, on rank 0.
 
     Raises StabilityError for what makes no sense, on every rank.
     """
@@ -173,7 +173,7 @@ def _units(asked: Asked) -> tuple[float, float, float]:
         )
     if asked.state and STATES[asked.state] * asked.pressure < 0.0:
         raise StabilityError(
-            f"stability --pressure {asked.pressure:g}: that is not {asked.state}; leave --state out"
+            f"stability --pressure {asked.pressure:g}: that is not {asked.state}; remove --state"
         )
     return asked.pressure, asked.density, asked.spacing
 

@@ -20,7 +20,7 @@ Rows = list[dict[str, str]]
 
 
 def maps(page: Path, folders: Sequence[Path]) -> str:
-    """What the maps say; their pictures are copied.  OutputError: no map there."""
+    """The tables of the maps; their pictures are copied.  OutputError: no map there."""
     pictures, every = [], []
     for folder in folders:
         with results(folder, "map"):

@@ -39,5 +39,5 @@ def sentences(rows: Sequence[Row]) -> Iterator[str]:
             tried = f"{SMOOTHINGS[0]:g} to {SMOOTHINGS[-1]:g}"
             yield f"Under {state} nothing is stable at any h/dx from {tried}."
             continue
-        told = "; ".join(f"`{kernel}` {where or 'nowhere'}" for kernel, where in held.items())
-        yield f"Under {state} stable at h/dx: {told}."
+        stable = "; ".join(f"`{kernel}` {where or 'nowhere'}" for kernel, where in held.items())
+        yield f"Under {state} stable at h/dx: {stable}."

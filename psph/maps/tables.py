@@ -22,7 +22,7 @@ UNIT = "√(|P|/ρ)/dx"
 
 
 def subtitle(settings: Settings) -> str:
-    """What the map holds for."""
+    """The settings of a map."""
     names = {kind: name.replace("_", " ") for name, kind in REMEDIES.items()}
     return ", ".join([
         f"{settings.lattice} lattice", f"{settings.form} pressure gradient",
@@ -76,7 +76,7 @@ def as_csv(settings: Settings, rows: Sequence[Row]) -> str:
 
 
 def write(path: Path, text: str) -> None:
-    """Put a text into a file.  Raises OutputError."""
+    """Write a text to a file.  Raises OutputError."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")

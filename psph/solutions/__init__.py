@@ -1,1 +1,1 @@
-"""Exact solutions: flows that are known at every place and time, to start from and to judge by."""
+"""Exact solutions: flows known at every point and time, for initial states and errors."""

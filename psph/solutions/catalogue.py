@@ -24,9 +24,9 @@ SOLUTIONS = {
 }
 
 FIELDS = ("velocity", "pressure")
-"""What a solution may know."""
+"""Fields that a solution may have."""
 
 
 def known(solution) -> tuple[str, ...]:
-    """The fields that a solution knows."""
+    """The fields that a solution has."""
     return tuple(name for name in FIELDS if hasattr(solution, name))

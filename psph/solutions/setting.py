@@ -1,4 +1,4 @@
-"""What an exact solution has to know of the case that it is compared with."""
+"""The properties of a case that an exact solution needs."""
 
 from typing import NamedTuple
 

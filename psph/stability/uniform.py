@@ -1,4 +1,4 @@
-"""The state that is disturbed: particles at rest on a lattice under a uniform pressure."""
+"""The undisturbed state: particles at rest on a lattice under a uniform pressure."""
 
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -10,7 +10,7 @@ from psph.stability import SYMMETRIC
 from psph.stability.lattices import Lattice, lattice
 
 STIFF = 10.0
-"""c in √(|P|/ρ) where nothing else is said: P is about ρU², and c ten times the speed U."""
+"""Default of c in √(|P|/ρ): P is about ρU², and c ten times the speed U."""
 
 
 class Settings(NamedTuple):
@@ -44,7 +44,7 @@ class Uniform:
 
     @property
     def reach(self) -> float:
-        """How far a particle feels, m."""
+        """Radius of the kernel support, m."""
         return self.kernel.support * self.smoothing_length
 
     @property
@@ -62,7 +62,7 @@ class Uniform:
 
     @cached_property
     def moment(self) -> float:
-        """What gradients are divided by."""
+        """The divisor of gradients."""
         normalised = any(hasattr(remedy, "normalises") for remedy in self.settings.remedies)
         return self.first_moment if normalised else 1.0
 

@@ -1,4 +1,4 @@
-"""Which smoothing lengths hold a lattice."""
+"""The smoothing lengths at which a lattice is stable."""
 
 from collections.abc import Iterable, Sequence
 

@@ -61,7 +61,7 @@ def test_the_rows_are_told_apart():
 
 @pytest.fixture(scope="module")
 def some(tmp_path_factory):
-    """(folder, rows) of plain SPH, a shift and the own scheme."""
+    """(folder, rows) of plain SPH, a shift and the default scheme."""
     folder = tmp_path_factory.mktemp("remedies")
     return folder, remedies(MPI.COMM_SELF, folder, (REMEDIES[0], SHIFT, OWN))
 

@@ -204,7 +204,7 @@ def test_warned_runs_go_on_and_are_the_same(tmp_path):
 
 
 def case_of(name, folder):
-    """psph's own scheme at a surface, and p⁻ in a periodic box."""
+    """the default scheme at a surface, and p⁻ in a periodic box."""
     if name == "stable":
         return load("run/cases/minimal.toml")
     path = folder / "waves.toml"
