@@ -30,6 +30,10 @@ SETTLING, TRIAL = 5, 15
 STEP = 0.5
 """Its time step over psph's: with psph's own a falling dam blows up in its integrator."""
 
+EVERY, UNEVEN, SHIFTS, NEARLY = 100, 1.05, 20, 1.01
+"""Its load balancing on several ranks: it looks so often, in steps, moves its cuts where the fullest rank
+has so many times the average work, in so many rounds at the most, until it has no more than that."""
+
 BROKEN = 0.2
 """A density that is off by this fraction: what is timed is no flow any more."""
 
@@ -148,8 +152,18 @@ def commands(scene, simulation) -> tuple[list[str], list[str]]:
         *([f"group tank type {WALL + 1}", "fix stay tank sph/stationary"] if tank else []),
         *([f"fix fall water gravity {pull!r} vector {down}"] if pull else []),
         *(["fix flat all enforce2d"] if d == 2 else []),
+        *(_balancing(d) if simulation.comm.size > 1 else []),
     ]
     return space, motion
+
+
+def _balancing(dimensions: int) -> list[str]:
+    """Cuts that follow the particles, at the start and during the run, as LAMMPS's manual sets them up.
+
+    Without them each rank has an equal part of the box, however little of the water is in it.
+    """
+    how = f"shift {'xyz'[:dimensions]} {SHIFTS} {NEARLY}"
+    return [f"balance {UNEVEN} {how}", f"fix even all balance {EVERY} {UNEVEN} {how}"]
 
 
 def gathered(simulation) -> dict | None:

@@ -4,6 +4,7 @@ import importlib.util
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -61,6 +62,34 @@ def test_a_tank_in_its_words():
     assert "boundary s s p" in said and "fix stay tank sph/stationary" in said
     assert "fix fall water gravity 9.81 vector 0.0 -1.0 0.0" in said
     assert not any("np." in line for line in said)
+
+
+def test_several_ranks_balance_their_load():
+    scene, simulation = simulation_of(Tank.nearest(2, 20, 1500))
+    assert not any("balance" in line for line in sum(commands(scene, simulation), []))
+    two = SimpleNamespace(plan=simulation.plan, dt=simulation.dt, comm=SimpleNamespace(size=2))
+    space, motion = commands(scene, two)
+    assert not any("balance" in line for line in space)  # there are no particles yet
+    assert motion[-2:] == [
+        "balance 1.05 shift xy 20 1.01", "fix even all balance 100 1.05 shift xy 20 1.01",
+    ]
+
+
+def test_its_cuts_follow_the_water(python):
+    """The water stands in the first third of a tank; without balancing its second rank has walls alone."""
+    scene, simulation = simulation_of(Tank.nearest(2, 20, 6000))
+    two = SimpleNamespace(plan=simulation.plan, dt=simulation.dt or 1e-5, comm=SimpleNamespace(size=2))
+    space, motion = commands(scene, two)
+    processes = Processes(python, 2, set())
+    try:
+        processes.ask("commands", space)
+        before = processes.ask("atoms", gathered(simulation))
+        processes.ask("commands", [*motion, f"neighbor {0.2 * scene.smoothing_length!r} bin", "run 0"])
+        after = [len(state["id"]) // 4 for state in processes.ask("state")]
+    finally:
+        processes.end()
+    assert sum(after) == sum(before) and max(before) > 1.15 * min(before)
+    assert max(after) < 1.06 * min(after)
 
 
 @pytest.mark.parametrize(
