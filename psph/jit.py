@@ -10,7 +10,7 @@ import gc
 import hashlib
 import os
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import llvmlite.binding as llvm
@@ -18,6 +18,8 @@ import numba
 from numba import extending
 from numba.core.caching import FunctionCache
 from numba.core.sigutils import normalize_signature
+
+from psph.cache import Cache
 
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
 """Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
@@ -55,6 +57,10 @@ ALLOCATOR = "--regalloc=pbqp"
 register to another, or spills them.  It changes no result."""
 
 
+CACHE = Cache(cache_folder())
+"""This process's compiled loops on disk."""
+
+
 def _configure() -> None:
     llvm.set_option("psph", ALLOCATOR)
     numba.config.CACHE_DIR = str(cache_folder())
@@ -78,14 +84,17 @@ def register_bits() -> int:
     return 512 if "+avx512f" in numba.config.CPU_FEATURES.split(",") else 256
 
 
-def marker(loops: str, *examples) -> Path:
+def marker(loops: str, *examples) -> Path | None:
     """The file that says: these ``loops``, for the types of these ``examples``, are in the cache.
 
     Whoever has compiled them all touches it.  Where it is wrong, loops are compiled once more.
+    None without a cache.
     """
+    if CACHE.folder is None:
+        return None
     build = (numba.__version__, sys.version, numba.config.CPU_NAME, numba.config.CPU_FEATURES)
     selected = (build, numba.config.DISABLE_JIT, loops, *map(numba.typeof, examples))
-    return cache_folder() / f"{hashlib.sha256(str(selected).encode()).hexdigest()[:16]}.ready"
+    return CACHE.folder / f"{hashlib.sha256(str(selected).encode()).hexdigest()[:16]}.ready"
 
 
 @contextmanager
@@ -115,7 +124,8 @@ class OwnCache(FunctionCache):
         """Keep a compiled loop unless a foreign class stands in its types."""
         arguments, _ = normalize_signature(sig)
         if not any(_is_foreign(kind) for kind in arguments):
-            super().save_overload(sig, data)
+            with suppress(OSError):  # a full disk is no reason to end a run
+                super().save_overload(sig, data)
 
 
 def _is_foreign(kind) -> bool:
@@ -127,14 +137,22 @@ def _is_foreign(kind) -> bool:
 
 def compiled(function):
     """Decorator of every compiled loop: a module-level function, kept in the cache."""
-    loop = numba.njit(fastmath=FAST, error_model="numpy", nogil=True, **INNER)(function)
-    loop._cache = OwnCache(function)
+    return _kept(numba.njit(fastmath=FAST, **OPTIONS)(function))
+
+
+def _kept(loop):
+    """The loop, in the cache where there is one."""
+    if CACHE.folder is not None:
+        loop._cache = OwnCache(loop.py_func)
     return loop
 
 
 INNER = {"no_cfunc_wrapper": True}
 """Functions that only compiled code calls need no entry for C: to build it takes an eighth of the
 time that they take to compile."""
+
+OPTIONS = {"error_model": "numpy", "nogil": True, **INNER}
+"""Of every loop: division by zero gives infinity, and threads run side by side."""
 
 
 def overload(function, **options):

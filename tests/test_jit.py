@@ -1,5 +1,6 @@
 """The compile cache: it cannot go stale, and nothing foreign gets into it."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 from jobs import clean_environment
 
 from psph import jit
+from psph.cache import IN_USE, KEPT, Cache
 
 SCRIPT = """
 import sys
@@ -31,13 +33,13 @@ print(sum(state_of.stats.cache_hits.values()), "from the cache")
 """
 
 
-def script(folder, *arguments):
+def script(folder, *arguments, cache="cache"):
     """What the script prints, with its compiled loops in ``folder``."""
     path = folder / "script.py"
     path.write_text(SCRIPT)
     job = subprocess.run(
         [sys.executable, path, *arguments], capture_output=True, text=True,
-        env=clean_environment() | {"PSPH_CACHE": str(folder / "cache")},
+        env=clean_environment() | {"PSPH_CACHE": str(folder / cache)},
     )
     assert job.returncode == 0, job.stderr
     return job.stdout.splitlines()
@@ -70,3 +72,45 @@ def test_the_cache_follows_the_sources(tmp_path, monkeypatch):
     assert jit.source_digest() == before
     effect.rename(Path(effect).with_name("other.py"))
     assert jit.source_digest() != before
+
+
+def test_without_a_writable_cache_loops_are_compiled_for_this_process(tmp_path):
+    (tmp_path / "file").touch()
+    assert script(tmp_path, cache="file/cache") == ["1.0", "0 from the cache"]
+    trouble = jit.Cache(tmp_path / "file/cache" / jit.SOURCES).trouble
+    assert "PSPH_CACHE" in trouble and str(tmp_path / "file/cache") in trouble and "\n" not in trouble
+
+
+HOLD = """
+import sys
+from pathlib import Path
+from psph.cache import Cache
+cache = Cache(Path(sys.argv[1]))
+print("held", flush=True)
+sys.stdin.read()
+"""
+
+
+def test_older_folders_are_removed_unless_in_use(tmp_path):
+    names = [f"{n:016x}" for n in range(KEPT + 5)]
+    for age, name in enumerate(reversed(names)):
+        Cache(tmp_path / name).close()
+        (tmp_path / name / "loop.nbc").touch()
+        os.utime(tmp_path / name / IN_USE, (1e9 - age, 1e9 - age))
+    (tmp_path / "mine").mkdir()
+    holder = subprocess.Popen(
+        [sys.executable, "-c", HOLD, tmp_path / names[0]], stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE, text=True, env=clean_environment(),
+    )
+    with holder:
+        assert holder.stdout.readline() == "held\n"
+        os.utime(tmp_path / names[0] / IN_USE, (1e8, 1e8))  # the oldest, but in use
+        own = Cache(tmp_path / ("f" * 16))
+        own.prune()
+        left = {path.name for path in tmp_path.iterdir()}
+        assert left == {"mine", "f" * 16, names[0], *names[-KEPT:]}
+        assert (tmp_path / names[0] / "loop.nbc").exists()
+        holder.stdin.close()
+    own.prune()
+    assert not (tmp_path / names[0]).exists()
+    own.close()

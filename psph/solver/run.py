@@ -19,6 +19,7 @@ from psph.output.tables import ERRORS, LOG, PROBES
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
 from psph.scene import Scene, check
+from psph.jit import CACHE
 from psph.solver.cost import cost_lines
 from psph.solver.explain import slab_planes
 from psph.solver.forecast import long_run
@@ -100,11 +101,12 @@ def _simulate(
     check_memory(scene, plan, comm)
     prepare()
     say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")
-    for line in filter(None, [funnel_notice(comm)]):
+    for line in filter(None, [funnel_notice(comm), CACHE.trouble]):
         say(line)
     compiling = compile_ahead(scene, plan, comm)
     if compiling > WORTH_SAYING:
-        say(f"compiled in {compiling:.1f} s (kept for the next run)")
+        kept = "" if CACHE.trouble else " (kept for the next run)"
+        say(f"compiled in {compiling:.1f} s{kept}")
     simulation, record = _begin(scene, plan, comm, folder, saved)
     if saved:
         say(f"goes on from {saved.path.name}: step {simulation.steps:,}, {simulation.time:.6g} s")

@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 
-from psph.jit import many_loops, marker
+from psph.jit import CACHE, many_loops, marker
 from psph.output.checkpoint import checksum
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
@@ -61,7 +61,8 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     """Every loop of the plan, ready to run: compiled, or loaded from the cache.
 
     Where the cache holds them all, the ranks load together; else rank 0 compiles while the others
-    wait, and they load when they need one.  Returns the seconds it took.  Collective.
+    wait, and they load when they need one.  Without a cache all compile.  Returns the seconds it took.
+    Collective.
     """
     begun = time.perf_counter()
     store = Store(scene.dimensions, plan.arrays, plan.constants)
@@ -69,12 +70,13 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
         "step and probes" if scene.case.probes else "step",
         plan.effects, plan.kernel, plan.state, plan.space, scene.periods, store.view(),
     )
-    kept = comm.bcast(comm.rank == 0 and ready.exists())
-    if kept or comm.rank == 0:
+    together = comm.bcast(ready is None or ready.exists())
+    if together or comm.rank == 0:
         with many_loops():
             _rehearse(scene, plan, store)
-    if comm.rank == 0 and not kept:
+    if comm.rank == 0 and not together:
         ready.touch()
+        CACHE.prune()
     comm.Barrier()
     return time.perf_counter() - begun
 
