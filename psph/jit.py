@@ -136,8 +136,21 @@ def _is_foreign(kind) -> bool:
 
 
 def compiled(function):
-    """Decorator of every compiled loop: a module-level function, kept in the cache."""
+    """Decorator of a compiled loop: a module-level function, kept in the cache.
+
+    LLVM may reorder and contract its arithmetic: for the pair loop and what works with lanes, whose
+    order is written out, and for what has no arithmetic in floating point.
+    """
     return _kept(numba.njit(fastmath=FAST, **OPTIONS)(function))
+
+
+def elementwise(function):
+    """Decorator of a compiled loop over columns: as :func:`compiled`, with strict arithmetic.
+
+    Every operation is rounded by itself, in the order written.  Which columns the vector body takes and
+    which the remainder depends on the rank's slab; strict, both give a particle the same bits.
+    """
+    return _kept(numba.njit(**OPTIONS)(function))
 
 
 def _kept(loop):

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from psph.jit import compiled
+from psph.jit import elementwise
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.particles.fields import FIELDS, FLUID
@@ -71,7 +71,7 @@ class Front:
         return np.array(largest(domain.comm, [float(reach)]))
 
 
-@compiled
+@elementwise
 def find_near(point, periods, position, first, last, radius2, near):
     """Columns from ``first`` to ``last`` within the radius of ``point``; returns how many."""
     found = 0
@@ -82,7 +82,7 @@ def find_near(point, periods, position, first, last, radius2, near):
     return found
 
 
-@compiled
+@elementwise
 def weigh(point, kernel, periods, view, near, data, rows, terms):
     """Fill ``terms``: W V_j and W V_j f_j of each near column, f the ``rows`` of ``data``."""
     for n in range(len(near)):

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.jit import compiled, overload
+from psph.jit import compiled, elementwise, overload
 
 COLUMNS_PER_CUTOFF = 4
 """Along the fastest axis cells are that much finer, so that few candidates lie out of reach."""
@@ -104,7 +104,7 @@ def _typed_cell(position, k, lower, inverse, counts):
     return number
 
 
-@compiled
+@elementwise
 def number_cells(position, first, last, lower, inverse, counts, cells):
     """Write the global cell number of the particles ``first`` to ``last`` into ``cells``."""
     for k in range(first, last):

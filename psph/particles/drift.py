@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from psph.jit import compiled
+from psph.jit import elementwise
 
 LOW, HIGH = -1e150, 1e150
 """No number of a particle lies outside, and their squares are numbers still."""
@@ -40,7 +40,7 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
     return low, high
 
 
-@compiled
+@elementwise
 def fill_boxes(data, position, listed, velocity, starts, columns, wide, blocks, low, high):
     """Fill in the blocks that are not in the margins."""
     for line in range(low.shape[1]):
@@ -72,7 +72,7 @@ def largest_differences(low, high, planes, rows, axes, periodic):
     return compare_boxes(low, high, planes, rows, axes, periodic).max(axis=1)
 
 
-@compiled
+@elementwise
 def compare_boxes(low, high, planes, rows, axes, periodic):
     """These numbers by place in a line, (3, blocks)."""
     lines, blocks = low.shape[1], low.shape[3] - 2 * MARGIN
@@ -102,7 +102,7 @@ def compare_boxes(low, high, planes, rows, axes, periodic):
 # Several blocks of a line go in a register: no branches, and no minimum or maximum that asks for NaN.
 
 
-@compiled
+@elementwise
 def raise_spans(best, low, high, what, line, other, axis):
     """Raise ``best`` to the squares of the longest vectors between points of the boxes of two lines
     side by side; across a block by how far they come nearer along ``axis``, that of the lines."""
@@ -125,7 +125,7 @@ def raise_spans(best, low, high, what, line, other, axis):
         best[n] = nearer * nearer if nearer * nearer > largest else largest
 
 
-@compiled
+@elementwise
 def raise_approaches(best, low, high, what, behind, ahead, axis):
     """Raise ``best`` to the squares of how far boxes have come nearer, or of how fast they do, to
     those of a line ``ahead`` of theirs along an axis."""
@@ -140,7 +140,7 @@ def raise_approaches(best, low, high, what, behind, ahead, axis):
         best[n] = nearer * nearer if nearer * nearer > best[n] else best[n]
 
 
-@compiled
+@elementwise
 def raise_reaches(best, low, high, line):
     """Raise ``best`` to the squares of the longest displacements in the boxes of a line."""
     for n in range(np.uint64(len(best))):

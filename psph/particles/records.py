@@ -6,7 +6,7 @@ a quantity would spread over many; the pair loop turns records into lanes (psph.
 
 import numpy as np
 
-from psph.jit import compiled, register_jitable
+from psph.jit import elementwise, register_jitable
 from psph.particles.store import Store, seen_as
 from psph.physics.compose import FOLDED, ParticleView
 from psph.physics.space import FixedPoint
@@ -100,7 +100,7 @@ def _aligned(records: int, width: int, kind) -> np.ndarray:
     return room[first : first + records * width].reshape(records, width)
 
 
-@compiled
+@elementwise
 def fill_records(first, last, data, rows, flag, place, table):
     """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``.
 
@@ -112,7 +112,7 @@ def fill_records(first, last, data, rows, flag, place, table):
         _fold(k, data, flag, place, table)
 
 
-@compiled
+@elementwise
 def fill_fixed(first, last, data, rows, flag, place, steps_per_metre, table, whole):
     """The same in single precision, positions as whole steps; ``whole`` shows the table's bits."""
     axes = np.uint64(len(steps_per_metre))

@@ -14,7 +14,7 @@ sound on a lattice has ωΔt = 1.0 to 1.1 CFL for most kernels, 1.44 for Wendlan
 
 import numpy as np
 
-from psph.jit import compiled, register_jitable
+from psph.jit import elementwise, register_jitable
 from psph.particles.fields import FLUID
 from psph.physics.compose import (
     bearing_density, displacement, limit_density, limit_wall_density, take,
@@ -23,7 +23,7 @@ from psph.physics.state import pressure as state_pressure
 from psph.vectors import add, at, dot, put, scale
 
 
-@compiled
+@elementwise
 def kick_drift_predict(
     first, last, dt, effects, state, view, kind,
     position, velocity, predicted_velocity, acceleration,
@@ -51,7 +51,7 @@ def kick_drift_predict(
         pressure[k] = _pressure(effects, state, i, rho, kind[k])
 
 
-@compiled
+@elementwise
 def state_of(first, last, effects, state, view, kind, density, specific_volume, pressure):
     """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
     for k in range(np.uint64(first), np.uint64(last)):
@@ -67,7 +67,7 @@ def _pressure(effects, state, i, rho, kind):
     return state_pressure(state, bearing, i.rest_density, i.sound_speed)
 
 
-@compiled
+@elementwise
 def kick(first, last, dt, effects, view, kind, position, velocity, acceleration, density, rate):
     """Kick by the second half of the step, with the new rates.
 
