@@ -1,5 +1,7 @@
 """A rank's part of the domain: rebuild it (wrap, balance, migrate, sort, halo, list), refresh it."""
 
+import math
+
 import numpy as np
 from mpi4py import MPI
 
@@ -13,6 +15,13 @@ from psph.physics.space import Metres
 
 GROWTH = 3.0
 """The grid follows particles that leave the domain up to this many of its lengths outside."""
+
+STEPS_A_LENGTH = 8
+"""It does so in steps of this part of the domain's length: a new grid at each rebuild would order
+neighbours anew each time."""
+
+CELLS_A_PARTICLE = 2.0
+"""It follows them no farther than where it has so many cells per particle, or as many as the domain."""
 
 
 class Domain:
@@ -32,6 +41,7 @@ class Domain:
         self.axis, self.cutoff, self.periods = axis, cutoff, tuple(periods)
         self.lower, self.upper = tuple(lower), tuple(upper)
         self._home = (self.lower, self.upper)
+        self._particles = comm.allreduce(store.owned)
         self.ghost_fields, self.refreshed = ghost_fields, refreshed
         self.lanes = lanes
         self.bounds: np.ndarray | None = None
@@ -118,7 +128,22 @@ class Domain:
                 x[x >= low + period] = low  # rounding may land on the upper edge
 
     def _fit_grid(self) -> Grid:
-        """The grid over all particles: it grows with them, never shrinks, and is the same on all."""
+        """The grid over the domain and particles outside it; the same on any number of ranks.
+
+        It depends on where particles are now and on nothing before: it shrinks as they come back.
+        Where it would have too many cells, its longest side beyond the domain is halved, again and
+        again; particles farther out are counted to the outermost cells.
+        """
+        steps = self._steps_outside()
+        grid = self._grid_with(steps)
+        allowed = CELLS_A_PARTICLE * self._particles
+        while steps.any() and math.prod(grid.counts) > allowed:
+            steps[np.argmax(steps)] //= 2
+            grid = self._grid_with(steps)
+        return grid
+
+    def _steps_outside(self) -> np.ndarray:
+        """Steps by which particles of all ranks leave the domain below and above, (2 dimensions,)."""
         dimensions = self.store.dimensions
         reach = np.full(2 * dimensions, -np.inf)
         if self.store.owned:
@@ -126,14 +151,22 @@ class Domain:
                 inner = x[self.store.inner]
                 reach[d], reach[dimensions + d] = -np.nanmin(inner), np.nanmax(inner)
         self.comm.Allreduce(MPI.IN_PLACE, reach, MPI.MAX)
-        lower, upper = list(self.lower), list(self.upper)
-        for d in range(dimensions):
-            if self.periods[d] is None:
-                low, high = self._home[0][d], self._home[1][d]
-                span = GROWTH * (high - low) + 2.0 * self.cutoff
-                lower[d] = min(lower[d], max(-reach[d], low - span))
-                upper[d] = max(upper[d], min(reach[dimensions + d], high + span))
-        self.lower, self.upper = tuple(map(float, lower)), tuple(map(float, upper))
+        low, high = map(np.array, self._home)
+        outside = (reach - np.concatenate([-low, high])) / np.tile(self._step(), 2)
+        outside[np.tile([p is not None for p in self.periods], 2)] = 0.0
+        return np.clip(np.nan_to_num(np.ceil(outside)), 0, GROWTH * STEPS_A_LENGTH).astype(int)
+
+    def _step(self) -> np.ndarray:
+        """A step of the grid's growth along each axis, m."""
+        low, high = map(np.array, self._home)
+        return (high - low + self.cutoff) / STEPS_A_LENGTH
+
+    def _grid_with(self, steps: np.ndarray) -> Grid:
+        """The grid over the domain and so many steps below and above it."""
+        below, above = np.split(steps, 2)
+        low, high = map(np.array, self._home)
+        self.lower = tuple((low - below * self._step()).tolist())
+        self.upper = tuple((high + above * self._step()).tolist())
         return make_grid(self.axis, self.cutoff, self.lower, self.upper, self.periods)
 
     def _cells(self) -> np.ndarray:

@@ -99,5 +99,5 @@ class Prices:
 
 
 def _fitted(bounds: np.ndarray, histogram: np.ndarray) -> np.ndarray:
-    """The slabs on a grid that has grown since: about where they were."""
+    """The slabs on a grid of another size: about where they were."""
     return bounds * len(histogram) // bounds[-1]

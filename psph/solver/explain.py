@@ -1,10 +1,12 @@
 """The plan in words: what will be simulated, why, and its cost."""
 
+import math
 from collections.abc import Iterable, Iterator
 
+from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
-from psph.particles.cells import COLUMNS_PER_CUTOFF, make_grid
+from psph.particles.cells import make_grid
 from psph.particles.fields import FIELDS
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
@@ -15,9 +17,9 @@ from psph.solver.outlook import outlook
 from psph.solver.outlay import output_lines
 from psph.solver.plan import Plan, make_plan
 
-NUMBER, IDENTITY, ROW, SORTING, ENTRY = 8, 9, 12, 24, 4
+NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
 """Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
-rebuild sorts with; and of a neighbour in a list."""
+rebuild sorts with; of a neighbour in a list; and of a cell of the grid during a rebuild."""
 
 
 def explain(scene, ranks: int) -> Iterator[str]:
@@ -40,15 +42,14 @@ def explain(scene, ranks: int) -> Iterator[str]:
 
 def slab_planes(scene) -> int:
     """Planes of cells along the slab axis: the most ranks that the scene can use."""
-    grid = make_grid(scene.axis, _cutoff(scene), scene.lower, scene.upper, scene.periods)
-    return grid.counts[0]
+    return _grid(scene).counts[0]
 
 
 def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     """Memory of a particle: its fields with the arrays to sort them, and its neighbour list, bytes."""
     own = NUMBER * _rows(scene, plan.arrays) + IDENTITY
     record = record_width(_rows(scene, recorded(plan.neighbour_fields))) * plan.space.record_type.itemsize
-    own += own / SPARE + record + SORTING + NUMBER * _cells_per_particle(scene)
+    own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
     entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
     return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
 
@@ -82,8 +83,15 @@ def _ghosts_a_side(scene) -> float:
 
 
 def _cells_per_particle(scene) -> float:
-    finest = COLUMNS_PER_CUTOFF if scene.dimensions > 1 else 1
-    return finest * (scene.spacing / _cutoff(scene)) ** scene.dimensions
+    """The most that the grid may come to have, when particles leave an open domain."""
+    grid = _grid(scene)
+    closed = all(period is not None for period in scene.periods)
+    return max(math.prod(grid.counts) / float(scene.counts().sum()), 0.0 if closed else CELLS_A_PARTICLE)
+
+
+def _grid(scene):
+    """The grid over the scene at its start."""
+    return make_grid(scene.axis, _cutoff(scene), scene.lower, scene.upper, scene.periods)
 
 
 def _cutoff(scene) -> float:

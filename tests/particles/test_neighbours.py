@@ -1,10 +1,12 @@
 """Neighbour lists against brute force, on one rank, in every dimension."""
 
+import math
+
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from psph.parallel.domain import Domain
+from psph.parallel.domain import CELLS_A_PARTICLE, Domain
 from psph.particles.store import Store
 from psph.physics.space import Metres
 
@@ -113,3 +115,31 @@ def test_a_crowd_in_one_cell():
     positions = np.full((600, 3), 0.5) + np.random.default_rng(0).uniform(0, 1e-3, (600, 3))
     domain = domain_of(positions, 0.3, (0, 0, 0), (1, 1, 1), (None,) * 3)
     assert all(len(row) == 599 for row in neighbours_by_id(domain).values())
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_the_grid_follows_jets_within_bounds_and_comes_back(dim):
+    """Jets leave a tank through its open sides: cells stay few per particle, and lists complete."""
+    rng = np.random.default_rng(dim)
+    cutoff = {2: 0.12, 3: 0.25}[dim]
+    tank = rng.uniform(0, 1, (600, dim))
+    domain = domain_of(tank, cutoff, (0.0,) * dim, (1.0,) * dim, (None,) * dim)
+    home, corners = domain.grid, (domain.lower, domain.upper)
+    limit = max(math.prod(home.counts), CELLS_A_PARTICLE * len(tank))
+    flown = tank.copy()
+    flown[:40, -1] += np.linspace(0.1, 3.5, 40)  # up
+    flown[40:60, 0] -= np.linspace(0.1, 5.0, 20)  # over the edge
+    flown[60, 0] = 40.0  # one far away
+    for places in (flown, tank):
+        by_id = places[domain.store.id[domain.store.inner]]
+        for x, component in zip(domain.store["position"], by_id.T):
+            x[domain.store.inner] = component
+        domain.rebuild()
+        fresh = domain_of(places, cutoff, *corners, (None,) * dim)
+        assert domain.grid == fresh.grid  # whatever was before
+        assert math.prod(domain.grid.counts) <= limit
+        found = {i: set(row) for i, row in neighbours_by_id(domain).items()}
+        assert found == brute_force(places, cutoff, (None,) * dim)
+        if places is flown:
+            assert domain.upper[-1] > 1.2 and domain.grid != home  # it did follow
+    assert domain.grid == home
