@@ -20,8 +20,10 @@ PART_OF_PERIOD = 0.25
 """Nor does it by more than this part of any period: the nearest image takes one period off at the
 most."""
 
-REMEMBERED = ("drifted", "_apart", "_since", "_closing", "_acceleration", "_shift")
-"""What is known of the lists since they were made."""
+REMEMBERED = (
+    "drifted", "_apart", "_since", "_closing", "_acceleration", "_shift", "_before", "_longest_step",
+)
+"""What is known of the lists since they were made, and of the step before."""
 
 
 class Skin:
@@ -30,8 +32,9 @@ class Skin:
     What counts is the displacement of neighbours relative to each other, not their speed: a body
     of water that falls as one needs new lists only now and then, lest it meet another one unseen.
     It is measured now and then; in between it is bounded by |Δx| ≤ |Δx|₀ + t (|Δv|₀ + 2 s +
-    2 a (t + Δt)), with the largest acceleration a since and the fastest shift s of a particle
-    beside its velocity.
+    2 a (t + Δt)), with the fastest shift s of a particle beside its velocity.  The predicted velocity
+    that is measured still contains half a step of the acceleration before, and lacks half a step of
+    the present one: a is the largest of both and of all since, Δt the longest of these steps.
     The same on every rank.
     """
 
@@ -41,13 +44,14 @@ class Skin:
         self._farthest = min(
             PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf)
         )
+        self._before = (0.0, 0.0)
         self.renew()
 
     def renew(self) -> None:
         """The lists are new."""
         self.drifted = self._apart = self._since = 0.0
         self._closing: float | None = None
-        self._acceleration = self._shift = 0.0
+        self._acceleration = self._shift = self._longest_step = 0.0
 
     def state(self) -> dict[str, float | None]:
         """All that the next answers rest on, but for the particles."""
@@ -63,20 +67,28 @@ class Skin:
 
         ``speed``, ``acceleration`` and ``shift`` (m/s) are the largest of the scene.
         """
-        if not acceleration <= self._acceleration:  # NaN counts as more
-            self._acceleration = acceleration
-        if not shift <= self._shift:
-            self._shift = shift
+        before, self._before = self._before, (acceleration, dt)
+        self._add(acceleration, dt, shift)
         if self._closing is None or not self._bounded(dt, speed):
             if self._worn:
                 return False
             self._measure()
-            self._acceleration, self._shift = acceleration, shift
+            self._acceleration = self._shift = self._longest_step = 0.0
+            self._add(acceleration, dt, shift)
+            self._add(*before, shift)
             if not self._bounded(dt, speed):
                 return False
         self._since += dt
         self.drifted += self._way(dt, speed)
         return True
+
+    def _add(self, acceleration: float, dt: float, shift: float) -> None:
+        """Take a step into the bounds; NaN counts as more."""
+        if not acceleration <= self._acceleration:
+            self._acceleration = acceleration
+        if not shift <= self._shift:
+            self._shift = shift
+        self._longest_step = max(self._longest_step, dt)
 
     @property
     def _worn(self) -> bool:
@@ -87,7 +99,7 @@ class Skin:
     def _bounded(self, dt: float, speed: float) -> bool:
         t = self._since + dt
         closing = self._closing + 2.0 * self._shift
-        apart = self._apart + t * (closing + 2.0 * self._acceleration * (t + dt))
+        apart = self._apart + t * (closing + 2.0 * self._acceleration * (t + self._longest_step))
         return apart < self.width and self.drifted + self._way(dt, speed) < self._farthest
 
     def _way(self, dt: float, speed: float) -> float:

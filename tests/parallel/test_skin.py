@@ -167,3 +167,34 @@ def test_a_broken_number_ends_them():
     skin = Skin(domain, WIDE)
     assert skin.holds(1e-3, 1.0, 1.0)
     assert not skin.holds(1e-3, np.nan, np.nan)
+
+
+class TwoParticles(Skin):
+    """A skin between two particles on a line, whose leapfrog is written out here."""
+
+    def __init__(self, width):
+        super().__init__(domain_of(20, 1), width)
+        self._farthest = math.inf
+        self.x = self.half = self.predicted = 0.0
+
+    def _measure(self):
+        self._apart, self._closing, self._since = abs(self.x), abs(self.predicted), 0.0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_bound_holds_at_the_end_of_an_impact(seed):
+    """The predicted velocity that is measured still has the acceleration of the step before in it."""
+    rng = np.random.default_rng(seed)
+    skin, v, a, dt_before = TwoParticles(0.02), 0.0, 0.0, 0.0
+    for _ in range(400):
+        dt = 1e-3 * rng.uniform(0.5, 1.0)
+        # One of each pair is accelerated by a, the other against it: relative to each other 2 a.
+        if not skin.holds(dt, 0.0, abs(a)):
+            skin.x = 0.0
+            skin.renew()
+        half = v + 0.5 * dt * 2.0 * a
+        skin.x += dt * half
+        assert abs(skin.x) < skin.width or skin._closing is None
+        skin.predicted = half + 0.5 * dt * 2.0 * a
+        a = rng.choice([0.0, 0.0, 0.0, 1e4, -1e4]) if abs(v) < 10.0 else -math.copysign(1e4, v)
+        v = half + 0.5 * dt * 2.0 * a
