@@ -104,7 +104,7 @@ def _aligned(records: int, width: int, kind) -> np.ndarray:
 def fill_records(first, last, data, rows, flag, place, table):
     """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``.
 
-    The sign of ``table[k, place]`` is changed where ``data[flag, k]`` is one; none with NO_SIGN.
+    ``table[k, place]`` is negative where ``data[flag, k]`` is one, else positive; any with NO_SIGN.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(np.uint64(len(rows))):
@@ -126,5 +126,6 @@ def fill_fixed(first, last, data, rows, flag, place, steps_per_metre, table, who
 
 @register_jitable
 def _fold(k, data, flag, place, table):
-    if flag >= 0 and data[np.uint64(flag), k] > 0.0:
-        table[k, np.uint64(place)] = -table[k, np.uint64(place)]
+    if flag >= 0:  # a fluid whose density has become negative is no wall
+        size = abs(table[k, np.uint64(place)])
+        table[k, np.uint64(place)] = -size if data[np.uint64(flag), k] > 0.0 else size

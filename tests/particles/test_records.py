@@ -53,3 +53,20 @@ def test_without_walls_the_records_are_as_they_stand():
     records = Records(store, names, SPACES["double"])
     records.fill_all()
     assert records.view().wall == 0.0 and (records.table[:3, :6] == 2.0).all()
+
+
+@pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
+def test_a_fluid_of_negative_density_is_no_wall(space):
+    """A run that goes on in spite of its guards may have one."""
+    store, n = Store(2, HELD, {}), 16
+    wall = np.arange(n) % 2
+    block = np.full((7, n), 2.0)
+    block[-1] = wall
+    block[store.rows["specific_volume"].start, :4] = -2.0
+    store.append(np.arange(n), wall.astype(np.uint8), block)
+    store.reorder(np.arange(n), 0, 0)
+    records = Records(store, HELD, space)
+    records.fill_all()
+    for k in range(n):
+        j = fetch(records.view(), records.table, np.arange(n), k)
+        assert j.wall == wall[k] and j.specific_volume == 2.0
