@@ -54,9 +54,9 @@ class Trial(NamedTuple):
     """A hard case, what is changed in it, and what is asked of it.
 
     ``shown`` is the measure that stands for it; ``speed`` what is fast in it, m/s; a run that misses
-    one of ``holds`` fails, one that misses one of the ``goals`` is not good.  ``end``, s, for the default scheme and the
-    ``fails`` (controls) and the paper's schemes, which have had time enough to fail.  ``changes``:
-    the keys that each of them changes, by its name.
+    one of ``holds`` fails, one that misses one of the ``goals`` is not good.  The default
+    scheme runs to ``end``, s; the ``fails`` (controls) and the paper's schemes to ``other_end``, which is
+    long enough for them to fail.  ``changes``: the keys that each of them changes, by its name.
     """
 
     name: str

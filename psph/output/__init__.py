@@ -1,1 +1,1 @@
-"""What a run leaves in its folder, how it is read back, and how it is shown."""
+"""The files of a run: writing, reading and pictures."""

@@ -1,4 +1,4 @@
-"""How far the fluid is from the exact solution of its case."""
+"""Errors of the fluid against the exact solution of its case."""
 
 from collections.abc import Iterator
 

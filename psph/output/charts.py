@@ -1,4 +1,4 @@
-"""Curves over time: what the probes read, and what the log tells of the run."""
+"""Curves over time: probes and log."""
 
 from typing import NamedTuple
 
@@ -83,7 +83,7 @@ def picture(charts: list[Chart], title: str, subtitle: str) -> Figure:
 
 
 def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
-    """Draw ``chart``; the ``last`` one of a column bears the times."""
+    """Draw ``chart``; the ``last`` one of a column has the time axis."""
     values = np.abs([*chart.theory.values(), *np.concatenate([*chart.curves.values()])])
     values = values[np.isfinite(values)]
     largest = values.max(initial=0.0)

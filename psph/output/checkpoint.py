@@ -37,10 +37,10 @@ FORMAT = 3
 """Number of this form of a file; another one is refused."""
 
 COPY = "case.toml"
-"""The case as it was resolved, in the folder of a run."""
+"""The case with its defaults filled in, in the folder of a run."""
 
 KEPT = 2
-"""Checkpoints that stay in a folder: the newest, and one before it."""
+"""Number of checkpoints kept in a folder: the newest, and the one before it."""
 
 GROUP, FRAMES = "particles", "frames"
 _FIRST_LINE = re.compile(rb"psph checkpoint (\d{1,6}) ([0-9a-f]{64})\n")
@@ -52,11 +52,11 @@ _NAME = re.compile(r"checkpoint-(\d+)\.h5")
 
 
 class CheckpointError(Refused):
-    """A checkpoint that no run can go on from; one line that says why and what to do."""
+    """A checkpoint that cannot be resumed from; one line that says why and what to do."""
 
 
 def checkpoint_path(folder: Path, step: int) -> Path:
-    """Where the checkpoint of a step lies."""
+    """The path of the checkpoint of a step."""
     return Path(folder) / f"checkpoint-{step}.h5"
 
 
@@ -129,7 +129,7 @@ def _lay_out(path: Path, shapes: dict, rows: dict, header: dict, frames: bytes) 
 
 
 def _seal(path: Path, room: int, header: dict) -> None:
-    """Put the header at the front of the filled file, and have all of it on the disk."""
+    """Write the header at the front of the filled file, and flush the file to the disk."""
     with hdf5.open_file(path, "r") as file:
         datasets = file[GROUP]
         places = {name: hdf5.place_of(dataset) for name, dataset in datasets.items()}
@@ -139,7 +139,7 @@ def _seal(path: Path, room: int, header: dict) -> None:
         text = json.dumps(header | {"frame": _frame_digest(file, room, size, places)}).encode()
         line = b"psph checkpoint %d %s\n" % (len(text), hashlib.sha256(text).hexdigest().encode())
         if len(line) + len(text) > room:
-            raise OSError(f"its header takes {len(text):,} bytes, more than foreseen")
+            raise OSError(f"its header takes {len(text):,} bytes, more than was reserved")
         file.seek(0)
         file.write(line + text)
         file.flush()
@@ -173,11 +173,11 @@ class Saved:
 
     @property
     def state(self) -> dict[str, Any]:
-        """What the simulation had beside its particles."""
+        """The state of the simulation besides its particles."""
         return self.header["state"]
 
     def frames(self) -> bytes:
-        """What brings the frames' file back to what it was, on rank 0; collective."""
+        """The structure that restores the frames' file, on rank 0; collective."""
 
         def read() -> bytes:
             with hdf5.open_file(self.path, "r") as file:
@@ -201,14 +201,14 @@ class Saved:
 
         def read() -> None:
             if not np.array_equal(self._rows("id", first, last), store.id[store.inner]):
-                raise OSError("its particles stand in another order than here")
+                raise OSError("its particles are in another order than here")
             for name, rows in store.rows.items():
                 store.data[rows.start : rows.stop, store.inner] = self._rows(name, first, last).T
 
         self._agreed(read)
 
     def _examine(self, case: str) -> tuple[dict[str, Any], str]:
-        """The header, and what is wrong with it or the frame of the file; on rank 0."""
+        """The header, and the error in it or in the structure of the file; on rank 0."""
         try:
             with open(self.path, "rb") as file:
                 header = _read_header(file)
@@ -222,7 +222,7 @@ class Saved:
         if (header["format"], header["psph"]) != (FORMAT, psph.__version__):
             yield (
                 f"{self.path}: written by psph {header['psph']} (format {header['format']}), this "
-                f"is psph {psph.__version__} (format {FORMAT}): go on with the psph that wrote it"
+                f"is psph {psph.__version__} (format {FORMAT}): resume with the psph that wrote it"
             )
         if header["case"] != case:
             yield (
@@ -237,10 +237,10 @@ class Saved:
 
     def _check_rows(self) -> None:
         first, last = self._share()
-        told = self.header["checksums"]
-        mine = self._agreed(lambda: [checksum(self._rows(n, first, last), first) for n in told])
-        for name, found in zip(told, wrapped_sums(self.comm, mine)):
-            if found != told[name]:
+        expected = self.header["checksums"]
+        own = self._agreed(lambda: [checksum(self._rows(n, first, last), first) for n in expected])
+        for name, computed in zip(expected, wrapped_sums(self.comm, own)):
+            if computed != expected[name]:
                 raise CheckpointError(
                     self._damaged(f"the dataset {name} does not match its checksum")
                 )
@@ -254,7 +254,7 @@ class Saved:
             return file[GROUP][name][first:last]
 
     def _agreed(self, read):
-        """What ``read`` gives, or CheckpointError on every rank where it failed on any."""
+        """The result of ``read``; CheckpointError on every rank if it failed on any."""
         found = trouble = None
         try:
             found = read()
@@ -272,7 +272,7 @@ def _read_header(file) -> dict[str, Any]:
     """The header at the front of an open file; raises ValueError where it is not as written."""
     line = _FIRST_LINE.match(file.read(_LONGEST_LINE))
     if line is None:
-        raise ValueError("it does not begin like a checkpoint")
+        raise ValueError("it does not start with the header of a checkpoint")
     file.seek(line.end())
     text = file.read(int(line[1]))
     if hashlib.sha256(text).hexdigest().encode() != line[2]:

@@ -1,4 +1,4 @@
-"""A picture of the few particles around one of them: pressure, velocity, and the kernel's reach."""
+"""A picture of a particle and its neighbours: pressure, velocity, and the kernel's support."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ SIZE = 4.6
 LONGEST = 1.6
 """Spacings of the longest arrow."""
 SPREAD = (4.0, 96.0)
-"""Per cent of the pressures between which colours are told apart: a wild one must not hide all."""
+"""Percentiles of the pressure at the ends of the colours, so that an outlier does not hide the rest."""
 
 
 def draw(path: Path, title: str, time: float, scene, around, offset, column: int, place) -> Path:
@@ -27,7 +27,7 @@ def draw(path: Path, title: str, time: float, scene, around, offset, column: int
     """
     across, up, seen = _slice(scene, offset)
     fluid = around.shown("kind") == FLUID
-    subtitle = f"particle {around.shown('id')[column]} and what is around it, t = {time:.6g} s"
+    subtitle = f"particle {around.shown('id')[column]} and its neighbours, t = {time:.6g} s"
     with style.look():
         figure = style.sheet(style.LEFT + SIZE + style.RIGHT, style.TOP + SIZE + style.BOTTOM,
                              title, subtitle)
@@ -81,7 +81,7 @@ def _scale(pressure: np.ndarray) -> tuple[Normalize, float, str]:
 
 
 def _arrows(axes, spots, velocity, seen, spacing: float) -> None:
-    """Velocities, the fastest as long as ``LONGEST`` spacings; it is told below."""
+    """Velocities, the fastest as long as ``LONGEST`` spacings; a key gives its speed."""
     speed = np.linalg.norm(velocity, axis=1)
     seen = seen & np.isfinite(speed) & np.isfinite(spots).all(axis=1)
     fastest = speed[seen].max(initial=0.0)
@@ -95,7 +95,7 @@ def _arrows(axes, spots, velocity, seen, spacing: float) -> None:
 
 
 def _mark(axes, spot, scene) -> None:
-    """A ring around the particle, and a broken one around the kernel's support."""
+    """A ring around the particle, and a dashed one around the kernel's support."""
     reach = scene.kernel.support * scene.smoothing_length
     for radius, how in (
         (0.75 * scene.spacing, {"lw": 1.8, "ec": style.LINES[1]}),

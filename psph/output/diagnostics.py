@@ -1,4 +1,4 @@
-"""The run's health in numbers: energies, momentum, largest speed, density error."""
+"""Diagnostics of a run: energies, momentum, largest speed, density error."""
 
 from collections.abc import Callable, Sequence
 

@@ -1,4 +1,4 @@
-"""One plain line on every rank when a file cannot be written."""
+"""Errors of output: one line, on every rank."""
 
 import re
 from contextlib import contextmanager
@@ -12,7 +12,7 @@ class OutputError(Failed):
 
 
 def cause(error: Exception) -> str:
-    """What the system says, without the details that HDF5 wraps around it."""
+    """The system's message, without the details that HDF5 adds."""
     text = getattr(error, "strerror", None) or str(error)
     found = re.search(r"error message = '([^']+)'", text)
     return found[1] if found else text.splitlines()[0]
@@ -32,6 +32,6 @@ def together(comm, path: Path):
     failures = [text for text in comm.allgather(failure) if text]
     if failures:
         raise OutputError(
-            f"{path}: cannot be written: {failures[0]}; see to the folder, its permissions and "
+            f"{path}: cannot be written: {failures[0]}; check the folder, its permissions and "
             "the free space"
         )

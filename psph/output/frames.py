@@ -24,7 +24,7 @@ _HELPERS = {
 
 
 def funnel_notice(comm) -> str | None:
-    """The line to say at the start if the frames of all ranks have to pass through rank 0."""
+    """The line to print at the start if rank 0 has to write the frames of all ranks."""
     if comm.size == 1 or hdf5.parallel_hdf5():
         return None
     return (
@@ -36,7 +36,7 @@ def funnel_notice(comm) -> str | None:
 class FrameFile:
     """The frames of a run: ``/frames/00000/position`` and so on, one row a particle.
 
-    Open only while a frame is written: it can be read during the run.  Created anew here; or, with
+    Open only while a frame is written: it can be read during the run.  Created here; or, with
     ``kept``, the :meth:`structure` of then, the file of a run that goes on: as it was, in whatever
     state it is now.
     ``attributes`` (numbers and text, such as the case) go to the root of the file.
@@ -80,7 +80,7 @@ class FrameFile:
                 self._index.add(frame, time, kinds)
 
     def complete_index(self) -> None:
-        """Have all frames so far listed for viewers."""
+        """List all frames so far for viewers."""
         with together(self.comm, self._index.path):
             if self.comm.rank == 0:
                 self._index.complete()
@@ -91,7 +91,7 @@ class FrameFile:
             self._index.complete_if_possible()
 
     def sync(self) -> None:
-        """Have all frames so far listed and on the disk, whatever becomes of the machine."""
+        """List all frames so far and flush them to the disk."""
         self.complete_index()
         with together(self.comm, self.path):
             hdf5.sync(self.path)
@@ -129,7 +129,7 @@ class FrameFile:
         os.replace(fresh, self.path)
 
     def _reopen(self, attributes: dict, kept: bytes) -> None:
-        """Take out what came after ``kept``, and know the frames of then."""
+        """Remove what was written after ``kept``, and list the frames until then."""
         put_back(self.path, kept)
         hdf5.reserve(self.path, hdf5.MARGIN + len(str(attributes)))
         with hdf5.open_file(self.path, "r+") as file:
@@ -155,7 +155,7 @@ class FrameFile:
 def _found(file, frame: str) -> tuple[str, float, dict]:
     """A frame's name, time, and the shape and type of its datasets in the order of the fields."""
     if frame not in file or not math.isfinite(file[frame].attrs.get("time", math.nan)):
-        raise OSError(f"{frame} is gone, or not whole")
+        raise OSError(f"{frame} is missing, or incomplete")
     names = [name for name in (*FIELDS, "points") if name in file[frame]]
     datasets = {f"{frame}/{name}": file[frame][name] for name in names}
     kinds = {name: (dataset.shape, dataset.dtype) for name, dataset in datasets.items()}
@@ -163,7 +163,7 @@ def _found(file, frame: str) -> tuple[str, float, dict]:
 
 
 def _describe(name: str) -> tuple[str, str]:
-    """Unit and meaning of what is stored under ``name``."""
+    """Unit and meaning of the dataset ``name``."""
     kind, field = name.split("/")[0], name.split("/")[-1]
     if field in FIELDS:
         return FIELDS[field].unit, FIELDS[field].meaning

@@ -1,4 +1,4 @@
-"""The ledger of time: what each part of a step cost, on this rank."""
+"""Timers: the seconds of each part of a step, on this rank."""
 
 import time
 from collections import defaultdict

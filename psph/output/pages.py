@@ -1,4 +1,4 @@
-"""Pages of the documentation with parts that are made: the text between two markers."""
+"""Generated parts of pages of the documentation: the text between two markers."""
 
 import shutil
 import sys
@@ -31,7 +31,7 @@ def renew(page: Path, made: str, name: str = MEASURED) -> None:
     _, end, after = rest.partition(last)
     if not begin or not end:
         raise OutputError(
-            f"{page}: no place for what was measured; add the lines {first} and {last}"
+            f"{page}: no place for the results; add the lines {first} and {last}"
         )
     page.write_text(f"{before}{first}\n{made}\n{last}{after}", encoding="utf-8")
 

@@ -24,11 +24,11 @@ GAP, HEADING = 0.3, 0.3
 CHART = charts.HEIGHT + 0.8
 """Of a chart with its title and what stands between it and the panels, inches."""
 SIGNED = 0.1
-"""Share of the other sign from which on a field counts as one of both signs."""
+"""Share of the smaller sign above which a field is drawn with both signs."""
 OUTLIER = 0.25
-"""Share of the range by which rare numbers may stretch the colours."""
+"""Share of the range by which outliers may extend the colours."""
 TELLING = 4.0
-"""Points (1/72 inch) from which on a particle is seen as one."""
+"""Size in points (1/72 inch) above which single particles are visible."""
 
 
 def plot(folder: Path, times: Sequence[float] | None = None, field: str = "pressure") -> list[Path]:
@@ -70,7 +70,7 @@ class View(NamedTuple):
     upper: np.ndarray
 
     def of(self, frame: dict) -> dict:
-        """The particles of ``frame`` that are seen."""
+        """The visible particles of ``frame``."""
         if self.cut is None:
             return frame
         seen = np.abs(frame["position"][:, self.cut] - self.place) < self.spacing / 2
@@ -84,7 +84,7 @@ class View(NamedTuple):
 
 
 class Scale(NamedTuple):
-    """How numbers become colours; they are shown ``factor`` times as large."""
+    """The colour scale; numbers are multiplied by ``factor``."""
 
     norm: Normalize
     colours: str
@@ -94,7 +94,7 @@ class Scale(NamedTuple):
 
 
 class Show:
-    """A field of a run in some of its frames, in one scale and seen from one side."""
+    """A field of a run in some of its frames, with one scale and one view."""
 
     def __init__(self, run: Run, times: Sequence[float] | None, field: str):
         self.run, self.field, self.times = run, field, run.times
@@ -157,7 +157,7 @@ class Show:
         return "speed" if self.field == "velocity" else self.field.replace("_", " ")
 
     def _values(self, frame: dict) -> np.ndarray:
-        """The field as one number a particle; of a vector its length."""
+        """The field as one number per particle; the length of a vector."""
         values = frame[self.field].astype(float)
         return np.linalg.norm(values, axis=1) if values.ndim == 2 else values
 
@@ -188,7 +188,7 @@ class Show:
         return Scale(Normalize(low * factor, high * factor), colours, extend, factor, unit)
 
     def _draw(self, axes: Axes, k: int, first: bool, last: bool) -> None:
-        """One frame; the ``first`` panel of a row and the ``last`` of a column bear the labels."""
+        """One frame; the ``first`` panel of a row and the ``last`` of a column have labels."""
         frame, view, scale = self.frames[k], self.view, self.scale
         values = self._values(frame) * scale.factor
         fluid = frame["kind"] == FLUID
@@ -241,7 +241,7 @@ def _view(case: dict, start: dict, frames: Iterable[dict]) -> View:
 
 
 def _corners(frame: dict) -> tuple[np.ndarray, np.ndarray]:
-    """The smallest box around all particles that are anywhere."""
+    """The smallest box around all particles with finite positions."""
     places = frame["position"][np.isfinite(frame["position"]).all(axis=1)]
     return places.min(axis=0, initial=np.inf), places.max(axis=0, initial=-np.inf)
 

@@ -1,4 +1,4 @@
-"""How far the run is: a live bar on a terminal, a plain line now and then in a log file."""
+"""Progress of a run: a live bar on a terminal, plain lines in a log file."""
 
 import math
 import os
@@ -57,7 +57,7 @@ class Progress:
             self._next = self._milestone(time)
 
     def close(self) -> None:
-        """Leave the bar as it stands and give the terminal back; a second call does nothing."""
+        """Stop the bar and release the terminal; a second call does nothing."""
         self._due = self._next = math.inf
         if self._bar:
             self._bar.close()
@@ -82,7 +82,7 @@ class Progress:
 
 
 class _Bar:
-    """Two lines that are drawn anew in place."""
+    """Two lines that are redrawn in place."""
 
     def __init__(self, width: int):
         from rich.console import Console

@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class Run:
-    """What a run has left in ``folder`` so far; every call looks anew.
+    """What a run has left in ``folder`` so far; every call reads again.
 
     Raises OutputError with one line when there is nothing to read.
     """
@@ -35,17 +35,17 @@ class Run:
 
     @property
     def attributes(self) -> dict:
-        """What the root of the file tells: the case, psph's version and so on."""
+        """The attributes of the file: the case, psph's version and so on."""
         return _read(self.path, lambda file: dict(file.attrs))
 
     @property
     def case_text(self) -> str:
-        """The case as it was resolved, TOML."""
+        """The case with its defaults filled in, TOML."""
         return self.attributes["case"]
 
     @property
     def times(self) -> np.ndarray:
-        """Times of the frames that are whole, s."""
+        """Times of the complete frames, s."""
         return _read(
             self.path, lambda file: np.array([_time(file, name) for name in _whole(file)])
         )
@@ -66,7 +66,7 @@ class Run:
             saved = [name for name in frame if name != "points"]
             for name in set(names) - set(saved):
                 raise OutputError(
-                    f"{self.path}: field: {name} is not saved; choose of {', '.join(saved)}"
+                    f"{self.path}: field: {name} is not saved; choose one of {', '.join(saved)}"
                 )
             return {name: frame[name][...] for name in names or saved}
 

@@ -72,7 +72,7 @@ def _allocate(number: int, offset: int, size: int) -> int:
 
 
 def sync(path: Path) -> None:
-    """Have the system put what it holds of the file, or of the folder, on the disk."""
+    """Flush a file, or a folder, to the disk."""
     number = os.open(path, os.O_RDONLY)
     try:
         os.fsync(number)
@@ -148,7 +148,7 @@ def _fill_at_once(path: Path, comm, rows: dict[str, np.ndarray]) -> None:
 
 
 def fill_collectively(file, rows: dict[str, np.ndarray], first: int) -> None:
-    """Each rank writes its rows; one that fails goes on with the others to the end."""
+    """Each rank writes its rows; one that fails continues with the others to the end."""
     import h5py
 
     transfer = h5py.h5p.create(h5py.h5p.DATASET_XFER)

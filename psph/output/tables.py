@@ -1,4 +1,4 @@
-"""Numbers over time as CSV: a row is on the disk as soon as it is known."""
+"""Numbers over time as CSV; each row is written at once."""
 
 import csv
 import os
@@ -9,13 +9,13 @@ from pathlib import Path
 from psph.output.errors import OutputError, cause, together
 
 LOG, PROBES, ERRORS = "log.csv", "probes.csv", "errors.csv"
-"""The tables of a run: its health, what the probes read, errors against the exact solution."""
+"""The tables of a run: log, probes, errors against the exact solution."""
 
 
 class CsvTable:
     """A CSV file with a line of names, written by rank 0; the other ranks may call it all the same.
 
-    Floats stand with all their digits: what is read back is what was computed.  Created anew here;
+    Floats stand with all their digits: what is read back is what was computed.  Created here;
     or, with ``kept``, the file of a run that goes on, cut back to so many bytes.
     Raises OutputError: on every rank when it is opened, on rank 0 when a row cannot be written.
     """
@@ -44,7 +44,7 @@ class CsvTable:
             with suppress(OSError):  # it tries once more to write what it holds
                 self.close()
             raise OutputError(
-                f"{self.path}: cannot be written: {cause(error)}; see to the free space"
+                f"{self.path}: cannot be written: {cause(error)}; check the free space"
             ) from error
 
     def size(self) -> int:
@@ -62,7 +62,7 @@ class CsvTable:
 
 
 def _cut(path: Path, size: int) -> None:
-    """Take away what stands behind ``size`` bytes; raise OSError where there are fewer."""
+    """Remove what follows after ``size`` bytes; raise OSError if there are fewer."""
     if path.stat().st_size < size:
         raise OSError(f"rows are missing, it had {size:,} bytes at the checkpoint")
     os.truncate(path, size)

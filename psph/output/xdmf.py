@@ -58,7 +58,7 @@ class _Frame(NamedTuple):
 class XdmfIndex:
     """The ``.xmf`` beside the HDF5 file ``frames``; it lists the frames that are whole.
 
-    It is written anew whenever the frames have grown by its own size since it was last: so all its
+    It is rewritten whenever the frames have grown by its own size since it was last: so all its
     writings together are no more than the frames, however many.  Where frames are larger than
     their lines here, that is at each frame; else it is behind until :meth:`complete`.
     """
@@ -82,7 +82,7 @@ class XdmfIndex:
         self._write()
 
     def complete(self) -> None:
-        """Have the frames in the file that it does not list yet."""
+        """Add the frames to the file that it does not list yet."""
         if self._behind:
             self._write()
 

@@ -237,6 +237,6 @@ def test_a_page_without_markers(result, tmp_path):
     page, file = tmp_path / "page.md", tmp_path / "runs.json"
     page.write_text("nothing")
     file.write_text(json.dumps(result))
-    with pytest.raises(OutputError, match="page.md: no place for what was measured; add the"):
+    with pytest.raises(OutputError, match="page.md: no place for the results; add the"):
         renew(page, tables([file]))
     assert page.read_text() == "nothing"

@@ -90,7 +90,7 @@ def test_another_case_version_or_format_is_refused(tmp_path, monkeypatch):
     path = written(tmp_path)
     assert "belongs to another case than" in objection(path, "that case")
     monkeypatch.setattr(psph, "__version__", "99.1")
-    assert "go on with the psph that wrote it" in objection(path)
+    assert "resume with the psph that wrote it" in objection(path)
     monkeypatch.undo()
     monkeypatch.setattr(checkpoint, "FORMAT", checkpoint.FORMAT + 1)
     assert f"(format {checkpoint.FORMAT - 1}), this is psph" in objection(path)

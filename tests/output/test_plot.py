@@ -163,7 +163,7 @@ def test_slice_is_the_middle_layer_seen_against_gravity(run_with):
 
 
 def test_what_cannot_be_drawn_is_one_line(tank, tmp_path, alone):
-    with pytest.raises(OutputError, match="field: colour is not saved; choose of kind, position"):
+    with pytest.raises(OutputError, match="field: colour is not saved; choose one of kind, position"):
         plot(tank.folder, field="colour")
     FrameFile(tank.path, alone, {"case": ""})
     with pytest.raises(OutputError, match="tank.h5: no frame yet"):

@@ -172,7 +172,7 @@ def test_disk_that_fills_up_meanwhile_is_noticed(comm, mpi_tmp_path, way, monkey
     frames.write(0, 0.0, 0, share(cloud(100, 2), comm, (50, 50)))
     monkeypatch.setattr(hdf5, "reserve", lambda *_: None)
     monkeypatch.setattr(hdf5, "fill", full_disk()(hdf5.fill))
-    with pytest.raises(OutputError, match="tank.h5: cannot be written: .*; see to the folder"):
+    with pytest.raises(OutputError, match="tank.h5: cannot be written: .*; check the folder"):
         frames.write(1, 0.1, 1, share(cloud(100_000, 2), comm, (50_000, 50_000)))
     assert Run(mpi_tmp_path).times.tolist() == [0.0]
 

@@ -107,7 +107,7 @@ def test_a_full_disk_is_one_line_and_the_run_goes_on_when_there_is_room(
     assert line.startswith(f"{folder / file}: cannot be written: No space left on device; see to ")
     assert {path: path.read_bytes() for path in checkpoints(folder)} == before
     assert Run(folder).times[0] == 0.0  # what was written can still be read
-    with pytest.raises(OutputError, match="No space left on device; see to the folder, its perm"):
+    with pytest.raises(OutputError, match="No space left on device; check the folder, its perm"):
         resume(folder, COMM, say=quiet)
     assert {path: path.read_bytes() for path in checkpoints(folder)} == before
     ballast.unlink()
