@@ -98,7 +98,7 @@ def nearest_image(a: Vector, periods: tuple) -> Vector:
 
 @register_jitable
 def _wrapped(x, period):
-    return x - period * round(max(x * (1.0 / period), -1.0))
+    return x - period * round(x * (1.0 / period))
 
 
 @overload(nearest_image)
