@@ -1,4 +1,4 @@
-"""How fast this machine is: standard problems, the roofline above them, a peer beside them."""
+"""Speed on this machine: standard problems, their roofline, and LAMMPS for comparison."""
 
 BOX, DAM, FALLING = "box", "dam", "falling"
 
@@ -7,4 +7,4 @@ PROBLEMS = {
     DAM: "dam break just started",
     FALLING: "dam break half-way through its fall",
 }
-"""What can be timed, in words."""
+"""The problems that can be timed, in words."""

@@ -1,4 +1,4 @@
-"""A periodic box of particles at rest, shaken off their lattice."""
+"""A periodic box of particles at rest, shifted at random from their lattice."""
 
 import math
 from typing import NamedTuple

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 SAME = ("problem", "dimensions", "particles", "neighbours_in_bulk")
-"""What two runs must share to be compared."""
+"""The keys that two runs must share to be compared."""
 
 TOLD = ("machine", "ranks", "threads", "precision")
-"""What is said where it differs."""
+"""Keys whose differences are printed."""
 
 
 def compared(runs: list[dict], earlier: list[dict], file: Path) -> list[str]:
@@ -30,7 +30,7 @@ def _line(run: dict, matching: list[dict], file: Path) -> str:
         verdict = "no difference beyond the spread"
     changed = [f"{key} {then[key]} then, {run[key]} now" for key in TOLD if then[key] != run[key]]
     line = (
-        f"{name}: {ratio:.2f} times the pace in {file}, {verdict} "
+        f"{name}: {ratio:.2f} times the speed in {file}, {verdict} "
         f"(spread {100 * run['spread']:.0f} % now, {100 * then['spread']:.0f} % then)"
     )
     return "; ".join([line, *changed])

@@ -30,8 +30,8 @@ JITTER, SEED = 0.1, 1
 """Random shift in the new spacings (a lattice in each parent flatters), and where it is drawn."""
 
 NEAREST = 0.5
-"""A parent nearer to a wall, in its own spacings, is split as if it were so far away: a film on a wall,
-squeezed into its room, would burst."""
+"""A parent nearer to a wall than this, in its own spacings, is split as if it were at this distance, since
+a compressed film at a wall would fly apart."""
 
 
 class Falling(NamedTuple):
@@ -52,7 +52,7 @@ class Falling(NamedTuple):
                 return cls(coarse, times)
 
     def case(self) -> Case:
-        """The fine tank; its walls are there, its water still stands."""
+        """The fine tank with its walls; the water is still a column at rest."""
         return Case.model_validate(self.tables())
 
     def tables(self) -> dict:
@@ -149,7 +149,7 @@ def _sites(coarse: Scene, position: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def _wall_density(coarse: Scene, fallen: ParticleSet) -> np.ndarray:
-    """Density of the coarse walls on their lattice: a fine wall takes over what they learnt."""
+    """Density of the coarse walls on their lattice, which the fine walls start with."""
     density = np.full(coarse.lattice.counts, np.nan)
     walls = _chosen(fallen, fallen.kind == WALL)
     density[_sites(coarse, walls.position)] = walls.density

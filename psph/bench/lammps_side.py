@@ -1,4 +1,4 @@
-"""What runs inside LAMMPS's own Python: it does what psph asks over a local connection.
+"""The process with LAMMPS: it obeys psph's commands over a local connection.
 
 Started by path, ``python lammps_side.py HOST PORT``, in an environment that need not have psph.
 """
@@ -13,7 +13,7 @@ KEY = "PSPH_PEER_KEY"
 """Variable of the environment with the key of the connection, in hexadecimal digits."""
 
 ERROR = "error: "
-"""An answer that begins so says what went wrong."""
+"""The beginning of an answer that is an error."""
 
 
 def version(lmp) -> str:
@@ -45,7 +45,7 @@ def atoms(lmp, particles) -> int:
 
 
 def run(lmp, steps) -> float:
-    """Seconds of so many steps, going on from where it stands."""
+    """Seconds of this many further steps."""
     begun = time.perf_counter()
     lmp.command(f"run {steps} pre no post no")
     return time.perf_counter() - begun

@@ -1,4 +1,4 @@
-"""The time of a problem's steps: warm-up apart, block by block."""
+"""The time of a problem's steps after a warm-up, block by block."""
 
 import os
 import platform
@@ -41,7 +41,7 @@ LAYOUTS = {BOX: Box.nearest, DAM: Tank.nearest, FALLING: Falling.nearest}
 
 
 OURS, PEER, AGAINST = "ours", "peer", "against"
-"""Who takes turns; the last two are keys of a result."""
+"""The codes that run in turns; the last two are keys of a result."""
 
 SITES = ("dimensions", "spacing", "lower", "upper", "periodic")
 """Keys of ``space`` that say where particles are."""
@@ -225,7 +225,7 @@ def count_inside(view, periods, support2, low, owned, begin, lengths, lists):
 
 
 def _beside(turns: list[dict], name: str, particles: int, neighbours: float) -> dict:
-    """Another's figures; ``ratio`` is its seconds over ours, the median over the turns."""
+    """The figures of another code or setting; ``ratio`` is its seconds over ours, the median over the turns."""
     ratios = [turn[name] / turn[OURS] for turn in turns]
     rates = Rates.of([turn[name] for turn in turns], particles)
     ratio = statistics.median(ratios)

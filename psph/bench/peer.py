@@ -35,20 +35,20 @@ EVERY, UNEVEN, SHIFTS, NEARLY = 100, 1.05, 20, 1.01
 has so many times the average work, in so many rounds at the most, until it has no more than that."""
 
 BROKEN = 0.2
-"""A density that is off by this fraction: what is timed is no flow any more."""
+"""Relative error of the density above which the run counts as blown up."""
 
 PATIENCE = 5.0
 """Seconds that its processes get to end by themselves."""
 
 FOREIGN = ("OMPI_", "PMIX_", "PMI_", "ORTE_", "PRTE_", "HYDRA_", "MPI_")
-"""What another mpirun leaves in the environment."""
+"""Variables that another mpirun leaves in the environment."""
 
 
 class Peer:
     """LAMMPS with the particles of a simulation as they are now; a context; collective.
 
     ``python`` is an interpreter that has LAMMPS, with its ``mpiexec`` beside it.  Raises
-    BenchError on all ranks where LAMMPS does not do what it is told.
+    BenchError on all ranks if LAMMPS fails.
     """
 
     def __init__(self, python: Path, scene, simulation):
@@ -185,7 +185,7 @@ def gathered(simulation) -> dict | None:
 
 
 class Processes:
-    """Python processes with LAMMPS in them, as many as ranks; they sleep until they are asked."""
+    """Python processes with LAMMPS, as many as ranks; they wait for commands."""
 
     def __init__(self, python: Path, ranks: int, cores: set[int]):
         python = Path(python).absolute()  # not resolved: an environment's Python is a link
@@ -222,7 +222,7 @@ class Processes:
         return list(answers.values())
 
     def end(self) -> None:
-        """Let them go home; one that failed alone leaves the others hanging, so they are sent."""
+        """End the processes; if one has failed, the others hang and are killed."""
         for connection in self._connections:
             connection.close()
         for send in (self._job.terminate, self._job.kill):
@@ -255,7 +255,7 @@ class Processes:
 
 
 def _good(answer):
-    """The answer, unless it says what went wrong: then PeerFailed."""
+    """The answer; PeerFailed if it is an error."""
     if isinstance(answer, str) and answer.startswith(lammps_side.ERROR):
         raise PeerFailed(f"bench --peer: LAMMPS: {answer.removeprefix(lammps_side.ERROR)}")
     return answer
@@ -268,7 +268,7 @@ ADVICE = (
 
 
 def _cores(comm) -> set[int]:
-    """The cores that any rank may use; nothing where the system does not tell.  Collective."""
+    """The cores that any rank may use; empty if the system does not say.  Collective."""
     mine = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
     return set().union(*comm.allgather(mine))
 

@@ -9,7 +9,7 @@ from psph.bench.errors import BenchError
 T = TypeVar("T")
 
 NAP = 0.002
-"""Seconds between two looks whether rank 0 is done; waiting inside MPI would keep a core busy."""
+"""Seconds between two checks whether rank 0 is done; waiting inside MPI would occupy a core."""
 
 
 def on_rank_0(comm, work: Callable[[], T]) -> T:

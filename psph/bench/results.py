@@ -1,4 +1,4 @@
-"""What ``bench --json`` printed, read again."""
+"""Results of ``bench --json``, read from a file."""
 
 import json
 from pathlib import Path
@@ -10,7 +10,7 @@ KEYS = {
     "threads", "precision", "particle_steps_per_second", "pairs_per_second", "per_core", "spread",
     "share", "roofline",
 }
-"""What every result has."""
+"""Keys that every result has."""
 
 
 def read_runs(path: Path) -> list[dict]:

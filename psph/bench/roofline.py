@@ -1,4 +1,4 @@
-"""What the cores in use can do at the most: copy numbers, and multiply and add them."""
+"""The peak rates of the cores in use: copies and multiply-adds."""
 
 import time
 from collections.abc import Callable

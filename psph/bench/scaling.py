@@ -1,4 +1,4 @@
-"""What more cores would do: a model of a step on many ranks, and the table of docs/scaling.md.
+"""A model of a step on many ranks, and the table of docs/scaling.md.
 
 ``python -m psph.bench.scaling`` prints the table.
 """
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class Machine(NamedTuple):
-    """What a step costs, in s and bytes."""
+    """Costs of a step, in s and bytes."""
 
     particle: float
     """A particle-step on one core, rebuilds included."""
@@ -61,7 +61,7 @@ class Step(NamedTuple):
 
     @property
     def seconds(self) -> float:
-        """Messages hide behind the interior as far as there is one."""
+        """Messages overlap with the interior, if there is one."""
         return max(self.compute, self.messages) + self.reduction
 
 

@@ -71,7 +71,7 @@ class Tank(NamedTuple):
         return self._replace(across=times * self.across, tall=times * self.tall)
 
     def case(self) -> Case:
-        """The column at rest, its pressure hydrostatic, as the gate is drawn."""
+        """The column at rest, its pressure hydrostatic, at the start of the dam break."""
         return Case.model_validate(self.tables())
 
     def tables(self) -> dict:

@@ -155,7 +155,7 @@ def _units(asked: Asked) -> tuple[float, float, float]:
         for name in ("density", "spacing"):
             if getattr(asked, name) is not None:
                 raise StabilityError(
-                    f"stability --{name}: of use only with --pressure; give that too, in Pa"
+                    f"stability --{name}: needs --pressure; give that too, in Pa"
                 )
         if asked.state is None:
             raise StabilityError(

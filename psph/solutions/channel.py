@@ -23,7 +23,7 @@ def _unfit(solution, setting: Setting) -> str | None:
     if not setting.viscosity:
         return "is driven by friction; give the fluid a viscosity"
     if setting.periods[0] is None:
-        return 'goes on along x for ever; add "x" to space.periodic'
+        return 'is periodic along x; add "x" to space.periodic'
     return None
 
 
@@ -46,7 +46,7 @@ class Poiseuille(NamedTuple):
     up_to_a_constant = ()
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         if not setting.gravity[0] or any(setting.gravity[1:]):
             return "is driven along x; give physics.gravity = [g, 0]"
         return _unfit(self, setting)
@@ -81,9 +81,9 @@ class Couette(NamedTuple):
     up_to_a_constant = ()
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         if any(setting.gravity):
-            return "is driven by a plate; take physics.gravity out"
+            return "is driven by a plate; remove physics.gravity"
         return _unfit(self, setting)
 
     def top_speed(self, setting: Setting) -> float:

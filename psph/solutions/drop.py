@@ -29,11 +29,11 @@ class EllipticDrop(NamedTuple):
     up_to_a_constant = ()
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         if setting.dimensions != 2:
             return "is a flow in 2D; give space.dimensions = 2"
         if any(setting.gravity) or setting.viscosity:
-            return "is a flow without gravity and friction; take both out"
+            return "is a flow without gravity and friction; remove both"
         return None
 
     def top_speed(self, setting: Setting) -> float:

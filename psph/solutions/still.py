@@ -23,7 +23,7 @@ class Hydrostatic(NamedTuple):
     up_to_a_constant = ()
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         if not any(setting.gravity):
             return "is the pressure under gravity; give physics.gravity"
         return None

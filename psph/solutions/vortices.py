@@ -31,7 +31,7 @@ class TaylorGreen(NamedTuple):
     up_to_a_constant = ("pressure",)
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         return _only_2d(setting) or whole_waves(setting, (0, 1), self.length)
 
     def top_speed(self, setting: Setting) -> float:
@@ -75,9 +75,9 @@ class Gresho(NamedTuple):
     up_to_a_constant = ("pressure",)
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         if setting.viscosity:
-            return "is a flow without friction; take the fluid's viscosity out"
+            return "is a flow without friction; remove the fluid's viscosity"
         return _only_2d(setting)
 
     def top_speed(self, setting: Setting) -> float:

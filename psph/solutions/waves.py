@@ -26,7 +26,7 @@ class SoundWave(NamedTuple):
     up_to_a_constant = ()
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         return whole_waves(setting, (0,), self.length)
 
     def top_speed(self, setting: Setting) -> float:
@@ -70,7 +70,7 @@ class StandingWave(NamedTuple):
     up_to_a_constant = ()
 
     def unfit(self, setting: Setting) -> str | None:
-        """What of the case does not fit, or None."""
+        """What is wrong with the case for this solution, or None."""
         if setting.dimensions != 2:
             return "is a flow in 2D; give space.dimensions = 2"
         if setting.gravity[0] or not setting.gravity[1] < 0.0:

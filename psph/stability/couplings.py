@@ -1,4 +1,4 @@
-"""The linearised scheme: what a small disturbance of a neighbour does to a particle.
+"""The linearised scheme: the effect of a small displacement of a neighbour on a particle.
 
 With ξ the displacement, u = dξ/dt, and δρ,
 

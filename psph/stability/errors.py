@@ -1,4 +1,4 @@
-"""What was asked of the stability analysis cannot be done."""
+"""Errors of the stability analysis."""
 
 from psph.errors import Refused
 

@@ -12,10 +12,10 @@ from psph.stability.system import System
 from psph.stability.uniform import Settings, Uniform
 
 WAVES = {1: 256, 2: 32, 3: 12}
-"""Wave vectors along each axis of the zone that are looked at first, by dimensions."""
+"""Wave vectors along each axis of the initial grid over the zone, by dimensions."""
 
 STARTS, FINEST = 3, 1e-4
-"""From so many of the best the search goes on, to this part of the zone; a maximum is flat."""
+"""Number of the best grid points from which the search starts, and its resolution as a part of the zone."""
 
 TINY = 1e-12
 
@@ -43,7 +43,7 @@ def growth(settings: Settings) -> Growth:
 
 
 def is_stable(settings: Settings) -> bool:
-    """Whether nothing grows on an infinite lattice: known sooner than what grows fastest."""
+    """Whether nothing grows on an infinite lattice: faster than finding the largest growth."""
     zone = _Zone(Uniform(settings))
     return not zone.grows(zone.grid) and not zone.grows(zone.softest()[None])
 
@@ -68,11 +68,11 @@ class _Zone:
         return self.urge(parts) / np.sqrt(stretch + TINY)
 
     def grows(self, parts: np.ndarray) -> bool:
-        """Whether any of these waves does."""
+        """Whether any of these waves grows."""
         return bool((self.urge(parts) > self.noise).any())
 
     def steepest(self) -> tuple[np.ndarray, bool]:
-        """Where growth is fastest; where nothing grows, the nearest to it, and True."""
+        """The wave that grows fastest; if none grows, the one nearest to growing, and True."""
         if self.grows(self.grid):
             return _climb(self.urge, self.grid, self.step), False
         soft = self.softest()

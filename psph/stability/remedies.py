@@ -1,4 +1,4 @@
-"""What schemes add against instability, as far as it is linear in small disturbances.
+"""Terms that schemes add against instability, linear in small disturbances.
 
 A remedy has those of these that it needs, each given the :class:`Uniform` that is disturbed:
 

@@ -144,7 +144,7 @@ def test_compare_with_itself(result, tmp_path):
     job = psph("--particles", 5000, "--compare", file, "--json")
     *said, last = job.stdout.splitlines()
     assert json.loads(last)["particles"] == result["particles"]
-    assert f"times the pace in {file}, faster (spread" in said[-1]
+    assert f"times the speed in {file}, faster (spread" in said[-1]
 
 
 def run_of(pace, spread=0.05, **other):
@@ -157,10 +157,10 @@ def run_of(pace, spread=0.05, **other):
 @pytest.mark.parametrize(
     ("now", "then", "said"),
     [
-        (run_of(120.0), run_of(100.0), "box 3D, 8,000 particles: 1.20 times the pace in F, faster"
+        (run_of(120.0), run_of(100.0), "box 3D, 8,000 particles: 1.20 times the speed in F, faster"
          " (spread 5 % now, 5 % then)"),
-        (run_of(80.0), run_of(100.0), "0.80 times the pace in F, slower"),
-        (run_of(104.0), run_of(100.0), "1.04 times the pace in F, no difference beyond the spread"),
+        (run_of(80.0), run_of(100.0), "0.80 times the speed in F, slower"),
+        (run_of(104.0), run_of(100.0), "1.04 times the speed in F, no difference beyond the spread"),
         (run_of(120.0), run_of(100.0, 0.3), "beyond the spread (spread 5 % now, 30 % then)"),
         (run_of(120.0, ranks=2), run_of(100.0), "; ranks 1 then, 2 now"),
         (run_of(1.0, particles=9), run_of(1.0), "box 3D, 9 particles: not in F"),

@@ -96,7 +96,7 @@ def test_every_remedy_can_be_asked_for(capsys, name):
     ("asked", "says"),
     [
         (Asked(kernel="cubic"), "give --state compression or tension, or --pressure"),
-        (Asked(kernel="cubic", state="tension", spacing=1.0), "--spacing: of use only with"),
+        (Asked(kernel="cubic", state="tension", spacing=1.0), "--spacing: needs --pressure"),
         (Asked(kernel="cubic", state="tension", smoothing=0.0), "--smoothing 0: give 0.6 to 4"),
         (PAPER._replace(density=None), "give --density too"),
         (PAPER._replace(density=-1.0), "--density -1: give a number above zero"),
