@@ -38,8 +38,11 @@ def _rank_0_speaks(comm):
 
 
 def _with_verb(arguments: list[str]) -> list[str]:
-    """``case.toml`` alone means ``run case.toml``."""
+    """``case.toml`` alone means ``run case.toml``.  Refused: a word that is neither."""
     if arguments and not arguments[0].startswith("-") and arguments[0] not in VERBS:
+        from psph.case.errors import refuse_if_neither
+
+        refuse_if_neither(arguments[0], VERBS)
         return ["run", *arguments]
     return arguments
 
@@ -203,9 +206,7 @@ def _parser() -> argparse.ArgumentParser:
             help="override a key of the case, such as time.end=0.5; off removes it (repeatable)",
         )
     made["run"].add_argument("--out", type=Path, help="folder of the files (default: the case's name)")
-    made["run"].add_argument(
-        "--overwrite", action="store_true", help="replace an earlier run in the folder"
-    )
+    made["run"].add_argument("--overwrite", action="store_true", help="replace an earlier run there")
     made["resume"].add_argument("folder", type=Path, help="the folder of the run")
     made["resume"].add_argument(
         "--extend", action="append", default=[], metavar="KEY=VALUE",
@@ -300,9 +301,7 @@ def _add_bench_options(bench: argparse.ArgumentParser) -> None:
     bench.add_argument("--problem", choices=PROBLEMS, help=f"{problems} (default: the first)")
     bench.add_argument("--dimensions", type=int, choices=(2, 3), help="default: 3")
     bench.add_argument("--particles", type=int, help="approximate number (default: 200,000)")
-    bench.add_argument(
-        "--neighbours", type=int, help="inside the support (default: 20 in 2D, 57 in 3D)"
-    )
+    bench.add_argument("--neighbours", type=int, help="in the support (default: 20 in 2D, 57 in 3D)")
     bench.add_argument(
         "--standard", action="store_true", help="the standard set of problems, around --particles"
     )

@@ -68,6 +68,18 @@ def test_check_explain_schema():
     assert "fluids" in json.loads(psph("schema").stdout)["properties"]
 
 
+@pytest.mark.parametrize("words, says", [
+    (("chek", CASE), "chek: neither a command nor a case file; did you mean 'check'?"),
+    (("Studdy", CASE, "--grid"), "Studdy: neither a command nor a case file; did you mean 'study'?"),
+    (("qqqqq",), "qqqqq: neither a command nor a case file; known here: run, resume, explain, check, "
+     "schema, plot, study, stability, bench"),
+    (("chek.toml",), "chek.toml: No such file or directory; give the path of a case in TOML"),
+])
+def test_a_command_that_is_none_is_one_line(words, says):
+    job = psph(*words)
+    assert (job.returncode, job.stderr.strip()) == (2, says)
+
+
 def test_a_fault_in_the_case_is_one_line_and_code_2(tmp_path):
     job = psph("check", CASE, "--set", "space.spacing=-1")
     assert job.returncode == 2 and len(job.stderr.strip().splitlines()) == 1

@@ -3,6 +3,7 @@
 import difflib
 from collections.abc import Iterable
 from itertools import islice
+from pathlib import Path
 
 from psph.errors import Refused, one_line, shortened
 
@@ -32,6 +33,12 @@ def advise(word: str, known: Iterable[str]) -> str:
     known = list(known)
     near = nearest(word, known)
     return f"did you mean '{near}'?" if near else f"known here: {', '.join(known)}"
+
+
+def refuse_if_neither(word: str, commands: Iterable[str]) -> None:
+    """Raise Refused where a word on the command line is neither a command nor a case file."""
+    if not word.endswith(".toml") and not Path(word).exists():
+        raise Refused(one_line(f"{word}: neither a command nor a case file; {advise(word, commands)}"))
 
 
 def dotted(keys: Iterable[str | int]) -> str:

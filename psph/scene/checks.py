@@ -13,6 +13,7 @@ from psph.physics.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
 from psph.scene.multiples import misfits
 from psph.scene.scene import SOUND_OVER_SPEED, Scene
+from psph.scene.shapes import bounds
 from psph.scene.units import slips
 from psph.scene.walls import layers_needed, thinnest_walls
 
@@ -46,7 +47,7 @@ def faults(scene: Scene) -> Iterator[str]:
     for line in _size_faults(scene):
         yield f"{scene.case.file}: {line}"
         return  # the others would only follow from it
-    places = [
+    places = list(_spacing_faults(scene)) or [
         *_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene), *_exact_faults(scene)
     ]
     for line in places or _state_faults(scene):  # an empty shape has no pressure
@@ -134,6 +135,22 @@ def _domain_faults(scene: Scene) -> Iterator[str]:
                 f"space.upper: the domain is {period:.6g} m long along the periodic axis {name}, "
                 f"the kernel needs {least:.6g}; make it longer or space.spacing smaller"
             )
+
+
+def _spacing_faults(scene: Scene) -> Iterator[str]:
+    """A spacing that leaves fluids without a particle, and that none of them is thick enough for."""
+    fluids = scene.case.fluids
+    thickness = {
+        name: min(up - low for low, up in zip(*bounds(fluid.shape)))
+        for name, fluid in fluids.items()
+    }
+    thickest = max(thickness, key=thickness.get)
+    if scene.spacing > thickness[thickest] and not scene.census.sizes[: len(fluids)].all():
+        yield (
+            f"space.spacing: {scene.spacing:g} m is larger than the fluids: fluids.{thickest} is "
+            f"{thickness[thickest]:.3g} m thick; give at most a tenth of that, "
+            f"{0.1 * thickness[thickest]:.2g}"
+        )
 
 
 def _site_faults(scene: Scene) -> Iterator[str]:

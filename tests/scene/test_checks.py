@@ -29,6 +29,24 @@ def test_a_good_scene_is_silent(tmp_path, text):
     assert checked(tmp_path, text) == []
 
 
+@pytest.mark.parametrize("text, sets, says", [
+    (TANK, ("space.spacing=100",),
+     "100 m is larger than the fluids: fluids.water is 0.5 m thick; give at most a tenth of that, 0.05"),
+    (TANK, ("space.spacing=1.2",), "1.2 m is larger than the fluids: fluids.water is 0.5 m"),
+    (WATER + '[fluids.oil.shape.disc]\ncenter = [3.0, 3.0]\nradius = 0.4', ("space.spacing=30",),
+     "30 m is larger than the fluids: fluids.oil is 0.8 m thick"),
+])
+def test_a_huge_spacing_is_the_one_fault(tmp_path, text, sets, says):
+    [line] = refused(tmp_path, text, *sets)
+    assert line.startswith(f"case.toml: space.spacing: {says}")
+
+
+def test_a_spacing_is_not_the_fault_of_one_small_shape(tmp_path):
+    speck = WATER + "[fluids.oil.shape.disc]\ncenter = [3.0, 3.0]\nradius = 0.01"
+    [line] = refused(tmp_path, speck)
+    assert line.startswith("case.toml: fluids.oil.shape: no lattice site lies in it; make it larger")
+
+
 def test_an_empty_shape_is_refused(tmp_path):
     text = TANK + "[walls.speck]\nshape.box = { lower = [0.01, 0.61], upper = [0.04, 0.64] }"
     [line] = refused(tmp_path, text)
@@ -40,7 +58,7 @@ def test_an_empty_shape_is_refused(tmp_path):
 
 def test_a_scene_without_any_site_is_refused(tmp_path):
     [line] = refused(tmp_path, WATER, "space.spacing=10.0")
-    assert line.startswith("case.toml: fluids.water.shape: no lattice site lies in it")
+    assert line.startswith("case.toml: space.spacing: 10 m is larger than the fluids: fluids.water is")
 
 
 def test_a_width_that_is_no_multiple_of_the_spacing_is_warned_of(tmp_path):
