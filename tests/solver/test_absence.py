@@ -74,7 +74,9 @@ def footprint(tmp_path, monkeypatch):
         scene = Scene(draft(tmp_path, SQUARE, *overrides))
         plan = make_plan(scene)
         store = create_particles(scene, plan, MPI.COMM_SELF)
-        Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())._sum(0, store.owned)
+        simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+        simulation._fill_records()
+        simulation._sum(0, store.owned)
         [call] = calls
         read = tuple(n for n, x in store.view()._asdict().items() if x is not None)
         halo = plan.refreshed + plan.ghost_fields
