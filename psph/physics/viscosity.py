@@ -38,6 +38,16 @@ def friction(i, j, pair):
 
 
 @register_jitable
+def corrected_friction(i, j, pair):
+    """The same with corrected gradients, 1/s."""
+    v_i, v_j = i.specific_volume, j.specific_volume
+    both = add(i.gradient_correction, j.gradient_correction)
+    stretch = 1.0 + 0.5 * dot(times(both, pair.x_ij), pair.x_ij) / pair.r2
+    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
+    return 4.0 * pair.m_dw_r * over * stretch / ((v_i + v_j) * (v_i + v_j))
+
+
+@register_jitable
 def _friction(i, j, pair, numerator):
     """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``numerator``/(r² + 0.01 h²)."""
     v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
@@ -89,11 +99,7 @@ class CorrectedViscosity(NamedTuple):
 
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
-        v_i, v_j = i.specific_volume, j.specific_volume
-        both = add(i.gradient_correction, j.gradient_correction)
-        stretch = 1.0 + 0.5 * dot(times(both, pair.x_ij), pair.x_ij) / pair.r2
-        over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
-        return 4.0 * pair.m_dw_r * over * stretch / ((v_i + v_j) * (v_i + v_j))
+        return corrected_friction(i, j, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""

@@ -3,6 +3,7 @@
 import itertools
 import math
 from itertools import product
+from types import SimpleNamespace
 from typing import get_origin, get_type_hints
 
 import numpy as np
@@ -22,7 +23,7 @@ from psph.physics.pressure import (
 )
 from psph.physics.riemann import RiemannDissipation
 from psph.physics.shifting import LatticeShift, ParticleShifting, lattice_shift
-from psph.physics.slip import NoSlip
+from psph.physics.slip import CorrectedNoSlip, NoSlip
 from psph.physics.stress import NeighbourStress
 from psph.physics.surface import FreeSurface, TensionFloor
 from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
@@ -164,7 +165,12 @@ def test_a_wall_without_slip_mirrors_the_mean_of_the_fluid_around_it(dim):
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
-def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim):
+@pytest.mark.parametrize("correction", (None, GradientCorrection(0.5)))
+def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim, correction):
+    """Whichever form of friction the scene takes, no-slip takes the same."""
+    physics = SimpleNamespace(gradient_correction=correction, central_friction=None)
+    scene = SimpleNamespace(case=SimpleNamespace(physics=physics))
+    viscosity, no_slip = LaminarViscosity().in_scene(scene), NoSlip().in_scene(scene)
     p = view(dim=dim)
     mean, slip = np.full(dim, 0.3), [v[1] for v in p.velocity] - np.full(dim, 0.3)
     p = p._replace(slip=tuple(np.array([0.0, s]) for s in slip))
@@ -172,8 +178,8 @@ def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim)
     mirrored = p._replace(velocity=tuple(
         np.array([v[0], 2.0 * v[1] - m]) for v, m in zip(p.velocity, mean)
     ))
-    expected = LaminarViscosity().shear(i, j, pair) * np.array(pair_of(mirrored, 0, 1)[2].u_ij)
-    found = LaminarViscosity().shear(i, j, pair) * np.array(pair.u_ij) + NoSlip().push(i, j, pair)
+    expected = viscosity.shear(i, j, pair) * np.array(pair_of(mirrored, 0, 1)[2].u_ij)
+    found = viscosity.shear(i, j, pair) * np.array(pair.u_ij) + no_slip.push(i, j, pair)
     assert found == pytest.approx(expected)
 
 
@@ -495,7 +501,7 @@ def pulled_down(delta, gravity):
 @pytest.mark.parametrize(
     "one",
     [
-        DifferenceCorrection(0.5), CorrectedViscosity(), TankDiffusion, pulled_down,
+        DifferenceCorrection(0.5), CorrectedViscosity(), CorrectedNoSlip(), TankDiffusion, pulled_down,
         NeighbourStress(0.2, 1e-4),
     ],
     ids=lambda one: getattr(one, "__name__", type(one).__name__),
