@@ -9,6 +9,7 @@ from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.particles.fields import FIELDS, FLUID
 from psph.physics.compose import take
+from psph.physics.walls import DryWall
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
 
@@ -17,13 +18,16 @@ FRONT = "front"
 
 
 class Probe:
-    """Fields at one point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968), walls included.
+    """Fields of the fluid at one point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968).
 
-    ``position`` (dim,) m; ``fields`` names of saved fields.
+    The sums are over the fluid and the walls that it wets, so that at a wall the mean is not that of
+    one side alone.  ``position`` (dim,) m; ``fields`` names of saved fields; ``rows`` counts the
+    values taken so far, ``dry`` those of them without fluid in reach.
     """
 
     def __init__(self, name: str, position: tuple[float, ...], fields: tuple[str, ...]):
         self.name, self.position, self.fields = name, tuple(map(float, position)), fields
+        self.rows = self.dry = 0
 
     def columns(self, dimensions: int) -> list[str]:
         """Names of the values: ``P1.pressure``, ``P1.velocity_x``."""
@@ -34,7 +38,7 @@ class Probe:
         ]
 
     def sample(self, domain: Domain, kernel) -> np.ndarray:
-        """Values in the order of :meth:`columns` on every rank, NaN where no particle is near.
+        """Values in the order of :meth:`columns` on every rank, NaN where no fluid is near.
 
         Every rank finds the near ones among its own particles, wherever these have drifted since
         the lists were made; the sums do not depend on how particles are spread.  Collective.
@@ -47,10 +51,18 @@ class Probe:
             self.position, domain.periods, store["position"], store.low, store.low + store.owned,
             radius * radius, near,
         )
-        terms = np.empty((found, 1 + len(rows)))
-        weigh(self.position, kernel, domain.periods, store.view(), near[:found], store.data, rows, terms)
-        total, *sums = exact_sums(domain.comm, terms)
-        return np.array(sums) / total if total > 0.0 else np.full(len(rows), np.nan)
+        near = near[:found]
+        fluid = store.kind[near] == FLUID
+        if DryWall.marks in store:
+            near, fluid = (x[store[DryWall.marks][near] > 0.0] for x in (near, fluid))
+        terms = np.empty((len(near), 1 + len(rows)))
+        weigh(self.position, kernel, domain.periods, store.view(), near, store.data, rows, terms)
+        wetting, total, *sums = exact_sums(domain.comm, np.column_stack([terms[:, 0] * fluid, terms]))
+        self.rows += 1
+        if wetting > 0.0:
+            return np.array(sums) / total
+        self.dry += 1
+        return np.full(len(rows), np.nan)
 
 
 class Front:

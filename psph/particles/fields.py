@@ -50,6 +50,7 @@ FIELDS = {
     "viscosity": Field("m2/s", "kinematic viscosity"),
     "wall": Field("1", "1 in a wall, 0 in a fluid, as effects read it"),
     "no_slip": Field("1", "1 in a wall to which the fluid sticks, else 0"),
+    "wet": Field("1", "0 in a wall without fluid in reach, else 1"),
     "stress_point": Field("1", "1 where pressure is borne, 0 where velocity is carried"),
     "kernel_sum": Field("1", "sum of W m/rho over the support, the particle included"),
     "inside": Field("1", "1 inside the fluid, 0 at a free surface"),

@@ -22,6 +22,7 @@ from psph.physics.transport import GeneralisedTransportVelocity, TransportVeloci
 from psph.physics.viscosity import (
     ArtificialViscosity, CentralFriction, ImpactDamping, LaminarViscosity, PairDamping,
 )
+from psph.physics.walls import DryWall
 
 
 class Entry(NamedTuple):
@@ -47,6 +48,7 @@ CATALOGUE = (
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.central_friction", CentralFriction),
     Entry("walls.*.no_slip", NoSlip),
+    Entry("walls.*.continues", DryWall),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.pair_damping", PairDamping),
     Entry("physics.impact_damping", ImpactDamping),

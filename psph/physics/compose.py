@@ -40,6 +40,7 @@ class ParticleView(NamedTuple):
     gradient_correction: Any = None
     wall: Any = None
     no_slip: Any = None
+    wet: Any = None
     stress_point: Any = None
     slip: Any = None
     sound_speed: Any = None

@@ -19,8 +19,10 @@ class DensityDiffusion(NamedTuple):
 
     dρ_i/dt = 2 δ h c Σ_j (m_j/ρ_j) [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j)] x_ij·∇W_ij / max(r², 0.01 h²).
     Molteni & Colagrossi (2009), Comput. Phys. Commun. 180, 861, with max(r², η²) for r² + η²: it is
-    W′/r but for the nearest, without a division.  Walls take part, but give the fluid nothing: a
-    drop that lies on one would lose to it the density that holds it off.  In the fluid it keeps
+    W′/r but for the nearest, without a division.  A wall takes density from the fluid and from walls
+    that bear a pressure, which a dry one does not (:class:`psph.physics.walls.DryWall`): so the wall
+    behind the wet layers has their pressure, and does not draw it off.  It gives the fluid nothing: a
+    drop that lies on a wall would lose to it the density that holds it off.  In the fluid it keeps
     Σ m_i/ρ_i dρ_i/dt = 0.
     """
 
@@ -60,7 +62,9 @@ class TankDiffusion(NamedTuple):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         mean = 0.5 * (i.rest_density + j.rest_density)
         weight = mean / (i.sound_speed * i.sound_speed) * along(pair.x_ij, self.gravity)
-        return where(j.wall > i.wall, 0.0, _excess(self.delta, i, j, weight)) * _nearness(i, pair)
+        # A fluid takes nothing from a wall, and a wall nothing from one without pressure.
+        giving = where(j.pressure * j.pressure > 0.0, i.wall, 0.0)
+        return where(j.wall > giving, 0.0, _excess(self.delta, i, j, weight)) * _nearness(i, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""

@@ -2,8 +2,9 @@
 
 from typing import Annotated, NamedTuple
 
-import numpy as np
 from pydantic import Field
+
+from psph.simd import where
 
 STABLE = 0.075
 """cΔt/h must stay below.  The fastest mode of a lattice decays at Sc/h, S ≤ 4.3 over the kernels
@@ -17,8 +18,8 @@ class RiemannDissipation(NamedTuple):
     a_i = −2 Σ_j m_j/(ρ_i ρ_j) p* ∇W_ij with the limiter β = min(η max(ΔU, 0), c), and
     dρ_i/dt = 2 ρ_i Σ_j m_j/ρ_j U* r W′/r.  Zhang, Hu & Adams (2017), J. Comput. Phys. 335, 605.
     Momentum and angular momentum are conserved.  Density takes the whole U*, as there, so that a
-    still column spreads its pressure too; walls are taken as fluid, where theirs solve a problem of
-    their own.
+    still column spreads its pressure too; a wall meets the fluid as a fluid would, where theirs solve
+    a problem of their own, and two wall particles exchange no density.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -38,7 +39,8 @@ class RiemannDissipation(NamedTuple):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         v_i, v_j = i.specific_volume, j.specific_volume
         jump = (i.pressure - j.pressure) / (i.sound_speed * (v_i + v_j))
-        return 2.0 * v_j * v_j * jump * pair.r * pair.m_dw_r
+        met = where(i.wall * j.wall > 0.0, 0.0, jump)
+        return 2.0 * v_j * v_j * met * pair.r * pair.m_dw_r
 
     def longest_step(self, scene):
         """Δt ≤ 0.075 h/c, s: see STABLE."""

@@ -32,7 +32,8 @@ class ParticleShifting(NamedTuple):
     density change to those at the new place: du_i/dt = (δx_i/Δt·∇)u, dρ_i/dt = δx_i/Δt·∇ρ, with
     gradients from differences.  Lind, Xu, Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun,
     Colagrossi, Marrone & Zhang (2017), Comput. Methods Appl. Mech. Eng. 315, 25.  The sum is that
-    of the pass before.  Momentum and angular momentum are not conserved exactly.
+    of the pass before.  Walls stay, and so does their density.  Momentum and angular momentum are not
+    conserved exactly.
     """
 
     strength: Annotated[
@@ -63,7 +64,7 @@ class ParticleShifting(NamedTuple):
         near = max((weight(kernel, spacing) * volume) ** 4, LEAST)
         inside = where(total[0] + weight(kernel, 0.0) * volume < SURFACE, 0.0, 1.0)
         crowding = add(total[1], scale(total[2], CROWDING / near))
-        return scale(crowding, inside * i.smoothing_length)
+        return scale(crowding, inside * i.smoothing_length * (1.0 - i.wall))
 
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""

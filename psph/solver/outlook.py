@@ -17,6 +17,7 @@ from psph.physics.riemann import RiemannDissipation
 from psph.physics.stress import NeighbourStress
 from psph.physics.surface import TensionFloor
 from psph.physics.viscosity import PairDamping
+from psph.physics.walls import DryWall
 from psph.scene.materials import Start
 from psph.solver.plan import Plan, words
 from psph.stability import FORMS, STATES, SYMMETRIC, remedies
@@ -27,7 +28,7 @@ from psph.stability.windows import SMOOTHINGS, windows
 
 WITHIN = {
     Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, TensileControl,
-    TensionFloor,
+    TensionFloor, DryWall,
 }
 """Effects that the theory includes; the tension floor does not act on a small disturbance."""
 

@@ -76,6 +76,11 @@ class Plan:
         return tuple(e for e in self.effects if hasattr(e, "start"))
 
     @cached_property
+    def marking(self) -> tuple:
+        """Effects with a field that is found when the neighbours are listed."""
+        return tuple(e for e in self.effects if hasattr(e, "marks"))
+
+    @cached_property
     def starts_twice(self) -> bool:
         """Whether forces rest on sums of the pass before: then the first are computed twice."""
         late = ("limit_density", "writes")
@@ -128,8 +133,11 @@ def make_plan(scene) -> Plan:
     present = {entry for entry, *_ in fitted}
     [(state, state_reason)] = filter(None, (_called_for(case, e) for e in EQUATIONS_OF_STATE))
     own = frozenset().union(*(c.reads.own | c.reads.neighbour for c in called)) | {"rest_density"}
-    shared, varying = _split(scene, own)
+    marking = [c.effect for c in called if hasattr(c.effect, "marks")]
+    told_by = {e.told_by for e in marking}
+    shared, varying = _split(scene, own | told_by)
     written = tuple(e.writes for e in (c.effect for c in called) if hasattr(e, "writes"))
+    written += tuple(e.marks for e in marking)
     neighbour = _read_of_neighbours(called)
     _refuse_unwritten(called, written)
     return Plan(
@@ -151,7 +159,7 @@ def make_plan(scene) -> Plan:
         | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
         arrays=ALWAYS + varying + written,
         refreshed=tuple(n for n in FIELDS if n in neighbour and n in ALWAYS + written),
-        ghost_fields=tuple(n for n in varying if n in neighbour),
+        ghost_fields=tuple(n for n in varying if n in neighbour | told_by),
         neighbour_fields=tuple(n for n in FIELDS if n in neighbour and n in ALWAYS + varying + written),
         cfl=case.time.cfl,
         fixed_step=case.time.step,

@@ -1,6 +1,7 @@
 """What a run writes and when: frames, probes, log.  Cadence never changes the steps."""
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -147,6 +148,15 @@ class Record:
         sim = self.simulation
         values = [probe.sample(sim.domain, self.kernel) for probe in self.probes]
         self.probe_table.write([sim.time, *np.concatenate(values).tolist()])
+
+    def dry_probes(self) -> Iterator[str]:
+        """A line for each probe that had no fluid in reach at some time."""
+        for probe in self.probes:
+            if isinstance(probe, Probe) and probe.dry:
+                yield (
+                    f"probe {probe.name}: no fluid in reach in {probe.dry:,} of {probe.rows:,} rows, "
+                    f"where {PROBES} has nan"
+                )
 
     def write_log(self) -> None:
         """A line of energies, momentum and limits, and one of errors where these are known."""

@@ -133,7 +133,7 @@ def _simulate(
     whole = time.perf_counter() - stepping
     for line in _summary(scene, simulation, record, particles, whole, simulation.steps - first):
         say(line)
-    for line in guards.summary():
+    for line in (*guards.summary(), *record.dry_probes()):
         say(line)
     say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), {_tables(record)}")
     output = simulation.ledger.seconds["output"]

@@ -17,6 +17,9 @@ from psph.solver.step import Simulation
 NOT_YET_SUMMED = 2.0
 """A kernel sum that no threshold calls a surface, until the first pass knows better."""
 
+NOT_YET_LISTED = 1.0
+"""Every wall counts as wet until the neighbours are listed."""
+
 
 def create_particles(scene, plan: Plan, comm) -> Store:
     """This rank's share of the scene's particles in a store.
@@ -53,6 +56,8 @@ def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
             block[store.rows[name].start] = scene.lattice.odd(found.position)
     if "kernel_sum" in store:
         block[store.rows["kernel_sum"].start] = NOT_YET_SUMMED
+    for effect in plan.marking:
+        block[store.rows[effect.marks].start] = NOT_YET_LISTED
     store.append(found.id, found.kind, block)
     return store
 

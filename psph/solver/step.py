@@ -12,6 +12,7 @@ from psph.parallel.reductions import largest
 from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
+from psph.particles.wetting import mark_wet
 from psph.physics.space import softening
 from psph.solver.integrator import kick, kick_drift_predict, state_of
 from psph.solver.pairs import sum_over_neighbours
@@ -50,7 +51,7 @@ class Simulation:
 
     def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger, saved=None):
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
-        support = scene.kernel.support * scene.smoothing_length
+        support = self.support = scene.kernel.support * scene.smoothing_length
         skin = scene.case.neighbours.skin * support
         self.domain = Domain(
             comm, store, scene.axis, support + skin, scene.lower, scene.upper,
@@ -138,7 +139,17 @@ class Simulation:
     def _rebuild(self) -> None:
         with self.ledger("rebuild"):
             self.domain.rebuild(self._spent_on_pairs())
+            for effect in self.plan.marking:
+                self._mark(effect)
         self.skin.renew()
+
+    def _mark(self, effect) -> None:
+        """Which walls have fluid in reach."""
+        s, lists = self.store, self.domain.lists
+        in_threads(
+            mark_wet, s.low, s.low + s.owned, s.low, *lists, self.support**2, self.domain.periods,
+            s["position"], s[effect.told_by], s[effect.marks],
+        )
 
     def _spent_on_pairs(self) -> float:
         """Seconds of this rank's pair loop since this was last asked."""

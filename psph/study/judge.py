@@ -60,8 +60,9 @@ class Judge:
         run = Run(folder)
         if self.what in AT_THE_END:
             return self._fields(run, finest)
-        table = run.probes()
-        time, values = table["time"], table[self.what]
+        time, values = known_values(run.probes(), self.what)
+        if not len(time):
+            return series_errors(time, values)
         theirs, of_theirs = self._curve(run, finest)
         at = time if of_theirs is None else of_theirs  # None: known at any time
         at = at[window(self.case.study, at) & (at >= time[0]) & (at <= time[-1])]
@@ -90,10 +91,10 @@ class Judge:
         if self.against == EXACT:
             return self._exact_curve(run), None
         if self.against == FINEST:
-            table = Run(finest).probes()
             if run.folder == finest:
                 return (lambda t: np.full(len(t), math.nan)), None
-            return (lambda t: np.interp(t, table["time"], table[self.what])), None
+            of_finest = known_values(Run(finest).probes(), self.what)
+            return (lambda t: np.interp(t, *of_finest)), None
         time, value = self.measured
         return (lambda t: np.interp(t, time, value)), time
 
@@ -187,6 +188,12 @@ def window(study, time: np.ndarray) -> np.ndarray:
     """True at the times at which probes are compared."""
     until = math.inf if study.until is None else study.until
     return (time >= study.after) & (time <= until)
+
+
+def known_values(table: dict[str, np.ndarray], column: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times in s and values of a column of probes.csv, but for rows without fluid in reach (nan)."""
+    known = np.isfinite(table[column])
+    return table["time"][known], table[column][known]
 
 
 def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:

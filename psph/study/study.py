@@ -13,7 +13,7 @@ from psph.scene.multiples import misfits
 from psph.study import fit, report, words
 from psph.study.answer import answers
 from psph.study.errors import StudyError
-from psph.study.judge import FINEST, Judge, Judgement, window
+from psph.study.judge import FINEST, Judge, Judgement, known_values, window
 from psph.study.ladder import PROFILE, SPACING, Settings, groups, name_of
 from psph.study.picture import draw
 from psph.study.runs import DONE, cases, conditions, perform
@@ -267,10 +267,12 @@ def vitals(run: Folder, study) -> dict[str, float]:
     """Means and spreads of the probes, drift of energy and momentum, largest density error."""
     found: dict[str, float] = {}
     table = run.probes()
-    for name, values in table.items():
+    for name in table:
         if name != "time":
-            compared = values[window(study, table["time"])]
-            found[MEAN + name], found[SPREAD + name] = float(compared.mean()), float(compared.std())
+            time, known = known_values(table, name)
+            compared = known[window(study, time)]
+            found[MEAN + name] = float(compared.mean()) if len(compared) else math.nan
+            found[SPREAD + name] = float(compared.std()) if len(compared) else math.nan
     log = run.log()
     energy = log["kinetic_energy"] + log["potential_energy"]
     momentum = [values for name, values in log.items() if name.startswith("momentum")]

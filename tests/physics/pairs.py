@@ -30,6 +30,7 @@ def view(n=2, dim=2, seed=3):
         kernel_sum=rng.uniform(0.8, 1.0, n),
         wall=np.resize((0.0, 1.0, 0.0), n),
         no_slip=np.resize((0.0, 1.0), n),
+        wet=np.resize((1.0, 0.0, 0.0), n),
         stress_point=np.resize((1.0, 0.0, 0.0), n),
         slip=tuple(rng.normal(size=n) for _ in range(dim)),
         sound_speed=50.0,

@@ -32,6 +32,7 @@ from psph.physics.viscosity import (
     ArtificialViscosity, CentralFriction, CorrectedViscosity, ImpactDamping, LaminarViscosity,
     PairDamping,
 )
+from psph.physics.walls import DryWall
 from psph.smoothing import first_moment, kernel
 
 DIMENSIONS = (1, 2, 3)
@@ -228,7 +229,7 @@ def test_free_surface():
 
 OFTEN_USED = {
     "Continuity", "SymmetricPressure", "MinimumPressure", "LaminarViscosity", "NoSlip", "FreeSurface",
-    "ArtificialViscosity", "PairDamping", "ImpactDamping", "PairPotential", "DensityDiffusion",
+    "ArtificialViscosity", "PairDamping", "ImpactDamping", "PairPotential", "DensityDiffusion", "DryWall",
 }
 
 
@@ -316,10 +317,31 @@ def test_hydrostatic_diffusion_leaves_a_still_column_alone(dim):
 
 
 def test_walls_take_density_over_and_give_none():
+    """A wall without pressure gives none to another either, and draws none off."""
     tank, (i, j, pair) = TankDiffusion(0.1, (0.0, 0.0)), pair_of(view(), 0, 1)
+    for own, other, pressure in product((0.0, 1.0), (0.0, 1.0), (-70.0, 0.0, 70.0)):
+        neighbour = j._replace(wall=other, pressure=pressure)
+        rate = tank.density_rate(i._replace(wall=own), neighbour, pair)
+        assert (rate == 0.0) == (other > (own if pressure else 0.0))
+
+
+def test_two_wall_particles_exchange_no_density_by_riemann_problems():
+    i, j, pair = pair_of(view(), 0, 1)
     for own, other in product((0.0, 1.0), repeat=2):
-        rate = tank.density_rate(i._replace(wall=own), j._replace(wall=other), pair)
-        assert (rate == 0.0) == (other > own)
+        rate = RiemannDissipation().density_rate(i._replace(wall=own), j._replace(wall=other), pair)
+        assert (rate == 0.0) == (own == other == 1.0)
+
+
+def test_a_wall_is_not_shifted():
+    effect, p = ParticleShifting(), patch(2, 0.2)
+    assert np.abs(sums_of(effect, p._replace(wall=np.zeros(len(p.mass))), 0)).max() > 0.0
+    assert sums_of(effect, p._replace(wall=np.ones(len(p.mass))), 0) == pytest.approx((0.0, 0.0), abs=0.0)
+
+
+def test_a_dry_wall_has_its_rest_density():
+    i = pair_of(view(), 0, 1)[0]
+    assert DryWall().limit_wall_density(i._replace(wet=1.0), 987.0) == 987.0
+    assert DryWall().limit_wall_density(i._replace(wet=0.0), 987.0) == i.rest_density
 
 
 def patch(dim, jitter=0.0, reach=3):

@@ -28,7 +28,7 @@ from psph.solver.step import BlowUp
 from psph.study import runs
 from psph.study.effects import effects_words, without_each
 from psph.study.errors import StudyError
-from psph.study.judge import Judge, series_errors
+from psph.study.judge import Judge, known_values, series_errors
 from psph.study.page import main as on_page
 from psph.study.prediction import predicted
 from psph.study.study import Study, pareto
@@ -475,3 +475,8 @@ def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
     (kept / "study.json").write_text(json.dumps(told))
     assert on_page([str(page), str(kept)]) == 0
     assert "| vortex | 0.01 | 0.25 % | 0.3 % | 51.2 | 51.2 |" in page.read_text()
+
+
+def test_rows_of_a_probe_without_fluid_in_reach_are_left_out():
+    table = {"time": np.arange(4.0), "P1.pressure": np.array([np.nan, 5.0, np.nan, 7.0])}
+    assert [x.tolist() for x in known_values(table, "P1.pressure")] == [[1.0, 3.0], [5.0, 7.0]]

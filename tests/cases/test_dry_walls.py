@@ -1,0 +1,98 @@
+"""Walls that no water touches bear nothing, and probes without water in reach say so."""
+
+import numpy as np
+import pytest
+from drafts import draft
+from mpi4py import MPI
+
+from psph.output.reader import Run
+from psph.particles.fields import WALL
+from psph.solver.run import run
+
+DX, DEPTH = 0.02, 0.3
+
+DAM = """
+title = "Water beside a wall with nothing on the other side"
+[space]
+dimensions = 2
+spacing = 0.02
+[time]
+end = 0.12
+[output]
+frames = 0.06
+probes = 0.01
+[physics]
+gravity = [0.0, -9.8]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [0.4, 0.3] }
+pressure = "hydrostatic"
+[walls.basin]
+shape.union = [
+    { box = { lower = [-0.08, -0.08], upper = [0.8, 0.0] } },
+    { box = { lower = [-0.08, 0.0], upper = [0.0, 0.4] } },
+    { box = { lower = [0.4, 0.0], upper = [0.48, 0.4] } },
+]
+[probes.wet]
+position = [0.39, 0.1]
+fields = ["pressure"]
+[probes.floor]
+position = [0.2, 0.0]
+fields = ["pressure"]
+[probes.behind]
+position = [0.49, 0.1]
+fields = ["pressure", "velocity"]
+[probes.dry_floor]
+position = [0.64, 0.01]
+fields = ["pressure"]
+"""
+
+
+def reach_of(frame):
+    """For each wall particle the distance to the nearest fluid, m; and ρ/ρ₀ − 1 there."""
+    from scipy.spatial import cKDTree
+
+    wall = frame["kind"] == WALL
+    apart, _ = cKDTree(frame["position"][~wall]).query(frame["position"][wall])
+    return apart, frame["density"][wall] / 1000.0 - 1.0
+
+
+@pytest.fixture(scope="module")
+def still(tmp_path_factory):
+    """A run of still water beside a wall of four layers, and what it said."""
+    folder, said = tmp_path_factory.mktemp("dry"), []
+    run(draft(folder, DAM), folder / "out", MPI.COMM_SELF, say=lambda line, *_: said.append(line))
+    return Run(folder / "out"), said
+
+
+def test_a_probe_without_water_in_reach_says_so(still):
+    finished, said = still
+    table = finished.probes()
+    for name in ("behind.pressure", "behind.velocity_x", "dry_floor.pressure"):
+        assert np.isnan(table[name]).all()
+    rows = len(table["time"])
+    for name in ("behind", "dry_floor"):
+        assert f"probe {name}: no fluid in reach in {rows} of {rows} rows, where probes.csv has nan" in said
+    assert not any(line.startswith(("probe wet", "probe floor")) for line in said)
+    assert np.abs(table["wet.pressure"] / (9800.0 * (DEPTH - 0.1)) - 1.0).max() < 0.02
+    assert np.abs(table["floor.pressure"] / (9800.0 * DEPTH) - 1.0).max() < 0.02
+
+
+def test_walls_out_of_reach_of_the_water_have_their_rest_density(still):
+    finished, _ = still
+    for k in (1, 2):
+        apart, strain = reach_of(finished.frame(k))
+        assert (strain[apart > 2.6 * 1.1 * DX] == 0.0).all()
+        assert (strain[apart < 1.1 * DX] > 0.0).mean() > 0.9
+
+
+def test_a_wall_forgets_the_water_that_has_left(tmp_path):
+    """A drop is thrown up from the floor: what pressed on it there is gone with it."""
+    case = draft(
+        tmp_path, DAM, "walls.basin.shape={box={lower=[-0.2, -0.08], upper=[0.6, 0.0]}}",
+        "fluids.water.velocity=[0.0, 3.0]", "fluids.water.pressure=0", "probes=off",
+        "fluids.water.shape.box.upper=[0.4, 0.1]", "time.end=0.06",
+    )
+    run(case, tmp_path / "out", MPI.COMM_SELF, say=lambda *_: None)
+    apart, strain = reach_of(Run(tmp_path / "out").frame(-1))
+    assert apart.min() > 2.6 * 1.1 * DX
+    assert (strain == 0.0).all()
