@@ -438,3 +438,14 @@ def test_profiles_are_as_the_page_has_them():
         assert list(plain) == list(told)
         for key, cells in told.items():
             assert [cells[place][0], cells[place][-1]] == [str(plain[key]), str(periodic[key])], key
+
+
+def test_the_theory_has_a_row_for_every_effect_and_its_claims():
+    page = text("docs/theory.md")
+    rows = set(re.findall(r"^\| `(\w+)`", page, re.MULTILINE))
+    effects = {entry.effect for entry in (*catalogue.CATALOGUE, *catalogue.EQUATIONS_OF_STATE)}
+    assert {effect.__name__ for effect in effects} <= rows
+    told = re.findall(r"^\| (momentum.*?) \| (.*) \|$", page, re.MULTILINE)
+    said = {name: what for what, names in told for name in re.findall(r"`(\w+)`", names)}
+    claims = {e.__name__: " and ".join(e.conserves) for e in effects if hasattr(e, "conserves")}
+    assert said == claims
