@@ -147,8 +147,10 @@ def test_commands_are_accepted(page, command, drop):
 
 @pytest.mark.parametrize(
     "command",
-    [c for c in commands("README.md") + commands("docs/contributing.md")
-     if c.startswith("python -m psph") and c.split()[3] in CHEAP] + ["python -m psph schema"],
+    list(dict.fromkeys(
+        c for page in PAGES for c in [*commands(page), "python -m psph schema"]
+        if c.startswith("python -m psph ") and c.split()[3] in CHEAP and "--study" not in c
+    )),
 )
 def test_cheap_commands_run(command, drop):
     words = [str(drop) if word == drop.name else word for word in shlex.split(command)[1:]]
