@@ -346,10 +346,10 @@ KERNELS = {
     "spiky": Spiky,
     "fourth-order": FourthOrder,
 }
-"""Every smoothing kernel by the name that a case gives it; the first is the default.
+"""Every smoothing kernel by the name that a case gives it.
 
-Wendland C2 at h/dx 1.4 stays calm in flows that tear the lattice apart, where the hyperbolic
-kernel with symmetric pressures does not; the SSPH cases name theirs."""
+A case that names neither kernel, scheme nor profile gets the default scheme's: hyperbolic at h/dx 1.3,
+normalised (psph.case.schemes).  The first stands in for a case whose scheme or profile names none."""
 
 
 def kernel(name: str, smoothing_length: float, dimensions: int):
