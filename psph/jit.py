@@ -128,6 +128,11 @@ class OwnCache(FunctionCache):
                 super().save_overload(sig, data)
 
 
+def is_kept(*examples) -> bool:
+    """Whether loops for the types of these examples stay in the cache: not with foreign classes."""
+    return not any(_is_foreign(numba.typeof(example)) for example in examples)
+
+
 def _is_foreign(kind) -> bool:
     own = getattr(kind, "instance_class", tuple)
     if own is not tuple and own.__module__.partition(".")[0] != __name__.partition(".")[0]:
@@ -155,7 +160,7 @@ def elementwise(function):
 
 def _kept(loop):
     """The loop, in the cache where there is one."""
-    if CACHE.folder is not None:
+    if CACHE.folder is not None and not numba.config.DISABLE_JIT:
         loop._cache = OwnCache(loop.py_func)
     return loop
 

@@ -10,7 +10,7 @@ MODULES = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob(
 
 # A module imports from its own layer's part (folder or file) and from the layers before it.
 LAYERS = [
-    {"errors", "cache"},
+    {"errors", "cache", "fields"},
     {"jit"},
     {"simd", "threads"},
     {"vectors", "smoothing"},

@@ -10,10 +10,12 @@ import sys
 import types
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from jobs import clean_environment, mpirun
 from physics.pairs import H, OPEN, rates, view
+from stores import store_of
 
 from psph import smoothing
 from psph.__main__ import VERBS, _parser, _with_verb
@@ -21,16 +23,16 @@ from psph.case import load, profiles
 from psph.case.physics import physics_table
 from psph.output import diagnostics
 from psph.output.frames import FrameFile
+from psph.output.reader import Run
 from psph.output.tables import CsvTable
 from psph.parallel.reductions import alone
-from psph.particles.fields import FIELDS
-from psph.particles.store import Store
+from psph.fields import OF_EVERY_SCENE, SAVED, by_name
 from psph.physics import catalogue
 from psph.physics.catalogue import Entry
 from psph.physics.trial import reads
 from psph.scene import Scene, check
 from psph.solver.outlook import outlook
-from psph.solver.plan import ALWAYS, make_plan
+from psph.solver.plan import make_plan
 from psph.stability.growth import is_stable
 from psph.stability.uniform import Settings
 from psph.stability.windows import SMOOTHINGS
@@ -94,7 +96,7 @@ def drop(tmp_path):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_short(page):
-    longest = {"README.md": 120, "docs/case.md": 450}  # a reference is looked up, not read
+    longest = {"README.md": 120, "docs/case.md": 450, "docs/contributing.md": 400}  # a reference is looked up, not read
     assert len(text(page).splitlines()) <= longest.get(page, 299)
 
 
@@ -334,7 +336,7 @@ def test_example_effect(module, name, class_name, key, parameter, own, neighbour
     assert getattr(table.model_validate({}), key) is None
     assert key in table.model_json_schema()["properties"]
     made, k = effect(0.5), smoothing.kernel("hyperbolic", H, 2)
-    found = reads(made, 2, k)
+    found = reads(made, 2, k, catalogue.BUILT_IN.fields)
     assert (found.own, found.neighbour) == (own, neighbour)
     args = ((made, catalogue.Continuity()), (), k, OPEN[:2], view(), 0, 1)
     agree(rates(*args), rates.py_func(*args))
@@ -348,7 +350,7 @@ def agree(compiled, plain):
 
 
 def test_example_test_of_the_effect(module):
-    module("effect", "psph.physics.cohesion")
+    module("effect", "cohesion")
     tests = module("test of the effect", "psph_example_test")
     [test] = [function for name, function in vars(tests).items() if name.startswith("test_")]
     test()
@@ -360,15 +362,43 @@ def test_example_limit_acts(module):
     assert floor.limit_density(i, 900.0) == 980.0 and floor.limit_density(i, 990.0) == 990.0
 
 
-def test_example_output(module, tmp_path):
-    front = module("output", "psph_example_output").Front(tmp_path, alone(), 2)
-    store = Store(2, ALWAYS, {})
-    block = np.zeros((len(store.data), 3))
-    block[list(store.rows["position"])] = [[0.1, 0.4, 9.0], [0.3, 0.2, 9.0]]
-    store.append(np.arange(3), np.array([0, 0, 1], np.uint8), block)
-    front.write(0.5, store)
-    front.table.close()
-    assert (tmp_path / "front.csv").read_text() == "time,front_x,front_y\n0.5,0.4,0.3\n"
+BESIDE_A_CASE = {"kernel": "lucy", "effect": "cohesion", "limit": "floor", "motion": "belt",
+                 "region": "sink", "output": "front"}
+"""The examples that bring something, and the files that the page puts them into."""
+
+WITH_ALL = """
+use = ["lucy.py", "cohesion.py", "floor.py", "belt.py", "sink.py", "front.py"]
+scheme = "sph"
+space = { dimensions = 2, spacing = 0.1, kernel = "lucy", smoothing = 1.3 }
+time.end = 0.02
+output.frames = 0.02
+tables.front = 0.005
+physics.sound_speed = 20.0
+physics.gravity = [0.0, -9.8]
+physics.cohesion = 0.1
+physics.density_floor = 0.98
+fluids.water.shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
+walls.belt.shape.box = { lower = [-0.5, -0.4], upper = [0.5, 0.0] }
+walls.belt.motion.steady = [3.0, 0.0]
+regions.drain.sink = 0.1
+"""
+
+
+def test_the_examples_stand_beside_a_case(tmp_path):
+    """All in one case, run as a person does, without editing psph."""
+    for name, file in BESIDE_A_CASE.items():
+        (tmp_path / f"{file}.py").write_text(example(name), encoding="utf-8")
+    (tmp_path / "all.toml").write_text(WITH_ALL, encoding="utf-8")
+    job = mpirun(2, ["-m", "psph", tmp_path / "all.toml", "--out", tmp_path / "out"])
+    assert job.returncode == 0, job.stderr
+    rows = np.loadtxt(tmp_path / "out/front.csv", delimiter=",", skiprows=1)
+    assert len(rows) == 5 and rows[-1, 0] == 0.02 and rows[0, 1] == pytest.approx(0.95)
+    last = Run(tmp_path / "out").frame(-1)
+    belt = last["group"] == 1
+    assert last["position"][belt, 0].min() == pytest.approx(-0.45 + 3.0 * 0.02)
+    assert (last["velocity"][belt] == [3.0, 0.0]).all()
+    with h5py.File(tmp_path / "out/all.h5") as file:
+        assert len(file["frames/00000/id"]) > len(last["id"])  # what fell beside the belt is gone
 
 
 def test_example_case(tmp_path):
@@ -421,8 +451,8 @@ def test_the_table_of_datasets_is_that_of_the_fields():
     rows = re.findall(row, text("docs/output.md"), re.MULTILINE)
     told = {name: (shape, unit, meaning) for name, shape, _, unit, meaning in rows}
     assert told == {
-        name: ("(n, dim)" if f.vector else "(n,)", f.unit, f.meaning)
-        for name, f in FIELDS.items() if f.saved
+        name: ("(n, dim)" if f.composed else "(n,)", f.unit, f.meaning)
+        for name, f in by_name(SAVED).items()
     }
 
 

@@ -15,7 +15,7 @@ import sys
 from typing import NamedTuple
 from psph.jit import call_by_type, compiled
 from psph.solver.integrator import state_of
-from psph.physics.compose import ParticleView
+from psph.fields import view_of
 from psph.physics.state import Linear
 import numpy as np
 
@@ -23,11 +23,12 @@ class Foreign(NamedTuple):
     def pressure(self, density, rest_density, sound_speed):
         return 7.0 * density
 
-view = ParticleView(position=(np.zeros(3),), rest_density=1.0, sound_speed=1.0)
+View = view_of(("position", "rest_density", "sound_speed"))
+view = View((np.zeros(3),), 1.0, 1.0)
 for state in (Linear(), Foreign()) if "foreign" in sys.argv else (Linear(),):
     pressure = np.zeros(3)
     kind = np.zeros(3, np.uint8)
-    state_of(0, 3, (), state, view, kind, np.full(3, 2.0), np.zeros(3), pressure)
+    state_of(0, 3, (), state, np.zeros(1, np.uint8), view, kind, np.full(3, 2.0), np.zeros(3), pressure)
     print(pressure[0])
 print(sum(state_of.stats.cache_hits.values()), "from the cache")
 """

@@ -13,7 +13,7 @@ from psph.battery.walls import lost
 from psph.output.errors import OutputError
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 from psph.scene import Scene
 from psph.study.experiment import path_of, read_experiment
 from psph.study.judge import window
@@ -101,7 +101,7 @@ def _growth(time: np.ndarray, fast: np.ndarray) -> float:
 
 def _of_particles(scene, frame: dict, fluid: dict, speed: float) -> dict[str, float]:
     apart = nearest(scene, fluid["position"]) / scene.spacing
-    stress = 0.5 * scene.materials[0].density * speed**2
+    stress = 0.5 * scene.species[0].density * speed**2
     return {
         "near_least": float(apart.min()), "near_5": float(np.percentile(apart, 5.0)),
         "pieces": float(pieces(scene, fluid["position"])),
@@ -112,7 +112,7 @@ def _of_particles(scene, frame: dict, fluid: dict, speed: float) -> dict[str, fl
 
 def _conserved(scene, log: dict, first: dict, last: dict, speed: float) -> dict[str, float]:
     """Energy everywhere, momenta where nothing from outside changes them."""
-    mass = scene.materials[0].mass
+    mass = scene.species[0].mass
     energy = [
         log["kinetic_energy"][k] + log["potential_energy"][k] + _bound(scene, mass, fluid)
         for k, fluid in ((0, first), (-1, last))

@@ -11,7 +11,7 @@ from psph.battery.tables import cell, columns_of
 from psph.battery.trials import Trial
 from psph.battery.verdicts import BLEW_UP, FAILS, GOOD, HOLDS, REFUSED, VERDICTS, Row
 from psph.output import style
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 
 PICTURE = "battery.png"
 

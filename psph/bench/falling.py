@@ -11,7 +11,7 @@ from psph.bench.tank import GRAVITY, HEIGHT, Tank
 from psph.case import Case
 from psph.output.ledger import Ledger
 from psph.output.interpolation import interpolated
-from psph.particles.fields import FLUID, WALL
+from psph.fields import FLUID, WALL
 from psph.particles.store import Store
 from psph.scene import Scene
 from psph.scene.particles import NUMBERS_PER_COUNT, ParticleSet
@@ -130,9 +130,9 @@ def fall(coarse: Scene, comm) -> ParticleSet:
 def _by_id(scene: Scene, ids, kind, position, velocity, density) -> ParticleSet:
     """Rows in the order of the lattice; the scene knows their material and mass."""
     order = np.argsort(ids)
-    water, tank = range(len(scene.materials))
+    water, tank = range(len(scene.species))
     material = np.where(kind == FLUID, water, tank).astype(np.uint8)
-    mass = np.array([m.mass for m in scene.materials])[material]
+    mass = np.array([m.mass for m in scene.species])[material]
     columns = (ids, kind, material, position, velocity, density, mass)
     return ParticleSet(*(column[order] for column in columns))
 

@@ -18,7 +18,7 @@ import numpy as np
 from psph.bench import lammps_side
 from psph.bench.errors import BenchError, PeerFailed
 from psph.bench.ranks import on_rank_0
-from psph.particles.fields import FLUID, WALL
+from psph.fields import FLUID, WALL
 from psph.physics.viscosity import ArtificialViscosity
 
 SKINS = (0.01, 0.03, 0.06, 0.1, 0.2)
@@ -53,7 +53,7 @@ class Peer:
 
     def __init__(self, python: Path, scene, simulation):
         self.comm = simulation.comm
-        self._rest_density = scene.materials[0].density
+        self._rest_density = scene.species[0].density
         particles, cores = gathered(simulation), _cores(self.comm)
 
         def begin() -> dict:
@@ -127,7 +127,7 @@ def commands(scene, simulation) -> tuple[list[str], list[str]]:
     sides = ["s" if period is None else "p" for period in scene.periods] + ["p"] * len(thin)
     [friction] = (e for e in simulation.plan.effects if isinstance(e, ArtificialViscosity))
     alpha = friction.alpha * scene.smoothing_length / support  # its μ has the support for h
-    water, *tank = scene.materials
+    water, *tank = scene.species
     pull = math.hypot(*scene.gravity)
     down = " ".join(f"{g / pull!r}" for g in (*scene.gravity, *(0.0 for _ in thin))) if pull else ""
     space = [

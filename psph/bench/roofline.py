@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.jit import compiled
-from psph.physics.count import flops_per_pair
 
 COPIED = 1 << 24
 """Numbers of an array that is copied, 128 MiB: more than caches hold."""
@@ -81,9 +80,7 @@ def shares(simulation, ceiling: Ceiling, pairs: int, entries: int, seconds: floa
     what is written; neighbours are taken to be found in a cache.
     """
     plan, store = simulation.plan, simulation.store
-    flops = flops_per_pair(
-        plan.effects, plan.reductions, plan.kernel, plan.constants, simulation.domain.periods
-    )
+    flops = plan.flops_per_pair(simulation.domain.periods)
     view = [x for entry in store.view() for x in (entry if isinstance(entry, tuple) else (entry,))]
     read = sum(isinstance(x, np.ndarray) for x in view)
     written = store.dimensions + 1 + sum(hasattr(e, "writes") for e in plan.reductions)

@@ -67,7 +67,8 @@ def checked(
     from pydantic import ValidationError
 
     from psph.case.messages import messages
-    from psph.case.model import Case, schema
+    from psph.case.extended import case_model
+    from psph.case.extensions import catalogue_of
 
     applied = [_override(_with(file, option, text), data, text) for text in overrides]
     touched = [override.key for override in applied]
@@ -81,10 +82,16 @@ def checked(
         by = next((by for key, by in filled.items() if loc[: len(key)] == key), None)
         return f"{file} with {by}" if by else file
 
+    used = data.get("use", [])
+    names = [name for name in used if isinstance(name, str)] if isinstance(used, list) else []
+    catalogue = catalogue_of(file, names)
+    model = case_model(catalogue)
     try:
-        return Case.model_validate(data)
+        case = model.model_validate(data)
     except ValidationError as error:
-        raise CaseError(messages(error, data, schema(), source)) from None
+        raise CaseError(messages(error, data, model.model_json_schema(), source)) from None
+    case._catalogue = catalogue
+    return case
 
 
 def _with(file: str, option: str, text: str) -> str:

@@ -18,6 +18,7 @@ from psph.case.schemes import SCHEMES, STABLE, by_default, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.case.tables import Axis, Name, Table, Text, Vector, key
+from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
 Physics = physics_table()
@@ -248,6 +249,9 @@ class Case(Table):
     """
 
     title: Text = key("title of the case, one line", "")
+    use: Annotated[tuple[Text, ...], Strict(False)] = key(
+        "Python files in the folder of the case or below that bring effects, motions or regions", ()
+    )
     scheme: Literal[tuple(SCHEMES)] = key(
         "stable: the default scheme; sph: plain SPH; ssph: the paper's; for the keys that the case "
         "does not give itself", STABLE,
@@ -291,11 +295,17 @@ class Case(Table):
     study: Study = key("the keys that `psph study` varies, and its measure of error", make=Study)
 
     _file: str = PrivateAttr("case")
+    _catalogue: Catalogue = PrivateAttr(BUILT_IN)
 
     @property
     def file(self) -> str:
         """The file as the person named it."""
         return self._file
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """Everything that the case can ask for."""
+        return self._catalogue
 
     @property
     def name(self) -> str:

@@ -1,10 +1,12 @@
 """Tables of a case that are generated from the fields of a NamedTuple."""
 
+import re
+from collections.abc import Iterable
 from typing import Annotated, Any, get_origin, get_type_hints
 
 from pydantic import Strict, create_model, model_validator
 
-from psph.case.tables import Table
+from psph.case.tables import Table, key
 
 
 class Parameters(Table):
@@ -34,6 +36,32 @@ def parameters(of: type) -> type[Parameters]:
             hint = Annotated[hint, Strict(False)]
         fields[name] = (hint, of._field_defaults.get(name, ...))
     return create_model(of.__name__, __base__=Parameters, __doc__=summary(of), **fields)
+
+
+def table_of(name: str, meaning: str, entries: Iterable) -> type[Table]:
+    """A table with an optional key for each entry (psph.physics.catalogue): the last part of its key."""
+    fields: dict[str, Any] = {
+        last_part(entry): (
+            parameters(entry.effect) | None,
+            key(summary(entry.effect), None, otherwise="not this one"),
+        )
+        for entry in entries
+    }
+    return create_model(name, __base__=Table, __doc__=meaning, **fields)
+
+
+def last_part(entry) -> str:
+    """The name under which a table holds what an entry stands for."""
+    return re.split("[.=]", entry.key)[-1]
+
+
+def chosen(table: Table | None, entries: Iterable) -> dict[str, Any]:
+    """The values that such a table asks for, by their names."""
+    asked = ((entry, getattr(table, last_part(entry), None)) for entry in entries)
+    return {
+        last_part(entry): entry.effect(**as_numbers(value))
+        for entry, value in asked if value is not None
+    }
 
 
 def summary(of: type) -> str:

@@ -7,7 +7,7 @@ from mpi4py import MPI
 
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 from psph.solutions.catalogue import known
 from psph.solutions.setting import Setting
 

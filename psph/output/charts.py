@@ -8,9 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from psph.output import style
-from psph.output.probes import FRONT
+from psph.output.probes import FRONT, MEASURED
 from psph.output.reader import Run
-from psph.particles.fields import FIELDS
 
 WIDTH, HEIGHT, GAP = 7.0, 1.6, 0.5
 """Of a chart, and between two of them, inches."""
@@ -39,7 +38,7 @@ def probe_charts(run: Run, case: dict) -> list[Chart]:
         if not probe:  # the time
             continue
         field, _, axis = quantity.partition("_")
-        unit = "m" if field == FRONT else FIELDS[field].unit
+        unit = "m" if field == FRONT else MEASURED[field].unit
         chart = charts.setdefault(field, Chart(field, unit, table["time"], {}, {}))
         name = f"{probe} {axis}".strip()
         chart.curves[name] = values

@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 
 from psph.output import style
 from psph.output.plot import circles
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 
 SIZE = 4.6
 """Of the panel, inches."""

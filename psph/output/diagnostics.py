@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from psph.parallel.reductions import exact_sums, largest
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 from psph.particles.store import Store
 
 

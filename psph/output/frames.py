@@ -7,6 +7,7 @@ millisecond of the layout may leave a file that does not open; a checkpoint brin
 
 import math
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,10 @@ from psph.output import rows as hdf5
 from psph.output.errors import together
 from psph.output.structure import Place, copied, put_back
 from psph.output.xdmf import XdmfIndex
-from psph.particles.fields import FIELDS
+from psph.fields import SAVED, Field
 
-_HELPERS = {
-    "points": ("m", "place in space: what XDMF needs of a 1D scene"),
-    "connectivity": ("1", "row of each particle: what XDMF needs"),
-}
+POINTS = Field("points", "m", "place in space: what XDMF needs of a 1D scene")
+CONNECTIVITY = Field("connectivity", "1", "row of each particle: what XDMF needs")
 
 
 def funnel_notice(comm) -> str | None:
@@ -39,11 +38,16 @@ class FrameFile:
     Open only while a frame is written: it can be read during the run.  Created here; or, with
     ``kept``, the :meth:`structure` of then, the file of a run that goes on: as it was, in whatever
     state it is now.
-    ``attributes`` (numbers and text, such as the case) go to the root of the file.
+    ``attributes`` (numbers and text, such as the case) go to the root of the file; ``fields`` tell
+    what may stand in it, in this order.
     All methods are collective over ``comm`` and raise OutputError on every rank.
     """
 
-    def __init__(self, path: Path, comm, attributes: dict, kept: bytes | None = None):
+    def __init__(
+        self, path: Path, comm, attributes: dict, kept: bytes | None = None,
+        fields: Iterable[Field] = SAVED,
+    ):
+        self._fields = {field.name: field for field in (*fields, POINTS, CONNECTIVITY)}
         self.path, self.comm = Path(path), comm
         self._index = XdmfIndex(self.path)
         self._connected: set[int] = set()
@@ -134,7 +138,7 @@ class FrameFile:
         hdf5.reserve(self.path, hdf5.MARGIN + len(str(attributes)))
         with hdf5.open_file(self.path, "r+") as file:
             file.attrs.update(attributes)
-            listed = [_found(file, f"frames/{name}") for name in sorted(file["frames"], key=int)]
+            listed = [self._found(file, f"frames/{name}") for name in sorted(file["frames"], key=int)]
             orders = file.get("connectivity", {})
             self._connected = {int(name) for name in orders}
             self._places = [hdf5.place_of(dataset) for dataset in orders.values()]
@@ -147,24 +151,19 @@ class FrameFile:
         with hdf5.open_file(self.path, "r+") as file:
             self._places += hdf5.create_datasets(file, shapes, rows)
             for name in shapes:
-                unit, meaning = _describe(name)
-                file[name].attrs.update(unit=unit, meaning=meaning)
+                field = self._field(name)
+                file[name].attrs.update(unit=field.unit, meaning=field.meaning)
             file[frame].attrs.update(time=math.nan, step=step)  # no time yet: not whole
 
+    def _found(self, file, frame: str) -> tuple[str, float, dict]:
+        """A frame's name, time, and the shape and type of its datasets in the order of the fields."""
+        if frame not in file or not math.isfinite(file[frame].attrs.get("time", math.nan)):
+            raise OSError(f"{frame} is missing, or incomplete")
+        datasets = {f"{frame}/{name}": file[frame][name] for name in self._fields if name in file[frame]}
+        kinds = {name: (dataset.shape, dataset.dtype) for name, dataset in datasets.items()}
+        return frame, float(file[frame].attrs["time"]), kinds
 
-def _found(file, frame: str) -> tuple[str, float, dict]:
-    """A frame's name, time, and the shape and type of its datasets in the order of the fields."""
-    if frame not in file or not math.isfinite(file[frame].attrs.get("time", math.nan)):
-        raise OSError(f"{frame} is missing, or incomplete")
-    names = [name for name in (*FIELDS, "points") if name in file[frame]]
-    datasets = {f"{frame}/{name}": file[frame][name] for name in names}
-    kinds = {name: (dataset.shape, dataset.dtype) for name, dataset in datasets.items()}
-    return frame, float(file[frame].attrs["time"]), kinds
-
-
-def _describe(name: str) -> tuple[str, str]:
-    """Unit and meaning of the dataset ``name``."""
-    kind, field = name.split("/")[0], name.split("/")[-1]
-    if field in FIELDS:
-        return FIELDS[field].unit, FIELDS[field].meaning
-    return _HELPERS[field if field in _HELPERS else kind]
+    def _field(self, name: str) -> Field:
+        """The field of the dataset ``name``."""
+        kind, name = name.split("/")[0], name.split("/")[-1]
+        return self._fields[CONNECTIVITY.name if kind == CONNECTIVITY.name else name]

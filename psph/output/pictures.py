@@ -3,11 +3,11 @@
 import re
 from pathlib import Path
 
-from psph.particles.fields import FIELDS
+from psph.fields import SAVED
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 
-_NUMBERED = re.compile(rf"(?:{'|'.join(FIELDS)})_\d{{5,}}\.png")
+_NUMBERED = re.compile(rf"(?:{'|'.join(field.name for field in SAVED)})_\d{{5,}}\.png")
 
 
 def name_of(field: str, frame: int) -> str:

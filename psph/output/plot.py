@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from psph.output import charts, pictures, style
 from psph.output.errors import OutputError
 from psph.output.reader import Run
-from psph.particles.fields import FIELDS, FLUID
+from psph.fields import FLUID
 
 LARGEST = (7.6, 5.6)
 """Width and height that all panels together may take, inches."""
@@ -184,7 +184,7 @@ class Show:
             low, high = low - 0.01 * abs(low) - 1e-30, high + 0.01 * abs(high) + 1e-30
         beyond = (values.min() < low, values.max() > high)
         extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[beyond]
-        factor, unit = style.readable(FIELDS[self.field].unit, largest)
+        factor, unit = style.readable(self.run.unit(self.field), largest)
         return Scale(Normalize(low * factor, high * factor), colours, extend, factor, unit)
 
     def _draw(self, axes: Axes, k: int, first: bool, last: bool) -> None:

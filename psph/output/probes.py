@@ -7,11 +7,13 @@ import numpy as np
 from psph.jit import elementwise
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
-from psph.particles.fields import FIELDS, FLUID
+from psph.fields import FLUID, SAVED, by_name
 from psph.physics.compose import take
 from psph.physics.walls import DryWall
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
+
+MEASURED = by_name(SAVED)
 
 FRONT = "front"
 """The quantity of a probe that follows the fluid."""
@@ -34,7 +36,7 @@ class Probe:
         return [
             f"{self.name}.{field}{suffix}"
             for field in self.fields
-            for suffix in ([f"_{axis}" for axis in "xyz"[:dimensions]] if FIELDS[field].vector else [""])
+            for suffix in ([f"_{axis}" for axis in "xyz"[:dimensions]] if MEASURED[field].composed else [""])
         ]
 
     def sample(self, domain: Domain, kernel) -> np.ndarray:

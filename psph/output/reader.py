@@ -72,6 +72,12 @@ class Run:
 
         return _read(self.path, read)
 
+    def unit(self, name: str) -> str:
+        """The unit of a field, as the last whole frame says."""
+        return _read(
+            self.path, lambda file: str(file["frames"][_whole(file)[-1]][name].attrs["unit"])
+        )
+
     def probes(self) -> dict[str, np.ndarray]:
         """The columns of ``probes.csv`` by name; empty if the case has no probes."""
         return _columns(self.folder / PROBES)

@@ -23,7 +23,7 @@ def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
     parcel = np.empty((len(leaving), fields + 2))
     parcel[:, :fields] = store.data[:, columns].T
     parcel[:, fields] = store.id[columns].view(np.float64)  # the bits, not the value
-    parcel[:, fields + 1] = store.kind[columns]
+    parcel[:, fields + 1] = store.group[columns]
     received = _exchange(comm, parcel, np.bincount(owner[leaving], minlength=comm.size))
     staying = (store.low + np.flatnonzero(owner == comm.rank)).astype(np.uint32)
     store.reorder(staying, 0, 0)

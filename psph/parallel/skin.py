@@ -44,7 +44,7 @@ class Skin:
         self._farthest = min(
             PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf)
         )
-        self._before = (0.0, 0.0)
+        self._before = [0.0, 0.0]
         self.renew()
 
     def renew(self) -> None:
@@ -67,7 +67,7 @@ class Skin:
 
         ``speed``, ``acceleration`` and ``shift`` (m/s) are the largest of the scene.
         """
-        before, self._before = self._before, (acceleration, dt)
+        before, self._before = self._before, [acceleration, dt]
         self._add(acceleration, dt, shift)
         if self._closing is None or not self._bounded(dt, speed):
             if self._worn:

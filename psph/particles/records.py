@@ -7,8 +7,8 @@ a quantity would spread over many; the pair loop turns records into lanes (psph.
 import numpy as np
 
 from psph.jit import elementwise, register_jitable
-from psph.particles.store import Store, seen_as
-from psph.physics.compose import FOLDED, ParticleView
+from psph.particles.store import Store
+from psph.physics.compose import FOLDED
 from psph.physics.space import FixedPoint
 from psph.simd import GROUP
 from psph.threads import in_threads
@@ -46,10 +46,9 @@ class Records:
     def __init__(self, store: Store, names: tuple[str, ...], space):
         self.store = store
         placed = recorded(names)
-        self._names = tuple(n for n in map(seen_as, ParticleView._fields) if n in placed)
-        self._shown = tuple(
-            (name, seen_as(name) in self._names) for name in ParticleView._fields
-        )
+        entries = store.view()._fields
+        self._names = tuple(n for n in map(store.seen_as, entries) if n in placed)
+        self._shown = tuple((name, store.seen_as(name) in self._names) for name in entries)
         rows = [row for name in self._names for row in store.rows[name]]
         self._rows = np.array(rows, np.uint64)
         self._folded = WALL in names and WALL not in placed
@@ -62,22 +61,21 @@ class Records:
         self._type = space.record_type
         self.table = np.zeros((0, self.width), self._type)
 
-    def view(self) -> ParticleView:
+    def view(self):
         """A neighbour: an array for what its record holds, else the shared value, FOLDED or None."""
         store = self.store
-        found = ParticleView(
+        found = type(store.view())(
             *(
-                store[seen_as(name)] if placed else store.constants.get(name)
+                store[store.seen_as(name)] if placed else store.constants.get(name)
                 for name, placed in self._shown
             )
         )
         return found._replace(wall=FOLDED) if self._folded else found
 
-    def fill_all(self) -> None:
-        """Records of owned particles and ghosts, after these found new columns."""
+    def make_room(self) -> None:
+        """Room for owned particles and ghosts, after these found new columns."""
         if len(self.table) < self.store.capacity:
             self.table = _aligned(self.store.capacity, self.width, self._type)
-        self.fill(0, self.store.total)
 
     def fill(self, first: int, last: int) -> None:
         """Bring the records of the columns ``first`` to ``last`` up to date."""

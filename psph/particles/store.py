@@ -1,11 +1,12 @@
 """The particles of one rank as a structure of arrays: [low ghosts | owned | high ghosts]."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 
 from psph.errors import Refused
 from psph.jit import compiled
-from psph.particles.fields import FIELDS
-from psph.physics.compose import ParticleView
+from psph.fields import FLUID, WALL, Field
 
 SLACK = 64
 """Entries past the last particle: a vector load may touch them."""
@@ -15,11 +16,6 @@ SPARE = 64
 
 MOST = 2**32 - SLACK
 """Particles and ghosts that a rank can hold: neighbour lists name them by 32-bit columns."""
-
-
-def seen_as(name: str) -> str:
-    """The field that effects see under a name of a particle view."""
-    return "predicted_velocity" if name == "velocity" else name
 
 
 class TooManyParticles(Refused):
@@ -38,26 +34,32 @@ def check_room(particles: int, ranks: int) -> None:
 class Store:
     """All numbers of this rank's particles in one block, a row a component.
 
-    ``data`` (rows, capacity) float64 holds the fields named; ``id`` (int64) and ``kind`` (uint8)
-    stand beside it.  Owned particles fill columns ``low`` to ``low + owned``, ghosts lie before
-    and behind.  ``constants`` are quantities that
-    the whole scene shares: they need no array.
+    ``data`` (rows, capacity) float64 holds the ``fields``; ``id`` (int64) and ``group`` (uint8),
+    the number of a species, stand beside it.  Owned particles fill columns ``low`` to ``low +
+    owned``, ghosts lie before and behind.  ``constants`` are quantities that the whole scene shares:
+    they need no array.  ``view`` is the NamedTuple in which formulas see the particles, ``kinds`` has
+    the kind of each group.
     """
 
-    def __init__(self, dimensions: int, names: tuple[str, ...], constants: dict[str, float]):
+    def __init__(
+        self, dimensions: int, fields: Iterable[Field], constants: dict[str, float], view: type,
+        kinds: Sequence[int] = (FLUID, WALL),
+    ):
         self.dimensions = dimensions
+        self.fields = {field.name: field for field in fields}
         self.constants = dict(constants)
         self.rows: dict[str, range] = {}
         first = 0
-        for name in names:
-            width = FIELDS[name].width(dimensions)
+        for name, field in self.fields.items():
+            width = field.width(dimensions)
             self.rows[name] = range(first, first + width)
             first += width
         self.low = self.owned = self.high = 0
-        self._view: ParticleView | None = None
+        self._seen_in, self._view = view, None
         self.data = np.zeros((first, SLACK))
         self.id = np.zeros(SLACK, np.int64)
-        self.kind = np.zeros(SLACK, np.uint8)
+        self.group = np.zeros(SLACK, np.uint8)
+        self.kinds = np.array(kinds, np.uint8)
 
     def __contains__(self, name: str) -> bool:
         return name in self.rows
@@ -65,7 +67,7 @@ class Store:
     def __getitem__(self, name: str):
         """The field over all columns: an array, or a tuple of component arrays."""
         rows = self.rows[name]
-        if FIELDS[name].composed:
+        if self.fields[name].composed:
             return tuple(self.data[row] for row in rows)
         return self.data[rows.start]
 
@@ -76,6 +78,11 @@ class Store:
         """
         rows = [self.rows[name] for name in names]
         self.rows.update(zip(names, [rows[-1], *rows[:-1]]))
+
+    @property
+    def kind(self) -> np.ndarray:
+        """The kind of the particle in each column."""
+        return self.kinds[self.group]
 
     @property
     def total(self) -> int:
@@ -96,10 +103,15 @@ class Store:
         """Array(s) of a field, its constant, or None where the scene lacks it."""
         return self[name] if name in self.rows else self.constants.get(name)
 
-    def view(self) -> ParticleView:
-        """What effects see of the particles; their velocity is the predicted one."""
+    def seen_as(self, name: str) -> str:
+        """The field that formulas see under a name: the predicted one of what evolves."""
+        predicted = f"predicted_{name}"
+        return predicted if predicted in self.rows else name
+
+    def view(self):
+        """What formulas see of the particles (psph.fields.view_of)."""
         if self._view is None:
-            self._view = ParticleView(*(self.value(seen_as(n)) for n in ParticleView._fields))
+            self._view = self._seen_in(*(self.value(self.seen_as(n)) for n in self._seen_in._fields))
         return self._view
 
     def owned_rows(self, name: str) -> np.ndarray:
@@ -108,12 +120,14 @@ class Store:
 
     def shown(self, name: str) -> np.ndarray:
         """What :meth:`owned_rows` copies, to be read and not to be kept: the next step changes it."""
-        if name in ("id", "kind"):
+        if name in ("id", "group"):
             values = getattr(self, name)[self.inner]
+        elif name == "kind":
+            values = self.kind[self.inner]
         elif name in self.rows:
             rows = self.rows[name]
             block = self.data[rows.start : rows.stop, self.inner]
-            values = block.T if FIELDS[name].composed else block[0]
+            values = block.T if self.fields[name].composed else block[0]
         else:
             values = np.full(self.owned, self.constants[name])
         values.flags.writeable = False
@@ -132,14 +146,14 @@ class Store:
         if columns + SLACK <= self.capacity:
             return
         wide = columns + columns // SPARE + SLACK
-        for name in ("data", "id", "kind"):
+        for name in ("data", "id", "group"):
             old = getattr(self, name)
             new = np.zeros((*old.shape[:-1], wide), old.dtype)
             new[..., : old.shape[-1]] = old
             setattr(self, name, new)
         self._view = None  # it shows the old arrays
 
-    def append(self, ids: np.ndarray, kinds: np.ndarray, block: np.ndarray) -> None:
+    def append(self, ids: np.ndarray, groups: np.ndarray, block: np.ndarray) -> None:
         """Add owned particles behind the last; ``block`` (rows, n).  Ghosts are lost."""
         n = len(ids)
         end = self.low + self.owned
@@ -147,7 +161,7 @@ class Store:
         self.reserve(end + n)
         self.data[:, end : end + n] = block
         self.id[end : end + n] = ids
-        self.kind[end : end + n] = kinds
+        self.group[end : end + n] = groups
         self.owned += n
 
     def reorder(self, order: np.ndarray, low: int, high: int) -> None:
@@ -155,7 +169,7 @@ class Store:
         n = len(order)
         self.reserve(max(low + n + high, self.total))
         permute(self.data, order, low, np.empty(n))
-        for array in (self.id, self.kind):
+        for array in (self.id, self.group):
             array[low : low + n] = array[order]
         self.low, self.owned, self.high = low, n, high
 

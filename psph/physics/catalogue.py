@@ -1,7 +1,9 @@
 """Every effect and the key of a case that calls for it.  A new effect is one line here."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
+from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name
 from psph.physics.continuity import Continuity
 from psph.physics.correction import GradientCorrection
 from psph.physics.diffusion import DensityDiffusion
@@ -35,6 +37,40 @@ class Entry(NamedTuple):
 
     key: str
     effect: type
+
+
+class Catalogue(NamedTuple):
+    """Everything that a case can ask for."""
+
+    effects: tuple[Entry, ...] = ()
+    states: tuple[Entry, ...] = ()
+    """Equations of state."""
+    motions: tuple[Entry, ...] = ()
+    """Ways in which a wall moves, ``walls.*.motion.NAME``: psph.physics.motion."""
+    regions: tuple[Entry, ...] = ()
+    """Where particles appear or vanish, ``regions.*.NAME``: psph.physics.region."""
+    kernels: tuple[Entry, ...] = ()
+    """Smoothing kernels beside those of psph.smoothing, ``space.kernel=NAME``."""
+    tables: tuple[Entry, ...] = ()
+    """Tables of numbers that a run writes as NAME.csv, ``tables.NAME``: psph.solver.record."""
+
+    def with_more(self, other: "Catalogue") -> "Catalogue":
+        """All that either of two offers."""
+        return Catalogue(*(one + more for one, more in zip(self, other)))
+
+    @property
+    def fields(self) -> dict[str, Field]:
+        """Every field that a particle can carry, by name: those of the step, and of each effect."""
+        return _fields(tuple(entry.effect for entry in self.effects))
+
+
+@lru_cache(maxsize=None)
+def _fields(effects: tuple[type, ...]) -> dict[str, Field]:
+    declared = [
+        getattr(effect, name) for effect in effects for name in ("writes", "marks")
+        if hasattr(effect, name)
+    ]
+    return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, OF_SCENE, declared)
 
 
 CATALOGUE = (
@@ -73,3 +109,5 @@ EQUATIONS_OF_STATE = (
     Entry("physics.equation_of_state=linear", Linear),
     Entry("physics.equation_of_state=tait", Tait),
 )
+
+BUILT_IN = Catalogue(CATALOGUE, EQUATIONS_OF_STATE)

@@ -19,36 +19,6 @@ from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, at, dot, put, scale, subtract, zero_like
 
 
-class ParticleView(NamedTuple):
-    """What effects can read of a particle: arrays of all, or the values of one.
-
-    An entry is an array where the quantity varies, a number where the whole scene shares one
-    value, and None where the scene lacks it.  Vectors are tuples of components.
-    """
-
-    position: Any
-    velocity: Any = None
-    pressure: Any = None
-    specific_volume: Any = None
-    mass: Any = None
-    rest_density: Any = None
-    viscosity: Any = None
-    kernel_sum: Any = None
-    inside: Any = None
-    crowding: Any = None
-    transport: Any = None
-    gradient_correction: Any = None
-    wall: Any = None
-    no_slip: Any = None
-    wet: Any = None
-    stress_point: Any = None
-    slip: Any = None
-    sound_speed: Any = None
-    smoothing_length: Any = None
-    largest_speed: Any = None
-    """Of all fluid particles, a step old; for displacements alone."""
-
-
 FOLDED = True
 """Stands for ``wall`` in a view of neighbours whose specific volume is negative in walls."""
 
@@ -76,23 +46,13 @@ class Pair(NamedTuple):
     """m_j W′(r)/r: what neighbour j weighs in a sum over gradients.  All such sums share it."""
 
 
-VECTORS = ("position", "velocity", "crowding", "transport", "slip", "x_ij", "u_ij")
-"""Entries of a view or a pair with a number for each dimension."""
-
-MATRICES = ("gradient_correction",)
-"""Entries that are symmetric matrices."""
+PAIR_VECTORS = ("x_ij", "u_ij")
+"""Entries of a pair with a number for each axis."""
 
 
-def components(name: str, dimensions: int) -> int | None:
-    """How many components an entry of a view or a pair has; None where it is a number."""
-    if name in MATRICES:
-        return dimensions * (dimensions + 1) // 2
-    return dimensions if name in VECTORS else None
-
-
-def take(view: ParticleView, k: int) -> ParticleView:
-    """The values of particle ``k``."""
-    return ParticleView(*(
+def take(view, k: int):
+    """The values of particle ``k`` of a view (psph.fields.view_of) of all."""
+    return type(view)(*(
         at(entry, k) if isinstance(entry, tuple)
         else entry[k] if isinstance(entry, np.ndarray) else entry
         for entry in view
@@ -105,23 +65,23 @@ def _typed_take(view, k):
         tuple_of(f"view.{name}[{d}][k]" for d in range(len(kind)))
         if isinstance(kind, types.BaseTuple)
         else f"view.{name}[k]" if isinstance(kind, types.Array) else f"view.{name}"
-        for name, kind in zip(ParticleView._fields, view.types)
+        for name, kind in zip(view.instance_class._fields, view.types)
     )
-    return unrolled("view, k", f"return ParticleView{tuple_of(parts)}", ParticleView=ParticleView)
+    return unrolled("view, k", f"return View{tuple_of(parts)}", View=view.instance_class)
 
 
-def fetch(view: ParticleView, records, lists, entry: int) -> ParticleView:
+def fetch(view, records, lists, entry: int):
     """The values of the neighbours ``lists[entry]`` and following, as lanes.
 
     Arrays of ``view`` say which quantities the records hold, in this order.
     """
     left = list(records[lists[entry]])
-    found = ParticleView(*(
+    found = type(view)(*(
         tuple(left.pop(0) for _ in entry) if isinstance(entry, tuple)
         else left.pop(0) if isinstance(entry, np.ndarray) else entry
         for entry in view
     ))
-    if found.wall is not FOLDED:
+    if getattr(found, "wall", None) is not FOLDED:
         return found
     signed = found.specific_volume
     return found._replace(specific_volume=abs(signed), wall=where(signed < 0.0, 1.0, 0.0))
@@ -129,21 +89,21 @@ def fetch(view: ParticleView, records, lists, entry: int) -> ParticleView:
 
 @overload(fetch)
 def _typed_fetch(view, records, lists, entry):
-    places = itertools.count()
+    places, names = itertools.count(), view.instance_class._fields
     parts = {
         name: tuple_of(f"numbers[{next(places)}]" for _ in kind)
         if isinstance(kind, types.BaseTuple)
         else f"numbers[{next(places)}]" if isinstance(kind, types.Array) else f"view.{name}"
-        for name, kind in zip(ParticleView._fields, view.types)
+        for name, kind in zip(names, view.types)
     }
-    if isinstance(view.types[ParticleView._fields.index("wall")], types.Boolean):
+    if "wall" in names and isinstance(view.types[names.index("wall")], types.Boolean):
         signed = parts["specific_volume"]
         parts |= {"specific_volume": f"abs({signed})", "wall": f"where({signed} < 0.0, 1.0, 0.0)"}
     return unrolled(
         "view, records, lists, entry",
         "numbers = turn(records, lists, entry)",
-        f"return ParticleView{tuple_of(parts.values())}",
-        ParticleView=ParticleView, turn=turning(next(places)), where=where,
+        f"return View{tuple_of(parts.values())}",
+        View=view.instance_class, turn=turning(next(places)), where=where,
     )
 
 

@@ -4,9 +4,16 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.fields import SYMMETRIC
+from psph.fields import Field as Declared
 from psph.jit import register_jitable
 from psph.vectors import (
     add, adjugate, determinant, dot, less_diagonal, outer, scale, times, zero_like,
+)
+
+
+CORRECTION = Declared(
+    "gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC
 )
 
 
@@ -32,7 +39,8 @@ class GradientCorrection(NamedTuple):
         ),
     ] = 0.5
 
-    writes = "gradient_correction"
+    writes = CORRECTION
+    lagged = True
 
     def in_scene(self, scene):
         """The form that belongs to the scene's pressure gradient."""
@@ -74,7 +82,8 @@ class DifferenceCorrection(NamedTuple):
 
     least: float
 
-    writes = "gradient_correction"
+    writes = CORRECTION
+    lagged = True
 
     def start(self, i):
         """No neighbour yet."""

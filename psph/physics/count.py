@@ -8,8 +8,9 @@ import operator
 from collections.abc import Iterable
 from typing import Any
 
+from psph.fields import Field, view_of
 from psph.physics import compose
-from psph.physics.compose import ParticleView, added, components, geometry, pushed
+from psph.physics.compose import added, geometry, pushed
 from psph.vectors import subtract
 
 TOWARDS = {"velocity": -1.0}
@@ -20,19 +21,20 @@ APART = 0.5
 
 
 def flops_per_pair(
-    effects: tuple, reductions: tuple, kernel, shared: Iterable[str], periods: tuple
+    effects: tuple, reductions: tuple, kernel, seen: Iterable[Field], shared: Iterable[str],
+    periods: tuple,
 ) -> int:
     """Additions, multiplications, divisions, roots and exponentials of an ordered pair.
 
-    ``effects`` and ``reductions`` as the pair loop has them; ``shared`` names the entries of a view
-    that all particles have in common; ``periods`` has one entry for each dimension.  Comparisons,
+    ``effects`` and ``reductions`` as the pair loop has them; ``seen`` are the fields that formulas
+    read, ``shared`` names those that all particles have in common; ``periods`` has one entry for each dimension.  Comparisons,
     minima and a change of sign count nothing, nor does the search for the nearest image.
     """
     trace = _Trace()
     known = {name: trace.leaf(1.0, False) for name in shared}
     apart = APART / kernel.inverse_h / len(periods) ** 0.5
-    i = _view(trace, len(periods), known, apart, varies=False)
-    j = _view(trace, len(periods), known, 0.0, varies=True)
+    i = _view(trace, seen, len(periods), known, apart, varies=False)
+    j = _view(trace, seen, len(periods), known, 0.0, varies=True)
     kernel, effects, reductions = (trace.parameters(x) for x in (kernel, effects, reductions))
     x_ij = subtract(i.position, j.position)
     pair = geometry(kernel, x_ij, trace.leaf(0.0, False), i, j)
@@ -46,18 +48,18 @@ def flops_per_pair(
     return trace.operations((rate, a, totals))
 
 
-def _view(trace: "_Trace", dimensions: int, known: dict, apart: float, varies: bool):
+def _view(trace: "_Trace", seen, dimensions: int, known: dict, apart: float, varies: bool):
     """The view of one particle of the pair; positions lie ``apart`` m from zero on every axis."""
 
-    def entry(name: str):
-        if name in known:
-            return known[name]
-        if several := components(name, dimensions):
-            value = TOWARDS.get(name, 1.0) * apart
-            return tuple(trace.leaf(value, varies) for _ in range(several))
+    def entry(field: Field):
+        if field.name in known:
+            return known[field.name]
+        if field.composed:
+            value = TOWARDS.get(field.name, 1.0) * apart
+            return tuple(trace.leaf(value, varies) for _ in range(field.width(dimensions)))
         return trace.leaf(0.5 if varies else 1.0, varies)
 
-    return ParticleView(*map(entry, ParticleView._fields))
+    return view_of(tuple(field.name for field in seen))(*map(entry, seen))
 
 
 class _Number:

@@ -57,7 +57,7 @@ class PairPotential(NamedTuple):
 
     def in_scene(self, scene):
         """The potential of the scene's lattice, for one mass or for several."""
-        alike = len({material.mass for material in scene.materials}) == 1
+        alike = len({material.mass for material in scene.species}) == 1
         return neutral_potential(
             self.strength, scene.sound_speed, scene.spacing, scene.dimensions, alike
         )

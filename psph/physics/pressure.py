@@ -4,6 +4,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
+from psph.fields import Field as Declared
 from psph.simd import where
 from psph.smoothing import weight
 from psph.vectors import add, scale, zero_like
@@ -96,7 +97,8 @@ class TensileControl(NamedTuple):
     matrix, and shift particles besides.  Momentum is conserved where s = 1 alone.
     """
 
-    writes = "inside"
+    writes = Declared("inside", "1", "1 inside the fluid, 0 at a free surface")
+    lagged = True
 
     def start(self, i):
         """No neighbour yet."""
@@ -145,7 +147,7 @@ class BackgroundPressure(NamedTuple):
             return self
         if scene.has_free_surface:
             return None
-        dip = 0.5 * max(m.density for m in scene.materials) * scene.starting_speed**2
+        dip = 0.5 * max(m.density for m in scene.species) * scene.starting_speed**2
         needed = MARGIN * max(-scene.lowest_pressure, dip)
         return BackgroundPressure(needed) if needed > 0.0 else None
 

@@ -5,6 +5,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
+from psph.fields import VECTOR
+from psph.fields import Field as Declared
 from psph.jit import register_jitable
 from psph.simd import where
 from psph.smoothing import first_moment, slope_over_r, weight
@@ -22,6 +24,9 @@ a surface has 0.64, the next one 0.94."""
 
 LEAST = 1e-12
 """Floor of (V W(dx))⁴, for a kernel that hardly reaches the nearest particle."""
+
+
+CROWDED = Declared("crowding", "1", "h times the gradient of how crowded it is", VECTOR)
 
 
 class ParticleShifting(NamedTuple):
@@ -44,7 +49,8 @@ class ParticleShifting(NamedTuple):
         ),
     ] = 0.1
 
-    writes = "crowding"
+    writes = CROWDED
+    lagged = True
 
     def start(self, i):
         """Kernel sum, Σ V ∇W and Σ V (WV)⁴ ∇W."""
@@ -122,7 +128,8 @@ class LatticeShift(NamedTuple):
     full: float
     crowded: float
 
-    writes = "crowding"
+    writes = CROWDED
+    lagged = True
 
     def start(self, i):
         """Σ V r W′ and Σ V [1 + 0.2 n⁴] ∇W."""

@@ -2,8 +2,13 @@
 
 from typing import NamedTuple
 
+from psph.fields import VECTOR, Field
 from psph.physics.viscosity import corrected_friction, friction
 from psph.vectors import add, scale, subtract, zero_like
+
+MIRRORED = Field(
+    "slip", "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", VECTOR
+)
 
 NO_FLUID = 1e-300
 """Keeps a kernel sum without any fluid from dividing by zero, 1/m^d."""
@@ -36,7 +41,8 @@ class NoSlip(NamedTuple):
     forces, so it is that of the step before.
     """
 
-    writes = "slip"
+    writes = MIRRORED
+    lagged = True
 
     def in_scene(self, scene):
         """With corrected gradients, the form whose friction has them too."""
@@ -56,7 +62,8 @@ class CorrectedNoSlip(NamedTuple):
     F_ij: both see one velocity of the wall, 2 v_wall − ṽ.
     """
 
-    writes = "slip"
+    writes = MIRRORED
+    lagged = True
 
     def push(self, i, j, pair):
         """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from psph.physics.slip import NO_FLUID
-from psph.physics.transport import moved
+from psph.physics.transport import TRANSPORT, moved
 from psph.vectors import add, scale, zero_like
 
 TWICE = 2.0
@@ -34,7 +34,8 @@ class StressPoints(NamedTuple):
         v_j, bearing = j.specific_volume, TWICE * j.stress_point * (1.0 - i.stress_point)
         return -bearing * (j.pressure * v_j * v_j) * pair.m_dw_r
 
-    writes = "transport"
+    writes = TRANSPORT
+    lagged = True
 
     displacement = moved
 

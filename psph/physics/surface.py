@@ -4,7 +4,11 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.fields import Field as Declared
 from psph.smoothing import weight
+
+NOT_YET_SUMMED = 2.0
+"""A kernel sum that no threshold calls a surface, until the first pass knows better."""
 
 
 class FreeSurface(NamedTuple):
@@ -20,7 +24,11 @@ class FreeSurface(NamedTuple):
         float, Field(gt=0, lt=2, description="β: below this kernel sum a particle is surface")
     ] = 0.9
 
-    writes = "kernel_sum"
+    writes = Declared(
+        "kernel_sum", "1", "sum of W m/rho over the support, the particle included",
+        start=NOT_YET_SUMMED,
+    )
+    lagged = True
 
     def start(self, i):
         """No neighbour yet."""

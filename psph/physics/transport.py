@@ -7,6 +7,8 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.fields import VECTOR
+from psph.fields import Field as Declared
 from psph.jit import register_jitable
 from psph.vectors import add, dot, scale, subtract, zero_like
 
@@ -15,6 +17,11 @@ HALF_STEP = 0.125
 
 OWN_PRESSURE = 10.0
 """Largest background pressure over |p| of the particle (Zhang, Hu & Adams 2017)."""
+
+
+TRANSPORT = Declared(
+    "transport", "m/s", "velocity of the particle minus that of the fluid", VECTOR
+)
 
 
 def _no_neighbour(self, i):
@@ -55,7 +62,8 @@ class XSPH(NamedTuple):
         Field(ge=0, le=1, description="ε: part of the mean", json_schema_extra={"unit": "1"}),
     ] = 0.5
 
-    writes = "transport"
+    writes = TRANSPORT
+    lagged = True
 
     start = _no_neighbour
     displacement = moved
@@ -88,7 +96,8 @@ class TransportVelocity(NamedTuple):
         float, Field(ge=0, description="p_b over ρ₀c²", json_schema_extra={"unit": "1"})
     ] = 1.0
 
-    writes = "transport"
+    writes = TRANSPORT
+    lagged = True
 
     start = _no_neighbour
     displacement = moved
@@ -120,7 +129,8 @@ class GeneralisedTransportVelocity(NamedTuple):
         float, Field(ge=0, description="largest p_b over ρ₀c²", json_schema_extra={"unit": "1"})
     ] = 1.0
 
-    writes = "transport"
+    writes = TRANSPORT
+    lagged = True
 
     start = _no_neighbour
     displacement = moved

@@ -1,8 +1,10 @@
 """A trial call of an effect in plain Python: which fields does its formula read?"""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from psph.physics.compose import OF_A_PARTICLE, Pair, ParticleView, components
+from psph.fields import Field
+from psph.physics.compose import OF_A_PARTICLE, PAIR_VECTORS, Pair
 
 
 class Reads(NamedTuple):
@@ -11,6 +13,10 @@ class Reads(NamedTuple):
     own: frozenset[str]
     neighbour: frozenset[str]
     pair: frozenset[str]
+    in_sum: frozenset[str] = frozenset()
+    """Of either particle, in the effect's own sum."""
+    of_pairs: frozenset[str] = frozenset()
+    """Of either particle, in all that is summed over pairs."""
 
 
 class UnknownField(TypeError):
@@ -28,45 +34,63 @@ SLOPES = ("dw_r", "m_dw_r")
 class _Recorder:
     """Answers every known name with a harmless value and remembers that it was asked."""
 
-    def __init__(self, owner: str, record: type, dimensions: int):
-        self._owner, self._names, self._dimensions = owner, record._fields, dimensions
+    def __init__(self, owner: str, widths: dict[str, int | None]):
+        self._owner, self._widths = owner, widths
         self.read: set[str] = set()
         self.value = VALUES[0]
 
     def __getattr__(self, name: str):
-        if name not in self._names:
-            known = ", ".join(self._names)
+        if name not in self._widths:
+            known = ", ".join(self._widths)
             raise UnknownField(f"{self._owner} reads '{name}'; a particle or pair has {known}")
         self.read.add(name)
-        if several := components(name, self._dimensions):
+        if several := self._widths[name]:
             return (self.value,) * several
         return -self.value if name in SLOPES and self.value != VALUES[0] else self.value
 
 
-def reads(effect, dimensions: int, kernel) -> Reads:
-    """Call every formula of ``effect`` in plain Python; raises UnknownField in one plain line."""
+def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads:
+    """Call every formula of ``effect`` in plain Python; raises UnknownField in one plain line.
+
+    ``fields`` are all that a particle can carry, by name.
+    """
     owner = type(effect).__name__
-    i, j, pair = (_Recorder(owner, r, dimensions) for r in (ParticleView, ParticleView, Pair))
+    particle = {
+        name: field.width(dimensions) if field.composed else None for name, field in fields.items()
+    }
+    geometry = {name: dimensions if name in PAIR_VECTORS else None for name in Pair._fields}
+    i, j, pair = (_Recorder(owner, widths) for widths in (particle, particle, geometry))
     for value in VALUES:
         i.value = j.value = pair.value = value
-        _call_all(effect, i, j, pair, kernel)
+        _sum(effect, i, j, pair, kernel)
+    in_sum = frozenset(i.read | j.read)
+    for value in VALUES:
+        i.value = j.value = pair.value = value
+        _rates(effect, i, j, pair)
+    of_pairs = frozenset(i.read | j.read)
+    for value in VALUES:
+        i.value = value
+        for name in OF_A_PARTICLE:
+            if hasattr(effect, name):
+                getattr(effect, name)(i, 1.0)
     if "m_dw_r" in pair.read:
         j.read.add("mass")
-    return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read))
+    return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read), in_sum, of_pairs)
 
 
-def _call_all(effect, i, j, pair, kernel) -> None:
+def _sum(effect, i, j, pair, kernel) -> None:
+    if not hasattr(effect, "start"):
+        return
+    total = effect.gather(effect.start(i), i, j, pair)
+    if hasattr(effect, "finish_value"):
+        effect.finish_value(total, i, kernel)
+
+
+def _rates(effect, i, j, pair) -> None:
     for name in ("density_rate", "radial", "shear", "push"):
         if hasattr(effect, name):
             getattr(effect, name)(i, j, pair)
-    if hasattr(effect, "start"):
-        total = effect.gather(effect.start(i), i, j, pair)
-        if hasattr(effect, "finish_acceleration"):
-            effect.finish_acceleration(total, i)
-        if hasattr(effect, "finish_value"):
-            effect.finish_value(total, i, kernel)
+    if hasattr(effect, "finish_acceleration"):
+        effect.finish_acceleration(effect.gather(effect.start(i), i, j, pair), i)
     if hasattr(effect, "body"):
         effect.body(i)
-    for name in OF_A_PARTICLE:
-        if hasattr(effect, name):
-            getattr(effect, name)(i, 1.0)

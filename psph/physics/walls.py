@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from psph.fields import Field
 from psph.simd import where
 
 
@@ -13,7 +14,7 @@ class DryWall(NamedTuple):
     it a wall would keep for ever the pressure that it had when the fluid left.
     """
 
-    marks = "wet"
+    marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0)
     """The field that says whether there was fluid in reach when the neighbours were listed."""
     told_by = "wall"
     """The field of a neighbour that tells fluid from wall."""

@@ -4,7 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
-from psph.scene.materials import NONE
+from psph.scene.species import NONE
 
 AT_ONCE = 1 << 15
 """Points that are processed together: their arrays fit into the processor's cache."""

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.random import Generator, Philox
 
 from psph.case.study import EXACT
-from psph.scene.materials import NONE
+from psph.scene.species import NONE
 
 NUMBERS_PER_COUNT = 4
 """Philox gives four 64-bit numbers for each count: one count is one particle."""
@@ -16,7 +16,7 @@ NUMBERS_PER_COUNT = 4
 class ParticleSet:
     """Particles in the order of the lattice; all arrays have n rows.
 
-    ``id`` int64; ``kind`` uint8 (psph.particles.fields); ``material`` uint8, index into the
+    ``id`` int64; ``kind`` uint8 (psph.fields); ``material`` uint8, index into the
     scene's materials; ``position`` (n, dim) m; ``velocity`` (n, dim) m/s; ``density`` (n,) kg/m³;
     ``mass`` (n,) kg.
     """
@@ -69,7 +69,7 @@ def _place(chunk: ParticleSet, scene, held: np.ndarray, sites: np.ndarray, begin
 def _start(chunk: ParticleSet, scene) -> None:
     """Kind, velocity, density and mass by material."""
     for index in np.unique(chunk.material):
-        material, rows = scene.materials[index], chunk.material == index
+        material, rows = scene.species[index], chunk.material == index
         chunk.kind[rows] = material.kind
         chunk.velocity[rows] = scene.velocities[index]
         chunk.density[rows] = scene.starts[index].density(chunk.position[rows])
@@ -85,7 +85,7 @@ def _dry(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> 
         rows = chunk.material == index
         if rows.any():
             wet = scene.layout.near(fluid, begin, end, scene.wall_reach).ravel()[sites]
-            chunk.density[rows & ~wet] = scene.materials[index].density
+            chunk.density[rows & ~wet] = scene.species[index].density
 
 
 def _kick(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> None:

@@ -3,17 +3,19 @@
 import math
 from functools import cached_property
 from itertools import product
+from typing import Any
 
 import numpy as np
 
 from psph.case import Case, CaseError
-from psph.case.parameters import as_numbers
+from psph.case.parameters import as_numbers, chosen
 from psph.case.study import EXACT
 from psph.case.tables import AXES
-from psph.particles.fields import FLUID, WALL
+from psph.particles.reach import Reach
 from psph.physics.catalogue import EQUATIONS_OF_STATE
+from psph.physics.motion import Fixed, Free
 from psph.scene.lattice import lattice_around
-from psph.scene.materials import Census, Layout, Material, Start, take_census
+from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.scene.walls import has_free_surface
@@ -167,17 +169,44 @@ class Scene:
         )
 
     @cached_property
-    def materials(self) -> tuple[Material, ...]:
+    def species(self) -> tuple[Species, ...]:
         """Each fluid, then each wall."""
         names, volume = (*self.case.fluids, *self.case.walls), self.spacing**self.dimensions
         return tuple(
-            Material(
-                name, FLUID if index < self.layout.fluids else WALL,
+            Species(
+                name, self._motion(index),
                 self.bodies[source].density, self.bodies[source].viscosity, start.mass(volume),
                 getattr(self.bodies[index], "no_slip", False),
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
         )
+
+    def _motion(self, index: int):
+        """How a body moves: a fluid freely, a wall as its table says, or not at all."""
+        if index < self.layout.fluids:
+            return Free()
+        asked = chosen(getattr(self.bodies[index], "motion", None), self.case.catalogue.motions)
+        return next(iter(asked.values()), Fixed())
+
+    @cached_property
+    def tables(self) -> dict[str, Any]:
+        """Further tables that a run writes, by their names."""
+        return chosen(getattr(self.case, "tables", None), self.case.catalogue.tables)
+
+    @cached_property
+    def regions(self) -> tuple[tuple[Any, int], ...]:
+        """Where particles appear or vanish, each with the number of the fluid that comes."""
+        tables = getattr(self.case, "regions", {}).values()
+        fluids = list(self.case.fluids)
+        return tuple(
+            (region, fluids.index(table.into) if table.into else 0)
+            for table in tables for region in chosen(table, self.case.catalogue.regions).values()
+        )
+
+    @property
+    def reach(self) -> Reach:
+        """How far particles feel and see each other."""
+        return Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
 
     @cached_property
     def starts(self) -> tuple[Start, ...]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from psph.case.tables import AXES
-from psph.scene.materials import NONE
+from psph.scene.species import NONE
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from psph.scene.lattice import TOLERANCE
-from psph.scene.materials import NONE
+from psph.scene.species import NONE
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene

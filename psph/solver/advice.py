@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from psph.case.model import Guards
 from psph.case.schemes import STABLE
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 from psph.scene.scene import SOUND_OVER_SPEED
 from psph.scene.walls import layers_needed, thinnest_walls
 
@@ -58,7 +58,7 @@ def _pressure(scene, suspect) -> Iterator[str]:
 
 def _friction(scene) -> Iterator[str]:
     physics = scene.case.physics
-    viscous = any(material.viscosity for material in scene.materials)
+    viscous = any(material.viscosity for material in scene.species)
     if physics.artificial_viscosity is None and physics.pair_damping is None and not viscous:
         yield "give physics.artificial_viscosity = 0.05: this fluid has no damping"
 
@@ -79,7 +79,7 @@ def _walls(scene, guard: str, suspect) -> Iterator[str]:
     near_wall = (suspect.around.shown("kind") != FLUID).any()
     if guard != "depth" and not near_wall:
         return
-    need, names = layers_needed(scene), [material.name for material in scene.materials]
+    need, names = layers_needed(scene), [material.name for material in scene.species]
     for material, (layers, _) in thinnest_walls(scene).items():
         yield f"make walls.{names[material]} thicker: {need} spacings instead of {layers}"
     if guard == "depth":

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 
-from psph.physics.count import flops_per_pair
 from psph.solver.plan import Plan, words
 
 PAIRS = "pairs"
@@ -15,13 +14,13 @@ def costs(plan: Plan, periods: tuple, spent: dict[str, float]) -> Iterator[tuple
     An effect's part of the pair loop is estimated by its operations: those that the loop would do
     without if the effect were absent.  What remains is what all share, distances and the kernel.
     """
-    everything = _flops(plan, periods, plan.effects)
+    everything = plan.flops_per_pair(periods)
     a_flop = spent.get(PAIRS, 0.0) / everything
     parts = {name: seconds for name, seconds in spent.items() if name != PAIRS}
     parts[SHARED] = spent.get(PAIRS, 0.0)
     for effect in plan.effects:
         others = tuple(e for e in plan.effects if e is not effect)
-        if own := everything - _flops(plan, periods, others):
+        if own := everything - plan.flops_per_pair(periods, others):
             parts[f"{PAIRS}: {words(type(effect).__name__)}"] = own * a_flop
             parts[SHARED] -= own * a_flop
     return iter(sorted(parts.items(), key=lambda part: -part[1]))
@@ -29,11 +28,6 @@ def costs(plan: Plan, periods: tuple, spent: dict[str, float]) -> Iterator[tuple
 
 SHARED = f"{PAIRS}: distances, kernel, fetching"
 """What no single effect pays for."""
-
-
-def _flops(plan: Plan, periods: tuple, effects: tuple) -> int:
-    reductions = tuple(e for e in effects if hasattr(e, "start"))
-    return flops_per_pair(effects, reductions, plan.kernel, plan.constants, periods)
 
 
 def cost_lines(plan: Plan, periods: tuple, spent: dict[str, float], whole: float) -> Iterator[str]:

@@ -7,10 +7,8 @@ from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
 from psph.particles.cells import make_grid
-from psph.particles.fields import FIELDS
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
-from psph.physics.count import flops_per_pair
 from psph.solver.forecast import forecast, forecast_lines, pull, sites_within
 from psph.solver.hints import hints
 from psph.solver.outlook import outlook
@@ -34,7 +32,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     found = forecast(scene, plan, ranks)
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
-    yield from output_lines(scene, neighbours, found.steps)
+    yield from output_lines(scene, plan, neighbours, found.steps)
     yield from outlook(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
@@ -47,8 +45,9 @@ def slab_planes(scene) -> int:
 
 def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     """Memory of a particle: its fields with the arrays to sort them, and its neighbour list, bytes."""
-    own = NUMBER * _rows(scene, plan.arrays) + IDENTITY
-    record = record_width(_rows(scene, recorded(plan.neighbour_fields))) * plan.space.record_type.itemsize
+    own = NUMBER * _rows(scene, plan, plan.arrays) + IDENTITY
+    widths = (record_width(_rows(scene, plan, recorded(p.neighbour_fields))) for p in plan.passes)
+    record = sum(widths) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
     entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
     return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
@@ -63,13 +62,13 @@ def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
 
 def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
     """Messages of a halo refresh: bytes per ghost, and bytes that a rank sends in all."""
-    each = NUMBER * _rows(scene, plan.refreshed)
+    each = NUMBER * _rows(scene, plan, plan.refreshed)
     return each, each * _neighbours(scene, ranks) * _ghosts_a_side(scene)
 
 
-def _rows(scene, names: tuple[str, ...]) -> int:
+def _rows(scene, plan: Plan, names: tuple[str, ...]) -> int:
     """Numbers that these fields take."""
-    return sum(FIELDS[name].width(scene.dimensions) for name in names)
+    return sum(plan.fields[name].width(scene.dimensions) for name in names)
 
 
 def _neighbours(scene, ranks: int) -> int:
@@ -95,8 +94,7 @@ def _grid(scene):
 
 
 def _cutoff(scene) -> float:
-    support = scene.kernel.support * scene.smoothing_length
-    return support * (1.0 + scene.case.neighbours.skin)
+    return scene.reach.cutoff
 
 
 def _scene_lines(scene, particles: int) -> Iterator[str]:
@@ -105,7 +103,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     yield f"{case.title or case.name} ({case.file})"
     yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
     yield from _preset_lines(case)
-    names = ", ".join(m.name for m in scene.materials)
+    names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
     yield (
         f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
@@ -157,9 +155,8 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
 
 
 def _pass_lines(scene, plan: Plan) -> Iterator[str]:
-    flops = flops_per_pair(
-        plan.effects, plan.reductions, plan.kernel, plan.constants, scene.periods
-    )
+    flops = plan.flops_per_pair(scene.periods)
+    yield from _early_passes(plan)
     yield f"Pass over the neighbours, one a step, {flops} flops a pair"
     state = type(plan.state).__name__
     names = [type(call.effect).__name__ for call in plan.called]
@@ -183,6 +180,15 @@ def _column(names: Iterable[str]) -> int:
 
 NARROWEST = 22
 """Characters of a column of names."""
+
+
+def _early_passes(plan: Plan) -> Iterator[str]:
+    """The passes that gather sums for the one that gives the rates."""
+    for early, later in zip(plan.passes, plan.passes[1:]):
+        names = ", ".join(type(effect).__name__ for effect in early.reductions)
+        often = "one a step" if early.every == 1 else f"one in {early.every} steps"
+        sent = f"; ghosts then get {', '.join(later.brought)}" if later.brought else ""
+        yield f"Pass over the neighbours, {often}, before the next: sums of {names}{sent}"
 
 
 def _asked_by(key: str) -> str:

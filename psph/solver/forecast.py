@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from psph.output.progress import duration
-from psph.physics.count import flops_per_pair
 from psph.solver.plan import Plan
 
 STEP, PARTICLE, FLOP = 3e-5, 4e-8, 1.4e-10
@@ -35,9 +34,7 @@ def forecast(scene, plan: Plan, ranks: int) -> Forecast:
     """What a run of a scene will take on so many ranks, a core each."""
     step, limit = plan.longest_step(scene.expected_speed, pull(plan))
     steps = math.ceil(scene.case.time.end / step)
-    flops = flops_per_pair(
-        plan.effects, plan.reductions, plan.kernel, plan.constants, scene.periods
-    )
+    flops = plan.flops_per_pair(scene.periods)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     each = PARTICLE + neighbours * flops * FLOP
     return Forecast(steps, limit, steps * (STEP + each * float(scene.counts().sum()) / ranks))

@@ -15,29 +15,32 @@ sound on a lattice has ωΔt = 1.0 to 1.1 CFL for most kernels, 1.44 for Wendlan
 import numpy as np
 
 from psph.jit import elementwise, register_jitable
-from psph.particles.fields import FLUID
 from psph.physics.compose import (
     bearing_density, displacement, limit_density, limit_wall_density, take,
 )
+from psph.physics.motion import FREE, carry, hurry
 from psph.physics.state import pressure as state_pressure
 from psph.vectors import add, at, dot, put, scale
 
 
 @elementwise
 def kick_drift_predict(
-    first, last, dt, effects, state, view, kind,
+    first, last, time, dt, effects, state, motions, motion_of, periods, view, group, anchor,
     position, velocity, predicted_velocity, acceleration,
     density, rate, rate_1, rate_2, specific_volume, pressure,
 ):
-    """Kick by half a step, drift, and predict what the forces read.
+    """Kick by half a step, drift to ``time``, and predict what the forces read.
 
-    Columns ``first`` to ``last``; vectors are tuples of component arrays.  Walls stay.
+    Columns ``first`` to ``last``; vectors are tuples of component arrays.  ``motion_of`` has the
+    number of the motion of each group (psph.physics.motion); fixed particles stay, those of the
+    ``motions`` that are prescribed stand where these have them.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         rho = density[k] + dt * (1.75 * rate[k] - rate_1[k] + 0.25 * rate_2[k])
         density[k] += 0.5 * dt * rate[k]
-        if kind[k] == FLUID:
+        motion = motion_of[group[k]]
+        if motion == FREE:
             kick = scale(at(acceleration, k), 0.5 * dt)
             v = add(at(velocity, k), kick)
             put(velocity, k, v)
@@ -47,32 +50,38 @@ def kick_drift_predict(
             rho = limit_density(effects, i, rho)
         else:
             rho = limit_wall_density(effects, i, rho)
+            carry(
+                motions, motion, k, time, periods, anchor, position, velocity, predicted_velocity
+            )
         specific_volume[k] = 1.0 / rho
-        pressure[k] = _pressure(effects, state, i, rho, kind[k])
+        pressure[k] = _pressure(effects, state, i, rho, motion)
 
 
 @elementwise
-def state_of(first, last, effects, state, view, kind, density, specific_volume, pressure):
+def state_of(first, last, effects, state, motion_of, view, group, density, specific_volume, pressure):
     """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         specific_volume[k] = 1.0 / density[k]
-        pressure[k] = _pressure(effects, state, i, density[k], kind[k])
+        pressure[k] = _pressure(effects, state, i, density[k], motion_of[group[k]])
 
 
 @register_jitable
-def _pressure(effects, state, i, rho, kind):
+def _pressure(effects, state, i, rho, motion):
     """Pressure of a particle of density ``rho``, Pa."""
-    bearing = rho if kind == FLUID else bearing_density(effects, i, rho)
+    bearing = rho if motion == FREE else bearing_density(effects, i, rho)
     return state_pressure(state, bearing, i.rest_density, i.sound_speed)
 
 
 @elementwise
-def kick(first, last, dt, effects, view, kind, position, velocity, acceleration, density, rate):
+def kick(
+    first, last, time, dt, effects, motions, motion_of, view, group, anchor, position, velocity,
+    acceleration, density, rate,
+):
     """Kick by the second half of the step, with the new rates.
 
-    Returns the largest |v|², |a|², |ρ/ρ₀ − 1| and square of a displacement over its time step, m²/s²,
-    of the fluid over the columns ``first`` to ``last``; the strain is infinite where any particle has
+    Returns the largest |v|² and |a|² of what moves, and |ρ/ρ₀ − 1| and square of a displacement over
+    its time step, m²/s², of the fluid, over the columns ``first`` to ``last``; the strain is infinite where any particle has
     a number that is not finite.
     """
     v2_max = 0.0
@@ -82,7 +91,8 @@ def kick(first, last, dt, effects, view, kind, position, velocity, acceleration,
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         rho = density[k] + 0.5 * dt * rate[k]
-        if kind[k] == FLUID:
+        motion = motion_of[group[k]]
+        if motion == FREE:
             a = at(acceleration, k)
             v = add(at(velocity, k), scale(a, 0.5 * dt))
             put(velocity, k, v)
@@ -99,5 +109,31 @@ def kick(first, last, dt, effects, view, kind, position, velocity, acceleration,
         else:
             rho = limit_wall_density(effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
+            v2, a2 = hurry(motions, motion, k, time, dt, anchor)
+            v2_max, a2_max = max(v2_max, v2), max(a2_max, a2)
         density[k] = rho
     return v2_max, a2_max, strain_max, shift2_max
+
+
+@elementwise
+def predict_rows(first, last, dt, data, rows):
+    """Evolve further fields as density is: half a kick, and the value that the forces read.
+
+    Each row of ``rows`` (n, 5) names those of ``data`` that hold a component: its value, the predicted
+    one, its rate, that of the step before and that of two steps before.
+    """
+    for n in range(len(rows)):
+        value, predicted, rate, rate_1, rate_2 = rows[n]
+        for k in range(np.uint64(first), np.uint64(last)):
+            change = 1.75 * data[rate, k] - data[rate_1, k] + 0.25 * data[rate_2, k]
+            data[predicted, k] = data[value, k] + dt * change
+            data[value, k] += 0.5 * dt * data[rate, k]
+
+
+@elementwise
+def kick_rows(first, last, dt, data, rows):
+    """The second half of the kick of these fields, with the new rates."""
+    for n in range(len(rows)):
+        value, rate = rows[n, 0], rows[n, 2]
+        for k in range(np.uint64(first), np.uint64(last)):
+            data[value, k] += 0.5 * dt * data[rate, k]

@@ -3,7 +3,8 @@
 import math
 from collections.abc import Iterator
 
-from psph.particles.fields import FIELDS
+from psph.fields import Field
+from psph.solver.plan import Plan
 from psph.solver.record import probes_of
 
 STRUCTURE = 8192
@@ -13,11 +14,11 @@ DIGITS = 19
 """Bytes of a number in a table, its comma included: most have all their digits."""
 
 
-def output_lines(scene, neighbours: float, steps: int) -> Iterator[str]:
+def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[str]:
     """Frames and tables of a scene whose particles have so many ``neighbours``, in ``steps``."""
     out, particles = scene.case.output, int(scene.counts().sum())
     yield "Output, of which nothing is written more than once a step"
-    frames, each = _moments(scene, out.frames, steps), bytes_per_frame(scene)
+    frames, each = _moments(scene, out.frames, steps), bytes_per_frame(scene, plan)
     yield f"  frames              {frames:,}, {amount(each)} each, {amount(frames * each)} in all"
     yield f"  log.csv             {_moments(scene, out.log, steps):,} rows"
     probes = probes_of(scene.case)
@@ -36,9 +37,9 @@ def output_lines(scene, neighbours: float, steps: int) -> Iterator[str]:
     )
 
 
-def bytes_per_frame(scene) -> int:
+def bytes_per_frame(scene, plan: Plan) -> int:
     """Of all datasets of a frame and what describes them."""
-    rows = sum(_bytes(name, scene.dimensions) for name, field in FIELDS.items() if field.saved)
+    rows = sum(_bytes(field, scene.dimensions) for field in plan.saved)
     points = 24 if scene.dimensions == 1 else 0  # the dataset that XDMF needs
     return int(scene.counts().sum()) * (rows + points) + STRUCTURE
 
@@ -53,8 +54,8 @@ UNITS = ("bytes", "KiB", "MiB", "GiB", "TiB", "PiB")
 """Each 1024 times the one before."""
 
 
-def _bytes(name: str, dimensions: int) -> int:
-    return 1 if name == "kind" else 8 * FIELDS[name].width(dimensions)
+def _bytes(field: Field, dimensions: int) -> int:
+    return 1 if field.name in ("kind", "group") else 8 * field.width(dimensions)
 
 
 def _moments(scene, interval: float, steps: int) -> int:

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from psph.physics.compose import Pair, ParticleView
+from psph.fields import view_of
+from psph.physics.compose import Pair
 from psph.physics.continuity import Continuity
 from psph.physics.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.filtering import ConservativeSmoothing
@@ -18,7 +19,7 @@ from psph.physics.stress import NeighbourStress
 from psph.physics.surface import TensionFloor
 from psph.physics.viscosity import PairDamping
 from psph.physics.walls import DryWall
-from psph.scene.materials import Start
+from psph.scene.species import Start
 from psph.solver.plan import Plan, words
 from psph.stability import FORMS, STATES, SYMMETRIC, remedies
 from psph.stability.growth import growth, is_stable
@@ -34,7 +35,7 @@ WITHIN = {
 
 
 def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
-    one = ParticleView(position=None, mass=1.0)
+    one = view_of(("mass",))(1.0)
 
     def attraction(r):
         pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)

@@ -19,7 +19,8 @@ def sum_over_neighbours(
 
     ``view`` shows the particles themselves, ``records`` what is read of neighbours, as
     ``neighbour_view`` says.  ``effects`` is the scene's tuple, ``reductions`` those with a sum of their own and ``written``
-    the array, or None, that each of these fills.  ``softening`` (psph.physics.space) puts lanes
+    the array, or None, that each of these fills; ``acceleration`` and ``density_rate`` are None in a
+    pass that gathers sums alone.  ``softening`` (psph.physics.space) puts lanes
     behind the end of a row out of reach.  Sums are in gather form and in the order of the
     lists, so that they are the same on any number of ranks.
     """
@@ -41,6 +42,7 @@ def sum_over_neighbours(
             totals = compose.gather_each(reductions, totals, i, j, pair)
         sums = compose.fold_each(reductions, totals)
         force = add(total(a), compose.finish_acceleration(reductions, sums, i))
-        put(acceleration, k, add(force, compose.body(effects, i)))
-        density_rate[k] = total(rate)
+        if acceleration is not None:
+            put(acceleration, k, add(force, compose.body(effects, i)))
+            density_rate[k] = total(rate)
         compose.finish_value(reductions, sums, i, kernel, k, written)

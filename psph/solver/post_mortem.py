@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from psph.output.errors import together
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 from psph.solver.suspect import Suspect
 
 REPORT, PICTURE = "post_mortem.md", "post_mortem.png"

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,6 @@ from psph.output.errors import together
 from psph.output.frames import FrameFile
 from psph.output.probes import Front, Probe
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
-from psph.particles.fields import FIELDS
 from psph.solver.step import Simulation
 
 
@@ -64,6 +64,7 @@ class Record:
                 "spacing": scene.spacing,
             },
             saved and saved.frames(),
+            simulation.plan.saved,
         )
         kept = saved and saved.header["record"]
         sizes = kept["sizes"] if kept else {}
@@ -88,6 +89,15 @@ class Record:
             self.write_frame: Schedule(out.frames),
             self.write_probes: Schedule(out.probes),
             self.write_log: Schedule(out.log),
+        }
+        self.further = [
+            (table, CsvTable(
+                folder / f"{name}.csv", ["time", *table.columns(scene)], comm, sizes.get(f"{name}.csv")
+            ))
+            for name, table in scene.tables.items()
+        ]
+        self.schedules |= {
+            partial(self.write_further, *one): Schedule(one[0].every) for one in self.further
         }
         self.last_written = dict.fromkeys(self.schedules, -1)
         if kept:
@@ -136,7 +146,7 @@ class Record:
     def write_frame(self) -> None:
         """All saved fields of all particles."""
         sim = self.simulation
-        arrays = {name: sim.store.shown(name) for name, f in FIELDS.items() if f.saved}
+        arrays = {field.name: sim.store.shown(field.name) for field in sim.plan.saved}
         arrays["position"] = sim.domain.inside(arrays["position"])
         self.frames.write(self.written, sim.time, sim.steps, arrays)
         self.written += 1
@@ -168,6 +178,10 @@ class Record:
             self.latest_errors = self.accuracy.errors(sim.time)
             self.errors.write([sim.time, *self.latest_errors])
 
+    def write_further(self, table, file: CsvTable) -> None:
+        """A line of a table that the case's own files bring."""
+        file.write([self.simulation.time, *map(float, table.row(self.simulation))])
+
     def close(self) -> None:
         """End the files."""
         self.frames.close()
@@ -177,4 +191,5 @@ class Record:
     @property
     def tables(self) -> list[CsvTable]:
         """Those that this run has."""
-        return [t for t in (self.log, self.probe_table, self.errors) if t is not None]
+        own = (self.log, self.probe_table, self.errors, *(file for _, file in self.further))
+        return [table for table in own if table is not None]

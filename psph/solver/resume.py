@@ -41,7 +41,7 @@ def write_checkpoint(simulation: Simulation, record: Record, case, folder: Path)
         kept = record.state()  # first: it has the frames on the disk
         checkpoint.write(
             path, simulation.comm,
-            {name: store.shown(name) for name in ("id", "kind", *store.rows)},
+            {name: store.shown(name) for name in ("id", "group", *store.rows)},
             {
                 "case": case_digest(case), "name": case.name,
                 "state": simulation.state(), "record": kept,
@@ -113,9 +113,9 @@ def _whole(path: Path, comm, case: str) -> Saved | None:
 
 def listed_particles(scene, plan: Plan, saved: Saved) -> Store:
     """A share of the particles of a checkpoint, standing where the lists were made."""
-    store = Store(scene.dimensions, plan.arrays, plan.constants)
-    ids, kinds, listed = saved.share("id", "kind", "listed_position")
+    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    ids, groups, listed = saved.share("id", "group", "listed_position")
     block = np.zeros((len(store.data), len(ids)))
     block[list(store.rows["position"])] = listed.T
-    store.append(ids, kinds, block)
+    store.append(ids, groups, block)
     return store

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
+from psph.case.extensions import files_of
 from psph.case.model import Checkpoint
 from psph.output.checkpoint import COPY, Saved, checkpoints, remove_checkpoints
 from psph.output.errors import OutputError, together
@@ -197,6 +198,9 @@ def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
                 remove_checkpoints(folder)
                 remove_post_mortem(folder)
                 (folder / COPY).write_text(case.to_toml(), encoding="utf-8")
+                for name, used in zip(case.use, files_of(case.file, case.use)):
+                    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                    (folder / name).write_bytes(used.read_bytes())  # a resumed run needs it
         except OSError as error:
             trouble = f"{folder}: {error.strerror}; choose another folder with --out"
     trouble = comm.bcast(trouble)

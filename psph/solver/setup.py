@@ -4,22 +4,16 @@ import time
 
 import numpy as np
 
-from psph.jit import CACHE, many_loops, marker
+from psph.jit import CACHE, is_kept, many_loops, marker
 from psph.output.checkpoint import checksum
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
 from psph.scene.particles import ParticleSet
-from psph.solver.plan import PER_MATERIAL, PER_SITE, Plan, material_value
+from psph.solver.filling import block_of
+from psph.solver.plan import Plan
 from psph.solver.record import probes_of
 from psph.solver.step import Simulation
-
-NOT_YET_SUMMED = 2.0
-"""A kernel sum that no threshold calls a surface, until the first pass knows better."""
-
-NOT_YET_LISTED = 1.0
-"""Every wall counts as wet until the neighbours are listed."""
-
 
 def create_particles(scene, plan: Plan, comm) -> Store:
     """This rank's share of the scene's particles in a store.
@@ -41,24 +35,9 @@ def lattice_particles(scene, comm) -> ParticleSet:
 
 def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
     """A store of these particles of a scene, with the arrays that its plan asks for."""
-    store = Store(scene.dimensions, plan.arrays, plan.constants)
-    block = np.zeros((len(store.data), len(found.id)))
-    for name in ("position", "velocity"):
-        block[list(store.rows[name])] = getattr(found, name).T
-    block[list(store.rows["predicted_velocity"])] = found.velocity.T  # a wall's stays
-    block[store.rows["density"].start] = found.density
-    for name in PER_MATERIAL:
-        if name in store:
-            values = np.array([material_value(m, name) for m in scene.materials])
-            block[store.rows[name].start] = values[found.material]
-    for name in PER_SITE:
-        if name in store:
-            block[store.rows[name].start] = scene.lattice.odd(found.position)
-    if "kernel_sum" in store:
-        block[store.rows["kernel_sum"].start] = NOT_YET_SUMMED
-    for effect in plan.marking:
-        block[store.rows[effect.marks].start] = NOT_YET_LISTED
-    store.append(found.id, found.kind, block)
+    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    block = block_of(scene, store, found.material, found.position, found.velocity, found.density)
+    store.append(found.id, found.material, block)
     return store
 
 
@@ -66,16 +45,17 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     """Every loop of the plan, ready to run: compiled, or loaded from the cache.
 
     Where the cache holds them all, the ranks load together; else rank 0 compiles while the others
-    wait, and they load when they need one.  Without a cache all compile.  Returns the seconds it took.
-    Collective.
+    wait, and they load when they need one.  Without a cache, and with loops of a file that the case
+    uses, all compile.  Returns the seconds it took.  Collective.
     """
     begun = time.perf_counter()
-    store = Store(scene.dimensions, plan.arrays, plan.constants)
-    ready = marker(
-        "step and probes" if scene.case.probes else "step",
-        plan.effects, plan.kernel, plan.state, plan.space, scene.periods, store.view(),
+    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    examples = (
+        tuple((one.effects, one.reductions) for one in plan.passes), plan.kernel, plan.state,
+        plan.space, plan.motions, scene.periods, store.view(),
     )
-    together = comm.bcast(ready is None or ready.exists())
+    ready = marker("step and probes" if scene.case.probes else "step", *examples)
+    together = comm.bcast(ready is None or not is_kept(*examples) or ready.exists())
     if together or comm.rank == 0:
         with many_loops():
             _rehearse(scene, plan, store)
@@ -88,14 +68,10 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
 
 def _rehearse(scene, plan: Plan, store: Store) -> None:
     """One step of two particles of the first fluid in ``store``: it has the types of the whole run."""
-    block, fluid = np.zeros((len(store.data), 2)), scene.materials[0]
-    block[store.rows["density"].start] = fluid.density
-    for name in PER_MATERIAL:
-        if name in store:
-            block[store.rows[name].start] = material_value(fluid, name)
-    middle = [0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)]
-    block[list(store.rows["position"])] = np.array(middle)[:, None]
-    store.append(np.arange(2), np.zeros(2, np.uint8), block)
+    middle = np.tile([0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)], (2, 1))
+    first, density = np.zeros(2, np.uint8), np.full(2, scene.species[0].density)
+    block = block_of(scene, store, first, middle, np.zeros_like(middle), density)
+    store.append(np.arange(2), first, block)
     rehearsal = Simulation(scene, plan, store, alone(), Ledger())
     rehearsal.step()
     rehearsal.settle_pressure()

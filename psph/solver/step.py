@@ -7,17 +7,11 @@ import numpy as np
 from psph.case.consistency import LARGEST_LOSS
 from psph.errors import Failed
 from psph.output.ledger import Ledger
-from psph.parallel.domain import Domain
-from psph.parallel.reductions import largest
-from psph.parallel.skin import Skin
-from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.particles.wetting import mark_wet
-from psph.physics.space import softening
-from psph.solver.integrator import kick, kick_drift_predict, state_of
-from psph.solver.pairs import sum_over_neighbours
+from psph.solver.engine import Engine
 from psph.solver.plan import Plan
-from psph.threads import in_threads
+from psph.solver.population import Population
+from psph.solver.stages import find_limits, kick, stages_of
 
 TOO_FAST = 100.0
 """A particle at this many speeds of sound is a run that blew up, whatever the case allows."""
@@ -49,190 +43,82 @@ class Simulation:
     holds where the lists were made.
     """
 
+    engine_type = Engine
+    """What advances and sums particles."""
+
     def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger, saved=None):
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
-        support = self.support = scene.kernel.support * scene.smoothing_length
-        skin = scene.case.neighbours.skin * support
-        self.domain = Domain(
-            comm, store, scene.axis, support + skin, scene.lower, scene.upper,
-            scene.periods, plan.ghost_fields, plan.refreshed, plan.space.lanes,
-        )
-        self.skin = Skin(self.domain, skin)
-        self.records = Records(store, plan.neighbour_fields, plan.space)
-        self.time, self.dt, self.steps = 0.0, 0.0, 0
+        self.engine = self.engine_type(scene, plan, store, comm, ledger)
+        self.domain, self.skin = self.engine.domain, self.engine.skin
+        self.population = Population(scene, plan, self.domain)
+        self.stages = tuple(stages_of(plan))
+        self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
+        self.listed = False
         self.speed, self.pace, self.strain = 0.0, 0.0, 0.0
         self.energy_at_start: float | None = None
         self.limited_by = ""
         self.word: Callable[[], float] = float
         self.heard = 0.0
-        self._paid = 0.0
         if saved is None:
             self._start()
         else:
             self._restore(saved)
-        self._spent_on_pairs()  # the first passes may have loaded compiled loops
+        self.engine.spent_on_pairs()  # the first passes may have loaded compiled loops
 
     def step(self, end: float = np.inf) -> None:
         """Advance by one time step; the last one before ``end`` (s) ends exactly there."""
-        dt, limited_by, then = self._next_step(end)
-        self._refuse_lost(dt)
-        self.dt, self.limited_by = dt, limited_by
+        self.dt, self.limited_by, self.then = self._next_step(end)
+        self._refuse_lost(self.dt)
         with self.ledger("skin"):
-            listed = self.skin.holds(self.dt, self.speed, self.acceleration, self.shift)
-        with self.ledger("kick, drift, predict"):
-            self._predict(self.dt)
-        if listed:
-            self._forces_while_refreshing()
-        else:
-            self._rebuild()
-            self._forces()
-        with self.ledger("kick"):
-            self._kick(self.dt)
-        self.time = then
+            self.listed = self.skin.holds(self.dt, self.speed, self.acceleration, self.shift)
+        for stage in self.stages:
+            stage(self)
+        self.time = self.then
         self.steps += 1
         self._refuse_blow_up()
+
+    def rebuild(self) -> None:
+        """Put every particle where it belongs and list its neighbours; collective."""
+        self.engine.rebuild()
 
     def state(self) -> dict:
         """All that the next steps rest on but for the numbers of the particles."""
         numbers = {name: getattr(self, name) for name in CLOCK}
         corners = {"lower": self.domain.lower, "upper": self.domain.upper}
-        return numbers | corners | {"skin": self.skin.state()}
+        rest = {"skin": self.skin.state(), "population": self.population.state()}
+        return numbers | corners | rest
 
     def bytes_held(self) -> int:
         """Bytes of this rank's particles, records and lists."""
-        arrays = (self.store.data, self.store.id, self.store.kind, self.records.table)
-        return sum(a.nbytes for a in (*arrays, *self.domain.lists))
+        return self.engine.bytes_held()
 
     def settle_pressure(self) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
-        s = self.store
-        state_of(
-            s.low, s.low + s.owned, self.plan.carriers, self.plan.state, self._view(), s.kind,
-            s["density"], s["specific_volume"], s["pressure"],
-        )
+        self.engine.settle_pressure(self.pace)
 
     def _start(self) -> None:
         """First forces, from particles at rest in time: predicted is initial."""
-        self._predict(0.0)
-        self._rebuild()
-        self._forces()
+        self.engine.predict(0.0, 0.0, self.pace)
+        self.rebuild()
+        self.engine.sum(0, ghosts_are_fresh=True)
         if self.plan.starts_twice:  # its first verdict comes with the first sums
-            self._kick(0.0)
-            self._predict(0.0)
-            self._forces_while_refreshing()
-        for older in ("density_rate_1", "density_rate_2"):
-            self.store[older][:] = self.store["density_rate"]
-        self._kick(0.0)
+            self._kick_in_place()
+            self.engine.predict(0.0, 0.0, self.pace)
+            self.engine.sum(0, ghosts_are_fresh=False)
+        self.engine.begin_rates()
+        self._kick_in_place()
         self._refuse_blow_up()
 
+    def _kick_in_place(self) -> None:
+        kick(self)
+        find_limits(self)
+
     def _restore(self, saved) -> None:
-        """The lists as they were made, then everything as it was when ``saved`` was written."""
-        state = saved.state
-        self.domain.relist(state["lower"], state["upper"])
-        saved.fill(self.store)
-        self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
-        self._fill_records()
+        """Everything as it was when ``saved`` was written."""
+        self.engine.take_up(saved)
         for name in CLOCK:
-            setattr(self, name, state[name])
-        self.skin.restore(state["skin"])
-
-    def _rebuild(self) -> None:
-        with self.ledger("rebuild"):
-            self.domain.rebuild(self._spent_on_pairs())
-            for effect in self.plan.marking:
-                self._mark(effect)
-        self.skin.renew()
-
-    def _mark(self, effect) -> None:
-        """Which walls have fluid in reach."""
-        s, lists = self.store, self.domain.lists
-        in_threads(
-            mark_wet, s.low, s.low + s.owned, s.low, *lists, self.support**2, self.domain.periods,
-            s["position"], s[effect.told_by], s[effect.marks],
-        )
-
-    def _spent_on_pairs(self) -> float:
-        """Seconds of this rank's pair loop since this was last asked."""
-        paid, self._paid = self._paid, self.ledger.seconds["pairs"]
-        return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
-
-    def _forces(self) -> None:
-        with self.ledger("records"):
-            self._fill_records()
-        with self.ledger("pairs"):
-            self._sum(self.store.low, self.store.low + self.store.owned)
-
-    def _fill_records(self) -> None:
-        """What the pair loop reads, for new lists."""
-        self.records.fill_all()
-        plan, rows = self.plan, self.domain.lists.lengths[: self.store.owned]
-        longest = int(rows.max(initial=0))
-        self.softening = softening(plan.space, plan.smoothing_length, longest)
-
-    def _forces_while_refreshing(self) -> None:
-        """Interior particles are computed while the halo travels, then the rim."""
-        first, last = self.domain.interior()
-        halo, fields = self.domain.halo, self.plan.refreshed
-        begin, end = self.store.low, self.store.low + self.store.owned
-        with self.ledger("halo"):
-            halo.start(fields)
-        with self.ledger("records"):
-            self.records.fill(begin, end)
-        with self.ledger("pairs"):
-            self._sum(first, last)
-        with self.ledger("halo"):
-            halo.finish(fields)
-        with self.ledger("records"):
-            self.records.fill(0, begin)
-            self.records.fill(end, self.store.total)
-        with self.ledger("pairs"):
-            self._sum(begin, first)
-            self._sum(last, end)
-
-    def _predict(self, dt: float) -> None:
-        s, plan = self.store, self.plan
-        in_threads(
-            kick_drift_predict, s.low, s.low + s.owned, dt, plan.carriers, plan.state, self._view(),
-            s.kind,
-            s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
-            s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
-            s["specific_volume"], s["pressure"],
-        )
-        s.rotate("density_rate", "density_rate_1", "density_rate_2")
-
-    def _sum(self, first: int, last: int) -> None:
-        if first == last:
-            return
-        s, plan, lists = self.store, self.plan, self.domain.lists
-        written = tuple(s[e.writes] if hasattr(e, "writes") else None for e in plan.reductions)
-        in_threads(
-            sum_over_neighbours, first, last, plan.effects, plan.reductions, plan.kernel,
-            plan.space, self.softening, s.view(), self.records.view(), self.records.table, s.low,
-            lists.begin, lists.lengths, lists.lists, s["acceleration"], s["density_rate"], written,
-        )
-
-    def _kick(self, dt: float) -> None:
-        """Second kick; then the largest speed, acceleration, strain, word and shift over all ranks."""
-        s = self.store
-        self.pace = self.speed  # the shifts of the next step are bounded before its speed is known
-        parts = in_threads(
-            kick, s.low, s.low + s.owned, dt, self.plan.carriers, self._view(), s.kind,
-            s["position"], s["velocity"], s["acceleration"], s["density"], s["density_rate"],
-        )
-        *mine, shift2 = np.max(parts, axis=0)
-        with self.ledger("limits"):
-            sent = [*mine, self.word(), *([shift2] if self.plan.displaces else [])]
-            extremes = largest(self.comm, sent)
-        self.speed, self.acceleration = np.sqrt(extremes[:2]).tolist()
-        self.strain, self.heard = extremes[2:4].tolist()
-        self.shift = float(np.sqrt(extremes[4:]).sum())
-
-    def _view(self):
-        """The particles as the plan's carriers see them; a displacement also sees the pace."""
-        changed = self.plan.uncarried
-        if "largest_speed" not in changed:
-            changed = changed | {"largest_speed": self.pace}
-        return self.store.view()._replace(**changed)
+            setattr(self, name, saved.state[name])
+        self.population.restore(saved.state["population"])
 
     def _next_step(self, end: float) -> tuple[float, str, float]:
         """Δt in s, the name of the limit that sets it, and the time after the step.

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.fields import seen_at
 from psph.particles.store import Store
 from psph.physics import compose
 from psph.physics.compose import added, geometry, pushed, take
@@ -103,21 +104,21 @@ def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -
     store = simulation.store
     with np.errstate(over="ignore", invalid="ignore"):
         near = np.linalg.norm(_away(_places(store), centre, scene.periods), axis=1) <= reach
-    names = ("id", "kind", *store.rows)
+    names = ("id", "group", *store.rows)
     parts = simulation.comm.allgather({name: store.shown(name)[near] for name in names})
     every = {name: np.concatenate([part[name] for part in parts]) for name in names}
     order = np.argsort(every["id"])
-    gathered = Store(store.dimensions, tuple(store.rows), store.constants)
+    gathered = Store(store.dimensions, store.fields.values(), store.constants, type(store.view()), store.kinds)
     block = np.empty((len(gathered.data), len(order)))
     for name, rows in gathered.rows.items():
         block[rows.start : rows.stop] = every[name][order].reshape(len(order), -1).T
-    gathered.append(every["id"][order], every["kind"][order], block)
+    gathered.append(every["id"][order], every["group"][order], block)
     return gathered
 
 
 def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -> tuple:
     """What each effect does to a particle, by its plain formulas over its neighbours."""
-    view = around.view()._replace(largest_speed=simulation.pace)
+    view = seen_at(around.view(), simulation.pace)
     reach = scene.kernel.support * scene.smoothing_length
     near = np.flatnonzero(np.linalg.norm(offset, axis=1) <= reach)
     i = take(view, column)
@@ -126,7 +127,7 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
         for k in near[near != column]:
             j = take(view, k)
             x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
-            pairs.append((j, geometry(scene.kernel, x_ij, simulation.softening[0], i, j)))
+            pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
         return tuple(
             _share(effect, i, pairs, simulation.dt) for effect in simulation.plan.effects
         )

@@ -4,7 +4,6 @@ import math
 from collections.abc import Iterator
 
 from psph.case.profiles import OFF
-from psph.physics.catalogue import CATALOGUE
 from psph.scene import Scene
 from psph.solver.plan import make_plan, words
 from psph.study.ladder import Settings
@@ -20,7 +19,7 @@ def without_each(case) -> dict[str, Settings]:
     """For each effect that can be switched off: its name, and the keys that do so."""
     absent = make_plan(Scene(case)).absent
     found = {}
-    for entry in CATALOGUE:
+    for entry in case.catalogue.effects:
         if entry.key and "=" not in entry.key and entry not in absent:
             head, star, tail = entry.key.partition("*")
             names = list(getattr(case, head.rstrip("."))) if star else [""]

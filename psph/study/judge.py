@@ -12,7 +12,7 @@ from psph.case.study import EXACT
 from psph.output.accuracy import NORMS
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 from psph.scene import Scene
 from psph.solutions.catalogue import known
 from psph.solver.record import probes_of

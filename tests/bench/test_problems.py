@@ -13,7 +13,7 @@ from psph.bench.falling import COARSEST, Falling, fall
 from psph.bench.tank import HEIGHT, Tank
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
-from psph.particles.fields import FLUID
+from psph.fields import FLUID
 from psph.scene import Scene
 from psph.scene.particles import ParticleSet
 from psph.scene.walls import thinnest_walls

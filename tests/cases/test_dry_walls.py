@@ -6,7 +6,7 @@ from drafts import draft
 from mpi4py import MPI
 
 from psph.output.reader import Run
-from psph.particles.fields import WALL
+from psph.fields import WALL
 from psph.solver.run import run
 
 DX, DEPTH = 0.02, 0.3

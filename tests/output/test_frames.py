@@ -15,7 +15,7 @@ from psph.output import rows as hdf5
 from psph.output.errors import OutputError
 from psph.output.frames import FrameFile, funnel_notice
 from psph.output.reader import Run
-from psph.particles.fields import FIELDS
+from psph.fields import SAVED, by_name
 
 
 def cloud(count, dimensions, seed=0):
@@ -57,7 +57,7 @@ def test_datasets_are_contiguous_and_described(tmp_path, alone):
         for name, dataset in frame.items():
             assert dataset.chunks is None
             described = (dataset.attrs["unit"], dataset.attrs["meaning"])
-            assert described == (FIELDS[name].unit, FIELDS[name].meaning)
+            assert described == (by_name(SAVED)[name].unit, by_name(SAVED)[name].meaning)
 
 
 @pytest.mark.parametrize("dimensions", [1, 2, 3])

@@ -20,6 +20,7 @@ from psph.output.ledger import Ledger
 from psph.parallel import domain
 from psph.parallel.slabs import partition
 from psph.scene import Scene
+from psph.solver.engine import Engine
 from psph.solver.plan import make_plan
 from psph.solver.record import Record
 from psph.solver.setup import compile_ahead, create_particles
@@ -34,12 +35,18 @@ WRITTEN_BY = {7: 7, 4: 7, 3: 7, 2: 4, 1: 3}
 """On how many ranks the checkpoint was written that so many go on from."""
 
 
-class Apart(Counted):
+class ApartEngine(Engine):
     """No overlap: the halo is there before any pair is summed."""
 
-    def _forces_while_refreshing(self):
-        self.domain.halo.refresh(self.plan.refreshed)
-        self._forces()
+    def _sum_while_refreshing(self, one, fields):
+        self.domain.halo.refresh(fields)
+        self._sum_all(one)
+
+
+class Apart(Counted):
+    """A simulation with such an engine."""
+
+    engine_type = ApartEngine
 
 
 def begun(case, comm, kind=Counted):

@@ -158,7 +158,7 @@ def full_disk():
 def test_full_disk_is_one_line_on_every_rank(comm, mpi_tmp_path, way):
     frames = FrameFile(mpi_tmp_path / "tank.h5", comm, {})
     frames.write(0, 0.0, 0, share(cloud(100, 2), comm, (50, 50)))
-    with pytest.raises(OutputError, match="tank.h5: cannot be written: File too large; see to"):
+    with pytest.raises(OutputError, match="tank.h5: cannot be written: File too large; check"):
         with full_disk():
             frames.write(1, 0.1, 1, share(cloud(100_000, 2), comm, (50_000, 50_000)))
     assert Run(mpi_tmp_path).times.tolist() == [0.0]
@@ -178,7 +178,7 @@ def test_disk_that_fills_up_meanwhile_is_noticed(comm, mpi_tmp_path, way, monkey
 
 
 def test_failure_of_one_rank_is_that_of_all(comm, mpi_tmp_path):
-    with pytest.raises(OutputError, match="tank.h5: cannot be written: rank 1 failed; see"):
+    with pytest.raises(OutputError, match="tank.h5: cannot be written: rank 1 failed; check"):
         with together(comm, mpi_tmp_path / "tank.h5"):
             if comm.rank == 1:
                 raise OSError("rank 1 failed")

@@ -9,7 +9,6 @@ from parallel.test_simulation import box, start
 
 from psph.output.ledger import Ledger
 from psph.parallel import halo as halo_module
-from psph.particles.fields import FIELDS
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -106,7 +105,7 @@ def events_of_a_step(simulation, events, kind):
 def expected_sends(simulation, names):
     """(partner, bytes) of one refresh, from what the neighbours hold as ghosts."""
     store, domain = simulation.store, simulation.domain
-    rows = sum(FIELDS[n].width(simulation.store.dimensions) for n in names)
+    rows = sum(simulation.store.fields[n].width(simulation.store.dimensions) for n in names)
     ghosts = COMM.allgather((store.low, store.high))
     below, above = domain._partner(-1), domain._partner(1)
     sends = [(below, 8 * rows * ghosts[below][1])] if below != MPI.PROC_NULL else []
@@ -142,7 +141,7 @@ def test_a_step_sends_one_message_a_neighbour_and_reduces_once(name, watched):
     received = [event for event in found if event[0] == "Recv_init"]
     assert len(received) == len(sends)
     assert sum(e[2] for e in received) == 8 * (simulation.store.low + simulation.store.high) * sum(
-        FIELDS[n].width(simulation.store.dimensions) for n in fields
+        simulation.store.fields[n].width(simulation.store.dimensions) for n in fields
     )
     rest = [e for e in found if e[0] not in ("Send_init", "Recv_init", "wait", "pairs")]
     assert rest == [("Allreduce", (4 + simulation.plan.displaces) * 8)]

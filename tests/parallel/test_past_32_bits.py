@@ -5,12 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from mpi4py import MPI
+from stores import store_of
 
 from psph.parallel.halo import _slice_type
 from psph.parallel.migration import _each
 from psph.parallel.reductions import exact_sums
 from psph.parallel.slabs import Prices, partition, rebalanced
-from psph.particles.store import Store
 from psph.solver.setup import create_particles
 
 
@@ -95,7 +95,7 @@ def test_ids_past_2_31_migrate_as_they_are(base):
     from psph.parallel.migration import migrate
 
     comm = MPI.COMM_WORLD
-    store = Store(1, ("position",), {})
+    store = store_of(1, ("position",))
     ids = base + np.arange(6) + 10 * comm.rank
     store.append(ids, np.zeros(6, np.uint8), np.zeros((1, 6)))
     assert migrate(comm, store, np.full(6, (comm.rank + 1) % comm.size))

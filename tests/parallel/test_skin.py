@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 from mpi4py import MPI
+from stores import store_of
 
 from psph.parallel.domain import Domain
 from psph.parallel.skin import Skin
 from psph.particles.drift import bounding_boxes, largest_differences
-from psph.particles.store import Store
 
 NAMES = ("position", "listed_position", "predicted_velocity")
 CUTOFF, WIDE = 0.17, 0.02
@@ -17,7 +17,7 @@ CUTOFF, WIDE = 0.17, 0.02
 
 def domain_of(n, dim, periodic=(), seed=3):
     rng = np.random.default_rng(seed)
-    store = Store(dim, NAMES, {})
+    store = store_of(dim, NAMES)
     block = np.zeros((len(store.data), n))
     block[list(store.rows["position"])] = rng.uniform(0, 1, (dim, n))
     store.append(np.arange(n), np.zeros(n, np.uint8), block)
@@ -111,7 +111,7 @@ def test_bodies_that_were_far_apart_are_seen_in_time(axis, away, slab):
     """Two particles alone, one flies towards the other: new lists before they feel each other."""
     x = np.full((2, 3), 0.05)
     x[1, axis] += away
-    store = Store(3, NAMES, {})
+    store = store_of(3, NAMES)
     block = np.zeros((len(store.data), 2))
     block[list(store.rows["position"])] = x.T
     store.append(np.arange(2), np.zeros(2, np.uint8), block)

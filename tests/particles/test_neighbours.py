@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 from mpi4py import MPI
+from stores import store_of
 
 from psph.parallel.domain import CELLS_A_PARTICLE, Domain
-from psph.particles.store import Store
 from psph.physics.space import Metres
 
 NAMES = ("position", "listed_position", "density")
@@ -17,7 +17,7 @@ def domain_of(positions, cutoff, lower, upper, periods, axis=0, comm=MPI.COMM_SE
     """A rebuilt domain of particles at ``positions`` (n, dim); their density is their id."""
     n, dim = positions.shape
     mine = np.arange(n) if mine is None else mine
-    store = Store(dim, NAMES, {"mass": 1.0})
+    store = store_of(dim, NAMES, {"mass": 1.0})
     block = np.zeros((len(store.data), len(mine)))
     block[list(store.rows["position"])] = positions[mine].T
     block[store.rows["density"].start] = mine

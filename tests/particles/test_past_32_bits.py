@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from drafts import draft
 from mpi4py import MPI
+from stores import store_of
 
 from psph.output.ledger import Ledger
 from psph.parallel.halo import _slice_type
 from psph.particles import neighbours
 from psph.particles.cells import make_grid, number_cells, planes_of, sort_by_cell
-from psph.particles.store import MOST, Store, TooManyParticles, check_room, permute
+from psph.particles.store import MOST, TooManyParticles, check_room, permute
 from psph.scene import Scene
 from psph.solver.plan import make_plan
 from psph.solver.setup import create_particles
@@ -68,14 +69,14 @@ def near_and_far(tmp_path):
     near, far = small(tmp_path), small(tmp_path)
     store, domain = far.store, far.domain
     store.data = shifted(tmp_path, store.data, COLUMNS)
-    store.id, store.kind = (shifted(tmp_path, a, COLUMNS) for a in (store.id, store.kind))
+    store.id, store.group = (shifted(tmp_path, a, COLUMNS) for a in (store.id, store.group))
     store.low += COLUMNS
     store._view = None
-    table = far.records.table
-    far.records.table = sparse(tmp_path, (COLUMNS + len(table), table.shape[1]), table.dtype)
-    far.records.table[COLUMNS:] = table
-    fill = far.records.fill  # the columns before these were never ghosts
-    far.records.fill = lambda first, last: fill(max(first, COLUMNS), max(last, COLUMNS))
+    table = far.engine.records[-1].table
+    far.engine.records[-1].table = sparse(tmp_path, (COLUMNS + len(table), table.shape[1]), table.dtype)
+    far.engine.records[-1].table[COLUMNS:] = table
+    fill = far.engine.records[-1].fill  # the columns before these were never ghosts
+    far.engine.records[-1].fill = lambda first, last: fill(max(first, COLUMNS), max(last, COLUMNS))
     domain.starts = domain.starts + COLUMNS
     domain.lists = domain.lists._replace(
         begin=domain.lists.begin + np.uint64(ENTRIES),
@@ -148,7 +149,7 @@ def test_sorting_into_cells_past_2_31_by_ids_past_2_31(tmp_path):
 
 
 def test_a_rank_that_cannot_hold_its_share_is_refused_before_any_work():
-    store = Store(3, ("position",), {})
+    store = store_of(3, ("position",))
     with pytest.raises(TooManyParticles, match="4,294,967,233 particles and ghosts on one rank"):
         store.reserve(MOST + 1)
     assert store.capacity < 100

@@ -3,9 +3,9 @@
 import numba
 import numpy as np
 import pytest
+from stores import store_of
 
 from psph.particles.records import Records, record_width, recorded
-from psph.particles.store import Store
 from psph.physics.compose import FOLDED, fetch
 from psph.physics.space import Metres, fixed_point
 from psph.simd import spread, total, width_of
@@ -29,13 +29,14 @@ def sums(view, records, lists):
 @pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
 def test_a_wall_is_told_by_a_sign_and_takes_no_place(space):
     rng = np.random.default_rng(5)
-    store, n = Store(2, HELD, {}), 16
+    store, n = store_of(2, HELD), 16
     block = rng.uniform(0.5, 2.0, (7, n)).astype(np.float32).astype(float)
     wall = block[-1] = rng.integers(0, 2, n)
     store.append(np.arange(n), wall.astype(np.uint8), block)
     store.reorder(np.arange(n), 0, 0)
     records = Records(store, HELD, space)
-    records.fill_all()
+    records.make_room()
+    records.fill(0, store.total)
     assert records.width == record_width(6) == record_width(sum(len(store.rows[f]) for f in recorded(HELD)))
     assert records.view().wall is FOLDED
     found = sums(records.view(), records.table, np.arange(n, dtype=np.uint32))
@@ -47,18 +48,19 @@ def test_a_wall_is_told_by_a_sign_and_takes_no_place(space):
 
 def test_without_walls_the_records_are_as_they_stand():
     names = HELD[:-1]
-    store = Store(2, names, {"wall": 0.0})
+    store = store_of(2, names, {"wall": 0.0})
     store.append(np.arange(3), np.zeros(3, np.uint8), np.full((6, 3), 2.0))
     store.reorder(np.arange(3), 0, 0)
     records = Records(store, names, SPACES["double"])
-    records.fill_all()
+    records.make_room()
+    records.fill(0, store.total)
     assert records.view().wall == 0.0 and (records.table[:3, :6] == 2.0).all()
 
 
 @pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
 def test_a_fluid_of_negative_density_is_no_wall(space):
     """A run that goes on in spite of its guards may have one."""
-    store, n = Store(2, HELD, {}), 16
+    store, n = store_of(2, HELD), 16
     wall = np.arange(n) % 2
     block = np.full((7, n), 2.0)
     block[-1] = wall
@@ -66,7 +68,8 @@ def test_a_fluid_of_negative_density_is_no_wall(space):
     store.append(np.arange(n), wall.astype(np.uint8), block)
     store.reorder(np.arange(n), 0, 0)
     records = Records(store, HELD, space)
-    records.fill_all()
+    records.make_room()
+    records.fill(0, n)
     for k in range(n):
         j = fetch(records.view(), records.table, np.arange(n), k)
         assert j.wall == wall[k] and j.specific_volume == 2.0

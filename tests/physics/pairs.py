@@ -4,10 +4,11 @@ import numba
 import numpy as np
 from numba.core import types
 from numba.extending import overload
+from stores import seen
 
 from psph.jit import method_of
 from psph.physics import compose
-from psph.physics.compose import ParticleView, geometry, take
+from psph.physics.compose import geometry, take
 from psph.smoothing import kernel
 from psph.vectors import nearest_image, subtract
 
@@ -20,7 +21,7 @@ ONE_FOR_ALL = ("sound_speed", "smoothing_length", "largest_speed")
 def view(n=2, dim=2, seed=3):
     """Particles scattered within a support, all fields filled."""
     rng = np.random.default_rng(seed)
-    return ParticleView(
+    return seen(
         position=tuple(rng.uniform(0, H, n) for _ in range(dim)),
         velocity=tuple(rng.normal(size=n) for _ in range(dim)),
         pressure=rng.normal(size=n) * 1000,

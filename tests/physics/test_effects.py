@@ -11,7 +11,7 @@ import pytest
 from long import long_but_for
 from physics.pairs import H, OPEN, pair_of, rates, sums_of, view
 
-from psph.physics.catalogue import CATALOGUE
+from psph.physics.catalogue import BUILT_IN, CATALOGUE
 from psph.physics.continuity import Continuity
 from psph.physics.correction import DifferenceCorrection, GradientCorrection
 from psph.physics.diffusion import DensityDiffusion, TankDiffusion
@@ -573,15 +573,15 @@ def test_pressure_work_is_what_continuity_says():
 
 
 def test_reads_are_found_by_a_trial_call():
-    found = reads(LaminarViscosity(), 2, kernel("cubic", H, 2))
+    found = reads(LaminarViscosity(), 2, kernel("cubic", H, 2), BUILT_IN.fields)
     assert found.neighbour == {"mass", "specific_volume", "viscosity"}
     assert found.own == {"specific_volume", "viscosity", "smoothing_length"}
     assert found.pair == {"r2", "m_dw_r"}
 
 
 def test_both_sides_of_a_comparison_are_tried():
-    assert "rest_density" in reads(FreeSurface(), 2, kernel("cubic", H, 2)).own
-    found = reads(MinimumPressure(), 2, kernel("cubic", H, 2))
+    assert "rest_density" in reads(FreeSurface(), 2, kernel("cubic", H, 2), BUILT_IN.fields).own
+    found = reads(MinimumPressure(), 2, kernel("cubic", H, 2), BUILT_IN.fields)
     assert "pressure" in found.neighbour and "x_ij" in found.pair
 
 
@@ -593,7 +593,7 @@ def test_an_effect_that_reads_what_nobody_has():
             return i.temperature * pair.dw_r
 
     with pytest.raises(UnknownField, match="Buoyancy reads 'temperature'.*pressure"):
-        reads(Buoyancy(), 2, kernel("cubic", H, 2))
+        reads(Buoyancy(), 2, kernel("cubic", H, 2), BUILT_IN.fields)
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from psph.case import load
-from psph.particles.fields import WALL
+from psph.fields import WALL
 from psph.scene import Scene
 
 
@@ -17,7 +17,7 @@ def dam():
 def test_only_walls_near_the_column_carry_its_pressure(dam):
     scene, particles = dam
     wall = particles.kind == WALL
-    pressed = particles.density > scene.materials[0].density
+    pressed = particles.density > scene.species[0].density
     x, y = particles.position.T
     assert pressed[wall & (x < 0) & (y > 0) & (y < 1.9)].all()
     assert pressed[wall & (y < 0) & (x < 1.0)].all()

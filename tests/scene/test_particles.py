@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drafts import TANK, WATER, draft
 
-from psph.particles.fields import FLUID, WALL
+from psph.fields import FLUID, WALL
 from psph.scene import Scene
 from psph.scene import lattice as lattices
 

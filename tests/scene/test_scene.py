@@ -7,8 +7,8 @@ import pytest
 from drafts import TANK, WATER, draft
 
 from psph.case import CaseError, load
-from psph.particles.fields import FLUID, WALL
-from psph.scene import Material, Scene, check
+from psph.physics.motion import Fixed, Free
+from psph.scene import Species, Scene, check
 from psph.scene import lattice as lattices
 
 CASES = Path(__file__).parents[2] / "run/cases"
@@ -103,10 +103,10 @@ shape.box = { lower = [0.0, 0.5], upper = [1.0, 0.6] }
 density = 900.0
 viscosity = 1e-4
 """
-    assert scene(tmp_path, text).materials == (
-        Material("water", FLUID, 1000.0, 0.0, pytest.approx(10.0)),
-        Material("oil", FLUID, 900.0, 1e-4, pytest.approx(9.0)),
-        Material("tank", WALL, 900.0, 1e-4, pytest.approx(9.0)),
+    assert scene(tmp_path, text).species == (
+        Species("water", Free(), 1000.0, 0.0, pytest.approx(10.0)),
+        Species("oil", Free(), 900.0, 1e-4, pytest.approx(9.0)),
+        Species("tank", Fixed(), 900.0, 1e-4, pytest.approx(9.0)),
     )
 
 
@@ -116,7 +116,7 @@ def test_a_uniform_pressure_sets_the_mass(tmp_path, state):
     square = scene(tmp_path, WATER, "fluids.water.pressure=-2500", *overrides)
     density = square.state.density(-2500.0, 1000.0, 5.0)
     assert density < 905.0
-    assert square.materials[0].mass == pytest.approx(density * 0.01)
+    assert square.species[0].mass == pytest.approx(density * 0.01)
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ PHASES = ("start", "step", "halo", "rebuild", "frame", "table", "checkpoint", "b
 PLACES = {
     "a step begins": ("step.Simulation.step", "before", None),
     "a step ends": ("step.Simulation.step", "after", None),
-    "lists are made": ("step.Simulation._rebuild", "after", None),
+    "lists are made": ("step.Simulation.rebuild", "after", None),
     "messages travel": ("halo.Halo.start", "after", None),
     "messages are waited for": ("halo.Halo.finish", "before", None),
     "a frame begins": ("frames.FrameFile.write", "before", None),
@@ -71,7 +71,7 @@ def _watch(row, blow):
         place, number = blow
         wrap(PLACES[place][0], _deadly(row, number, *PLACES[place][1:]))
     for place, phase in (
-        ("step.Simulation.step", "step"), ("step.Simulation._rebuild", "rebuild"),
+        ("step.Simulation.step", "step"), ("step.Simulation.rebuild", "rebuild"),
         ("halo.Halo.start", "halo"), ("halo.Halo.finish", "halo"),
         ("frames.FrameFile.write", "frame"), ("tables.CsvTable.write", "table"),
         ("checkpoint.write", "checkpoint"),

@@ -11,11 +11,10 @@ from mpi4py import MPI
 
 from psph.jit import FAST
 from psph.output.ledger import Ledger
-from psph.physics.catalogue import CATALOGUE, Entry
+from psph.physics.catalogue import BUILT_IN, CATALOGUE, Entry
 from psph.scene import Scene
 from psph.solver import pairs
-from psph.solver import plan as plan_module
-from psph.solver import step as step_module
+from psph.solver import engine as engine_module
 from psph.solver.explain import bytes_per_refresh
 from psph.solver.plan import make_plan
 from psph.solver.setup import create_particles
@@ -68,15 +67,14 @@ def footprint(tmp_path, monkeypatch):
 
     def make(catalogue, *overrides):
         calls = []
-        monkeypatch.setattr(plan_module, "CATALOGUE", tuple(catalogue))
         monkeypatch.setattr(Simulation, "_start", lambda self: None)  # no step: types suffice
-        monkeypatch.setattr(step_module, "sum_over_neighbours", lambda *call: calls.append(call))
+        monkeypatch.setattr(engine_module, "sum_over_neighbours", lambda *call: calls.append(call))
         scene = Scene(draft(tmp_path, SQUARE, *overrides))
-        plan = make_plan(scene)
+        plan = make_plan(scene, BUILT_IN._replace(effects=tuple(catalogue)))
         store = create_particles(scene, plan, MPI.COMM_SELF)
-        simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
-        simulation._fill_records()
-        simulation._sum(0, store.owned)
+        engine = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger()).engine
+        engine._fit_records()
+        engine.sum_columns(plan.passes[-1], 0, store.owned)
         [call] = calls
         read = tuple(n for n, x in store.view()._asdict().items() if x is not None)
         halo = plan.refreshed + plan.ghost_fields

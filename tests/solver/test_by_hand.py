@@ -6,6 +6,7 @@ import numba
 import numpy as np
 import pytest
 from mpi4py import MPI
+from solver.resuming import fill_records
 
 from psph.bench import DAM
 from psph.bench.box import Box
@@ -18,7 +19,7 @@ from psph.physics.viscosity import ArtificialViscosity
 from psph.scene import Scene
 from psph.simd import spread, total, turning, width_of
 from psph.solver import pairs
-from psph.solver import step as step_module
+from psph.solver import engine as engine_module
 from psph.solver.plan import make_plan
 from psph.solver.step import Simulation
 
@@ -77,7 +78,7 @@ def simulation():
         component[simulation.store.inner] = np.random.default_rng(1).uniform(
             -1.0, 1.0, simulation.store.owned
         )
-    simulation.records.fill_all()
+    fill_records(simulation)
     return simulation
 
 
@@ -87,10 +88,11 @@ def call_by_hand(s: Simulation) -> tuple:
     [friction] = [e for e in s.plan.effects if isinstance(e, ArtificialViscosity)]
     c = store.constants
     return (
-        store.low, store.low + store.owned, s.records.table, store.low, lists.begin, lists.lengths,
-        lists.lists, *store["position"], *store["predicted_velocity"], store["pressure"],
+        store.low, store.low + store.owned, s.engine.records[-1].table, store.low, lists.begin,
+        lists.lengths, lists.lists, *store["position"], *store["predicted_velocity"],
+        store["pressure"],
         store["specific_volume"], c["mass"], c["smoothing_length"], c["sound_speed"],
-        friction.alpha, friction.beta, kernel.inverse_h, kernel.alpha, s.softening,
+        friction.alpha, friction.beta, kernel.inverse_h, kernel.alpha, s.engine.softening,
         *(np.zeros_like(store["pressure"]) for _ in range(4)),
     )
 
@@ -116,8 +118,9 @@ def test_composed_is_as_lean_as_by_hand_and_gives_the_same(simulation):
     )
     calls = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("psph.solver.step.in_threads", lambda f, *call: calls.append((f, call)))
-        simulation._sum(simulation.store.low, simulation.store.low + simulation.store.owned)
+        patch.setattr("psph.solver.engine.in_threads", lambda f, *call: calls.append((f, call)))
+        store, last = simulation.store, simulation.plan.passes[-1]
+        simulation.engine.sum_columns(last, store.low, store.low + store.owned)
     [(_, call)] = calls
     hand_call = call_by_hand(simulation)
     hand(*hand_call)
@@ -144,7 +147,7 @@ dam breaks in 2D and 3D under plain SPH and under the default scheme."""
 def test_the_standard_loops_take_no_more_instructions_than_counted(dim, setting, monkeypatch):
     """What the pace rests on, and what no other job on the machine can change."""
     calls = []
-    monkeypatch.setattr(step_module, "sum_over_neighbours", lambda *call: calls.append(call))
+    monkeypatch.setattr(engine_module, "sum_over_neighbours", lambda *call: calls.append(call))
     neighbours = {2: 20, 3: 57}[dim]
     layout = LAYOUTS[DAM](dim, neighbours, 1500)
     scene = scene_of(Asked(DAM, dim, 1500, neighbours, "double"), layout, SETTINGS[setting])

@@ -104,7 +104,7 @@ def test_a_full_disk_is_one_line_and_the_run_goes_on_when_there_is_room(
     job = mpirun(2, [program, ballast, "resume", folder])
     assert job.returncode == 3 and "Traceback" not in job.stderr, job.stderr
     [line] = [line for line in job.stderr.splitlines() if "cannot be written" in line]
-    assert line.startswith(f"{folder / file}: cannot be written: No space left on device; see to ")
+    assert line.startswith(f"{folder / file}: cannot be written: No space left on device; check")
     assert {path: path.read_bytes() for path in checkpoints(folder)} == before
     assert Run(folder).times[0] == 0.0  # what was written can still be read
     with pytest.raises(OutputError, match="No space left on device; check the folder, its perm"):
@@ -130,7 +130,7 @@ def test_a_disk_that_turned_read_only_is_one_line(small_disk):
     subprocess.run(["mount", "-o", "remount,ro", small_disk], check=True)
     with pytest.raises(OutputError) as failed:
         resume(folder, COMM, ["time.end=0.2"], say=quiet)
-    assert str(failed.value).startswith(f"{folder}: cannot be written: Read-only file system; see")
+    assert str(failed.value).startswith(f"{folder}: cannot be written: Read-only file system; check")
     assert "\n" not in str(failed.value)
 
 

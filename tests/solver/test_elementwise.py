@@ -10,7 +10,7 @@ from mpi4py import MPI
 from psph.output.ledger import Ledger
 from psph.particles import records
 from psph.scene import Scene
-from psph.solver import step
+from psph.solver import engine
 from psph.solver.plan import make_plan
 from psph.solver.setup import create_particles
 from psph.solver.step import Simulation
@@ -30,11 +30,11 @@ def calls(request, tmp_path, monkeypatch):
     found = {}
 
     def in_threads(loop, *call):
-        if loop is not step.sum_over_neighbours:
+        if loop is not engine.sum_over_neighbours:
             found[loop] = call
         return [loop(*call)]
 
-    monkeypatch.setattr(step, "in_threads", in_threads)
+    monkeypatch.setattr(engine, "in_threads", in_threads)
     monkeypatch.setattr(records, "in_threads", in_threads)
     simulation.step()
     assert len(found) == 3 and store.low == 0 and store.owned >= COLUMNS
@@ -43,7 +43,7 @@ def calls(request, tmp_path, monkeypatch):
 
 def test_every_boundary_gives_the_same_bits(calls):
     simulation, found = calls
-    data, table = simulation.store.data, simulation.records.table
+    data, table = simulation.store.data, simulation.engine.records[-1].table
     before = data.copy(), table.copy()
 
     def after(loop, call, cut):

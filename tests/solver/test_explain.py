@@ -45,8 +45,8 @@ def box(tmp_path_factory):
 def test_memory_is_what_a_run_holds(box):
     scene, plan, simulation = box
     store, lists = simulation.store, simulation.domain.lists
-    held = store.data.nbytes + store.id.nbytes + store.kind.nbytes
-    held += simulation.domain.starts.nbytes + simulation.records.table.nbytes
+    held = store.data.nbytes + store.id.nbytes + store.group.nbytes
+    held += simulation.domain.starts.nbytes + simulation.engine.records[-1].table.nbytes
     in_lists = sum(array.nbytes for array in lists)
     own, listed = bytes_per_particle(scene, plan)
     assert own * store.total + listed * store.owned == pytest.approx(held + in_lists, rel=0.15)

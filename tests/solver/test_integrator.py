@@ -2,30 +2,33 @@
 
 import numpy as np
 import pytest
+from stores import seen
 
-from psph.physics.compose import ParticleView
+from psph.physics.motion import FIXED, FREE
 from psph.physics.state import Linear
 from psph.solver.integrator import kick, kick_drift_predict
+
+MOTIONS = np.array([FREE, FIXED], np.uint8)
 
 
 def oscillate(theta, steps):
     """Amplitude after ``steps`` steps of ωΔt = ``theta``, from 1; real compiled loops."""
-    kind = np.zeros(1, np.uint8)
+    group = np.zeros(1, np.uint8)
     x, v, predicted, a = ((np.zeros(1),) for _ in range(4))
     density, volume, pressure = np.ones(1), np.ones(1), np.zeros(1)
     rates = [np.zeros(1) for _ in range(3)]
     v[0][0] = predicted[0][0] = 1.0
-    view = ParticleView(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
+    view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
     for rate in rates:
         rate[0] = theta
     for _ in range(steps):
         kick_drift_predict(
-            0, 1, 1.0, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
+            0, 1, 0.0, 1.0, (), Linear(), (), MOTIONS, (None,), view, group, None, x, v, predicted, a, density, *rates, volume, pressure
         )
         rates = [rates[2], rates[0], rates[1]]
         rates[0][0] = theta * predicted[0][0]
         a[0][0] = -theta * pressure[0]
-        kick(0, 1, 1.0, (), view, kind, x, v, a, density, rates[0])
+        kick(0, 1, 0.0, 1.0, (), (), MOTIONS, view, group, None, x, v, a, density, rates[0])
     return np.hypot(v[0][0], density[0] - 1.0)
 
 
@@ -60,20 +63,20 @@ def test_first_order_prediction_would_grow():
 
 
 def test_walls_stay_and_lost_numbers_are_reported():
-    kind = np.array([1, 0], np.uint8)
+    group = np.array([1, 0], np.uint8)
     x, v, predicted, a = ((np.zeros(2),) for _ in range(4))
     a[0][:] = 5.0, np.nan
     rates = [np.zeros(2) for _ in range(3)]
     density, volume, pressure = np.ones(2), np.ones(2), np.zeros(2)
-    view = ParticleView(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
+    view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
     kick_drift_predict(
-        0, 2, 0.1, (), Linear(), view, kind, x, v, predicted, a, density, *rates, volume, pressure
+        0, 2, 0.0, 0.1, (), Linear(), (), MOTIONS, (None,), view, group, None, x, v, predicted, a, density, *rates, volume, pressure
     )
-    *_, error, _ = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.0, 0.1, (), (), MOTIONS, view, group, None, x, v, a, density, rates[0])
     assert x[0][0] == v[0][0] == 0.0 and error == np.inf
     a[0][1] = v[0][1] = 0.0
-    *_, error, _ = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.0, 0.1, (), (), MOTIONS, view, group, None, x, v, a, density, rates[0])
     assert error == np.inf  # its place is lost
     x[0][1] = 1.0
-    *_, error, _ = kick(0, 2, 0.1, (), view, kind, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.0, 0.1, (), (), MOTIONS, view, group, None, x, v, a, density, rates[0])
     assert error == abs(density - 1.0).max() < np.inf

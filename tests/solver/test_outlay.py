@@ -13,6 +13,7 @@ from psph.output.probes import Probe
 from psph.output.reader import Run
 from psph.scene import Scene
 from psph.solver.explain import explain
+from psph.solver.plan import make_plan
 from psph.solver.outlay import amount, bytes_per_frame
 from psph.solver.run import run
 
@@ -68,7 +69,7 @@ def test_frames_and_rows_are_as_many_as_predicted(finished):
 def test_a_frame_takes_as_many_bytes_as_predicted(finished):
     case, folder, _ = finished
     size = (folder / "box.h5").stat().st_size / len(Run(folder).times)
-    assert bytes_per_frame(Scene(case)) == pytest.approx(size, rel=0.15)
+    assert bytes_per_frame(Scene(case), make_plan(Scene(case))) == pytest.approx(size, rel=0.15)
 
 
 def test_a_cadence_finer_than_the_steps_is_predicted_as_what_it_is(tmp_path):

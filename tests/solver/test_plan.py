@@ -7,14 +7,12 @@ from mpi4py import MPI
 
 from psph.case import load
 from psph.output.ledger import Ledger
-from psph.particles.fields import FIELDS
-from psph.physics import catalogue, compose
-from psph.physics.catalogue import Entry
+from psph.physics import compose
+from psph.physics.catalogue import BUILT_IN, Entry
 from psph.physics.diffusion import TankDiffusion
 from psph.physics.trial import UnknownField
 from psph.scene import Scene
 from psph.smoothing import KERNELS
-from psph.solver import plan as plan_module
 from psph.solver.explain import explain
 from psph.solver.plan import make_plan
 from psph.solver.setup import create_particles
@@ -24,11 +22,11 @@ from psph.solver.step import Simulation
 def planned(tmp_path):
     """A function: overrides → (scene, plan) of a plain fluid."""
 
-    def make(*overrides):
+    def make(*overrides, catalogue=BUILT_IN):
         path = tmp_path / "plain.toml"
         path.write_text(SQUARE)
         scene = Scene(load(path, overrides))
-        return scene, make_plan(scene)
+        return scene, make_plan(scene, catalogue)
 
     return make
 
@@ -102,12 +100,11 @@ class Wetness(compose.NamedTuple):
         return i.kernel_sum * pair.dw_r
 
 
-def test_an_effect_that_reads_what_an_absent_effect_writes_is_refused(planned, monkeypatch):
-    longer = (*catalogue.CATALOGUE, Entry("", Wetness))
-    monkeypatch.setattr(plan_module, "CATALOGUE", longer)
+def test_an_effect_that_reads_what_an_absent_effect_writes_is_refused(planned):
+    longer = BUILT_IN._replace(effects=(*BUILT_IN.effects, Entry("", Wetness)))
     with pytest.raises(UnknownField, match="Wetness reads 'kernel_sum', which no effect"):
-        planned()
-    planned("physics.free_surface=0.9")
+        planned(catalogue=longer)
+    planned("physics.free_surface=0.9", catalogue=longer)
 
 
 def test_the_surface_effect_brings_its_field_and_no_message(planned):
@@ -150,11 +147,3 @@ def test_the_scheme_takes_every_kernel(kernel, planned):
     _, plan = planned("scheme=stable", f"space.kernel={kernel}", "space.smoothing=1.4")
     [shift] = (e for e in plan.effects if hasattr(e, "crowded"))
     assert shift.full < 0.0 and np.isfinite(shift.crowded) and shift.crowded < 0.0
-
-
-@pytest.mark.parametrize("dimensions", [1, 2, 3])
-def test_views_and_fields_agree_on_components(dimensions):
-    for name in compose.ParticleView._fields:
-        if name in FIELDS:
-            width = compose.components(name, dimensions) or 1
-            assert FIELDS[name].width(dimensions) == width

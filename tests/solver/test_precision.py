@@ -150,7 +150,7 @@ def test_a_long_period_is_many_ranges():
 
 
 def test_records_of_neighbours_are_half_as_long():
-    sizes = [simulation(box(3, p)).records.table.itemsize for p in ("mixed", "double")]
+    sizes = [simulation(box(3, p)).engine.records[-1].table.itemsize for p in ("mixed", "double")]
     assert sizes == [4, 8]
 
 

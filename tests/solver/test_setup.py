@@ -91,7 +91,7 @@ def test_the_two_particles_of_the_rehearsal_are_as_large_as_those_of_the_scene(t
         scene = Scene(draft(tmp_path, SQUARE, *overrides))
         plan = make_plan(scene)
         with pytest.raises(Caught) as caught:
-            setup._rehearse(scene, plan, setup.Store(2, plan.arrays, plan.constants))
+            setup._rehearse(scene, plan, setup.Store(2, plan.stored, plan.constants, plan.view))
         [store] = caught.value.args
         volumes = store.owned_rows("mass") / store.owned_rows("density")
         assert volumes == pytest.approx(np.full(2, scene.spacing**2))

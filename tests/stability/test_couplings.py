@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from long import LONG
 from mpi4py import MPI
+from stores import seen
 from stability.settings import TENSION, of
 
 from psph.case import load
 from psph.output.ledger import Ledger
-from psph.particles.fields import FLUID
-from psph.physics.compose import Pair, ParticleView
+from psph.fields import FLUID
+from psph.physics.compose import Pair
 from psph.physics.filtering import ConservativeSmoothing
 from psph.scene import Scene
 from psph.smoothing import kernel
@@ -188,7 +189,7 @@ def test_smoothing_is_that_of_the_effect():
     """A pair in the fluid, a distance apart: the effect leaves walls out, the theory has none."""
     uniform, r = Uniform(TENSION), np.array([0.7e-3, 1.6e-3])
     along, anyhow = remedies.ConservativeSmoothing(0.3).damping(uniform, r)
-    particle = ParticleView(
+    particle = seen(
         position=None, mass=900.0 * uniform.volume, specific_volume=1 / 900.0, wall=0.0,
         sound_speed=5.0, smoothing_length=uniform.smoothing_length,
     )

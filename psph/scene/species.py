@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.case.shapes import Shape
-from psph.particles.fields import WALL
+from psph.fields import WALL
 from psph.scene.lattice import TOLERANCE, Lattice
 from psph.scene.shapes import Grid, inside
 
@@ -16,20 +16,25 @@ NONE = 255
 """In place of a material: a site without a particle."""
 
 
-class Material(NamedTuple):
-    """What the particles of a fluid or a wall have in common.
+class Species(NamedTuple):
+    """What the particles of a named group of a case, a fluid or a wall, have in common.
 
-    ``density`` at zero pressure in kg/m³; kinematic ``viscosity`` in m²/s; ``mass`` of a particle
-    in kg (per m of depth in 2D, per m² in 1D).  A wall takes them from the fluid it continues;
-    ``no_slip`` if that fluid sticks to it.
+    ``motion`` is how they move (psph.physics.motion); ``density`` at zero pressure in kg/m³;
+    kinematic ``viscosity`` in m²/s; ``mass`` of a particle in kg (per m of depth in 2D, per m² in
+    1D).  A wall takes these from the fluid it continues; ``no_slip`` if that fluid sticks to it.
     """
 
     name: str
-    kind: int
+    motion: Any
     density: float
     viscosity: float
     mass: float
     no_slip: bool = False
+
+    @property
+    def kind(self) -> int:
+        """What frames tell them by: psph.fields."""
+        return self.motion.kind
 
     @property
     def wall(self) -> bool:

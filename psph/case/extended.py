@@ -1,0 +1,47 @@
+"""The model of a case that can ask for more than psph itself offers."""
+
+from functools import lru_cache
+from typing import Any, Literal
+
+from pydantic import create_model
+
+from psph.case.model import MANY, Case, Space, Wall
+from psph.case.parameters import last_part, table_of
+from psph.case.physics import physics_table
+from psph.case.schemes import by_default
+from psph.case.tables import Name, key
+from psph.physics.catalogue import BUILT_IN, Catalogue
+from psph.smoothing import KERNELS
+
+
+@lru_cache(maxsize=None)
+def case_model(catalogue: Catalogue) -> type[Case]:
+    """The model of a case that can ask for all that a catalogue offers."""
+    if catalogue == BUILT_IN:
+        return Case
+    physics = physics_table(catalogue.effects + catalogue.states)
+    fields: dict[str, Any] = {"physics": (physics, key("what acts on the fluids", make=physics))}
+    if catalogue.kernels:
+        names = (*KERNELS, *map(last_part, catalogue.kernels))
+        told = key("smoothing kernel", names[0], otherwise=by_default("space.kernel"))
+        space = create_model(
+            "Space", __base__=Space, __doc__=Space.__doc__,
+            kernel=(Literal[tuple(dict.fromkeys(names))], told),
+        )
+        fields["space"] = (space, key("dimensions, resolution and extent"))
+    if catalogue.tables:
+        tables = table_of("Tables", "Further tables of a run.", catalogue.tables)
+        fields["tables"] = (tables, key("further tables that the run writes", make=tables))
+    if catalogue.motions:
+        motion = table_of("Motion", "How a wall moves: one of these.", catalogue.motions)
+        moved = (motion | None, key("how it moves", None, otherwise="it stays where it is"))
+        wall = create_model("Wall", __base__=Wall, __doc__=Wall.__doc__, motion=moved)
+        fields["walls"] = (dict[Name, wall], key("the walls by name", {}, max_length=MANY))
+    if catalogue.regions:
+        region = create_model(
+            "Region", __base__=table_of("Region", "A region.", catalogue.regions),
+            __doc__="Where particles appear or vanish.",
+            into=(Name | None, key("the fluid that comes", None, otherwise="the first fluid")),
+        )
+        fields["regions"] = (dict[Name, region], key("where particles appear or vanish, by name", {}))
+    return create_model("Case", __base__=Case, __doc__=Case.__doc__, **fields)

@@ -1,0 +1,149 @@
+"""What a particle can carry: a field is declared where it is born, by the effect that fills it.
+
+Arrays, records, messages, files and the views that formulas see follow from the declarations.
+"""
+
+from collections import namedtuple
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import NamedTuple
+
+SCALAR, VECTOR, SYMMETRIC, MATRIX = "scalar", "vector", "symmetric", "matrix"
+"""Shapes of a field: a number, one number per axis, a symmetric matrix (its rows from the diagonal
+on), a full matrix by rows."""
+
+FLUID, WALL = 0, 1
+"""Values of ``kind``: a fluid particle moves freely, a wall particle does not."""
+
+
+class Field(NamedTuple):
+    """A quantity that each particle carries.
+
+    ``saved``: stands in every frame.  ``evolves``: has a rate and is advanced in time as density is;
+    formulas then see its predicted value.  ``start``: what stands in it before it is first filled.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    shape: str = SCALAR
+    saved: bool = False
+    evolves: bool = False
+    start: float = 0.0
+
+    @property
+    def composed(self) -> bool:
+        """Whether it has several components, by the dimension."""
+        return self.shape != SCALAR
+
+    @property
+    def rate(self) -> str:
+        """The name of the rate of a field that evolves."""
+        return f"{self.name}_rate"
+
+    def width(self, dimensions: int) -> int:
+        """Numbers that it takes."""
+        return {
+            SCALAR: 1, VECTOR: dimensions, SYMMETRIC: dimensions * (dimensions + 1) // 2,
+            MATRIX: dimensions**2,
+        }[self.shape]
+
+
+POSITION = Field("position", "m", "place", VECTOR, saved=True)
+VELOCITY = Field("velocity", "m/s", "velocity", VECTOR, saved=True)
+PREDICTED_VELOCITY = Field(
+    "predicted_velocity", "m/s", "velocity at the end of the step, predicted", VECTOR
+)
+ACCELERATION = Field("acceleration", "m/s2", "acceleration of the last pass", VECTOR)
+LISTED_POSITION = Field("listed_position", "m", "place when the neighbour list was built", VECTOR)
+DENSITY = Field("density", "kg/m3", "density", saved=True)
+DENSITY_RATE = Field("density_rate", "kg/(m3 s)", "rate of density of the last pass")
+DENSITY_RATE_1 = Field("density_rate_1", "kg/(m3 s)", "rate of density one step before")
+DENSITY_RATE_2 = Field("density_rate_2", "kg/(m3 s)", "rate of density two steps before")
+PRESSURE = Field("pressure", "Pa", "pressure by the equation of state", saved=True)
+SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces read it")
+
+OF_EVERY_SCENE = (
+    POSITION, VELOCITY, PREDICTED_VELOCITY, ACCELERATION, LISTED_POSITION, DENSITY, DENSITY_RATE,
+    DENSITY_RATE_1, DENSITY_RATE_2, PRESSURE, SPECIFIC_VOLUME,
+)
+"""Fields that the step itself fills.  In 1D and 2D a mass is per m² and per m of depth, and a density
+per the same."""
+
+IDENTITY = (
+    Field("id", "1", "number of the particle, unique and constant", saved=True),
+    Field("kind", "1", "0 fluid, 1 wall", saved=True),
+    Field("group", "1", "number of its fluid or wall, in the order of the case", saved=True),
+)
+"""Whole numbers that stand beside the fields."""
+
+OF_MATERIAL = (
+    Field("mass", "kg", "mass"),
+    Field("rest_density", "kg/m3", "density at zero pressure"),
+    Field("viscosity", "m2/s", "kinematic viscosity"),
+    Field("wall", "1", "1 in a wall, 0 in a fluid, as effects read it"),
+    Field("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
+)
+"""Fixed at the start by the material: one number where all materials of a scene agree, else an array."""
+
+OF_SITE = (Field("stress_point", "1", "1 where pressure is borne, 0 where velocity is carried"),)
+"""Fixed at the start by the site of the lattice: 1 on every other one, 0 between."""
+
+OF_SCENE = (
+    Field("sound_speed", "m/s", "numerical speed of sound"),
+    Field("smoothing_length", "m", "smoothing length h"),
+    Field("largest_speed", "m/s", "largest speed of any fluid particle, a step old; for displacements"),
+)
+"""What all particles of a scene share; formulas read it like a field."""
+
+
+def by_name(*groups: Iterable[Field]) -> dict[str, Field]:
+    """The fields of some groups by their names; ValueError where two differ and share a name."""
+    found: dict[str, Field] = {}
+    for field in (field for group in groups for field in group):
+        if found.setdefault(field.name, field) != field:
+            raise ValueError(f"two fields are named '{field.name}', and they differ")
+    return found
+
+
+SAVED = tuple(field for field in (*IDENTITY, *OF_EVERY_SCENE) if field.saved)
+"""What stands in the frames of every scene."""
+
+PREFIX = "View_of__"
+
+
+@lru_cache(maxsize=None)
+def view_of(names: tuple[str, ...]) -> type:
+    """The NamedTuple in which formulas see these quantities of a particle, or of all particles.
+
+    An entry is an array where the quantity varies, a number where the whole scene shares one value,
+    and None where it is not needed.  Vectors and matrices are tuples of components.
+    """
+    made = namedtuple(PREFIX + "__".join(names), names, defaults=(None,) * len(names))
+    made.__module__ = __name__  # the compile cache finds it again by its name: see __getattr__
+    return made
+
+
+def companions(field: Field) -> tuple[Field, ...]:
+    """The further fields that advance one that evolves: its prediction and its rates."""
+    name, unit = field.name, f"{field.unit}/s"
+    return (
+        Field(f"predicted_{name}", field.unit, f"{field.meaning}, predicted", field.shape),
+        *(
+            Field(f"{field.rate}{of}", unit, f"rate of {name} {when}", field.shape)
+            for of, when in (("", "of the last pass"), ("_1", "one step before"), ("_2", "two steps before"))
+        ),
+    )
+
+
+def seen_at(view, largest_speed: float):
+    """The view with the speed of the fastest particle, where a formula reads it."""
+    read = OF_SCENE[-1].name
+    return view._replace(**{read: largest_speed}) if read in view._fields else view
+
+
+def __getattr__(name: str):
+    if name.startswith(PREFIX):
+        return view_of(tuple(name[len(PREFIX) :].split("__")))
+    raise AttributeError(f"module {__name__} has no {name}")
+

@@ -1,0 +1,67 @@
+"""The stages of a step, in their order.  A scene has those that it needs: see :func:`stages_of`."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from psph.parallel.reductions import largest
+from psph.physics.region import next_time
+
+Stage = Callable[..., None]
+"""Takes the simulation from one state within a step to the next; collective."""
+
+
+def stages_of(plan) -> Iterator[Stage]:
+    """What a step of this plan does, in order."""
+    yield predict
+    if plan.regions:
+        yield populate
+    yield renew_lists
+    yield sum_over_pairs
+    yield kick
+    yield find_limits
+
+
+def predict(simulation) -> None:
+    """Kick, drift, and predict what the forces read at the end of the step."""
+    with simulation.ledger("kick, drift, predict"):
+        simulation.engine.predict(simulation.then, simulation.dt, simulation.pace)
+
+
+def populate(simulation) -> None:
+    """Take particles out and let others in, where new lists are due or a region asks for them."""
+    regions = [region for region, _ in simulation.plan.regions]
+    if simulation.listed and next_time(regions, simulation.time) > simulation.then:
+        return
+    with simulation.ledger("populate"):
+        simulation.population.renew(simulation.then)
+    simulation.listed = False
+
+
+def renew_lists(simulation) -> None:
+    """New lists where the old ones would not hold until the end of the step."""
+    if not simulation.listed:
+        simulation.rebuild()
+
+
+def sum_over_pairs(simulation) -> None:
+    """Every pass over the neighbours that is due."""
+    simulation.engine.sum(simulation.steps, ghosts_are_fresh=not simulation.listed)
+
+
+def kick(simulation) -> None:
+    """The second kick, with the new rates."""
+    simulation.pace = simulation.speed  # bounds the shifts of the next step, whose speed is not known
+    with simulation.ledger("kick"):
+        simulation.own_extremes = simulation.engine.kick(simulation.then, simulation.dt, simulation.pace)
+
+
+def find_limits(simulation) -> None:
+    """The largest speed, acceleration, strain, word and shift over all ranks."""
+    *extremes, shift2 = simulation.own_extremes
+    with simulation.ledger("limits"):
+        sent = [*extremes, simulation.word(), *([shift2] if simulation.plan.displaces else [])]
+        found = largest(simulation.comm, sent)
+    simulation.speed, simulation.acceleration = np.sqrt(found[:2]).tolist()
+    simulation.strain, simulation.heard = found[2:4].tolist()
+    simulation.shift = float(np.sqrt(found[4:]).sum())

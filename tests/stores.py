@@ -1,0 +1,18 @@
+"""Stores and views for tests: of any fields by name, and of any values."""
+
+from psph.fields import view_of
+from psph.particles.store import Store
+from psph.physics.catalogue import BUILT_IN
+
+ALL_NAMES = tuple(BUILT_IN.fields)
+
+
+def store_of(dimensions, names, constants=None):
+    """An empty store of the named fields, seen by formulas under every known name."""
+    fields = [BUILT_IN.fields[name] for name in names]
+    return Store(dimensions, fields, constants or {}, view_of(ALL_NAMES))
+
+
+def seen(**values):
+    """What formulas see of particles with just these values."""
+    return view_of(tuple(values))(**values)
