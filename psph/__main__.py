@@ -11,10 +11,10 @@ from pathlib import Path
 from mpi4py import MPI
 
 import psph
-from psph.bench import PROBLEMS
 from psph.errors import Failed, Foreseen, Refused, one_line
-from psph.stability import FORMS, STATES
-from psph.stability.lattices import LATTICES
+from psph.lab.bench import PROBLEMS
+from psph.theory.stability import FORMS, STATES
+from psph.theory.stability.lattices import LATTICES
 
 PATIENCE, BEFORE_THE_START = 1.0, 10.0
 """Seconds a failed rank waits for the others to fail alike before it ends them all.  What is refused
@@ -48,8 +48,8 @@ def _with_verb(arguments: list[str]) -> list[str]:
 
 
 def _run(options, comm) -> None:
-    from psph.threads import use_threads
-    from psph.solver.run import run
+    from psph.engine.threads import use_threads
+    from psph.run.start import run
 
     use_threads(options.threads)
     case = _load(options)
@@ -58,30 +58,30 @@ def _run(options, comm) -> None:
 
 
 def _resume(options, comm) -> None:
-    from psph.solver.run import resume
-    from psph.threads import use_threads
+    from psph.engine.threads import use_threads
+    from psph.run.start import resume
 
     use_threads(options.threads)
     resume(options.folder, comm, options.extend, options.chosen)
 
 
 def _explain(options, comm) -> None:
+    from psph.run.explain import explain
     from psph.scene import Scene
-    from psph.solver.explain import explain
 
     scene = Scene(_load(options))
     _warn(scene, comm)
     if comm.rank == 0:
         print("\n".join(explain(scene, options.ranks or comm.size)))
         if options.study:
-            from psph.study.prediction import predicted
+            from psph.lab.study.prediction import predicted
 
             print("\n".join(predicted(options.study, scene.case)))
 
 
 def _check(options, comm) -> None:
+    from psph.run.explain import slab_planes
     from psph.scene import Scene
-    from psph.solver.explain import slab_planes
 
     scene = Scene(_load(options))
     _warn(scene, comm)
@@ -109,8 +109,8 @@ def _plot(options, comm) -> None:
 
 
 def _bench(options, comm) -> None:
-    from psph.bench.command import bench, one, prices, standard
-    from psph.threads import use_threads
+    from psph.engine.threads import use_threads
+    from psph.lab.bench.command import bench, one, prices, standard
 
     use_threads(options.threads)
     if options.price:
@@ -130,8 +130,8 @@ def _bench(options, comm) -> None:
 
 
 def _study(options, comm) -> None:
-    from psph.study.command import study
-    from psph.threads import use_threads
+    from psph.engine.threads import use_threads
+    from psph.lab.study.command import study
 
     use_threads(options.threads)
     study(
@@ -142,18 +142,18 @@ def _study(options, comm) -> None:
 
 def _stability(options, comm) -> None:
     if options.judged:
-        from psph.battery.command import remedies
+        from psph.lab.battery.command import remedies
 
         if options.battery or options.quick:
             raise Refused("stability --remedies: stands alone; leave --battery and --quick out")
         remedies(comm, options.out)
         return
     if options.battery or options.quick:
-        from psph.battery.command import battery
+        from psph.lab.battery.command import battery
 
         battery(comm, options.quick, options.out)
         return
-    from psph.maps.command import Asked, stability
+    from psph.lab.maps.command import Asked, stability
 
     asked = {name: getattr(options, name) for name in Asked._fields}
     stability(comm, Asked(**asked | {"remedies": tuple(options.remedies)}))
@@ -166,9 +166,9 @@ def _load(options):
 
 
 def _warn(scene, comm) -> None:
+    from psph.run.forecast import long_run
     from psph.scene import check
-    from psph.solver.forecast import long_run
-    from psph.solver.plan import make_plan
+    from psph.simulation.plan import make_plan
 
     for warning in (*check(scene), *long_run(scene, make_plan(scene), comm.size)):
         if comm.rank == 0:

@@ -5,7 +5,7 @@ Arrays, records, messages, files and the views that formulas see follow from the
 
 from collections import namedtuple
 from collections.abc import Iterable
-from functools import lru_cache
+from functools import cache
 from typing import NamedTuple
 
 SCALAR, VECTOR, SYMMETRIC, MATRIX = "scalar", "vector", "symmetric", "matrix"
@@ -112,7 +112,7 @@ SAVED = tuple(field for field in (*IDENTITY, *OF_EVERY_SCENE) if field.saved)
 PREFIX = "View_of__"
 
 
-@lru_cache(maxsize=None)
+@cache
 def view_of(names: tuple[str, ...]) -> type:
     """The NamedTuple in which formulas see these quantities of a particle, or of all particles.
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.jit import call_by_type, method_of, overload
-from psph.simd import where
+from psph.engine.jit import call_by_type, method_of, overload
+from psph.engine.simd import where
 
 weight = call_by_type("w")
 """(kernel, r) → W(r), in compiled code and plain Python."""
@@ -354,7 +354,7 @@ normalised (psph.case.schemes).  The first stands in for a case whose scheme or 
 
 def kernel(name: str, smoothing_length: float, dimensions: int):
     """The kernel ``name`` for h in m and 1, 2 or 3 dimensions; KeyError for an unknown name."""
-    cls = KERNELS[name]
+    cls: Any = KERNELS[name]
     constants = np.atleast_1d(cls.norm[dimensions - 1]) / smoothing_length**dimensions
     return cls(1.0 / smoothing_length, *constants.tolist())
 

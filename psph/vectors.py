@@ -7,7 +7,7 @@ from the diagonal on: (xx), (xx, xy, yy), (xx, xy, xz, yy, yz, zz).
 
 from numba.core import types
 
-from psph.jit import overload, register_jitable, tuple_of, unrolled
+from psph.engine.jit import overload, register_jitable, tuple_of, unrolled
 
 Vector = tuple[float, ...]
 

@@ -14,9 +14,9 @@ from mpi4py import MPI
 
 from psph.case import load
 from psph.errors import Foreseen
+from psph.run.start import run
 from psph.scene import Scene
-from psph.solver.plan import make_plan
-from psph.solver.run import run
+from psph.simulation.plan import make_plan
 
 STEPS = 2.5
 """Lengths of the first time step until the end."""

@@ -10,18 +10,18 @@ MODULES = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob(
 
 # A module imports from its own layer's part (folder or file) and from the layers before it.
 LAYERS = [
-    {"errors", "cache", "fields"},
-    {"jit"},
-    {"simd", "threads"},
+    {"errors", "fields"},
+    {"engine"},
+    {"formula"},
     {"vectors", "smoothing"},
-    {"physics", "solutions", "stability"},
+    {"physics", "theory"},
     {"particles"},
     {"case"},
     {"scene", "parallel"},
     {"output"},
-    {"solver"},
-    {"bench", "maps", "study"},
-    {"battery"},
+    {"simulation"},
+    {"run"},
+    {"lab"},
     {"__main__"},
 ]
 DEPTH = {part: depth for depth, layer in enumerate(LAYERS) for part in layer}
@@ -77,15 +77,15 @@ def test_every_part_has_its_place():
 @pytest.mark.parametrize(
     ("module", "source"),
     [
-        ("physics/gravity.py", "from psph.solver import plan"),
-        ("physics/gravity.py", "from psph import solver"),
-        ("physics/gravity.py", "from ..solver.plan import Plan"),
+        ("physics/gravity.py", "from psph.simulation import plan"),
+        ("physics/gravity.py", "from psph import run"),
+        ("physics/gravity.py", "from ..simulation.plan import Plan"),
         ("scene/build.py", "import psph.parallel.slabs"),
         ("parallel/slabs.py", "def f():\n    from psph import scene"),
-        ("jit.py", "from . import vectors"),
+        ("engine/jit.py", "from .. import vectors"),
         ("__init__.py", "from .case import Case"),
-        ("solver/run.py", "from mpi4py import MPI"),
-        ("solver/run.py", "import mpi4py.MPI"),
+        ("run/start.py", "from mpi4py import MPI"),
+        ("run/start.py", "import mpi4py.MPI"),
         ("output/frames.py", "\n" * (LONGEST + 1)),
     ],
 )
@@ -96,8 +96,8 @@ def test_breach_is_seen(module, source):
 @pytest.mark.parametrize(
     ("module", "source"),
     [
-        ("solver/run.py", "from psph.solver.plan import Plan\nfrom . import pairs\nimport psph"),
-        ("solver/run.py", "from psph import __version__\nfrom ..scene import Scene"),
+        ("simulation/step.py", "from psph.simulation.plan import Plan\nfrom . import pairs\nimport psph"),
+        ("run/start.py", "from psph import __version__\nfrom ..scene import Scene"),
         ("output/frames.py", "from mpi4py import MPI\nimport h5py"),
     ],
 )

@@ -14,28 +14,27 @@ import h5py
 import numpy as np
 import pytest
 from jobs import clean_environment, mpirun
-from physics.pairs import H, OPEN, rates, view
-from stores import store_of
+from physics.pairs import OPEN, H, rates, view
 
 from psph import smoothing
 from psph.__main__ import VERBS, _parser, _with_verb
 from psph.case import load, profiles
 from psph.case.physics import physics_table
+from psph.fields import SAVED, by_name
 from psph.output import diagnostics
 from psph.output.frames import FrameFile
 from psph.output.reader import Run
 from psph.output.tables import CsvTable
 from psph.parallel.reductions import alone
-from psph.fields import OF_EVERY_SCENE, SAVED, by_name
 from psph.physics import catalogue
 from psph.physics.catalogue import Entry
 from psph.physics.trial import reads
+from psph.run.outlook import outlook
 from psph.scene import Scene, check
-from psph.solver.outlook import outlook
-from psph.solver.plan import make_plan
-from psph.stability.growth import is_stable
-from psph.stability.uniform import Settings
-from psph.stability.windows import SMOOTHINGS
+from psph.simulation.plan import make_plan
+from psph.theory.stability.growth import is_stable
+from psph.theory.stability.uniform import Settings
+from psph.theory.stability.windows import SMOOTHINGS
 
 ROOT = Path(__file__).parents[1]
 PAGES = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]

@@ -100,7 +100,7 @@ def test_wrong_arguments_are_said_once_on_many_ranks():
 FAILING = """
 import sys
 from mpi4py import MPI
-from psph.solver import step
+from psph.simulation import step
 
 original = step.Simulation.step
 def failing(self, *end):

@@ -11,7 +11,7 @@ from psph.case.errors import advise
 from psph.case.study import EXACT
 from psph.case.tables import AXES, Table
 from psph.smoothing import KERNELS
-from psph.solutions.catalogue import SOLUTIONS, known
+from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 if TYPE_CHECKING:
     from psph.case.model import Case

@@ -1,6 +1,6 @@
 """The model of a case that can ask for more than psph itself offers."""
 
-from functools import lru_cache
+from functools import cache
 from typing import Any, Literal
 
 from pydantic import create_model
@@ -14,7 +14,7 @@ from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
 
-@lru_cache(maxsize=None)
+@cache
 def case_model(catalogue: Catalogue) -> type[Case]:
     """The model of a case that can ask for all that a catalogue offers."""
     if catalogue == BUILT_IN:

@@ -66,9 +66,9 @@ def checked(
     # Only here: the model knows the effects, and these bring the compiler along.
     from pydantic import ValidationError
 
-    from psph.case.messages import messages
     from psph.case.extended import case_model
     from psph.case.extensions import catalogue_of
+    from psph.case.messages import messages
 
     applied = [_override(_with(file, option, text), data, text) for text in overrides]
     touched = [override.key for override in applied]

@@ -4,11 +4,11 @@ import re
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 
 import numpy as np
 import tomli_w
-from pydantic import Field, PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
+from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
 from pydantic_core import PydanticCustomError
 
 from psph.case.consistency import contradictions
@@ -21,8 +21,11 @@ from psph.case.tables import Axis, Name, Table, Text, Vector, key
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
-Physics = physics_table()
-Exact = exact_table()
+if TYPE_CHECKING:  # made from the catalogues of effects and solutions
+    Physics: TypeAlias = Any
+    Exact: TypeAlias = Any
+else:
+    Physics, Exact = physics_table(), exact_table()
 
 LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
 """How tomli_w writes a list of numbers or words, one a line."""

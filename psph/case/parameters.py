@@ -26,7 +26,7 @@ class Parameters(Table):
         return {"anyOf": [table, *list(properties.values())[:1]]}
 
 
-def parameters(of: type) -> type[Parameters]:
+def parameters(of: Any) -> type[Parameters]:
     """A model of the fields of the NamedTuple ``of``."""
     fields: dict[str, Any] = {}
     plain, full = get_type_hints(of), get_type_hints(of, include_extras=True)

@@ -7,7 +7,7 @@ from pydantic import Field, Strict, StringConstraints, create_model
 
 from psph.case.parameters import parameters, summary
 from psph.case.tables import Table, Text, key
-from psph.solutions.catalogue import SOLUTIONS
+from psph.theory.solutions.catalogue import SOLUTIONS
 
 EXACT = "exact"
 """In place of a velocity or a pressure: that of the exact solution at the start."""

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from mpi4py import MPI
 
+from psph.fields import FLUID
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
-from psph.fields import FLUID
-from psph.solutions.catalogue import known
-from psph.solutions.setting import Setting
+from psph.theory.solutions.catalogue import known
+from psph.theory.solutions.setting import Setting
 
 NORMS = ("l1", "l2", "linf")
 """Σ|e|/Σ|f|, √(Σe²/Σf²) and max|e|/max|f| over the fluid's particles, f the exact values."""

@@ -27,8 +27,8 @@ from typing import Any
 import numpy as np
 
 import psph
+from psph.engine.jit import compiled
 from psph.errors import Refused
-from psph.jit import compiled
 from psph.output import rows as hdf5
 from psph.output.errors import cause, together
 from psph.parallel.reductions import wrapped_sums

@@ -7,9 +7,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.patches import Circle
 
+from psph.fields import FLUID
 from psph.output import style
 from psph.output.plot import circles
-from psph.fields import FLUID
 
 SIZE = 4.6
 """Of the panel, inches."""

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from mpi4py import MPI
 
-from psph.parallel.reductions import exact_sums, largest
 from psph.fields import FLUID
+from psph.parallel.reductions import exact_sums, largest
 from psph.particles.store import Store
 
 

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
+from psph.fields import SAVED, Field
 from psph.output import rows as hdf5
 from psph.output.errors import together
 from psph.output.structure import Place, copied, put_back
 from psph.output.xdmf import XdmfIndex
-from psph.fields import SAVED, Field
 
 POINTS = Field("points", "m", "place in space: what XDMF needs of a 1D scene")
 CONNECTIVITY = Field("connectivity", "1", "row of each particle: what XDMF needs")

@@ -12,10 +12,10 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from psph.fields import FLUID
 from psph.output import charts, pictures, style
 from psph.output.errors import OutputError
 from psph.output.reader import Run
-from psph.fields import FLUID
 
 LARGEST = (7.6, 5.6)
 """Width and height that all panels together may take, inches."""

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.jit import compiled, elementwise, overload
+from psph.engine.jit import compiled, elementwise, overload
 
 COLUMNS_PER_CUTOFF = 4
 """Along the fastest axis cells are that much finer, so that few candidates lie out of reach."""

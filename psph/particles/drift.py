@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from psph.jit import elementwise
+from psph.engine.jit import elementwise
 
 LOW, HIGH = -1e150, 1e150
 """No number of a particle lies outside, and their squares are numbers still."""

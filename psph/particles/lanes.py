@@ -5,8 +5,8 @@ from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic
 
-from psph.jit import overload, tuple_of, unrolled
-from psph.simd import bits, consecutive
+from psph.engine.jit import overload, tuple_of, unrolled
+from psph.engine.simd import bits, consecutive
 from psph.vectors import at, dot, nearest_image, subtract
 
 LANES = 8

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.jit import compiled
+from psph.engine.jit import compiled
+from psph.engine.simd import AHEAD
+from psph.engine.threads import in_threads
 from psph.particles.cells import Grid
 from psph.particles.lanes import LANES, append_near, near_bits
 from psph.particles.store import SPARE
-from psph.simd import AHEAD
-from psph.threads import in_threads
 from psph.vectors import at
 
 ROUNDING = 1e-6

@@ -1,17 +1,17 @@
 """Records: what the pairs read of a neighbour, side by side in memory.
 
 A list names particles that lie scattered.  A record holds in one or two cache lines what an array
-a quantity would spread over many; the pair loop turns records into lanes (psph.simd).
+a quantity would spread over many; the pair loop turns records into lanes (psph.engine.simd).
 """
 
 import numpy as np
 
-from psph.jit import elementwise, register_jitable
+from psph.engine.jit import elementwise, register_jitable
+from psph.engine.simd import GROUP
+from psph.engine.threads import in_threads
 from psph.particles.store import Store
 from psph.physics.compose import FOLDED
 from psph.physics.space import FixedPoint
-from psph.simd import GROUP
-from psph.threads import in_threads
 
 LINE = 64
 """Bytes of a cache line."""

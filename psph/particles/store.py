@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from psph.engine.jit import compiled
 from psph.errors import Refused
-from psph.jit import compiled
 from psph.fields import FLUID, WALL, Field
 
 SLACK = 64

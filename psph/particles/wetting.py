@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from psph.jit import compiled
+from psph.engine.jit import compiled
 from psph.vectors import at, dot, nearest_image, subtract
 
 

@@ -1,30 +1,38 @@
 """Every effect and the key of a case that calls for it.  A new effect is one line here."""
 
-from functools import lru_cache
+from functools import cache
 from typing import NamedTuple
 
 from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name
-from psph.physics.continuity import Continuity
-from psph.physics.correction import GradientCorrection
-from psph.physics.diffusion import DensityDiffusion
-from psph.physics.filtering import ConservativeSmoothing
-from psph.physics.gravity import CentralForce, Gravity
-from psph.physics.potential import PairPotential
-from psph.physics.pressure import (
-    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure, TensileControl,
+from psph.physics.damping.diffusion import DensityDiffusion
+from psph.physics.damping.filtering import ConservativeSmoothing
+from psph.physics.damping.riemann import RiemannDissipation
+from psph.physics.fluid.continuity import Continuity
+from psph.physics.fluid.correction import GradientCorrection
+from psph.physics.fluid.gravity import CentralForce, Gravity
+from psph.physics.fluid.pressure import (
+    BackgroundPressure,
+    DifferencePressure,
+    MinimumPressure,
+    SymmetricPressure,
+    TensileControl,
 )
-from psph.physics.riemann import RiemannDissipation
-from psph.physics.shifting import ParticleShifting, PositionShift
-from psph.physics.slip import NoSlip
-from psph.physics.state import Linear, Tait
-from psph.physics.stress import ArtificialStress
-from psph.physics.stress_points import StressPoints
-from psph.physics.surface import FreeSurface, TensionFloor
-from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
-from psph.physics.viscosity import (
-    ArtificialViscosity, CentralFriction, ImpactDamping, LaminarViscosity, PairDamping,
+from psph.physics.fluid.state import Linear, Tait
+from psph.physics.fluid.stress_points import StressPoints
+from psph.physics.fluid.viscosity import (
+    ArtificialViscosity,
+    CentralFriction,
+    ImpactDamping,
+    LaminarViscosity,
+    PairDamping,
 )
-from psph.physics.walls import DryWall
+from psph.physics.order.potential import PairPotential
+from psph.physics.order.shifting import ParticleShifting, PositionShift
+from psph.physics.order.stress import ArtificialStress
+from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
+from psph.physics.surface.free import FreeSurface, TensionFloor
+from psph.physics.walls.dry import DryWall
+from psph.physics.walls.slip import NoSlip
 
 
 class Entry(NamedTuple):
@@ -52,7 +60,7 @@ class Catalogue(NamedTuple):
     kernels: tuple[Entry, ...] = ()
     """Smoothing kernels beside those of psph.smoothing, ``space.kernel=NAME``."""
     tables: tuple[Entry, ...] = ()
-    """Tables of numbers that a run writes as NAME.csv, ``tables.NAME``: psph.solver.record."""
+    """Tables of numbers that a run writes as NAME.csv, ``tables.NAME``: psph.run.record."""
 
     def with_more(self, other: "Catalogue") -> "Catalogue":
         """All that either of two offers."""
@@ -64,7 +72,7 @@ class Catalogue(NamedTuple):
         return _fields(tuple(entry.effect for entry in self.effects))
 
 
-@lru_cache(maxsize=None)
+@cache
 def _fields(effects: tuple[type, ...]) -> dict[str, Field]:
     declared = [
         getattr(effect, name) for effect in effects for name in ("writes", "marks")

@@ -1,7 +1,7 @@
 """Composition: a tuple of effects becomes one loop body, selected by the tuple's type.
 
 Each walker below exists twice: as plain Python (``NUMBA_DISABLE_JIT``, tests, the plan's trial
-call) and written out for the tuple's type (psph.jit.unrolled) when numba compiles it.  An effect
+call) and written out for the tuple's type (psph.engine.jit.unrolled) when numba compiles it.  An effect
 that lacks a method leaves no trace in the compiled loop.
 """
 
@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.core import types
 
-from psph.jit import method_of, overload, register_jitable, tuple_of, unrolled
-from psph.simd import fold, total, turning, where
+from psph.engine.jit import method_of, overload, register_jitable, tuple_of, unrolled
+from psph.engine.simd import fold, total, turning, where
 from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, at, dot, put, scale, subtract, zero_like
-
 
 FOLDED = True
 """Stands for ``wall`` in a view of neighbours whose specific volume is negative in walls."""
@@ -285,9 +284,9 @@ def _typed_fold_each(reductions, totals):
 def finish_acceleration(reductions, totals, i):
     """What the finished sums add to the acceleration, m/s²."""
     acceleration = zero_like(i.position)
-    for effect, total in zip(reductions, totals):
+    for effect, gathered in zip(reductions, totals):
         if hasattr(effect, "finish_acceleration"):
-            acceleration = add(acceleration, effect.finish_acceleration(total, i))
+            acceleration = add(acceleration, effect.finish_acceleration(gathered, i))
     return acceleration
 
 
@@ -305,9 +304,9 @@ def _typed_finish_acceleration(reductions, totals, i):
 
 def finish_value(reductions, totals, i, kernel, k, written):
     """Store the finished sums that are fields: ``written`` has an array or None for each."""
-    for effect, total, array in zip(reductions, totals, written):
+    for effect, gathered, array in zip(reductions, totals, written):
         if array is not None:
-            _store(array, k, effect.finish_value(total, i, kernel))
+            _store(array, k, effect.finish_value(gathered, i, kernel))
 
 
 @overload(finish_value)

@@ -27,7 +27,8 @@ def flops_per_pair(
     """Additions, multiplications, divisions, roots and exponentials of an ordered pair.
 
     ``effects`` and ``reductions`` as the pair loop has them; ``seen`` are the fields that formulas
-    read, ``shared`` names those that all particles have in common; ``periods`` has one entry for each dimension.  Comparisons,
+    read, ``shared`` names those that all particles have in common; ``periods`` has one entry for each
+    dimension.  Comparisons,
     minima and a change of sign count nothing, nor does the search for the nearest image.
     """
     trace = _Trace()

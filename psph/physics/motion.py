@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.engine.jit import method_of, overload, register_jitable, unrolled
 from psph.fields import FLUID, VECTOR, WALL, Field
-from psph.jit import method_of, overload, register_jitable, unrolled
 from psph.vectors import at, dot, put, scale, subtract
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numba.core import types
 
-from psph.jit import call_by_type, overload, register_jitable, tuple_of, unrolled
-from psph.simd import EIGHT, consecutive, lanes_of, steps_between
+from psph.engine.jit import call_by_type, overload, register_jitable, tuple_of, unrolled
+from psph.engine.simd import EIGHT, consecutive, lanes_of, steps_between
 from psph.vectors import nearest_image, subtract
 
 difference = call_by_type("difference")

@@ -9,7 +9,7 @@ import numpy as np
 from psph.case import CaseError
 from psph.case.consistency import MOST_STEPS
 from psph.case.tables import AXES
-from psph.physics.pressure import AUTO
+from psph.physics.fluid.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
 from psph.scene.multiples import misfits
 from psph.scene.scene import SOUND_OVER_SPEED, Scene

@@ -15,14 +15,13 @@ from psph.particles.reach import Reach
 from psph.physics.catalogue import EQUATIONS_OF_STATE
 from psph.physics.motion import Fixed, Free
 from psph.scene.lattice import lattice_around
-from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
+from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.walls import has_free_surface
 from psph.smoothing import kernel, normalised
-from psph.solutions.catalogue import SOLUTIONS
-from psph.solutions.setting import Setting
-
+from psph.theory.solutions.catalogue import SOLUTIONS
+from psph.theory.solutions.setting import Setting
 
 SOUND_OVER_SPEED = 10.0
 """Speed of sound over the largest speed: density then varies by about 1 % (Monaghan 1994)."""
@@ -44,7 +43,7 @@ class Scene:
         self.kernel = kernel(space.kernel, self.smoothing_length, space.dimensions)
         if space.normalised:
             self.kernel = normalised(self.kernel, self.spacing, space.dimensions)
-        self.bodies = (*case.fluids.values(), *case.walls.values())
+        self.bodies: tuple[Any, ...] = (*case.fluids.values(), *case.walls.values())
         shapes = tuple(body.shape for body in self.bodies)
         axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
         self.lattice = lattice_around(map(bounds, shapes), space.origin, self.spacing, axis)

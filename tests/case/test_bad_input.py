@@ -141,14 +141,14 @@ RUNS_CODE = {"eval", "exec", "compile", "__import__", "breakpoint", "input"}
 MODULES = {"pickle", "shelve", "marshal", "runpy", "code", "codeop", "yaml"}
 
 
-BEFORE_CASES = {"jit.py", "vectors.py", "simd", "physics", "particles"}
+BEFORE_CASES = {"engine", "vectors.py", "physics", "particles"}
 """Parts of psph that know of no case (tests/test_architecture.py)."""
 
 
 def test_nothing_in_psph_could_execute_a_text():
     """No call of an evaluator, no import by a name from outside, no unpickling, no shell.
 
-    But for psph.jit.unrolled, which writes out the entries of tuples: by their types alone, since
+    But for psph.engine.jit.unrolled, which writes out the entries of tuples: by their types alone, since
     who uses it knows of no case.
     """
     found, users = [], set()

@@ -155,7 +155,7 @@ def rewritten(draw, corpus=CORPUS, often=()):
     for _ in range(draw(st.integers(1, 3))):
         name = draw(st.sampled_from((*sorted(SCHEMA["properties"]), *often)))
         table, keys = case, (name,)
-        if named := find(SCHEMA, (name, "NAME")):
+        if find(SCHEMA, (name, "NAME")):
             inner = draw(st.sampled_from([*case.get(name, {}), "new"]))
             table, keys = case.setdefault(name, {}), (name, inner)
         node = find(SCHEMA, keys)

@@ -7,8 +7,7 @@ from mpi4py import MPI
 
 from psph.case import load
 from psph.output.reader import Run
-from psph.solver.run import run
-
+from psph.run.start import run
 
 CASES = "run/cases"
 

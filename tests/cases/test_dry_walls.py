@@ -5,9 +5,9 @@ import pytest
 from drafts import draft
 from mpi4py import MPI
 
-from psph.output.reader import Run
 from psph.fields import WALL
-from psph.solver.run import run
+from psph.output.reader import Run
+from psph.run.start import run
 
 DX, DEPTH = 0.02, 0.3
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from cases.measures import by_id, checkerboard, finished, growth_rate, window
 
-from psph.stability.couplings import couplings
-from psph.stability.growth import box_growth, box_of
-from psph.stability.uniform import Settings, Uniform
+from psph.theory.stability.couplings import couplings
+from psph.theory.stability.growth import box_growth, box_of
+from psph.theory.stability.uniform import Settings, Uniform
 
 pytestmark = pytest.mark.timeout(1000)
 

@@ -12,9 +12,9 @@ from parallel.test_simulation import start, state
 
 from psph.case import load
 from psph.output.reader import Run
+from psph.run.setup import compile_ahead
 from psph.scene import Scene
-from psph.solver.plan import make_plan
-from psph.solver.setup import compile_ahead
+from psph.simulation.plan import make_plan
 
 END = {
     "hydrostatic": 4e-3,

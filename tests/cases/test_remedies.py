@@ -3,9 +3,9 @@
 import pytest
 from cases.measures import finished, growth_rate
 
-from psph.stability.growth import box_growth
-from psph.stability.remedies import ArtificialStress
-from psph.stability.uniform import Settings
+from psph.theory.stability.growth import box_growth
+from psph.theory.stability.remedies import ArtificialStress
+from psph.theory.stability.uniform import Settings
 
 pytestmark = pytest.mark.timeout(300)
 

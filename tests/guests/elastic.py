@@ -8,9 +8,9 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.engine.jit import register_jitable
 from psph.fields import SYMMETRIC
 from psph.fields import Field as Declared
-from psph.jit import register_jitable
 from psph.physics.catalogue import Catalogue, Entry
 from psph.vectors import add, less_diagonal, outer, scale, subtract, times, zero_like
 

@@ -1,7 +1,9 @@
 """What others bring from outside the package, without editing it: it computes, and it is parallel."""
 
 import json
+import os
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +14,10 @@ from long import long_but_for
 from psph.case import CaseError, load
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
+from psph.run.setup import create_particles
 from psph.scene import Scene
-from psph.solver.plan import make_plan
-from psph.solver.setup import create_particles
-from psph.solver.step import Simulation
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
 
 HERE = Path(__file__).parent
 
@@ -71,7 +73,10 @@ STEPS = 24
     long_but_for((tuple(GUESTS),), [tuple(GUESTS), *((name,) for name in GUESTS)], tuple),
 )
 def test_the_same_bits_on_1_to_4_ranks_and_with_a_restart(guests, case):
-    job = mpirun(4, [HERE / "together.py", case(*guests), STEPS], timeout=170)
+    search = os.pathsep.join(sys.path)
+    job = mpirun(
+        4, [HERE / "together.py", case(*guests), STEPS], timeout=170, env={"PYTHONPATH": search}
+    )
     assert job.returncode == 0, job.stderr
     found = json.loads(job.stdout.splitlines()[-1])
     digests = {way: value for way, value in found.items() if " on " in way}

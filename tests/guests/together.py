@@ -11,12 +11,12 @@ from pathlib import Path
 
 from mpi4py import MPI
 from parallel.alike import begun, go
-from solver.resuming import keep, state, taken_up
+from run.resuming import keep, state, taken_up
 
 from psph.case import load
+from psph.run.setup import compile_ahead
 from psph.scene import Scene
-from psph.solver.plan import make_plan
-from psph.solver.setup import compile_ahead
+from psph.simulation.plan import make_plan
 
 WORLD = MPI.COMM_WORLD
 

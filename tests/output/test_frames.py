@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from viewers import padded, seen_by_meshio, seen_by_vtk
 
+from psph.fields import SAVED, by_name
 from psph.output import rows as hdf5
 from psph.output.errors import OutputError
 from psph.output.frames import FrameFile, funnel_notice
 from psph.output.reader import Run
-from psph.fields import SAVED, by_name
 
 
 def cloud(count, dimensions, seed=0):

@@ -13,19 +13,19 @@ from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
-from solver.resuming import Counted, keep, state, taken_up
+from run.resuming import Counted, keep, state, taken_up
 
 from psph.case import load
+from psph.engine.threads import use_threads
 from psph.output.ledger import Ledger
 from psph.parallel import domain
 from psph.parallel.slabs import partition
+from psph.run.record import Record
+from psph.run.setup import compile_ahead, create_particles
 from psph.scene import Scene
-from psph.solver.engine import Engine
-from psph.solver.plan import make_plan
-from psph.solver.record import Record
-from psph.solver.setup import compile_ahead, create_particles
-from psph.solver.step import BlowUp
-from psph.threads import use_threads
+from psph.simulation.cpu import Engine
+from psph.simulation.plan import make_plan
+from psph.simulation.step import BlowUp
 
 WORLD = MPI.COMM_WORLD
 GROUPS = ((7,), (4, 3), (2, 1))

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from mpi4py import MPI
-from solver.guarded import THROWN, boxed, started
+from run.guarded import THROWN, boxed, started
 
-from psph.solver.post_mortem import REPORT
-from psph.solver.run import run
-from psph.solver.step import BlowUp, Simulation
+from psph.run.post_mortem import REPORT
+from psph.run.start import run
+from psph.simulation.step import BlowUp, Simulation
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)

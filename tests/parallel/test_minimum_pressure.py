@@ -6,10 +6,10 @@ from mpi4py import MPI
 
 from psph.case import Case
 from psph.output.ledger import Ledger
+from psph.run.setup import create_particles
 from psph.scene import Scene
-from psph.solver.plan import make_plan
-from psph.solver.setup import create_particles
-from psph.solver.step import Simulation
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)

@@ -185,7 +185,7 @@ class TwoParticles(Skin):
 def test_the_bound_holds_at_the_end_of_an_impact(seed):
     """The predicted velocity that is measured still has the acceleration of the step before in it."""
     rng = np.random.default_rng(seed)
-    skin, v, a, dt_before = TwoParticles(0.02), 0.0, 0.0, 0.0
+    skin, v, a = TwoParticles(0.02), 0.0, 0.0
     for _ in range(400):
         dt = 1e-3 * rng.uniform(0.5, 1.0)
         # One of each pair is accelerated by a, the other against it: relative to each other 2 a.

@@ -11,10 +11,10 @@ from psph.parallel.halo import _slice_type
 from psph.particles import neighbours
 from psph.particles.cells import make_grid, number_cells, planes_of, sort_by_cell
 from psph.particles.store import MOST, TooManyParticles, check_room, permute
+from psph.run.setup import create_particles
 from psph.scene import Scene
-from psph.solver.plan import make_plan
-from psph.solver.setup import create_particles
-from psph.solver.step import Simulation
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
 
 COLUMNS = 3 * 2**30
 """So far the particles of a small rank are shifted: past 2^31, short of 2^32."""

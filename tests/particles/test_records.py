@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from stores import store_of
 
+from psph.engine.simd import spread, total, width_of
 from psph.particles.records import Records, record_width, recorded
 from psph.physics.compose import FOLDED, fetch
 from psph.physics.space import Metres, fixed_point
-from psph.simd import spread, total, width_of
 
 HELD = ("position", "predicted_velocity", "pressure", "specific_volume", "wall")
 SPACES = {"double": Metres((None, None)), "mixed": fixed_point(0.1, (None, None))}

@@ -6,7 +6,7 @@ from numba.core import types
 from numba.extending import overload
 from stores import seen
 
-from psph.jit import method_of
+from psph.engine.jit import method_of
 from psph.physics import compose
 from psph.physics.compose import geometry, take
 from psph.smoothing import kernel

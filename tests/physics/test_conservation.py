@@ -13,14 +13,14 @@ import pytest
 from jobs import clean_environment
 from physics.pairs import ONE_FOR_ALL, pair_of, sums_of, view
 from physics.test_effects import made
-from solver.test_absence import calling_for
+from simulation.test_absence import calling_for
 
 from psph.physics.catalogue import CATALOGUE
 from psph.physics.compose import displacement, push, radial, shear
-from psph.physics.potential import PairPotential, neutral_potential
-from psph.physics.shifting import LatticeShift
-from psph.physics.stress import NeighbourStress
-from psph.physics.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
+from psph.physics.fluid.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
+from psph.physics.order.potential import PairPotential, neutral_potential
+from psph.physics.order.shifting import LatticeShift
+from psph.physics.order.stress import NeighbourStress
 
 MOMENTUM, ANGULAR = "momentum", "angular momentum"
 DRIFT = 1e-13
@@ -145,10 +145,10 @@ def after_steps(folder, scheme, density, overrides, steps=4):
     from mpi4py import MPI
 
     from psph.output.ledger import Ledger
+    from psph.run.setup import create_particles
     from psph.scene import Scene
-    from psph.solver.plan import make_plan
-    from psph.solver.setup import create_particles
-    from psph.solver.step import Simulation
+    from psph.simulation.plan import make_plan
+    from psph.simulation.step import Simulation
 
     scene = Scene(draft(folder, f'scheme = "{scheme}"' + BOX % density, *overrides))
     plan = make_plan(scene)

@@ -3,7 +3,12 @@
 import pytest
 
 from psph.physics.catalogue import (
-    BUILT_IN, ArtificialViscosity, Continuity, FreeSurface, MinimumPressure, SymmetricPressure,
+    BUILT_IN,
+    ArtificialViscosity,
+    Continuity,
+    FreeSurface,
+    MinimumPressure,
+    SymmetricPressure,
 )
 from psph.physics.count import flops_per_pair
 from psph.smoothing import KERNELS, kernel
@@ -13,7 +18,8 @@ SHARED = ("mass", "rest_density", "sound_speed", "smoothing_length")
 
 def count(*effects, dim=1, name="wendland-c2", shared=SHARED):
     reductions = tuple(e for e in effects if hasattr(e, "start"))
-    return flops_per_pair(effects, reductions, kernel(name, 0.1, dim), BUILT_IN.fields.values(), shared, (None,) * dim)
+    return flops_per_pair(effects, reductions, kernel(name, 0.1, dim), BUILT_IN.fields.values(),
+    shared, (None,) * dim)
 
 
 def geometry_by_hand(dim):

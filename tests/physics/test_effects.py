@@ -9,31 +9,39 @@ from typing import get_origin, get_type_hints
 import numpy as np
 import pytest
 from long import long_but_for
-from physics.pairs import H, OPEN, pair_of, rates, sums_of, view
+from physics.pairs import OPEN, H, pair_of, rates, sums_of, view
 
 from psph.physics.catalogue import BUILT_IN, CATALOGUE
-from psph.physics.continuity import Continuity
-from psph.physics.correction import DifferenceCorrection, GradientCorrection
-from psph.physics.diffusion import DensityDiffusion, TankDiffusion
-from psph.physics.filtering import ConservativeSmoothing
-from psph.physics.gravity import CentralForce, Gravity
-from psph.physics.potential import neutral_potential
-from psph.physics.pressure import (
-    BackgroundPressure, DifferencePressure, MinimumPressure, SymmetricPressure, TensileControl,
+from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
+from psph.physics.damping.filtering import ConservativeSmoothing
+from psph.physics.damping.riemann import RiemannDissipation
+from psph.physics.fluid.continuity import Continuity
+from psph.physics.fluid.correction import DifferenceCorrection, GradientCorrection
+from psph.physics.fluid.gravity import CentralForce, Gravity
+from psph.physics.fluid.pressure import (
+    BackgroundPressure,
+    DifferencePressure,
+    MinimumPressure,
+    SymmetricPressure,
+    TensileControl,
 )
-from psph.physics.riemann import RiemannDissipation
-from psph.physics.shifting import LatticeShift, ParticleShifting, lattice_shift
-from psph.physics.slip import CorrectedNoSlip, NoSlip
-from psph.physics.stress import NeighbourStress
-from psph.physics.surface import FreeSurface, TensionFloor
-from psph.physics.transport import GeneralisedTransportVelocity, TransportVelocity, XSPH
-from psph.physics.trial import UnknownField, reads
-from psph.physics.viscosity import (
-    ArtificialViscosity, CentralFriction, CorrectedViscosity, ImpactDamping, LaminarViscosity,
+from psph.physics.fluid.viscosity import (
+    ArtificialViscosity,
+    CentralFriction,
+    CorrectedViscosity,
+    ImpactDamping,
+    LaminarViscosity,
     PairDamping,
 )
-from psph.physics.walls import DryWall
-from psph.smoothing import first_moment, kernel
+from psph.physics.order.potential import neutral_potential
+from psph.physics.order.shifting import LatticeShift, ParticleShifting, lattice_shift
+from psph.physics.order.stress import NeighbourStress
+from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
+from psph.physics.surface.free import FreeSurface, TensionFloor
+from psph.physics.trial import UnknownField, reads
+from psph.physics.walls.dry import DryWall
+from psph.physics.walls.slip import CorrectedNoSlip, NoSlip
+from psph.smoothing import kernel
 
 DIMENSIONS = (1, 2, 3)
 
@@ -629,7 +637,7 @@ def test_a_position_shift_sees_the_surface_and_what_crowds():
     """Full, a lattice holds still; at its edge nothing shifts; a near pair parts."""
     scene_kernel, dx = kernel("hyperbolic", H, 2), H / 1.3
     shift = lattice_shift(0.1, scene_kernel, dx, 2)
-    x = np.array([k for k in product(range(-3, 4), repeat=2)]) * dx
+    x = np.array(list(product(range(-3, 4), repeat=2))) * dx
     centre = int(np.flatnonzero((x == 0.0).all(axis=1))[0])
 
     def stored(places):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from psph.physics.state import Linear, Tait
+from psph.physics.fluid.state import Linear, Tait
 
 
 @pytest.mark.parametrize("state", [Linear(), Tait()])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from physics.pairs import pair_of, view
 
-from psph.physics.continuity import Continuity
-from psph.physics.stress_points import StressPoints
+from psph.physics.fluid.continuity import Continuity
+from psph.physics.fluid.stress_points import StressPoints
 
 VELOCITY, STRESS, WALL = range(3)
 

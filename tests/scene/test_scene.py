@@ -8,7 +8,7 @@ from drafts import TANK, WATER, draft
 
 from psph.case import CaseError, load
 from psph.physics.motion import Fixed, Free
-from psph.scene import Species, Scene, check
+from psph.scene import Scene, Species, check
 from psph.scene import lattice as lattices
 
 CASES = Path(__file__).parents[2] / "run/cases"

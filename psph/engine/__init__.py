@@ -1,0 +1,1 @@
+"""How sums are computed on a processor: compilation, registers, threads, the compile cache."""

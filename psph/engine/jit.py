@@ -1,0 +1,222 @@
+"""How psph compiles: numba's flags, dispatch by type, and a cache that cannot go stale.
+
+An *effect*, a smoothing kernel or an equation of state is a ``NamedTuple``: its fields are its
+parameters, its methods are its formula.  numba sees the class in the value's type, so a call by
+type selects the formula at compile time and inlines it; a new parameter value recompiles nothing,
+a scene without an effect holds none of its code.
+"""
+
+import gc
+import hashlib
+import os
+import sys
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import llvmlite.binding as llvm
+import numba
+from numba import extending
+from numba.core.caching import FunctionCache
+from numba.core.sigutils import normalize_signature
+
+from psph.engine.cache import Cache
+
+FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
+"""Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
+no ``ninf``): a run that blows up must be seen to do so."""
+
+
+def source_digest() -> str:
+    """Fingerprint of psph's own sources, the key of the compile cache.
+
+    numba looks only at the file of the function it caches.  An effect lives in another file than
+    the pair loop that it is compiled into, so without this key an edited effect would go on
+    running as it was before.
+    """
+    package = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for path in sorted(package.rglob("*.py")):
+        digest.update(str(path.relative_to(package)).encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+SOURCES = source_digest()
+"""That of the sources which this process has read, whatever is written into them meanwhile."""
+
+
+def cache_folder() -> Path:
+    """Folder of the compiled loops: ``$PSPH_CACHE`` or the user's cache folder, one per digest."""
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    root = Path(os.environ.get("PSPH_CACHE") or Path(home) / "psph")
+    return root / SOURCES
+
+
+ALLOCATOR = "--regalloc=pbqp"
+"""How LLVM hands out registers: its own choice copies a third of the pair loop's numbers from one
+register to another, or spills them.  It changes no result."""
+
+
+CACHE = Cache(cache_folder())
+"""This process's compiled loops on disk."""
+
+
+def _configure() -> None:
+    llvm.set_option("psph", ALLOCATOR)
+    numba.config.CACHE_DIR = str(cache_folder())
+    numba.config.CPU_NAME = numba.config.CPU_NAME or llvm.get_host_cpu_name()
+    if not numba.config.CPU_FEATURES:
+        # 512-bit vectors where the processor has them: LLVM would prefer 256.
+        features = llvm.get_host_cpu_features().flatten()
+        numba.config.CPU_FEATURES = features + ",-prefer-256-bit"
+
+
+_configure()
+
+
+def processor() -> str:
+    """The processor that loops are compiled for: bits may differ between two of them."""
+    return numba.config.CPU_NAME
+
+
+def register_bits() -> int:
+    """Bits of the processor's vector registers."""
+    return 512 if "+avx512f" in numba.config.CPU_FEATURES.split(",") else 256
+
+
+def marker(loops: str, *examples) -> Path | None:
+    """The file that says: these ``loops``, for the types of these ``examples``, are in the cache.
+
+    Whoever has compiled them all touches it.  Where it is wrong, loops are compiled once more.
+    None without a cache.
+    """
+    if CACHE.folder is None:
+        return None
+    build = (numba.__version__, sys.version, numba.config.CPU_NAME, numba.config.CPU_FEATURES)
+    selected = (build, numba.config.DISABLE_JIT, loops, *map(numba.typeof, examples))
+    return CACHE.folder / f"{hashlib.sha256(str(selected).encode()).hexdigest()[:16]}.ready"
+
+
+@contextmanager
+def many_loops():
+    """Where many loops are compiled: numba's objects are not searched for rings meanwhile.
+
+    It makes some hundreds of thousands and keeps most of them; the searches take a tenth of the time.
+    """
+    used = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if used:
+            gc.enable()
+
+
+class OwnCache(FunctionCache):
+    """Keeps the loops of psph's own effects on disk.
+
+    A loop with an effect from a script or a test is compiled in each process: on disk its type
+    would be the name of a module that the next process cannot import, and it would break the
+    loading of all others.
+    """
+
+    def save_overload(self, sig, data):
+        """Keep a compiled loop unless a foreign class stands in its types."""
+        arguments, _ = normalize_signature(sig)
+        if not any(_is_foreign(kind) for kind in arguments):
+            with suppress(OSError):  # a full disk is no reason to end a run
+                super().save_overload(sig, data)
+
+
+def is_kept(*examples) -> bool:
+    """Whether loops for the types of these examples stay in the cache: not with foreign classes."""
+    return not any(_is_foreign(numba.typeof(example)) for example in examples)
+
+
+def _is_foreign(kind) -> bool:
+    own = getattr(kind, "instance_class", tuple)
+    if own is not tuple and own.__module__.partition(".")[0] != __name__.partition(".")[0]:
+        return True
+    return any(_is_foreign(part) for part in getattr(kind, "types", ()))
+
+
+def compiled(function):
+    """Decorator of a compiled loop: a module-level function, kept in the cache.
+
+    LLVM may reorder and contract its arithmetic: for the pair loop and what works with lanes, whose
+    order is written out, and for what has no arithmetic in floating point.
+    """
+    return _kept(numba.njit(fastmath=FAST, **OPTIONS)(function))
+
+
+def elementwise(function):
+    """Decorator of a compiled loop over columns: as :func:`compiled`, with strict arithmetic.
+
+    Every operation is rounded by itself, in the order written.  Which columns the vector body takes and
+    which the remainder depends on the rank's slab; strict, both give a particle the same bits.
+    """
+    return _kept(numba.njit(**OPTIONS)(function))
+
+
+def _kept(loop):
+    """The loop, in the cache where there is one."""
+    if CACHE.folder is not None and not numba.config.DISABLE_JIT:
+        loop._cache = OwnCache(loop.py_func)
+    return loop
+
+
+INNER = {"no_cfunc_wrapper": True}
+"""Functions that only compiled code calls need no entry for C: to build it takes an eighth of the
+time that they take to compile."""
+
+OPTIONS = {"error_model": "numpy", "nogil": True, **INNER}
+"""Of every loop: division by zero gives infinity, and threads run side by side."""
+
+
+def overload(function, **options):
+    """Decorator: what compiled code has in the place of ``function`` (numba.extending.overload)."""
+    return extending.overload(function, jit_options=INNER, **options)
+
+
+def register_jitable(function):
+    """Let compiled code call a plain function (numba.extending.register_jitable)."""
+    return extending.register_jitable(**INNER)(function)
+
+
+def call_by_type(name: str):
+    """A function ``(value, *args) -> value.name(*args)`` for compiled code and plain Python.
+
+    The formula is found by the value's class and inlined.
+    """
+
+    def call(value, *args):
+        return getattr(value, name)(*args)
+
+    @overload(call)
+    def typed(value, *args):
+        formula = method_of(value, name)
+        return lambda value, *args: formula(value, *args)
+
+    return call
+
+
+def unrolled(arguments: str, *lines: str, **names):
+    """The function of these arguments with these lines, for numba to compile in one piece.
+
+    A tuple's length is known when a function is compiled for it.  To work through its entries by
+    recursion over its type costs the compiler as much at each level as a formula of physics does;
+    written out it costs but once.  ``names`` are what the lines refer to.
+    """
+    exec("\n    ".join([f"def written_out({arguments}):", *lines]), names)
+    return names["written_out"]
+
+
+def tuple_of(parts) -> str:
+    """The text of a tuple with these parts."""
+    return f"({''.join(f'{part}, ' for part in parts)})"
+
+
+def method_of(named_type, name: str):
+    """The compiled form of method ``name`` of a NamedTuple's class, or None if it has none."""
+    formula = getattr(named_type.instance_class, name, None)
+    return formula and register_jitable(formula)

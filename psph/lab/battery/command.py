@@ -1,0 +1,122 @@
+"""The verbs ``stability --battery`` and ``--remedies``."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import psph
+from psph.case import CaseError, load
+from psph.lab.battery import judgement, picture, tables
+from psph.lab.battery.errors import BatteryError
+from psph.lab.battery.measures import measure
+from psph.lab.battery.remedies import REMEDIES, Remedy
+from psph.lab.battery.remedies import trials as trials_of
+from psph.lab.battery.trials import BATTERY, OURS, QUICK, Trial
+from psph.lab.battery.verdicts import Row, judged
+from psph.lab.maps.tables import write
+from psph.lab.study.runs import perform
+from psph.output.errors import OutputError
+from psph.output.reader import Run
+
+CASES = Path(psph.__file__).parents[1] / "run" / "cases" / "hard"
+FOLDER, BESIDE = Path("battery"), Path("remedies")
+
+
+def battery(
+    comm, quick: bool, out: Path | None, trials: tuple[Trial, ...] | None = None
+) -> list[Row]:
+    """Run the battery, or the quick part of it, into ``out``; rows on rank 0, collective.
+
+    Runs that are finished there already are not done again.  Raises BatteryError where the cases
+    are not at hand.
+    """
+    chosen = trials if trials is not None else QUICK if quick else BATTERY
+    folder = out or FOLDER
+    rows = _performed(comm, chosen, folder)
+    if comm.rank == 0:
+        _write(folder, chosen, rows)
+        _say("", *tables.matrix(chosen, rows), "", *tables.sentences(rows))
+        _say(f"wrote {folder}: {tables.CSV}, {tables.PAGE}, {picture.PICTURE}")
+    return rows
+
+
+def remedies(comm, out: Path | None, chosen: Sequence[Remedy] = REMEDIES) -> list[Row]:
+    """Run the trials of the remedies, each alone; rows on rank 0."""
+    folder, every = out or BESIDE, trials_of(chosen)
+    rows = _performed(comm, every, folder)
+    if comm.rank == 0:
+        write(folder / judgement.CSV, tables.as_csv(rows))
+        write(folder / judgement.PAGE, "\n".join(judgement.markdown(every, rows)) + "\n")
+        _say("", *judgement.matrix(every, rows))
+        _say(f"wrote {folder}: {judgement.CSV}, {judgement.PAGE}")
+    return rows
+
+
+def _performed(comm, trials: Sequence[Trial], folder: Path) -> list[Row]:
+    """Every run of every trial, said as it ends; rows on rank 0."""
+    if not CASES.is_dir():
+        raise BatteryError(
+            f"stability: {CASES} is not there; run it from psph's own folder of sources"
+        )
+    rows = []
+    for trial in trials:
+        for column in trial.columns:
+            row = _run(comm, trial, column, folder)
+            if comm.rank == 0:
+                rows.append(row)
+                _say(tables.line(row))
+    return rows
+
+
+def _say(*lines: str) -> None:
+    """Lines at once; for rank 0."""
+    for line in lines:
+        print(line, flush=True)
+
+
+def folder_of(folder: Path, trial: Trial, column: str) -> Path:
+    """Where the files of a run are."""
+    words = "".join(c if c.isalnum() or c in ".-" else " " for c in f"{trial.name} {column}")
+    return folder / "-".join(words.split())
+
+
+def _run(comm, trial: Trial, column: str, folder: Path) -> Row | None:
+    """One run; its row on rank 0."""
+    place = folder_of(folder, trial, column)
+    try:
+        case = load(CASES / f"{trial.case}.toml", trial.overrides(column))
+    except CaseError as error:
+        case = error
+    result = perform(case, place, comm, 1, lambda line: None)
+    if comm.rank != 0:
+        return None
+    if isinstance(case, CaseError) or not _has_frames(place):
+        return judged(trial, column, result, {}, 0.0)
+    reached = float(Run(place).log()["time"][-1])
+    return judged(trial, column, result, measure(place, case, trial.speed), reached)
+
+
+def _has_frames(place: Path) -> bool:
+    try:
+        return len(Run(place).times) > 0
+    except OutputError:
+        return False
+
+
+def _write(folder: Path, trials: tuple[Trial, ...], rows: list[Row]) -> None:
+    write(folder / tables.CSV, tables.as_csv(rows))
+    write(folder / tables.PAGE, "\n".join(tables.markdown(trials, rows)) + "\n")
+    picture.draw(folder / picture.PICTURE, trials, rows, snapshots(folder, trials))
+
+
+SNAPSHOTS = ("patch", "dam_break", "drop", "strip", "jets", "taylor_green", "sloshing", "cavity")
+"""Cases whose end under the default scheme is drawn beside the table."""
+
+
+def snapshots(folder: Path, trials: tuple[Trial, ...]) -> Iterator[tuple[str, dict]]:
+    """Name and last frame of a run of each of these, under the default scheme."""
+    seen = set()
+    for trial in trials:
+        place = folder_of(folder, trial, OURS)
+        if trial.case in SNAPSHOTS and trial.case not in seen and _has_frames(place):
+            seen.add(trial.case)
+            yield trial.name, Run(place).frame(-1, "position", "kind", "pressure")

@@ -1,0 +1,297 @@
+"""LAMMPS beside psph: the same particles, support, sound, time step and number of ranks.
+
+It runs in processes of its own, from an environment of its own, since it brings another MPI.
+"""
+
+import math
+import os
+import secrets
+import subprocess
+import tempfile
+import threading
+from contextlib import contextmanager
+from multiprocessing.connection import Connection, Listener, wait
+from pathlib import Path
+
+import numpy as np
+
+from psph.fields import FLUID, WALL
+from psph.lab.bench import lammps_side
+from psph.lab.bench.errors import BenchError, PeerFailed
+from psph.lab.bench.ranks import on_rank_0
+from psph.physics.fluid.viscosity import ArtificialViscosity
+
+SKINS = (0.01, 0.03, 0.06, 0.1, 0.2)
+"""Skins of its neighbour lists that are tried, over the support; the fastest is taken."""
+
+SETTLING, TRIAL = 5, 15
+"""Steps before a trial of a skin, and steps of the trial."""
+
+STEP = 0.5
+"""Its time step over psph's: with psph's own a falling dam blows up in its integrator."""
+
+EVERY, UNEVEN, SHIFTS, NEARLY = 100, 1.05, 20, 1.01
+"""Its load balancing on several ranks: it looks so often, in steps, moves its cuts where the fullest rank
+has so many times the average work, in so many rounds at the most, until it has no more than that."""
+
+BROKEN = 0.2
+"""Relative error of the density above which the run counts as blown up."""
+
+PATIENCE = 5.0
+"""Seconds that its processes get to end by themselves."""
+
+FOREIGN = ("OMPI_", "PMIX_", "PMI_", "ORTE_", "PRTE_", "HYDRA_", "MPI_")
+"""Variables that another mpirun leaves in the environment."""
+
+
+class Peer:
+    """LAMMPS with the particles of a simulation as they are now; a context; collective.
+
+    ``python`` is an interpreter that has LAMMPS, with its ``mpiexec`` beside it.  Raises
+    BenchError on all ranks if LAMMPS fails.
+    """
+
+    def __init__(self, python: Path, scene, simulation):
+        self.comm = simulation.comm
+        self._rest_density = scene.species[0].density
+        particles, cores = gathered(simulation), _cores(self.comm)
+
+        def begin() -> dict:
+            self._processes = Processes(python, self.comm.size, cores)
+            try:
+                return self._hand_over(scene, simulation, particles)
+            except BaseException:
+                self._processes.end()
+                raise
+
+        self.described = on_rank_0(self.comm, begin)
+
+    def __enter__(self) -> "Peer":
+        return self
+
+    def __exit__(self, *exception) -> None:
+        if self.comm.rank == 0:
+            self._processes.end()
+
+    def timed(self, steps: int) -> float:
+        """Seconds of so many steps, of its slowest rank."""
+        return on_rank_0(self.comm, lambda: max(self._processes.ask("run", steps)))
+
+    def check(self) -> None:
+        """Raise BenchError where its densities are no longer those of water."""
+        low, high = on_rank_0(self.comm, self._densities)
+        if not 1.0 - BROKEN < low <= high < 1.0 + BROKEN:
+            raise PeerFailed(
+                f"bench --peer: LAMMPS blew up: densities of {low:.3g} to {high:.3g} of the rest "
+                "density; leave --peer out, or ask for more particles"
+            )
+
+    def _densities(self) -> tuple[float, float]:
+        """The smallest and the largest, over the density at rest."""
+        rho = np.concatenate([np.frombuffer(s["rho"]) for s in self._processes.ask("state")])
+        return float(rho.min()) / self._rest_density, float(rho.max()) / self._rest_density
+
+    def _hand_over(self, scene, simulation, particles: dict) -> dict:
+        ask = self._processes.ask
+        version = ask("version")[0]
+        space, motion = commands(scene, simulation)
+        ask("commands", space)
+        made, all_ = sum(ask("atoms", particles)), len(particles["rho"]) // 8
+        if made != all_:
+            raise BenchError(f"bench --peer: LAMMPS took {made:,} of {all_:,} particles")
+        ask("commands", motion)
+        support = scene.kernel.support * scene.smoothing_length
+
+        def pace(skin: float) -> float:
+            ask("commands", [f"neighbor {skin * support!r} bin", f"run {SETTLING} post no"])
+            return max(ask("run", TRIAL))
+
+        best = min(SKINS, key=pace)
+        pace(best)
+        return {
+            "name": "LAMMPS", "version": version, "style": "sph/taitwater",
+            "ranks": self.comm.size,
+            "skin": best, "skins_tried": list(SKINS), "time_step_over_psph": STEP,
+        }
+
+
+def commands(scene, simulation) -> tuple[list[str], list[str]]:
+    """The scene in LAMMPS's own words: before its particles are made, and after.
+
+    A group holds the atoms that are there when it is named.
+    """
+    dx, d = scene.spacing, scene.dimensions
+    support = scene.kernel.support * scene.smoothing_length
+    thin = [(-0.5 * dx, 0.5 * dx)] * (3 - d)
+    ends = [*zip(scene.lower, scene.upper), *thin]
+    sides = ["s" if period is None else "p" for period in scene.periods] + ["p"] * len(thin)
+    [friction] = (e for e in simulation.plan.effects if isinstance(e, ArtificialViscosity))
+    alpha = friction.alpha * scene.smoothing_length / support  # its μ has the support for h
+    water, *tank = scene.species
+    pull = math.hypot(*scene.gravity)
+    down = " ".join(f"{g / pull!r}" for g in (*scene.gravity, *(0.0 for _ in thin))) if pull else ""
+    space = [
+        "units si",
+        f"dimension {d}",
+        "atom_style sph",
+        "newton on",
+        f"boundary {' '.join(sides)}",
+        "comm_modify vel yes",
+        f"region all block {' '.join(f'{float(x)!r}' for pair in ends for x in pair)} units box",
+        "create_box 2 all",
+        f"mass * {water.mass!r}",
+        "pair_style sph/taitwater",
+        f"pair_coeff * * {water.density!r} {scene.sound_speed!r} {alpha!r} {support!r}",
+        "neigh_modify every 1 delay 0 check yes",
+        "thermo 1000000",
+        f"timestep {STEP * simulation.dt!r}",
+    ]
+    motion = [
+        f"group water type {FLUID + 1}",
+        "fix move water sph",
+        *([f"group tank type {WALL + 1}", "fix stay tank sph/stationary"] if tank else []),
+        *([f"fix fall water gravity {pull!r} vector {down}"] if pull else []),
+        *(["fix flat all enforce2d"] if d == 2 else []),
+        *(_balancing(d) if simulation.comm.size > 1 else []),
+    ]
+    return space, motion
+
+
+def _balancing(dimensions: int) -> list[str]:
+    """Cuts that follow the particles, at the start and during the run, as LAMMPS's manual sets them up.
+
+    Without them each rank has an equal part of the box, however little of the water is in it.
+    """
+    how = f"shift {'xyz'[:dimensions]} {SHIFTS} {NEARLY}"
+    return [f"balance {UNEVEN} {how}", f"fix even all balance {EVERY} {UNEVEN} {how}"]
+
+
+def gathered(simulation) -> dict | None:
+    """All particles in the order of their ids, as LAMMPS wants them; None on the other ranks."""
+    names = ("id", "kind", "position", "velocity", "density")
+    parts = simulation.comm.gather([simulation.store.owned_rows(name) for name in names])
+    if parts is None:
+        return None
+    ids, kind, position, velocity, density = map(np.concatenate, zip(*parts))
+    order = np.argsort(ids)
+    flat = ((0, 0), (0, 3 - position.shape[1]))
+    return {
+        "id": np.arange(1, len(ids) + 1, dtype=np.int32).tobytes(),
+        "type": (kind[order].astype(np.int32) + 1).tobytes(),
+        "x": np.pad(position[order], flat).tobytes(),
+        "v": np.pad(velocity[order], flat).tobytes(),
+        "rho": density[order].tobytes(),
+    }
+
+
+class Processes:
+    """Python processes with LAMMPS, as many as ranks; they wait for commands."""
+
+    def __init__(self, python: Path, ranks: int, cores: set[int]):
+        python = Path(python).absolute()  # not resolved: an environment's Python is a link
+        self.python, key = python, secrets.token_bytes(16)
+        launcher = [python.parent / "mpiexec", "-n", str(ranks)] if ranks > 1 else []
+        self._said = tempfile.TemporaryFile()
+        self._connections: list[Connection] = []
+        with Listener(("localhost", 0), authkey=key) as listener:
+            address = map(str, listener.address)
+            try:
+                with _on(cores):
+                    self._job = subprocess.Popen(
+                        [*launcher, python, lammps_side.__file__, *address],
+                        env=_environment(python, key), stdin=subprocess.DEVNULL,
+                        stdout=self._said, stderr=self._said,
+                    )
+            except OSError as error:
+                raise BenchError(
+                    f"bench --peer: {error.filename}: {error.strerror}; {ADVICE}"
+                ) from None
+            self._meet(listener, ranks)
+
+    def ask(self, what: str, *details) -> list:
+        """The answer of each process."""
+        answers = {}
+        try:
+            for connection in self._connections:
+                connection.send((what, *details))
+            while len(answers) < len(self._connections):
+                for ready in wait([c for c in self._connections if c not in answers]):
+                    answers[ready] = _good(ready.recv())
+        except (EOFError, OSError):
+            raise PeerFailed(f"bench --peer: LAMMPS ended: {self._last_words()}") from None
+        return list(answers.values())
+
+    def end(self) -> None:
+        """End the processes; if one has failed, the others hang and are killed."""
+        for connection in self._connections:
+            connection.close()
+        for send in (self._job.terminate, self._job.kill):
+            try:
+                self._job.wait(PATIENCE)
+                break
+            except subprocess.TimeoutExpired:
+                send()
+        self._job.wait()
+        self._said.close()
+
+    def _meet(self, listener: Listener, ranks: int) -> None:
+        def accept() -> None:
+            while len(self._connections) < ranks:
+                self._connections.append(listener.accept())
+
+        door = threading.Thread(target=accept, daemon=True)
+        door.start()
+        while door.is_alive():
+            door.join(0.05)
+            if self._job.poll() is not None:
+                raise BenchError(
+                    f"bench --peer: no LAMMPS in {self.python} ({self._last_words()}); {ADVICE}"
+                )
+
+    def _last_words(self) -> str:
+        self._said.seek(0)
+        lines = self._said.read().decode(errors="replace").split("\n")
+        return next((line.strip() for line in reversed(lines) if line.strip()), "it said nothing")
+
+
+def _good(answer):
+    """The answer; PeerFailed if it is an error."""
+    if isinstance(answer, str) and answer.startswith(lammps_side.ERROR):
+        raise PeerFailed(f"bench --peer: LAMMPS: {answer.removeprefix(lammps_side.ERROR)}")
+    return answer
+
+
+ADVICE = (
+    "pip install psph[peer] into an environment of its own, since it brings an MPI, "
+    "and give that environment's Python: --peer PYTHON"
+)
+
+
+def _cores(comm) -> set[int]:
+    """The cores that any rank may use; empty if the system does not say.  Collective."""
+    mine = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
+    return set().union(*comm.allgather(mine))
+
+
+@contextmanager
+def _on(cores: set[int]):
+    """Let what is started inside have these cores: mpirun may have tied this rank to one."""
+    if not cores:
+        yield
+        return
+    mine = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, cores)
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, mine)
+
+
+def _environment(python: Path, key: bytes) -> dict[str, str]:
+    kept = {name: text for name, text in os.environ.items() if not name.startswith(FOREIGN)}
+    library = [str(python.parent.parent / "lib"), *filter(None, [kept.get("LD_LIBRARY_PATH")])]
+    return kept | {
+        "LD_LIBRARY_PATH": os.pathsep.join(library),
+        "OMP_NUM_THREADS": "1",
+        lammps_side.KEY: key.hex(),
+    }

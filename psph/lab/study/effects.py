@@ -1,0 +1,60 @@
+"""The cost of each effect of a case, and the answers without it."""
+
+import math
+from collections.abc import Iterator
+
+from psph.case.profiles import OFF
+from psph.lab.study.ladder import Settings
+from psph.lab.study.report import percent
+from psph.lab.study.runs import DONE
+from psph.lab.study.study import MEAN
+from psph.scene import Scene
+from psph.simulation.plan import make_plan, words
+
+NOTHING = 1e-3
+"""A relative change of an answer below this is negligible."""
+
+
+def without_each(case) -> dict[str, Settings]:
+    """For each effect that can be switched off: its name, and the keys that do so."""
+    absent = make_plan(Scene(case)).absent
+    found = {}
+    for entry in case.catalogue.effects:
+        if entry.key and "=" not in entry.key and entry not in absent:
+            head, star, tail = entry.key.partition("*")
+            names = list(getattr(case, head.rstrip("."))) if star else [""]
+            found[words(entry.effect.__name__)] = {f"{head}{n}{tail}": OFF for n in names}
+    return found
+
+
+def answers(row: dict, base: dict) -> dict[str, float]:
+    """How much each answer of a run differs from that of the run with all effects, relative."""
+    names = [n for n in base if n.startswith(MEAN)] or ["kinetic_energy"]
+    if not math.isnan(base["error_l2"]):
+        names.append("error_l2")
+    return {
+        n.removeprefix(MEAN).replace("_", " "): row[n] / base[n] - 1.0 for n in names if base[n]
+    }
+
+
+def effects_words(named: dict[str, Settings], rows: list[dict]) -> Iterator[str]:
+    """A line or two for each effect; the first of the rows has them all, the others lack one."""
+    base, *lacking = rows
+    if base["status"] != DONE:
+        yield f"the case itself does not finish: {base['status']}."
+        return
+    for name, row in zip(named, lacking):
+        yield from _words(name, row, base)
+
+
+def _words(name: str, row: dict, base: dict) -> Iterator[str]:
+    """The share of time of an effect, and the changes without it."""
+    if row["status"] != DONE:
+        yield f"{name}: the case needs it; without it, {row['status']}."
+        return
+    saved = 1.0 - row["seconds"] / base["seconds"]
+    changed = answers(row, base)
+    changes = ", ".join(f"{what} by {percent(-by)}" for what, by in changed.items())
+    yield f"{name}: {percent(max(saved, 0.0))} of the time; it changes {changes or 'no answer'}."
+    if all(abs(by) < NOTHING for by in changed.values()):
+        yield f"{name}: it changes no answer of this case noticeably; the case does not need it."

@@ -1,0 +1,216 @@
+"""Errors of a finished run: its files against an exact solution, an experiment or another run."""
+
+import math
+from collections.abc import Callable
+from functools import cached_property
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.case.study import EXACT
+from psph.fields import FLUID
+from psph.lab.study.errors import StudyError
+from psph.lab.study.experiment import read_experiment
+from psph.output.accuracy import NORMS
+from psph.output.interpolation import interpolated
+from psph.output.reader import Run
+from psph.run.record import probes_of
+from psph.scene import Scene
+from psph.theory.solutions.catalogue import known
+
+THEORY, FINEST = "theory", "finest"
+
+AT_THE_END = ("velocity", "pressure", "density")
+"""Fields that are compared particle by particle at the end of a run."""
+
+
+class Judgement(NamedTuple):
+    """Relative errors in three norms."""
+
+    l1: float
+    l2: float
+    linf: float
+
+
+class Judge:
+    """The quantity and the reference of a case's errors; reads the files of its runs.
+
+    ``what`` is a field at the end or a column of probes.csv, ``against`` the reference.  Raises
+    StudyError where the case has no such thing.  ``files`` is the folder that its files lie in or
+    below, where it is not that of the case.
+    """
+
+    def __init__(self, case, files: Path | None = None):
+        self.case, self.files, study = case, files, case.study
+        self.columns = _probe_columns(case)
+        self.against = study.against or self._first_reference()
+        self.what = study.error or self._first_known()
+        self._agree()
+
+    @property
+    def in_words(self) -> str:
+        """``velocity at the end against the exact solution``."""
+        names = {EXACT: "the exact solution", THEORY: "theory", FINEST: "the finest run, its own error added"}
+        at = " at the end" if self.what in AT_THE_END else ""
+        return f"{self.what}{at} against {names.get(self.against, f'experiment {self.against}')}"
+
+    def errors(self, folder: Path, finest: Path) -> Judgement:
+        """Of the run in ``folder``; ``finest`` holds the run with the smallest spacing."""
+        run = Run(folder)
+        if self.what in AT_THE_END:
+            return self._fields(run, finest)
+        time, values = known_values(run.probes(), self.what)
+        if not len(time):
+            return series_errors(time, values)
+        theirs, of_theirs = self._curve(run, finest)
+        at = time if of_theirs is None else of_theirs  # None: known at any time
+        at = at[window(self.case.study, at) & (at >= time[0]) & (at <= time[-1])]
+        return series_errors(np.interp(at, time, values), theirs(at))
+
+    def _fields(self, run: Run, finest: Path) -> Judgement:
+        if self.against == EXACT:
+            last = {name: values[-1] for name, values in run.errors().items()}
+            return Judgement(*(float(last[f"{self.what}_{norm}"]) for norm in NORMS))
+        ours, theirs = (_fluid(r, self.what) for r in (run, Run(finest)))
+        if run.folder == finest:
+            return Judgement(math.nan, math.nan, math.nan)
+        there = interpolated(*theirs, ours[0], self._spacing(finest), Scene(self.case).periods)
+        return series_errors(ours[1], there)
+
+    @staticmethod
+    def _spacing(folder: Path) -> float:
+        return float(Run(folder).attributes["spacing"])
+
+    def _curve(self, run: Run, finest: Path) -> tuple[Callable, np.ndarray | None]:
+        """The reference as a function of times, and the times at which it was measured."""
+        if self.against == THEORY:
+            name, _, field = self.what.partition(".")
+            value = self.case.probes[name].theory[field]
+            return (lambda t: np.full(len(t), value)), None
+        if self.against == EXACT:
+            return self._exact_curve(run), None
+        if self.against == FINEST:
+            if run.folder == finest:
+                return (lambda t: np.full(len(t), math.nan)), None
+            of_finest = known_values(Run(finest).probes(), self.what)
+            return (lambda t: np.interp(t, *of_finest)), None
+        time, value = self.measured
+        return (lambda t: np.interp(t, time, value)), time
+
+    def _exact_curve(self, run: Run) -> Callable:
+        name, _, quantity = self.what.partition(".")
+        field, _, axis = quantity.partition("_")
+        scene = Scene(self.case)
+        x = np.array([self.case.probes[name].position])
+
+        def at(t: float) -> float:
+            [value] = getattr(scene.exact, field)(x, t, scene.setting)
+            return float(value["xyz".index(axis)] if axis else value)
+
+        return np.vectorize(at)
+
+    @cached_property
+    def measured(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times in s and values of the experiment, in the probe's unit.  StudyError: no such file,
+        or no such columns."""
+        return read_experiment(self.case, self.against, self.files)
+
+    def _first_reference(self) -> str:
+        if any(table is not None for _, table in self.case.exact):
+            return EXACT
+        for name in self.case.experiments:
+            return name
+        return THEORY if any(p.theory for p in self.case.probes.values()) else FINEST
+
+    def _first_known(self) -> str:
+        if self.against == EXACT:
+            return known(Scene(self.case).exact)[0]
+        if self.against in self.case.experiments:
+            return self.case.experiments[self.against].probe
+        if self.against == THEORY:
+            named = [f"{name}.{field}" for name, p in self.case.probes.items() for field in p.theory]
+            return (*named, AT_THE_END[0])[0]
+        return self.columns[0] if self.columns else AT_THE_END[0]
+
+    def _agree(self) -> None:
+        """StudyError where the reference does not fit what is compared."""
+        file, what = self.case.file, self.what
+        if what not in (*AT_THE_END, *self.columns):
+            names = ", ".join((*AT_THE_END, *self.columns))
+            raise StudyError(f"{file}: study.error: {what} is not measured; give one of {names}")
+        known_here = self._references_of(what)
+        if self.against not in known_here:
+            raise StudyError(
+                f"{file}: study.against: {self.against} has no {what}; give one of "
+                f"{', '.join(known_here)}"
+            )
+        if what not in AT_THE_END:
+            self._agree_in_time()
+
+    def _agree_in_time(self) -> None:
+        """StudyError where no time is left at which a probe could be compared."""
+        file, study, name = self.case.file, self.case.study, self.against
+        last = min(self.case.time.end, math.inf if study.until is None else study.until)
+        if study.after >= last:
+            raise StudyError(
+                f"{file}: study.after: {study.after:g} s leaves nothing to compare, since the comparison ends at "
+                f"{last:g} s; give an earlier time"
+            )
+        if name not in self.case.experiments:
+            return
+        time, _ = self.measured
+        if not ((time >= study.after) & (time <= last)).any():
+            raise StudyError(
+                f"{file}: experiments.{name}: measured from {time[0]:g} to {time[-1]:g} s, compared "
+                f"from {study.after:g} to {last:g} s; correct its time_unit, study.after or time.end"
+            )
+
+    def _references_of(self, what: str) -> list[str]:
+        """The references of the case that have ``what``."""
+        found = [n for n, e in self.case.experiments.items() if e.probe == what]
+        solution = Scene(self.case).exact
+        name, _, quantity = what.partition(".")
+        field = quantity.partition("_")[0] if quantity else what
+        if solution and field in known(solution):
+            found.append(EXACT)
+        if quantity and quantity in self.case.probes[name].theory:
+            found.append(THEORY)
+        return [*found, FINEST]
+
+
+def _probe_columns(case) -> list[str]:
+    """The columns of probes.csv that a case makes."""
+    return [c for probe in probes_of(case) for c in probe.columns(case.space.dimensions)]
+
+
+def window(study, time: np.ndarray) -> np.ndarray:
+    """True at the times at which probes are compared."""
+    until = math.inf if study.until is None else study.until
+    return (time >= study.after) & (time <= until)
+
+
+def known_values(table: dict[str, np.ndarray], column: str) -> tuple[np.ndarray, np.ndarray]:
+    """Times in s and values of a column of probes.csv, but for rows without fluid in reach (nan)."""
+    known = np.isfinite(table[column])
+    return table["time"][known], table[column][known]
+
+
+def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:
+    """Relative errors of a curve or a field, (n,) or (n, dim), over its points.
+
+    Σ|e|/Σ|f|, √(Σe²/Σf²) and max|e|/max|f|; NaN where there is none.
+    """
+    e, f = (np.linalg.norm(x.reshape(len(x), -1), axis=1) for x in (ours - theirs, theirs))
+    if not len(e):
+        return Judgement(math.nan, math.nan, math.nan)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        l2 = np.sqrt((e * e).sum() / (f * f).sum())
+        return Judgement(float(e.sum() / f.sum()), float(l2), float(e.max() / f.max()))
+
+
+def _fluid(run: Run, field: str) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and values of the fluid in the last frame."""
+    frame = run.frame(-1, "position", "kind", field)
+    fluid = frame["kind"] == FLUID
+    return frame["position"][fluid], frame[field][fluid]

@@ -1,0 +1,58 @@
+"""Error against seconds: the work–precision diagram."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.ticker import LogLocator, NullLocator
+
+from psph.lab.study.ladder import SPACING, toml
+from psph.output import style
+
+WIDTH, HEIGHT = 6.4, 4.0
+"""Of the diagram, inches."""
+
+
+def draw(
+    path: Path, title: str, subtitle: str, curves: Sequence[tuple[str, list[dict]]],
+    front: Sequence[dict], goal: tuple[float, dict] | None,
+) -> Path:
+    """Write the diagram: each of ``curves`` a named list of rows, the Pareto ``front`` beneath.
+
+    ``goal``: an error to reach and the cheapest row that does.
+    """
+    top = style.TOP + 0.2
+    with style.look():
+        figure = style.sheet(style.LEFT + WIDTH + 2.2, top + HEIGHT + style.BOTTOM, title, subtitle)
+        axes = style.panel(figure, style.LEFT, top, WIDTH, HEIGHT)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        if len(front) > 1:
+            x, y = zip(*((r["seconds"], 100.0 * r["error_l2"]) for r in front))
+            axes.plot(x, y, color=style.WALLS, lw=6, solid_capstyle="round", zorder=1,
+                      label="nothing beats these")
+        for k, (name, rows) in enumerate(curves):
+            colour = style.LINES[k % len(style.LINES)]
+            x = [r["seconds"] for r in rows]
+            y = [100.0 * r["error_l2"] for r in rows]
+            axes.plot(x, y, "o-", color=colour, ms=4, label=name, zorder=3)
+            for row in rows if k == 0 else ():
+                if SPACING in row:
+                    axes.annotate(
+                        f"dx {toml(row[SPACING])}", (row["seconds"], 100.0 * row["error_l2"]),
+                        xytext=(5, 5), textcoords="offset points", size=8, color=style.PALE,
+                    )
+        if goal:
+            error, row = goal
+            axes.axhline(100.0 * error, color=style.INK, lw=0.9, ls=(0, (5, 3)), zorder=2)
+            axes.plot([row["seconds"]], [100.0 * row["error_l2"]], "o", ms=11, mfc="none",
+                      mec=style.INK, label=f"cheapest within {100.0 * error:g} %", zorder=4)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(lambda number, _: f"{number:g}")
+            axis.set_minor_locator(NullLocator())
+        axes.margins(0.12)
+        axes.grid(color=style.WALLS, lw=0.4)
+        axes.set_xlabel("seconds")
+        axes.set_title("error, L2 (%)", loc="left", size=9, weight="bold")
+        axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0))
+    return style.save(figure, path)

@@ -1,0 +1,1 @@
+"""Numerical damping: of noise in density and velocity."""

@@ -1,0 +1,90 @@
+"""Smoothing of what noise continuity leaves in the density."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+from psph.formula import helper, where
+from psph.physics.fluid.viscosity import inverse_square
+from psph.vectors import along
+
+STABLE = 0.03
+"""δcΔt/h must stay below.  The fastest mode of a lattice decays at 2Sδc/h, S ≤ 5.5 over the kernels
+(Wendland C2: 3.4); density, predicted with weights 7/4, −1, 1/4, is stable to a third a step."""
+
+
+class DensityDiffusion(NamedTuple):
+    """Density spreads between neighbours: the noise of the pressure fades.
+
+    dρ_i/dt = 2 δ h c Σ_j (m_j/ρ_j) [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j)] x_ij·∇W_ij / max(r², 0.01 h²).
+    Molteni & Colagrossi (2009), Comput. Phys. Commun. 180, 861, with max(r², η²) for r² + η²: it is
+    W′/r but for the nearest, without a division.  A wall takes density from the fluid and from walls
+    that bear a pressure, which a dry one does not (:class:`psph.physics.walls.DryWall`): so the wall
+    behind the wet layers has their pressure, and does not draw it off.  It gives the fluid nothing: a
+    drop that lies on a wall would lose to it the density that holds it off.  In the fluid it keeps
+    Σ m_i/ρ_i dρ_i/dt = 0.
+    """
+
+    delta: Annotated[
+        float, Field(ge=0, description="strength δ", json_schema_extra={"unit": "1"})
+    ] = 0.1
+
+    def in_scene(self, scene):
+        """Under gravity or beside walls, the form that knows of them."""
+        held = any(scene.gravity) or scene.case.walls
+        pull = tuple(g or None for g in scene.gravity)
+        return TankDiffusion(self.delta, pull) if held else self
+
+    def density_rate(self, i, j, pair):
+        """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        return _excess(self.delta, i, j, 0.0) * _nearness(i, pair)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
+        return _longest_step(self.delta, scene)
+
+
+class TankDiffusion(NamedTuple):
+    """Density spreads in the fluid, but for what the weight of a still column asks for.
+
+    As :class:`DensityDiffusion` with (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ρ̄₀ g·x_ij/c² in the bracket, ρ̄₀ the
+    mean of the pair's two rest densities: the slope of density in a fluid at rest, linear in the
+    depth, stays, and what one particle gains in volume the other loses.  Antuono, Colagrossi,
+    Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532, with the exact slope for theirs.
+    ``gravity`` in m/s², None on an axis without.
+    """
+
+    delta: float
+    gravity: tuple[float | None, ...]
+
+    def density_rate(self, i, j, pair):
+        """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        mean = 0.5 * (i.rest_density + j.rest_density)
+        weight = mean / (i.sound_speed * i.sound_speed) * along(pair.x_ij, self.gravity)
+        # A fluid takes nothing from a wall, and a wall nothing from one without pressure.
+        giving = where(j.pressure * j.pressure > 0.0, i.wall, 0.0)
+        return where(j.wall > giving, 0.0, _excess(self.delta, i, j, weight)) * _nearness(i, pair)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
+        return _longest_step(self.delta, scene)
+
+
+@helper
+def _excess(delta, i, j, weight):
+    """2δhc [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ``weight``]/ρ_j, m²/s."""
+    strength = 2.0 * delta * i.smoothing_length * i.sound_speed
+    # (a − ρ_j)/ρ_j as a/ρ_j − 1: no division by 1/ρ_j.
+    level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density) - weight
+    return (strength * level) * j.specific_volume - strength
+
+
+@helper
+def _nearness(i, pair):
+    """m_j x_ij·∇W_ij/max(r², 0.01 h²), kg/m^(d+2)."""
+    return pair.r2 * inverse_square(pair, i.smoothing_length) * pair.m_dw_r
+
+
+def _longest_step(delta: float, scene) -> float:
+    mixing = delta * scene.sound_speed
+    return STABLE * scene.smoothing_length / mixing if mixing > 0.0 else float("inf")

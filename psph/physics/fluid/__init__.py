@@ -1,0 +1,1 @@
+"""The fluid itself: pressure, viscosity, gravity, equations of state."""

@@ -1,0 +1,163 @@
+"""Discrete forms of the acceleration −∇p/ρ, and a pressure that all particles share."""
+
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import Field
+
+from psph.fields import Field as Declared
+from psph.formula import where
+from psph.smoothing import weight
+from psph.vectors import add, scale, zero_like
+
+NOT_A_PRESSURE = 1e30
+"""Stands for a neighbour outside the support in a minimum over pressures, Pa."""
+
+
+AUTO = "auto"
+"""A background pressure that follows from the scene."""
+
+MARGIN = 1.4
+"""Such a pressure over what the scene is known to need."""
+
+
+EDGE = 0.9
+"""Kernel sum below which a particle is at a surface: the last row of a square lattice has 0.73 to
+0.88, one inside 0.91 or more, even in a lattice jittered by 10 %, over the kernels and h/dx in use."""
+
+
+class SymmetricPressure(NamedTuple):
+    """Pressure gradient, symmetric in the pair: conserves momentum exactly.
+
+    a_i = −Σ_j m_j (p_i/ρ_i² + p_j/ρ_j²) ∇W_ij.  SSPH paper, eq. (6); Monaghan (1992), eq. (3.3).
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return -(i.pressure * v_i * v_i + j.pressure * v_j * v_j) * pair.m_dw_r
+
+
+class MinimumPressure(NamedTuple):
+    """Pressure gradient relative to the smallest neighbour pressure (p⁻): pairs only repel.
+
+    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j − p_i⁻) ∇W_ij, p_i⁻ = min_j p_j over every neighbour, ghosts and
+    walls included.  SSPH paper, eq. (15).  One pass: the sum is taken relative to p_i, and
+    (p_i − p_i⁻) Σ_j m_j/ρ_j ∇W_ij, known when the minimum is, follows at the end.
+    Conserves neither momentum nor energy; unstable with a free surface.
+    """
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the part relative to p_i, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return (i.pressure - j.pressure) * v_i * (v_j * pair.m_dw_r)
+
+    def start(self, i):
+        """Smallest pressure so far, and Σ_j m_j/ρ_j ∇W_ij."""
+        return NOT_A_PRESSURE, zero_like(i.position)
+
+    def gather(self, total, i, j, pair):
+        """Take neighbour j into both."""
+        inside = where(pair.m_dw_r < 0.0, j.pressure, NOT_A_PRESSURE)
+        gradient = scale(pair.x_ij, j.specific_volume * pair.m_dw_r)
+        return min(total[0], inside), add(total[1], gradient)
+
+    def join(self, a, b):
+        """Both over two sets of neighbours."""
+        return min(a[0], b[0]), add(a[1], b[1])
+
+    def finish_acceleration(self, total, i):
+        """−(p_i − p_i⁻)/ρ_i Σ_j m_j/ρ_j ∇W_ij, m/s²."""
+        return scale(total[1], (total[0] - i.pressure) * i.specific_volume)
+
+
+class DifferencePressure(NamedTuple):
+    """Pressure gradient from differences: exact for a constant, whatever the order of particles.
+
+    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j − p_i) ∇W_ij.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30,
+    543.  The symmetric form errs by 2p/ρ Σ_j m_j/ρ_j ∇W_ij, which a finer spacing does not cure;
+    this one does not hold particles apart, so shift them.  Conserves neither momentum nor energy
+    exactly.
+    """
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return (i.pressure - j.pressure) * v_i * (v_j * pair.m_dw_r)
+
+
+class TensileControl(NamedTuple):
+    """Pressure gradient that pulls no pair together inside a fluid under tension.
+
+    a_i = −Σ_j m_j/(ρ_i ρ_j) (p_j + s p_i) ∇W_ij, s = −1 where p_i < 0 inside the fluid, else 1.  The
+    tensile instability control of Sun, Colagrossi, Marrone, Antuono & Zhang (2018), Comput. Phys.
+    Commun. 224, 63.  Inside is where the kernel sum of the pass before, the particle
+    included, is at least 0.9; they tell a surface, and what is near it, by the eigenvalues of a
+    matrix, and shift particles besides.  Momentum is conserved where s = 1 alone.
+    """
+
+    writes = Declared("inside", "1", "1 inside the fluid, 0 at a free surface")
+    lagged = True
+
+    def start(self, i):
+        """No neighbour yet."""
+        return 0.0
+
+    def gather(self, total, i, j, pair):
+        """Add W_ij m_j/ρ_j."""
+        return total + j.mass * j.specific_volume * pair.w
+
+    def finish_value(self, total, i, kernel):
+        """1 inside the fluid, 0 at a surface."""
+        own = weight(kernel, 0.0) * i.mass * i.specific_volume
+        return where(total + own < EDGE, 0.0, 1.0)
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        sign = where(i.pressure < 0.0, 1.0 - 2.0 * i.inside, 1.0)
+        both = (sign * i.pressure + j.pressure) * i.specific_volume
+        return -both * (j.specific_volume * pair.m_dw_r)
+
+
+class BackgroundPressure(NamedTuple):
+    """A constant pressure pushes particles apart: it keeps a closed fluid from tearing.
+
+    a_i = −p_b Σ_j m_j (1/ρ_i² + 1/ρ_j²) ∇W_ij: the symmetric form of p + p_b, while p itself, as
+    given and as saved, stays free of p_b.  Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
+    Σ_j ∇W_ij/ρ_j would vanish for particles in perfect order; where it does not, p_b restores order
+    at the price of noise.  It conserves momentum and, being constant, energy.  A free surface would
+    fly apart.  "auto" is 1.4 times what the start lacks to p = 0, or what its fastest flow can make it
+    lack, ρ₀v²/2; and nothing where there is a free surface.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    pressure: Annotated[
+        Annotated[float, Field(ge=0)] | Literal["auto"],
+        Field(
+            description='p_b, no less than what the pressure falls below zero, or "auto"',
+            json_schema_extra={"unit": "Pa"},
+        ),
+    ]
+
+    def in_scene(self, scene):
+        """With "auto", what the scene needs, or None."""
+        if self.pressure != AUTO:
+            return self
+        if scene.has_free_surface:
+            return None
+        dip = 0.5 * max(m.density for m in scene.species) * scene.starting_speed**2
+        needed = MARGIN * max(-scene.lowest_pressure, dip)
+        return BackgroundPressure(needed) if needed > 0.0 else None
+
+    def why_absent(self, scene):
+        """Why "auto" gives none."""
+        if scene.has_free_surface:
+            return "the fluid has a free surface, which it would blow apart"
+        return "no pressure is negative at the start, and nothing moves"
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return -self.pressure * (v_i * v_i + v_j * v_j) * pair.m_dw_r

@@ -1,0 +1,63 @@
+"""Stress points: pressure and velocity live at different particles."""
+
+from typing import NamedTuple
+
+from psph.physics.order.transport import TRANSPORT, moved
+from psph.physics.walls.slip import NO_FLUID
+from psph.vectors import add, scale, zero_like
+
+TWICE = 2.0
+"""Each of the two sets has half of the particles, so that one of them counts for two."""
+
+FOLLOWING = 2.0
+"""h/c over the time in which a stress point takes the velocity around it."""
+
+
+class StressPoints(NamedTuple):
+    """Pressure at every other particle, the stress points; the rest are moved by it.
+
+    The sites of the lattice take turns.  A velocity point feels stress points s alone, a_i = −2 Σ_s
+    m_s p_s/ρ_s² ∇W_is; one of these sees how velocity points v part, dρ_s/dt = 2 Σ_v m_v u_sv·∇W_sv, and
+    moves with their mean ũ_s = Σ_v V_v u_v W_sv/Σ_v V_v W_sv; its own velocity follows, a_s = (2c/h)(ũ_s −
+    u_s).  Walls take turns as well.  Dyka & Ingel (1995), Comput. Struct. 57, 573, in one dimension;
+    Vignjevic, Campbell &
+    Libersky (2000), Comput. Methods Appl. Mech. Eng. 184, 67.  Theirs are extra points; these are half
+    of the particles, at twice the spacing in volume.  Momentum and energy are not conserved exactly.
+    """
+
+    def density_rate(self, i, j, pair):
+        """At a stress point what the sum over velocity points is more than that over all, kg/(m^d s)."""
+        more = i.stress_point * (1.0 - TWICE * j.stress_point)
+        return more * pair.u_dot_x * pair.m_dw_r
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration of a velocity point, 1/s²."""
+        v_j, bearing = j.specific_volume, TWICE * j.stress_point * (1.0 - i.stress_point)
+        return -bearing * (j.pressure * v_j * v_j) * pair.m_dw_r
+
+    writes = TRANSPORT
+    lagged = True
+
+    displacement = moved
+
+    def start(self, i):
+        """Σ V W and Σ V (u_i − u_v) W over velocity points of the fluid."""
+        return 0.0, zero_like(i.position)
+
+    def gather(self, total, i, j, pair):
+        """Take neighbour j into both."""
+        share = (1.0 - j.wall) * (1.0 - j.stress_point) * j.mass * j.specific_volume * pair.w
+        return total[0] + share, add(total[1], scale(pair.u_ij, share))
+
+    def finish_acceleration(self, total, i):
+        """What makes a stress point follow, m/s²."""
+        rate = FOLLOWING * i.sound_speed / i.smoothing_length
+        return scale(total[1], -rate * i.stress_point / max(total[0], NO_FLUID))
+
+    def finish_value(self, total, i, kernel):
+        """ũ − u of a stress point, m/s."""
+        return scale(total[1], -i.stress_point / max(total[0], NO_FLUID))
+
+    def longest_step(self, scene):
+        """Δt ≤ h/(4c), s: half of the time in which a stress point follows."""
+        return 0.5 * scene.smoothing_length / (FOLLOWING * scene.sound_speed)

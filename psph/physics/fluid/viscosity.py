@@ -1,0 +1,217 @@
+"""Friction between particles: the fluid's own, and a numerical one."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+from psph.formula import helper
+from psph.vectors import add, dot, times
+
+SINGULARITY = 0.01
+"""η² = 0.01 h² keeps r² + η² away from zero."""
+
+ONSET = 0.2
+"""Speed of approach over c above which impact damping sets in."""
+
+
+@helper
+def inverse_square(pair, h):
+    """1/max(r², 0.01 h²), 1/m²."""
+    return min(pair.inverse_r * pair.inverse_r, 1.0 / (SINGULARITY * h * h))
+
+
+@helper
+def lighter(i, j):
+    """The smaller of the two rest densities, kg/m^d.
+
+    A numerical friction takes it for its ρ₀ between two fluids: both feel the same force, and
+    neither is slowed faster than among its own kind, so that the limits of the time step hold.
+    """
+    return min(i.rest_density, j.rest_density)
+
+
+@helper
+def friction(i, j, pair):
+    """Coefficient of a difference of velocities in the acceleration by the fluid's viscosity, 1/s."""
+    return _friction(i, j, pair, pair.r2)
+
+
+@helper
+def corrected_friction(i, j, pair):
+    """The same with corrected gradients, 1/s."""
+    v_i, v_j = i.specific_volume, j.specific_volume
+    both = add(i.gradient_correction, j.gradient_correction)
+    stretch = 1.0 + 0.5 * dot(times(both, pair.x_ij), pair.x_ij) / pair.r2
+    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
+    return 4.0 * pair.m_dw_r * over * stretch / ((v_i + v_j) * (v_i + v_j))
+
+
+@helper
+def _friction(i, j, pair, numerator):
+    """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``numerator``/(r² + 0.01 h²)."""
+    v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
+    # (μ_i + μ_j)/(ρ_i + ρ_j)² in specific volumes: one division in place of three.
+    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * numerator
+    under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
+    return 4.0 * pair.m_dw_r * over / under
+
+
+class LaminarViscosity(NamedTuple):
+    """Newtonian friction of the fluid's own viscosity.
+
+    a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·∇W_ij / [(ρ_i + ρ_j)² (r² + 0.01 h²)] u_ij, μ = ρν.
+    SSPH paper, eq. (6); Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
+    """
+
+    conserves = ("momentum",)
+
+    def in_scene(self, scene):
+        """With corrected gradients, the form that takes them; beside central friction, nothing."""
+        physics = scene.case.physics
+        if physics.central_friction is not None:
+            return None
+        return self if physics.gradient_correction is None else CorrectedViscosity()
+
+    def why_absent(self, scene):
+        """What takes its place."""
+        return "physics.central_friction takes its place"
+
+    def shear(self, i, j, pair):
+        """Coefficient of u_ij in the acceleration, 1/s."""
+        return friction(i, j, pair)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
+        return _longest_step(scene)
+
+
+class CorrectedViscosity(NamedTuple):
+    """Newtonian friction of the fluid's own viscosity, with corrected gradients.
+
+    a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·(L_i + L_j)/2 ∇W_ij / [(ρ_i + ρ_j)² r²] u_ij.  As
+    :class:`LaminarViscosity`, less what makes it weak: on a lattice −Σ V x_ij·∇W_ij misses the
+    number of dimensions by some percent, and 0.01 h² takes another.  Both stay however fine the
+    spacing.
+    """
+
+    conserves = ("momentum",)
+
+    def shear(self, i, j, pair):
+        """Coefficient of u_ij in the acceleration, 1/s."""
+        return corrected_friction(i, j, pair)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
+        return _longest_step(scene)
+
+
+class CentralFriction(NamedTuple):
+    """The fluids' viscosity acts along the line of each pair: a free surface bears no shear stress.
+
+    a_i = (d + 2) Σ_j 4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² (u_ij·x_ij)/(r² + 0.01 h²) ∇W_ij, in place of
+    :class:`LaminarViscosity`.  Monaghan & Gingold (1983), J. Comput. Phys. 52, 374; as a
+    viscosity, Monaghan (2005), Rep. Prog. Phys. 68, 1703.  It conserves angular momentum too.  At
+    a free surface that other one lets ∂u/∂n vanish in place of the stress, and takes half of what
+    a wave loses: Colagrossi, Antuono, Souto-Iglesias & Le Touzé (2011), Phys. Rev. E 84, 026705.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        return (2.0 + len(pair.x_ij)) * _friction(i, j, pair, pair.u_dot_x)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
+        return _longest_step(scene)
+
+
+def _longest_step(scene) -> float:
+    return 0.125 * scene.smoothing_length**2 / scene.viscosity
+
+
+class ArtificialViscosity(NamedTuple):
+    """Numerical friction between approaching particles: it spreads shocks and calms noise.
+
+    a_i = −Σ_j m_j Π_ij ∇W_ij, Π = (−α c μ + β μ²)/ρ̄, μ = h u_ij·x_ij/(r² + 0.01 h²) where the pair
+    approaches, else 0.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30, 543, eq. (4.1).  It
+    conserves momentum and angular momentum.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    alpha: Annotated[
+        float, Field(ge=0, description="linear coefficient α", json_schema_extra={"unit": "1"})
+    ] = 0.05
+    beta: Annotated[
+        float, Field(ge=0, description="quadratic coefficient β", json_schema_extra={"unit": "1"})
+    ] = 0.0
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        h, c = i.smoothing_length, i.sound_speed
+        v_i, v_j = i.specific_volume, j.specific_volume
+        # μ = h (v_i + v_j) q and μ/ρ̄ = 2 h v_i v_j q: one division for both.
+        q = min(pair.u_dot_x, 0.0) / ((pair.r2 + SINGULARITY * h * h) * (v_i + v_j))
+        strength = self.alpha * c - self.beta * h * ((v_i + v_j) * q)
+        return 2.0 * h * v_i * (v_j * q) * strength * pair.m_dw_r
+
+    def longest_step(self, scene):
+        """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
+        friction = self.alpha * scene.sound_speed
+        return scene.smoothing_length / friction if friction > 0.0 else float("inf")
+
+
+class PairDamping(NamedTuple):
+    """Numerical friction along the line of every pair, approaching or parting: it calms sound.
+
+    a_i = α c h Σ_j ρ₀ m_j/(ρ_i ρ_j) (u_ij·x_ij)/max(r², 0.01 h²) ∇W_ij, ρ₀ the smaller of the
+    pair's two rest densities.  Monaghan & Gingold (1983), J.
+    Comput. Phys. 52, 374; without the switch, Antuono, Colagrossi, Marrone & Molteni (2010), Comput.
+    Phys. Commun. 181, 532.  It conserves momentum and angular momentum, and acts as a viscosity of about
+    αch/8.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    alpha: Annotated[
+        float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})
+    ] = 0.02
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
+        # ρ̄ = ρ_i ρ_j/ρ₀
+        strength = self.alpha * h * i.sound_speed * (v_i * lighter(i, j))
+        return strength * v_j * (pair.u_dot_x * inverse_square(pair, h)) * pair.m_dw_r
+
+    def longest_step(self, scene):
+        """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
+        friction = self.alpha * scene.sound_speed
+        return scene.smoothing_length / friction if friction > 0.0 else float("inf")
+
+
+class ImpactDamping(NamedTuple):
+    """Numerical friction where neighbours meet fast: nothing flies through a wall.
+
+    a_i = −β Σ_j ρ₀ m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0), ρ₀ the
+    smaller of the pair's two rest densities: over a length h of matter a speed falls by e^β.  von
+    Neumann & Richtmyer (1950), J. Appl. Phys. 21, 232; for
+    pairs, Monaghan (1989), J. Comput. Phys. 82, 1.  Theirs begins at once, and costs a rotating
+    patch 1 % of its energy; with the onset water does not know of it.  It conserves momentum and
+    angular momentum.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    beta: Annotated[
+        float, Field(ge=0, le=4, description="coefficient β", json_schema_extra={"unit": "1"})
+    ] = 2.0
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
+        strength = self.beta * (v_i * lighter(i, j))
+        approach = -h * pair.u_dot_x * inverse_square(pair, h)
+        excess = max(approach - ONSET * i.sound_speed, 0.0)
+        return -strength * v_j * (excess * excess) * pair.m_dw_r

@@ -1,0 +1,1 @@
+"""What keeps particles in order: potential, shifting, transport, artificial stress."""

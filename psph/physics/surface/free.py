@@ -1,0 +1,83 @@
+"""What a free surface does to its particles."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+from psph.fields import Field as Declared
+from psph.smoothing import weight
+
+NOT_YET_SUMMED = 2.0
+"""A kernel sum that no threshold calls a surface, until the first pass knows better."""
+
+
+class FreeSurface(NamedTuple):
+    """A particle at a free surface feels no pressure.
+
+    Where Σ_j W_ij m_j/ρ_j (with the particle itself, and the walls) < β, ρ_i = ρ₀ and hence p_i = 0.
+    SSPH paper, eq. (14), β = 0.9.  The sum is gathered in the same pass as the forces: it acts on
+    the density at the end of that step, and on the pressure that the next forces feel.  Resetting ρ
+    costs mass-consistency: a still surface without it
+    is quieter.
+    """
+
+    threshold: Annotated[
+        float, Field(gt=0, lt=2, description="β: below this kernel sum a particle is surface")
+    ] = 0.9
+
+    writes = Declared(
+        "kernel_sum", "1", "sum of W m/rho over the support, the particle included",
+        start=NOT_YET_SUMMED,
+    )
+    lagged = True
+
+    def start(self, i):
+        """No neighbour yet."""
+        return 0.0
+
+    def gather(self, total, i, j, pair):
+        """Add W_ij m_j/ρ_j."""
+        return total + j.mass * j.specific_volume * pair.w
+
+    def finish_value(self, total, i, kernel):
+        """Σ_j W_ij m_j/ρ_j with the particle's own share, stored as ``kernel_sum``."""
+        return total + weight(kernel, 0.0) * i.mass * i.specific_volume
+
+    def limit_density(self, i, rho):
+        """ρ₀ on the surface, ρ inside, kg/m^d."""
+        return i.rest_density if i.kernel_sum < self.threshold else rho
+
+
+class TensionFloor(NamedTuple):
+    """Water that is torn apart holds no more tension than this, and walls hold none.
+
+    ρ_i ≥ f ρ₀_i: below, the density is set to it.  The pressure of a wall is that of max(ρ_i, ρ₀_i),
+    while its density stays what the water makes it.  Where a fluid has a free surface a splash would
+    otherwise be held together, or pulled to a wall, by pressures that water does not bear.
+    """
+
+    least: Annotated[
+        float,
+        Field(
+            gt=0, le=1, description="f: least density of the fluid over its rest density",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 0.98
+
+    def in_scene(self, scene):
+        """None in a closed domain, where a fluid may be under tension."""
+        return self if scene.has_free_surface else None
+
+    def why_absent(self, scene):
+        """What the fluid lacks."""
+        return "the fluid has no free surface, and in a closed domain it may be under tension"
+
+    def limit_density(self, i, rho):
+        """ρ or its floor, kg/m^d."""
+        return max(rho, self.least * i.rest_density)
+
+    limit_wall_density = limit_density
+
+    def bearing_density(self, i, rho):
+        """ρ that a wall's pressure is taken from, kg/m^d."""
+        return max(rho, i.rest_density)

@@ -1,0 +1,1 @@
+"""Walls: friction, and walls that no fluid touches."""

@@ -1,0 +1,24 @@
+"""What a wall is where no fluid touches it."""
+
+from typing import NamedTuple
+
+from psph.fields import Field
+from psph.formula import where
+
+
+class DryWall(NamedTuple):
+    """A wall that no fluid touches bears nothing: it has its rest density.
+
+    ρ_i = ρ₀_i in a wall particle without a fluid particle within the kernel's support.  Which those
+    are is found when the neighbours are listed, so that the pair loop knows nothing of it.  Without
+    it a wall would keep for ever the pressure that it had when the fluid left.
+    """
+
+    marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0)
+    """The field that says whether there was fluid in reach when the neighbours were listed."""
+    told_by = "wall"
+    """The field of a neighbour that tells fluid from wall."""
+
+    def limit_wall_density(self, i, rho):
+        """ρ of a wall with fluid in reach, ρ₀ without, kg/m^d."""
+        return where(i.wet > 0.0, rho, i.rest_density)

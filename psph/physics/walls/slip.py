@@ -1,0 +1,72 @@
+"""What friction at a wall does to the fluid beside it."""
+
+from typing import NamedTuple
+
+from psph.fields import VECTOR, Field
+from psph.physics.fluid.viscosity import corrected_friction, friction
+from psph.vectors import add, scale, subtract, zero_like
+
+MIRRORED = Field(
+    "slip", "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", VECTOR
+)
+
+NO_FLUID = 1e-300
+"""Keeps a kernel sum without any fluid from dividing by zero, 1/m^d."""
+
+
+def _start(self, i):
+    """No fluid yet: Σ W and Σ u W."""
+    return 0.0, zero_like(i.position)
+
+
+def _gather(self, total, i, j, pair):
+    """Take a fluid neighbour j into both."""
+    w = (1.0 - j.wall) * pair.w
+    return total[0] + w, add(total[1], scale(j.velocity, w))
+
+
+def _finish_value(self, total, i, kernel):
+    """v_wall − ṽ in a wall without slip, 0 elsewhere and out of reach of the fluid, m/s."""
+    share = i.no_slip / max(total[0], NO_FLUID)
+    return scale(subtract(scale(i.velocity, total[0]), total[1]), share)
+
+
+class NoSlip(NamedTuple):
+    """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
+
+    A wall particle shows the velocity 2 v_wall − ṽ, ṽ = Σ_f u_f W_wf / Σ_f W_wf over the fluid, in
+    the viscous force alone: beside that of :class:`LaminarViscosity`, a_i = Σ_j F_ij (s_i − s_j)
+    with its coefficient F_ij, s = v_wall − ṽ in such a wall and 0 elsewhere.  Adami, Hu & Adams
+    (2012), J. Comput. Phys. 231, 7057, eqs. (22), (23).  ṽ is gathered in the same pass as the
+    forces, so it is that of the step before.
+    """
+
+    writes = MIRRORED
+    lagged = True
+
+    def in_scene(self, scene):
+        """With corrected gradients, the form whose friction has them too."""
+        return self if scene.case.physics.gradient_correction is None else CorrectedNoSlip()
+
+    def push(self, i, j, pair):
+        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
+        return scale(subtract(i.slip, j.slip), friction(i, j, pair))
+
+    start, gather, finish_value = _start, _gather, _finish_value
+
+
+class CorrectedNoSlip(NamedTuple):
+    """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
+
+    As :class:`NoSlip` beside :class:`psph.physics.fluid.viscosity.CorrectedViscosity`, with its coefficient
+    F_ij: both see one velocity of the wall, 2 v_wall − ṽ.
+    """
+
+    writes = MIRRORED
+    lagged = True
+
+    def push(self, i, j, pair):
+        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
+        return scale(subtract(i.slip, j.slip), corrected_friction(i, j, pair))
+
+    start, gather, finish_value = _start, _gather, _finish_value

@@ -1,0 +1,208 @@
+"""The plan in words: what will be simulated, why, and its cost."""
+
+import math
+from collections.abc import Iterable, Iterator
+
+from psph.parallel.domain import CELLS_A_PARTICLE
+from psph.parallel.machine import free_memory
+from psph.parallel.slabs import check_ranks
+from psph.particles.cells import make_grid
+from psph.particles.records import record_width, recorded
+from psph.particles.store import SPARE
+from psph.run.forecast import forecast, forecast_lines, pull, sites_within
+from psph.run.hints import hints
+from psph.run.outlay import output_lines
+from psph.run.outlook import outlook
+from psph.simulation.plan import Plan, make_plan
+
+NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
+"""Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
+rebuild sorts with; of a neighbour in a list; and of a cell of the grid during a rebuild."""
+
+
+def explain(scene, ranks: int) -> Iterator[str]:
+    """Lines that describe the plan of a scene on so many ranks."""
+    plan = make_plan(scene)
+    counts = scene.counts()
+    particles = int(counts.sum())
+    yield from _scene_lines(scene, particles)
+    yield from _rank_lines(scene, plan, ranks)
+    yield from _pass_lines(scene, plan)
+    yield from _step_lines(scene, plan)
+    found = forecast(scene, plan, ranks)
+    yield from forecast_lines(found, ranks, scene.case.time.end)
+    neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
+    yield from output_lines(scene, plan, neighbours, found.steps)
+    yield from outlook(scene, plan)
+    for line in hints(scene, plan):
+        yield f"Hint: {line}"
+
+
+def slab_planes(scene) -> int:
+    """Planes of cells along the slab axis: the most ranks that the scene can use."""
+    return _grid(scene).counts[0]
+
+
+def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
+    """Memory of a particle: its fields with the arrays to sort them, and its neighbour list, bytes."""
+    own = NUMBER * _rows(scene, plan, plan.arrays) + IDENTITY
+    widths = (record_width(_rows(scene, plan, recorded(p.neighbour_fields))) for p in plan.passes)
+    record = sum(widths) * plan.space.record_type.itemsize
+    own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
+    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
+    return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+
+
+def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
+    """Memory of the particles, ghosts and lists of one of so many ranks, bytes."""
+    own, listed = bytes_per_particle(scene, plan)
+    share = float(scene.counts().sum()) / ranks
+    return own * (share + _neighbours(scene, ranks) * _ghosts_a_side(scene)) + listed * share
+
+
+def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
+    """Messages of a halo refresh: bytes per ghost, and bytes that a rank sends in all."""
+    each = NUMBER * _rows(scene, plan, plan.refreshed)
+    return each, each * _neighbours(scene, ranks) * _ghosts_a_side(scene)
+
+
+def _rows(scene, plan: Plan, names: tuple[str, ...]) -> int:
+    """Numbers that these fields take."""
+    return sum(plan.fields[name].width(scene.dimensions) for name in names)
+
+
+def _neighbours(scene, ranks: int) -> int:
+    """Ranks, or sides, that a rank exchanges ghosts with."""
+    return 2 if scene.periods[scene.axis] is not None else min(ranks - 1, 2)
+
+
+def _ghosts_a_side(scene) -> float:
+    """Particles of an average plane of cells: a rank holds one plane from each side."""
+    return float(scene.counts().sum()) / slab_planes(scene)
+
+
+def _cells_per_particle(scene) -> float:
+    """The most that the grid may come to have, when particles leave an open domain."""
+    grid = _grid(scene)
+    closed = all(period is not None for period in scene.periods)
+    return max(math.prod(grid.counts) / float(scene.counts().sum()), 0.0 if closed else CELLS_A_PARTICLE)
+
+
+def _grid(scene):
+    """The grid over the scene at its start."""
+    return make_grid(scene.axis, _cutoff(scene), scene.lower, scene.upper, scene.periods)
+
+
+def _cutoff(scene) -> float:
+    return scene.reach.cutoff
+
+
+def _scene_lines(scene, particles: int) -> Iterator[str]:
+    case = scene.case
+    support = scene.kernel.support * scene.smoothing_length
+    yield f"{case.title or case.name} ({case.file})"
+    yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
+    yield from _preset_lines(case)
+    names = ", ".join(m.name for m in scene.species)
+    yield f"  materials   {names}"
+    yield (
+        f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
+        f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
+        f"about {sites_within(scene, support):.0f} neighbours"
+    )
+
+
+def _preset_lines(case) -> Iterator[str]:
+    """The scheme and the profile: the keys that they set, and those that the case overrides."""
+    names = dict.fromkeys((f"scheme {case.scheme}", *(name for name, _ in case.presets.values())))
+    for name in names:
+        keys = {key: value for key, (of, value) in case.presets.items() if of == name}
+        own = [key for key in keys if not case.preset(key)]
+        what, _, which = name.partition(" ")
+        yield f"  {what:<11} {which}" + (f", except {', '.join(own)}" if own else "")
+        for key, value in keys.items():
+            if key not in own:
+                yield f"              {key} = {value}"
+
+
+def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
+    planes = slab_planes(scene)
+    check_ranks(ranks, planes)
+    own, listed = bytes_per_particle(scene, plan)
+    memory, free = bytes_of_rank(scene, plan, ranks), free_memory()
+    each, sent = bytes_per_refresh(scene, plan, ranks)
+    along = "xyz"[scene.axis]
+    yield f"  ranks       {ranks}, at most {planes}: that many planes of cells along {along}"
+    yield (
+        f"  memory      about {memory / 2**20:.1f} MiB a rank, {own + listed:.0f} bytes a particle, "
+        f"{listed:.0f} of them in its neighbour list"
+    )
+    if ranks * memory > free:
+        yield (
+            f"              too much for this machine: {ranks * memory / 2**30:.1f} GiB, and "
+            f"{free / 2**30:.1f} GiB are free"
+        )
+    yield f"  arrays      {', '.join(plan.arrays)}"
+    shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
+    yield f"  shared      {shared}"
+    yield f"  halo        once a step: {', '.join(plan.refreshed)}"
+    yield (
+        f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
+        f"{sent:,.0f} bytes from a rank"
+    )
+    if plan.ghost_fields:
+        yield f"              once a rebuild: {', '.join(plan.ghost_fields)}"
+
+
+def _pass_lines(scene, plan: Plan) -> Iterator[str]:
+    flops = plan.flops_per_pair(scene.periods)
+    yield from _early_passes(plan)
+    yield f"Pass over the neighbours, one a step, {flops} flops a pair"
+    state = type(plan.state).__name__
+    names = [type(call.effect).__name__ for call in plan.called]
+    width = _column([*names, state, *(entry.effect.__name__ for entry in plan.absent)])
+    for name, call in zip(names, plan.called):
+        yield f"  {name:<{width}}{_first_line(call.effect)}"
+        yield f"  {'':<{width}}because: {call.reason}"
+    yield "Equation of state"
+    yield f"  {state:<{width}}{_first_line(plan.state)}"
+    yield f"  {'':<{width}}because: {plan.state_reason}"
+    yield "Not simulated"
+    for entry in plan.absent:
+        why = plan.dropped.get(entry.effect.__name__) or f"the case does not say {_asked_by(entry.key)}"
+        yield f"  {entry.effect.__name__:<{width}}{why}"
+
+
+def _column(names: Iterable[str]) -> int:
+    """Width of a column of names, with room behind the longest."""
+    return max(NARROWEST, 2 + max(map(len, names)))
+
+
+NARROWEST = 22
+"""Characters of a column of names."""
+
+
+def _early_passes(plan: Plan) -> Iterator[str]:
+    """The passes that gather sums for the one that gives the rates."""
+    for early, later in zip(plan.passes, plan.passes[1:]):
+        names = ", ".join(type(effect).__name__ for effect in early.reductions)
+        often = "one a step" if early.every == 1 else f"one in {early.every} steps"
+        sent = f"; ghosts then get {', '.join(later.brought)}" if later.brought else ""
+        yield f"Pass over the neighbours, {often}, before the next: sums of {names}{sent}"
+
+
+def _asked_by(key: str) -> str:
+    name, _, choice = key.partition("=")
+    return f"{name} = \"{choice}\"" if choice else name
+
+
+def _first_line(effect) -> str:
+    return type(effect).__doc__.splitlines()[0]
+
+
+def _step_lines(scene, plan: Plan) -> Iterator[str]:
+    yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
+    limits = list(plan.step_limits(scene.expected_speed, pull(plan)))
+    width = _column(name for _, name in limits)
+    for step, name in limits:
+        yield f"  {name:<{width}}{step:.3g} s"

@@ -1,0 +1,88 @@
+"""How many steps a run will take, and about how long: a guess before anything is compiled.
+
+The pace is that of psph on one machine (docs/performance.md); another may be twice as fast or as
+slow.  ``psph bench`` measures the machine at hand.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from psph.output.progress import duration
+from psph.simulation.plan import Plan
+
+STEP, PARTICLE, FLOP = 3e-5, 4e-8, 1.4e-10
+"""Seconds of a step whatever the particles, of a particle in it apart from its pairs, and of an
+operation of a pair, lists and halo included: by the measured rates of docs/performance.md."""
+
+LONGEST = 7 * 86400.0
+"""Seconds: a run that is longer is likely not meant."""
+
+MOST_USUAL_STEPS = 5e7
+"""Steps of a run, about fifty times those of a long one: more are likely not meant."""
+
+
+class Forecast(NamedTuple):
+    """Steps of a run, the name of the limit that sets their length, and about how many seconds."""
+
+    steps: int
+    limit: str
+    seconds: float
+
+
+def forecast(scene, plan: Plan, ranks: int) -> Forecast:
+    """What a run of a scene will take on so many ranks, a core each."""
+    step, limit = plan.longest_step(scene.expected_speed, pull(plan))
+    steps = math.ceil(scene.case.time.end / step)
+    flops = plan.flops_per_pair(scene.periods)
+    neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
+    each = PARTICLE + neighbours * flops * FLOP
+    return Forecast(steps, limit, steps * (STEP + each * float(scene.counts().sum()) / ranks))
+
+
+def forecast_lines(found: Forecast, ranks: int, end: float) -> Iterator[str]:
+    """The forecast for a run to ``end`` s, in words."""
+    where = "1 rank" if ranks == 1 else f"{ranks} ranks"
+    yield f"  expected            {found.steps:,} steps to {end:g} s, limited by {found.limit}"
+    yield (
+        f"  run time            about {duration(max(found.seconds, 1.0))} on {where}, a guess by the pace of "
+        "docs/performance.md; `psph bench` measures this machine"
+    )
+
+
+def long_run(scene, plan: Plan, ranks: int) -> Iterator[str]:
+    """A warning where a run will take longer than is likely meant."""
+    found = forecast(scene, plan, ranks)
+    if found.seconds <= LONGEST and found.steps <= MOST_USUAL_STEPS:
+        return
+    where = "1 rank" if ranks == 1 else f"{ranks} ranks"
+    yield (
+        f"{scene.case.file}: time.end: {scene.case.time.end:g} s takes about {found.steps:.2g} steps "
+        f"and, at a guess, {duration(found.seconds)} on {where}; {_what_to_do(scene, found.limit)}"
+    )
+
+
+def _what_to_do(scene, limit: str) -> str:
+    viscosity = max(fluid.viscosity for fluid in scene.case.fluids.values())
+    if limit.endswith(("viscosity", "friction")) and viscosity:
+        [name] = [n for n, f in scene.case.fluids.items() if f.viscosity == viscosity][:1]
+        return (
+            f"fluids.{name}.viscosity = {viscosity:g} m²/s sets the step: it is the kinematic viscosity, "
+            "1e-6 for water and 0.01 for honey"
+        )
+    return (
+        f"{limit} limits the step: take a larger space.spacing, an earlier time.end, a lower "
+        "physics.sound_speed, or more ranks, and look at the units"
+    )
+
+
+def pull(plan: Plan) -> float:
+    """The acceleration to expect, m/s²."""
+    gravity = [e.acceleration for e in plan.effects if hasattr(e, "acceleration")]
+    return max((math.hypot(*g) for g in gravity), default=0.0)
+
+
+def sites_within(scene, radius: float) -> float:
+    """Lattice sites within ``radius`` m of a particle in the bulk."""
+    ball = {1: 2.0, 2: math.pi, 3: 4.0 / 3.0 * math.pi}[scene.dimensions]
+    return ball * (radius / scene.spacing) ** scene.dimensions - 1.0

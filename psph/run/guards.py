@@ -1,0 +1,213 @@
+"""Guards of a run: what is seen to go wrong in a step ends it, or is said."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from psph.fields import FLUID
+from psph.output.diagnostics import fluid_mass, total_energy
+from psph.output.errors import OutputError
+from psph.parallel.reductions import largest
+from psph.run.advice import advice
+from psph.run.post_mortem import write_post_mortem
+from psph.run.record import Record
+from psph.run.resume import newest_checkpoint, write_checkpoint
+from psph.run.suspect import Suspect, find
+from psph.scene.behind import Solid
+from psph.scene.scene import SOUND_OVER_SPEED
+from psph.simulation.step import BlowUp, Simulation, TimeLost
+
+EVERY = 100
+"""Steps from one look behind the walls and at the energy to the next."""
+
+STOP, CLOCK = "stop", "clock"
+
+
+VERBS = {"depth": "lost a particle", CLOCK: "stands still"}
+"""What the run did, by guard, where it is not that it blew up."""
+
+
+class Guards:
+    """Watches a simulation and its record; every method but ``summary`` is collective, and finds
+    the same on any number of ranks.
+
+    ``say`` takes a line and the stream that it is meant for.
+    """
+
+    def __init__(self, scene, simulation: Simulation, record: Record, folder: Path, say: Callable):
+        self.scene, self.simulation, self.record = scene, simulation, record
+        self.folder, self.say, self.bounds = folder, say, scene.case.guards
+        self.solid = Solid(scene)
+        self.seen: Counter[str] = Counter()
+        mass = fluid_mass(simulation.comm, simulation.store)
+        self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
+        if simulation.energy_at_start is None:
+            simulation.energy_at_start = self._energy()
+
+    def step(self) -> None:
+        """A step of the simulation, and a look at what came of it.
+
+        Raises BlowUp, with a post-mortem in the folder, where the run cannot go on or must not.
+        """
+        try:
+            self.simulation.step(self.scene.case.time.end)
+        except TimeLost:
+            self._stop(CLOCK)
+        except BlowUp:
+            self._stop("speed" if self.simulation.strain < np.inf else "finite")
+        for guard in self._tripped():
+            if self.bounds.on_trouble == STOP:
+                self._stop(guard)
+            self._warn(guard)
+
+    def summary(self) -> Iterator[str]:
+        """A line for each guard that had something to say, and how often."""
+        for guard, times in self.seen.items():
+            yield f"guards.{guard}: passed in {times:,} of the steps that were looked at"
+
+    def _tripped(self) -> Iterator[str]:
+        """The keys of the guards whose bounds the last step has passed."""
+        simulation, bounds = self.simulation, self.bounds
+        if simulation.speed > bounds.speed * self.scene.sound_speed:
+            yield "speed"
+        if simulation.strain > bounds.density:
+            yield "density"
+        if simulation.steps % EVERY == 0:
+            with simulation.ledger("guards"):
+                slow = [
+                    ("depth", largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
+                    ("energy", not simulation.plan.regions and self._gain() > bounds.energy),
+                ]
+            yield from (name for name, passed in slow if passed)
+
+    def _hidden(self) -> np.ndarray:
+        """True for each particle of this rank that is fluid and too deep behind a wall's face."""
+        store = self.simulation.store
+        hidden = store.shown("kind") == FLUID
+        places = self.simulation.domain.inside(store.shown("position")[hidden])
+        hidden[hidden] = self.solid.deep(places, self.bounds.depth)
+        return hidden
+
+    def _gain(self) -> float:
+        """Energy won since the start, in the unit of its bound."""
+        return (self._energy() - self.simulation.energy_at_start) / self._unit
+
+    def _energy(self) -> float:
+        """Energy of motion, height and compression, J."""
+        sim, state, c = self.simulation, self.scene.state, self.scene.sound_speed
+        return total_energy(
+            sim.comm, sim.store, self.scene.height_gravity,
+            lambda density, rest: state.energy(density, rest, c),
+        )
+
+    def _warn(self, guard: str) -> None:
+        """Say so the first, second, fourth, eighth ... time."""
+        self.seen[guard] += 1
+        if self.seen[guard] & (self.seen[guard] - 1) == 0:
+            now = f"step {self.simulation.steps:,}, time {self.simulation.time:.6g} s"
+            often = f", for the {self.seen[guard]:,}th time" if self.seen[guard] > 2 else ""
+            self.say(f"warning: {now}: {self._words(guard, self._find(guard))}{often}")
+
+    def _stop(self, guard: str) -> None:
+        """Leave what tells of the trouble, and raise BlowUp."""
+        sim, suspect = self.simulation, self._find(guard)
+        verb = VERBS.get(guard, "blew up")
+        push = suspect.hardest()
+        what = (
+            f"the run {verb} at step {sim.steps}, time {sim.time:.6g} s: "
+            f"{self._words(guard, suspect)}; "
+            + (f"pushed hardest by {push.name}" if push else "nothing pushes it now")
+        )
+        tries = advice(self.scene, guard, suspect)
+        try:
+            left = self._keep_state(guard)
+        except OutputError as trouble:
+            left = f"No checkpoint: {trouble}."
+        try:
+            path = write_post_mortem(self.folder, self.scene, sim, what, suspect, tries, left)
+            told = f"{path} tells more"
+        except OutputError as trouble:
+            told = str(trouble)
+        raise BlowUp(f"{what}; {tries[0]}; {told}")
+
+    def _keep_state(self, guard: str) -> str:
+        """A checkpoint and a frame of the state, where it is finite; words of what there is."""
+        case, again = self.scene.case, f"python -m psph resume {self.folder}"
+        if not self.simulation.strain < np.inf:
+            kept = newest_checkpoint(self.folder, self.simulation.comm)
+            if kept is None:
+                return (
+                    "The state is not finite, so there is no checkpoint of it; `checkpoint.every` "
+                    "leaves some on the way."
+                )
+            return (
+                f"The state is not finite: `{kept}` is the last good one, `{again}` goes on there."
+            )
+        path = write_checkpoint(self.simulation, self.record, case, self.folder)
+        self.record.write_last()
+        kept = f"`{path.name}` holds this state, and so does the last frame."
+        if guard == CLOCK:
+            return kept
+        return f"{kept} `{again} --extend guards.on_trouble=warn` goes on from it."
+
+    def _find(self, guard: str) -> Suspect:
+        return find(self.simulation, self.scene, getattr(self, f"_worst_by_{guard}")())
+
+    def _worst_by_finite(self) -> np.ndarray:
+        store = self.simulation.store
+        before, after = (
+            np.column_stack([np.isfinite(store.shown(name)) for name in names]).all(axis=1)
+            for names in (("position", "pressure"), ("velocity", "density", "acceleration"))
+        )
+        return 2.0 * ~before + ~after  # what the pass read comes before what it gave
+
+    def _worst_by_speed(self) -> np.ndarray:
+        return np.linalg.norm(self.simulation.store.shown("velocity"), axis=1) * self._fluid()
+
+    _worst_by_energy = _worst_by_speed
+
+    def _worst_by_density(self) -> np.ndarray:
+        store = self.simulation.store
+        return np.abs(store.shown("density") / store.shown("rest_density") - 1.0) * self._fluid()
+
+    def _worst_by_clock(self) -> np.ndarray:
+        return np.linalg.norm(self.simulation.store.shown("acceleration"), axis=1) * self._fluid()
+
+    def _worst_by_depth(self) -> np.ndarray:
+        return self._hidden().astype(float)
+
+    def _fluid(self) -> np.ndarray:
+        return self.simulation.store.shown("kind") == FLUID
+
+    def _words(self, guard: str, suspect: Suspect) -> str:
+        """What is wrong, and the bound that it passes."""
+        c = self.scene.sound_speed
+        who = f"particle {suspect.id}"
+        if guard == "finite":
+            return f"{who} has a position, velocity or density that is not finite"
+        if guard == CLOCK:
+            step, limit = self.simulation.plan.longest_step(
+                self.simulation.speed, self.simulation.acceleration
+            )
+            pulled = np.linalg.norm(suspect.value("acceleration"))
+            return (
+                f"a step of {step:.3g} s (limit: {limit}) is lost in the rounding of the time; "
+                f"{who} is accelerated most, by {pulled:.3g} m/s2"
+            )
+        bound = f" (guards.{guard} = {getattr(self.bounds, guard):g})"
+        match guard:
+            case "speed":
+                moves = f"moves at {suspect.speed:.4g} m/s, {suspect.speed / c:.3g} speeds of sound"
+                return f"{who} {moves}{bound}"
+            case "density":
+                part = suspect.value("density") / suspect.value("rest_density")
+                return f"{who} has {part:.3g} of its rest density{bound}"
+            case "depth":
+                return f"{who} is behind the face of a wall{bound}"
+            case _:
+                return (
+                    f"all particles have won {self._gain():.3g} times the kinetic energy that they "
+                    f"have at c/{SOUND_OVER_SPEED:g}{bound}; the fastest is {who}"
+                )

@@ -1,0 +1,164 @@
+"""The prediction of linear theory for the initial lattice of a scene."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from psph.fields import view_of
+from psph.physics.compose import Pair
+from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
+from psph.physics.damping.filtering import ConservativeSmoothing
+from psph.physics.damping.riemann import RiemannDissipation
+from psph.physics.fluid.continuity import Continuity
+from psph.physics.fluid.gravity import Gravity
+from psph.physics.fluid.pressure import (
+    BackgroundPressure,
+    DifferencePressure,
+    MinimumPressure,
+    SymmetricPressure,
+    TensileControl,
+)
+from psph.physics.fluid.viscosity import PairDamping
+from psph.physics.order.potential import NeutralPotential, UnequalPotential
+from psph.physics.order.stress import NeighbourStress
+from psph.physics.surface.free import TensionFloor
+from psph.physics.walls.dry import DryWall
+from psph.scene.species import Start
+from psph.simulation.plan import Plan, words
+from psph.theory.stability import FORMS, STATES, SYMMETRIC, remedies
+from psph.theory.stability.growth import growth, is_stable
+from psph.theory.stability.lattices import OF_SCENES
+from psph.theory.stability.uniform import STIFF, Settings
+from psph.theory.stability.windows import SMOOTHINGS, windows
+
+WITHIN = {
+    Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, TensileControl,
+    TensionFloor, DryWall,
+}
+"""Effects that the theory includes; the tension floor does not act on a small disturbance."""
+
+
+def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
+    one = view_of(("mass",))(1.0)
+
+    def attraction(r):
+        pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
+        return -r * np.array([potential.radial(one, one, pair) for pair in pairs])
+
+    return remedies.PairForce(attraction)
+
+
+AS_REMEDY: dict[type, Callable[[Any, Any], Any]] = {
+    BackgroundPressure: lambda effect, scene: remedies.BackgroundPressure(effect.pressure),
+    NeutralPotential: _pair_force,
+    UnequalPotential: _pair_force,
+    PairDamping: lambda effect, scene: remedies.PairDamping(effect.alpha),
+    DensityDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
+    TankDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
+    NeighbourStress: lambda effect, scene: remedies.ArtificialStress(effect.epsilon),
+    ConservativeSmoothing: lambda effect, scene: remedies.ConservativeSmoothing(effect.alpha),
+    RiemannDissipation: lambda effect, scene: remedies.RiemannDissipation(),
+}
+"""Effects that change the result of the theory, in its terms."""
+
+BY_SIGN = "tensile_control"
+"""The form that is one of the theory's forms under compression and another under tension."""
+
+NEAR = 1e-4
+"""Relative change of density for the derivative of the pressure."""
+
+
+def outlook(scene, plan: Plan) -> Iterator[str]:
+    """Whether small waves grow at the start, how fast, and which h/dx is stable."""
+    lattice, form = OF_SCENES[scene.dimensions], scene.case.physics.pressure_gradient
+    yield (
+        f"Stability of the {lattice} lattice at the start, {form} pressure gradient "
+        "(linear theory, docs/stability.md)"
+    )
+    if form not in (*FORMS, BY_SIGN):
+        yield f"  {'no forecast':<20}linear theory does not cover this form; docs/scheme.md has runs with it"
+        return
+    added = tuple(
+        AS_REMEDY[type(e)](e, scene) for e in plan.effects if type(e) in AS_REMEDY
+    )
+    if scene.case.space.normalised:
+        added += (remedies.NormalisedGradient(),)
+    verdicts = [_verdict(s) for s in _settings(scene, lattice, form, added)]
+    yield from dict.fromkeys(f"  {state:<20}{says}" for state, says in verdicts)
+    left = [
+        words(type(e).__name__) for e in plan.effects if type(e) not in {*WITHIN, *AS_REMEDY}
+    ]
+    if left:
+        yield f"  not included        {', '.join(left)}"
+
+
+def _verdict(settings: Settings) -> tuple[str, str]:
+    """The state (tension, compression or neutral), and whether the lattice is stable in it."""
+    if settings.form != SYMMETRIC and not settings.remedies:
+        return "neutral", (
+            "a uniform pressure cancels: no wave grows, at any h/dx, and nothing restores the order "
+            "of particles"
+        )
+    state, pressure = _state(settings), f"p = {settings.pressure:.3g} Pa"
+    now = growth(settings)
+    if now.stable:
+        return state, f"stable at h/dx {settings.smoothing:g}, {pressure}"
+    unit = (abs(settings.pressure) / settings.density) ** 0.5 / settings.spacing
+    tried = SMOOTHINGS[::2] if settings.lattice == OF_SCENES[3] else SMOOTHINGS  # in 3D slower
+    held = windows((h for h in tried if is_stable(settings._replace(smoothing=h))), tried)
+    return state, (
+        f"unstable at h/dx {settings.smoothing:g}, growth {now.rate / unit:.2g} √(|P|/ρ)/dx = "
+        f"{now.rate:.3g}/s at {pressure}; "
+        + (f"stable at h/dx {held}" if held else "no h/dx from 1 to 2 is stable")
+    )
+
+
+def _state(settings: Settings) -> str:
+    return next(name for name, sign in STATES.items() if sign * settings.pressure > 0.0)
+
+
+def _settings(scene, lattice: str, form: str, added: tuple) -> Iterator[Settings]:
+    """One for each sign that the pressure has at the start; both where it has none yet."""
+    space = scene.case.space
+    for pressure, start in _extremes(scene):
+        density, stiffness = _state_at(start, pressure)
+        yield Settings(
+            space.kernel, space.smoothing, lattice, pressure, _form(form, pressure), density,
+            stiffness**0.5, space.spacing, added,
+        )
+
+
+def _form(form: str, pressure: float) -> str:
+    """The form of tensile control inside a fluid under a pressure; other forms as they are."""
+    if form != BY_SIGN:
+        return form
+    return SYMMETRIC if pressure > 0.0 else "difference"
+
+
+def _state_at(start, pressure: float) -> tuple[float, float]:
+    """ρ in kg/m^d and dp/dρ in m²/s² of a fluid under a pressure."""
+    state, constants = start.state, (start.rest_density, start.sound_speed)
+    density = float(state.density(pressure, *constants))
+    ends = [state.pressure(density * (1.0 + step), *constants) for step in (-NEAR, NEAR)]
+    return density, (ends[1] - ends[0]) / (2.0 * NEAR * density)
+
+
+def _extremes(scene) -> Iterator[tuple[float, Start]]:
+    """The largest pressure of each sign among the fluids, Pa, and the start of that fluid.
+
+    Where a fluid starts without pressure, or with one that differs from place to place, p of
+    both signs that c is made for: ρc²/100.
+    """
+    found: dict[bool, tuple[float, Start]] = {}
+    fluids = range(scene.layout.fluids)
+    for index, start in zip(fluids, scene.starts):
+        own = start.pressure
+        if start.weight:
+            own = start.weight * (start.surface - float(scene.census.bottom[index]))
+        expected = start.rest_density * (scene.sound_speed / STIFF) ** 2
+        for pressure in (own,) if own else (expected, -expected):
+            sign = pressure > 0.0
+            if sign not in found or abs(pressure) > abs(found[sign][0]):
+                found[sign] = pressure, start
+    return iter(found.values())

@@ -1,0 +1,195 @@
+"""What a run writes and when: frames, probes, log.  Cadence never changes the steps."""
+
+import math
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import psph
+from psph.case.tables import AXES
+from psph.engine.jit import processor
+from psph.output import diagnostics
+from psph.output.accuracy import Accuracy
+from psph.output.checkpoint import Saved
+from psph.output.errors import together
+from psph.output.frames import FrameFile
+from psph.output.probes import Front, Probe
+from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
+from psph.simulation.step import Simulation
+
+
+class Schedule:
+    """Due at the first step at or after each multiple of ``interval`` s."""
+
+    def __init__(self, interval: float):
+        self.interval, self.next = interval, 0.0
+
+    def due(self, time: float) -> bool:
+        """Whether the next moment has come; asks for the one after it if so."""
+        if time < self.next * (1 - 1e-12):
+            return False
+        self.next = self.interval * (math.floor(time / self.interval * (1 + 1e-12)) + 1)
+        return True
+
+
+def probes_of(case) -> list[Probe | Front]:
+    """The probes that a case asks for."""
+    return [
+        Front(name, AXES.index(p.front)) if p.front else Probe(name, p.position, tuple(p.fields))
+        for name, p in case.probes.items()
+    ]
+
+
+class Record:
+    """The files of a run in ``folder``; every method is collective.
+
+    ``saved`` is where a run goes on from: what was written later is taken out.
+    """
+
+    def __init__(self, scene, simulation: Simulation, folder: Path, saved: Saved | None = None):
+        case, comm = scene.case, simulation.comm
+        self.simulation, self.kernel = simulation, scene.kernel
+        self.gravity = scene.height_gravity
+        self.frames = FrameFile(
+            folder / f"{case.name}.h5",
+            comm,
+            {
+                "case": case.to_toml(),
+                "title": case.title,
+                "psph_version": psph.__version__,
+                "processor": processor(),
+                "dimensions": scene.dimensions,
+                "spacing": scene.spacing,
+            },
+            saved and saved.frames(),
+            simulation.plan.saved,
+        )
+        kept = saved and saved.header["record"]
+        sizes = kept["sizes"] if kept else {}
+        self.written = 0
+        self.probes = probes_of(case)
+        names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
+        self.probe_table = None
+        if names:
+            self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
+        self.log = CsvTable(
+            folder / LOG, diagnostics.columns(scene.dimensions), comm, sizes.get(LOG)
+        )
+        self.accuracy = self.errors = None
+        self.latest_errors: list[float] = []
+        if scene.exact:
+            self.accuracy = Accuracy(simulation.domain, scene.exact, scene.setting)
+            self.errors = CsvTable(
+                folder / ERRORS, ["time", *self.accuracy.columns()], comm, sizes.get(ERRORS)
+            )
+        out = case.output
+        self.schedules = {
+            self.write_frame: Schedule(out.frames),
+            self.write_probes: Schedule(out.probes),
+            self.write_log: Schedule(out.log),
+        }
+        self.further = [
+            (table, CsvTable(
+                folder / f"{name}.csv", ["time", *table.columns(scene)], comm, sizes.get(f"{name}.csv")
+            ))
+            for name, table in scene.tables.items()
+        ]
+        self.schedules |= {
+            partial(self.write_further, *one): Schedule(one[0].every) for one in self.further
+        }
+        self.last_written = dict.fromkeys(self.schedules, -1)
+        if kept:
+            self._restore(kept)
+
+    def state(self) -> dict:
+        """What is written and when something is due; all of it is on the disk after this.
+
+        On rank 0 alone it knows how long the tables are.
+        """
+        self.frames.sync()
+        with together(self.simulation.comm, self.log.path):
+            sizes = {table.path.name: table.size() for table in self.tables}
+        return {
+            "written": self.written,
+            "sizes": sizes,
+            "next": [when.next for when in self.schedules.values()],
+            "last": list(self.last_written.values()),
+            "errors": self.latest_errors,
+        }
+
+    def _restore(self, kept: dict) -> None:
+        self.written, self.latest_errors = kept["written"], kept["errors"]
+        for when, then in zip(self.schedules.values(), kept["next"], strict=True):
+            when.next = then
+        self.last_written = dict(zip(self.schedules, kept["last"], strict=True))
+
+    def write_due(self) -> None:
+        """Write what is due at the simulation's time."""
+        self._write([w for w, when in self.schedules.items() if when.due(self.simulation.time)])
+
+    def write_last(self) -> None:
+        """Write the state at the end where no cadence has just done so."""
+        self._write([w for w in self.schedules if self.last_written[w] < self.simulation.steps])
+        self.frames.complete_index()
+
+    def _write(self, due) -> None:
+        if not due:
+            return
+        with self.simulation.ledger("output"):
+            self.simulation.settle_pressure()
+            for write in due:
+                write()
+                self.last_written[write] = self.simulation.steps
+
+    def write_frame(self) -> None:
+        """All saved fields of all particles."""
+        sim = self.simulation
+        arrays = {field.name: sim.store.shown(field.name) for field in sim.plan.saved}
+        arrays["position"] = sim.domain.inside(arrays["position"])
+        self.frames.write(self.written, sim.time, sim.steps, arrays)
+        self.written += 1
+
+    def write_probes(self) -> None:
+        """A line of probe values."""
+        if not self.probes:
+            return
+        sim = self.simulation
+        values = [probe.sample(sim.domain, self.kernel) for probe in self.probes]
+        self.probe_table.write([sim.time, *np.concatenate(values).tolist()])
+
+    def dry_probes(self) -> Iterator[str]:
+        """A line for each probe that had no fluid in reach at some time."""
+        for probe in self.probes:
+            if isinstance(probe, Probe) and probe.dry:
+                yield (
+                    f"probe {probe.name}: no fluid in reach in {probe.dry:,} of {probe.rows:,} rows, "
+                    f"where {PROBES} has nan"
+                )
+
+    def write_log(self) -> None:
+        """A line of energies, momentum and limits, and one of errors where these are known."""
+        sim = self.simulation
+        sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.gravity)
+        error = diagnostics.density_error(sim.comm, sim.store)
+        self.log.write([sim.time, sim.steps, sim.dt, *sums.tolist(), sim.speed, error])
+        if self.accuracy:
+            self.latest_errors = self.accuracy.errors(sim.time)
+            self.errors.write([sim.time, *self.latest_errors])
+
+    def write_further(self, table, file: CsvTable) -> None:
+        """A line of a table that the case's own files bring."""
+        file.write([self.simulation.time, *map(float, table.row(self.simulation))])
+
+    def close(self) -> None:
+        """End the files."""
+        self.frames.close()
+        for table in self.tables:
+            table.close()
+
+    @property
+    def tables(self) -> list[CsvTable]:
+        """Those that this run has."""
+        own = (self.log, self.probe_table, self.errors, *(file for _, file in self.further))
+        return [table for table in own if table is not None]

@@ -1,0 +1,252 @@
+"""A case from the first line to the last."""
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import NamedTuple
+
+from psph.case.extensions import files_of
+from psph.case.model import Checkpoint
+from psph.engine.jit import CACHE
+from psph.output.checkpoint import COPY, Saved, checkpoints, remove_checkpoints
+from psph.output.errors import OutputError, together
+from psph.output.frames import funnel_notice
+from psph.output.ledger import Ledger
+from psph.output.pictures import remove_pictures
+from psph.output.progress import Progress
+from psph.output.tables import ERRORS, LOG, PROBES
+from psph.parallel.slabs import check_ranks
+from psph.particles.store import check_room
+from psph.run.cost import cost_lines
+from psph.run.explain import slab_planes
+from psph.run.forecast import long_run
+from psph.run.guards import Guards
+from psph.run.post_mortem import remove_post_mortem
+from psph.run.record import Record
+from psph.run.resume import listed_particles, take_up, write_checkpoint
+from psph.run.room import check_memory
+from psph.run.setup import compile_ahead, create_particles
+from psph.run.watch import Call, Stopped, Watch
+from psph.scene import Scene, check
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+WORTH_SAYING = 1.0
+"""Seconds of compilation from which on it is mentioned."""
+
+Say = Callable[..., None]
+"""A line, and the stream that it is meant for where that is not the standard output."""
+
+
+class Finished(NamedTuple):
+    """A run to its end, and what it cost in s: ``compiling``, ``set_up`` (the rest of the time
+    before the first step), ``output`` and ``stepping`` without it, each of them as on rank 0."""
+
+    simulation: Simulation
+    particles: int
+    compiling: float
+    set_up: float
+    stepping: float
+    output: float
+
+
+def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = None) -> Finished:
+    """Simulate ``case`` on the ranks of ``comm`` and leave the files in ``folder``.
+
+    ``say`` takes each line that is worth saying, on every rank; else rank 0 prints them, and shows
+    how far the run is.  Raises CaseError, TooManyRanks, TooLittleMemory, BlowUp, OutputError or
+    Stopped, each on every rank.
+    """
+    with Watch(case.checkpoint) as watch:
+        scene = Scene(case)
+        for warning in check(scene):
+            (say or _speaker(comm))(f"warning: {warning}", sys.stderr)
+        return _simulate(
+            scene, folder, comm, say, watch, lambda: _prepare_folder(case, folder, comm, overwrite)
+        )
+
+
+def resume(
+    folder: Path, comm, extend: Sequence[str] = (), chosen: str | None = None,
+    say: Say | None = None,
+) -> Finished:
+    """Go on with the run in ``folder`` from its newest checkpoint, or the ``chosen`` one.
+
+    The ranks may be others than before: the files end as if it had never been stopped.
+    ``extend`` are keys ``time.end=...``, or of output or checkpoint.  Raises what :func:`run` does,
+    and CheckpointError.
+    """
+    case, saved = take_up(folder, comm, extend, chosen)
+    with Watch(case.checkpoint) as watch:
+        return _simulate(
+            Scene(case), folder, comm, say, watch, lambda: _reopen_folder(case, folder, saved),
+            saved,
+        )
+
+
+def _simulate(
+    scene, folder: Path, comm, say: Say | None, watch: Watch, prepare: Callable[[], None],
+    saved: Saved | None = None,
+) -> Finished:
+    begun, case = time.perf_counter(), scene.case
+    lines, say = say is None, say or _speaker(comm)
+    check_ranks(comm.size, slab_planes(scene))
+    particles = int(scene.counts().sum())
+    check_room(particles, comm.size)
+    plan = make_plan(scene)
+    for warning in long_run(scene, plan, comm.size):
+        say(f"warning: {warning}", sys.stderr)
+    check_memory(scene, plan, comm)
+    prepare()
+    say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")
+    for line in filter(None, [funnel_notice(comm), CACHE.trouble]):
+        say(line)
+    compiling = compile_ahead(scene, plan, comm)
+    if compiling > WORTH_SAYING:
+        kept = "" if CACHE.trouble else " (kept for the next run)"
+        say(f"compiled in {compiling:.1f} s{kept}")
+    simulation, record = _begin(scene, plan, comm, folder, saved)
+    if saved:
+        say(f"goes on from {saved.path.name}: step {simulation.steps:,}, {simulation.time:.6g} s")
+    first = simulation.steps
+    record.write_due()
+    guards = Guards(scene, simulation, record, folder, lambda line: say(line, sys.stderr))
+    starting = time.perf_counter() - begun
+    say(f"first step after {starting:.1f} s")
+    simulation.ledger.seconds.clear()  # the start is not a step
+    stepping = time.perf_counter()
+    with ExitStack() as at_last:
+        at_last.callback(record.close)
+        progress = Progress(comm, case.time.end, case.title or case.name, particles, lines)
+        at_last.callback(progress.close)
+        simulation.word = watch.call
+        while simulation.time < case.time.end:
+            guards.step()
+            record.write_due()
+            progress.update(simulation.time, simulation.steps, simulation.dt)
+            _attend(simulation, record, watch, case, folder)
+        if saved or watch.wrote_any or case.checkpoint != Checkpoint():
+            write_checkpoint(simulation, record, case, folder)
+        record.write_last()
+    whole = time.perf_counter() - stepping
+    for line in _summary(scene, simulation, record, particles, whole, simulation.steps - first):
+        say(line)
+    for line in (*guards.summary(), *record.dry_probes()):
+        say(line)
+    say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), {_tables(record)}")
+    output = simulation.ledger.seconds["output"]
+    took = comm.bcast((compiling, starting - compiling, whole - output, output))
+    return Finished(simulation, particles, *took)
+
+
+def _begin(scene, plan, comm, folder: Path, saved: Saved | None) -> tuple[Simulation, Record]:
+    """A run at its start, or where ``saved`` was written."""
+    if saved is None:
+        simulation = Simulation(scene, plan, create_particles(scene, plan, comm), comm, Ledger())
+        return simulation, Record(scene, simulation, folder)
+    particles = listed_particles(scene, plan, saved)
+    simulation = Simulation(scene, plan, particles, comm, Ledger(), saved)
+    return simulation, Record(scene, simulation, folder, saved)
+
+
+def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: Path) -> None:
+    """Leave a checkpoint where one is due or asked for; raise Stopped where it is the last."""
+    call, every = Call(int(simulation.heard)), case.checkpoint.every
+    if call is Call.NOTHING and not (every and simulation.steps % every == 0):
+        return
+    begun = time.monotonic()
+    write_checkpoint(simulation, record, case, folder)
+    watch.wrote(time.monotonic() - begun)
+    if call.ends:
+        by = "checkpoint.wall_clock" if call is Call.WALL_CLOCK else call.name
+        raise Stopped(
+            f"stopped by {by} at t = {simulation.time:.6g} s: resume with "
+            f"`python -m psph resume {folder}`"
+        )
+
+
+def _speaker(comm) -> Say:
+    """Rank 0 speaks; the others are silent."""
+
+    def say(line: str, where=None) -> None:
+        if comm.rank == 0:
+            print(line, file=where, flush=True)
+
+    return say
+
+
+def _ranks(size: int) -> str:
+    return "1 rank" if size == 1 else f"{size} ranks"
+
+
+def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
+    """Make the folder and leave the case in it; a finished run is not overwritten unasked."""
+    trouble = None
+    if comm.rank == 0:
+        try:
+            trouble = None if overwrite else _in_the_way(case, folder)
+            if not trouble:
+                folder.mkdir(parents=True, exist_ok=True)
+                # What has such a name in a folder without a run is none of ours.
+                if (folder / f"{case.name}.h5").exists():
+                    for name in (LOG, PROBES, ERRORS):
+                        (folder / name).unlink(missing_ok=True)
+                    remove_pictures(folder)
+                remove_checkpoints(folder)
+                remove_post_mortem(folder)
+                (folder / COPY).write_text(case.to_toml(), encoding="utf-8")
+                for name, used in zip(case.use, files_of(case.file, case.use)):
+                    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+                    (folder / name).write_bytes(used.read_bytes())  # a resumed run needs it
+        except OSError as error:
+            trouble = f"{folder}: {error.strerror}; choose another folder with --out"
+    trouble = comm.bcast(trouble)
+    if trouble:
+        raise OutputError(trouble)
+
+
+def _in_the_way(case, folder: Path) -> str | None:
+    """What a run would replace in a folder, in words; None where that is nothing."""
+    copy = folder / COPY
+    if (folder / f"{case.name}.h5").exists():
+        resume = f", or go on with it: `python -m psph resume {folder}`" if checkpoints(folder) else ""
+        return f"{folder} holds a run of {case.name}: give --out or --overwrite{resume}"
+    if copy.exists() and copy.read_bytes() != case.to_toml().encode():
+        return f"{copy} holds another case, which would be lost: give --out or --overwrite"
+    return None
+
+
+def _reopen_folder(case, folder: Path, saved: Saved) -> None:
+    """The case as it is now, and no checkpoint of what is to be simulated again."""
+    with together(saved.comm, folder):
+        if saved.comm.rank == 0:
+            fresh = folder / f"{COPY}.new"
+            fresh.write_text(case.to_toml(), encoding="utf-8")
+            os.replace(fresh, folder / COPY)
+            remove_checkpoints(folder, saved.state["steps"])
+            remove_post_mortem(folder)
+
+
+def _summary(
+    scene, simulation: Simulation, record: Record, particles: int, seconds: float, steps: int
+) -> Iterator[str]:
+    """What the run cost, where the time went on rank 0, and how right it is where that is known."""
+    rate = particles * steps / seconds
+    yield (
+        f"{steps:,} steps in {seconds:.1f} s: {rate / 1e6:.2f} M particle-steps/s, "
+        f"{simulation.domain.rebuilds} list rebuilds"
+    )
+    spent = dict(simulation.ledger.seconds)
+    yield from cost_lines(simulation.plan, scene.periods, spent, seconds)
+    if record.accuracy:
+        yield f"error against the exact solution at {simulation.time:.6g} s: " + ", ".join(
+            f"{name.replace('_', ' ')} {100.0 * error:.3g} %"
+            for name, error in zip(record.accuracy.columns(), record.latest_errors)
+        )
+
+
+def _tables(record: Record) -> str:
+    return ", ".join(table.path.name for table in record.tables)

@@ -1,0 +1,155 @@
+"""The particle that went wrong: who it is, what pushed it, and who stands around it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.fields import seen_at
+from psph.particles.store import Store
+from psph.physics import compose
+from psph.physics.compose import added, geometry, pushed, take
+from psph.simulation.plan import words
+from psph.simulation.step import Simulation
+from psph.vectors import add, nearest_image, subtract, zero_like
+
+SEEN = 6.0
+"""Spacings around the particle that are looked at, or the kernel's support if that is more."""
+
+
+class Share(NamedTuple):
+    """What one effect does to a particle: m/s², kg/(m^d s), and the speed of a displacement, m/s."""
+
+    name: str
+    acceleration: np.ndarray
+    density_rate: float
+    shift: np.ndarray
+
+
+class Suspect(NamedTuple):
+    """A particle, the particles around it in the order of their ids, and its forces' shares.
+
+    ``offset`` (n, dim) is where they stand as seen from it, m; ``column`` its own place there.
+    """
+
+    id: int
+    place: np.ndarray
+    around: Store
+    offset: np.ndarray
+    column: int
+    shares: tuple[Share, ...]
+
+    def value(self, name: str):
+        """A field of the particle itself: a number, or (dim,)."""
+        return self.around.shown(name)[self.column]
+
+    @property
+    def speed(self) -> float:
+        """m/s."""
+        return float(np.linalg.norm(self.value("velocity")))
+
+    @property
+    def distance(self) -> np.ndarray:
+        """Of each particle from it, m (n,)."""
+        return np.linalg.norm(self.offset, axis=1)
+
+    def hardest(self) -> Share | None:
+        """The effect that pushes it hardest; one whose push is not finite before all others."""
+        first = max(self.shares, key=lambda share: _size(share.acceleration))
+        return first if _size(first.acceleration) else None
+
+    def fastest_change(self) -> Share | None:
+        """The effect that changes its density fastest."""
+        first = max(self.shares, key=lambda share: _size([share.density_rate]))
+        return first if _size([first.density_rate]) else None
+
+
+def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
+    """The particle of largest ``badness`` (owned,), of several that of the lowest id; collective.
+
+    Its forces are those of the last pass over the pairs, so nothing may have touched the pressure
+    since.  The same on any number of ranks.
+    """
+    store = simulation.store
+    ids, mine = store.shown("id"), (-np.inf, 0, None)
+    if store.owned:
+        k = np.lexsort((ids, -badness))[0]
+        mine = float(badness[k]), -int(ids[k]), _places(store)[k].copy()
+    _, least, place = max(simulation.comm.allgather(mine), key=lambda one: one[:2])
+    reach = max(SEEN * scene.spacing, scene.kernel.support * scene.smoothing_length)
+    around = _gathered(simulation, scene, place, reach)
+    column = int(np.flatnonzero(around.shown("id") == -least)[0])
+    offset = _away(_places(around), place, scene.periods)
+    place = simulation.domain.inside(place[None])[0]
+    shares = _shares(simulation, scene, around, column, offset)
+    return Suspect(-least, place, around, offset, column, shares)
+
+
+def _places(store: Store) -> np.ndarray:
+    """Where the particles are (n, dim), or were when they were last seen anywhere."""
+    now, seen = store.shown("position"), store.shown("listed_position")
+    return np.where(np.isfinite(now).all(axis=1, keepdims=True), now, seen)
+
+
+def _away(places: np.ndarray, centre: np.ndarray, periods) -> np.ndarray:
+    """The nearest image of each place as seen from the centre, m (n, dim)."""
+    away = places - centre
+    for d, period in enumerate(periods):
+        if period is not None:
+            away[:, d] -= period * np.rint(away[:, d] / period)
+    return away
+
+
+def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -> Store:
+    """The particles of all ranks within ``reach`` m of a place, on every rank, by their ids."""
+    store = simulation.store
+    with np.errstate(over="ignore", invalid="ignore"):
+        near = np.linalg.norm(_away(_places(store), centre, scene.periods), axis=1) <= reach
+    names = ("id", "group", *store.rows)
+    parts = simulation.comm.allgather({name: store.shown(name)[near] for name in names})
+    every = {name: np.concatenate([part[name] for part in parts]) for name in names}
+    order = np.argsort(every["id"])
+    gathered = Store(store.dimensions, store.fields.values(), store.constants, type(store.view()), store.kinds)
+    block = np.empty((len(gathered.data), len(order)))
+    for name, rows in gathered.rows.items():
+        block[rows.start : rows.stop] = every[name][order].reshape(len(order), -1).T
+    gathered.append(every["id"][order], every["group"][order], block)
+    return gathered
+
+
+def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -> tuple:
+    """What each effect does to a particle, by its plain formulas over its neighbours."""
+    view = seen_at(around.view(), simulation.pace)
+    reach = scene.kernel.support * scene.smoothing_length
+    near = np.flatnonzero(np.linalg.norm(offset, axis=1) <= reach)
+    i = take(view, column)
+    pairs = []
+    with np.errstate(all="ignore"):
+        for k in near[near != column]:
+            j = take(view, k)
+            x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
+            pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
+        return tuple(
+            _share(effect, i, pairs, simulation.dt) for effect in simulation.plan.effects
+        )
+
+
+def _share(effect, i, pairs, dt: float) -> Share:
+    alone = (effect,)
+    sums = alone if hasattr(effect, "start") else ()
+    a, rate, totals = zero_like(i.position), 0.0, compose.start(sums, i)
+    for j, pair in pairs:
+        rate = rate + compose.density_rate(alone, i, j, pair)
+        a = pushed(a, pair.x_ij, compose.radial(alone, i, j, pair))
+        a = pushed(a, pair.u_ij, compose.shear(alone, i, j, pair))
+        a = added(a, compose.push(alone, i, j, pair))
+        totals = compose.gather_each(sums, totals, i, j, pair)
+    a = add(add(a, compose.finish_acceleration(sums, totals, i)), compose.body(alone, i))
+    shift = compose.displacement(alone, i, dt)
+    name = words(type(effect).__name__)
+    return Share(name, np.array(a), float(rate), np.array(shift) / dt if dt else np.zeros(len(a)))
+
+
+def _size(numbers) -> float:
+    """The length of a vector; of one that is not finite more than of any other."""
+    length = float(np.linalg.norm(numbers))
+    return length if np.isfinite(length) else np.inf

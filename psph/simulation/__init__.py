@@ -1,0 +1,1 @@
+"""Plan, passes, stages, step: what a time step does, and the engine that does it."""

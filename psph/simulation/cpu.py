@@ -1,0 +1,206 @@
+"""The engine of a rank: its particles, their lists and records, and the compiled loops over them.
+
+All that depends on how sums are computed on a processor lies behind these few methods.
+"""
+
+import numpy as np
+
+from psph.engine.threads import in_threads
+from psph.fields import companions, seen_at
+from psph.output.ledger import Ledger
+from psph.parallel.domain import Domain
+from psph.parallel.skin import Skin
+from psph.particles.records import Records
+from psph.particles.store import Store
+from psph.particles.wetting import mark_wet
+from psph.physics.motion import ANCHOR
+from psph.physics.space import softening
+from psph.simulation.integrator import kick, kick_drift_predict, kick_rows, predict_rows, state_of
+from psph.simulation.pairs import sum_over_neighbours
+from psph.simulation.passes import Pass
+from psph.simulation.plan import Plan
+
+
+class Engine:
+    """Advances and sums the particles of ``store``, a rank's share of a scene, as ``plan`` says.
+
+    Methods that end in new ghosts or lists are collective over ``comm``.
+    """
+
+    def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger):
+        self.plan, self.store, self.ledger = plan, store, ledger
+        self.domain = Domain(
+            comm, store, scene.axis, scene.reach.cutoff, scene.lower, scene.upper, scene.periods,
+            plan.ghost_fields, plan.refreshed, plan.space.lanes,
+        )
+        self.skin, self._support = Skin(self.domain, scene.reach.skin), scene.reach.support
+        self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
+        self._paid = 0.0
+
+    def predict(self, time: float, dt: float, pace: float) -> None:
+        """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
+        s, plan = self.store, self.plan
+        self._each(
+            kick_drift_predict, time, dt, plan.carriers, plan.state, plan.motions, plan.motion_of,
+            self.domain.periods, self._view(pace), s.group, self._anchor,
+            s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
+            s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
+            s["specific_volume"], s["pressure"],
+        )
+        if plan.evolving:
+            self._each(predict_rows, dt, s.data, self._rows_that_evolve())
+        for field in plan.evolving:
+            _, *rates = companions(field)
+            s.rotate(*(rate.name for rate in rates))
+        s.rotate("density_rate", "density_rate_1", "density_rate_2")
+
+    def kick(self, time: float, dt: float, pace: float) -> list[float]:
+        """The second kick.  Returns the largest |v|², |a|², strain and square of a shift of this rank."""
+        s, plan = self.store, self.plan
+        if plan.evolving:
+            self._each(kick_rows, dt, s.data, self._rows_that_evolve())
+        parts = self._each(
+            kick, time, dt, plan.carriers, plan.motions, plan.motion_of, self._view(pace), s.group,
+            self._anchor, s["position"], s["velocity"], s["acceleration"], s["density"],
+            s["density_rate"],
+        )
+        return np.max(parts, axis=0).tolist()
+
+    def rebuild(self) -> None:
+        """Put every particle where it belongs and list its neighbours."""
+        with self.ledger("rebuild"):
+            self.domain.rebuild(self.spent_on_pairs())
+            for effect in self.plan.marking:
+                self._mark(effect)
+        with self.ledger("records"):
+            self._fit_records()
+        self.skin.renew()
+
+    def sum(self, steps: int, ghosts_are_fresh: bool) -> None:
+        """Every pass that is due in the step after ``steps``.
+
+        The first of them brings ghosts up to date unless they are; each what it alone needs anew.
+        """
+        stale = () if ghosts_are_fresh else self.plan.refreshed
+        for one in self.plan.passes:
+            if not one.due(steps):
+                continue
+            if fields := stale + one.brought:
+                self._sum_while_refreshing(one, fields)
+            else:
+                self._sum_all(one)
+            stale = ()
+
+    def settle_pressure(self, pace: float) -> None:
+        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
+        s, plan = self.store, self.plan
+        state_of(
+            s.low, s.low + s.owned, plan.carriers, plan.state, plan.motion_of, self._view(pace),
+            s.group, s["density"], s["specific_volume"], s["pressure"],
+        )
+
+    def begin_rates(self) -> None:
+        """The rates of earlier steps, before there were any, are the first ones."""
+        names = ["density", *(field.name for field in self.plan.evolving)]
+        for name in names:
+            now = self.store.rows[f"{name}_rate"]
+            for older in ("_rate_1", "_rate_2"):
+                self.store.data[list(self.store.rows[f"{name}{older}"])] = self.store.data[list(now)]
+
+    def take_up(self, saved) -> None:
+        """The lists as they were made, then everything as it was when ``saved`` was written."""
+        self.domain.relist(saved.state["lower"], saved.state["upper"])
+        saved.fill(self.store)
+        self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
+        self._fit_records()
+        for records in self.records:
+            records.fill(0, self.store.total)
+        self.skin.restore(saved.state["skin"])
+
+    def bytes_held(self) -> int:
+        """Bytes of this rank's particles, records and lists."""
+        tables = (records.table for records in self.records)
+        arrays: list[np.ndarray] = [
+            self.store.data, self.store.id, self.store.group, *tables, *self.domain.lists,
+        ]
+        return sum(a.nbytes for a in arrays)
+
+    def spent_on_pairs(self) -> float:
+        """Seconds of this rank's pair loop since this was last asked."""
+        paid, self._paid = self._paid, self.ledger.seconds["pairs"]
+        return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
+
+    def _mark(self, effect) -> None:
+        """Which walls have fluid in reach."""
+        s = self.store
+        self._each(
+            mark_wet, s.low, *self.domain.lists, self._support**2, self.domain.periods,
+            s["position"], s[effect.told_by], s[effect.marks.name],
+        )
+
+    def _fit_records(self) -> None:
+        """Room for the records of new columns, and for the longest of new lists."""
+        for records in self.records:
+            records.make_room()
+        longest = int(self.domain.lists.lengths[: self.store.owned].max(initial=0))
+        self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
+
+    def _each(self, loop, *args) -> list:
+        """A loop over the columns of the owned particles."""
+        return in_threads(loop, self.store.low, self.store.low + self.store.owned, *args)
+
+    def _sum_all(self, one: Pass) -> None:
+        with self.ledger("records"):
+            self.records[one.place].fill(0, self.store.total)
+        with self.ledger("pairs"):
+            self.sum_columns(one, self.store.low, self.store.low + self.store.owned)
+
+    def _sum_while_refreshing(self, one: Pass, fields: tuple[str, ...]) -> None:
+        """Interior particles are summed while the halo travels, then the rim."""
+        first, last = self.domain.interior()
+        halo, records = self.domain.halo, self.records[one.place]
+        begin, end = self.store.low, self.store.low + self.store.owned
+        with self.ledger("halo"):
+            halo.start(fields)
+        with self.ledger("records"):
+            records.fill(begin, end)
+        with self.ledger("pairs"):
+            self.sum_columns(one, first, last)
+        with self.ledger("halo"):
+            halo.finish(fields)
+        with self.ledger("records"):
+            records.fill(0, begin)
+            records.fill(end, self.store.total)
+        with self.ledger("pairs"):
+            self.sum_columns(one, begin, first)
+            self.sum_columns(one, last, end)
+
+    def sum_columns(self, one: Pass, first: int, last: int) -> None:
+        """One pass over the neighbours of the particles in some columns."""
+        if first == last:
+            return
+        s, plan, lists, records = self.store, self.plan, self.domain.lists, self.records[one.place]
+        stored = tuple(name and s[name] for name in one.stores)
+        rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
+        in_threads(
+            sum_over_neighbours, first, last, one.effects, one.reductions, plan.kernel,
+            plan.space, self.softening, s.view(), records.view(), records.table, s.low,
+            lists.begin, lists.lengths, lists.lists, *rates, stored,
+        )
+
+    @property
+    def _anchor(self):
+        """Where particles stood at the start, if any motion asks for it."""
+        return self.store[ANCHOR.name] if ANCHOR.name in self.store else None
+
+    def _view(self, pace: float):
+        """The particles as the plan's carriers see them; a displacement also sees the pace."""
+        return seen_at(self.store.view()._replace(**self.plan.uncarried), pace)
+
+    def _rows_that_evolve(self) -> np.ndarray:
+        """Rows of value, prediction and three rates of each component of what evolves (n, 5)."""
+        columns = [
+            [self.store.rows[name] for name in (f.name, *(c.name for c in companions(f)))]
+            for f in self.plan.evolving
+        ]
+        return np.array([row for rows in columns for row in zip(*rows)], np.int64)

@@ -1,0 +1,28 @@
+"""The numbers with which particles begin, in the rows of a store."""
+
+import numpy as np
+
+from psph.fields import OF_MATERIAL, OF_SITE
+from psph.particles.store import Store
+from psph.physics.motion import ANCHOR
+from psph.simulation.plan import material_value
+
+
+def block_of(scene, store: Store, species, position, velocity, density) -> np.ndarray:
+    """Rows of ``store`` (rows, n) for particles of these ``species`` (n,) that begin there."""
+    block = np.zeros((len(store.data), len(species)))
+    starting = {"position": position, "velocity": velocity, "predicted_velocity": velocity}
+    for name, values in (starting | {ANCHOR.name: position}).items():
+        if name in store:
+            block[list(store.rows[name])] = values.T
+    known = {"density": density}
+    known |= {
+        field.name: np.array([material_value(s, field.name) for s in scene.species])[species]
+        for field in OF_MATERIAL
+    }
+    known |= {field.name: scene.lattice.odd(position) for field in OF_SITE}
+    known |= {field.name: field.start for field in store.fields.values() if field.start}
+    for name, values in known.items():
+        if name in store:
+            block[store.rows[name].start] = values
+    return block

@@ -1,0 +1,114 @@
+"""Passes over the neighbours: which sums are taken in which order, and what travels between them."""
+
+from typing import Any, NamedTuple
+
+
+class SumsInACircle(TypeError):
+    """Effects that need each other's sums of the same step."""
+
+
+class Pass(NamedTuple):
+    """One pass of the pair loop over all particles of a rank.
+
+    ``place`` is its place among the passes of a plan.  ``effects`` give rates and are empty in a pass
+    that gathers sums alone; ``reductions`` have sums
+    of their own; ``stores`` names the field, or None, that each of these fills.  ``neighbour_fields``
+    are what it reads of a neighbour, ``brought`` those among them that an earlier pass of the same
+    step has written, so that ghosts need them anew.  It runs in every ``every``-th step.
+    """
+
+    place: int
+    effects: tuple[Any, ...]
+    reductions: tuple[Any, ...]
+    stores: tuple[str | None, ...]
+    neighbour_fields: tuple[str, ...]
+    brought: tuple[str, ...]
+    every: int
+
+    @property
+    def gives_rates(self) -> bool:
+        """Whether it is the pass that sums acceleration and rate of density."""
+        return bool(self.effects)
+
+    def due(self, steps: int) -> bool:
+        """Whether it runs in the step after so many."""
+        return steps % self.every == 0
+
+
+def make_passes(called, stored: tuple[str, ...], seen_as) -> tuple[Pass, ...]:
+    """The passes of the effects that were called for, in order; the last gives the rates.
+
+    An effect whose sum others read in the same step comes in a pass before theirs; one that is
+    ``lagged`` is content with the sum of the step before, and needs none of its own.  ``stored`` are
+    the names of all arrays, ``seen_as`` tells the array that formulas see under a name.
+    """
+    early = _levels(called)
+    order = sorted({(level, _every(call)) for call, level in early})
+    passes, before = [], set()
+    for level, every in order:
+        own = [call for call, at in early if (at, _every(call)) == (level, every)]
+        passes.append(_pass(len(passes), (), [call.effect for call in own], own, before, stored,
+        seen_as, every))
+        before |= {call.effect.writes.name for call in own}
+    done = {id(call) for call, _ in early}
+    reductions = [
+        call.effect for call in called
+        if hasattr(call.effect, "start")
+        and (id(call) not in done or hasattr(call.effect, "finish_acceleration"))
+    ]
+    effects = tuple(call.effect for call in called)
+    return (*passes, _pass(len(passes), effects, reductions, called, before, stored, seen_as, 1))
+
+
+def _pass(place, effects, reductions, called, before, stored, seen_as, every) -> Pass:
+    # The geometry of a pair needs these, whatever the effects; the velocity also tells how far
+    # neighbours drift apart.
+    names = {"position", "velocity", "mass"}.union(*(call.reads.neighbour for call in called))
+    names = {seen_as(name) for name in names}
+    neighbour = tuple(name for name in stored if name in names)
+    return Pass(
+        place, effects, tuple(reductions), tuple(_filled(e, before) for e in reductions), neighbour,
+        tuple(name for name in neighbour if name in before), every,
+    )
+
+
+def _filled(effect, before) -> str | None:
+    """The array that takes the effect's sum, unless an earlier pass has filled it."""
+    field = getattr(effect, "writes", None)
+    if field is None or field.name in before:
+        return None
+    return field.rate if field.evolves else field.name
+
+
+def _levels(called) -> list[tuple[Any, int]]:
+    """The effects that come in a pass of their own, each with how many passes come before it."""
+    writers = {
+        call.effect.writes.name: call for call in called
+        if hasattr(call.effect, "start") and _fills_a_field(call.effect)
+        and not getattr(call.effect, "lagged", False)
+    }
+    read = set().union(*(call.reads.of_pairs for call in called))
+    early = {name: call for name, call in writers.items() if name in read}
+    levels: dict[str, int] = {}
+    while len(levels) < len(early):
+        ready = {
+            name: call for name, call in early.items()
+            if name not in levels and not (call.reads.in_sum & early.keys()) - levels.keys()
+        }
+        if not ready:
+            names = ", ".join(sorted(type(c.effect).__name__ for n, c in early.items() if n not in levels))
+            raise SumsInACircle(
+                f"{names} need each other's sums of the same step; let one of them say lagged = True"
+            )
+        for name, call in ready.items():
+            below = [levels[other] for other in call.reads.in_sum & levels.keys()]
+            levels[name] = 1 + max(below, default=-1)
+    return [(call, levels[name]) for name, call in early.items()]
+
+
+def _fills_a_field(effect) -> bool:
+    return hasattr(effect, "writes") and not effect.writes.evolves
+
+
+def _every(call) -> int:
+    return getattr(call.effect, "every", 1)

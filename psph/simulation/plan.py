@@ -1,0 +1,347 @@
+"""The plan: exactly the effects, fields and messages that a scene calls for, and why."""
+
+import re
+from collections import namedtuple
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from psph.case.parameters import as_numbers
+from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name, companions, view_of
+from psph.physics.catalogue import Catalogue, Entry
+from psph.physics.compose import OF_A_PARTICLE
+from psph.physics.count import flops_per_pair
+from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, Fixed, Free, is_prescribed
+from psph.physics.space import Metres, fixed_point
+from psph.physics.trial import Reads, UnknownField, reads
+from psph.simulation.passes import Pass, make_passes
+
+OF_STATE = ("position", "rest_density", "sound_speed")
+"""Quantities that kick, drift and the equation of state read of every particle."""
+
+FORCE_LIMIT = 0.25
+"""Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
+
+
+ALWAYS_READ = (
+    "position", "velocity", "pressure", "specific_volume", "mass", "rest_density", "sound_speed",
+    "smoothing_length",
+)
+"""What the loops themselves read of a particle, whatever the effects."""
+
+Extremes = namedtuple("Extremes", ("sound_speed", "smoothing_length", *(f.name for f in OF_MATERIAL)))
+
+
+class Called(NamedTuple):
+    """An effect of the scene, the key of the case that called for it, and what it reads."""
+
+    effect: Any
+    reason: str
+    reads: Reads
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What will be simulated.  It prints itself: see psph.run.explain."""
+
+    called: tuple[Called, ...]
+    absent: tuple[Entry, ...]
+    dropped: dict[str, str]
+    """Of effects that the case asks for and the scene has no use for: by their names, why."""
+    kernel: Any
+    state: Any
+    state_reason: str
+    precision: str
+    space: Any
+    """How positions of neighbours are told apart: psph.physics.space."""
+    smoothing_length: float
+    constants: dict[str, float]
+    fields: dict[str, Field]
+    """Everything that a particle of the scene can carry, by name."""
+    seen: tuple[Field, ...]
+    """What formulas read of a particle."""
+    arrays: tuple[str, ...]
+    passes: tuple[Pass, ...]
+    refreshed: tuple[str, ...]
+    """What ghosts need before the first pass of every step."""
+    ghost_fields: tuple[str, ...]
+    """What ghosts need once, when lists are made."""
+    evolving: tuple[Field, ...]
+    """Fields that an effect gives a rate, beside velocity and density."""
+    kinds: tuple[int, ...]
+    """The kind of each group."""
+    motions: tuple[Any, ...]
+    """The prescribed motions of the scene's walls."""
+    motion_of: np.ndarray
+    """The number of the motion of each group: psph.physics.motion."""
+    regions: tuple[Any, ...]
+    """Where particles appear or vanish, each with the number of the fluid that comes."""
+    cfl: float
+    fixed_step: float | None
+    extremes: Any
+    """The scene's shared values, and the largest of those that differ by material."""
+
+    @cached_property
+    def effects(self) -> tuple:
+        """The tuple whose type selects the compiled loop."""
+        return tuple(call.effect for call in self.called)
+
+    @property
+    def stored(self) -> tuple[Field, ...]:
+        """The fields that need an array."""
+        return tuple(self.fields[name] for name in self.arrays)
+
+    @property
+    def saved(self) -> tuple[Field, ...]:
+        """The fields of a frame."""
+        return tuple(field for field in (*IDENTITY, *self.stored) if field.saved)
+
+    @property
+    def view(self) -> type:
+        """The NamedTuple in which formulas see a particle."""
+        return view_of(tuple(field.name for field in self.seen))
+
+    @cached_property
+    def reductions(self) -> tuple:
+        """Effects with a sum of their own."""
+        return tuple(e for e in self.effects if hasattr(e, "start"))
+
+    @property
+    def neighbour_fields(self) -> tuple[str, ...]:
+        """What the last pass, which gives the rates, reads of a neighbour."""
+        return self.passes[-1].neighbour_fields
+
+    @cached_property
+    def marking(self) -> tuple:
+        """Effects with a field that is found when the neighbours are listed."""
+        return tuple(e for e in self.effects if hasattr(e, "marks"))
+
+    @cached_property
+    def starts_twice(self) -> bool:
+        """Whether forces rest on sums of the pass before: then the first are computed twice."""
+        return any(hasattr(e, "limit_density") or getattr(e, "lagged", False) for e in self.effects)
+
+    @cached_property
+    def displaces(self) -> bool:
+        """Whether an effect moves particles beside their velocity."""
+        return any(hasattr(e, "displacement") for e in self.effects)
+
+    @cached_property
+    def carriers(self) -> tuple:
+        """The effects that have a part in kick and drift: scenes without share those loops."""
+        return tuple(call.effect for call in self.called if _carries(call))
+
+    @cached_property
+    def uncarried(self) -> dict[str, None]:
+        """What neither the equation of state nor the carriers read of a particle."""
+        read = set(OF_STATE).union(*(call.reads.own for call in self.called if _carries(call)))
+        return dict.fromkeys(field.name for field in self.seen if field.name not in read)
+
+    def flops_per_pair(self, periods: tuple, effects: tuple | None = None) -> int:
+        """Operations of a pair in the pass that gives the rates, of all or just some ``effects``."""
+        effects = self.effects if effects is None else effects
+        sums = tuple(e for e in effects if any(e is one for one in self.passes[-1].reductions))
+        return flops_per_pair(effects, sums, self.kernel, self.seen, self.constants, periods)
+
+    def longest_step(self, speed: float, acceleration: float) -> tuple[float, str]:
+        """Δt in s and the name of the limit that sets it, for the largest |v| and |a|."""
+        return min(self.step_limits(speed, acceleration), key=lambda limit: limit[0])
+
+    def step_limits(self, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
+        """Every limit of the time step with its name, s."""
+        if self.fixed_step is not None:
+            yield self.fixed_step, "time.step"
+            return
+        h = self.smoothing_length
+        yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
+        if acceleration > 0.0:
+            yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
+        for effect in self.effects:
+            if hasattr(effect, "longest_step"):
+                yield effect.longest_step(self.extremes), words(type(effect).__name__)
+
+
+def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
+    """The plan of a scene (psph.scene.Scene), with what its case or another catalogue offers."""
+    case, catalogue = scene.case, catalogue or scene.case.catalogue
+    calls = [(entry, *found) for entry in catalogue.effects if (found := _called_for(case, entry))]
+    fits = [(entry, _in_scene(effect, scene), reason) for entry, effect, reason in calls]
+    fitted = [fit for fit in fits if fit[1] is not None]
+    marking = [effect for _, effect, _ in fitted if hasattr(effect, "marks")]
+    written = tuple(effect.writes for _, effect, _ in fitted if hasattr(effect, "writes"))
+    written += tuple(effect.marks for effect in marking)
+    evolving = tuple(field for field in written if field.evolves)
+    further = tuple(field for one in evolving for field in companions(one))
+    prescribed = {(type(s.motion), s.motion) for s in scene.species if is_prescribed(s.motion)}
+    motions = tuple(motion for _, motion in sorted(prescribed, key=str))
+    fields = by_name(catalogue.fields.values(), written, further, [ANCHOR])
+    called = tuple(
+        Called(effect, reason, reads(effect, scene.dimensions, scene.kernel, fields))
+        for _, effect, reason in fitted
+    )
+    present = {entry for entry, *_ in fitted}
+    [(state, state_reason)] = filter(None, (_called_for(case, e) for e in catalogue.states))
+    own = set(ALWAYS_READ).union(*(c.reads.own | c.reads.neighbour for c in called))
+    told_by = {e.told_by for e in marking}
+    shared, varying = _split(scene, own | told_by)
+    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
+    _refuse_unwritten(called, computed)
+    anchored = {ANCHOR.name} if motions else set()
+    stored = tuple(n for n in fields if n in computed or n in varying or n in anchored)
+    passes = make_passes(called, stored, lambda name: _array_of(name, stored))
+    brought = {name for one in passes for name in one.brought}
+    neighbour = {name for one in passes for name in one.neighbour_fields}
+    return Plan(
+        called=called,
+        absent=tuple(e for e in catalogue.effects if e not in present),
+        dropped={
+            entry.effect.__name__: _why_dropped(effect, scene, reason)
+            for entry, effect, reason in calls if entry not in present
+        },
+        kernel=scene.kernel,
+        state=state,
+        precision=case.precision,
+        space=fixed_point(scene.smoothing_length, scene.periods)
+        if case.precision == "mixed"
+        else Metres(tuple(scene.periods)),
+        state_reason=state_reason,
+        smoothing_length=scene.smoothing_length,
+        constants=shared
+        | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
+        fields=fields,
+        seen=tuple(field for name, field in fields.items() if name in own),
+        arrays=stored,
+        passes=passes,
+        refreshed=tuple(n for n in stored if n in neighbour and n in computed and n not in brought),
+        ghost_fields=tuple(
+            n for n in stored
+            if n in varying and n in neighbour | told_by or n in neighbour and n in brought
+        ),
+        evolving=evolving,
+        kinds=tuple(species.kind for species in scene.species),
+        motions=motions,
+        motion_of=_motion_numbers(scene.species, motions),
+        regions=scene.regions,
+        cfl=case.time.cfl,
+        fixed_step=case.time.step,
+        extremes=Extremes(
+            scene.sound_speed, scene.smoothing_length,
+            *(max(material_value(m, f.name) for m in scene.species) for f in OF_MATERIAL),
+        ),
+    )
+
+
+def _carries(call: Called) -> bool:
+    """Whether an effect has a part in kick and drift."""
+    return any(hasattr(call.effect, name) for name in OF_A_PARTICLE)
+
+
+def _refuse_unwritten(called, computed: tuple[str, ...]) -> None:
+    """Raise UnknownField where an effect reads what only an absent effect would write."""
+    known = {*computed, *(field.name for field in (*OF_MATERIAL, *OF_SITE, *OF_SCENE))}
+    for call in called:
+        for name in sorted((call.reads.own | call.reads.neighbour) - known):
+            effect = type(call.effect).__name__
+            raise UnknownField(f"{effect} reads '{name}', which no effect of this scene writes")
+
+
+def _array_of(name: str, stored: tuple[str, ...]) -> str:
+    """The array that formulas see under a name: the predicted one of what evolves."""
+    return f"predicted_{name}" if f"predicted_{name}" in stored else name
+
+
+def _motion_numbers(species, motions) -> np.ndarray:
+    # By type too: named tuples of different types are equal where their values are.
+    numbers = {Free: FREE, Fixed: FIXED}
+    told = [(type(motion), motion) for motion in motions]
+    return np.array([
+        numbers[type(one.motion)] if type(one.motion) in numbers
+        else PRESCRIBED + told.index((type(one.motion), one.motion))
+        for one in species
+    ], np.uint8)
+
+
+def words(name: str) -> str:
+    """``LaminarViscosity`` -> ``laminar viscosity``; an acronym stays one word."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
+
+
+def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Quantities fixed at the start that the scene reads: shared values, and names of those that vary."""
+    shared, varying = {}, []
+    for name in (field.name for field in OF_MATERIAL):
+        values = {material_value(m, name) for m in scene.species}
+        if name != "mass" and name not in names:
+            continue
+        if len(values) == 1:
+            shared[name] = values.pop()
+        else:
+            varying.append(name)
+    return shared, (*varying, *(field.name for field in OF_SITE if field.name in names))
+
+
+def material_value(material, name: str) -> float:
+    """A material's value of one of the fields ``OF_MATERIAL``."""
+    return float(getattr(material, "density" if name == "rest_density" else name))
+
+
+def _in_scene(effect, scene):
+    """The form of an effect that a scene calls for, or None."""
+    return effect.in_scene(scene) if hasattr(effect, "in_scene") else effect
+
+
+def _why_dropped(effect, scene, reason: str) -> str:
+    """Why an effect that ``reason`` calls for has no form in a scene."""
+    why = effect.why_absent(scene) if hasattr(effect, "why_absent") else "this scene has no use for it"
+    return f"left out, though {reason}: {why}"
+
+
+def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
+    """The effect with its parameters and why it is there, or None."""
+    if not entry.key:
+        return entry.effect(), "every scene"
+    key, _, choice = entry.key.partition("=")
+    for path, value, given in _values(case, key.split(".")):
+        by = f"{path} = {_plain(value)}" + _origin(case, path, given)
+        if choice:
+            if value == choice:
+                return entry.effect(), by
+        elif "*" in key:
+            if value:
+                return entry.effect(), by
+        elif value is not None:
+            return entry.effect(**as_numbers(value)), by
+    return None
+
+
+def _origin(case, path: str, given: bool) -> str:
+    """Where a value comes from, where the case does not give it."""
+    if name := case.preset(path):
+        return f" ({name})"
+    return "" if given else " (default)"
+
+
+def _values(node, keys: list[str], path: str = "", given: bool = True):
+    """Every (path, value, whether the case gives it) that a key with ``*`` stands for."""
+    if not keys:
+        yield path, node, given
+        return
+    head, *rest = keys
+    names = list(node) if head == "*" else [head]
+    for name in names:
+        below = node[name] if isinstance(node, dict) else getattr(node, name)
+        set_here = isinstance(node, dict) or name in node.model_fields_set
+        yield from _values(below, rest, f"{path}.{name}".strip("."), given and set_here)
+
+
+def _plain(value) -> str:
+    if hasattr(type(value), "model_fields"):
+        inner = ", ".join(f"{k} = {_plain(v)}" for k, v in dict(value).items())
+        return "{ " + inner + " }"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"
+

@@ -1,0 +1,54 @@
+"""Particles that appear and vanish while a scene runs, the same on any number of ranks."""
+
+import numpy as np
+
+from psph.fields import FLUID
+from psph.physics.region import is_source
+from psph.simulation.filling import block_of
+
+
+class Population:
+    """Who is there: ``next_id`` is the number that the next particle gets, ``asked`` the time (s) up
+    to which the regions of the scene have been asked.  Both are the same on every rank.
+    """
+
+    def __init__(self, scene, plan, domain):
+        self.scene, self.plan, self.domain = scene, plan, domain
+        self.next_id, self.asked = int(scene.counts().sum()), 0.0
+
+    def renew(self, time: float) -> None:
+        """Take out and let in what the regions say up to ``time``, s; new lists have to follow."""
+        for region, _ in self.plan.regions:
+            if hasattr(region, "vanish"):
+                self._take_out(region, time)
+        for region, group in self.plan.regions:
+            if is_source(region):
+                self._let_in(*region.appear(self.asked, time), group)
+        self.asked = time
+
+    def state(self) -> dict:
+        """What the next steps rest on."""
+        return {"next_id": self.next_id, "asked": self.asked}
+
+    def restore(self, state: dict) -> None:
+        """Go on from there."""
+        self.next_id, self.asked = state["next_id"], state["asked"]
+
+    def _take_out(self, region, time: float) -> None:
+        store = self.domain.store
+        fluid = np.flatnonzero(store.shown("kind") == FLUID)
+        places = self.domain.inside(store.shown("position")[fluid])
+        gone = fluid[region.vanish(places, store.shown("velocity")[fluid], time)]
+        staying = np.delete(np.arange(store.owned), gone)
+        store.reorder((store.low + staying).astype(np.uint32), 0, 0)
+
+    def _let_in(self, position: np.ndarray, velocity: np.ndarray, group: int) -> None:
+        """Rank 0 holds them until the new lists send them where they belong."""
+        n, store = len(position), self.domain.store
+        if n and self.domain.comm.rank == 0:
+            species = np.full(n, group, np.uint8)
+            density = np.full(n, self.scene.species[group].density)
+            block = block_of(self.scene, store, species, position, velocity, density)
+            block[store.rows["specific_volume"].start] = 1.0 / density
+            store.append(self.next_id + np.arange(n), species, block)
+        self.next_id += n

@@ -1,0 +1,155 @@
+"""The simulation of one rank, and its step."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from psph.case.consistency import LARGEST_LOSS
+from psph.errors import Failed
+from psph.output.ledger import Ledger
+from psph.particles.store import Store
+from psph.simulation.cpu import Engine
+from psph.simulation.plan import Plan
+from psph.simulation.population import Population
+from psph.simulation.stages import find_limits, kick, stages_of
+
+TOO_FAST = 100.0
+"""A particle at this many speeds of sound is a run that blew up, whatever the case allows."""
+
+CLOCK = (
+    "time", "dt", "steps", "limited_by", "speed", "pace", "acceleration", "shift",
+    "energy_at_start",
+)
+"""Numbers of a simulation that its next step reads, or its user."""
+
+
+class BlowUp(Failed):
+    """A run in trouble, on whatever rank; raised on all."""
+
+
+class TimeLost(BlowUp):
+    """A time step so short that the time cannot tell it; raised on all ranks before the step."""
+
+
+class Simulation:
+    """Particles, domain and clock; ``step`` advances them.
+
+    ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
+    scene.  ``time`` in s, ``dt`` the last step.  Over all ranks ``speed`` is the largest in m/s and
+    ``strain`` the largest |ρ/ρ₀ − 1| of the fluid after the last step, infinite where a number is
+    not finite.  ``word`` is asked at the end of each step for a number from 0 on that a rank wants
+    all others to know; ``heard`` is the largest of them, the same on every rank.
+    With ``saved`` it goes on from a checkpoint (psph.run.resume), whose particles ``store``
+    holds where the lists were made.
+    """
+
+    engine_type = Engine
+    """What advances and sums particles."""
+
+    def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger, saved=None):
+        self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
+        self.engine = self.engine_type(scene, plan, store, comm, ledger)
+        self.domain, self.skin = self.engine.domain, self.engine.skin
+        self.population = Population(scene, plan, self.domain)
+        self.stages = tuple(stages_of(plan))
+        self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
+        self.listed = False
+        self.speed, self.pace, self.strain = 0.0, 0.0, 0.0
+        self.acceleration = self.shift = 0.0
+        self.energy_at_start: float | None = None
+        self.limited_by = ""
+        self.word: Callable[[], float] = float
+        self.heard = 0.0
+        if saved is None:
+            self._start()
+        else:
+            self._restore(saved)
+        self.engine.spent_on_pairs()  # the first passes may have loaded compiled loops
+
+    def step(self, end: float = np.inf) -> None:
+        """Advance by one time step; the last one before ``end`` (s) ends exactly there."""
+        self.dt, self.limited_by, self.then = self._next_step(end)
+        self._refuse_lost(self.dt)
+        with self.ledger("skin"):
+            self.listed = self.skin.holds(self.dt, self.speed, self.acceleration, self.shift)
+        for stage in self.stages:
+            stage(self)
+        self.time = self.then
+        self.steps += 1
+        self._refuse_blow_up()
+
+    def rebuild(self) -> None:
+        """Put every particle where it belongs and list its neighbours; collective."""
+        self.engine.rebuild()
+
+    def state(self) -> dict:
+        """All that the next steps rest on but for the numbers of the particles."""
+        numbers = {name: getattr(self, name) for name in CLOCK}
+        corners = {"lower": self.domain.lower, "upper": self.domain.upper}
+        rest = {"skin": self.skin.state(), "population": self.population.state()}
+        return numbers | corners | rest
+
+    def bytes_held(self) -> int:
+        """Bytes of this rank's particles, records and lists."""
+        return self.engine.bytes_held()
+
+    def settle_pressure(self) -> None:
+        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
+        self.engine.settle_pressure(self.pace)
+
+    def _start(self) -> None:
+        """First forces, from particles at rest in time: predicted is initial."""
+        self.engine.predict(0.0, 0.0, self.pace)
+        self.rebuild()
+        self.engine.sum(0, ghosts_are_fresh=True)
+        if self.plan.starts_twice:  # its first verdict comes with the first sums
+            self._kick_in_place()
+            self.engine.predict(0.0, 0.0, self.pace)
+            self.engine.sum(0, ghosts_are_fresh=False)
+        self.engine.begin_rates()
+        self._kick_in_place()
+        self._refuse_blow_up()
+
+    def _kick_in_place(self) -> None:
+        kick(self)
+        find_limits(self)
+
+    def _restore(self, saved) -> None:
+        """Everything as it was when ``saved`` was written."""
+        self.engine.take_up(saved)
+        for name in CLOCK:
+            setattr(self, name, saved.state[name])
+        self.population.restore(saved.state["population"])
+
+    def _next_step(self, end: float) -> tuple[float, str, float]:
+        """Δt in s, the name of the limit that sets it, and the time after the step.
+
+        Where less than two of the longest steps are left, two equal ones follow, or one that is as
+        long as what is left: so no step is shorter than half of its limit.
+        """
+        dt, limited_by = self.plan.longest_step(self.speed, self.acceleration)
+        left = end - self.time
+        if left >= 2.0 * dt:
+            return dt, limited_by, self.time + dt
+        if left > (1.0 + LARGEST_LOSS) * dt:  # more than the rounding of many equal steps
+            return 0.5 * left, "time.end", self.time + 0.5 * left
+        return left, "time.end", end
+
+    def _refuse_lost(self, dt: float) -> None:
+        """Raise TimeLost where rounding would make the time go on by another step than this."""
+        told = (self.time + dt) - self.time
+        if not abs(told - dt) < LARGEST_LOSS * dt:  # true for a step of zero too
+            raise TimeLost(
+                f"the run stands still at step {self.steps}, time {self.time:.6g} s: a step of "
+                f"{dt:.3g} s is lost in the rounding of the time"
+            )
+
+    def _refuse_blow_up(self) -> None:
+        """Raise BlowUp where no step can follow: the extremes are the same on every rank."""
+        if not self.strain < np.inf:
+            what = "a position, velocity or density is not finite"
+        elif self.speed > TOO_FAST * self.plan.constants["sound_speed"]:
+            what = f"a particle moves at {self.speed:.3g} m/s, over {TOO_FAST:g} speeds of sound"
+        else:
+            return
+        raise BlowUp(f"the run blew up at step {self.steps}, time {self.time:.6g} s: {what}")

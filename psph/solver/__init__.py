@@ -1,1 +1,0 @@
-"""Plan, pair loop, integrator, step, run: a case becomes a simulation."""

@@ -1,0 +1,1 @@
+"""Exact solutions, and the linear theory of lattices under pressure."""

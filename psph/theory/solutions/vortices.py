@@ -1,0 +1,100 @@
+"""Vortices in two dimensions."""
+
+import math
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from psph.theory.solutions.setting import Setting, whole_waves
+
+
+def _only_2d(setting: Setting) -> str | None:
+    return None if setting.dimensions == 2 else "is a flow in 2D; give space.dimensions = 2"
+
+
+class TaylorGreen(NamedTuple):
+    """Vortices side by side that decay by viscosity alone.
+
+    u = U e^(−2νk²t) (−cos kx sin ky, sin kx cos ky), p = −ρU²/4 e^(−4νk²t) (cos 2kx + cos 2ky),
+    k = 2π/L.  Taylor & Green (1937), Proc. R. Soc. Lond. A 158, 499.
+    """
+
+    speed: Annotated[
+        float,
+        Field(gt=0, description="largest speed U at the start", json_schema_extra={"unit": "m/s"}),
+    ]
+    length: Annotated[
+        float, Field(gt=0, description="length L of a period", json_schema_extra={"unit": "m"})
+    ]
+
+    up_to_a_constant = ("pressure",)
+
+    def unfit(self, setting: Setting) -> str | None:
+        """What is wrong with the case for this solution, or None."""
+        return _only_2d(setting) or whole_waves(setting, (0, 1), self.length)
+
+    def top_speed(self, setting: Setting) -> float:
+        """The largest speed, m/s."""
+        return self.speed
+
+    def velocity(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
+        """u (n, dim) in m/s at ``x`` (n, dim) m and ``t`` s."""
+        k = 2.0 * math.pi / self.length
+        a = self.speed * math.exp(-2.0 * setting.viscosity * k * k * t)
+        kx, ky = k * x.T
+        return a * np.column_stack([-np.cos(kx) * np.sin(ky), np.sin(kx) * np.cos(ky)])
+
+    def pressure(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
+        """p (n,) in Pa, zero on average."""
+        k = 2.0 * math.pi / self.length
+        a = self.speed * math.exp(-2.0 * setting.viscosity * k * k * t)
+        kx, ky = k * x.T
+        return -0.25 * setting.density * a * a * (np.cos(2.0 * kx) + np.cos(2.0 * ky))
+
+
+class Gresho(NamedTuple):
+    """A steady vortex, triangular in its speed: pressure alone holds it together.
+
+    u_φ = U s for s < 1, U (2 − s) for s < 2, else 0, with s = r/R.  Gresho & Chan (1990), Int. J.
+    Numer. Methods Fluids 11, 621; pressure after Liska & Wendroff (2003), SIAM J. Sci. Comput.
+    25, 995, zero outside.
+    """
+
+    speed: Annotated[
+        float, Field(gt=0, description="largest speed U", json_schema_extra={"unit": "m/s"})
+    ]
+    radius: Annotated[
+        float, Field(gt=0, description="radius R of that speed", json_schema_extra={"unit": "m"})
+    ]
+    centre: Annotated[
+        tuple[float, float],
+        Field(description="centre of the vortex", json_schema_extra={"unit": "m"}),
+    ] = (0.0, 0.0)
+
+    up_to_a_constant = ("pressure",)
+
+    def unfit(self, setting: Setting) -> str | None:
+        """What is wrong with the case for this solution, or None."""
+        if setting.viscosity:
+            return "is a flow without friction; remove the fluid's viscosity"
+        return _only_2d(setting)
+
+    def top_speed(self, setting: Setting) -> float:
+        """The largest speed, m/s."""
+        return self.speed
+
+    def velocity(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
+        """u (n, dim) in m/s at ``x`` (n, dim) m; the same at all times."""
+        off = (x - np.array(self.centre)) / self.radius
+        s = np.hypot(*off.T)
+        around = np.where(s < 1.0, s, np.maximum(2.0 - s, 0.0))
+        turn = self.speed * around / np.maximum(s, 1e-300)
+        return turn[:, None] * np.column_stack([-off[:, 1], off[:, 0]])
+
+    def pressure(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
+        """p (n,) in Pa."""
+        s = np.hypot(*((x - np.array(self.centre)) / self.radius).T)
+        ring = np.clip(s, 1.0, 2.0)
+        p = np.where(s < 1.0, 0.5 * s * s, 0.5 * ring * ring + 4.0 * (1.0 - ring + np.log(ring)))
+        return setting.density * self.speed**2 * (p - (4.0 * math.log(2.0) - 2.0))

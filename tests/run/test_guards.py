@@ -1,0 +1,244 @@
+"""Each guard trips on a scene made for it, a sane run trips none, and the post-mortem is right."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jobs import mpirun
+from mpi4py import MPI
+from run.guarded import THROWN, boxed, started
+from run.resuming import BOX as WAVES
+from run.resuming import steps
+
+from psph.case import load
+from psph.output.checkpoint import checkpoints
+from psph.output.reader import Run
+from psph.run.guards import EVERY
+from psph.run.post_mortem import PICTURE, REPORT
+from psph.run.resume import take_up
+from psph.run.start import resume
+from psph.run.suspect import find
+from psph.scene import Scene
+from psph.simulation.step import BlowUp, Simulation
+
+COMM = MPI.COMM_SELF
+ROOT = Path(__file__).parents[2]
+LOOSE = ["guards.density=1e9", "guards.energy=1e9"]
+TENSION = "run/cases/negative_pressure_traditional.toml"
+
+
+def report_of(folder):
+    """The text of the post-mortem, and its two-column table as a dict."""
+    text = (folder / REPORT).read_text(encoding="utf-8")
+    return text, dict(re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", text, re.M))
+
+
+def nearest_fluid(folder, place):
+    """The id of the fluid particle that started nearest to a place."""
+    frame = Run(folder).frame(0)
+    away = np.linalg.norm(frame["position"] - place, axis=1)
+    return frame["id"][np.where(frame["kind"] == 0, away, np.inf).argmin()]
+
+
+def push_once(monkeypatch, step, change):
+    """Let ``change(simulation)`` meddle with a simulation before its step of that number."""
+    honest = Simulation.step
+
+    def meddled(self, *end):
+        if self.steps == step:
+            change(self)
+        honest(self, *end)
+
+    monkeypatch.setattr(Simulation, "step", meddled)
+
+
+def test_a_sane_run_trips_none(tmp_path):
+    trouble, said = started(boxed(tmp_path, COMM), tmp_path / "run", COMM)
+    assert trouble is None and not any(line.startswith(("guards", "warning")) for line in said)
+    assert Run(tmp_path / "run").log()["step"][-1] > EVERY  # all have looked
+    assert not (tmp_path / "run" / REPORT).exists()
+
+
+def test_a_particle_thrown_at_ten_speeds_of_sound(tmp_path):
+    case = boxed(tmp_path, COMM, *THROWN)
+    trouble, _ = started(case, tmp_path / "run", COMM)
+    number = nearest_fluid(tmp_path / "run", [0.65, 0.45])
+    assert isinstance(trouble, BlowUp) and "\n" not in str(trouble)
+    assert re.search(rf"blew up at step 1, .*particle {number} moves at .*guards.speed = 1", str(trouble))
+    text, table = report_of(tmp_path / "run")
+    assert table["particle"] == f"{number}, fluid"
+    assert "step 1" in table["time (s)"]
+    assert f"![Around the particle: pressure and velocity]({PICTURE})" in text
+    assert (tmp_path / "run" / PICTURE).read_bytes()[:4] == b"\x89PNG"
+    listed = re.findall(r"^\| (\d+) \| (fluid|wall) \| ([\d.]+) \|", text, re.M)
+    distances = [float(d) for _, _, d in listed]
+    assert len(listed) >= 12 and distances == sorted(distances) and str(number) not in {
+        one: kind for one, kind, _ in listed
+    }
+    assert 'Try scheme = "stable"' in text and 'guards.on_trouble = "warn"' in text
+
+
+def test_through_the_wall(tmp_path):
+    """No bound on the speed: the guard that looks behind the walls finds it."""
+    lines = [*THROWN, "guards.speed=100.0", *LOOSE, "time.step=2e-4"]
+    trouble, _ = started(boxed(tmp_path, COMM, *lines), tmp_path / "run", COMM)
+    number = nearest_fluid(tmp_path / "run", [0.65, 0.45])
+    assert "lost a particle at step 100, " in str(trouble)
+    assert f"particle {number} is behind the face of a wall (guards.depth = 1)" in str(trouble)
+    assert Run(tmp_path / "run").frame(-1)["position"].max() > 1.2 + 0.1
+    assert report_of(tmp_path / "run")[1]["pushed hardest by"] == "nothing"  # all alone out there
+
+
+def test_the_square_under_tension(tmp_path):
+    """Case 4.2 by traditional SPH, a shipped case: it is let go on there, not here."""
+    trouble, _ = started(load(TENSION, ["guards.on_trouble=stop"]), tmp_path, COMM)
+    assert re.search(r"lost a particle at step \d+, time 0.01.*behind the face", str(trouble))
+    text, table = report_of(tmp_path)
+    assert table["pushed hardest by"].startswith("symmetric pressure, ")
+    assert table["density changed most by"].startswith("continuity, ")
+    assert 'physics.background_pressure = "auto": the fluid is under tension' in text
+    calm, _ = started(
+        load(TENSION, ["guards.on_trouble=stop", "time.end=0.005"]), tmp_path, COMM
+    )
+    assert calm is None and not (tmp_path / REPORT).exists()  # that of the run before is gone
+
+
+def test_the_command_of_the_docs_ends_as_they_say(tmp_path):
+    page = (ROOT / "docs/stability.md").read_text(encoding="utf-8").split("## The map")[0]
+    [command] = re.findall(r"^python -m (psph run/cases/.*)$", page, re.M)
+    words = command.replace("results/", f"{tmp_path}/").split()
+    job = mpirun(2, ["-m", *words], cwd=ROOT)
+    assert job.returncode == 3
+    said = re.search(r"```text\n(.*?) …\n", page, re.S)[1].replace("\n", " ")
+    assert any(line.startswith(said) for line in job.stderr.splitlines())
+
+
+def test_density_out_of_bounds(tmp_path):
+    trouble, _ = started(boxed(tmp_path, COMM, "fluids.water.pressure=6e4"), tmp_path / "run", COMM)
+    assert re.search(r"particle \d+ has 1\.\d+ of its rest density \(guards.density", str(trouble))
+    sane = boxed(tmp_path, COMM, "fluids.water.pressure=6e4", "guards.density=0.7",
+                 "guards.on_trouble=warn", "time.step=1e-3", "guards.energy=9.0")
+    trouble, said = started(sane, tmp_path / "run", COMM)
+    assert trouble is None and not any("guards.density" in line for line in said)
+
+
+def test_energy_from_nowhere(tmp_path):
+    """Time steps too long pump energy into compression: no speed and no density shows it yet."""
+    lines = ["perturbations=[{ position = [0.65, 0.45], velocity = [1.0, 0.0] }]",
+             "guards.energy=0.1"]
+    results = {}
+    for step in (0.0095, 0.003):
+        case = boxed(tmp_path, COMM, *lines, f"time.step={step}", f"time.end={110 * step}")
+        results[step], _ = started(case, tmp_path / "run", COMM)
+        if results[step]:
+            _, table = report_of(tmp_path / "run")
+            assert float(table["velocity (m/s)"].split()[-4]) < 0.1  # speeds of sound
+    assert results[0.003] is None
+    won = re.search(r"blew up at step 100, .*particles have won ([\d.]+) times", str(results[0.0095]))
+    assert float(won[1]) > 0.1
+
+
+def test_not_a_number(tmp_path, monkeypatch):
+    """The injured particle is named, not one that it infected; the last good checkpoint stays."""
+    number = 102
+
+    def injure(simulation):
+        store = simulation.store
+        store["velocity"][0][np.flatnonzero(store.id[store.inner] == number) + store.low] = np.nan
+
+    with monkeypatch.context() as patch:
+        push_once(patch, 34, injure)
+        trouble, _ = started(
+            boxed(tmp_path, COMM, "checkpoint.every=10"), tmp_path / "run", COMM
+        )
+    assert "step 35, " in str(trouble) and f"particle {number} has a position" in str(trouble)
+    text, table = report_of(tmp_path / "run")
+    assert table["particle"] == f"{number}, fluid"
+    assert "`checkpoint-30.h5` is the last good one" in text
+    assert [p.name for p in checkpoints(tmp_path / "run")] == ["checkpoint-30.h5", "checkpoint-20.h5"]
+    done = resume(tmp_path / "run", COMM, say=lambda line, where=None: None)
+    assert done.simulation.time == 0.3 and not (tmp_path / "run" / REPORT).exists()
+
+
+def test_no_good_checkpoint_is_said(tmp_path, monkeypatch):
+    def injure(simulation):
+        simulation.store["density"][simulation.store.inner] = np.inf
+
+    push_once(monkeypatch, 3, injure)
+    trouble, _ = started(boxed(tmp_path, COMM), tmp_path / "run", COMM)
+    assert "not finite" in str(trouble) and not checkpoints(tmp_path / "run")
+    assert "`checkpoint.every` leaves some on the way" in report_of(tmp_path / "run")[0]
+
+
+def test_the_checkpoint_of_the_trouble_can_be_looked_at_and_gone_on_from(tmp_path):
+    case = boxed(tmp_path, COMM, *THROWN, *LOOSE, "time.end=0.02")
+    started(case, tmp_path / "run", COMM)
+    _, saved = take_up(tmp_path / "run", COMM)
+    assert saved.path.name == "checkpoint-1.h5"
+    [velocity] = saved.share("velocity")
+    assert np.linalg.norm(velocity, axis=1).max() > 10.0
+    with pytest.raises(BlowUp, match="step 2, "):
+        resume(tmp_path / "run", COMM, say=lambda line, where=None: None)
+    warn = ["guards.on_trouble=warn", "guards.depth=100.0"]
+    done = resume(tmp_path / "run", COMM, warn, say=lambda line, where=None: None)
+    assert done.simulation.time == 0.02
+
+
+def test_warned_runs_go_on_and_are_the_same(tmp_path):
+    """One line at the first, second, fourth ... step in trouble, and the count at the end."""
+    end = ["time.step=2e-4", "time.end=0.01", *THROWN, *LOOSE]
+    warned = boxed(tmp_path, COMM, *end, "guards.on_trouble=warn")
+    trouble, said = started(warned, tmp_path / "warned", COMM)
+    assert trouble is None
+    lines = [line for line in said if line.startswith("warning: step")]
+    [count] = [line for line in said if line.startswith("guards.speed: ")]
+    times = int(re.search(r"passed in (\d+) of", count)[1])
+    assert times > 4 and len(lines) == int(np.log2(times)) + 1 < times
+    assert "step 1, " in lines[0] and "step 2, " in lines[1] and "for the 4th time" in lines[2]
+    assert not (tmp_path / "warned" / REPORT).exists()
+    loose = boxed(tmp_path, COMM, *end, "guards.speed=100.0")
+    assert started(loose, tmp_path / "loose", COMM)[0] is None
+    tables = [(tmp_path / name / "log.csv").read_text() for name in ("warned", "loose")]
+    assert tables[0] == tables[1]
+
+
+def case_of(name, folder):
+    """the default scheme at a surface, and p⁻ in a periodic box."""
+    if name == "stable":
+        return load("run/cases/minimal.toml")
+    path = folder / "waves.toml"
+    path.write_text(WAVES, encoding="utf-8")
+    return load(path)
+
+
+@pytest.mark.parametrize("name", ["stable", "minimum"])
+def test_the_shares_add_up_to_what_moved_the_particle(name, tmp_path):
+    """Plain formulas over the gathered neighbours against the compiled pass."""
+    case = case_of(name, tmp_path)
+    simulation = steps(case, COMM, 25)
+    scene, store = Scene(case), simulation.store
+    chosen = store.shown("id")[store.shown("kind") == 0][::97][:6]
+    for number in chosen:
+        suspect = find(simulation, scene, (store.shown("id") == number).astype(float))
+        assert suspect.id == number
+        total = sum(share.acceleration for share in suspect.shares)
+        size = max(np.linalg.norm(share.acceleration) for share in suspect.shares)
+        assert size > 0.0
+        assert np.allclose(total, suspect.value("acceleration"), rtol=0, atol=1e-10 * size)
+        rates = [share.density_rate for share in suspect.shares]
+        largest = max(map(abs, rates))
+        assert largest > 0.0
+        assert sum(rates) == pytest.approx(suspect.value("density_rate"), abs=1e-6 * largest)
+
+
+def test_the_term_that_pushed_hardest_is_the_one_that_was_made_strong(tmp_path):
+    case = load("run/cases/minimal.toml", ["physics.pair_potential=50.0"])
+    simulation = steps(case, COMM, 1)
+    store = simulation.store
+    fluid = (store.shown("kind") == 0) * np.linalg.norm(store.shown("acceleration"), axis=1)
+    strong = find(simulation, Scene(case), fluid)
+    assert strong.hardest().name == "neutral potential"
+    weak = steps(load("run/cases/minimal.toml"), COMM, 1)
+    weak = find(weak, Scene(case), (weak.store.shown("id") == strong.id) * 1.0)
+    assert weak.hardest().name != "neutral potential"

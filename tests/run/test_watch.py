@@ -1,0 +1,201 @@
+"""Signals and clocks: what stops a run, with a checkpoint, and how it goes on."""
+
+import os
+import shutil
+import signal
+import time
+from types import SimpleNamespace
+
+import pytest
+from jobs import mpirun, ranks_of, started
+from long import long_but_for
+from mpi4py import MPI
+from run.guarded import boxed
+from run.resuming import BOX, same_files
+
+from psph.output.checkpoint import checkpoints
+from psph.run import watch as module
+from psph.run.start import run
+from psph.run.watch import Call, Stopped, Watch
+from psph.simulation.step import Simulation
+
+pytestmark = pytest.mark.alone
+
+
+def limits(minutes=1e9, wall_clock=None):
+    return SimpleNamespace(minutes=minutes, wall_clock=wall_clock)
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """A clock that a test sets: ``clock.now`` in s."""
+    clock = SimpleNamespace(now=1000.0)
+    monkeypatch.setattr(module, "time", SimpleNamespace(monotonic=lambda: clock.now))
+    return clock
+
+
+def test_a_signal_is_remembered_and_the_handlers_come_back():
+    before = [signal.getsignal(number) for number in module.SIGNALS]
+    with Watch(limits()) as watch:
+        assert watch.call() is Call.NOTHING
+        os.kill(os.getpid(), signal.SIGUSR1)
+        assert watch.call() is Call.SIGUSR1
+        os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGUSR1)
+        assert watch.call() is watch.call() is Call.SIGTERM
+    assert [signal.getsignal(number) for number in module.SIGNALS] == before
+    assert not Call.NOTHING.ends and not Call.CHECKPOINT.ends
+    assert Call.WALL_CLOCK.ends and Call.SIGUSR1.ends and Call.SIGTERM.ends
+
+
+def test_minutes_count_from_the_last_checkpoint(clock):
+    watch = Watch(limits(minutes=2.0))
+    clock.now += 119.0
+    assert watch.call() is Call.NOTHING
+    clock.now += 1.0
+    assert watch.call() is Call.CHECKPOINT
+    watch.wrote(1.0)
+    assert watch.call() is Call.NOTHING
+    clock.now += 120.0
+    assert watch.call() is Call.CHECKPOINT
+
+
+def test_the_limit_leaves_room_for_a_slow_step_and_a_slow_checkpoint(clock):
+    watch = Watch(limits(wall_clock=100.0))
+    for _ in range(10):
+        clock.now += 20.0  # steps of 20 s
+        assert watch.call() is Call.NOTHING
+    clock.now += 50.0
+    watch.wrote(50.0)
+    clock.now = 1000.0 + 6000.0 - 60.0 - 2.0 * (20.0 + 50.0)
+    watch._looked = clock.now - 20.0
+    assert watch.call() is Call.NOTHING
+    clock.now += 0.1
+    watch._looked = clock.now - 20.0
+    assert watch.call() is Call.WALL_CLOCK
+
+
+def test_a_signal_in_the_midst_of_a_step_is_heard_at_its_end(tmp_path, monkeypatch):
+    """Not a step later: mpirun that is told to end kills within about a second."""
+    honest = Simulation._kick
+
+    def interrupted(self, dt):
+        if self.steps == 4:
+            os.kill(os.getpid(), signal.SIGUSR1)
+        honest(self, dt)
+
+    monkeypatch.setattr(Simulation, "_kick", interrupted)
+    with pytest.raises(Stopped, match="stopped by SIGUSR1"):
+        run(boxed(tmp_path, MPI.COMM_SELF), tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
+    assert [path.name for path in checkpoints(tmp_path / "run")] == ["checkpoint-5.h5"]
+
+
+@pytest.mark.parametrize("sets, last", [((), 20), (("checkpoint.minutes=12.0",), 24)])
+def test_a_long_run_leaves_a_checkpoint_every_ten_minutes(tmp_path, clock, sets, last):
+    """A minute passes from one look at the clock to the next, and each step has one."""
+
+    def later():
+        clock.now += 60.0
+        return clock.now
+
+    module.time.monotonic = later
+    case = boxed(tmp_path, MPI.COMM_SELF, "time.step=2e-3", "time.end=0.05", *sets)
+    run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
+    found = [path.name for path in checkpoints(tmp_path / "run")]
+    assert found == ["checkpoint-25.h5", f"checkpoint-{last}.h5"]
+
+
+def test_a_short_run_leaves_none(tmp_path):
+    case = boxed(tmp_path, MPI.COMM_SELF, "time.end=0.01")
+    assert case.checkpoint.minutes == 10.0
+    run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
+    assert checkpoints(tmp_path / "run") == []
+
+
+# Real jobs
+
+
+def begun(folder, rows):
+    """Wait until the log of a run has so many rows."""
+    for _ in range(600):
+        log = folder / "log.csv"
+        if log.exists() and len(log.read_text().splitlines()) > rows:
+            return
+        time.sleep(0.1)
+    raise AssertionError("the run did not begin")
+
+
+LATER = "time.end=0.3"
+
+
+@pytest.fixture(scope="module")
+def box(tmp_path_factory):
+    """A case, and the folder of its run to ``LATER`` that was never stopped."""
+    folder = tmp_path_factory.mktemp("box")
+    (folder / "box.toml").write_text(BOX, encoding="utf-8")
+    job = mpirun(1, ["-m", "psph", folder / "box.toml", "--out", folder / "run", "--set", LATER])
+    assert job.returncode == 0, job.stderr
+    return folder / "box.toml", folder / "run"
+
+
+@pytest.mark.parametrize(
+    "number, to, ranks", [("SIGUSR1", "mpirun", (2, 3)), ("SIGTERM", "one rank", (2, 1))]
+)
+def test_a_signal_to_a_real_job_loses_nothing(box, tmp_path, number, to, ranks):
+    case, whole = box
+    folder, (before, after) = tmp_path / "run", ranks
+    # It sleeps after each step, to be met in the midst of the run.
+    slowly = tmp_path / "slowly.py"
+    slowly.write_text(SLOWLY, encoding="utf-8")
+    with started(before, [slowly, case, "--out", folder, "--set", LATER]) as job:
+        begun(folder, 4)
+        os.kill(job.pid if to == "mpirun" else ranks_of(job)[-1], getattr(signal, number))
+        _, said = job.communicate(timeout=60)
+    assert job.returncode == 75, said
+    [line] = [line for line in said.splitlines() if line.startswith("stopped by")]
+    assert line.startswith(f"stopped by {number} at t = 0.")
+    assert line.endswith(f"resume with `python -m psph resume {folder}`")
+    assert len(checkpoints(folder)) >= 1 and not same_files(folder, whole)
+    job = mpirun(after, ["-m", "psph", "resume", folder])
+    assert job.returncode == 0, job.stderr
+    assert "goes on from checkpoint-" in job.stdout
+    assert same_files(folder, whole)
+
+
+@pytest.mark.parametrize("number", long_but_for(("SIGTERM",), ("SIGTERM", "SIGINT")))
+def test_mpirun_that_is_told_to_end_lets_the_ranks_save(box, tmp_path, number):
+    slowly = tmp_path / "slowly.py"
+    slowly.write_text(SLOWLY, encoding="utf-8")
+    folder, patient = tmp_path / "run", {"OMPI_MCA_odls_base_sigkill_timeout": "3"}
+    with started(2, [slowly, box[0], "--out", folder, "--set", LATER], env=patient) as job:
+        begun(folder, 4)
+        os.kill(job.pid, getattr(signal, number))
+        _, said = job.communicate(timeout=60)
+    assert job.returncode == 1  # its own, not that of the ranks
+    assert said.count("stopped by SIGTERM at t = 0.") == 1 and len(checkpoints(folder)) >= 1
+
+
+SLOWLY = """
+import sys, time
+from psph.simulation import step
+
+original = step.Simulation.step
+def slow(self, *end):
+    original(self, *end)
+    time.sleep(0.05)
+step.Simulation.step = slow
+
+from psph.__main__ import guarded
+guarded(sys.argv[1:])
+"""
+
+
+def test_a_refusal_is_one_line_and_code_2(box, tmp_path):
+    folder = tmp_path / "run"
+    shutil.copytree(box[1], folder)
+    newest, older = checkpoints(folder)
+    newest.write_bytes(newest.read_bytes()[:-1])
+    job = mpirun(2, ["-m", "psph", "resume", folder])
+    assert job.returncode == 2 and "Traceback" not in job.stderr
+    [line] = [line for line in job.stderr.splitlines() if "damaged" in line]
+    assert line.endswith(f"`python -m psph resume {folder} --from {older.name}`")

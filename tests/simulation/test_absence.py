@@ -1,0 +1,173 @@
+"""What a scene does not call for costs nothing: counted for every effect of the catalogue."""
+
+import re
+from typing import NamedTuple, get_origin, get_type_hints
+
+import numba
+import pytest
+from drafts import SQUARE, draft
+from long import long_but_for
+from mpi4py import MPI
+
+from psph.engine.jit import FAST
+from psph.output.ledger import Ledger
+from psph.physics.catalogue import BUILT_IN, CATALOGUE, Entry
+from psph.run.explain import bytes_per_refresh
+from psph.run.setup import create_particles
+from psph.scene import Scene
+from psph.simulation import cpu as engine_module
+from psph.simulation import pairs
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+IN_PAIRS = {"density_rate", "radial", "shear", "push", "body", "start"}
+"""Methods that the pair loop calls."""
+
+
+class Loop:
+    """The pair loop of this module's tests, compiled afresh and once for each type of a scene."""
+
+    def __init__(self):
+        self.loop = numba.njit(fastmath=FAST, error_model="numpy")(
+            pairs.sum_over_neighbours.py_func
+        )
+
+    def signature(self, arguments):
+        """The types of a call, compiled."""
+        kinds = tuple(map(numba.typeof, arguments))
+        self.loop.compile(kinds)
+        return kinds
+
+    def instructions(self, arguments) -> list[str]:
+        """The instructions of a call, without their operands."""
+        code = self.loop.inspect_asm(self.signature(arguments))
+        operations = re.findall(r"^\s+([a-z][a-z0-9]+)\s", code, re.MULTILINE)
+        return [op for op in operations if op not in ("movabsq", "leaq")]  # addresses of names
+
+
+@pytest.fixture(scope="module")
+def loop():
+    return Loop()
+
+
+class Footprint(NamedTuple):
+    """What a scene's plan makes of the machine."""
+
+    effects: set[type]
+    call: tuple
+    arrays: tuple[str, ...]
+    read: tuple[str, ...]
+    halo: tuple[str, ...]
+    sent: float
+
+
+@pytest.fixture
+def footprint(tmp_path, monkeypatch):
+    """A function: (catalogue, overrides) → the Footprint of a plain square of fluid with them."""
+
+    def make(catalogue, *overrides):
+        calls = []
+        monkeypatch.setattr(Simulation, "_start", lambda self: None)  # no step: types suffice
+        monkeypatch.setattr(engine_module, "sum_over_neighbours", lambda *call: calls.append(call))
+        scene = Scene(draft(tmp_path, SQUARE, *overrides))
+        plan = make_plan(scene, BUILT_IN._replace(effects=tuple(catalogue)))
+        store = create_particles(scene, plan, MPI.COMM_SELF)
+        engine = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger()).engine
+        engine._fit_records()
+        engine.sum_columns(plan.passes[-1], 0, store.owned)
+        [call] = calls
+        read = tuple(n for n, x in store.view()._asdict().items() if x is not None)
+        halo = plan.refreshed + plan.ghost_fields
+        effects = set(map(type, plan.effects))
+        return Footprint(
+            effects, call, plan.arrays, read, halo, bytes_per_refresh(scene, plan, 2)[1]
+        )
+
+    return make
+
+
+def without(entry):
+    """The catalogue before this effect existed."""
+    return [other for other in CATALOGUE if other is not entry]
+
+
+VISCOUS = "fluids.water.viscosity=0.001"
+
+STICKY = ("walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}, no_slip=true}", VISCOUS)
+"""Overrides: a wall without slip, and the friction that it needs."""
+
+
+def calling_for(entry) -> list[str]:
+    """Overrides that call for the effect of an entry."""
+    key, _, choice = entry.key.partition("=")
+    if key.startswith("walls."):
+        return [*STICKY]
+    if choice:
+        return [f"{key}={choice}"]
+    if "*" in key:
+        return [f"{key.replace('*', 'water')}=0.001"]
+    hints = get_type_hints(entry.effect)
+    values = {n: [0.5, 0.5] if get_origin(hint) is tuple else 0.5 for n, hint in hints.items()}
+    table = f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
+    return [table, VISCOUS] if key == "physics.central_friction" else [table]
+
+
+def not_calling_for(entry) -> list[str]:
+    """Overrides of a scene that lacks the effect of an entry; none do where it is a choice."""
+    key, _, choice = entry.key.partition("=")
+    others = [e.key for e in without(entry) if choice and e.key.startswith(f"{key}=")]
+    return others[:1]
+
+
+def name_of(entry):
+    return entry.effect.__name__
+
+
+SHORT = ("FreeSurface", "ArtificialViscosity", "PairPotential")
+KEYED, ALL = (
+    long_but_for(SHORT, entries, name_of) for entries in ([e for e in CATALOGUE if e.key], CATALOGUE)
+)
+
+
+@pytest.mark.parametrize("entry", KEYED, ids=name_of)
+def test_an_absent_effect_leaves_everything_as_it_was_before_it_existed(entry, footprint, loop):
+    scene = not_calling_for(entry)
+    after, before = footprint(CATALOGUE, *scene), footprint(without(entry), *scene)
+    assert entry.effect not in after.effects
+    assert after._replace(call=()) == before._replace(call=())
+    assert loop.signature(after.call) == loop.signature(before.call)  # the very same code
+
+
+@pytest.mark.parametrize("entry", ALL, ids=name_of)
+def test_a_present_effect_costs_instructions(entry, footprint, loop):
+    scene = calling_for(entry) if entry.key else []
+    on, off = footprint(CATALOGUE, *scene), footprint(without(entry), *scene)
+    [added] = on.effects - off.effects  # the effect, or its form for the scene
+    assert off.effects < on.effects
+    more = len(loop.instructions(on.call)) - len(loop.instructions(off.call))
+    assert more > 0 or not IN_PAIRS & vars(added).keys()
+    assert set(off.arrays) <= set(on.arrays) and set(off.read) <= set(on.read)
+    assert on.sent >= off.sent
+
+
+class Buoyancy(NamedTuple):
+    """An effect that nobody asks for, and that reads what nobody else does."""
+
+    strength: float = 1.0
+
+    def radial(self, i, j, pair):
+        """Something costly."""
+        return self.strength * (i.viscosity + j.viscosity) * pair.w
+
+
+def test_an_effect_of_its_own_costs_what_it_reads(footprint, loop):
+    """Compiled afresh on both sides, with two fluids: instructions, arrays and messages."""
+    oil = "fluids.oil={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, viscosity=1e-2}"
+    longer = [*CATALOGUE, Entry("fluids.*.viscosity", Buoyancy)]
+    absent, before = footprint(longer), footprint(CATALOGUE)
+    assert Loop().instructions(absent.call) == loop.instructions(before.call)
+    assert absent.sent == before.sent and absent.arrays == before.arrays
+    on, off = footprint(longer, oil), footprint(CATALOGUE[:3], oil)
+    assert len(loop.instructions(on.call)) > len(loop.instructions(off.call))
+    assert set(on.arrays) - set(off.arrays) == {"viscosity"}
+    assert set(on.halo) - set(off.halo) == {"viscosity"}

@@ -1,0 +1,149 @@
+"""Exact solutions obey their equations: divergence, momentum, boundaries, by differences."""
+
+import math
+
+import numpy as np
+import pytest
+
+from psph.theory.solutions.catalogue import SOLUTIONS, known
+from psph.theory.solutions.channel import Couette, Poiseuille
+from psph.theory.solutions.drop import EllipticDrop
+from psph.theory.solutions.setting import Setting
+from psph.theory.solutions.still import Hydrostatic
+from psph.theory.solutions.vortices import Gresho, TaylorGreen
+from psph.theory.solutions.waves import SoundWave, StandingWave
+
+FREE = Setting(
+    dimensions=2, density=2.0, viscosity=0.0, sound_speed=10.0, gravity=(0.0, 0.0),
+    lower=(0.0, 0.0), upper=(1.0, 1.0), periods=(1.0, 1.0),
+)
+STICKY = FREE._replace(viscosity=0.03)
+CHANNEL = STICKY._replace(periods=(1.0, None))
+DRIVEN = CHANNEL._replace(gravity=(0.4, 0.0))
+HEAVY = FREE._replace(gravity=(0.0, -9.81), periods=(None, None))
+STEP = 1e-4
+
+FLOWS = {
+    "taylor_green": (TaylorGreen(1.5, 0.5), STICKY),
+    "gresho": (Gresho(1.5, 0.2, (0.5, 0.5)), FREE),
+    "poiseuille": (Poiseuille(0.1, 0.9), DRIVEN),
+    "couette": (Couette(0.1, 0.9, 0.7), CHANNEL),
+    "sound_wave": (SoundWave(1e-4, 0.5), FREE),
+    "standing_wave": (StandingWave(1e-5, 1.0, 0.5, 0.9), HEAVY),
+    "hydrostatic": (Hydrostatic(0.8), HEAVY),
+    "elliptic_drop": (EllipticDrop(3.0, 0.4), FREE._replace(periods=(None, None))),
+}
+MOVING = [name for name, (flow, _) in FLOWS.items() if hasattr(flow, "velocity")]
+
+
+def places(n: int = 40) -> np.ndarray:
+    """Points off every axis of symmetry, and inside all domains."""
+    return np.random.default_rng(3).uniform(0.31, 0.69, (n, 2))
+
+
+def gradient(field, x):
+    """∂f/∂x_d by central differences, (n, ..., 2)."""
+    steps = STEP * np.eye(2)
+    return np.stack([(field(x + s) - field(x - s)) / (2 * STEP) for s in steps], axis=-1)
+
+
+def laplacian(field, x):
+    steps = STEP * np.eye(2)
+    return sum((field(x + s) - 2 * field(x) + field(x - s)) / STEP**2 for s in steps)
+
+
+def test_the_catalogue_is_covered():
+    assert FLOWS.keys() == SOLUTIONS.keys()
+    for name, (flow, setting) in FLOWS.items():
+        assert isinstance(flow, SOLUTIONS[name]) and known(flow)
+        assert flow.unfit(setting) is None and set(flow.up_to_a_constant) <= set(known(flow))
+
+
+@pytest.mark.parametrize("name", [n for n in MOVING if n != "sound_wave"])
+def test_no_volume_appears(name):
+    flow, setting = FLOWS[name]
+    slope = gradient(lambda x: flow.velocity(x, 0.02, setting), places())
+    size = np.abs(slope).max()
+    assert np.abs(np.trace(slope, axis1=1, axis2=2)).max() < 1e-6 * size
+
+
+@pytest.mark.parametrize("name", ["taylor_green", "gresho", "poiseuille", "couette", "elliptic_drop"])
+def test_momentum_balances(name):
+    """Du/Dt = −∇p/ρ + ν∇²u + g."""
+    flow, setting = FLOWS[name]
+    x, t = places(), 0.3
+    u = flow.velocity(x, t, setting)
+    rate = (flow.velocity(x, t + STEP, setting) - flow.velocity(x, t - STEP, setting)) / (2 * STEP)
+    rate += np.einsum("nd,nkd->nk", u, gradient(lambda y: flow.velocity(y, t, setting), x))
+    push = np.zeros_like(u) + setting.gravity
+    push += setting.viscosity * laplacian(lambda y: flow.velocity(y, t, setting), x)
+    if hasattr(flow, "pressure"):
+        push -= gradient(lambda y: flow.pressure(y, t, setting), x) / setting.density
+    assert np.abs(rate - push).max() < 2e-5 * np.abs(push).max()
+
+
+def test_small_waves_obey_linear_momentum():
+    flow, setting = FLOWS["sound_wave"]
+    x, t = places(), 0.013
+    rate = (flow.velocity(x, t + 1e-6, setting) - flow.velocity(x, t - 1e-6, setting)) / 2e-6
+    slope = gradient(lambda y: flow.pressure(y, t, setting), x)
+    assert np.allclose(rate, -slope / setting.density, atol=1e-5 * np.abs(rate).max())
+
+
+def test_plates_hold_the_fluid_at_their_own_speed():
+    for name, top in (("poiseuille", 0.0), ("couette", 0.7)):
+        flow, setting = FLOWS[name]
+        walls = np.array([[0.3, 0.1], [0.3, 0.9]])
+        assert flow.velocity(walls, 0.5, setting)[:, 0] == pytest.approx([0.0, top], abs=1e-12)
+        inside = np.column_stack([np.zeros(9), np.linspace(0.15, 0.85, 9)])
+        start = np.abs(flow.velocity(inside, 0.0, setting))
+        assert start.max() < 0.02 * flow.top_speed(setting)  # the series at its slowest
+        late = flow.velocity(inside, 1e3, setting)[:, 0]
+        assert np.abs(late).max() <= flow.top_speed(setting) * (1 + 1e-12)
+    assert DRIVEN.gravity[0] * 0.8**2 / (8 * 0.03) == pytest.approx(FLOWS["poiseuille"][0].top_speed(DRIVEN))
+
+
+def test_a_drop_keeps_its_area_and_feels_no_pressure_outside():
+    flow, setting = FLOWS["elliptic_drop"]
+    a, rate = flow.shape(0.4)
+    assert a < 0.7 and 0.0 < rate < 3.0
+    angle = np.linspace(0.0, 6.0, 20)
+    edge = 0.4 * np.column_stack([a * np.cos(angle), np.sin(angle) / a])
+    peak = flow.pressure(np.zeros((1, 2)), 0.4, setting)[0]
+    assert peak > 0.0 and np.abs(flow.pressure(edge, 0.4, setting)).max() < 1e-8 * peak
+    energy = [r * r * (b * b + 1 / b**2) for b, r in (flow.shape(0.0), (a, rate))]
+    assert energy[0] == pytest.approx(energy[1], rel=1e-8)  # ∫u²/2 over the ellipse
+
+
+def test_still_water_and_a_wave_know_gravity():
+    flow, setting = FLOWS["hydrostatic"]
+    p = flow.pressure(np.array([[0.0, 0.3], [0.5, 0.8], [0.1, 0.95]]), 7.0, setting)
+    assert p == pytest.approx([2.0 * 9.81 * 0.5, 0.0, 0.0], abs=1e-12)
+    wave, setting = FLOWS["standing_wave"]
+    deep = wave._replace(depth=50.0)
+    assert deep.frequency(setting) == pytest.approx(math.sqrt(9.81 * 2 * math.pi))
+    floor = np.array([[0.13, 0.4], [0.77, 0.4]])
+    assert np.abs(wave.velocity(floor, 0.0, setting)[:, 1]).max() == 0.0
+
+
+@pytest.mark.parametrize(
+    ("flow", "setting", "says"),
+    [
+        (TaylorGreen(1.0, 0.5), FREE._replace(dimensions=3), "2D"),
+        (TaylorGreen(1.0, 0.5), FREE._replace(periods=(1.0, None)), "space.periodic"),
+        (TaylorGreen(1.0, 0.3), FREE, "whole multiple"),
+        (Gresho(1.0, 0.2), STICKY, "viscosity"),
+        (Poiseuille(0.1, 0.9), CHANNEL, "gravity"),
+        (Couette(0.1, 0.9, 1.0), DRIVEN, "gravity"),
+        (Couette(0.9, 0.1, 1.0), CHANNEL, "below upper"),
+        (Couette(0.1, 0.9, 1.0), CHANNEL._replace(viscosity=0.0), "friction"),
+        (Couette(0.1, 0.9, 1.0), CHANNEL._replace(periods=(None, None)), "space.periodic"),
+        (SoundWave(1.0, 0.7), FREE, "whole multiple"),
+        (StandingWave(0.1, 1.0, 1.0), FREE, "gravity"),
+        (Hydrostatic(0.0), FREE, "gravity"),
+        (EllipticDrop(1.0, 0.1), STICKY, "friction"),
+        (EllipticDrop(1.0, 0.1), FREE._replace(dimensions=3), "2D"),
+    ],
+)
+def test_what_does_not_fit_is_said(flow, setting, says):
+    assert says in flow.unfit(setting)
