@@ -79,17 +79,17 @@ class Engine:
     def sum(self, steps: int, ghosts_are_fresh: bool) -> None:
         """Every pass that is due in the step after ``steps``.
 
-        The first of them brings ghosts up to date unless they are; each what it alone needs anew.
+        The first of them brings ghosts up to date unless they are; each then what was written before it.
         """
-        stale = () if ghosts_are_fresh else self.plan.refreshed
+        stale, written = () if ghosts_are_fresh else self.plan.refreshed, set()
         for one in self.plan.passes:
             if not one.due(steps):
                 continue
-            if fields := stale + one.brought:
+            if fields := stale + tuple(name for name in one.brought if name in written):
                 self._sum_while_refreshing(one, fields)
             else:
                 self._sum_all(one)
-            stale = ()
+            stale, written = (), written | set(one.stores)
 
     def settle_pressure(self, pace: float) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""

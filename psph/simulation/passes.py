@@ -11,10 +11,10 @@ class Pass(NamedTuple):
     """One pass of the pair loop over all particles of a rank.
 
     ``place`` is its place among the passes of a plan.  ``effects`` give rates and are empty in a pass
-    that gathers sums alone; ``reductions`` have sums
-    of their own; ``stores`` names the field, or None, that each of these fills.  ``neighbour_fields``
-    are what it reads of a neighbour, ``brought`` those among them that an earlier pass of the same
-    step has written, so that ghosts need them anew.  It runs in every ``every``-th step.
+    that gathers sums alone; ``reductions`` have sums of their own; ``stores`` names the field, or None,
+    that each of these fills.  ``neighbour_fields`` are what it reads of a neighbour, ``brought`` those
+    among them that an earlier pass writes: ghosts need them again whenever that one has run.  It runs in
+    every ``every``-th step.
     """
 
     place: int
@@ -47,9 +47,9 @@ def make_passes(called, stored: tuple[str, ...], seen_as) -> tuple[Pass, ...]:
     passes, before = [], set()
     for level, every in order:
         own = [call for call, at in early if (at, _every(call)) == (level, every)]
-        passes.append(_pass(len(passes), (), [call.effect for call in own], own, before, stored,
-        seen_as, every))
-        before |= {call.effect.writes.name for call in own}
+        sums = [call.effect for call in own]
+        passes.append(_pass(len(passes), (), sums, own, before, stored, seen_as, every))
+        before |= {effect.writes.name for effect in sums}
     done = {id(call) for call, _ in early}
     reductions = [
         call.effect for call in called

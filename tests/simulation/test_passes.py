@@ -1,0 +1,78 @@
+"""Which sums are taken in which order, and what travels between them."""
+
+from typing import NamedTuple
+
+import pytest
+
+from psph.fields import Field
+from psph.physics.trial import Reads
+from psph.simulation.passes import SumsInACircle, make_passes
+
+A, B, C = (Field(name, "1", f"the sum {name}") for name in "abc")
+STORED = ("position", "predicted_velocity", "mass", "pressure", "a", "b", "c")
+
+
+class Called(NamedTuple):
+    """An effect, and what its formulas read."""
+
+    effect: object
+    reads: Reads
+
+
+def effect(writes, in_sum=(), in_rates=(), neighbour=(), **marks):
+    """An effect that sums a field from some fields, and reads others in its rates."""
+    kind = type("Summed", (), {"start": None, "writes": writes, **marks})
+    every = frozenset((*in_sum, *in_rates))
+    return Called(kind(), Reads(every, frozenset(neighbour), frozenset(), frozenset(in_sum), every))
+
+
+def passes_of(*called):
+    return make_passes(called, STORED, lambda name: name.replace("velocity", "predicted_velocity"))
+
+
+def stores(passes):
+    return [one.stores for one in passes]
+
+
+def test_a_sum_that_only_the_particle_itself_reads_needs_no_pass():
+    [only] = passes_of(effect(A))
+    assert only.gives_rates and only.stores == ("a",) and only.brought == ()
+
+
+def test_a_sum_that_pairs_read_comes_before_and_travels():
+    first, last = passes_of(effect(A, in_rates="a", neighbour="a"))
+    assert (first.gives_rates, last.gives_rates) == (False, True)
+    assert first.stores == ("a",) and last.stores == () and last.brought == ("a",)
+
+
+def test_what_is_read_of_the_particle_alone_does_not_travel():
+    _, last = passes_of(effect(A, in_rates="a"))
+    assert last.brought == () and "a" not in last.neighbour_fields
+
+
+def test_one_that_is_content_with_the_step_before_needs_no_pass():
+    [only] = passes_of(effect(A, in_rates="a", neighbour="a", lagged=True))
+    assert only.stores == ("a",) and only.brought == () and "a" in only.neighbour_fields
+
+
+def test_sums_of_sums_come_one_after_the_other_and_others_together():
+    b, a, c = effect(B, in_sum="a", in_rates="b"), effect(A), effect(C, in_rates="c")
+    assert stores(passes_of(b, a, c)) == [("a", "c"), ("b",), ()]
+
+
+def test_sums_in_a_circle_are_refused():
+    with pytest.raises(SumsInACircle, match="lagged = True"):
+        passes_of(effect(A, in_sum="b"), effect(B, in_sum="a"))
+
+
+def test_a_pass_may_run_in_every_third_step():
+    first, second, last = passes_of(effect(A, in_rates="a", every=3), effect(B, in_rates="b"))
+    by_field = {one.stores: one for one in (first, second)}
+    assert [by_field[("a",)].due(n) for n in range(4)] == [True, False, False, True]
+    assert all(by_field[("b",)].due(n) and last.due(n) for n in range(4))
+
+
+def test_a_rate_of_a_field_that_evolves_is_summed_with_the_rates():
+    stress = Field("stress", "Pa", "stress", evolves=True)
+    [only] = passes_of(effect(stress, in_rates=("stress",), neighbour=("stress",)))
+    assert only.stores == ("stress_rate",)
