@@ -10,7 +10,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from psph.case.errors import advise
 from psph.case.study import EXACT
 from psph.case.tables import AXES, Table
-from psph.smoothing import KERNELS
+from psph.physics.roles import ROLES
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ Finding = tuple[Location, Any, str]
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """All contradictions between the keys of a case."""
     rules = (
-        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _attracting, _corrected,
-        _shifted, _carried, _stressed, _continued, _friction, _probed, _names, _single, _stepped,
+        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _effects,
+        _continued, _friction, _probed, _names, _single, _stepped,
         _due,
     )
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
@@ -159,15 +159,6 @@ def _probed(case: Case) -> Iterator[Finding]:
             yield ("probes", name), ..., "give either position or front"
 
 
-def _attracting(case: Case) -> Iterator[Finding]:
-    kernel, form = case.space.kernel, case.physics.pressure_gradient
-    if form == "minimum" and not getattr(KERNELS[kernel], "repels", True):
-        yield ("physics", "pressure_gradient"), form, (
-            f"needs a kernel whose pairs only repel, and pairs attract in a part of the kernel "
-            f"{kernel}; choose another kernel"
-        )
-
-
 def _continued(case: Case) -> Iterator[Finding]:
     for name, wall in case.walls.items():
         if wall.continues is not None and wall.continues not in case.fluids:
@@ -212,14 +203,6 @@ def _single(case: Case) -> Iterator[Finding]:
         )
 
 
-def _corrected(case: Case) -> Iterator[Finding]:
-    form = case.physics.pressure_gradient
-    if case.physics.gradient_correction is not None and form not in CORRECTED:
-        yield ("physics", "gradient_correction"), ..., (
-            f'does not work with physics.pressure_gradient = "{form}"; use "symmetric" or "difference"'
-        )
-
-
 LARGEST_LOSS = 1e-6
 """Part of itself by which a time step may be rounded when it is added to the time."""
 
@@ -249,45 +232,26 @@ def _due(case: Case) -> Iterator[Finding]:
             )
 
 
-CORRECTED = ("symmetric", "difference")
-"""Pressure gradients that work with a corrected kernel gradient."""
-
-MOVERS = (
-    "particle_shifting", "transport_velocity", "generalised_transport_velocity", "position_shift",
-)
-"""Effects that shift particles into order; a case has one of them at most."""
-
-CARRIERS = ("xsph", "transport_velocity", "generalised_transport_velocity")
-"""Effects that move particles with another velocity; a case has one of them at most."""
-
-
-def _shifted(case: Case) -> Iterator[Finding]:
-    yield from _one_of(case, MOVERS, "shifts particles too")
-
-
-def _carried(case: Case) -> Iterator[Finding]:
-    yield from _one_of(case, CARRIERS, "moves particles too")
-    form = case.physics.pressure_gradient
-    for name in CARRIERS:
-        if form == "stress_points" and getattr(case.physics, name) is not None:
-            yield ("physics", name), ..., (
-                f'physics.pressure_gradient = "{form}" moves half of the particles too; choose another '
-                "form, or remove this key"
+def _effects(case: Case) -> Iterator[Finding]:
+    """What the effects of a case say of it, and of each other."""
+    asked = list(_asked(case))
+    for name, value, effect in asked:
+        if hasattr(effect, "conflicts"):
+            for says in effect.conflicts(case.physics, case.space.kernel):
+                yield ("physics", name), value, says
+    for role in ROLES:
+        present = [name for name, _, effect in asked if role in getattr(effect, "roles", ())]
+        for extra in present[:-1]:
+            yield ("physics", extra), ..., (
+                f'physics.{present[-1]} {role.does}; set it to "off", or remove this key'
             )
 
 
-def _one_of(case: Case, names: tuple[str, ...], does: str) -> Iterator[Finding]:
-    present = [name for name in names if getattr(case.physics, name) is not None]
-    for extra in present[:-1]:
-        yield ("physics", extra), ..., (
-            f'physics.{present[-1]} {does}; set it to "off", or remove this key'
-        )
-
-
-def _stressed(case: Case) -> Iterator[Finding]:
-    form = case.physics.pressure_gradient
-    if case.physics.artificial_stress is not None and form != "symmetric":
-        yield ("physics", "artificial_stress"), ..., (
-            f'works only with physics.pressure_gradient = "symmetric", and here it is "{form}"; '
-            'use "symmetric", or remove this key'
-        )
+def _asked(case: Case) -> Iterator[tuple[str, Any, Any]]:
+    """The keys of ``physics`` that ask for an effect: name, value where it is a choice, and its class."""
+    for entry in case.catalogue.effects:
+        table, _, rest = entry.key.partition(".")
+        name, _, choice = rest.partition("=")
+        value = getattr(case.physics, name, None) if table == "physics" else None
+        if value is not None and (value == choice or not choice):
+            yield name, value if choice else ..., entry.effect

@@ -44,4 +44,6 @@ def case_model(catalogue: Catalogue) -> type[Case]:
             into=(Name | None, key("the fluid that comes", None, otherwise="the first fluid")),
         )
         fields["regions"] = (dict[Name, region], key("where particles appear or vanish, by name", {}))
-    return create_model("Case", __base__=Case, __doc__=Case.__doc__, **fields)
+    made = create_model("Case", __base__=Case, __doc__=Case.__doc__, **fields)
+    made.offered = catalogue
+    return made

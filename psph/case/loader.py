@@ -87,11 +87,9 @@ def checked(
     catalogue = catalogue_of(file, names)
     model = case_model(catalogue)
     try:
-        case = model.model_validate(data)
+        return model.model_validate(data)
     except ValidationError as error:
         raise CaseError(messages(error, data, model.model_json_schema(), source)) from None
-    case._catalogue = catalogue
-    return case
 
 
 def _with(file: str, option: str, text: str) -> str:

@@ -4,7 +4,7 @@ import re
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 import tomli_w
@@ -297,8 +297,8 @@ class Case(Table):
     )
     study: Study = key("the keys that `psph study` varies, and its measure of error", make=Study)
 
+    offered: ClassVar[Catalogue] = BUILT_IN
     _file: str = PrivateAttr("case")
-    _catalogue: Catalogue = PrivateAttr(BUILT_IN)
 
     @property
     def file(self) -> str:
@@ -308,7 +308,7 @@ class Case(Table):
     @property
     def catalogue(self) -> Catalogue:
         """Everything that the case can ask for."""
-        return self._catalogue
+        return self.offered
 
     @property
     def name(self) -> str:

@@ -1,29 +1,7 @@
 """The prediction of linear theory for the initial lattice of a scene."""
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
-import numpy as np
-
-from psph.fields import view_of
-from psph.physics.compose import Pair
-from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
-from psph.physics.damping.filtering import ConservativeSmoothing
-from psph.physics.damping.riemann import RiemannDissipation
-from psph.physics.fluid.continuity import Continuity
-from psph.physics.fluid.gravity import Gravity
-from psph.physics.fluid.pressure import (
-    BackgroundPressure,
-    DifferencePressure,
-    MinimumPressure,
-    SymmetricPressure,
-    TensileControl,
-)
-from psph.physics.fluid.viscosity import PairDamping
-from psph.physics.order.potential import NeutralPotential, UnequalPotential
-from psph.physics.order.stress import NeighbourStress
-from psph.physics.surface.free import TensionFloor
-from psph.physics.walls.dry import DryWall
 from psph.scene.species import Start
 from psph.simulation.plan import Plan, words
 from psph.theory.stability import FORMS, STATES, SYMMETRIC, remedies
@@ -31,36 +9,6 @@ from psph.theory.stability.growth import growth, is_stable
 from psph.theory.stability.lattices import OF_SCENES
 from psph.theory.stability.uniform import STIFF, Settings
 from psph.theory.stability.windows import SMOOTHINGS, windows
-
-WITHIN = {
-    Continuity, Gravity, SymmetricPressure, MinimumPressure, DifferencePressure, TensileControl,
-    TensionFloor, DryWall,
-}
-"""Effects that the theory includes; the tension floor does not act on a small disturbance."""
-
-
-def _pair_force(potential: NeutralPotential, scene) -> remedies.PairForce:
-    one = view_of(("mass",))(1.0)
-
-    def attraction(r):
-        pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
-        return -r * np.array([potential.radial(one, one, pair) for pair in pairs])
-
-    return remedies.PairForce(attraction)
-
-
-AS_REMEDY: dict[type, Callable[[Any, Any], Any]] = {
-    BackgroundPressure: lambda effect, scene: remedies.BackgroundPressure(effect.pressure),
-    NeutralPotential: _pair_force,
-    UnequalPotential: _pair_force,
-    PairDamping: lambda effect, scene: remedies.PairDamping(effect.alpha),
-    DensityDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
-    TankDiffusion: lambda effect, scene: remedies.DensityDiffusion(effect.delta),
-    NeighbourStress: lambda effect, scene: remedies.ArtificialStress(effect.epsilon),
-    ConservativeSmoothing: lambda effect, scene: remedies.ConservativeSmoothing(effect.alpha),
-    RiemannDissipation: lambda effect, scene: remedies.RiemannDissipation(),
-}
-"""Effects that change the result of the theory, in its terms."""
 
 BY_SIGN = "tensile_control"
 """The form that is one of the theory's forms under compression and another under tension."""
@@ -79,16 +27,13 @@ def outlook(scene, plan: Plan) -> Iterator[str]:
     if form not in (*FORMS, BY_SIGN):
         yield f"  {'no forecast':<20}linear theory does not cover this form; docs/scheme.md has runs with it"
         return
-    added = tuple(
-        AS_REMEDY[type(e)](e, scene) for e in plan.effects if type(e) in AS_REMEDY
-    )
+    linear = (effect.linear(scene) for effect in plan.effects if hasattr(effect, "linear"))
+    added = tuple(remedy for remedy in linear if remedy is not None)
     if scene.case.space.normalised:
         added += (remedies.NormalisedGradient(),)
     verdicts = [_verdict(s) for s in _settings(scene, lattice, form, added)]
     yield from dict.fromkeys(f"  {state:<20}{says}" for state, says in verdicts)
-    left = [
-        words(type(e).__name__) for e in plan.effects if type(e) not in {*WITHIN, *AS_REMEDY}
-    ]
+    left = [words(type(e).__name__) for e in plan.effects if not hasattr(e, "linear")]
     if left:
         yield f"  not included        {', '.join(left)}"
 

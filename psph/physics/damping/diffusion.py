@@ -6,6 +6,7 @@ from pydantic import Field
 
 from psph.formula import helper, where
 from psph.physics.fluid.viscosity import inverse_square
+from psph.theory.stability import remedies
 from psph.vectors import along
 
 STABLE = 0.03
@@ -43,6 +44,10 @@ class DensityDiffusion(NamedTuple):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
 
+    def linear(self, scene):
+        """Its part in linear theory."""
+        return remedies.DensityDiffusion(self.delta)
+
 
 class TankDiffusion(NamedTuple):
     """Density spreads in the fluid, but for what the weight of a still column asks for.
@@ -68,6 +73,10 @@ class TankDiffusion(NamedTuple):
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
+
+    def linear(self, scene):
+        """Its part in linear theory."""
+        return remedies.DensityDiffusion(self.delta)
 
 
 @helper

@@ -4,6 +4,8 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.theory.stability import remedies
+
 STABLE = 0.25
 """αcΔt/h must stay below: the fastest mode of a lattice decays at 1.01 αc/h with any kernel, and
 a quarter a step leaves room for places where particles crowd."""
@@ -39,3 +41,7 @@ class ConservativeSmoothing(NamedTuple):
         """Δt ≤ h/(4 α c), s: see STABLE."""
         mixing = self.alpha * scene.sound_speed
         return STABLE * scene.smoothing_length / mixing if mixing > 0.0 else float("inf")
+
+    def linear(self, scene):
+        """Its part in linear theory."""
+        return remedies.ConservativeSmoothing(self.alpha)

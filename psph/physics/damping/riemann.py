@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import where
+from psph.theory.stability import remedies
 
 STABLE = 0.075
 """cΔt/h must stay below.  The fastest mode of a lattice decays at Sc/h, S ≤ 4.3 over the kernels
@@ -45,3 +46,7 @@ class RiemannDissipation(NamedTuple):
     def longest_step(self, scene):
         """Δt ≤ 0.075 h/c, s: see STABLE."""
         return STABLE * scene.smoothing_length / scene.sound_speed
+
+    def linear(self, scene):
+        """Its part in linear theory."""
+        return remedies.RiemannDissipation()

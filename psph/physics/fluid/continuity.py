@@ -12,3 +12,7 @@ class Continuity(NamedTuple):
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         return pair.u_dot_x * pair.m_dw_r
+
+    def linear(self, scene):
+        """Linear theory includes it as it is."""
+        return None

@@ -9,6 +9,9 @@ from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.vectors import add, adjugate, determinant, dot, less_diagonal, outer, scale, times, zero_like
 
+CORRECTED = ("symmetric", "difference")
+"""Pressure gradients that work with a corrected kernel gradient."""
+
 CORRECTION = Declared(
     "gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC
 )
@@ -68,6 +71,15 @@ class GradientCorrection(NamedTuple):
             scale(j.gradient_correction, j.pressure * v_j * v_j),
         )
         return scale(times(both, pair.x_ij), -pair.m_dw_r)
+
+    @staticmethod
+    def conflicts(physics, kernel):
+        """It corrects two forms of the pressure gradient."""
+        if physics.pressure_gradient not in CORRECTED:
+            yield (
+                f'does not work with physics.pressure_gradient = "{physics.pressure_gradient}"; use '
+                '"symmetric" or "difference"'
+            )
 
 
 class DifferenceCorrection(NamedTuple):

@@ -24,6 +24,16 @@ class Gravity(NamedTuple):
         """g, m/s²."""
         return self.acceleration
 
+    def linear(self, scene):
+        """Linear theory includes it as it is."""
+        return None
+
+    def idle(self, scene, effects):
+        """Why it has no influence, or None."""
+        if any(self.acceleration):
+            return None
+        return "physics.gravity is zero along every axis; remove the key"
+
 
 class CentralForce(NamedTuple):
     """A pull towards a centre that grows with the distance, as that of a spring.

@@ -6,7 +6,8 @@ from pydantic import Field
 
 from psph.fields import Field as Declared
 from psph.formula import where
-from psph.smoothing import weight
+from psph.smoothing import KERNELS, weight
+from psph.theory.stability import remedies
 from psph.vectors import add, scale, zero_like
 
 NOT_A_PRESSURE = 1e30
@@ -37,6 +38,10 @@ class SymmetricPressure(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
         return -(i.pressure * v_i * v_i + j.pressure * v_j * v_j) * pair.m_dw_r
+
+    def linear(self, scene):
+        """Linear theory includes it as it is."""
+        return None
 
 
 class MinimumPressure(NamedTuple):
@@ -71,6 +76,19 @@ class MinimumPressure(NamedTuple):
         """−(p_i − p_i⁻)/ρ_i Σ_j m_j/ρ_j ∇W_ij, m/s²."""
         return scale(total[1], (total[0] - i.pressure) * i.specific_volume)
 
+    @staticmethod
+    def conflicts(physics, kernel):
+        """Where the kernel rises with the distance, pairs would attract."""
+        if not getattr(KERNELS[kernel], "repels", True):
+            yield (
+                "needs a kernel whose pairs only repel, and pairs attract in a part of the kernel "
+                f"{kernel}; choose another kernel"
+            )
+
+    def linear(self, scene):
+        """Linear theory includes it as it is."""
+        return None
+
 
 class DifferencePressure(NamedTuple):
     """Pressure gradient from differences: exact for a constant, whatever the order of particles.
@@ -85,6 +103,10 @@ class DifferencePressure(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
         return (i.pressure - j.pressure) * v_i * (v_j * pair.m_dw_r)
+
+    def linear(self, scene):
+        """Linear theory includes it as it is."""
+        return None
 
 
 class TensileControl(NamedTuple):
@@ -118,6 +140,10 @@ class TensileControl(NamedTuple):
         sign = where(i.pressure < 0.0, 1.0 - 2.0 * i.inside, 1.0)
         both = (sign * i.pressure + j.pressure) * i.specific_volume
         return -both * (j.specific_volume * pair.m_dw_r)
+
+    def linear(self, scene):
+        """Linear theory includes it as it is."""
+        return None
 
 
 class BackgroundPressure(NamedTuple):
@@ -161,3 +187,7 @@ class BackgroundPressure(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
         return -self.pressure * (v_i * v_i + v_j * v_j) * pair.m_dw_r
+
+    def linear(self, scene):
+        """Its part in linear theory."""
+        return remedies.BackgroundPressure(self.pressure)

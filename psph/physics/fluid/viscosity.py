@@ -5,10 +5,14 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import helper
+from psph.theory.stability import remedies
 from psph.vectors import add, dot, times
 
 SINGULARITY = 0.01
 """η² = 0.01 h² keeps r² + η² away from zero."""
+
+NEGLIGIBLE = 0.01
+"""A fluid's viscosity below this part of the numerical one is negligible."""
 
 ONSET = 0.2
 """Speed of approach over c above which impact damping sets in."""
@@ -83,6 +87,20 @@ class LaminarViscosity(NamedTuple):
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
         return _longest_step(scene)
+
+    def idle(self, scene, effects):
+        """Why it has no influence, or None."""
+        if not scene.expected_speed > 0.0 and not any(scene.gravity):
+            return "nothing moves at the start and there is no gravity, so it has nothing to act on"
+        alpha = sum(e.alpha for e in effects if isinstance(e, ArtificialViscosity))
+        own = max(species.viscosity for species in scene.species)
+        numerical = alpha * scene.sound_speed * scene.smoothing_length / 8.0
+        if own > NEGLIGIBLE * numerical:
+            return None
+        return (
+            f"its {own:g} m2/s are negligible beside the {numerical:.2g} m2/s of "
+            "physics.artificial_viscosity (alpha c h/8); remove fluids.*.viscosity, or lower alpha"
+        )
 
 
 class CorrectedViscosity(NamedTuple):
@@ -161,6 +179,12 @@ class ArtificialViscosity(NamedTuple):
         friction = self.alpha * scene.sound_speed
         return scene.smoothing_length / friction if friction > 0.0 else float("inf")
 
+    def idle(self, scene, effects):
+        """Why it has no influence, or None."""
+        if self.alpha or self.beta:
+            return None
+        return "both of its coefficients are zero; remove physics.artificial_viscosity"
+
 
 class PairDamping(NamedTuple):
     """Numerical friction along the line of every pair, approaching or parting: it calms sound.
@@ -189,6 +213,10 @@ class PairDamping(NamedTuple):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
         friction = self.alpha * scene.sound_speed
         return scene.smoothing_length / friction if friction > 0.0 else float("inf")
+
+    def linear(self, scene):
+        """Its part in linear theory."""
+        return remedies.PairDamping(self.alpha)
 
 
 class ImpactDamping(NamedTuple):

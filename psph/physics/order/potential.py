@@ -8,6 +8,9 @@ import numpy as np
 from pydantic import Field
 
 from psph.engine.jit import overload, register_jitable, unrolled
+from psph.fields import view_of
+from psph.physics.compose import Pair
+from psph.theory.stability import remedies
 
 CORES = (1.6, 1.6, 1.3228)
 """Range of the repelling core in spacings, in 1D, 2D and 3D."""
@@ -80,6 +83,16 @@ class NeutralPotential(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         return _repulsion(self, pair)
+
+    def linear(self, scene):
+        """The same attraction of pairs in linear theory, among particles of one mass."""
+        one = view_of(("mass",))(1.0)
+
+        def attraction(r):
+            pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
+            return -r * np.array([self.radial(one, one, pair) for pair in pairs])
+
+        return remedies.PairForce(attraction)
 
 
 class UnequalPotential(NeutralPotential):

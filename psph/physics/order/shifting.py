@@ -8,6 +8,7 @@ from pydantic import Field
 from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.physics.roles import ORDER
 from psph.smoothing import first_moment, slope_over_r, weight
 from psph.vectors import add, dot, scale, zero_like
 
@@ -39,6 +40,8 @@ class ParticleShifting(NamedTuple):
     of the pass before.  Walls stay, and so does their density.  Momentum and angular momentum are not
     conserved exactly.
     """
+
+    roles = (ORDER,)
 
     strength: Annotated[
         float,
@@ -99,6 +102,8 @@ class PositionShift(NamedTuple):
     Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun et al. (2017), Comput. Methods Appl.
     Mech. Eng. 315, 25.
     """
+
+    roles = (ORDER,)
 
     conserves = ("momentum",)
 

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import where
+from psph.theory.stability import remedies
 
 COMPRESSED = 0.01
 """R over p/ρ² where both pressures are positive, against lines of particles (Monaghan 2000)."""
@@ -31,6 +32,15 @@ class ArtificialStress(NamedTuple):
         """With the kernel's weight of a neighbour one spacing away."""
         return NeighbourStress(self.epsilon, 1.0 / float(scene.kernel.w(scene.spacing)))
 
+    @staticmethod
+    def conflicts(physics, kernel):
+        """It is made for one form of the pressure gradient."""
+        if physics.pressure_gradient != "symmetric":
+            yield (
+                'works only with physics.pressure_gradient = "symmetric", and here it is '
+                f'"{physics.pressure_gradient}"; use "symmetric", or remove this key'
+            )
+
 
 class NeighbourStress(NamedTuple):
     """Near neighbours repel in a fluid under tension, in proportion to its pressure.
@@ -51,3 +61,7 @@ class NeighbourStress(NamedTuple):
         pressed = where(min(own, other) > 0.0, COMPRESSED * (own + other), 0.0)
         nearness = pair.w * self.inverse_near
         return -(pulled + pressed) * nearness**4 * pair.m_dw_r
+
+    def linear(self, scene):
+        """Its part in linear theory."""
+        return remedies.ArtificialStress(self.epsilon)

@@ -10,6 +10,7 @@ from pydantic import Field
 from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper
+from psph.physics.roles import CARRIER, ORDER
 from psph.vectors import add, dot, scale, subtract, zero_like
 
 HALF_STEP = 0.125
@@ -22,6 +23,15 @@ OWN_PRESSURE = 10.0
 TRANSPORT = Declared(
     "transport", "m/s", "velocity of the particle minus that of the fluid", VECTOR
 )
+
+
+def _conflicts(physics, kernel):
+    """Stress points are moved with the velocity around them already."""
+    if physics.pressure_gradient == "stress_points":
+        yield (
+            f'physics.pressure_gradient = "{physics.pressure_gradient}" moves half of the particles too; '
+            "choose another form, or remove this key"
+        )
 
 
 def _no_neighbour(self, i):
@@ -55,6 +65,8 @@ class XSPH(NamedTuple):
     Astrophys. 30, 543.  Momentum and angular momentum are conserved, nothing is dissipated.
     """
 
+    roles = (CARRIER,)
+
     conserves = ("momentum", "angular momentum")
 
     epsilon: Annotated[
@@ -79,6 +91,8 @@ class XSPH(NamedTuple):
         """ũ − u of a fluid particle, m/s."""
         return scale(total, self.epsilon * (1.0 - i.wall))
 
+    conflicts = staticmethod(_conflicts)
+
 
 class TransportVelocity(NamedTuple):
     """A background pressure moves particles into order, and not the fluid.
@@ -89,6 +103,8 @@ class TransportVelocity(NamedTuple):
     ρ from Σ m W, this one from (12) of Zhang, Hu & Adams (2017).  For closed domains: a free surface
     would fly apart.  Momentum is conserved, angular momentum is not.
     """
+
+    roles = (ORDER, CARRIER)
 
     conserves = ("momentum",)
 
@@ -113,6 +129,8 @@ class TransportVelocity(NamedTuple):
         """ũ − u of a fluid particle, m/s."""
         return _pushed(self.background * _stiffness(i), total, i)
 
+    conflicts = staticmethod(_conflicts)
+
 
 class GeneralisedTransportVelocity(NamedTuple):
     """A background pressure of each particle's own moves particles into order, and not the fluid.
@@ -122,6 +140,8 @@ class GeneralisedTransportVelocity(NamedTuple):
     J. Comput. Phys. 337, 216, eqs. (12), (17); theirs sums over half the support and renews the
     density now and then from Σ m W, this one does neither.
     """
+
+    roles = (ORDER, CARRIER)
 
     conserves = ("momentum",)
 
@@ -146,6 +166,8 @@ class GeneralisedTransportVelocity(NamedTuple):
         """ũ − u of a fluid particle, m/s."""
         background = min(OWN_PRESSURE * abs(i.pressure), self.background * _stiffness(i))
         return _pushed(background, total, i)
+
+    conflicts = staticmethod(_conflicts)
 
 
 @helper

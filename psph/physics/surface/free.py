@@ -47,6 +47,15 @@ class FreeSurface(NamedTuple):
         """ρ₀ on the surface, ρ inside, kg/m^d."""
         return i.rest_density if i.kernel_sum < self.threshold else rho
 
+    def idle(self, scene, effects):
+        """Why it has no influence, or None."""
+        if scene.has_free_surface:
+            return None
+        return (
+            "the fluid has no free surface at the start; remove physics.free_surface, and the pair loop "
+            "has one sum less"
+        )
+
 
 class TensionFloor(NamedTuple):
     """Water that is torn apart holds no more tension than this, and walls hold none.
@@ -81,3 +90,7 @@ class TensionFloor(NamedTuple):
     def bearing_density(self, i, rho):
         """ρ that a wall's pressure is taken from, kg/m^d."""
         return max(rho, i.rest_density)
+
+    def linear(self, scene):
+        """It does not act on a small disturbance."""
+        return None

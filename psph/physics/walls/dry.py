@@ -22,3 +22,7 @@ class DryWall(NamedTuple):
     def limit_wall_density(self, i, rho):
         """ρ of a wall with fluid in reach, ρ₀ without, kg/m^d."""
         return where(i.wet > 0.0, rho, i.rest_density)
+
+    def linear(self, scene):
+        """Linear theory includes it as it is."""
+        return None

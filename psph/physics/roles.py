@@ -1,0 +1,19 @@
+"""Roles that one effect of a case can have at most."""
+
+from typing import NamedTuple
+
+
+class Role(NamedTuple):
+    """What an effect does that no second one may do: ``does`` in words, as of that other effect."""
+
+    name: str
+    does: str
+
+
+ORDER = Role("order", "shifts particles too")
+"""Shifts particles into order."""
+
+CARRIER = Role("carrier", "moves particles too")
+"""Moves particles with another velocity than that of the fluid."""
+
+ROLES = (ORDER, CARRIER)
