@@ -17,7 +17,7 @@ from psph.output.checkpoint import checkpoints
 from psph.run import watch as module
 from psph.run.start import run
 from psph.run.watch import Call, Stopped, Watch
-from psph.simulation.step import Simulation
+from psph.simulation import stages
 
 pytestmark = pytest.mark.alone
 
@@ -77,14 +77,14 @@ def test_the_limit_leaves_room_for_a_slow_step_and_a_slow_checkpoint(clock):
 
 def test_a_signal_in_the_midst_of_a_step_is_heard_at_its_end(tmp_path, monkeypatch):
     """Not a step later: mpirun that is told to end kills within about a second."""
-    honest = Simulation._kick
+    honest = stages.kick
 
-    def interrupted(self, dt):
-        if self.steps == 4:
+    def interrupted(simulation):
+        if simulation.steps == 4:
             os.kill(os.getpid(), signal.SIGUSR1)
-        honest(self, dt)
+        honest(simulation)
 
-    monkeypatch.setattr(Simulation, "_kick", interrupted)
+    monkeypatch.setattr(stages, "kick", interrupted)
     with pytest.raises(Stopped, match="stopped by SIGUSR1"):
         run(boxed(tmp_path, MPI.COMM_SELF), tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
     assert [path.name for path in checkpoints(tmp_path / "run")] == ["checkpoint-5.h5"]
