@@ -41,8 +41,11 @@ def is_prescribed(motion) -> bool:
     return hasattr(motion, "place")
 
 
-def carry(motions, number, k, time, periods, anchor, position, velocity, predicted_velocity):
-    """Put particle ``k`` where prescribed motion ``number`` has it at ``time``, and at its speed."""
+def carry(
+    motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity
+):
+    """Put particle ``k`` where the prescribed motion of its group has it at ``time``, and at its speed."""
+    number = motion_of[group[k]] if motions else FIXED
     for n, motion in enumerate(motions, PRESCRIBED):
         if n == number:
             x = motion.place(at(anchor, k), time)
@@ -71,8 +74,11 @@ def _typed_beside(x, old, periods):
 
 
 @overload(carry)
-def _typed_carry(motions, number, k, time, periods, anchor, position, velocity, predicted_velocity):
-    lines, names = [], {"at": at, "put": put, "beside": _beside}
+def _typed_carry(
+    motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity
+):
+    lines = ["number = motion_of[group[k]]"] if len(motions) else []
+    names = {"at": at, "put": put, "beside": _beside}
     for n, kind in enumerate(motions):
         names |= {f"place_{n}": method_of(kind, "place"), f"velocity_{n}": method_of(kind, "velocity")}
         lines += [
@@ -83,12 +89,15 @@ def _typed_carry(motions, number, k, time, periods, anchor, position, velocity, 
             "    put(velocity, k, v)",
             "    put(predicted_velocity, k, v)",
         ]
-    arguments = "motions, number, k, time, periods, anchor, position, velocity, predicted_velocity"
-    return unrolled(arguments, *lines, "return", **names)
+    return unrolled(
+        "motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity",
+        *lines, "return", **names,
+    )
 
 
-def hurry(motions, number, k, time, dt, anchor):
-    """|v|² and |a|² of particle ``k`` by prescribed motion ``number`` at ``time``, m²/s², m²/s⁴."""
+def hurry(motions, motion_of, group, k, time, dt, anchor):
+    """|v|² and |a|² of particle ``k`` by its group's prescribed motion at ``time``, m²/s², m²/s⁴."""
+    number = motion_of[group[k]] if motions else FIXED
     for n, motion in enumerate(motions, PRESCRIBED):
         if n == number:
             return _hurry(
@@ -104,12 +113,13 @@ def _hurry(v, before, dt):
 
 
 @overload(hurry)
-def _typed_hurry(motions, number, k, time, dt, anchor):
-    lines, names = [], {"at": at, "hurry": _hurry}
+def _typed_hurry(motions, motion_of, group, k, time, dt, anchor):
+    lines = ["number = motion_of[group[k]]"] if len(motions) else []
+    names = {"at": at, "hurry": _hurry}
     for n, kind in enumerate(motions):
         names[f"velocity_{n}"] = method_of(kind, "velocity")
         speeds = (f"velocity_{n}(motions[{n}], at(anchor, k), {t})" for t in ("time", "time - dt"))
         lines += [f"if number == {n + PRESCRIBED}:", f"    return hurry({', '.join(speeds)}, dt)"]
     return unrolled(
-        "motions, number, k, time, dt, anchor", *lines, "return 0.0, 0.0", **names
+        "motions, motion_of, group, k, time, dt, anchor", *lines, "return 0.0, 0.0", **names
     )

@@ -41,7 +41,7 @@ class Engine:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
         s, plan = self.store, self.plan
         self._each(
-            kick_drift_predict, time, dt, plan.carriers, plan.state, plan.motions, plan.motion_of,
+            kick_drift_predict, time, dt, plan.carriers, plan.state, plan.free, plan.motions, plan.motion_of,
             self.domain.periods, self._view(pace), s.group, self._anchor,
             s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
             s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
@@ -60,7 +60,7 @@ class Engine:
         if plan.evolving:
             self._each(kick_rows, dt, s.data, self._rows_that_evolve())
         parts = self._each(
-            kick, time, dt, plan.carriers, plan.motions, plan.motion_of, self._view(pace), s.group,
+            kick, time, dt, plan.carriers, plan.free, plan.motions, plan.motion_of, self._view(pace), s.group,
             self._anchor, s["position"], s["velocity"], s["acceleration"], s["density"],
             s["density_rate"],
         )
@@ -95,7 +95,7 @@ class Engine:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s, plan = self.store, self.plan
         state_of(
-            s.low, s.low + s.owned, plan.carriers, plan.state, plan.motion_of, self._view(pace),
+            s.low, s.low + s.owned, plan.carriers, plan.state, plan.free, self._view(pace),
             s.group, s["density"], s["specific_volume"], s["pressure"],
         )
 

@@ -18,28 +18,27 @@ import numpy as np
 from psph.engine.jit import elementwise, register_jitable
 from psph.physics.compose import bearing_density, displacement, limit_density, limit_wall_density, take
 from psph.physics.fluid.state import pressure as state_pressure
-from psph.physics.motion import FREE, carry, hurry
+from psph.physics.motion import carry, hurry
 from psph.vectors import add, at, dot, put, scale
 
 
 @elementwise
 def kick_drift_predict(
-    first, last, time, dt, effects, state, motions, motion_of, periods, view, group, anchor,
+    first, last, time, dt, effects, state, free, motions, motion_of, periods, view, group, anchor,
     position, velocity, predicted_velocity, acceleration,
     density, rate, rate_1, rate_2, specific_volume, pressure,
 ):
     """Kick by half a step, drift to ``time``, and predict what the forces read.
 
-    Columns ``first`` to ``last``; vectors are tuples of component arrays.  ``motion_of`` has the
-    number of the motion of each group (psph.physics.motion); fixed particles stay, those of the
-    ``motions`` that are prescribed stand where these have them.
+    Columns ``first`` to ``last``; vectors are tuples of component arrays.  The first ``free`` groups
+    move freely; of the others ``motion_of`` has the number of their motion (psph.physics.motion): fixed
+    particles stay, those of the ``motions`` that are prescribed stand where these have them.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         rho = density[k] + dt * (1.75 * rate[k] - rate_1[k] + 0.25 * rate_2[k])
         density[k] += 0.5 * dt * rate[k]
-        motion = motion_of[group[k]]
-        if motion == FREE:
+        if group[k] < free:
             kick = scale(at(acceleration, k), 0.5 * dt)
             v = add(at(velocity, k), kick)
             put(velocity, k, v)
@@ -50,31 +49,32 @@ def kick_drift_predict(
         else:
             rho = limit_wall_density(effects, i, rho)
             carry(
-                motions, motion, k, time, periods, anchor, position, velocity, predicted_velocity
+                motions, motion_of, group, k, time, periods, anchor, position, velocity,
+                predicted_velocity,
             )
         specific_volume[k] = 1.0 / rho
-        pressure[k] = _pressure(effects, state, i, rho, motion)
+        pressure[k] = _pressure(effects, state, i, rho, group[k] < free)
 
 
 @elementwise
-def state_of(first, last, effects, state, motion_of, view, group, density, specific_volume, pressure):
+def state_of(first, last, effects, state, free, view, group, density, specific_volume, pressure):
     """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         specific_volume[k] = 1.0 / density[k]
-        pressure[k] = _pressure(effects, state, i, density[k], motion_of[group[k]])
+        pressure[k] = _pressure(effects, state, i, density[k], group[k] < free)
 
 
 @register_jitable
-def _pressure(effects, state, i, rho, motion):
+def _pressure(effects, state, i, rho, is_free):
     """Pressure of a particle of density ``rho``, Pa."""
-    bearing = rho if motion == FREE else bearing_density(effects, i, rho)
+    bearing = rho if is_free else bearing_density(effects, i, rho)
     return state_pressure(state, bearing, i.rest_density, i.sound_speed)
 
 
 @elementwise
 def kick(
-    first, last, time, dt, effects, motions, motion_of, view, group, anchor, position, velocity,
+    first, last, time, dt, effects, free, motions, motion_of, view, group, anchor, position, velocity,
     acceleration, density, rate,
 ):
     """Kick by the second half of the step, with the new rates.
@@ -91,8 +91,7 @@ def kick(
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(view, k)
         rho = density[k] + 0.5 * dt * rate[k]
-        motion = motion_of[group[k]]
-        if motion == FREE:
+        if group[k] < free:
             a = at(acceleration, k)
             v = add(at(velocity, k), scale(a, 0.5 * dt))
             put(velocity, k, v)
@@ -109,7 +108,7 @@ def kick(
         else:
             rho = limit_wall_density(effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
-            v2, a2 = hurry(motions, motion, k, time, dt, anchor)
+            v2, a2 = hurry(motions, motion_of, group, k, time, dt, anchor)
             v2_max, a2_max = max(v2_max, v2), max(a2_max, a2)
         density[k] = rho
     return v2_max, a2_max, strain_max, shift2_max

@@ -73,6 +73,8 @@ class Plan:
     """Fields that an effect gives a rate, beside velocity and density."""
     kinds: tuple[int, ...]
     """The kind of each group."""
+    free: np.uint8
+    """How many groups move freely: these come first."""
     motions: tuple[Any, ...]
     """The prescribed motions of the scene's walls."""
     motion_of: np.ndarray
@@ -222,6 +224,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         ),
         evolving=evolving,
         kinds=tuple(species.kind for species in scene.species),
+        free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
         motions=motions,
         motion_of=_motion_numbers(scene.species, motions),
         regions=scene.regions,

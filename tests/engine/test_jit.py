@@ -28,7 +28,7 @@ view = View((np.zeros(3),), 1.0, 1.0)
 for state in (Linear(), Foreign()) if "foreign" in sys.argv else (Linear(),):
     pressure = np.zeros(3)
     kind = np.zeros(3, np.uint8)
-    state_of(0, 3, (), state, np.zeros(1, np.uint8), view, kind, np.full(3, 2.0), np.zeros(3), pressure)
+    state_of(0, 3, (), state, np.uint8(1), view, kind, np.full(3, 2.0), np.zeros(3), pressure)
     print(pressure[0])
 print(sum(state_of.stats.cache_hits.values()), "from the cache")
 """
