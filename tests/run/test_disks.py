@@ -154,7 +154,7 @@ changed may refuse."""
 
 
 def test_a_run_goes_on_while_its_frames_are_read(tmp_path):
-    often = ["output.frames=0.002", "checkpoint.every=20", "time.end=0.2"]
+    often = ["output.frames=0.02", "checkpoint.every=20", "time.end=0.8"]
     whole, folder = simulate(tmp_path / "whole", *often), tmp_path / "run"
     reader = subprocess.Popen(
         [sys.executable, "-c", READER, folder / "box.h5"], stdout=subprocess.PIPE, text=True,
