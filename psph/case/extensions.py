@@ -52,6 +52,12 @@ def files_of(file: str, names: Sequence[str]) -> list[Path]:
     return [Path(file).parent / name for name in names]
 
 
+def versions(catalogue: "Catalogue") -> list[str]:
+    """Names of the modules that files of a case brought, each with a digest of what stood in it."""
+    brought = {entry.effect.__module__ for entries in catalogue for entry in entries}
+    return sorted(name for name in brought if name.startswith(PREFIX))
+
+
 def _module(file: str, name: str):
     path = Path(file).parent / name
     if Path(name).is_absolute() or ".." in Path(name).parts or path.suffix != ".py":

@@ -92,7 +92,7 @@ class Run:
 
 
 def _read(path: Path, what: Callable[[h5py.File], T]) -> T:
-    """``what`` of the file; anew if a run is changing its structure just then (a millisecond)."""
+    """``what`` of the file; tried again if a run is changing its structure just then (a millisecond)."""
     for attempt in range(8):
         try:
             with h5py.File(path, "r", locking=False) as file:

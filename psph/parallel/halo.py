@@ -10,7 +10,7 @@ UPWARD, DOWNWARD = 1, 2
 
 
 class Halo:
-    """Refreshes the ghosts of one arrangement of particles; made anew at each rebuild.
+    """Refreshes the ghosts of one arrangement of particles; one is made at each rebuild.
 
     ``below`` and ``above`` are the neighbour ranks (``MPI.PROC_NULL`` at an open end); ``lowest``
     and ``highest`` the numbers of owned particles in the first and last plane, which the

@@ -30,7 +30,7 @@ class Skin:
     """Keeps the lists of ``domain`` until two neighbours could differ by ``width`` m.
 
     What counts is the displacement of neighbours relative to each other, not their speed: a body
-    of water that falls as one needs new lists only now and then, lest it meet another one unseen.
+    of water that falls as one needs new lists only now and then, unless it meets another one.
     It is measured now and then; in between it is bounded by |Δx| ≤ |Δx|₀ + t (|Δv|₀ + 2 s +
     2 a (t + Δt)), with the fastest shift s of a particle beside its velocity.  The predicted velocity
     that is measured still contains half a step of the acceleration before, and lacks half a step of

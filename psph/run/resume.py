@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from psph.case import CaseError, load
+from psph.case.extensions import versions
 from psph.errors import LONGEST_QUOTE, shortened
 from psph.output import checkpoint
 from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path, checkpoints
@@ -27,6 +28,7 @@ MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": Tru
 def case_digest(case) -> str:
     """Fingerprint of all of a case that its steps and the rows of its files rest on."""
     text = case.model_dump_json(by_alias=True, exclude=MAY_CHANGE)
+    text += "".join(versions(case.catalogue))  # what a file that it uses now says counts too
     return hashlib.sha256(text.encode()).hexdigest()
 
 
@@ -67,7 +69,7 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
     case = load(folder / COPY, _allowed(extend), "--extend")
     found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
     if not found:
-        raise CheckpointError(f"{folder}: holds no checkpoint: run the case anew with --overwrite")
+        raise CheckpointError(f"{folder}: holds no checkpoint: run the case again with --overwrite")
     saved = _open(folder / chosen if chosen else found[0], found, comm, case_digest(case))
     now = saved.state["time"]
     if extend and case.time.end <= now:

@@ -12,8 +12,10 @@ from jobs import mpirun
 from long import long_but_for
 
 from psph.case import CaseError, load
+from psph.case.extensions import versions
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
+from psph.run.resume import case_digest
 from psph.run.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -154,6 +156,17 @@ def test_a_file_that_brings_nothing_is_refused_in_one_line(text, says, tmp_path,
     with pytest.raises(CaseError, match=says) as refused:
         load(path)
     assert len(str(refused.value).splitlines()) == 1 and "use" in str(refused.value)
+
+
+def test_a_checkpoint_and_a_study_know_what_a_file_said(tmp_path, case):
+    path = case("curvature")
+    before = load(path)
+    assert case_digest(load(path)) == case_digest(before)
+    mine = tmp_path / "curvature.py"
+    mine.write_text(mine.read_text().replace("-self.strength", "-2.0 * self.strength"))
+    assert case_digest(load(path)) != case_digest(before)
+    assert versions(load(path).catalogue) != versions(before.catalogue) != []
+    assert versions(load(case()).catalogue) == []
 
 
 @pytest.mark.parametrize("name", ["../mine.py", "/etc/mine.py", "mine.toml", "none.py"])

@@ -184,7 +184,7 @@ def test_a_folder_without_any_says_so(whole, tmp_path):
     folder = copy(whole, tmp_path / "run")
     for path in checkpoints(folder):
         path.unlink()
-    with pytest.raises(CheckpointError, match="holds no checkpoint: run the case anew"):
+    with pytest.raises(CheckpointError, match="holds no checkpoint: run the case again"):
         resume(folder, COMM, **QUIET)
     with pytest.raises(CaseError, match="case.toml: No such file"):
         resume(tmp_path / "nowhere", COMM, **QUIET)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from psph.case import Case, CaseError, load
+from psph.case.extensions import versions
 from psph.engine.jit import SOURCES, processor
 from psph.engine.threads import threads
 from psph.lab.study.ladder import SPACING, Settings, overrides
@@ -130,8 +131,8 @@ def _key(case, comm) -> dict:
     """What a result depends on, psph's own sources included: it is used for no other."""
     text = case.model_copy(update={"study": type(case.study)()}).to_toml()
     return {
-        "case": text, "sources": SOURCES, "processor": processor(), "ranks": comm.size,
-        "threads": threads(),
+        "case": text, "sources": SOURCES, "used": versions(case.catalogue),
+        "processor": processor(), "ranks": comm.size, "threads": threads(),
     }
 
 
