@@ -44,16 +44,16 @@ class Field(NamedTuple):
     def width(self, dimensions: int) -> int:
         """Numbers that it takes."""
         return {
-            SCALAR: 1, VECTOR: dimensions, SYMMETRIC: dimensions * (dimensions + 1) // 2,
+            SCALAR: 1,
+            VECTOR: dimensions,
+            SYMMETRIC: dimensions * (dimensions + 1) // 2,
             MATRIX: dimensions**2,
         }[self.shape]
 
 
 POSITION = Field("position", "m", "place", VECTOR, saved=True)
 VELOCITY = Field("velocity", "m/s", "velocity", VECTOR, saved=True)
-PREDICTED_VELOCITY = Field(
-    "predicted_velocity", "m/s", "velocity at the end of the step, predicted", VECTOR
-)
+PREDICTED_VELOCITY = Field("predicted_velocity", "m/s", "velocity at the end of the step, predicted", VECTOR)
 ACCELERATION = Field("acceleration", "m/s2", "acceleration of the last pass", VECTOR)
 LISTED_POSITION = Field("listed_position", "m", "place when the neighbour list was built", VECTOR)
 DENSITY = Field("density", "kg/m3", "density", saved=True)
@@ -64,8 +64,17 @@ PRESSURE = Field("pressure", "Pa", "pressure by the equation of state", saved=Tr
 SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces read it")
 
 OF_EVERY_SCENE = (
-    POSITION, VELOCITY, PREDICTED_VELOCITY, ACCELERATION, LISTED_POSITION, DENSITY, DENSITY_RATE,
-    DENSITY_RATE_1, DENSITY_RATE_2, PRESSURE, SPECIFIC_VOLUME,
+    POSITION,
+    VELOCITY,
+    PREDICTED_VELOCITY,
+    ACCELERATION,
+    LISTED_POSITION,
+    DENSITY,
+    DENSITY_RATE,
+    DENSITY_RATE_1,
+    DENSITY_RATE_2,
+    PRESSURE,
+    SPECIFIC_VOLUME,
 )
 """Fields that the step itself fills.  In 1D and 2D a mass is per m² and per m of depth, and a density
 per the same."""
@@ -146,4 +155,3 @@ def __getattr__(name: str):
     if name.startswith(PREFIX):
         return view_of(tuple(name[len(PREFIX) :].split("__")))
     raise AttributeError(f"module {__name__} has no {name}")
-

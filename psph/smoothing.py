@@ -1,8 +1,8 @@
 """Smoothing kernels W(r, h): what a particle weighs its neighbours with.
 
 One class a kernel and one line in ``KERNELS``.  Each is written in s = r/h and vanishes for
-s ≥ ``support``; ``norm`` holds the constants that make ∫W dV = 1 in 1D, 2D and 3D (times h^-d), one or several.
-All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
+s ≥ ``support``; ``norm`` holds the constants that make ∫W dV = 1 in 1D, 2D and 3D (times h^-d), one or
+several.  All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the unit m^-d.
 """
 
 import math

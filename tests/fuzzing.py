@@ -15,20 +15,91 @@ from psph.case.structure import alternatives
 NUMBER = re.compile(rb"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 VALUES = (
-    b"0", b"-1", b"1", b"2", b"3", b"100", b"0.1", b"-0.0", b"nan", b"inf", b"-inf", b"1e30",
-    b"1e-30", b"1e18", b"1e-12", b"1e300", b"1e308", b"1e-300", b"-1e-320", b"1e400",
-    b"9223372036854775807", b"9223372036854775808", b"1" * 60, b"1" * 5000, b"0x" + b"f" * 5000,
-    b"1_0", b"0b11", b'""', b'"x"', b'"a\\nb"', b'"\\u0000"', b'"\\u2028"', b'"../../etc/passwd"',
-    b'"/dev/zero"', b'"__import__(\'os\')"', b'"{0.__class__}"', b"true", b"[]", b"[[]]", b"[{}]",
-    b"{}", b"{ a = 1 }", b"[0.0]", b"[0, 0, 0, 0]", b"[1e300, 1e300]", b"[nan, 0.0]",
-    b"1979-05-27", b'"off"', b'"auto"', b'"exact"', b'"hydrostatic"', b"['x']", b"off", b"",
+    b"0",
+    b"-1",
+    b"1",
+    b"2",
+    b"3",
+    b"100",
+    b"0.1",
+    b"-0.0",
+    b"nan",
+    b"inf",
+    b"-inf",
+    b"1e30",
+    b"1e-30",
+    b"1e18",
+    b"1e-12",
+    b"1e300",
+    b"1e308",
+    b"1e-300",
+    b"-1e-320",
+    b"1e400",
+    b"9223372036854775807",
+    b"9223372036854775808",
+    b"1" * 60,
+    b"1" * 5000,
+    b"0x" + b"f" * 5000,
+    b"1_0",
+    b"0b11",
+    b'""',
+    b'"x"',
+    b'"a\\nb"',
+    b'"\\u0000"',
+    b'"\\u2028"',
+    b'"../../etc/passwd"',
+    b'"/dev/zero"',
+    b"\"__import__('os')\"",
+    b'"{0.__class__}"',
+    b"true",
+    b"[]",
+    b"[[]]",
+    b"[{}]",
+    b"{}",
+    b"{ a = 1 }",
+    b"[0.0]",
+    b"[0, 0, 0, 0]",
+    b"[1e300, 1e300]",
+    b"[nan, 0.0]",
+    b"1979-05-27",
+    b'"off"',
+    b'"auto"',
+    b'"exact"',
+    b'"hydrostatic"',
+    b"['x']",
+    b"off",
+    b"",
 )
 """What a value may become: of another size, of another type, no value at all."""
 
 PIECES = (
-    b"\0", b"\x1b[2J", b"\xff", b"\xef\xbb\xbf", b"\r", b"\r\n", "é".encode(), "\u2028".encode(),
-    "\u202e".encode(), b"[", b"]", b"[[", b"{", b"}", b'"', b"'''", b"=", b".", b"#", b",", b"\\",
-    b"a" * 10_000, b"[" * 2_000, b"{a=" * 500, b"a." * 3_000, b'"\\n"=1\n', b"\n[space]\n",
+    b"\0",
+    b"\x1b[2J",
+    b"\xff",
+    b"\xef\xbb\xbf",
+    b"\r",
+    b"\r\n",
+    "é".encode(),
+    "\u2028".encode(),
+    "\u202e".encode(),
+    b"[",
+    b"]",
+    b"[[",
+    b"{",
+    b"}",
+    b'"',
+    b"'''",
+    b"=",
+    b".",
+    b"#",
+    b",",
+    b"\\",
+    b"a" * 10_000,
+    b"[" * 2_000,
+    b"{a=" * 500,
+    b"a." * 3_000,
+    b'"\\n"=1\n',
+    b"\n[space]\n",
 )
 """What may stand anywhere."""
 
@@ -36,7 +107,10 @@ PIECES = (
 def thorough(examples: int):
     """Settings: so many inputs, always the same, whatever the machine's speed."""
     return settings(
-        max_examples=examples, derandomize=True, deadline=None, database=None,
+        max_examples=examples,
+        derandomize=True,
+        deadline=None,
+        database=None,
         suppress_health_check=list(HealthCheck),
     )
 
@@ -105,8 +179,17 @@ def _cut(draw, text, corpus):
 
 
 FAULTS = (
-    _flipped, _lines_changed, _value_replaced, _value_replaced, _value_replaced, _value_replaced,
-    _piece_put_in, _lines_of_another, _lines_of_another, _windows, _cut,
+    _flipped,
+    _lines_changed,
+    _value_replaced,
+    _value_replaced,
+    _value_replaced,
+    _value_replaced,
+    _piece_put_in,
+    _lines_of_another,
+    _lines_of_another,
+    _windows,
+    _cut,
 )
 
 
@@ -117,7 +200,8 @@ ODD = st.sampled_from(
 
 SIZES = st.one_of(
     st.sampled_from((0.0, 0.1, 0.5, 1.0, -1.0, 3.0, 1e-3, 1e3, 1e9, 1e29, 1e31, 1e-29, 1e-31, 1e-320)),
-    st.floats(-3.0, 3.0), st.floats(allow_nan=True),
+    st.floats(-3.0, 3.0),
+    st.floats(allow_nan=True),
 )
 
 
@@ -140,9 +224,7 @@ def _of_branch(schema, node):
         case "string":
             return st.one_of(st.sampled_from(("water", "P1", "x", "velocity")), st.text(max_size=5))
         case "array":
-            return st.deferred(
-                lambda: st.lists(fitting(schema, node.get("items", {})), max_size=3)
-            )
+            return st.deferred(lambda: st.lists(fitting(schema, node.get("items", {})), max_size=3))
         case "object":
             return st.deferred(lambda: _tables(schema, node))
     return ODD

@@ -58,14 +58,20 @@ class Slurm:
     def __init__(self, folder: Path):
         self.folder = folder
         self.environment = clean_environment() | {
-            "SLURM_CONF": str(folder / "slurm.conf"), "PATH": _path(),
+            "SLURM_CONF": str(folder / "slurm.conf"),
+            "PATH": _path(),
         }
 
     def command(self, *words, **popen) -> str:
         """What one of Slurm's commands prints."""
         job = subprocess.run(
-            [*map(str, words)], env=self.environment, capture_output=True, text=True, timeout=60,
-            stdin=subprocess.DEVNULL, **popen,
+            [*map(str, words)],
+            env=self.environment,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            stdin=subprocess.DEVNULL,
+            **popen,
         )
         assert job.returncode == 0, f"{words}: {job.stdout}{job.stderr}"
         return job.stdout.strip()
@@ -91,9 +97,15 @@ def running(folder: Path):
     )
     slurm = Slurm(folder)
     munged = [
-        "munged", "--foreground", "--force", f"--key-file={key}",
-        f"--socket={folder}/munge.socket", f"--pid-file={folder}/munged.pid",
-        f"--log-file={folder}/munged.log", f"--seed-file={folder}/munged.seed", "--num-threads=2",
+        "munged",
+        "--foreground",
+        "--force",
+        f"--key-file={key}",
+        f"--socket={folder}/munge.socket",
+        f"--pid-file={folder}/munged.pid",
+        f"--log-file={folder}/munged.log",
+        f"--seed-file={folder}/munged.seed",
+        "--num-threads=2",
     ]
     with ExitStack() as daemons:
         daemons.enter_context(_daemon(slurm, munged))
@@ -110,9 +122,16 @@ def running(folder: Path):
 
 @contextmanager
 def _daemon(slurm: Slurm, words):
-    with open(slurm.folder / f"{words[0]}.out", "w") as out, subprocess.Popen(
-        words, env=slurm.environment, stdin=subprocess.DEVNULL, stdout=out, stderr=out,
-    ) as process:
+    with (
+        open(slurm.folder / f"{words[0]}.out", "w") as out,
+        subprocess.Popen(
+            words,
+            env=slurm.environment,
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=out,
+        ) as process,
+    ):
         try:
             yield
         finally:

@@ -23,6 +23,7 @@ LAYERS = [
     {"simulation"},
     {"run"},
     {"lab"},
+    {"options"},
     {"__main__"},
 ]
 DEPTH = {part: depth for depth, layer in enumerate(LAYERS) for part in layer}

@@ -30,7 +30,7 @@ def home(tmp_path_factory):
     folder = tmp_path_factory.mktemp("home")
     program(
         folder / ".venv/bin/python",
-        f"export PYTHONPATH={shlex.quote(str(ROOT))}; exec {shlex.quote(sys.executable)} \"$@\"",
+        f'export PYTHONPATH={shlex.quote(str(ROOT))}; exec {shlex.quote(sys.executable)} "$@"',
     )
     (folder / "box.toml").write_text(BOX, encoding="utf-8")
     return folder
@@ -65,6 +65,7 @@ def children_of(job):
 
 # Without Slurm
 
+
 @pytest.fixture
 def queue(tmp_path):
     """A folder for PATH whose ``scontrol`` only writes to ``asked`` what it was asked for."""
@@ -83,9 +84,13 @@ def turn_of(home, queue, *arguments, turn=0, number=77):
     spread = {f"OMPI_MCA_{key}": value for key, value in SPREAD.items()}
     again = {"SLURM_RESTART_COUNT": str(turn)} if turn else {}
     with subprocess.Popen(
-        ["bash", SCRIPT, *map(str, arguments)], cwd=home,
+        ["bash", SCRIPT, *map(str, arguments)],
+        cwd=home,
         env=clean_environment() | told | spread | again,
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
         start_new_session=True,
     ) as job:
         try:
@@ -331,9 +336,7 @@ def test_a_cancelled_job_stays_away_and_another_goes_on(cluster, home, whole):
     [way] = re.findall("go on with: sbatch run/batch/psph.slurm (.*)", job.log())
     # With one rank of as many threads as there are cores.
     cores = min(os.cpu_count(), 2)
-    other = Job(
-        cluster, home, "--ntasks=1", f"--cpus-per-task={cores}", SCRIPT, *shlex.split(way)
-    )
+    other = Job(cluster, home, "--ntasks=1", f"--cpus-per-task={cores}", SCRIPT, *shlex.split(way))
     assert other.end() == "COMPLETED", other.log()
     assert "goes on from checkpoint-" in other.log() and same_files(job.folder, unbroken)
 

@@ -41,8 +41,12 @@ PAGES = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").g
 CHEAP = {"check", "explain", "schema"}
 PROGRAMS = {"source", "export", "pip"}
 """Commands that are taken as they stand."""
-NOT_THERE = ("psph/physics/cohesion.py", "psph/physics/floor.py", "psph/output/front.py",
-             "run/cases/plates.toml")
+NOT_THERE = (
+    "psph/physics/cohesion.py",
+    "psph/physics/floor.py",
+    "psph/output/front.py",
+    "run/cases/plates.toml",
+)
 """Files that an example would be."""
 
 
@@ -95,7 +99,11 @@ def drop(tmp_path):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_short(page):
-    longest = {"README.md": 120, "docs/case.md": 450, "docs/contributing.md": 400}  # a reference is looked up, not read
+    longest = {
+        "README.md": 120,
+        "docs/case.md": 450,
+        "docs/contributing.md": 400,
+    }  # a reference is looked up, not read
     assert len(text(page).splitlines()) <= longest.get(page, 299)
 
 
@@ -148,16 +156,25 @@ def test_commands_are_accepted(page, command, drop):
 
 @pytest.mark.parametrize(
     "command",
-    list(dict.fromkeys(
-        c for page in PAGES for c in [*commands(page), "python -m psph schema"]
-        if c.startswith("python -m psph ") and c.split()[3] in CHEAP and "--study" not in c
-    )),
+    list(
+        dict.fromkeys(
+            c
+            for page in PAGES
+            for c in [*commands(page), "python -m psph schema"]
+            if c.startswith("python -m psph ") and c.split()[3] in CHEAP and "--study" not in c
+        )
+    ),
 )
 def test_cheap_commands_run(command, drop):
     words = [str(drop) if word == drop.name else word for word in shlex.split(command)[1:]]
     job = subprocess.run(
-        [sys.executable, *words], cwd=ROOT, env=clean_environment(), stdin=subprocess.DEVNULL,
-        capture_output=True, text=True, timeout=120,
+        [sys.executable, *words],
+        cwd=ROOT,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
     assert job.returncode == 0 and not job.stderr and job.stdout
 
@@ -170,8 +187,13 @@ def test_stability_commands_say_something(command, tmp_path):
     """Each with its last line, or the files that it tells of."""
     words = shlex.split(command.replace("results", str(tmp_path)))[1:]
     job = subprocess.run(
-        [sys.executable, *words], cwd=ROOT, env=clean_environment(), stdin=subprocess.DEVNULL,
-        capture_output=True, text=True, timeout=150,
+        [sys.executable, *words],
+        cwd=ROOT,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=150,
     )
     assert job.returncode == 0 and not job.stderr
     last = job.stdout.splitlines()[-1]
@@ -284,9 +306,11 @@ def test_windows_of_the_page():
     for kernel in smoothing.KERNELS:
         cells = re.findall(rf"^\| `{kernel}` \|(.*)\|$", page, re.MULTILINE)[0]
         for lattice, cell in zip(lattices, cells.split("|"), strict=True):
-            told = [] if cell.strip() == "–" else [
-                [float(end) for end in run.split("–")] for run in cell.split(",")
-            ]
+            told = (
+                []
+                if cell.strip() == "–"
+                else [[float(end) for end in run.split("–")] for run in cell.split(",")]
+            )
             few = slice(None) if lattice in ("square", "hexagonal") else slice(0, 13, 6)
             for h in SMOOTHINGS[few] if kernel != "fourth-order" else (1.0, 1.3):
                 inside = any(run[0] <= h <= run[-1] for run in told)
@@ -361,8 +385,14 @@ def test_example_limit_acts(module):
     assert floor.limit_density(i, 900.0) == 980.0 and floor.limit_density(i, 990.0) == 990.0
 
 
-BESIDE_A_CASE = {"kernel": "lucy", "effect": "cohesion", "limit": "floor", "motion": "belt",
-                 "region": "sink", "output": "front"}
+BESIDE_A_CASE = {
+    "kernel": "lucy",
+    "effect": "cohesion",
+    "limit": "floor",
+    "motion": "belt",
+    "region": "sink",
+    "output": "front",
+}
 """The examples that bring something, and the files that the page puts them into."""
 
 WITH_ALL = """
@@ -420,8 +450,12 @@ def results(tmp_path, monkeypatch, capsys):
     folder.mkdir(parents=True)
     frames = FrameFile(folder / "drop.h5", alone(), {"case": "", "dimensions": 2})
     saved = {
-        "id": np.arange(3), "kind": np.zeros(3, np.uint8), "position": np.ones((3, 2)),
-        "velocity": np.ones((3, 2)), "density": np.ones(3), "pressure": np.full(3, 7.5),
+        "id": np.arange(3),
+        "kind": np.zeros(3, np.uint8),
+        "position": np.ones((3, 2)),
+        "velocity": np.ones((3, 2)),
+        "density": np.ones(3),
+        "pressure": np.full(3, 7.5),
     }
     for k in range(2):
         frames.write(k, 0.5 * k, 10 * k, saved)
@@ -450,8 +484,7 @@ def test_the_table_of_datasets_is_that_of_the_fields():
     rows = re.findall(row, text("docs/output.md"), re.MULTILINE)
     told = {name: (shape, unit, meaning) for name, shape, _, unit, meaning in rows}
     assert told == {
-        name: ("(n, dim)" if f.composed else "(n,)", f.unit, f.meaning)
-        for name, f in by_name(SAVED).items()
+        name: ("(n, dim)" if f.composed else "(n,)", f.unit, f.meaning) for name, f in by_name(SAVED).items()
     }
 
 

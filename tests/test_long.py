@@ -24,7 +24,8 @@ def test_numbers_add_up_or_the_largest_counts(file):
     tell("kills survived")
     assert told.told(file) == {"kills survived": 8, "longest end of a job, s": 0.5}
     assert told.table(file).splitlines()[2:] == [
-        "| kills survived | 8 |", "| longest end of a job, s | 0.5 |"
+        "| kills survived | 8 |",
+        "| longest end of a job, s | 0.5 |",
     ]
 
 
@@ -32,9 +33,7 @@ def test_large_numbers_are_readable(file):
     tell("steps", 1_020_000)
     tell_most("bytes", 4096.0)
     tell_most("s", 3.14159)
-    assert told.table(file).splitlines()[2:] == [
-        "| steps | 1,020,000 |", "| bytes | 4,096 |", "| s | 3.14 |"
-    ]
+    assert told.table(file).splitlines()[2:] == ["| steps | 1,020,000 |", "| bytes | 4,096 |", "| s | 3.14 |"]
 
 
 def test_without_a_file_nothing_is_told(tmp_path, monkeypatch):
@@ -63,9 +62,7 @@ def test_what_is_no_such_file_is_one_line(tmp_path, capsys):
 
 def test_the_program_runs_as_run_tests_calls_it(file):
     tell("kills survived", 100)
-    job = subprocess.run(
-        [sys.executable, "tests/told.py", file], cwd=ROOT, capture_output=True, text=True
-    )
+    job = subprocess.run([sys.executable, "tests/told.py", file], cwd=ROOT, capture_output=True, text=True)
     assert (job.returncode, job.stdout) == (0, told.table(file) + "\n"), job.stderr
 
 

@@ -17,7 +17,10 @@ def psph(*arguments):
     """A finished ``python -m psph`` on one rank."""
     return subprocess.run(
         [sys.executable, "-m", "psph", *map(str, arguments)],
-        capture_output=True, text=True, env=clean_environment(), stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
         timeout=120,
     )
 
@@ -68,13 +71,19 @@ def test_check_explain_schema():
     assert "fluids" in json.loads(psph("schema").stdout)["properties"]
 
 
-@pytest.mark.parametrize("words, says", [
-    (("chek", CASE), "chek: neither a command nor a case file; did you mean 'check'?"),
-    (("Studdy", CASE, "--grid"), "Studdy: neither a command nor a case file; did you mean 'study'?"),
-    (("qqqqq",), "qqqqq: neither a command nor a case file; known here: run, resume, explain, check, "
-     "schema, plot, study, stability, bench"),
-    (("chek.toml",), "chek.toml: No such file or directory; give the path of a case in TOML"),
-])
+@pytest.mark.parametrize(
+    "words, says",
+    [
+        (("chek", CASE), "chek: neither a command nor a case file; did you mean 'check'?"),
+        (("Studdy", CASE, "--grid"), "Studdy: neither a command nor a case file; did you mean 'study'?"),
+        (
+            ("qqqqq",),
+            "qqqqq: neither a command nor a case file; known here: run, resume, explain, check, "
+            "schema, plot, study, stability, bench",
+        ),
+        (("chek.toml",), "chek.toml: No such file or directory; give the path of a case in TOML"),
+    ],
+)
 def test_a_command_that_is_none_is_one_line(words, says):
     job = psph(*words)
     assert (job.returncode, job.stderr.strip()) == (2, says)
@@ -136,8 +145,15 @@ def test_a_run_that_blows_up_says_so_on_every_number_of_ranks(tmp_path):
     for ranks in (1, 2):
         job = mpirun(
             ranks,
-            ["-m", "psph", "run/cases/minimal.toml", "--out", tmp_path / str(ranks),
-             "--set", "time.step=0.02"],
+            [
+                "-m",
+                "psph",
+                "run/cases/minimal.toml",
+                "--out",
+                tmp_path / str(ranks),
+                "--set",
+                "time.step=0.02",
+            ],
         )
         assert job.returncode == 3
         assert job.stderr.count("the run blew up at step") == 1
@@ -147,8 +163,13 @@ def test_a_run_that_blows_up_says_so_on_every_number_of_ranks(tmp_path):
 def test_an_interrupt_is_one_line_and_code_130(tmp_path):
     words = [sys.executable, "-m", "psph", CASE, "--out", tmp_path, "--set", "time.end=100"]
     with subprocess.Popen(
-        words, env=clean_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True, preexec_fn=hears_interrupts,
+        words,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=hears_interrupts,
     ) as job:
         while not job.stdout.readline().startswith("first step"):
             assert job.poll() is None
@@ -160,8 +181,11 @@ def test_an_interrupt_is_one_line_and_code_130(tmp_path):
 def shell(command):
     """A finished line of bash; its code is that of the first command in a pipe that fails."""
     return subprocess.run(
-        ["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True,
-        env=clean_environment() | {"PSPH": f"{sys.executable} -m psph"}, stdin=subprocess.DEVNULL,
+        ["bash", "-c", f"set -o pipefail; {command}"],
+        capture_output=True,
+        text=True,
+        env=clean_environment() | {"PSPH": f"{sys.executable} -m psph"},
+        stdin=subprocess.DEVNULL,
         timeout=120,
     )
 

@@ -31,8 +31,12 @@ def tree(tmp_path):
 def left(tree, *options) -> set[str]:
     """The folders whose results are still there after a report."""
     job = subprocess.run(
-        [tree / "run" / "reports", *options], capture_output=True, text=True, env=dict(os.environ),
-        stdin=subprocess.DEVNULL, timeout=60,
+        [tree / "run" / "reports", *options],
+        capture_output=True,
+        text=True,
+        env=dict(os.environ),
+        stdin=subprocess.DEVNULL,
+        timeout=60,
     )
     assert job.returncode == 0, job.stderr
     return {path.parent.name for path in tree.glob("build/*/result.json")}

@@ -18,8 +18,18 @@ def serial(tmp_path_factory):
     """A folder with the serial wheel of the h5py that is installed, to be put before it."""
     folder = tmp_path_factory.mktemp("serial-h5py")
     subprocess.run(
-        [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--only-binary=:all:",
-         "--target", folder, f"h5py=={h5py.__version__}"],
+        [
+            sys.executable,
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--no-deps",
+            "--only-binary=:all:",
+            "--target",
+            folder,
+            f"h5py=={h5py.__version__}",
+        ],
         check=True,
     )
     return {"PYTHONPATH": str(folder)}

@@ -47,8 +47,11 @@ def test_symmetric_matrices(dim):
     full = np.cov(np.random.default_rng(4).normal(size=(dim, 9))).reshape(dim, dim)
     m, one = tuple(full[places].tolist()), np.eye(dim)
     expected = (
-        np.outer(a, a)[places], full @ a, (np.linalg.inv(full) * np.linalg.det(full))[places],
-        [np.linalg.det(full)], (full - 2.0 * one)[places],
+        np.outer(a, a)[places],
+        full @ a,
+        (np.linalg.inv(full) * np.linalg.det(full))[places],
+        [np.linalg.det(full)],
+        (full - 2.0 * one)[places],
     )
     for compiled, plain, told in zip(matrices(m, a), matrices.py_func(m, a), expected):
         assert compiled == pytest.approx(told) and plain == pytest.approx(told)

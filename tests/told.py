@@ -18,8 +18,7 @@ def told(file):
     lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
     kinds = {line["what"]: FOLDS[line["fold"]] for line in lines}
     return {
-        what: fold(line["number"] for line in lines if line["what"] == what)
-        for what, fold in kinds.items()
+        what: fold(line["number"] for line in lines if line["what"] == what) for what, fold in kinds.items()
     }
 
 

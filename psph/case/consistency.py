@@ -24,8 +24,19 @@ Finding = tuple[Location, Any, str]
 def contradictions(case: Case) -> list[InitErrorDetails]:
     """All contradictions between the keys of a case."""
     rules = (
-        _dimensions, _square, _axes, _domain, _hydrostatic, _exact, _effects,
-        _continued, _friction, _probed, _names, _single, _stepped,
+        _dimensions,
+        _square,
+        _axes,
+        _domain,
+        _hydrostatic,
+        _exact,
+        _effects,
+        _continued,
+        _friction,
+        _probed,
+        _names,
+        _single,
+        _stepped,
         _due,
     )
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
@@ -62,8 +73,10 @@ def _sizes(case: Case) -> Iterator[Finding]:
     for loc, value in walk(case):
         least = SHORTEST_OUTPUT if loc[:1] == ("output",) else SMALLEST
         if isinstance(value, float) and value and not least <= abs(value) <= LARGEST:
-            yield loc, value, (
-                f"psph computes with 0 and sizes from {SMALLEST:g} to {LARGEST:g}; give such a number"
+            yield (
+                loc,
+                value,
+                (f"psph computes with 0 and sizes from {SMALLEST:g} to {LARGEST:g}; give such a number"),
             )
 
 
@@ -76,14 +89,22 @@ def _dimensions(case: Case) -> Iterator[Finding]:
         only_in = getattr(value, "only_in", dimensions)
         if only_in != dimensions:
             foreign = loc
-            yield loc, value, (
-                f"a {loc[-1]} needs space.dimensions = {only_in}, here it is {dimensions}; "
-                "use another shape"
+            yield (
+                loc,
+                value,
+                (
+                    f"a {loc[-1]} needs space.dimensions = {only_in}, here it is {dimensions}; "
+                    "use another shape"
+                ),
             )
         elif _is_vector(value) and len(value) != dimensions and loc[: len(foreign)] != foreign:
-            yield loc, value, (
-                f"{len(value)} number{'s' * (len(value) > 1)} in a case with "
-                f"space.dimensions = {dimensions}; give {dimensions}"
+            yield (
+                loc,
+                value,
+                (
+                    f"{len(value)} number{'s' * (len(value) > 1)} in a case with "
+                    f"space.dimensions = {dimensions}; give {dimensions}"
+                ),
             )
 
 
@@ -96,9 +117,13 @@ def _square(case: Case) -> Iterator[Finding]:
     for name, fluid in case.fluids.items():
         rows = fluid.velocity_gradient
         if rows and len(rows) != dimensions:
-            yield ("fluids", name, "velocity_gradient"), rows, (
-                f"{len(rows)} row{'s' * (len(rows) > 1)} in a case with space.dimensions = "
-                f"{dimensions}; give one for each component of the velocity"
+            yield (
+                ("fluids", name, "velocity_gradient"),
+                rows,
+                (
+                    f"{len(rows)} row{'s' * (len(rows) > 1)} in a case with space.dimensions = "
+                    f"{dimensions}; give one for each component of the velocity"
+                ),
             )
 
 
@@ -109,9 +134,7 @@ def _axes(case: Case) -> Iterator[Finding]:
     named += [(("probes", name, "front"), probe.front) for name, probe in case.probes.items()]
     for loc, axis in named:
         if axis is not None and axis not in axes:
-            yield loc, axis, (
-                f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}"
-            )
+            yield loc, axis, (f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}")
 
 
 def _domain(case: Case) -> Iterator[Finding]:
@@ -119,13 +142,19 @@ def _domain(case: Case) -> Iterator[Finding]:
     given = {"lower": space.lower, "upper": space.upper}
     missing = [name for name, corner in given.items() if corner is None]
     if space.periodic and missing:
-        yield ("space", "periodic"), space.periodic, (
-            "a periodic axis needs the corners of the domain; give "
-            + " and ".join(f"space.{name}" for name in missing)
+        yield (
+            ("space", "periodic"),
+            space.periodic,
+            (
+                "a periodic axis needs the corners of the domain; give "
+                + " and ".join(f"space.{name}" for name in missing)
+            ),
         )
     if not missing and any(low >= up for low, up in zip(space.lower, space.upper)):
-        yield ("space", "upper"), space.upper, (
-            "not above space.lower on every axis; let every number exceed that of space.lower"
+        yield (
+            ("space", "upper"),
+            space.upper,
+            ("not above space.lower on every axis; let every number exceed that of space.lower"),
         )
 
 
@@ -134,22 +163,33 @@ def _hydrostatic(case: Case) -> Iterator[Finding]:
         return
     for name, fluid in case.fluids.items():
         if fluid.pressure == "hydrostatic":
-            yield ("fluids", name, "pressure"), fluid.pressure, (
-                "there is no gravity; give physics.gravity, or a pressure in Pa"
+            yield (
+                ("fluids", name, "pressure"),
+                fluid.pressure,
+                ("there is no gravity; give physics.gravity, or a pressure in Pa"),
             )
 
 
 def _exact(case: Case) -> Iterator[Finding]:
     given = [name for name, value in case.exact if value is not None]
     for extra in given[1:]:
-        yield ("exact", extra), ..., f"a case has one exact solution at most, and also has {given[0]}; remove one"
+        yield (
+            ("exact", extra),
+            ...,
+            f"a case has one exact solution at most, and also has {given[0]}; remove one",
+        )
     fields = known(SOLUTIONS[given[0]]) if given else ()
     for name, fluid in case.fluids.items():
         for field in ("velocity", "pressure"):
             if getattr(fluid, field) == EXACT and field not in fields:
-                yield ("fluids", name, field), EXACT, (
-                    f"the exact solution {given[0]} has no {field}; give numbers" if given
-                    else "the case has no exact solution; give [exact], or numbers"
+                yield (
+                    ("fluids", name, field),
+                    EXACT,
+                    (
+                        f"the exact solution {given[0]} has no {field}; give numbers"
+                        if given
+                        else "the case has no exact solution; give [exact], or numbers"
+                    ),
                 )
 
 
@@ -162,8 +202,10 @@ def _probed(case: Case) -> Iterator[Finding]:
 def _continued(case: Case) -> Iterator[Finding]:
     for name, wall in case.walls.items():
         if wall.continues is not None and wall.continues not in case.fluids:
-            yield ("walls", name, "continues"), wall.continues, (
-                f"no fluid has this name; {advise(wall.continues, case.fluids)}"
+            yield (
+                ("walls", name, "continues"),
+                wall.continues,
+                (f"no fluid has this name; {advise(wall.continues, case.fluids)}"),
             )
 
 
@@ -171,17 +213,23 @@ def _friction(case: Case) -> Iterator[Finding]:
     rubs = any(fluid.viscosity for fluid in case.fluids.values())
     central = case.physics.central_friction is not None
     if central and not rubs:
-        yield ("physics", "central_friction"), ..., (
-            "no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key"
+        yield (
+            ("physics", "central_friction"),
+            ...,
+            ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key"),
         )
     for name, wall in case.walls.items():
         if wall.no_slip and not rubs:
-            yield ("walls", name, "no_slip"), True, (
-                "no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip"
+            yield (
+                ("walls", name, "no_slip"),
+                True,
+                ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip"),
             )
         elif wall.no_slip and central:
-            yield ("walls", name, "no_slip"), True, (
-                "does not work with physics.central_friction; remove one of the two"
+            yield (
+                ("walls", name, "no_slip"),
+                True,
+                ("does not work with physics.central_friction; remove one of the two"),
             )
 
 
@@ -198,8 +246,10 @@ def _single(case: Case) -> Iterator[Finding]:
     h = case.space.smoothing * case.space.spacing
     largest = h ** -(case.space.dimensions + 2.0)  # W'/r
     if case.precision == "mixed" and not 1.0 / LARGEST_SINGLE < largest < LARGEST_SINGLE:
-        yield ("precision",), case.precision, (
-            f"single precision cannot hold the kernel's slope at h = {h:g} m; use \"double\""
+        yield (
+            ("precision",),
+            case.precision,
+            (f'single precision cannot hold the kernel\'s slope at h = {h:g} m; use "double"'),
         )
 
 
@@ -216,9 +266,13 @@ MOST_MOMENTS = 1e9
 def _stepped(case: Case) -> Iterator[Finding]:
     end, step = case.time.end, case.time.step
     if step is not None and end > MOST_STEPS * step:
-        yield ("time", "step"), step, (
-            f"too short for {end:g} s: more than {MOST_STEPS:.1g} steps, lost in the rounding of the time; "
-            f"give at least {1.1 * end / MOST_STEPS:.2g}"
+        yield (
+            ("time", "step"),
+            step,
+            (
+                f"too short for {end:g} s: more than {MOST_STEPS:.1g} steps, lost in the rounding of "
+                f"the time; give at least {1.1 * end / MOST_STEPS:.2g}"
+            ),
         )
 
 
@@ -226,9 +280,13 @@ def _due(case: Case) -> Iterator[Finding]:
     end = case.time.end
     for name, interval in case.output:
         if interval is not None and end > MOST_MOMENTS * interval:
-            yield ("output", name), interval, (
-                f"gives more than {MOST_MOMENTS:.0e} outputs until {end:g} s; give at least "
-                f"{1.1 * end / MOST_MOMENTS:.2g} (an interval below the time step writes every step)"
+            yield (
+                ("output", name),
+                interval,
+                (
+                    f"gives more than {MOST_MOMENTS:.0e} outputs until {end:g} s; give at least "
+                    f"{1.1 * end / MOST_MOMENTS:.2g} (an interval below the time step writes every step)"
+                ),
             )
 
 
@@ -242,8 +300,10 @@ def _effects(case: Case) -> Iterator[Finding]:
     for role in ROLES:
         present = [name for name, _, effect in asked if role in getattr(effect, "roles", ())]
         for extra in present[:-1]:
-            yield ("physics", extra), ..., (
-                f'physics.{present[-1]} {role.does}; set it to "off", or remove this key'
+            yield (
+                ("physics", extra),
+                ...,
+                (f'physics.{present[-1]} {role.does}; set it to "off", or remove this key'),
             )
 
 

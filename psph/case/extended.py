@@ -25,7 +25,9 @@ def case_model(catalogue: Catalogue) -> type[Case]:
         names = (*KERNELS, *map(last_part, catalogue.kernels))
         told = key("smoothing kernel", names[0], otherwise=by_default("space.kernel"))
         space = create_model(
-            "Space", __base__=Space, __doc__=Space.__doc__,
+            "Space",
+            __base__=Space,
+            __doc__=Space.__doc__,
             kernel=(Literal[tuple(dict.fromkeys(names))], told),
         )
         fields["space"] = (space, key("dimensions, resolution and extent"))
@@ -39,7 +41,8 @@ def case_model(catalogue: Catalogue) -> type[Case]:
         fields["walls"] = (dict[Name, wall], key("the walls by name", {}, max_length=MANY))
     if catalogue.regions:
         region = create_model(
-            "Region", __base__=table_of("Region", "A region.", catalogue.regions),
+            "Region",
+            __base__=table_of("Region", "A region.", catalogue.regions),
             __doc__="Where particles appear or vanish.",
             into=(Name | None, key("the fluid that comes", None, otherwise="the first fluid")),
         )

@@ -30,10 +30,12 @@ def catalogue_of(file: str, names: Sequence[str]) -> "Catalogue":
     for name in names:
         more = getattr(_module(file, name), "CATALOGUE", None)
         if not isinstance(more, Catalogue):
-            raise CaseError([
-                f"{file}: use: {name} has no CATALOGUE; let it hold a Catalogue of "
-                "psph.physics.catalogue with what it brings"
-            ])
+            raise CaseError(
+                [
+                    f"{file}: use: {name} has no CATALOGUE; let it hold a Catalogue of "
+                    "psph.physics.catalogue with what it brings"
+                ]
+            )
         for entry in more.kernels:
             _register(file, name, last_part(entry), entry.effect)
         found = found.with_more(more)
@@ -61,9 +63,9 @@ def versions(catalogue: "Catalogue") -> list[str]:
 def _module(file: str, name: str):
     path = Path(file).parent / name
     if Path(name).is_absolute() or ".." in Path(name).parts or path.suffix != ".py":
-        raise CaseError([
-            f"{file}: use: {name} is not a Python file in the case's folder or below; put it there"
-        ])
+        raise CaseError(
+            [f"{file}: use: {name} is not a Python file in the case's folder or below; put it there"]
+        )
     try:
         digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
     except OSError as error:

@@ -56,9 +56,7 @@ def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set")
     return case
 
 
-def checked(
-    file: str, data: dict[str, Any], overrides: Sequence[str] = (), option: str = "--set"
-) -> "Case":
+def checked(file: str, data: dict[str, Any], overrides: Sequence[str] = (), option: str = "--set") -> "Case":
     """The case that the tables ``data`` make, which are changed; as :func:`load`.
 
     ``file`` is what messages call them.
@@ -108,9 +106,7 @@ def _read(file: str) -> dict[str, Any]:
     except UnicodeEncodeError:
         raise CaseError([f"{file}: a name that is not UTF-8; rename the file"]) from None
     except UnicodeDecodeError as error:
-        raise CaseError(
-            [f"{file}: byte {error.start} is not UTF-8; save the file as UTF-8 text"]
-        ) from None
+        raise CaseError([f"{file}: byte {error.start} is not UTF-8; save the file as UTF-8 text"]) from None
     except ValueError as error:  # a NUL in the name
         raise CaseError([f"{file}: {error}; give the path of a case in TOML"]) from None
     if len(read) > MOST_BYTES:
@@ -164,7 +160,7 @@ def _syntax(file: str, text: str, says: str) -> str:
     return (
         f"{file}: line {number}: '{shortened(written, LONGEST_QUOTE)}': "
         f"{what[:1].lower()}{what[1:]}{column}; correct this "
-        "line, for example: key = 1.0, key = \"text\", key = [0.0, 1.0]"
+        'line, for example: key = 1.0, key = "text", key = [0.0, 1.0]'
     )
 
 
@@ -180,9 +176,7 @@ def _override(where: str, data: dict[str, Any], text: str) -> Override:
             keys[depth] = key = int(key)
         if not _can_hold(table, key):
             stands = dotted(keys[:depth])
-            raise CaseError(
-                [f"{where}: {stands}: has no {dotted([key])} inside; override {stands} itself"]
-            )
+            raise CaseError([f"{where}: {stands}: has no {dotted([key])} inside; override {stands} itself"])
         if made is None and isinstance(table, dict) and key not in table:
             made = tuple(keys[: depth + 1])
         if depth == len(keys) - 1 and value.strip() == OFF:

@@ -62,7 +62,8 @@ def _follows_from_another(details: Details, found: list[Details]) -> bool:
     loc, kind = details["loc"], details["type"]
     if kind == "missing":
         return any(
-            other["type"] == "extra_forbidden" and other["loc"][:-1] == loc[:-1]
+            other["type"] == "extra_forbidden"
+            and other["loc"][:-1] == loc[:-1]
             and nearest(str(other["loc"][-1]), [str(loc[-1])])
             for other in found
         )

@@ -31,13 +31,10 @@ LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
 """How tomli_w writes a list of numbers or words, one a line."""
 
 
-
 def _velocity(value: Any, validate) -> Any:
     """One message for anything that is not a velocity; a list gets the messages of its numbers."""
     if isinstance(value, str) and value != EXACT:
-        raise PydanticCustomError(
-            "psph", 'not a velocity; give one number per dimension in m/s, or "exact"'
-        )
+        raise PydanticCustomError("psph", 'not a velocity; give one number per dimension in m/s, or "exact"')
     return validate(value)
 
 
@@ -57,28 +54,39 @@ class Space(Table):
     dimensions: int = key("number of dimensions, 1 to 3", ge=1, le=3)
     spacing: float = key("distance between particles at the start", unit="m", gt=0)
     smoothing: float = key(
-        "smoothing length h in units of the spacing, h/dx", 1.4, unit="1", ge=0.6, le=4,
+        "smoothing length h in units of the spacing, h/dx",
+        1.4,
+        unit="1",
+        ge=0.6,
+        le=4,
         otherwise=by_default("space.smoothing"),
     )
     kernel: Literal[tuple(KERNELS)] = key(
         "smoothing kernel", next(iter(KERNELS)), otherwise=by_default("space.kernel")
     )
     normalised: bool = key(
-        "divide the kernel gradient by its first moment on the initial lattice", False,
+        "divide the kernel gradient by its first moment on the initial lattice",
+        False,
         otherwise=by_default("space.normalised"),
     )
     periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("periodic axes", ())
     lower: Vector | None = key(
-        "lowest corner of the domain; required where an axis is periodic", None, unit="m",
+        "lowest corner of the domain; required where an axis is periodic",
+        None,
+        unit="m",
         otherwise="found from the shapes",
     )
     upper: Vector | None = key(
-        "highest corner of the domain; required where an axis is periodic", None, unit="m",
+        "highest corner of the domain; required where an axis is periodic",
+        None,
+        unit="m",
         otherwise="found from the shapes",
     )
     origin: Vector | None = key(
-        "origin of the lattice: particles start at origin + (k + 1/2) spacing, k whole", None,
-        unit="m", otherwise="zeros",
+        "origin of the lattice: particles start at origin + (k + 1/2) spacing, k whole",
+        None,
+        unit="m",
+        otherwise="zeros",
     )
 
 
@@ -87,9 +95,7 @@ class Time(Table):
 
     end: float = key("simulated time at which the run ends", unit="s", gt=0)
     cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.5)
-    step: float | None = key(
-        "a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0
-    )
+    step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 
 
 class Fluid(Table):
@@ -98,23 +104,28 @@ class Fluid(Table):
     shape: Shape = key("where the fluid is at the start")
     density: float = key("density at zero pressure", 1000.0, unit="kg/m3", gt=0)
     viscosity: float = key("kinematic viscosity; 0: inviscid", 0.0, unit="m2/s", ge=0)
-    velocity: Annotated[
-        Literal[EXACT] | Vector | None, WrapValidator(_velocity)
-    ] = key(
-        'velocity at the start: numbers, or "exact" (needs [exact])', None, unit="m/s",
+    velocity: Annotated[Literal[EXACT] | Vector | None, WrapValidator(_velocity)] = key(
+        'velocity at the start: numbers, or "exact" (needs [exact])',
+        None,
+        unit="m/s",
         otherwise="zeros",
     )
     velocity_gradient: tuple[Vector, ...] | None = key(
         "gradient of the velocity at the start, one row per component: u = velocity + gradient (x - "
-        "velocity_center); [[0, -1], [1, 0]] turns at 1 rad/s", None, unit="1/s", otherwise="zeros",
-        strict=False, min_length=1,
+        "velocity_center); [[0, -1], [1, 0]] turns at 1 rad/s",
+        None,
+        unit="1/s",
+        otherwise="zeros",
+        strict=False,
+        min_length=1,
     )
     velocity_center: Vector | None = key(
         "the point where velocity_gradient adds zero", None, unit="m", otherwise="zeros"
     )
     pressure: Annotated[Literal["hydrostatic", EXACT] | float, WrapValidator(_pressure)] = key(
         'pressure at the start: a number, "hydrostatic" (needs gravity) or "exact" (needs [exact])',
-        0.0, unit="Pa",
+        0.0,
+        unit="Pa",
     )
     jitter: float = key(
         "largest random shift of a particle along each axis, in spacings", 0.0, unit="1", ge=0
@@ -132,14 +143,17 @@ class Wall(Table):
     shape: Shape = key("where the wall is")
     velocity: Vector | None = key(
         "velocity of the wall's surface in the viscous force, as that of a belt: the wall does not move",
-        None, unit="m/s", otherwise="zeros",
+        None,
+        unit="m/s",
+        otherwise="zeros",
     )
     no_slip: bool = key(
         "the fluid has the wall's velocity at the face of the wall; needs a viscosity",
         False,
     )
     continues: Name | None = key(
-        "the fluid whose density and initial pressure the wall has", None,
+        "the fluid whose density and initial pressure the wall has",
+        None,
         otherwise="the first fluid",
     )
 
@@ -151,9 +165,9 @@ class Probe(Table):
     front: Axis | None = key(
         "the largest coordinate of the fluid along this axis", None, otherwise="give position"
     )
-    fields: Annotated[
-        tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)
-    ] = key("what is measured", ("pressure",), min_length=1)
+    fields: Annotated[tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)] = key(
+        "what is measured", ("pressure",), min_length=1
+    )
     theory: dict[Literal["pressure", "density"], float] = key(
         "values to compare with, drawn beside the measured ones: pressure in Pa, density in kg/m3",
         {},
@@ -164,9 +178,7 @@ class Perturbation(Table):
     """A kick or a shift of the fluid particle nearest to a point."""
 
     position: Vector = key("where", unit="m")
-    velocity: Vector | None = key(
-        "velocity added at the start", None, unit="m/s", otherwise="zeros"
-    )
+    velocity: Vector | None = key("velocity added at the start", None, unit="m/s", otherwise="zeros")
     shift: Vector | None = key(
         "displacement at the start, even onto another particle", None, unit="m", otherwise="zeros"
     )
@@ -175,15 +187,11 @@ class Perturbation(Table):
 class Output(Table):
     """Intervals of output."""
 
-    frames: float | None = key(
-        "time between frames", None, unit="s", otherwise="time.end / 50", gt=0
-    )
+    frames: float | None = key("time between frames", None, unit="s", otherwise="time.end / 50", gt=0)
     probes: float | None = key(
         "time between rows of probes.csv", None, unit="s", otherwise="time.end / 1000", gt=0
     )
-    log: float | None = key(
-        "time between rows of log.csv", None, unit="s", otherwise="time.end / 200", gt=0
-    )
+    log: float | None = key("time between rows of log.csv", None, unit="s", otherwise="time.end / 200", gt=0)
 
 
 class Checkpoint(Table):
@@ -192,12 +200,13 @@ class Checkpoint(Table):
     every: int | None = key(
         "steps from one checkpoint to the next", None, unit="1", otherwise="not by steps", ge=1
     )
-    minutes: float = key(
-        "wall-clock time from one checkpoint to the next", 10.0, unit="min", gt=0
-    )
+    minutes: float = key("wall-clock time from one checkpoint to the next", 10.0, unit="min", gt=0)
     wall_clock: float | None = key(
-        "wall-clock time of the job: shortly before its end the run writes a checkpoint and "
-        "stops", None, unit="min", otherwise="no limit", gt=0,
+        "wall-clock time of the job: shortly before its end the run writes a checkpoint and stops",
+        None,
+        unit="min",
+        otherwise="no limit",
+        gt=0,
     )
 
 
@@ -207,37 +216,43 @@ class Guards(Table):
     on_trouble: Literal["stop", "warn"] = key(
         "stop: end with a checkpoint and a post-mortem; warn: print a warning and continue", "stop"
     )
-    speed: float = key(
-        "largest speed of a particle, in speeds of sound", 1.0, unit="1", gt=0, le=100
-    )
+    speed: float = key("largest speed of a particle, in speeds of sound", 1.0, unit="1", gt=0, le=100)
     density: float = key(
-        "largest relative difference of a fluid's density from its rest density", 0.5, unit="1",
+        "largest relative difference of a fluid's density from its rest density",
+        0.5,
+        unit="1",
         gt=0,
     )
     depth: float = key(
-        "how far a fluid particle may get behind the face of a wall, in spacings", 1.0, unit="1",
+        "how far a fluid particle may get behind the face of a wall, in spacings",
+        1.0,
+        unit="1",
         gt=0,
     )
     energy: float = key(
         "energy that all particles may gain, in units of their kinetic energy at a tenth of the "
-        "speed of sound", 2.0, unit="1", gt=0,
+        "speed of sound",
+        2.0,
+        unit="1",
+        gt=0,
     )
 
 
 class Parallel(Table):
     """How the domain is divided among ranks."""
 
-    axis: Axis | None = key(
-        "axis across which the domain is cut into slabs", None, otherwise="the longest"
-    )
+    axis: Axis | None = key("axis across which the domain is cut into slabs", None, otherwise="the longest")
 
 
 class Neighbours(Table):
     """The neighbour lists."""
 
     skin: float = key(
-        "how far a list reaches beyond the kernel's support, as a fraction of it", 0.08, unit="1",
-        ge=0, le=1,
+        "how far a list reaches beyond the kernel's support, as a fraction of it",
+        0.08,
+        unit="1",
+        ge=0,
+        le=1,
     )
 
 
@@ -257,10 +272,12 @@ class Case(Table):
     )
     scheme: Literal[tuple(SCHEMES)] = key(
         "stable: the default scheme; sph: plain SPH; ssph: the paper's; for the keys that the case "
-        "does not give itself", STABLE,
+        "does not give itself",
+        STABLE,
     )
     profile: Literal[tuple(PROFILES)] | None = key(
-        "numerical choices by one name, for the keys that the case does not give itself", None,
+        "numerical choices by one name, for the keys that the case does not give itself",
+        None,
         otherwise="no profile",
     )
     precision: Literal["double", "mixed"] = key(
@@ -270,15 +287,12 @@ class Case(Table):
     time: Time = key("simulated time and time steps")
     physics: Physics = key("forces and other effects on the fluids", make=Physics)
     fluids: dict[Name, Fluid] = key(
-        "the fluids by name: where each is at the start, and what it is", min_length=1,
+        "the fluids by name: where each is at the start, and what it is",
+        min_length=1,
         max_length=MANY,
     )
-    walls: dict[Name, Wall] = key(
-        "the walls by name: particles that do not move", {}, max_length=MANY
-    )
-    probes: dict[Name, Probe] = key(
-        "the probes by name: points where fields are measured over time", {}
-    )
+    walls: dict[Name, Wall] = key("the walls by name: particles that do not move", {}, max_length=MANY)
+    probes: dict[Name, Probe] = key("the probes by name: points where fields are measured over time", {})
     perturbations: Annotated[tuple[Perturbation, ...], Strict(False)] = key(
         "kicks and shifts of single particles", ()
     )
@@ -286,15 +300,11 @@ class Case(Table):
     checkpoint: Checkpoint = key(
         "when a run writes a checkpoint, besides the one at a signal", make=Checkpoint
     )
-    guards: Guards = key(
-        "bounds that a run checks, and what it does when one is exceeded", make=Guards
-    )
+    guards: Guards = key("bounds that a run checks, and what it does when one is exceeded", make=Guards)
     parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
     neighbours: Neighbours = key("the neighbour lists", make=Neighbours)
     exact: Exact = key("an exact solution of the case, for its initial state and its errors", make=Exact)
-    experiments: dict[Name, Experiment] = key(
-        "experiments by name: measured curves to compare with", {}
-    )
+    experiments: dict[Name, Experiment] = key("experiments by name: measured curves to compare with", {})
     study: Study = key("the keys that `psph study` varies, and its measure of error", make=Study)
 
     offered: ClassVar[Catalogue] = BUILT_IN

@@ -59,8 +59,7 @@ def chosen(table: Table | None, entries: Iterable) -> dict[str, Any]:
     """The values that such a table asks for, by their names."""
     asked = ((entry, getattr(table, last_part(entry), None)) for entry in entries)
     return {
-        last_part(entry): entry.effect(**as_numbers(value))
-        for entry, value in asked if value is not None
+        last_part(entry): entry.effect(**as_numbers(value)) for entry, value in asked if value is not None
     }
 
 

@@ -24,16 +24,21 @@ def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -
         "sound_speed": (
             float | None,
             key(
-                "numerical speed of sound, at least ten times the largest speed", None, unit="m/s",
+                "numerical speed of sound, at least ten times the largest speed",
+                None,
+                unit="m/s",
                 otherwise="ten times the expected speed: free fall over the fluid's height, or "
-                "the largest initial speed", gt=0,
+                "the largest initial speed",
+                gt=0,
             ),
         )
     }
     optional = [entry for entry in catalogue if entry.key.startswith(PREFIX)]
     for name, entries in groupby(optional, lambda entry: entry.key[len(PREFIX) :].partition("=")[0]):
         fields[name] = _field(list(entries))
-    return create_model("Physics", __base__=Table, __doc__="Forces and other effects on the fluids.", **fields)
+    return create_model(
+        "Physics", __base__=Table, __doc__="Forces and other effects on the fluids.", **fields
+    )
 
 
 def _field(entries: list[Entry]) -> tuple[Any, Any]:
@@ -44,9 +49,7 @@ def _field(entries: list[Entry]) -> tuple[Any, Any]:
         return Literal[tuple(names)], key("; ".join(says), names[0])
     effect = entries[0].effect
     table = parameters(effect)
-    off = BeforeValidator(
-        _taken_out, json_schema_input_type=table | Literal[TAKEN_OUT] | None
-    )
+    off = BeforeValidator(_taken_out, json_schema_input_type=table | Literal[TAKEN_OUT] | None)
     otherwise = "; ".join(filter(None, (OFF, by_default(entries[0].key))))
     return Annotated[table | None, off], key(summary(effect), None, otherwise=otherwise)
 

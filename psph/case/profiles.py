@@ -69,9 +69,7 @@ def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[st
     return PROFILES[profile] | (PERIODIC[profile] if closed else {})
 
 
-def fill(
-    data: dict[str, Any], touched: list[tuple[str | int, ...]]
-) -> dict[tuple[str, ...], str]:
+def fill(data: dict[str, Any], touched: list[tuple[str | int, ...]]) -> dict[tuple[str, ...], str]:
     """Add the keys of the profile and the scheme to ``data``; which of them set which location.
 
     Keys at, above or below those ``touched`` stay as they are.  A profile or a scheme that is

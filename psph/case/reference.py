@@ -85,10 +85,7 @@ def _effects(whole: Node, table: Node) -> Iterator[str]:
 
 def _shapes(whole: Node) -> Iterator[str]:
     shapes = whole["$defs"]["Shape"]["properties"]
-    rows = [
-        f"| `{name}` | {_type(whole, node)} | {node['description']} |"
-        for name, node in shapes.items()
-    ]
+    rows = [f"| `{name}` | {_type(whole, node)} | {node['description']} |" for name, node in shapes.items()]
     meaning = "A shape is a table with exactly one of these keys."
     yield from _section("Shapes", meaning, rows, head=("key", "value", "meaning"))
     for name, node in shapes.items():

@@ -62,9 +62,7 @@ class Difference(Table):
     """One shape without others."""
 
     base: "Shape" = key("the shape to take from", alias="from")
-    minus: Annotated[tuple["Shape", ...], Strict(False)] = key(
-        "the shapes to take away", min_length=1
-    )
+    minus: Annotated[tuple["Shape", ...], Strict(False)] = key("the shapes to take away", min_length=1)
 
 
 class Shape(Table):
@@ -95,7 +93,5 @@ class Shape(Table):
         if len(given) > 1:
             both = " and ".join(given)
             listed = ", ".join(f"{{ {name} = ... }}" for name in given)
-            raise PydanticCustomError(
-                "psph", f"{both} in one shape; to join them write union = [{listed}]"
-            )
+            raise PydanticCustomError("psph", f"{both} in one shape; to join them write union = [{listed}]")
         return self

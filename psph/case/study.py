@@ -47,18 +47,20 @@ class Study(Table):
     """The keys that ``psph study`` varies, and its measure of error."""
 
     vary: dict[Dotted, Choices] = key(
-        'keys and the values that each takes: { "space.spacing" = [0.02, 0.01] }; "off" removes '
-        "a key",
+        'keys and the values that each takes: { "space.spacing" = [0.02, 0.01] }; "off" removes a key',
         {},
     )
     grid: bool = key("all combinations of the values, not one key at a time", False)
     error: Text | None = key(
         "what is compared: velocity, pressure or density of the fluid at the end, or a column of "
-        "probes.csv over time", None, otherwise="the first that the reference has",
+        "probes.csv over time",
+        None,
+        otherwise="the first that the reference has",
     )
     against: Text | None = key(
         'what it is compared with: "exact", "theory" (of a probe), "finest" (the run with the '
-        "smallest spacing) or the name of an experiment", None,
+        "smallest spacing) or the name of an experiment",
+        None,
         otherwise="the first of these that the case has",
     )
     after: float = key("probes are compared from this time on", 0.0, unit="s", ge=0)

@@ -46,7 +46,8 @@ class Cache:
         if self.folder is None:
             return
         others = [
-            path for path in self.folder.parent.iterdir()
+            path
+            for path in self.folder.parent.iterdir()
             if DIGEST.fullmatch(path.name) and path != self.folder
         ]
         for path in sorted(others, key=_last_used, reverse=True)[KEPT:]:

@@ -62,8 +62,11 @@ def checkpoint_path(folder: Path, step: int) -> Path:
 
 def checkpoints(folder: Path) -> list[Path]:
     """The checkpoints in a folder, the newest first."""
-    found = [(int(name[1]), path) for path in Path(folder).glob("checkpoint-*.h5")
-             if (name := _NAME.fullmatch(path.name))]
+    found = [
+        (int(name[1]), path)
+        for path in Path(folder).glob("checkpoint-*.h5")
+        if (name := _NAME.fullmatch(path.name))
+    ]
     return [path for _, path in sorted(found, reverse=True)]
 
 
@@ -92,7 +95,9 @@ def write(
     shapes = {name: (total, *part.shape[1:]) for name, part in rows.items()}
     sums = wrapped_sums(comm, [checksum(part, first) for part in arrays.values()])
     header = header | {
-        "format": FORMAT, "psph": psph.__version__, "particles": total,
+        "format": FORMAT,
+        "psph": psph.__version__,
+        "particles": total,
         "checksums": dict(zip(arrays, sums)),
     }
     try:
@@ -241,9 +246,7 @@ class Saved:
         own = self._agreed(lambda: [checksum(self._rows(n, first, last), first) for n in expected])
         for name, computed in zip(expected, wrapped_sums(self.comm, own)):
             if computed != expected[name]:
-                raise CheckpointError(
-                    self._damaged(f"the dataset {name} does not match its checksum")
-                )
+                raise CheckpointError(self._damaged(f"the dataset {name} does not match its checksum"))
 
     def _share(self) -> tuple[int, int]:
         total, comm = self.header["particles"], self.comm

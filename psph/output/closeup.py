@@ -29,8 +29,9 @@ def draw(path: Path, title: str, time: float, scene, around, offset, column: int
     fluid = around.shown("kind") == FLUID
     subtitle = f"particle {around.shown('id')[column]} and its neighbours, t = {time:.6g} s"
     with style.look():
-        figure = style.sheet(style.LEFT + SIZE + style.RIGHT, style.TOP + SIZE + style.BOTTOM,
-                             title, subtitle)
+        figure = style.sheet(
+            style.LEFT + SIZE + style.RIGHT, style.TOP + SIZE + style.BOTTOM, title, subtitle
+        )
         axes = style.panel(figure, style.LEFT, style.TOP, SIZE, SIZE)
         reach = np.abs(offset).max(initial=scene.spacing) + 0.6 * scene.spacing
         axes.set_xlim(place[across] - reach, place[across] + reach)
@@ -87,11 +88,18 @@ def _arrows(axes, spots, velocity, seen, spacing: float) -> None:
     fastest = speed[seen].max(initial=0.0)
     if fastest > 0.0:
         arrows = axes.quiver(
-            *spots[seen].T, *velocity[seen].T, angles="xy", scale_units="xy", color=style.INK,
-            scale=fastest / (LONGEST * spacing), width=0.0035, zorder=3,
+            *spots[seen].T,
+            *velocity[seen].T,
+            angles="xy",
+            scale_units="xy",
+            color=style.INK,
+            scale=fastest / (LONGEST * spacing),
+            width=0.0035,
+            zorder=3,
         )
-        axes.quiverkey(arrows, 0.86, 1.03, fastest, f"{fastest:.3g} m/s", labelpos="W",
-                       fontproperties={"size": 9})
+        axes.quiverkey(
+            arrows, 0.86, 1.03, fastest, f"{fastest:.3g} m/s", labelpos="W", fontproperties={"size": 9}
+        )
 
 
 def _mark(axes, spot, scene) -> None:

@@ -14,8 +14,14 @@ def columns(dimensions: int) -> list[str]:
     """Columns of log.csv."""
     momentum = [f"momentum_{axis}" for axis in "xyz"[:dimensions]]
     return [
-        "time", "step", "dt", "kinetic_energy", "potential_energy", *momentum,
-        "largest_speed", "density_error",
+        "time",
+        "step",
+        "dt",
+        "kinetic_energy",
+        "potential_energy",
+        *momentum,
+        "largest_speed",
+        "density_error",
     ]
 
 
@@ -33,9 +39,7 @@ def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ..
     return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
 
 
-def total_energy(
-    comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable
-) -> float:
+def total_energy(comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable) -> float:
     """Σ m (v²/2 − g·x) of the fluid and Σ m u of all particles, J.
 
     ``elastic`` takes densities and rest densities (n,) and gives u, J/kg.  NaN where a density is
@@ -43,8 +47,7 @@ def total_energy(
     """
     inner = store.inner
     moved = sum(
-        x[inner] * -g + 0.5 * v[inner] ** 2
-        for x, v, g in zip(store["position"], store["velocity"], gravity)
+        x[inner] * -g + 0.5 * v[inner] ** 2 for x, v, g in zip(store["position"], store["velocity"], gravity)
     )
     with np.errstate(invalid="ignore", divide="ignore"):
         stored = elastic(store.shown("density"), store.shown("rest_density"))

@@ -32,6 +32,5 @@ def together(comm, path: Path):
     failures = [text for text in comm.allgather(failure) if text]
     if failures:
         raise OutputError(
-            f"{path}: cannot be written: {failures[0]}; check the folder, its permissions and "
-            "the free space"
+            f"{path}: cannot be written: {failures[0]}; check the folder, its permissions and the free space"
         )

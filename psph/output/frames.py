@@ -44,7 +44,11 @@ class FrameFile:
     """
 
     def __init__(
-        self, path: Path, comm, attributes: dict, kept: bytes | None = None,
+        self,
+        path: Path,
+        comm,
+        attributes: dict,
+        kept: bytes | None = None,
         fields: Iterable[Field] = SAVED,
     ):
         self._fields = {field.name: field for field in (*fields, POINTS, CONNECTIVITY)}

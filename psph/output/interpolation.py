@@ -6,7 +6,10 @@ import numpy as np
 
 
 def interpolated(
-    position: np.ndarray, values: np.ndarray, at: np.ndarray, spacing: float,
+    position: np.ndarray,
+    values: np.ndarray,
+    at: np.ndarray,
+    spacing: float,
     periods: Sequence[float | None],
 ) -> np.ndarray:
     """Values of particles at other places, averaged by the squares of (1 − r/2dx)₊.

@@ -30,9 +30,7 @@ def renew(page: Path, made: str, name: str = MEASURED) -> None:
     before, begin, rest = text.partition(first)
     _, end, after = rest.partition(last)
     if not begin or not end:
-        raise OutputError(
-            f"{page}: no place for the results; add the lines {first} and {last}"
-        )
+        raise OutputError(f"{page}: no place for the results; add the lines {first} and {last}")
     page.write_text(f"{before}{first}\n{made}\n{last}{after}", encoding="utf-8")
 
 

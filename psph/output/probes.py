@@ -50,8 +50,13 @@ class Probe:
         radius = kernel.support / kernel.inverse_h
         near = np.empty(store.owned, np.int64)
         found = find_near(
-            self.position, domain.periods, store["position"], store.low, store.low + store.owned,
-            radius * radius, near,
+            self.position,
+            domain.periods,
+            store["position"],
+            store.low,
+            store.low + store.owned,
+            radius * radius,
+            near,
         )
         near = near[:found]
         fluid = store.kind[near] == FLUID

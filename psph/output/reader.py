@@ -46,9 +46,7 @@ class Run:
     @property
     def times(self) -> np.ndarray:
         """Times of the complete frames, s."""
-        return _read(
-            self.path, lambda file: np.array([_time(file, name) for name in _whole(file)])
-        )
+        return _read(self.path, lambda file: np.array([_time(file, name) for name in _whole(file)]))
 
     def frame(self, k: int, *names: str) -> dict[str, np.ndarray]:
         """Fields of the k-th whole frame, ``-1`` the last: ``(n,)`` or ``(n, dim)`` each.
@@ -59,9 +57,7 @@ class Run:
         def read(file: h5py.File) -> dict[str, np.ndarray]:
             frames = _whole(file)
             if not -len(frames) <= k < len(frames):
-                raise OutputError(
-                    f"{self.path}: frame: {k} is not one of the {len(frames)} frames so far"
-                )
+                raise OutputError(f"{self.path}: frame: {k} is not one of the {len(frames)} frames so far")
             frame = file["frames"][frames[k]]
             saved = [name for name in frame if name != "points"]
             for name in set(names) - set(saved):
@@ -74,9 +70,7 @@ class Run:
 
     def unit(self, name: str) -> str:
         """The unit of a field, as the last whole frame says."""
-        return _read(
-            self.path, lambda file: str(file["frames"][_whole(file)[-1]][name].attrs["unit"])
-        )
+        return _read(self.path, lambda file: str(file["frames"][_whole(file)[-1]][name].attrs["unit"]))
 
     def probes(self) -> dict[str, np.ndarray]:
         """The columns of ``probes.csv`` by name; empty if the case has no probes."""

@@ -85,9 +85,7 @@ def size_of(shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> int:
     return sum(math.prod(shape) * rows[name].itemsize for name, shape in shapes.items())
 
 
-def create_datasets(
-    file, shapes: dict[str, tuple], rows: dict[str, np.ndarray]
-) -> list[tuple[int, int]]:
+def create_datasets(file, shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> list[tuple[int, int]]:
     """Datasets of these ``shapes``, contiguous, with the types of ``rows``; rank 0 alone.
 
     Returns where their numbers will lie.

@@ -57,9 +57,7 @@ def sheet(width: float, height: float, title: str, subtitle: str) -> Figure:
 def panel(figure: Figure, left: float, top: float, width: float, height: float) -> Axes:
     """Axes whose upper left corner lies ``left`` and ``top`` inches from that of the page."""
     across, down = figure.get_size_inches()
-    return figure.add_axes(
-        (left / across, 1 - (top + height) / down, width / across, height / down)
-    )
+    return figure.add_axes((left / across, 1 - (top + height) / down, width / across, height / down))
 
 
 def width(axes: Axes) -> float:

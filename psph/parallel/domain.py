@@ -34,8 +34,17 @@ class Domain:
     """
 
     def __init__(
-        self, comm: MPI.Comm, store: Store, axis: int, cutoff: float, lower, upper, periods,
-        ghost_fields: tuple[str, ...], refreshed: tuple[str, ...], lanes: int = Metres.lanes,
+        self,
+        comm: MPI.Comm,
+        store: Store,
+        axis: int,
+        cutoff: float,
+        lower,
+        upper,
+        periods,
+        ghost_fields: tuple[str, ...],
+        refreshed: tuple[str, ...],
+        lanes: int = Metres.lanes,
     ):
         self.comm, self.store = comm, store
         self.axis, self.cutoff, self.periods = axis, cutoff, tuple(periods)
@@ -81,8 +90,14 @@ class Domain:
         self._sort(self._balance_and_migrate(spent))
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
-            self._used_lists(), self.store, self.grid, self.starts, self.planes, self.cutoff,
-            self.periods, self.lanes,
+            self._used_lists(),
+            self.store,
+            self.grid,
+            self.starts,
+            self.planes,
+            self.cutoff,
+            self.periods,
+            self.lanes,
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[: self.store.total] = now[: self.store.total]
@@ -175,8 +190,13 @@ class Domain:
         position = store["position"]
         first = store.low
         number_cells(
-            tuple(position[d] for d in grid.axes), first, first + store.owned,
-            grid.lower, grid.inverse, grid.along_axes, cells,
+            tuple(position[d] for d in grid.axes),
+            first,
+            first + store.owned,
+            grid.lower,
+            grid.inverse,
+            grid.along_axes,
+            cells,
         )
         return cells
 
@@ -216,8 +236,12 @@ class Domain:
         if self.halo is not None:
             self.halo.free()
         self.halo = Halo(
-            self.comm, store, self._partner(-1), self._partner(1),
-            int(filled[:per_plane].sum()), int(filled[-per_plane:].sum()),
+            self.comm,
+            store,
+            self._partner(-1),
+            self._partner(1),
+            int(filled[:per_plane].sum()),
+            int(filled[-per_plane:].sum()),
         )
 
     def _trade_planes(self, lowest: np.ndarray, highest: np.ndarray):

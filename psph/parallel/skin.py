@@ -21,7 +21,14 @@ PART_OF_PERIOD = 0.25
 most."""
 
 REMEMBERED = (
-    "drifted", "_apart", "_since", "_closing", "_acceleration", "_shift", "_before", "_longest_step",
+    "drifted",
+    "_apart",
+    "_since",
+    "_closing",
+    "_acceleration",
+    "_shift",
+    "_before",
+    "_longest_step",
 )
 """What is known of the lists since they were made, and of the step before."""
 
@@ -41,9 +48,7 @@ class Skin:
     def __init__(self, domain: Domain, width: float):
         self.domain, self.width = domain, width
         lengths = [p for p in domain.periods if p is not None]
-        self._farthest = min(
-            PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf)
-        )
+        self._farthest = min(PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf))
         self._before = [0.0, 0.0]
         self.renew()
 
@@ -115,8 +120,6 @@ class Skin:
         boxes = bounding_boxes(
             store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach, grid.periodic
         )
-        mine = largest_differences(
-            *boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
-        )
+        mine = largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic)
         self._apart, self._closing, self.drifted = np.sqrt(largest(domain.comm, mine)).tolist()
         self._since = 0.0

@@ -31,9 +31,7 @@ class TooManyRanks(Refused):
 def check_ranks(ranks: int, planes: int) -> None:
     """Raise TooManyRanks, with the largest usable number, where a rank would get no plane."""
     if ranks > planes:
-        raise TooManyRanks(
-            f"{ranks} ranks for {planes} planes of cells: use at most {planes} ranks"
-        )
+        raise TooManyRanks(f"{ranks} ranks for {planes} planes of cells: use at most {planes} ranks")
 
 
 def partition(costs: np.ndarray, ranks: int) -> np.ndarray:

@@ -87,12 +87,9 @@ def _store_packed(typing, entries, end, column, table, bits):
         row = builder.load(place(3, builder.mul(args[4], ir.IntType(64)(LANES))))
         row.align = 4
         nothing = ir.Constant(lanes, ir.Undefined)
-        first = builder.insert_element(
-            nothing, builder.trunc(args[2], ir.IntType(32)), ir.IntType(32)(0)
-        )
+        first = builder.insert_element(nothing, builder.trunc(args[2], ir.IntType(32)), ir.IntType(32)(0))
         spread = builder.shuffle_vector(first, nothing, ir.Constant(lanes, [0] * LANES))
         builder.store(builder.add(row, spread), place(0, args[1])).align = 4
         return context.get_dummy_value()
 
     return types.none(entries, types.uint64, types.uint64, table, types.uint64), build
-

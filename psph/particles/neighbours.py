@@ -38,7 +38,13 @@ def _entries(count: int) -> np.ndarray:
 
 
 def build(
-    room: Neighbours, store, grid: Grid, starts, planes: int, cutoff: float, periods,
+    room: Neighbours,
+    store,
+    grid: Grid,
+    starts,
+    planes: int,
+    cutoff: float,
+    periods,
     lanes: int,
 ):
     """Lists of every owned particle, in the global order of cells, then ids.
@@ -54,9 +60,22 @@ def build(
     while True:
         needed = max(
             in_threads(
-                fill_lists, 1, planes + 1, position, periods, cutoff * cutoff, grid.counts,
-                grid.periodic, grid.reach, starts, store.low, owned,
-                lanes, room.begin, room.lengths, room.lists,
+                fill_lists,
+                1,
+                planes + 1,
+                position,
+                periods,
+                cutoff * cutoff,
+                grid.counts,
+                grid.periodic,
+                grid.reach,
+                starts,
+                store.low,
+                owned,
+                lanes,
+                room.begin,
+                room.lengths,
+                room.lists,
             )
         )
         if needed == 0:
@@ -84,8 +103,21 @@ def in_single_precision(store, grid: Grid, first: int, cutoff: float):
 
 @compiled
 def fill_lists(
-    first_plane, last_plane, position, periods, cutoff2, counts, periodic, reach, starts, low,
-    owned, multiple, begin, lengths, lists,
+    first_plane,
+    last_plane,
+    position,
+    periods,
+    cutoff2,
+    counts,
+    periodic,
+    reach,
+    starts,
+    low,
+    owned,
+    multiple,
+    begin,
+    lengths,
+    lists,
 ):
     """Fill the rows of some planes; returns 0, or about how many entries are needed for all.
 
@@ -169,9 +201,7 @@ def grouped(n):
 
 
 @compiled
-def candidate_ranges(
-    plane, row, column, rows, columns, periodic, reach, starts, from_k, to_k
-):
+def candidate_ranges(plane, row, column, rows, columns, periodic, reach, starts, from_k, to_k):
     """Ranges of columns of the store that can hold neighbours of a cell's particles, in order."""
     n = 0
     candidates = 0

@@ -83,8 +83,15 @@ class Records:
         if self._fixed:
             whole = self.table.view(np.int32)
             in_threads(
-                fill_fixed, first, last, data, rows, *self._sign, self._steps_per_metre,
-                self.table, whole,
+                fill_fixed,
+                first,
+                last,
+                data,
+                rows,
+                *self._sign,
+                self._steps_per_metre,
+                self.table,
+                whole,
             )
         else:
             in_threads(fill_records, first, last, data, rows, *self._sign, self.table)

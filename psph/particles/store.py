@@ -42,7 +42,11 @@ class Store:
     """
 
     def __init__(
-        self, dimensions: int, fields: Iterable[Field], constants: dict[str, float], view: type,
+        self,
+        dimensions: int,
+        fields: Iterable[Field],
+        constants: dict[str, float],
+        view: type,
         kinds: Sequence[int] = (FLUID, WALL),
     ):
         self.dimensions = dimensions
@@ -140,8 +144,7 @@ class Store:
         """
         if columns > MOST:
             raise TooManyParticles(
-                f"{columns:,} particles and ghosts on one rank: it holds {MOST:,} at the most; "
-                "use more ranks"
+                f"{columns:,} particles and ghosts on one rank: it holds {MOST:,} at the most; use more ranks"
             )
         if columns + SLACK <= self.capacity:
             return

@@ -75,8 +75,7 @@ class Catalogue(NamedTuple):
 @cache
 def _fields(effects: tuple[type, ...]) -> dict[str, Field]:
     declared = [
-        getattr(effect, name) for effect in effects for name in ("writes", "marks")
-        if hasattr(effect, name)
+        getattr(effect, name) for effect in effects for name in ("writes", "marks") if hasattr(effect, name)
     ]
     return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, OF_SCENE, declared)
 

@@ -51,11 +51,12 @@ PAIR_VECTORS = ("x_ij", "u_ij")
 
 def take(view, k: int):
     """The values of particle ``k`` of a view (psph.fields.view_of) of all."""
-    return type(view)(*(
-        at(entry, k) if isinstance(entry, tuple)
-        else entry[k] if isinstance(entry, np.ndarray) else entry
-        for entry in view
-    ))
+    return type(view)(
+        *(
+            at(entry, k) if isinstance(entry, tuple) else entry[k] if isinstance(entry, np.ndarray) else entry
+            for entry in view
+        )
+    )
 
 
 @overload(take)
@@ -63,7 +64,9 @@ def _typed_take(view, k):
     parts = (
         tuple_of(f"view.{name}[{d}][k]" for d in range(len(kind)))
         if isinstance(kind, types.BaseTuple)
-        else f"view.{name}[k]" if isinstance(kind, types.Array) else f"view.{name}"
+        else f"view.{name}[k]"
+        if isinstance(kind, types.Array)
+        else f"view.{name}"
         for name, kind in zip(view.instance_class._fields, view.types)
     )
     return unrolled("view, k", f"return View{tuple_of(parts)}", View=view.instance_class)
@@ -75,11 +78,16 @@ def fetch(view, records, lists, entry: int):
     Arrays of ``view`` say which quantities the records hold, in this order.
     """
     left = list(records[lists[entry]])
-    found = type(view)(*(
-        tuple(left.pop(0) for _ in entry) if isinstance(entry, tuple)
-        else left.pop(0) if isinstance(entry, np.ndarray) else entry
-        for entry in view
-    ))
+    found = type(view)(
+        *(
+            tuple(left.pop(0) for _ in entry)
+            if isinstance(entry, tuple)
+            else left.pop(0)
+            if isinstance(entry, np.ndarray)
+            else entry
+            for entry in view
+        )
+    )
     if getattr(found, "wall", None) is not FOLDED:
         return found
     signed = found.specific_volume
@@ -92,7 +100,9 @@ def _typed_fetch(view, records, lists, entry):
     parts = {
         name: tuple_of(f"numbers[{next(places)}]" for _ in kind)
         if isinstance(kind, types.BaseTuple)
-        else f"numbers[{next(places)}]" if isinstance(kind, types.Array) else f"view.{name}"
+        else f"numbers[{next(places)}]"
+        if isinstance(kind, types.Array)
+        else f"view.{name}"
         for name, kind in zip(names, view.types)
     }
     if "wall" in names and isinstance(view.types[names.index("wall")], types.Boolean):
@@ -102,7 +112,9 @@ def _typed_fetch(view, records, lists, entry):
         "view, records, lists, entry",
         "numbers = turn(records, lists, entry)",
         f"return View{tuple_of(parts.values())}",
-        View=view.instance_class, turn=turning(next(places)), where=where,
+        View=view.instance_class,
+        turn=turning(next(places)),
+        where=where,
     )
 
 
@@ -114,9 +126,7 @@ def geometry(kernel, x_ij, softening, i, j):
     r = np.sqrt(r2)
     inverse_r = 1.0 / r
     dw_r = slope_over_r(kernel, r, inverse_r)
-    return Pair(
-        x_ij, u_ij, r2, r, inverse_r, dot(u_ij, x_ij), weight(kernel, r), dw_r, j.mass * dw_r
-    )
+    return Pair(x_ij, u_ij, r2, r, inverse_r, dot(u_ij, x_ij), weight(kernel, r), dw_r, j.mass * dw_r)
 
 
 def _methods(effects, name: str) -> dict[int, Any]:
@@ -152,7 +162,10 @@ def _sum_of(name: str, arguments: str, empty, plus):
         # The last first: the pair loop of plain SPH is two instructions shorter so.
         whole = functools.reduce(lambda a, b: f"plus({a}, {b})", reversed(terms))
         return unrolled(
-            f"effects, {arguments}", f"return {whole}", plus=plus, empty=register_jitable(empty),
+            f"effects, {arguments}",
+            f"return {whole}",
+            plus=plus,
+            empty=register_jitable(empty),
             **_named(methods),
         )
 
@@ -247,20 +260,14 @@ def _typed_start(reductions, i):
 
 def gather_each(reductions, totals, i, j, pair):
     """All sums with the neighbours j in them."""
-    return tuple(
-        effect.gather(total, i, j, pair) for effect, total in zip(reductions, totals)
-    )
+    return tuple(effect.gather(total, i, j, pair) for effect, total in zip(reductions, totals))
 
 
 @overload(gather_each)
 def _typed_gather_each(reductions, totals, i, j, pair):
     methods = _methods(reductions, "gather")
-    sums = (
-        f"method_{place}(reductions[{place}], totals[{place}], i, j, pair)" for place in methods
-    )
-    return unrolled(
-        "reductions, totals, i, j, pair", f"return {tuple_of(sums)}", **_named(methods)
-    )
+    sums = (f"method_{place}(reductions[{place}], totals[{place}], i, j, pair)" for place in methods)
+    return unrolled("reductions, totals, i, j, pair", f"return {tuple_of(sums)}", **_named(methods))
 
 
 def fold_each(reductions, totals):
@@ -273,12 +280,11 @@ def _typed_fold_each(reductions, totals):
     joins = _methods(reductions, "join")
     sums = (
         f"fold(method_{place}, reductions[{place}], totals[{place}])"
-        if place in joins else f"total(totals[{place}])"
+        if place in joins
+        else f"total(totals[{place}])"
         for place in range(len(reductions))
     )
-    return unrolled(
-        "reductions, totals", f"return {tuple_of(sums)}", fold=fold, total=total, **_named(joins)
-    )
+    return unrolled("reductions, totals", f"return {tuple_of(sums)}", fold=fold, total=total, **_named(joins))
 
 
 def finish_acceleration(reductions, totals, i):
@@ -293,12 +299,15 @@ def finish_acceleration(reductions, totals, i):
 @overload(finish_acceleration)
 def _typed_finish_acceleration(reductions, totals, i):
     methods = _methods(reductions, "finish_acceleration")
-    lines = (
-        f"a = add(a, method_{place}(reductions[{place}], totals[{place}], i))" for place in methods
-    )
+    lines = (f"a = add(a, method_{place}(reductions[{place}], totals[{place}], i))" for place in methods)
     return unrolled(
-        "reductions, totals, i", "a = zero_like(i.position)", *lines, "return a",
-        add=add, zero_like=zero_like, **_named(methods),
+        "reductions, totals, i",
+        "a = zero_like(i.position)",
+        *lines,
+        "return a",
+        add=add,
+        zero_like=zero_like,
+        **_named(methods),
     )
 
 
@@ -313,13 +322,15 @@ def finish_value(reductions, totals, i, kernel, k, written):
 def _typed_finish_value(reductions, totals, i, kernel, k, written):
     methods = _methods(reductions, "finish_value")
     lines = (
-        f"store(written[{place}], k, "
-        f"method_{place}(reductions[{place}], totals[{place}], i, kernel))"
+        f"store(written[{place}], k, method_{place}(reductions[{place}], totals[{place}], i, kernel))"
         for place in methods
     )
     return unrolled(
-        "reductions, totals, i, kernel, k, written", *lines, "return",
-        store=_store, **_named(methods),
+        "reductions, totals, i, kernel, k, written",
+        *lines,
+        "return",
+        store=_store,
+        **_named(methods),
     )
 
 

@@ -21,7 +21,11 @@ APART = 0.5
 
 
 def flops_per_pair(
-    effects: tuple, reductions: tuple, kernel, seen: Iterable[Field], shared: Iterable[str],
+    effects: tuple,
+    reductions: tuple,
+    kernel,
+    seen: Iterable[Field],
+    shared: Iterable[str],
     periods: tuple,
 ) -> int:
     """Additions, multiplications, divisions, roots and exponentials of an ordered pair.

@@ -41,9 +41,7 @@ def is_prescribed(motion) -> bool:
     return hasattr(motion, "place")
 
 
-def carry(
-    motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity
-):
+def carry(motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity):
     """Put particle ``k`` where the prescribed motion of its group has it at ``time``, and at its speed."""
     number = motion_of[group[k]] if motions else FIXED
     for n, motion in enumerate(motions, PRESCRIBED):
@@ -67,16 +65,15 @@ def _beside(x, old, periods):
 def _typed_beside(x, old, periods):
     parts = (
         f"x[{d}] - periods[{d}] * rint((x[{d}] - old[{d}]) / periods[{d}])"
-        if hasattr(period, "bitwidth") else f"x[{d}]"
+        if hasattr(period, "bitwidth")
+        else f"x[{d}]"
         for d, period in enumerate(periods)
     )
     return unrolled("x, old, periods", f"return ({', '.join(parts)},)", rint=np.rint)
 
 
 @overload(carry)
-def _typed_carry(
-    motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity
-):
+def _typed_carry(motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity):
     lines = ["number = motion_of[group[k]]"] if len(motions) else []
     names = {"at": at, "put": put, "beside": _beside}
     for n, kind in enumerate(motions):
@@ -91,7 +88,9 @@ def _typed_carry(
         ]
     return unrolled(
         "motions, motion_of, group, k, time, periods, anchor, position, velocity, predicted_velocity",
-        *lines, "return", **names,
+        *lines,
+        "return",
+        **names,
     )
 
 
@@ -100,9 +99,7 @@ def hurry(motions, motion_of, group, k, time, dt, anchor):
     number = motion_of[group[k]] if motions else FIXED
     for n, motion in enumerate(motions, PRESCRIBED):
         if n == number:
-            return _hurry(
-                motion.velocity(at(anchor, k), time), motion.velocity(at(anchor, k), time - dt), dt
-            )
+            return _hurry(motion.velocity(at(anchor, k), time), motion.velocity(at(anchor, k), time - dt), dt)
     return 0.0, 0.0
 
 
@@ -120,6 +117,4 @@ def _typed_hurry(motions, motion_of, group, k, time, dt, anchor):
         names[f"velocity_{n}"] = method_of(kind, "velocity")
         speeds = (f"velocity_{n}(motions[{n}], at(anchor, k), {t})" for t in ("time", "time - dt"))
         lines += [f"if number == {n + PRESCRIBED}:", f"    return hurry({', '.join(speeds)}, dt)"]
-    return unrolled(
-        "motions, motion_of, group, k, time, dt, anchor", *lines, "return 0.0, 0.0", **names
-    )
+    return unrolled("motions, motion_of, group, k, time, dt, anchor", *lines, "return 0.0, 0.0", **names)

@@ -93,11 +93,10 @@ def steps_each(records, k, positions, units):
 
 @overload(steps_each)
 def _typed_steps_each(records, k, positions, units):
-    parts = (
-        f"steps_between(records, k, axes[{d}], positions[{d}], units[{d}])"
-        for d in range(len(units))
-    )
+    parts = (f"steps_between(records, k, axes[{d}], positions[{d}], units[{d}])" for d in range(len(units)))
     return unrolled(
-        "records, k, positions, units", f"return {tuple_of(parts)}", steps_between=steps_between,
+        "records, k, positions, units",
+        f"return {tuple_of(parts)}",
+        steps_between=steps_between,
         axes=tuple(np.arange(len(units), dtype=np.uint64)),
     )

@@ -55,9 +55,7 @@ def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads
     ``fields`` are all that a particle can carry, by name.
     """
     owner = type(effect).__name__
-    particle = {
-        name: field.width(dimensions) if field.composed else None for name, field in fields.items()
-    }
+    particle = {name: field.width(dimensions) if field.composed else None for name, field in fields.items()}
     geometry = {name: dimensions if name in PAIR_VECTORS else None for name in Pair._fields}
     i, j, pair = (_Recorder(owner, widths) for widths in (particle, particle, geometry))
     for value in VALUES:

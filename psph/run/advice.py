@@ -15,9 +15,14 @@ FASTER = 2.0
 def advice(scene, guard: str, suspect) -> list[str]:
     """Things to try, the most promising first; at least one."""
     return [
-        *_long_step(scene), *_scheme(scene), *_pressure(scene, suspect),
-        *_walls(scene, guard, suspect), *_sound(scene, guard), *_friction(scene),
-        *_shorter_step(scene), *_bound(guard),
+        *_long_step(scene),
+        *_scheme(scene),
+        *_pressure(scene, suspect),
+        *_walls(scene, guard, suspect),
+        *_sound(scene, guard),
+        *_friction(scene),
+        *_shorter_step(scene),
+        *_bound(guard),
     ]
 
 
@@ -44,10 +49,7 @@ def _scheme(scene) -> Iterator[str]:
 def _pressure(scene, suspect) -> Iterator[str]:
     physics, open_air = scene.case.physics, scene.has_free_surface
     if physics.pressure_gradient == "minimum" and open_air:
-        yield (
-            'give physics.pressure_gradient = "symmetric": "minimum" (p⁻) is unstable at a '
-            "free surface"
-        )
+        yield ('give physics.pressure_gradient = "symmetric": "minimum" (p⁻) is unstable at a free surface')
     if not (suspect.value("pressure") < 0.0 or scene.lowest_pressure < 0.0):
         return
     if open_air and physics.tension_floor is None:

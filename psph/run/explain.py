@@ -193,7 +193,7 @@ def _early_passes(plan: Plan) -> Iterator[str]:
 
 def _asked_by(key: str) -> str:
     name, _, choice = key.partition("=")
-    return f"{name} = \"{choice}\"" if choice else name
+    return f'{name} = "{choice}"' if choice else name
 
 
 def _first_line(effect) -> str:

@@ -98,7 +98,9 @@ class Guards:
         """Energy of motion, height and compression, J."""
         sim, state, c = self.simulation, self.scene.state, self.scene.sound_speed
         return total_energy(
-            sim.comm, sim.store, self.scene.height_gravity,
+            sim.comm,
+            sim.store,
+            self.scene.height_gravity,
             lambda density, rest: state.energy(density, rest, c),
         )
 
@@ -142,9 +144,7 @@ class Guards:
                     "The state is not finite, so there is no checkpoint of it; `checkpoint.every` "
                     "leaves some on the way."
                 )
-            return (
-                f"The state is not finite: `{kept}` is the last good one, `{again}` goes on there."
-            )
+            return f"The state is not finite: `{kept}` is the last good one, `{again}` goes on there."
         path = write_checkpoint(self.simulation, self.record, case, self.folder)
         self.record.write_last()
         kept = f"`{path.name}` holds this state, and so does the last frame."

@@ -27,8 +27,7 @@ def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[s
     rows = _moments(scene, out.probes, steps)
     columns = 1 + sum(len(probe.columns(scene.dimensions)) for probe in probes)
     yield (
-        f"  probes.csv          {rows:,} rows of {columns:,} columns, about "
-        f"{amount(rows * columns * DIGITS)}"
+        f"  probes.csv          {rows:,} rows of {columns:,} columns, about {amount(rows * columns * DIGITS)}"
     )
     plural = "s look" if len(probes) > 1 else " looks"
     yield (

@@ -69,8 +69,15 @@ def _settings(scene, lattice: str, form: str, added: tuple) -> Iterator[Settings
     for pressure, start in _extremes(scene):
         density, stiffness = _state_at(start, pressure)
         yield Settings(
-            space.kernel, space.smoothing, lattice, pressure, _form(form, pressure), density,
-            stiffness**0.5, space.spacing, added,
+            space.kernel,
+            space.smoothing,
+            lattice,
+            pressure,
+            _form(form, pressure),
+            density,
+            stiffness**0.5,
+            space.spacing,
+            added,
         )
 
 

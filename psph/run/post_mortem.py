@@ -35,8 +35,14 @@ def write_post_mortem(
             from psph.output import closeup  # late: what draws takes a while, and most runs are well
 
             closeup.draw(
-                path.with_name(PICTURE), scene.case.title or scene.case.name, simulation.time,
-                scene, suspect.around, suspect.offset, suspect.column, suspect.place,
+                path.with_name(PICTURE),
+                scene.case.title or scene.case.name,
+                simulation.time,
+                scene,
+                suspect.around,
+                suspect.offset,
+                suspect.column,
+                suspect.place,
             )
             text = "\n".join(_report(scene, simulation, what, suspect, tries, left))
             path.write_text(text, encoding="utf-8")
@@ -96,8 +102,7 @@ def _pushes(suspect: Suspect) -> Iterator[str]:
             f"{_zero(share.density_rate):.4g} | {np.linalg.norm(share.shift):.4g} |"
         )
     yield (
-        f"| all | {length:.4g} | {length:.4g} | "
-        f"{sum(share.density_rate for share in suspect.shares):.4g} | |"
+        f"| all | {length:.4g} | {length:.4g} | {sum(share.density_rate for share in suspect.shares):.4g} | |"
     )
 
 

@@ -74,9 +74,7 @@ class Record:
         self.probe_table = None
         if names:
             self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
-        self.log = CsvTable(
-            folder / LOG, diagnostics.columns(scene.dimensions), comm, sizes.get(LOG)
-        )
+        self.log = CsvTable(folder / LOG, diagnostics.columns(scene.dimensions), comm, sizes.get(LOG))
         self.accuracy = self.errors = None
         self.latest_errors: list[float] = []
         if scene.exact:
@@ -91,14 +89,15 @@ class Record:
             self.write_log: Schedule(out.log),
         }
         self.further = [
-            (table, CsvTable(
-                folder / f"{name}.csv", ["time", *table.columns(scene)], comm, sizes.get(f"{name}.csv")
-            ))
+            (
+                table,
+                CsvTable(
+                    folder / f"{name}.csv", ["time", *table.columns(scene)], comm, sizes.get(f"{name}.csv")
+                ),
+            )
             for name, table in scene.tables.items()
         ]
-        self.schedules |= {
-            partial(self.write_further, *one): Schedule(one[0].every) for one in self.further
-        }
+        self.schedules |= {partial(self.write_further, *one): Schedule(one[0].every) for one in self.further}
         self.last_written = dict.fromkeys(self.schedules, -1)
         if kept:
             self._restore(kept)

@@ -42,11 +42,14 @@ def write_checkpoint(simulation: Simulation, record: Record, case, folder: Path)
     with simulation.ledger("output"):
         kept = record.state()  # first: it has the frames on the disk
         checkpoint.write(
-            path, simulation.comm,
+            path,
+            simulation.comm,
             {name: store.shown(name) for name in ("id", "group", *store.rows)},
             {
-                "case": case_digest(case), "name": case.name,
-                "state": simulation.state(), "record": kept,
+                "case": case_digest(case),
+                "name": case.name,
+                "state": simulation.state(),
+                "record": kept,
             },
             record.frames.structure(),
         )
@@ -74,8 +77,7 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
     now = saved.state["time"]
     if extend and case.time.end <= now:
         raise CheckpointError(
-            f"{saved.path}: time.end = {case.time.end:g} s lies before it, at {now:.6g} s: give a "
-            "later end"
+            f"{saved.path}: time.end = {case.time.end:g} s lies before it, at {now:.6g} s: give a later end"
         )
     return case.under(saved.header["name"]), saved
 
@@ -85,10 +87,12 @@ def _allowed(extend: Sequence[str]) -> Sequence[str]:
         table, _, name = text.partition("=")[0].strip().partition(".")
         keys = MAY_CHANGE.get(table, ())
         if not name or (keys is not True and name not in keys):
-            raise CaseError([
-                f"--extend {shortened(text, LONGEST_QUOTE)}: would make it another run; give time.end, "
-                "a key of output, checkpoint or guards, or start the case again"
-            ])
+            raise CaseError(
+                [
+                    f"--extend {shortened(text, LONGEST_QUOTE)}: would make it another run; give time.end, "
+                    "a key of output, checkpoint or guards, or start the case again"
+                ]
+            )
     return extend
 
 

@@ -52,8 +52,13 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     begun = time.perf_counter()
     store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
     examples = (
-        tuple((one.effects, one.reductions) for one in plan.passes), plan.kernel, plan.state,
-        plan.space, plan.motions, scene.periods, store.view(),
+        tuple((one.effects, one.reductions) for one in plan.passes),
+        plan.kernel,
+        plan.state,
+        plan.space,
+        plan.motions,
+        scene.periods,
+        store.view(),
     )
     ready = marker("step and probes" if scene.case.probes else "step", *examples)
     together = comm.bcast(ready is None or not is_kept(*examples) or ready.exists())

@@ -70,7 +70,10 @@ def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = Non
 
 
 def resume(
-    folder: Path, comm, extend: Sequence[str] = (), chosen: str | None = None,
+    folder: Path,
+    comm,
+    extend: Sequence[str] = (),
+    chosen: str | None = None,
     say: Say | None = None,
 ) -> Finished:
     """Go on with the run in ``folder`` from its newest checkpoint, or the ``chosen`` one.
@@ -82,13 +85,23 @@ def resume(
     case, saved = take_up(folder, comm, extend, chosen)
     with Watch(case.checkpoint) as watch:
         return _simulate(
-            Scene(case), folder, comm, say, watch, lambda: _reopen_folder(case, folder, saved),
+            Scene(case),
+            folder,
+            comm,
+            say,
+            watch,
+            lambda: _reopen_folder(case, folder, saved),
             saved,
         )
 
 
 def _simulate(
-    scene, folder: Path, comm, say: Say | None, watch: Watch, prepare: Callable[[], None],
+    scene,
+    folder: Path,
+    comm,
+    say: Say | None,
+    watch: Watch,
+    prepare: Callable[[], None],
     saved: Saved | None = None,
 ) -> Finished:
     begun, case = time.perf_counter(), scene.case
@@ -163,8 +176,7 @@ def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: 
     if call.ends:
         by = "checkpoint.wall_clock" if call is Call.WALL_CLOCK else call.name
         raise Stopped(
-            f"stopped by {by} at t = {simulation.time:.6g} s: resume with "
-            f"`python -m psph resume {folder}`"
+            f"stopped by {by} at t = {simulation.time:.6g} s: resume with `python -m psph resume {folder}`"
         )
 
 

@@ -108,7 +108,9 @@ def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -
     parts = simulation.comm.allgather({name: store.shown(name)[near] for name in names})
     every = {name: np.concatenate([part[name] for part in parts]) for name in names}
     order = np.argsort(every["id"])
-    gathered = Store(store.dimensions, store.fields.values(), store.constants, type(store.view()), store.kinds)
+    gathered = Store(
+        store.dimensions, store.fields.values(), store.constants, type(store.view()), store.kinds
+    )
     block = np.empty((len(gathered.data), len(order)))
     for name, rows in gathered.rows.items():
         block[rows.start : rows.stop] = every[name][order].reshape(len(order), -1).T
@@ -128,9 +130,7 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
             j = take(view, k)
             x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
             pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
-        return tuple(
-            _share(effect, i, pairs, simulation.dt) for effect in simulation.plan.effects
-        )
+        return tuple(_share(effect, i, pairs, simulation.dt) for effect in simulation.plan.effects)
 
 
 def _share(effect, i, pairs, dt: float) -> Share:

@@ -48,7 +48,10 @@ def faults(scene: Scene) -> Iterator[str]:
         yield f"{scene.case.file}: {line}"
         return  # the others would only follow from it
     places = list(_spacing_faults(scene)) or [
-        *_domain_faults(scene), *_site_faults(scene), *_probe_faults(scene), *_exact_faults(scene)
+        *_domain_faults(scene),
+        *_site_faults(scene),
+        *_probe_faults(scene),
+        *_exact_faults(scene),
     ]
     for line in places or _state_faults(scene):  # an empty shape has no pressure
         yield f"{scene.case.file}: {line}"
@@ -98,8 +101,16 @@ def _far_faults(scene: Scene) -> Iterator[str]:
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
     for kind in (
-        _thin_walls, _surface_threshold, _minimum_at_surface, _minimum_in_disorder,
-        _background_at_surface, _transport_at_surface, _slow_sound, _jitter, misfits, slips,
+        _thin_walls,
+        _surface_threshold,
+        _minimum_at_surface,
+        _minimum_in_disorder,
+        _background_at_surface,
+        _transport_at_surface,
+        _slow_sound,
+        _jitter,
+        misfits,
+        slips,
     ):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
@@ -141,8 +152,7 @@ def _spacing_faults(scene: Scene) -> Iterator[str]:
     """A spacing that leaves fluids without a particle, and that none of them is thick enough for."""
     fluids = scene.case.fluids
     thickness = {
-        name: min(up - low for low, up in zip(*bounds(fluid.shape)))
-        for name, fluid in fluids.items()
+        name: min(up - low for low, up in zip(*bounds(fluid.shape))) for name, fluid in fluids.items()
     }
     thickest = max(thickness, key=thickness.get)
     if scene.spacing > thickness[thickest] and not scene.census.sizes[: len(fluids)].all():
@@ -264,9 +274,7 @@ def _surface_threshold(scene: Scene) -> Iterator[str]:
     sums = f"the kernel sum is {interior:.3f} inside and {surface:.3f} in the surface row"
     between = f"a value between {surface:.3f} and {interior:.3f}, or another space.smoothing"
     if surface >= effect.threshold:
-        yield (
-            f"physics.free_surface: {effect.threshold:g} detects no surface, {sums}; give {between}"
-        )
+        yield (f"physics.free_surface: {effect.threshold:g} detects no surface, {sums}; give {between}")
     elif interior < effect.threshold:
         yield (
             f"physics.free_surface: {effect.threshold:g} treats every particle as surface, {sums}; "
@@ -284,8 +292,10 @@ def _minimum_at_surface(scene: Scene) -> Iterator[str]:
 
 def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
     physics = scene.case.physics
-    rubs = physics.artificial_viscosity or physics.pair_damping or any(
-        fluid.viscosity for fluid in scene.case.fluids.values()
+    rubs = (
+        physics.artificial_viscosity
+        or physics.pair_damping
+        or any(fluid.viscosity for fluid in scene.case.fluids.values())
     )
     disordered = any(fluid.jitter for fluid in scene.case.fluids.values())
     if physics.pressure_gradient == "minimum" and disordered and not rubs:

@@ -95,8 +95,7 @@ def lattice_around(
     ``axis`` None: the longest one, of equals the first.  No site at all gives counts of 0.
     """
     ranges = [
-        [sites_between(*ends, o, spacing) for *ends, o in zip(lower, upper, origin)]
-        for lower, upper in boxes
+        [sites_between(*ends, o, spacing) for *ends, o in zip(lower, upper, origin)] for lower, upper in boxes
     ]
     found = [box for box in ranges if all(low < end for low, end in box)]
     if not found:

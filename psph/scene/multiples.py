@@ -38,7 +38,8 @@ def widths(scene: "Scene") -> list[Width]:
     case = scene.case
     found = [
         Width("space.upper", d, low, low + period)
-        for d, (low, period) in enumerate(zip(scene.lower, scene.periods)) if period is not None
+        for d, (low, period) in enumerate(zip(scene.lower, scene.periods))
+        if period is not None
     ]
     for name, fluid in case.fluids.items():
         boxes = _boxes(fluid.shape)
@@ -87,9 +88,7 @@ def nearest_fit(
     first = math.ceil(shortest / (most * spacing) - TOLERANCE)
     last = math.floor(shortest / (least * spacing) + TOLERANCE)
     tried = (shortest / n for n in range(max(first, 1), last + 1))
-    return min(
-        (x for x in tried if fits(x, lengths)), key=lambda x: abs(math.log(x / spacing)), default=None
-    )
+    return min((x for x in tried if fits(x, lengths)), key=lambda x: abs(math.log(x / spacing)), default=None)
 
 
 def _boxes(shape: Shape) -> Iterator[Box]:
@@ -119,5 +118,6 @@ def _cavities(shape: Shape) -> Iterator[tuple[int, float, float]]:
             yield from _cavities(base)
             lower, upper = bounds(base)
             for box in (box for one in minus for box in _boxes(one)):
-                yield from (side for side in _sides(box)
-                            if lower[side[0]] < side[1] and side[2] < upper[side[0]])
+                yield from (
+                    side for side in _sides(box) if lower[side[0]] < side[1] and side[2] < upper[side[0]]
+                )

@@ -33,8 +33,13 @@ class ParticleSet:
     def empty(cls, n: int, dimensions: int, first_id: int) -> "ParticleSet":
         """``n`` particles that are still to be filled in."""
         return cls(
-            first_id + np.arange(n, dtype=np.int64), np.empty(n, np.uint8), np.empty(n, np.uint8),
-            np.empty((n, dimensions)), np.empty((n, dimensions)), np.empty(n), np.empty(n),
+            first_id + np.arange(n, dtype=np.int64),
+            np.empty(n, np.uint8),
+            np.empty(n, np.uint8),
+            np.empty((n, dimensions)),
+            np.empty((n, dimensions)),
+            np.empty(n),
+            np.empty(n),
         )
 
     def rows(self, first: int, last: int) -> "ParticleSet":

@@ -79,9 +79,7 @@ class Scene:
     def height_gravity(self) -> tuple[float, ...]:
         """g in m/s² along the axes that do not repeat, else zero: across a period there is no height,
         so a potential energy −m g·x would jump where a particle passes it."""
-        return tuple(
-            g if period is None else 0.0 for g, period in zip(self.gravity, self.periods)
-        )
+        return tuple(g if period is None else 0.0 for g, period in zip(self.gravity, self.periods))
 
     @cached_property
     def up(self) -> tuple[float, ...]:
@@ -118,11 +116,13 @@ class Scene:
         """
         given = self.case.physics.sound_speed
         if given is None and not self.expected_speed > 0.0:
-            raise CaseError([
-                f"{self.case.file}: physics.sound_speed: missing, and it cannot be derived since "
-                "nothing moves at the start and there is no gravity; give ten times the largest "
-                "speed that you expect"
-            ])
+            raise CaseError(
+                [
+                    f"{self.case.file}: physics.sound_speed: missing, and it cannot be derived since "
+                    "nothing moves at the start and there is no gravity; give ten times the largest "
+                    "speed that you expect"
+                ]
+            )
         return given or SOUND_OVER_SPEED * self.expected_speed
 
     @cached_property
@@ -163,8 +163,14 @@ class Scene:
     def _setting(self, sound_speed: float) -> Setting:
         fluid = self.bodies[0]
         return Setting(
-            self.dimensions, fluid.density, fluid.viscosity, sound_speed, self.gravity, self.lower,
-            self.upper, self.periods,
+            self.dimensions,
+            fluid.density,
+            fluid.viscosity,
+            sound_speed,
+            self.gravity,
+            self.lower,
+            self.upper,
+            self.periods,
         )
 
     @cached_property
@@ -173,8 +179,11 @@ class Scene:
         names, volume = (*self.case.fluids, *self.case.walls), self.spacing**self.dimensions
         return tuple(
             Species(
-                name, self._motion(index),
-                self.bodies[source].density, self.bodies[source].viscosity, start.mass(volume),
+                name,
+                self._motion(index),
+                self.bodies[source].density,
+                self.bodies[source].viscosity,
+                start.mass(volume),
                 getattr(self.bodies[index], "no_slip", False),
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
@@ -199,7 +208,8 @@ class Scene:
         fluids = list(self.case.fluids)
         return tuple(
             (region, fluids.index(table.into) if table.into else 0)
-            for table in tables for region in chosen(table, self.case.catalogue.regions).values()
+            for table in tables
+            for region in chosen(table, self.case.catalogue.regions).values()
         )
 
     @property

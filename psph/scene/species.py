@@ -156,9 +156,12 @@ def take_census(layout: Layout, up: Sequence[float]) -> Census:
     """Look at every site, chunk by chunk; ``up`` is the unit vector against gravity or zeros."""
     lattice, n, dimensions = layout.lattice, len(layout.shapes), len(layout.lattice.counts)
     census = Census(
-        np.zeros(lattice.planes, np.int64), np.zeros(n, np.int64),
-        np.full((n, dimensions), np.inf), np.full((n, dimensions), -np.inf),
-        np.full(n, np.inf), np.full(n, -np.inf),
+        np.zeros(lattice.planes, np.int64),
+        np.zeros(n, np.int64),
+        np.full((n, dimensions), np.inf),
+        np.full((n, dimensions), -np.inf),
+        np.full(n, np.inf),
+        np.full(n, -np.inf),
     )
     for first, last in lattice.chunks():
         grid, shape = lattice.grid(first, last), lattice.shape(first, last)

@@ -79,10 +79,12 @@ def _unheld(scene: "Scene", axis: int, sign: int) -> float:
         found = scene.layout.materials(first, last)
         sites = sign * (np.arange(found.shape[place]) + (0 if place else first))
         along = sites.reshape((-1,) + (1,) * (found.ndim - place - 1))
-        far = np.array([
-            np.where(mask, along, nowhere).max(axis=place)
-            for mask in (found < fluids, (found >= fluids) & (found < NONE))
-        ])
+        far = np.array(
+            [
+                np.where(mask, along, nowhere).max(axis=place)
+                for mask in (found < fluids, (found >= fluids) & (found < NONE))
+            ]
+        )
         ends = far if place or ends is None else np.maximum(ends, far)
         if place or last == lattice.planes:
             fluid, wall = ends

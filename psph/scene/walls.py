@@ -94,11 +94,13 @@ def with_surroundings(scene: Scene, first: int, last: int, margin: int) -> np.nd
         k = k % lattice.planes if wraps[scene.axis] else k
         return scene.layout.materials(k, k + 1) if 0 <= k < lattice.planes else nothing
 
-    held = np.concatenate([
-        *(plane(k) for k in range(first - margin, first)),
-        scene.layout.materials(first, last),
-        *(plane(k) for k in range(last, last + margin)),
-    ])
+    held = np.concatenate(
+        [
+            *(plane(k) for k in range(first - margin, first)),
+            scene.layout.materials(first, last),
+            *(plane(k) for k in range(last, last + margin)),
+        ]
+    )
     for place, d in enumerate(lattice.axes[1:], start=1):
         width = [(margin, margin) if k == place else (0, 0) for k in range(held.ndim)]
         how = {"mode": "wrap"} if wraps[d] else {"constant_values": NONE}

@@ -30,8 +30,16 @@ class Engine:
     def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger):
         self.plan, self.store, self.ledger = plan, store, ledger
         self.domain = Domain(
-            comm, store, scene.axis, scene.reach.cutoff, scene.lower, scene.upper, scene.periods,
-            plan.ghost_fields, plan.refreshed, plan.space.lanes,
+            comm,
+            store,
+            scene.axis,
+            scene.reach.cutoff,
+            scene.lower,
+            scene.upper,
+            scene.periods,
+            plan.ghost_fields,
+            plan.refreshed,
+            plan.space.lanes,
         )
         self.skin, self._support = Skin(self.domain, scene.reach.skin), scene.reach.support
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
@@ -41,11 +49,28 @@ class Engine:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
         s, plan = self.store, self.plan
         self._each(
-            kick_drift_predict, time, dt, plan.carriers, plan.state, plan.free, plan.motions, plan.motion_of,
-            self.domain.periods, self._view(pace), s.group, self._anchor,
-            s["position"], s["velocity"], s["predicted_velocity"], s["acceleration"],
-            s["density"], s["density_rate"], s["density_rate_1"], s["density_rate_2"],
-            s["specific_volume"], s["pressure"],
+            kick_drift_predict,
+            time,
+            dt,
+            plan.carriers,
+            plan.state,
+            plan.free,
+            plan.motions,
+            plan.motion_of,
+            self.domain.periods,
+            self._view(pace),
+            s.group,
+            self._anchor,
+            s["position"],
+            s["velocity"],
+            s["predicted_velocity"],
+            s["acceleration"],
+            s["density"],
+            s["density_rate"],
+            s["density_rate_1"],
+            s["density_rate_2"],
+            s["specific_volume"],
+            s["pressure"],
         )
         if plan.evolving:
             self._each(predict_rows, dt, s.data, self._rows_that_evolve())
@@ -60,8 +85,20 @@ class Engine:
         if plan.evolving:
             self._each(kick_rows, dt, s.data, self._rows_that_evolve())
         parts = self._each(
-            kick, time, dt, plan.carriers, plan.free, plan.motions, plan.motion_of, self._view(pace), s.group,
-            self._anchor, s["position"], s["velocity"], s["acceleration"], s["density"],
+            kick,
+            time,
+            dt,
+            plan.carriers,
+            plan.free,
+            plan.motions,
+            plan.motion_of,
+            self._view(pace),
+            s.group,
+            self._anchor,
+            s["position"],
+            s["velocity"],
+            s["acceleration"],
+            s["density"],
             s["density_rate"],
         )
         return np.max(parts, axis=0).tolist()
@@ -95,8 +132,16 @@ class Engine:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s, plan = self.store, self.plan
         state_of(
-            s.low, s.low + s.owned, plan.carriers, plan.state, plan.free, self._view(pace),
-            s.group, s["density"], s["specific_volume"], s["pressure"],
+            s.low,
+            s.low + s.owned,
+            plan.carriers,
+            plan.state,
+            plan.free,
+            self._view(pace),
+            s.group,
+            s["density"],
+            s["specific_volume"],
+            s["pressure"],
         )
 
     def begin_rates(self) -> None:
@@ -121,7 +166,11 @@ class Engine:
         """Bytes of this rank's particles, records and lists."""
         tables = (records.table for records in self.records)
         arrays: list[np.ndarray] = [
-            self.store.data, self.store.id, self.store.group, *tables, *self.domain.lists,
+            self.store.data,
+            self.store.id,
+            self.store.group,
+            *tables,
+            *self.domain.lists,
         ]
         return sum(a.nbytes for a in arrays)
 
@@ -134,8 +183,14 @@ class Engine:
         """Which walls have fluid in reach."""
         s = self.store
         self._each(
-            mark_wet, s.low, *self.domain.lists, self._support**2, self.domain.periods,
-            s["position"], s[effect.told_by], s[effect.marks.name],
+            mark_wet,
+            s.low,
+            *self.domain.lists,
+            self._support**2,
+            self.domain.periods,
+            s["position"],
+            s[effect.told_by],
+            s[effect.marks.name],
         )
 
     def _fit_records(self) -> None:
@@ -183,9 +238,23 @@ class Engine:
         stored = tuple(name and s[name] for name in one.stores)
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         in_threads(
-            sum_over_neighbours, first, last, one.effects, one.reductions, plan.kernel,
-            plan.space, self.softening, s.view(), records.view(), records.table, s.low,
-            lists.begin, lists.lengths, lists.lists, *rates, stored,
+            sum_over_neighbours,
+            first,
+            last,
+            one.effects,
+            one.reductions,
+            plan.kernel,
+            plan.space,
+            self.softening,
+            s.view(),
+            records.view(),
+            records.table,
+            s.low,
+            lists.begin,
+            lists.lengths,
+            lists.lists,
+            *rates,
+            stored,
         )
 
     @property

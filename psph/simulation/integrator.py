@@ -24,9 +24,29 @@ from psph.vectors import add, at, dot, put, scale
 
 @elementwise
 def kick_drift_predict(
-    first, last, time, dt, effects, state, free, motions, motion_of, periods, view, group, anchor,
-    position, velocity, predicted_velocity, acceleration,
-    density, rate, rate_1, rate_2, specific_volume, pressure,
+    first,
+    last,
+    time,
+    dt,
+    effects,
+    state,
+    free,
+    motions,
+    motion_of,
+    periods,
+    view,
+    group,
+    anchor,
+    position,
+    velocity,
+    predicted_velocity,
+    acceleration,
+    density,
+    rate,
+    rate_1,
+    rate_2,
+    specific_volume,
+    pressure,
 ):
     """Kick by half a step, drift to ``time``, and predict what the forces read.
 
@@ -49,7 +69,15 @@ def kick_drift_predict(
         else:
             rho = limit_wall_density(effects, i, rho)
             carry(
-                motions, motion_of, group, k, time, periods, anchor, position, velocity,
+                motions,
+                motion_of,
+                group,
+                k,
+                time,
+                periods,
+                anchor,
+                position,
+                velocity,
                 predicted_velocity,
             )
         specific_volume[k] = 1.0 / rho
@@ -74,8 +102,22 @@ def _pressure(effects, state, i, rho, is_free):
 
 @elementwise
 def kick(
-    first, last, time, dt, effects, free, motions, motion_of, view, group, anchor, position, velocity,
-    acceleration, density, rate,
+    first,
+    last,
+    time,
+    dt,
+    effects,
+    free,
+    motions,
+    motion_of,
+    view,
+    group,
+    anchor,
+    position,
+    velocity,
+    acceleration,
+    density,
+    rate,
 ):
     """Kick by the second half of the step, with the new rates.
 

@@ -12,8 +12,23 @@ from psph.vectors import add, put, zero_like
 
 @compiled
 def sum_over_neighbours(
-    first, last, effects, reductions, kernel, space, softening, view, neighbour_view, records,
-    low, begin, lengths, lists, acceleration, density_rate, written,
+    first,
+    last,
+    effects,
+    reductions,
+    kernel,
+    space,
+    softening,
+    view,
+    neighbour_view,
+    records,
+    low,
+    begin,
+    lengths,
+    lists,
+    acceleration,
+    density_rate,
+    written,
 ):
     """Rates of the particles in columns ``first`` to ``last``.
 

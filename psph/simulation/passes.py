@@ -52,7 +52,8 @@ def make_passes(called, stored: tuple[str, ...], seen_as) -> tuple[Pass, ...]:
         before |= {effect.writes.name for effect in sums}
     done = {id(call) for call, _ in early}
     reductions = [
-        call.effect for call in called
+        call.effect
+        for call in called
         if hasattr(call.effect, "start")
         and (id(call) not in done or hasattr(call.effect, "finish_acceleration"))
     ]
@@ -67,8 +68,13 @@ def _pass(place, effects, reductions, called, before, stored, seen_as, every) ->
     names = {seen_as(name) for name in names}
     neighbour = tuple(name for name in stored if name in names)
     return Pass(
-        place, effects, tuple(reductions), tuple(_filled(e, before) for e in reductions), neighbour,
-        tuple(name for name in neighbour if name in before), every,
+        place,
+        effects,
+        tuple(reductions),
+        tuple(_filled(e, before) for e in reductions),
+        neighbour,
+        tuple(name for name in neighbour if name in before),
+        every,
     )
 
 
@@ -83,8 +89,10 @@ def _filled(effect, before) -> str | None:
 def _levels(called) -> list[tuple[Any, int]]:
     """The effects that come in a pass of their own, each with how many passes come before it."""
     writers = {
-        call.effect.writes.name: call for call in called
-        if hasattr(call.effect, "start") and _fills_a_field(call.effect)
+        call.effect.writes.name: call
+        for call in called
+        if hasattr(call.effect, "start")
+        and _fills_a_field(call.effect)
         and not getattr(call.effect, "lagged", False)
     }
     read = set().union(*(call.reads.of_pairs for call in called))
@@ -92,7 +100,8 @@ def _levels(called) -> list[tuple[Any, int]]:
     levels: dict[str, int] = {}
     while len(levels) < len(early):
         ready = {
-            name: call for name, call in early.items()
+            name: call
+            for name, call in early.items()
             if name not in levels and not (call.reads.in_sum & early.keys()) - levels.keys()
         }
         if not ready:

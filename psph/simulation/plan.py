@@ -10,7 +10,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.case.parameters import as_numbers
-from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name, companions, view_of
+from psph.fields import (
+    IDENTITY,
+    OF_EVERY_SCENE,
+    OF_MATERIAL,
+    OF_SCENE,
+    OF_SITE,
+    Field,
+    by_name,
+    companions,
+    view_of,
+)
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.compose import OF_A_PARTICLE
 from psph.physics.count import flops_per_pair
@@ -27,7 +37,13 @@ FORCE_LIMIT = 0.25
 
 
 ALWAYS_READ = (
-    "position", "velocity", "pressure", "specific_volume", "mass", "rest_density", "sound_speed",
+    "position",
+    "velocity",
+    "pressure",
+    "specific_volume",
+    "mass",
+    "rest_density",
+    "sound_speed",
     "smoothing_length",
 )
 """What the loops themselves read of a particle, whatever the effects."""
@@ -201,7 +217,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         absent=tuple(e for e in catalogue.effects if e not in present),
         dropped={
             entry.effect.__name__: _why_dropped(effect, scene, reason)
-            for entry, effect, reason in calls if entry not in present
+            for entry, effect, reason in calls
+            if entry not in present
         },
         kernel=scene.kernel,
         state=state,
@@ -211,16 +228,14 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         else Metres(tuple(scene.periods)),
         state_reason=state_reason,
         smoothing_length=scene.smoothing_length,
-        constants=shared
-        | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
+        constants=shared | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
         fields=fields,
         seen=tuple(field for name, field in fields.items() if name in own),
         arrays=stored,
         passes=passes,
         refreshed=tuple(n for n in stored if n in neighbour and n in computed and n not in brought),
         ghost_fields=tuple(
-            n for n in stored
-            if n in varying and n in neighbour | told_by or n in neighbour and n in brought
+            n for n in stored if n in varying and n in neighbour | told_by or n in neighbour and n in brought
         ),
         evolving=evolving,
         kinds=tuple(species.kind for species in scene.species),
@@ -231,7 +246,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         cfl=case.time.cfl,
         fixed_step=case.time.step,
         extremes=Extremes(
-            scene.sound_speed, scene.smoothing_length,
+            scene.sound_speed,
+            scene.smoothing_length,
             *(max(material_value(m, f.name) for m in scene.species) for f in OF_MATERIAL),
         ),
     )
@@ -260,11 +276,15 @@ def _motion_numbers(species, motions) -> np.ndarray:
     # By type too: named tuples of different types are equal where their values are.
     numbers = {Free: FREE, Fixed: FIXED}
     told = [(type(motion), motion) for motion in motions]
-    return np.array([
-        numbers[type(one.motion)] if type(one.motion) in numbers
-        else PRESCRIBED + told.index((type(one.motion), one.motion))
-        for one in species
-    ], np.uint8)
+    return np.array(
+        [
+            numbers[type(one.motion)]
+            if type(one.motion) in numbers
+            else PRESCRIBED + told.index((type(one.motion), one.motion))
+            for one in species
+        ],
+        np.uint8,
+    )
 
 
 def words(name: str) -> str:
@@ -347,4 +367,3 @@ def _plain(value) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"
-

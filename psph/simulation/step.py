@@ -17,7 +17,14 @@ TOO_FAST = 100.0
 """A particle at this many speeds of sound is a run that blew up, whatever the case allows."""
 
 CLOCK = (
-    "time", "dt", "steps", "limited_by", "speed", "pace", "acceleration", "shift",
+    "time",
+    "dt",
+    "steps",
+    "limited_by",
+    "speed",
+    "pace",
+    "acceleration",
+    "shift",
     "energy_at_start",
 )
 """Numbers of a simulation that its next step reads, or its user."""

@@ -45,11 +45,13 @@ REFUSED = {
     "places that are all the same number": (FAR, "too far for double precision"),
     "a jitter out of this world": (WATER + "jitter = 1e10", "fluids.water.jitter: positions 1e+09 m from 0"),
     "a shift out of this world": (
-        WATER + "[[perturbations]]\nposition = [0.0, 0.0]\nshift = [1e25, 0.0]", "perturbations[0].shift",
+        WATER + "[[perturbations]]\nposition = [0.0, 0.0]\nshift = [1e25, 0.0]",
+        "perturbations[0].shift",
     ),
     "a speed of sound whose square is none": (SQUARE.replace("10.0", "1e-200"), "from 1e-30 to 1e+30"),
     "a key of a ladder that assigns itself": (
-        WATER + '[study]\nvary = { "time.end=1#" = [1.0, 2.0] }', "study.vary.time.end=1#",
+        WATER + '[study]\nvary = { "time.end=1#" = [1.0, 2.0] }',
+        "study.vary.time.end=1#",
     ),
     "a point of too few numbers": (
         WATER + "[exact.gresho]\nspeed = 1.0\nradius = 1.0\ncentre = [0.5]",
@@ -85,17 +87,20 @@ def test_refused_in_one_line(name, tmp_path):
 KICK = WATER + "[[perturbations]]\nposition = [0.0, 0.0]\n"
 
 
-@pytest.mark.parametrize("override, says", [
-    ("perturbations.²=1", "perturbations: has no ²"),
-    ("perturbations." + "1" * 5000 + "=1", "has no 111"),
-    ("a." * 2000 + "a=1", "no key and value"),
-    ("time.end=" + "[" * 5000, "nested too deep"),
-    ("time.end=" + "1" * 5000, "thousands of digits"),
-    (f"fluids.water.seed={2**64}", "value: a whole number that is too large"),
-    ("t\udcff=1", "no key and value"),
-    ("title='\udcff'", "no key and value"),
-    ("time.end=1\nstep = 2", "is not a value"),
-])
+@pytest.mark.parametrize(
+    "override, says",
+    [
+        ("perturbations.²=1", "perturbations: has no ²"),
+        ("perturbations." + "1" * 5000 + "=1", "has no 111"),
+        ("a." * 2000 + "a=1", "no key and value"),
+        ("time.end=" + "[" * 5000, "nested too deep"),
+        ("time.end=" + "1" * 5000, "thousands of digits"),
+        (f"fluids.water.seed={2**64}", "value: a whole number that is too large"),
+        ("t\udcff=1", "no key and value"),
+        ("title='\udcff'", "no key and value"),
+        ("time.end=1\nstep = 2", "is not a value"),
+    ],
+)
 def test_a_refused_override(override, says, tmp_path):
     [line] = refusal(tmp_path, KICK, override)
     assert line.startswith("case.toml with --set ") and says in line
@@ -179,10 +184,17 @@ def _dangers(node):
         yield node.module
 
 
-@pytest.mark.parametrize("source", [
-    "eval(text)", "np.load(f, allow_pickle=True)", "import pickle", "from runpy import run_path",
-    "os.system(text)", "subprocess.run(text, shell=True)",
-])
+@pytest.mark.parametrize(
+    "source",
+    [
+        "eval(text)",
+        "np.load(f, allow_pickle=True)",
+        "import pickle",
+        "from runpy import run_path",
+        "os.system(text)",
+        "subprocess.run(text, shell=True)",
+    ],
+)
 def test_the_search_sees_what_could(source):
     """The control."""
     assert [what for node in ast.walk(ast.parse(source)) for what in _dangers(node)]

@@ -43,8 +43,9 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             "fluids.water.shape.ball: a ball needs space.dimensions = 3, here it is 2; use another",
         ),
         (
-            WATER.replace("spacing = 0.1", 'spacing = 0.1\nperiodic = ["z"]\n'
-                          "lower = [0.0, 0.0]\nupper = [1.0, 1.0]"),
+            WATER.replace(
+                "spacing = 0.1", 'spacing = 0.1\nperiodic = ["z"]\nlower = [0.0, 0.0]\nupper = [1.0, 1.0]'
+            ),
             'space.periodic[0]: "z": no axis in 2D; give one of x, y',
         ),
         (WATER + '[parallel]\naxis = "z"', 'parallel.axis: "z": no axis in 2D; give one of x, y'),
@@ -55,8 +56,7 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
         ),
         (
             WATER.replace("spacing = 0.1", PERIODIC + "lower = [0.0, 0.0]"),
-            'space.periodic: ["x"]: a periodic axis needs the corners of the domain; give '
-            "space.upper",
+            'space.periodic: ["x"]: a periodic axis needs the corners of the domain; give space.upper',
         ),
         (
             WATER.replace("spacing = 0.1", "spacing = 0.1\nlower = [0.0, 0.0]\nupper = [1.0, 0.0]"),
@@ -67,9 +67,7 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             'fluids.water.pressure: "hydrostatic": there is no gravity; give physics.gravity, or',
         ),
         (
-            WATER.replace(
-                "[physics]", '[physics]\npressure_gradient = "minimum"\ngradient_correction = 0.5'
-            ),
+            WATER.replace("[physics]", '[physics]\npressure_gradient = "minimum"\ngradient_correction = 0.5'),
             'physics.gradient_correction: does not work with physics.pressure_gradient = "minimum"; use',
         ),
         (
@@ -78,12 +76,10 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
         ),
         (
             WATER.replace("[physics]", "[physics]\nxsph = 0.5\ntransport_velocity = 1.0"),
-            "physics.xsph: physics.transport_velocity moves particles too; set it to \"off\", or remove",
+            'physics.xsph: physics.transport_velocity moves particles too; set it to "off", or remove',
         ),
         (
-            WATER.replace(
-                "[physics]", '[physics]\npressure_gradient = "minimum"\nartificial_stress = 0.2'
-            ),
+            WATER.replace("[physics]", '[physics]\npressure_gradient = "minimum"\nartificial_stress = 0.2'),
             'physics.artificial_stress: works only with physics.pressure_gradient = "symmetric", and',
         ),
         (

@@ -185,7 +185,8 @@ def test_values_that_the_schema_describes(examples, tmp_path):
 
 SMALL = [
     text.replace('scheme = "sph"', f'scheme = "{scheme}"').encode()
-    for text in (TANK, WATER, SQUARE) for scheme in ("sph", "stable")
+    for text in (TANK, WATER, SQUARE)
+    for scheme in ("sph", "stable")
 ]
 FEW = 600
 """Particles that plain Python can step."""
@@ -196,7 +197,10 @@ def starts():
     """A function: a case's file → how its first steps ended, and what was said."""
     tests = Path(__file__).parents[1]
     with subprocess.Popen(
-        [sys.executable, tests / "starting.py"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        [sys.executable, tests / "starting.py"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
         env=clean_environment() | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
     ) as job:
 
@@ -259,7 +263,11 @@ WRITTEN = st.sampled_from([v.decode() for v in VALUES])
 SIZES = st.one_of(st.floats(0.0, 1.0), st.floats()).map(repr)
 ASSIGNED = st.builds("{}={}".format, st.sampled_from(KEYS), st.one_of(WRITTEN, SIZES))
 OVERRIDES = st.one_of(
-    ASSIGNED, ASSIGNED, ASSIGNED, st.text(max_size=20), st.sampled_from(KEYS),
+    ASSIGNED,
+    ASSIGNED,
+    ASSIGNED,
+    st.text(max_size=20),
+    st.sampled_from(KEYS),
     st.builds("{}.{}=1".format, st.sampled_from(KEYS), st.text(max_size=3)),
 ).filter(lambda text: not text.startswith("-"))
 
@@ -314,8 +322,12 @@ def test_real_processes(examples, tmp_path):
     def run(data):
         path.write_bytes(data)
         job = subprocess.run(
-            [sys.executable, "-m", "psph", "check", path], capture_output=True, text=True,
-            env=clean_environment(), stdin=subprocess.DEVNULL, timeout=60,
+            [sys.executable, "-m", "psph", "check", path],
+            capture_output=True,
+            text=True,
+            env=clean_environment(),
+            stdin=subprocess.DEVNULL,
+            timeout=60,
         )
         if job.returncode:
             assert job.returncode == 2
@@ -326,10 +338,15 @@ def test_real_processes(examples, tmp_path):
     tally.tell()
 
 
-@pytest.mark.parametrize("written, resolved", [
-    ({"title": "a"}, {"title": "b"}), ({"x": [1.0]}, {"x": [1.0, 2.0]}), ({"x": 1}, {"x": True}),
-    ({"x": float("inf")}, {"x": float("inf")}),
-])
+@pytest.mark.parametrize(
+    "written, resolved",
+    [
+        ({"title": "a"}, {"title": "b"}),
+        ({"x": [1.0]}, {"x": [1.0, 2.0]}),
+        ({"x": 1}, {"x": True}),
+        ({"x": float("inf")}, {"x": float("inf")}),
+    ],
+)
 def test_another_meaning_is_seen(written, resolved):
     """The control: what the trials would not accept."""
     with pytest.raises(AssertionError):

@@ -68,7 +68,7 @@ def test_a_byte_order_mark_and_windows_line_ends_are_read(tmp_path):
         ("[space]\nspacing = 0,1\n", "line 2: 'spacing = 0,1': expected newline"),
         ("[space\n", "line 1: '[space': expected ']'"),
         ("a = 1\nb = ", "line 2: 'b =': invalid value"),
-        ("title = \"open", "line 1: 'title = \"open': unterminated string"),
+        ('title = "open', "line 1: 'title = \"open': unterminated string"),
         ("a = 1\n\na = 2\n", "line 3: 'a = 2': cannot overwrite a value"),
     ],
 )

@@ -202,7 +202,9 @@ def test_every_fault_is_found_at_once(tmp_path):
     text = replaced("spacing = 0.1", "spacing = -0.1").replace("end", "ende") + "viscocity = 1.0"
     lines = refusal(tmp_path, text)
     assert [line.split(": ")[1] for line in lines] == [
-        "space.spacing", "time.ende", "fluids.water.viscocity",
+        "space.spacing",
+        "time.ende",
+        "fluids.water.viscocity",
     ]
 
 

@@ -12,7 +12,9 @@ from psph.case.schemes import SCHEMES
 
 CASES = sorted((Path(__file__).parents[2] / "run/cases").glob("*.toml"))
 
-FULL = TANK + """
+FULL = (
+    TANK
+    + """
 [probes.P1]
 position = [0.5, 0.1]
 fields = ["pressure", "velocity"]
@@ -21,6 +23,7 @@ theory = { pressure = 3920.0 }
 position = [0.0, 0.0]
 velocity = [1e-7, 0.0]
 """
+)
 
 
 def test_defaults_that_depend_on_other_keys_are_filled_in(tmp_path):

@@ -7,8 +7,9 @@ from psph.case import load
 from psph.case.profiles import OFF, PERIODIC, PROFILES, choices
 from psph.case.schemes import SCHEMES
 
-CLOSED = SQUARE.replace("spacing = 0.1", 'spacing = 0.1\nperiodic = ["x", "y"]\n'
-                        "lower = [0.0, 0.0]\nupper = [1.0, 1.0]")
+CLOSED = SQUARE.replace(
+    "spacing = 0.1", 'spacing = 0.1\nperiodic = ["x", "y"]\nlower = [0.0, 0.0]\nupper = [1.0, 1.0]'
+)
 
 
 def named(profile, text):

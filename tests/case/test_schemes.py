@@ -12,8 +12,17 @@ def of(case, key):
     """The value of a key as a person would write it."""
     table, _, name = key.partition(".")
     value = getattr(getattr(case, table), name)
-    return OFF if value is None else getattr(value, type(value).__annotations__ and next(
-        iter(type(value).model_fields)) if hasattr(type(value), "model_fields") else "", value)
+    return (
+        OFF
+        if value is None
+        else getattr(
+            value,
+            type(value).__annotations__ and next(iter(type(value).model_fields))
+            if hasattr(type(value), "model_fields")
+            else "",
+            value,
+        )
+    )
 
 
 def test_stable_is_the_default(tmp_path):
@@ -29,8 +38,10 @@ def test_what_the_file_says_wins(tmp_path):
 
 
 def test_a_part_can_be_left_out(tmp_path):
-    for text, sets in ((BARE, ("physics.pair_potential=off",)),
-                       (BARE.replace("[physics]", '[physics]\npair_potential = "off"'), ())):
+    for text, sets in (
+        (BARE, ("physics.pair_potential=off",)),
+        (BARE.replace("[physics]", '[physics]\npair_potential = "off"'), ()),
+    ):
         case = draft(tmp_path, text, *sets)
         assert case.physics.pair_potential is None and case.physics.position_shift is not None
         assert draft(tmp_path, case.to_toml()) == case

@@ -18,22 +18,25 @@ def with_shape(shape: str) -> str:
     [
         ("", "", "says no shape; give one of box, disc, ball, cylinder, polygon, union, diff"),
         (
-            f"{BOX}, {DISC}", "",
-            "box and disc in one shape; to join them write "
-            "union = [{ box = ... }, { disc = ... }]",
+            f"{BOX}, {DISC}",
+            "",
+            "box and disc in one shape; to join them write union = [{ box = ... }, { disc = ... }]",
         ),
         (
-            "box = { lower = [0.0, 0.5], upper = [1.0, 0.5] }", ".box",
+            "box = { lower = [0.0, 0.5], upper = [1.0, 0.5] }",
+            ".box",
             "has no inside; let every number of 'upper' exceed that of 'lower'",
         ),
         ("disc = { center = [0.0, 0.0], radius = 0.0 }", ".disc.radius", "0.0 is out of range"),
         ("union = []", ".union", "[] is too short; list at least 1"),
         (
-            "polygon = { points = [[0.0, 0.0], [1.0, 0.0]] }", ".polygon.points",
+            "polygon = { points = [[0.0, 0.0], [1.0, 0.0]] }",
+            ".polygon.points",
             "[[0.0, 0.0], [1.0, 0.0]] is too short; list at least 3",
         ),
         (
-            f"difference = {{ from = {{ {BOX} }}, minus = [{{ }}] }}", ".difference.minus[0]",
+            f"difference = {{ from = {{ {BOX} }}, minus = [{{ }}] }}",
+            ".difference.minus[0]",
             "says no shape; give one of",
         ),
         (f"difference = {{ minus = [{{ {BOX} }}] }}", ".difference.from", "missing; add from ="),

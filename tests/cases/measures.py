@@ -50,5 +50,3 @@ def checkerboard(frame, spacing, scale):
         if near.sum() >= 6:  # not at the surface
             noise.append(p[i] - p[near].mean())
     return np.sqrt(np.mean(np.square(noise))) / scale
-
-

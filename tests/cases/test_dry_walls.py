@@ -88,9 +88,14 @@ def test_walls_out_of_reach_of_the_water_have_their_rest_density(still):
 def test_a_wall_forgets_the_water_that_has_left(tmp_path):
     """A drop is thrown up from the floor: what pressed on it there is gone with it."""
     case = draft(
-        tmp_path, DAM, "walls.basin.shape={box={lower=[-0.2, -0.08], upper=[0.6, 0.0]}}",
-        "fluids.water.velocity=[0.0, 3.0]", "fluids.water.pressure=0", "probes=off",
-        "fluids.water.shape.box.upper=[0.4, 0.1]", "time.end=0.06",
+        tmp_path,
+        DAM,
+        "walls.basin.shape={box={lower=[-0.2, -0.08], upper=[0.6, 0.0]}}",
+        "fluids.water.velocity=[0.0, 3.0]",
+        "fluids.water.pressure=0",
+        "probes=off",
+        "fluids.water.shape.box.upper=[0.4, 0.1]",
+        "time.end=0.06",
     )
     run(case, tmp_path / "out", MPI.COMM_SELF, say=lambda *_: None)
     apart, strain = reach_of(Run(tmp_path / "out").frame(-1))

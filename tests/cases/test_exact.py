@@ -93,8 +93,7 @@ def test_sound_at_20_particles_a_wavelength(ran):
 def test_sound_of_a_kernel_with_the_right_moment_is_of_second_order(ran):
     """And the control: at 20 particles the lattice itself is slow by 1.6 %."""
     coarse, fine = (
-        phase_error(ran("sound_wave", "space.kernel=cubic", f"space.spacing={dx}"))
-        for dx in (0.05, 0.025)
+        phase_error(ran("sound_wave", "space.kernel=cubic", f"space.spacing={dx}")) for dx in (0.05, 0.025)
     )
     assert coarse == pytest.approx(-0.0157, rel=0.03)
     assert math.log2(coarse / fine) == pytest.approx(2.0, abs=0.05)
@@ -104,9 +103,14 @@ def test_sound_of_a_kernel_with_the_right_moment_is_of_second_order(ran):
 def test_sound_in_two_dimensions(ran):
     """The same wave on a square lattice."""
     run = ran(
-        "sound_wave", "space.dimensions=2", "space.lower=[0.0,0.0]", "space.upper=[1.0,0.7]",
-        'space.periodic=["x","y"]', "fluids.gas.shape.box={lower=[0.0,0.0],upper=[1.0,0.7]}",
-        "time.end=2.0", "output.frames=2.0",
+        "sound_wave",
+        "space.dimensions=2",
+        "space.lower=[0.0,0.0]",
+        "space.upper=[1.0,0.7]",
+        'space.periodic=["x","y"]',
+        "fluids.gas.shape.box={lower=[0.0,0.0],upper=[1.0,0.7]}",
+        "time.end=2.0",
+        "output.frames=2.0",
     )
     assert abs(phase_error(run)) < 0.005
 

@@ -60,8 +60,11 @@ def test_negative_pressure_by_ssph_is_calm(ran, kernel):
 def test_negative_pressure_by_symmetric_sph_explodes(ran, kernel):
     """The control: without (15) the kick grows by seven orders, with either kernel."""
     run = ran(
-        "negative_pressure_traditional", f"space.kernel={kernel}", "time.end=0.1",
-        "output.log=5e-5", "output.frames=0.02",
+        "negative_pressure_traditional",
+        f"space.kernel={kernel}",
+        "time.end=0.1",
+        "output.log=5e-5",
+        "output.frames=0.02",
     )
     log = run.log()
     assert 0.85 < growth_rate(log) / box_growth(tension(kernel), BOX).rate < 1.0
@@ -75,8 +78,12 @@ def test_negative_pressure_by_symmetric_sph_explodes(ran, kernel):
 def test_tension_from_round_off_grows_by_the_box_s_eigenvalue(ran, kernel):
     """Without a kick: until 1e-6 m/s the fastest mode has left the others behind."""
     run = ran(
-        "negative_pressure_traditional", f"space.kernel={kernel}", "perturbations=off",
-        "time.end=0.015", "output.log=5e-5", "output.frames=0.005",
+        "negative_pressure_traditional",
+        f"space.kernel={kernel}",
+        "perturbations=off",
+        "time.end=0.015",
+        "output.log=5e-5",
+        "output.frames=0.005",
     )
     log = run.log()
     assert log["largest_speed"][1] < 1e-13
@@ -85,9 +92,7 @@ def test_tension_from_round_off_grows_by_the_box_s_eigenvalue(ran, kernel):
 
 def tension(kernel):
     """Case 4.2 for linear theory."""
-    return Settings(
-        kernel, 1.2, "square", -2500.0, density=900.0, sound_speed=5.0, spacing=1e-3
-    )
+    return Settings(kernel, 1.2, "square", -2500.0, density=900.0, sound_speed=5.0, spacing=1e-3)
 
 
 def predicted(kernel):
@@ -105,7 +110,9 @@ def predicted(kernel):
 
 
 SHORT_TANK = (
-    "space.spacing=0.02", "time.end=2.0", "output.frames=0.25",
+    "space.spacing=0.02",
+    "time.end=2.0",
+    "output.frames=0.25",
     "walls.tank.shape.difference={from={box={lower=[-0.06,-0.06],upper=[1.06,0.6]}},"
     "minus=[{box={lower=[0.0,0.0],upper=[1.0,0.6]}}]}",
 )
@@ -146,16 +153,17 @@ def test_hydrostatic_by_symmetric_sph_breaks_into_lines(ran):
     assert np.mean(noise) >= 0.2
 
 
-@pytest.mark.parametrize("case, kernel, clean", [
-    ("hydrostatic_traditional", "cubic", True),
-    ("hydrostatic", "hyperbolic", False),
-])
+@pytest.mark.parametrize(
+    "case, kernel, clean",
+    [
+        ("hydrostatic_traditional", "cubic", True),
+        ("hydrostatic", "hyperbolic", False),
+    ],
+)
 @pytest.mark.long
 def test_the_contrast_is_a_window_in_h(ran, case, kernel, clean):
     """At h/dx 1.2 it is the other way round: the cubic spline is clean and SSPH is not."""
-    run = ran(
-        case, f"space.kernel={kernel}", "space.smoothing=1.2", "time.end=3.0", "output.frames=0.25"
-    )
+    run = ran(case, f"space.kernel={kernel}", "space.smoothing=1.2", "time.end=3.0", "output.frames=0.25")
     frames = range(8, len(run.times))
     noise = np.mean([checkerboard(run.frame(k), 0.01, 4900.0) for k in frames])
     assert noise <= 0.05 if clean else noise >= 0.1

@@ -77,9 +77,7 @@ STEPS = 12
 
 
 @pytest.mark.mpi(min_size=2)
-@pytest.mark.parametrize("case", sorted(
-    str(path.relative_to(CASES)) for path in Path(CASES).rglob("*.toml")
-))
+@pytest.mark.parametrize("case", sorted(str(path.relative_to(CASES)) for path in Path(CASES).rglob("*.toml")))
 def test_a_few_steps_of_every_case_on_one_and_two_ranks(case):
     case = load(Path(CASES) / case)
     scene = Scene(case)
@@ -95,16 +93,18 @@ def test_a_few_steps_of_every_case_on_one_and_two_ranks(case):
 
 
 @LONG
-@pytest.mark.parametrize("carried", [
-    ("physics.transport_velocity=1.0", "physics.pressure_gradient=tensile_control"),
-    ("physics.pressure_gradient=stress_points",),
-])
+@pytest.mark.parametrize(
+    "carried",
+    [
+        ("physics.transport_velocity=1.0", "physics.pressure_gradient=tensile_control"),
+        ("physics.pressure_gradient=stress_points",),
+    ],
+)
 def test_same_bits_where_particles_are_carried_by_another_velocity(carried, tmp_path):
     """Its stored difference to the fluid's travels with the halo, one pass old."""
     sets = (*carried, "fluids.fluid.jitter=0.1", "time.end=4e-3")
     one, two = (
-        by_id(run("negative_pressure_traditional", n, tmp_path / str(n), *sets).frame(-1))
-        for n in (1, 2)
+        by_id(run("negative_pressure_traditional", n, tmp_path / str(n), *sets).frame(-1)) for n in (1, 2)
     )
     assert one["velocity"].any()
     for name in one:

@@ -45,13 +45,16 @@ def test_stress_points_slow_the_kick_at_the_usual_smoothing(tmp_path):
 
 def test_stress_points_stop_the_kick_where_h_fits_the_spacing_of_either_set(tmp_path):
     """1.7 = 1.2 times the square root of two; the control is plain SPH with the same h."""
-    held, torn = (log(tmp_path / name, "space.smoothing=1.7", *sets)["largest_speed"].max()
-                  for name, sets in (("f", (STRESS_POINTS,)), ("g", ("time.end=0.03",))))
+    held, torn = (
+        log(tmp_path / name, "space.smoothing=1.7", *sets)["largest_speed"].max()
+        for name, sets in (("f", (STRESS_POINTS,)), ("g", ("time.end=0.03",)))
+    )
     assert held < 1.05e-7 and torn > 0.1
 
 
 def test_stress_points_carry_sound(tmp_path):
     """To first order: the velocity of a stress point comes h/(2c) late."""
+
     def error(spacing):
         sets = ("space.kernel=cubic", "space.smoothing=2.0", f"space.spacing={spacing}", "time.end=1.0")
         run = finished("sound_wave", tmp_path / str(spacing), *sets, STRESS_POINTS)

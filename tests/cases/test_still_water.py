@@ -12,8 +12,13 @@ def still(tmp_path):
 
     def run(profile, *sets):
         return finished(
-            "still_water", tmp_path / profile, f"profile={profile}", "time.end=1.5",
-            "output.frames=0.5", "space.spacing=0.025", *sets,
+            "still_water",
+            tmp_path / profile,
+            f"profile={profile}",
+            "time.end=1.5",
+            "output.frames=0.5",
+            "space.spacing=0.025",
+            *sets,
         )
 
     return run

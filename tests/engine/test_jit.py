@@ -39,7 +39,9 @@ def script(folder, *arguments, cache="cache"):
     path = folder / "script.py"
     path.write_text(SCRIPT)
     job = subprocess.run(
-        [sys.executable, path, *arguments], capture_output=True, text=True,
+        [sys.executable, path, *arguments],
+        capture_output=True,
+        text=True,
         env=clean_environment() | {"PSPH_CACHE": str(folder / cache)},
     )
     assert job.returncode == 0, job.stderr
@@ -100,8 +102,11 @@ def test_older_folders_are_removed_unless_in_use(tmp_path):
         os.utime(tmp_path / name / IN_USE, (1e9 - age, 1e9 - age))
     (tmp_path / "mine").mkdir()
     holder = subprocess.Popen(
-        [sys.executable, "-c", HOLD, tmp_path / names[0]], stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE, text=True, env=clean_environment(),
+        [sys.executable, "-c", HOLD, tmp_path / names[0]],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=clean_environment(),
     )
     with holder:
         assert holder.stdout.readline() == "held\n"

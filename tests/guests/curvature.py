@@ -17,9 +17,7 @@ from psph.vectors import add, scale, subtract, zero_like
 class Curvature(NamedTuple):
     """A surface pulls itself flat."""
 
-    strength: Annotated[
-        float, Field(ge=0, description="strength γ", json_schema_extra={"unit": "m^d/s2"})
-    ]
+    strength: Annotated[float, Field(ge=0, description="strength γ", json_schema_extra={"unit": "m^d/s2"})]
 
     writes = Declared("normal", "1", "h times the gradient of the kernel sum", VECTOR)
 

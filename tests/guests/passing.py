@@ -48,6 +48,4 @@ class Spring(NamedTuple):
         return position, np.tile(self.speed * along, (len(position), 1))
 
 
-CATALOGUE = Catalogue(
-    regions=(Entry("regions.*.drain", Drain), Entry("regions.*.spring", Spring))
-)
+CATALOGUE = Catalogue(regions=(Entry("regions.*.drain", Drain), Entry("regions.*.spring", Spring)))

@@ -76,9 +76,7 @@ STEPS = 24
 )
 def test_the_same_bits_on_1_to_4_ranks_and_with_a_restart(guests, case):
     search = os.pathsep.join(sys.path)
-    job = mpirun(
-        4, [HERE / "together.py", case(*guests), STEPS], timeout=170, env={"PYTHONPATH": search}
-    )
+    job = mpirun(4, [HERE / "together.py", case(*guests), STEPS], timeout=170, env={"PYTHONPATH": search})
     assert job.returncode == 0, job.stderr
     found = json.loads(job.stdout.splitlines()[-1])
     digests = {way: value for way, value in found.items() if " on " in way}

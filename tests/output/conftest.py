@@ -4,9 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-ALONE = SimpleNamespace(
-    rank=0, size=1, allgather=lambda value: [value], bcast=lambda value: value
-)
+ALONE = SimpleNamespace(rank=0, size=1, allgather=lambda value: [value], bcast=lambda value: value)
 """One rank, without MPI."""
 
 

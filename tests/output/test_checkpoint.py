@@ -24,8 +24,10 @@ def rows(count=40, seed=1):
     density = random.random(count)
     density[:4] = np.nan, -0.0, np.inf, 5e-324
     return {
-        "id": np.arange(count)[::-1] + 2**40, "kind": (np.arange(count) % 2).astype(np.uint8),
-        "position": random.random((count, 2)), "density": density,
+        "id": np.arange(count)[::-1] + 2**40,
+        "kind": (np.arange(count) % 2).astype(np.uint8),
+        "position": random.random((count, 2)),
+        "density": density,
     }
 
 

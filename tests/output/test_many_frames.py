@@ -107,7 +107,8 @@ def test_a_reader_sees_a_whole_file_at_any_moment(tmp_path, alone):
     frames = FrameFile(tmp_path / "tank.h5", alone, {})
     write(frames, 0, 1)
     reader = subprocess.Popen(
-        [sys.executable, "-c", READER, tmp_path / "tank.xmf", "80"], stdout=subprocess.PIPE,
+        [sys.executable, "-c", READER, tmp_path / "tank.xmf", "80"],
+        stdout=subprocess.PIPE,
         text=True,
     )
     assert reader.stdout.readline() == "reads\n"

@@ -88,9 +88,14 @@ def test_xdmf_tells_numbers_past_2_31(tmp_path):
     (tmp_path / "tank.h5").touch()
     index = XdmfIndex(tmp_path / "tank.h5")
     kind = SimpleNamespace(vector=((2**33, 3), np.dtype(float)), whole=((2**33,), np.dtype("int64")))
-    index.add("frames/00000", 0.0, {
-        "frames/00000/position": kind.vector, "frames/00000/id": kind.whole,
-    })
+    index.add(
+        "frames/00000",
+        0.0,
+        {
+            "frames/00000/position": kind.vector,
+            "frames/00000/id": kind.whole,
+        },
+    )
     index.complete()
     text = index.path.read_text()
     assert 'NumberOfElements="8589934592"' in text

@@ -188,8 +188,12 @@ def compare(path, steps):
         for part in WORLD.allgather(mine if comm.rank == 0 else {}):
             digests |= part
         comm.Free()
-    return {"scene": path.stem, "particles": int(scene.counts().sum()), "rebuilds": rebuilds,
-            "digests": digests}
+    return {
+        "scene": path.stem,
+        "particles": int(scene.counts().sum()),
+        "rebuilds": rebuilds,
+        "digests": digests,
+    }
 
 
 def main(folder, steps):

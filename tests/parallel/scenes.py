@@ -37,40 +37,68 @@ GRAVITY = {"gravity": "drawn"}
 FAMILIES = {
     "tank": Family(2, walls=True, fluids=2, viscous=True, physics=GRAVITY),
     "mixed block": Family(
-        3, along="y", periodic="xyz", scheme="ssph", precision="mixed",
+        3,
+        along="y",
+        periodic="xyz",
+        scheme="ssph",
+        precision="mixed",
         physics={"artificial_viscosity": (0.0, 0.2)},
     ),
     "drops": Family(2, along="y", physics={"central_force": (0.0, 3.0)}),
     "torus": Family(2, periodic="xy", fluids=2),
     "channel": Family(2, periodic="x", walls=True, viscous=True, physics=GRAVITY),
     "pool": Family(
-        2, along="y", periodic="x", scheme="sph",
+        2,
+        along="y",
+        periodic="x",
+        scheme="sph",
         physics={"free_surface": (0.8, 0.95), "artificial_viscosity": (0.0, 0.2), **GRAVITY},
     ),
     "shifted": Family(
-        2, periodic="xy", scheme="sph", kernel="wendland-c2",
+        2,
+        periodic="xy",
+        scheme="sph",
+        kernel="wendland-c2",
         physics={
-            "pressure_gradient": "difference", "density_diffusion": (0.0, 0.2),
-            "particle_shifting": (0.0, 0.2), "gradient_correction": (0.3, 1.0),
+            "pressure_gradient": "difference",
+            "density_diffusion": (0.0, 0.2),
+            "particle_shifting": (0.0, 0.2),
+            "gradient_correction": (0.3, 1.0),
         },
     ),
     "carried": Family(
-        2, along="y", periodic="y", scheme="sph", kernel="quintic",
+        2,
+        along="y",
+        periodic="y",
+        scheme="sph",
+        kernel="quintic",
         physics={"pressure_gradient": "tensile_control", "transport_velocity": (0.0, 1.0)},
     ),
     "carried in 3D": Family(
-        3, scheme="sph", kernel="wendland-c4", precision="mixed",
+        3,
+        scheme="sph",
+        kernel="wendland-c4",
+        precision="mixed",
         physics={"generalised_transport_velocity": (0.0, 1.0), "riemann_dissipation": (0.0, 3.0)},
     ),
     "mean": Family(
-        2, scheme="sph", walls=True, fluids=2,
+        2,
+        scheme="sph",
+        walls=True,
+        fluids=2,
         physics={
-            "xsph": (0.0, 0.5), "artificial_stress": (0.0, 0.3), "equation_of_state": "tait",
-            "conservative_smoothing": (0.0, 0.2), **GRAVITY,
+            "xsph": (0.0, 0.5),
+            "artificial_stress": (0.0, 0.3),
+            "equation_of_state": "tait",
+            "conservative_smoothing": (0.0, 0.2),
+            **GRAVITY,
         },
     ),
     "halved": Family(
-        2, walls=True, scheme="sph", kernel="wendland-c2",
+        2,
+        walls=True,
+        scheme="sph",
+        kernel="wendland-c2",
         physics={"pressure_gradient": "stress_points", "density_diffusion": (0.0, 0.2), **GRAVITY},
     ),
     "row": Family(1, periodic="x", scheme="ssph", physics={"pair_damping": (0.0, 0.1)}),
@@ -87,7 +115,8 @@ def scene(family: Family, seed: int) -> str:
     sizes = [LENGTH if name == family.along else WIDTH for name in axes(family)]
     sizes = [n * SPACING for n in sizes]
     case = {
-        "scheme": family.scheme, "precision": family.precision,
+        "scheme": family.scheme,
+        "precision": family.precision,
         "space": _space(family, rng, sizes),
         "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5)},
         "neighbours": {"skin": _drawn(rng, 0.02, 0.3)},
@@ -152,8 +181,10 @@ def _fluids(family: Family, rng, sizes):
         holes = [_hole(rng, family.dimensions, lower, upper) for _ in range(rng.integers(0, 4))]
         fluid = {
             "shape": {"difference": {"from": block, "minus": holes}} if holes else block,
-            "density": 1000.0 if k == 0 else 800.0, "pressure": _drawn(rng, -500.0, 3000.0),
-            "jitter": _drawn(rng, 0.0, 0.3), "seed": int(rng.integers(0, 1000)),
+            "density": 1000.0 if k == 0 else 800.0,
+            "pressure": _drawn(rng, -500.0, 3000.0),
+            "jitter": _drawn(rng, 0.0, 0.3),
+            "seed": int(rng.integers(0, 1000)),
             "velocity": _vector(rng, family.dimensions, float(rng.choice([0.0, 3.0]))),
         }
         if family.viscous:
@@ -185,13 +216,17 @@ def _wall(family: Family, sizes) -> dict:
         "lower": [-t for t in thick],
         "upper": [round(n + (t if d != last else 0.0), 9) for d, (n, t) in enumerate(zip(sizes, thick))],
     }
-    return {"difference": {
-        "from": {"box": outer}, "minus": [{"box": {"lower": [0.0] * len(sizes), "upper": sizes}}],
-    }}
+    return {
+        "difference": {
+            "from": {"box": outer},
+            "minus": [{"box": {"lower": [0.0] * len(sizes), "upper": sizes}}],
+        }
+    }
 
 
 def _perturbation(rng, sizes) -> dict:
     return {
         "position": (rng.random(len(sizes)) * sizes).round(3).tolist(),
-        "velocity": _vector(rng, len(sizes), 2.0), "shift": _vector(rng, len(sizes), 0.05),
+        "velocity": _vector(rng, len(sizes), 2.0),
+        "shift": _vector(rng, len(sizes), 0.05),
     }

@@ -18,7 +18,9 @@ def told(folder, steps):
     """What the scenes in a folder came to."""
     search = os.pathsep.join([str(TESTS), str(TESTS.parent)])
     job = mpirun(
-        7, [TESTS / "parallel" / "alike.py", folder, steps], timeout=900,
+        7,
+        [TESTS / "parallel" / "alike.py", folder, steps],
+        timeout=900,
         env={"PYTHONPATH": search},
     )
     assert job.returncode == 0, job.stderr

@@ -24,12 +24,15 @@ def ends(folder, *lines):
     return found
 
 
-@pytest.mark.parametrize("lines", [
-    THROWN,
-    [*THROWN, "guards.speed=100.0", "guards.density=1e9", "guards.energy=1e9",
-     "time.step=2e-4"],
-    ["fluids.water.pressure=6e4"],  # many are equally bad: the lowest id
-], ids=["speed", "depth", "density"])
+@pytest.mark.parametrize(
+    "lines",
+    [
+        THROWN,
+        [*THROWN, "guards.speed=100.0", "guards.density=1e9", "guards.energy=1e9", "time.step=2e-4"],
+        ["fluids.water.pressure=6e4"],  # many are equally bad: the lowest id
+    ],
+    ids=["speed", "depth", "density"],
+)
 def test_the_report_does_not_tell_the_number_of_ranks(lines, mpi_tmp_path):
     together, alone = ends(mpi_tmp_path, *lines)
     assert isinstance(together[2], BlowUp) and len(set(COMM.allgather(together[0]))) == 1

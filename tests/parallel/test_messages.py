@@ -76,7 +76,10 @@ def watched(monkeypatch):
     def make(case):
         events = Events()
         counting = SimpleNamespace(
-            PROC_NULL=MPI.PROC_NULL, DOUBLE=MPI.DOUBLE, Comm=MPI.Comm, Datatype=MPI.Datatype,
+            PROC_NULL=MPI.PROC_NULL,
+            DOUBLE=MPI.DOUBLE,
+            Comm=MPI.Comm,
+            Datatype=MPI.Datatype,
             Prequest=SimpleNamespace(Startall=events.start_all),
             Request=SimpleNamespace(Waitall=events.wait_all),
         )

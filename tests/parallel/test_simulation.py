@@ -26,7 +26,10 @@ def box(dim, periodic, axis, skin=0.1, **physics):
     return Case.model_validate(
         {
             "space": {
-                "dimensions": dim, "spacing": 0.1, "kernel": "hyperbolic", "smoothing": 1.2,
+                "dimensions": dim,
+                "spacing": 0.1,
+                "kernel": "hyperbolic",
+                "smoothing": 1.2,
                 **({"periodic": ["x", "y", "z"][:dim], **corners} if periodic else {}),
             },
             "time": {"end": 1.0, "cfl": 0.4},
@@ -34,7 +37,9 @@ def box(dim, periodic, axis, skin=0.1, **physics):
             "physics": {"sound_speed": 10.0, "artificial_viscosity": 0.1, **physics},
             "fluids": {
                 name: {
-                    "shape": {"box": part}, "jitter": 0.2, "pressure": 3000.0,
+                    "shape": {"box": part},
+                    "jitter": 0.2,
+                    "pressure": 3000.0,
                     "velocity": [sign * v for v in (3.0, -2.0, 1.0)[:dim]],
                 }
                 for name, part, sign in (("left", left, 1.0), ("right", right, -1.0))
@@ -83,14 +88,22 @@ def test_same_bits_as_on_one_rank(dim, axis, periodic, pressure_gradient):
 
 
 REFINED = {
-    "background_pressure": 500.0, "density_diffusion": 0.1, "particle_shifting": 0.1,
+    "background_pressure": 500.0,
+    "density_diffusion": 0.1,
+    "particle_shifting": 0.1,
     "gradient_correction": 0.5,
 }
 
 
-@pytest.mark.parametrize("gradient, dim, axis", [
-    ("symmetric", 1, 0), ("difference", 2, 0), ("symmetric", 2, 1), ("difference", 3, 2),
-])
+@pytest.mark.parametrize(
+    "gradient, dim, axis",
+    [
+        ("symmetric", 1, 0),
+        ("difference", 2, 0),
+        ("symmetric", 2, 1),
+        ("difference", 3, 2),
+    ],
+)
 def test_same_bits_with_sums_of_the_pass_before(gradient, dim, axis):
     case = box(dim, True, axis, pressure_gradient=gradient, **REFINED)
     together, rebuilds, end = run(case, COMM)
@@ -139,8 +152,6 @@ def test_the_comparison_sees_another_start():
     """The control: one more in the seed of the jitter."""
     case = box(2, True, 0)
     other = case.model_copy(
-        update={
-            "fluids": case.fluids | {"left": case.fluids["left"].model_copy(update={"seed": 1})}
-        }
+        update={"fluids": case.fluids | {"left": case.fluids["left"].model_copy(update={"seed": 1})}}
     )
     assert not np.array_equal(run(case, COMM, 3)[0], run(other, COMM, 3)[0])

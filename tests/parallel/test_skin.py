@@ -23,7 +23,14 @@ def domain_of(n, dim, periodic=(), seed=3):
     store.append(np.arange(n), np.zeros(n, np.uint8), block)
     periods = tuple(1.0 if d in periodic else None for d in range(dim))
     domain = Domain(
-        MPI.COMM_SELF, store, 0, CUTOFF, (0.0,) * dim, (1.0,) * dim, periods, (),
+        MPI.COMM_SELF,
+        store,
+        0,
+        CUTOFF,
+        (0.0,) * dim,
+        (1.0,) * dim,
+        periods,
+        (),
         ("position", "predicted_velocity"),
     )
     domain.rebuild()
@@ -37,12 +44,15 @@ def rows_of(store, name):
 def measured(domain):
     store, grid = domain.store, domain.grid
     boxes = bounding_boxes(
-        store.data, *(rows_of(store, name) for name in NAMES), domain.starts, domain.planes,
-        grid.counts, grid.reach, grid.periodic,
+        store.data,
+        *(rows_of(store, name) for name in NAMES),
+        domain.starts,
+        domain.planes,
+        grid.counts,
+        grid.reach,
+        grid.periodic,
     )
-    return np.sqrt(largest_differences(
-        *boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic
-    ))
+    return np.sqrt(largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic))
 
 
 def over_pairs(domain):
@@ -116,7 +126,14 @@ def test_bodies_that_were_far_apart_are_seen_in_time(axis, away, slab):
     block[list(store.rows["position"])] = x.T
     store.append(np.arange(2), np.zeros(2, np.uint8), block)
     domain = Domain(
-        MPI.COMM_SELF, store, slab, CUTOFF, (0.0,) * 3, (1.0,) * 3, (None,) * 3, (),
+        MPI.COMM_SELF,
+        store,
+        slab,
+        CUTOFF,
+        (0.0,) * 3,
+        (1.0,) * 3,
+        (None,) * 3,
+        (),
         ("position", "predicted_velocity"),
     )
     domain.rebuild()
@@ -131,8 +148,6 @@ def test_bodies_that_were_far_apart_are_seen_in_time(axis, away, slab):
         far -= 1e-3
         assert listed or far > support
     assert far < away  # not at once
-
-
 
 
 def test_a_body_that_shears_needs_new_ones_in_time():

@@ -22,9 +22,7 @@ def domain_of(positions, cutoff, lower, upper, periods, axis=0, comm=MPI.COMM_SE
     block[list(store.rows["position"])] = positions[mine].T
     block[store.rows["density"].start] = mine
     store.append(mine, np.zeros(len(mine), np.uint8), block)
-    domain = Domain(
-        comm, store, axis, cutoff, lower, upper, periods, ("density",), ("position",)
-    )
+    domain = Domain(comm, store, axis, cutoff, lower, upper, periods, ("density",), ("position",))
     domain.rebuild()
     return domain
 

@@ -101,8 +101,14 @@ def test_lists_name_columns_past_2_31(near_and_far):
     near, far = near_and_far
     domain = far.domain
     lists = neighbours.build(
-        neighbours.empty(0, 0), far.store, domain.grid, domain.starts, domain.planes,
-        domain.cutoff, domain.periods, domain.lanes,
+        neighbours.empty(0, 0),
+        far.store,
+        domain.grid,
+        domain.starts,
+        domain.planes,
+        domain.cutoff,
+        domain.periods,
+        domain.lanes,
     )
     used = int(near.domain.lists.begin[near.store.owned - 1])
     expected = near.domain.lists.lists[:used].astype(np.int64) + COLUMNS

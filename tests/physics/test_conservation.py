@@ -181,7 +181,9 @@ def test_two_fluids_in_a_box_keep_their_momentum(tmp_path):
     """In plain Python: it takes a fraction of the time that compiling every effect would."""
     named = dict(boxes())
     job = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", IN_PLAIN_PYTHON, tmp_path], capture_output=True, text=True,
+        [sys.executable, "-W", "ignore", "-c", IN_PLAIN_PYTHON, tmp_path],
+        capture_output=True,
+        text=True,
         input="\n".join(map(json.dumps, named.values())),
         env=clean_environment() | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
     )

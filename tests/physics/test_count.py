@@ -18,8 +18,9 @@ SHARED = ("mass", "rest_density", "sound_speed", "smoothing_length")
 
 def count(*effects, dim=1, name="wendland-c2", shared=SHARED):
     reductions = tuple(e for e in effects if hasattr(e, "start"))
-    return flops_per_pair(effects, reductions, kernel(name, 0.1, dim), BUILT_IN.fields.values(),
-    shared, (None,) * dim)
+    return flops_per_pair(
+        effects, reductions, kernel(name, 0.1, dim), BUILT_IN.fields.values(), shared, (None,) * dim
+    )
 
 
 def geometry_by_hand(dim):

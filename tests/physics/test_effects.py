@@ -109,8 +109,7 @@ def test_minimum_pressure_over_three_neighbours(dim):
         relative += effect.radial(i, j, pair) * np.array(pair.x_ij)
     lowest = p.pressure[1:].min()
     expected = -sum(
-        p.mass[b] / (rho[0] * rho[b]) * (p.pressure[b] - lowest) * written_out(p, 0, b)[4]
-        for b in (1, 2, 3)
+        p.mass[b] / (rho[0] * rho[b]) * (p.pressure[b] - lowest) * written_out(p, 0, b)[4] for b in (1, 2, 3)
     )
     assert relative + effect.finish_acceleration(total, i) == pytest.approx(expected)
 
@@ -184,9 +183,7 @@ def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim,
     mean, slip = np.full(dim, 0.3), [v[1] for v in p.velocity] - np.full(dim, 0.3)
     p = p._replace(slip=tuple(np.array([0.0, s]) for s in slip))
     i, j, pair = pair_of(p, 0, 1)
-    mirrored = p._replace(velocity=tuple(
-        np.array([v[0], 2.0 * v[1] - m]) for v, m in zip(p.velocity, mean)
-    ))
+    mirrored = p._replace(velocity=tuple(np.array([v[0], 2.0 * v[1] - m]) for v, m in zip(p.velocity, mean)))
     expected = viscosity.shear(i, j, pair) * np.array(pair_of(mirrored, 0, 1)[2].u_ij)
     found = viscosity.shear(i, j, pair) * np.array(pair.u_ij) + no_slip.push(i, j, pair)
     assert found == pytest.approx(expected)
@@ -236,8 +233,18 @@ def test_free_surface():
 
 
 OFTEN_USED = {
-    "Continuity", "SymmetricPressure", "MinimumPressure", "LaminarViscosity", "NoSlip", "FreeSurface",
-    "ArtificialViscosity", "PairDamping", "ImpactDamping", "PairPotential", "DensityDiffusion", "DryWall",
+    "Continuity",
+    "SymmetricPressure",
+    "MinimumPressure",
+    "LaminarViscosity",
+    "NoSlip",
+    "FreeSurface",
+    "ArtificialViscosity",
+    "PairDamping",
+    "ImpactDamping",
+    "PairPotential",
+    "DensityDiffusion",
+    "DryWall",
 }
 
 
@@ -355,9 +362,10 @@ def test_a_dry_wall_has_its_rest_density():
 def patch(dim, jitter=0.0, reach=3):
     """A lattice of equal volumes around particle 0, h/dx = 1.3, perhaps out of order."""
     dx = H / 1.3
-    sites = np.array(sorted(
-        np.ndindex(*(2 * reach + 1,) * dim), key=lambda s: sum((k - reach) ** 2 for k in s)
-    )) - reach
+    sites = (
+        np.array(sorted(np.ndindex(*(2 * reach + 1,) * dim), key=lambda s: sum((k - reach) ** 2 for k in s)))
+        - reach
+    )
     x = dx * (sites + jitter * np.random.default_rng(5).uniform(-1, 1, sites.shape))
     n = len(x)
     return view(n=n, dim=dim)._replace(
@@ -404,10 +412,13 @@ def test_velocity_and_density_follow_a_shift(dim):
 def test_no_shift_at_a_surface():
     effect, p = ParticleShifting(), patch(2)
     half = p.position[1] > -0.1 * H  # a surface row, and what is above it
-    p = p._replace(**{
-        n: tuple(a[half] for a in x) if isinstance(x, tuple) else x[half]
-        for n, x in p._asdict().items() if not np.isscalar(x)
-    })
+    p = p._replace(
+        **{
+            n: tuple(a[half] for a in x) if isinstance(x, tuple) else x[half]
+            for n, x in p._asdict().items()
+            if not np.isscalar(x)
+        }
+    )
     assert sums_of(effect, p, 0) == (0.0, 0.0)
 
 
@@ -531,7 +542,11 @@ def pulled_down(delta, gravity):
 @pytest.mark.parametrize(
     "one",
     [
-        DifferenceCorrection(0.5), CorrectedViscosity(), CorrectedNoSlip(), TankDiffusion, pulled_down,
+        DifferenceCorrection(0.5),
+        CorrectedViscosity(),
+        CorrectedNoSlip(),
+        TankDiffusion,
+        pulled_down,
         NeighbourStress(0.2, 1e-4),
     ],
     ids=lambda one: getattr(one, "__name__", type(one).__name__),
@@ -621,7 +636,8 @@ def coefficient(potential, x):
     """Of x_ij in the acceleration of a particle by one of 0.1 kg, x away."""
     p = view(dim=len(x))
     p = p._replace(
-        position=tuple(np.array([c, 0.0]) for c in x), mass=np.array([0.1, 0.1]),
+        position=tuple(np.array([c, 0.0]) for c in x),
+        mass=np.array([0.1, 0.1]),
     )
     return potential.radial(*pair_of(p, 0, 1))
 
@@ -642,7 +658,8 @@ def test_a_position_shift_sees_the_surface_and_what_crowds():
 
     def stored(places):
         p = view(n=len(places))._replace(
-            position=tuple(places.T), mass=np.full(len(places), 1000.0 * dx**2),
+            position=tuple(places.T),
+            mass=np.full(len(places), 1000.0 * dx**2),
             specific_volume=np.full(len(places), 1e-3),
         )
         return np.array(sums_of(shift, p, centre, "hyperbolic"))
@@ -781,8 +798,5 @@ def test_what_is_carried_by_a_transport_velocity(effect):
     rate = p.mass[1] * (moved[0] - moved[1]) @ grad_w
     assert effect.density_rate(i, j, pair) == pytest.approx(rate)
     if hasattr(effect, "push"):
-        stress = sum(
-            np.outer(np.array(k.velocity), d) * k.specific_volume
-            for k, d in zip((i, j), moved)
-        )
+        stress = sum(np.outer(np.array(k.velocity), d) * k.specific_volume for k, d in zip((i, j), moved))
         assert effect.push(i, j, pair) == pytest.approx(p.mass[1] * stress @ grad_w)

@@ -20,9 +20,13 @@ PROGRAM = Path(__file__).with_name("killed.py")
 EVERY = 5
 """Steps from one checkpoint to the next."""
 
-OFTEN = BOX.replace("every = 30", f"every = {EVERY}").replace("end = 0.2", "end = 0.1").replace(
-    "output = { frames = 0.02, probes = 0.005, log = 0.01 }",
-    "output = { frames = 0.004, probes = 0.005, log = 0.004 }",
+OFTEN = (
+    BOX.replace("every = 30", f"every = {EVERY}")
+    .replace("end = 0.2", "end = 0.1")
+    .replace(
+        "output = { frames = 0.02, probes = 0.005, log = 0.01 }",
+        "output = { frames = 0.004, probes = 0.005, log = 0.004 }",
+    )
 )
 """40 steps of the boxes, with so many files that most of the time is spent on them."""
 

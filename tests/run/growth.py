@@ -81,8 +81,10 @@ def sample(simulation):
     """What may grow, by name; collective."""
     gc.collect()
     found = {
-        "bytes": resident(), "files": len(os.listdir("/proc/self/fd")),
-        "requests": live_requests, "objects": len(gc.get_objects()),
+        "bytes": resident(),
+        "files": len(os.listdir("/proc/self/fd")),
+        "requests": live_requests,
+        "objects": len(gc.get_objects()),
     }
     most = largest(simulation.comm, list(found.values()))
     return {"steps": simulation.steps, **dict(zip(found, most.tolist()))}
@@ -107,9 +109,7 @@ def main(folder, steps, leak):
     comm, end = MPI.COMM_WORLD, (steps - 0.5) * STEP
     path = folder / "small.toml"
     if comm.rank == 0:
-        path.write_text(
-            CASE.format(end=end, step=STEP, row=end / ROWS, length=0.7 * comm.size)
-        )
+        path.write_text(CASE.format(end=end, step=STEP, row=end / ROWS, length=0.7 * comm.size))
     comm.barrier()
     done = run(load(path), folder / "run", comm, say=lambda *_: None)
     if comm.rank == 0:

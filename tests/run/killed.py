@@ -40,8 +40,12 @@ PLACES = {
 """What is called there, whether the rank dies before or after, and in which phase alone."""
 
 OF_RANK_0 = {
-    "a frame is being laid out", "the index is replaced", "a row is half written",
-    "a checkpoint is being laid out", "a checkpoint is being sealed", "a checkpoint is sealed",
+    "a frame is being laid out",
+    "the index is replaced",
+    "a row is half written",
+    "a checkpoint is being laid out",
+    "a checkpoint is being sealed",
+    "a checkpoint is sealed",
     "a checkpoint is renamed",
 }
 """Places that no other rank comes to."""
@@ -58,8 +62,13 @@ def _watch(row, blow):
     from psph.simulation import step
 
     modules = {
-        "step": step, "halo": halo, "frames": frames, "rows": rows, "xdmf": xdmf,
-        "tables": tables, "checkpoint": checkpoint,
+        "step": step,
+        "halo": halo,
+        "frames": frames,
+        "rows": rows,
+        "xdmf": xdmf,
+        "tables": tables,
+        "checkpoint": checkpoint,
     }
 
     def wrap(place, around):
@@ -71,9 +80,12 @@ def _watch(row, blow):
         place, number = blow
         wrap(PLACES[place][0], _deadly(row, number, *PLACES[place][1:]))
     for place, phase in (
-        ("step.Simulation.step", "step"), ("step.Simulation.rebuild", "rebuild"),
-        ("halo.Halo.start", "halo"), ("halo.Halo.finish", "halo"),
-        ("frames.FrameFile.write", "frame"), ("tables.CsvTable.write", "table"),
+        ("step.Simulation.step", "step"),
+        ("step.Simulation.rebuild", "rebuild"),
+        ("halo.Halo.start", "halo"),
+        ("halo.Halo.finish", "halo"),
+        ("frames.FrameFile.write", "frame"),
+        ("tables.CsvTable.write", "table"),
         ("checkpoint.write", "checkpoint"),
     ):
         wrap(place, _told(row, PHASES.index(phase)))

@@ -157,7 +157,9 @@ def test_a_run_goes_on_while_its_frames_are_read(tmp_path):
     often = ["output.frames=0.02", "checkpoint.every=20", "time.end=0.8"]
     whole, folder = simulate(tmp_path / "whole", *often), tmp_path / "run"
     reader = subprocess.Popen(
-        [sys.executable, "-c", READER, folder / "box.h5"], stdout=subprocess.PIPE, text=True,
+        [sys.executable, "-c", READER, folder / "box.h5"],
+        stdout=subprocess.PIPE,
+        text=True,
         env=clean_environment(),
     )
     sets = [word for key in often for word in ("--set", key)]

@@ -113,9 +113,7 @@ def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
     )
     assert closed["BackgroundPressure"].endswith(": no pressure is negative at the start, and nothing moves")
     assert closed["XSPH"] == "the case does not say physics.xsph"
-    rubbed = not_simulated(
-        tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.central_friction={}"
-    )
+    rubbed = not_simulated(tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.central_friction={}")
     assert rubbed["LaminarViscosity"].endswith(": physics.central_friction takes its place")
 
 

@@ -23,7 +23,9 @@ def warned(folder, *overrides, ranks=1):
 
 def test_a_viscosity_that_takes_billions_of_steps_is_warned_of(tmp_path):
     [line] = warned(tmp_path, "fluids.water.viscosity=7000", "space.spacing=0.01", "time.end=10.0")
-    assert re.match(r"time\.end: 10 s takes about 3\.3e\+09 steps and, at a guess, \d+ d \d\d h on 1 rank; ", line)
+    assert re.match(
+        r"time\.end: 10 s takes about 3\.3e\+09 steps and, at a guess, \d+ d \d\d h on 1 rank; ", line
+    )
     assert line.endswith(
         "fluids.water.viscosity = 7000 m²/s sets the step: it is the kinematic viscosity, 1e-6 for water "
         "and 0.01 for honey"

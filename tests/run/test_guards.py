@@ -73,9 +73,11 @@ def test_a_particle_thrown_at_ten_speeds_of_sound(tmp_path):
     assert (tmp_path / "run" / PICTURE).read_bytes()[:4] == b"\x89PNG"
     listed = re.findall(r"^\| (\d+) \| (fluid|wall) \| ([\d.]+) \|", text, re.M)
     distances = [float(d) for _, _, d in listed]
-    assert len(listed) >= 12 and distances == sorted(distances) and str(number) not in {
-        one: kind for one, kind, _ in listed
-    }
+    assert (
+        len(listed) >= 12
+        and distances == sorted(distances)
+        and str(number) not in {one: kind for one, kind, _ in listed}
+    )
     assert 'Try scheme = "stable"' in text and 'guards.on_trouble = "warn"' in text
 
 
@@ -98,9 +100,7 @@ def test_the_square_under_tension(tmp_path):
     assert table["pushed hardest by"].startswith("symmetric pressure, ")
     assert table["density changed most by"].startswith("continuity, ")
     assert 'physics.background_pressure = "auto": the fluid is under tension' in text
-    calm, _ = started(
-        load(TENSION, ["guards.on_trouble=stop", "time.end=0.005"]), tmp_path, COMM
-    )
+    calm, _ = started(load(TENSION, ["guards.on_trouble=stop", "time.end=0.005"]), tmp_path, COMM)
     assert calm is None and not (tmp_path / REPORT).exists()  # that of the run before is gone
 
 
@@ -117,16 +117,22 @@ def test_the_command_of_the_docs_ends_as_they_say(tmp_path):
 def test_density_out_of_bounds(tmp_path):
     trouble, _ = started(boxed(tmp_path, COMM, "fluids.water.pressure=6e4"), tmp_path / "run", COMM)
     assert re.search(r"particle \d+ has 1\.\d+ of its rest density \(guards.density", str(trouble))
-    sane = boxed(tmp_path, COMM, "fluids.water.pressure=6e4", "guards.density=0.7",
-                 "guards.on_trouble=warn", "time.step=1e-3", "guards.energy=9.0")
+    sane = boxed(
+        tmp_path,
+        COMM,
+        "fluids.water.pressure=6e4",
+        "guards.density=0.7",
+        "guards.on_trouble=warn",
+        "time.step=1e-3",
+        "guards.energy=9.0",
+    )
     trouble, said = started(sane, tmp_path / "run", COMM)
     assert trouble is None and not any("guards.density" in line for line in said)
 
 
 def test_energy_from_nowhere(tmp_path):
     """Time steps too long pump energy into compression: no speed and no density shows it yet."""
-    lines = ["perturbations=[{ position = [0.65, 0.45], velocity = [1.0, 0.0] }]",
-             "guards.energy=0.1"]
+    lines = ["perturbations=[{ position = [0.65, 0.45], velocity = [1.0, 0.0] }]", "guards.energy=0.1"]
     results = {}
     for step in (0.0095, 0.003):
         case = boxed(tmp_path, COMM, *lines, f"time.step={step}", f"time.end={110 * step}")
@@ -149,9 +155,7 @@ def test_not_a_number(tmp_path, monkeypatch):
 
     with monkeypatch.context() as patch:
         push_once(patch, 34, injure)
-        trouble, _ = started(
-            boxed(tmp_path, COMM, "checkpoint.every=10"), tmp_path / "run", COMM
-        )
+        trouble, _ = started(boxed(tmp_path, COMM, "checkpoint.every=10"), tmp_path / "run", COMM)
     assert "step 35, " in str(trouble) and f"particle {number} has a position" in str(trouble)
     text, table = report_of(tmp_path / "run")
     assert table["particle"] == f"{number}, fluid"

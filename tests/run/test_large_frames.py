@@ -28,7 +28,9 @@ pressure = 1000.0
 velocity_gradient = [[0.0, -1.0], [1.0, 0.0]]
 """
 
-SCRIPT = START + """
+SCRIPT = (
+    START
+    + """
 simulation.step()
 record.write_last()
 record.close()
@@ -37,6 +39,7 @@ if comm.rank == 0:
     predicted = sum(bytes_per_particle(scene, plan)) * particles / comm.size
     print(json.dumps({"particles": particles, "peak": peak, "predicted": predicted}))
 """
+)
 
 
 @LONG

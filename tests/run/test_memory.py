@@ -7,7 +7,9 @@ import sys
 from jobs import clean_environment
 from run.footprint import START
 
-SCRIPT = START + """
+SCRIPT = (
+    START
+    + """
 record.write_frame()
 rebuilds = simulation.domain.rebuilds
 while simulation.domain.rebuilds < rebuilds + 2:
@@ -19,6 +21,7 @@ print(json.dumps({
     "predicted": sum(bytes_per_particle(scene, plan)),
 }))
 """
+)
 
 CUBE = """
 scheme = "sph"
@@ -41,7 +44,9 @@ pressure = 10000.0
 def test_bytes_a_particle_rebuilds_and_frames_included(tmp_path):
     (tmp_path / "cube.toml").write_text(CUBE)
     job = subprocess.run(
-        [sys.executable, "-c", SCRIPT, tmp_path / "cube.toml"], capture_output=True, text=True,
+        [sys.executable, "-c", SCRIPT, tmp_path / "cube.toml"],
+        capture_output=True,
+        text=True,
         env=clean_environment(),
     )
     assert job.returncode == 0, job.stderr

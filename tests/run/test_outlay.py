@@ -38,7 +38,10 @@ def finished(tmp_path_factory):
     """(case, folder, the simulation at the end) of a run with 300 probes."""
     folder = tmp_path_factory.mktemp("probed")
     case = probed(
-        folder, PROBES, "output.probes=0.02", "output.frames=0.005",
+        folder,
+        PROBES,
+        "output.probes=0.02",
+        "output.frames=0.005",
         "fluids.water.velocity=[0.1, 0.0]",
     )
     done = run(case, folder / "run", COMM, say=lambda *_: None)
@@ -84,7 +87,11 @@ def test_no_probe_no_line(tmp_path):
 
 def test_amounts_are_readable():
     assert [amount(x) for x in (0, 1000, 2048, 3.4 * 2**30, 2.0**62)] == [
-        "0 bytes", "1e+03 bytes", "2 KiB", "3.4 GiB", "4.1e+03 PiB"
+        "0 bytes",
+        "1e+03 bytes",
+        "2 KiB",
+        "3.4 GiB",
+        "4.1e+03 PiB",
     ]
 
 

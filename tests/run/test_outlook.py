@@ -62,10 +62,14 @@ def test_of_stress_points_nothing_is_predicted():
 def test_artificial_stress_counts():
     """Case 4.2: it slows the hyperbolic kernel's growth at 1.2, and holds it at 1.1."""
     for h, held in ((1.2, False), (1.1, True)):
-        _, line = said(paper(
-            "negative_pressure_traditional", "space.kernel=hyperbolic", f"space.smoothing={h}",
-            "physics.artificial_stress=0.2",
-        ))
+        _, line = said(
+            paper(
+                "negative_pressure_traditional",
+                "space.kernel=hyperbolic",
+                f"space.smoothing={h}",
+                "physics.artificial_stress=0.2",
+            )
+        )
         assert ("unstable" not in line) == held
 
 
@@ -73,7 +77,8 @@ def test_a_background_pressure_counts():
     """It lifts −2500 Pa to +500, for either form."""
     for form in ("symmetric", "difference"):
         case = paper(
-            "negative_pressure_traditional", "physics.background_pressure=3000",
+            "negative_pressure_traditional",
+            "physics.background_pressure=3000",
             f"physics.pressure_gradient={form}",
         )
         _, line = said(case)
@@ -91,14 +96,16 @@ def test_an_unknown_sign_gets_both(tmp_path):
 
 def test_the_equation_of_state_gives_the_stiffness(tmp_path):
     """Tait's under a high pressure is stiffer and denser."""
-    sets = ("physics.equation_of_state=tait", "fluids.water.pressure=2e4", "space.smoothing=1.2",
-            "space.kernel=wendland-c2")
+    sets = (
+        "physics.equation_of_state=tait",
+        "fluids.water.pressure=2e4",
+        "space.smoothing=1.2",
+        "space.kernel=wendland-c2",
+    )
     _, line = said(draft(tmp_path, SQUARE, *sets))
     density = 1000.0 * (7 * 2e4 / 1e5 + 1.0) ** (1 / 7)
     c = 10.0 * (density / 1000.0) ** 3
-    found = growth(
-        Settings("wendland-c2", 1.2, "square", 2e4, "symmetric", density, c, 0.1)
-    )
+    found = growth(Settings("wendland-c2", 1.2, "square", 2e4, "symmetric", density, c, 0.1))
     assert f"= {found.rate:.3g}/s" in line
 
 

@@ -6,7 +6,18 @@ import h5py
 import numpy as np
 import pytest
 from mpi4py import MPI
-from run.resuming import BOX, control, go_on_alike, keep, same_files, state, steps, stop_after, taken_up, velocity_by_id
+from run.resuming import (
+    BOX,
+    control,
+    go_on_alike,
+    keep,
+    same_files,
+    state,
+    steps,
+    stop_after,
+    taken_up,
+    velocity_by_id,
+)
 from simulation.test_precision import box as precise_box
 
 from psph.case import CaseError, load

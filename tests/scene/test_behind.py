@@ -9,16 +9,28 @@ from psph.scene.behind import Solid
 
 def tank(top=1.0, **space):
     """A tank 2 m wide, walls three particles of 0.1 m thick, its walls up to ``top``."""
-    return Solid(Scene(Case.model_validate({
-        "space": {"dimensions": 2, "spacing": 0.1, **space},
-        "time": {"end": 1.0},
-        "physics": {"sound_speed": 10.0},
-        "fluids": {"water": {"shape": {"box": {"lower": [0.0, 0.0], "upper": [1.0, 0.5]}}}},
-        "walls": {"tank": {"shape": {"difference": {
-            "from": {"box": {"lower": [-0.3, -0.3], "upper": [2.3, top]}},
-            "minus": [{"box": {"lower": [0.0, 0.0], "upper": [2.0, 1.0]}}],
-        }}}},
-    })))
+    return Solid(
+        Scene(
+            Case.model_validate(
+                {
+                    "space": {"dimensions": 2, "spacing": 0.1, **space},
+                    "time": {"end": 1.0},
+                    "physics": {"sound_speed": 10.0},
+                    "fluids": {"water": {"shape": {"box": {"lower": [0.0, 0.0], "upper": [1.0, 0.5]}}}},
+                    "walls": {
+                        "tank": {
+                            "shape": {
+                                "difference": {
+                                    "from": {"box": {"lower": [-0.3, -0.3], "upper": [2.3, top]}},
+                                    "minus": [{"box": {"lower": [0.0, 0.0], "upper": [2.0, 1.0]}}],
+                                }
+                            }
+                        }
+                    },
+                }
+            )
+        )
+    )
 
 
 def test_a_side_is_closed_where_every_site_is_wall():
@@ -28,10 +40,17 @@ def test_a_side_is_closed_where_every_site_is_wall():
 
 def test_deep_is_a_spacing_behind_every_face():
     places = {
-        (0.5, 0.3): False, (0.5, -0.05): False, (0.5, -0.15): True, (0.5, -0.29): True,
-        (-0.09, 0.5): False, (-0.11, 0.5): True,
-        (0.5, -0.5): True, (-3.0, 0.5): True, (9.0, 0.5): True,  # through the wall and out
-        (0.5, 1.5): False, (0.5, 7.0): False,  # over the open top
+        (0.5, 0.3): False,
+        (0.5, -0.05): False,
+        (0.5, -0.15): True,
+        (0.5, -0.29): True,
+        (-0.09, 0.5): False,
+        (-0.11, 0.5): True,
+        (0.5, -0.5): True,
+        (-3.0, 0.5): True,
+        (9.0, 0.5): True,  # through the wall and out
+        (0.5, 1.5): False,
+        (0.5, 7.0): False,  # over the open top
         (-0.15, 0.95): False,  # on the rim: the free top is nearer than a spacing
         (-0.15, 0.85): True,
     }
@@ -44,8 +63,13 @@ def test_deep_is_a_spacing_behind_every_face():
 def test_across_a_periodic_edge():
     """A floor that goes on through the edge of the period has no face there."""
     case = {
-        "space": {"dimensions": 2, "spacing": 0.1, "periodic": ["x"], "lower": [0.0, -0.5],
-                  "upper": [2.0, 1.5]},
+        "space": {
+            "dimensions": 2,
+            "spacing": 0.1,
+            "periodic": ["x"],
+            "lower": [0.0, -0.5],
+            "upper": [2.0, 1.5],
+        },
         "time": {"end": 1.0},
         "physics": {"sound_speed": 10.0},
         "fluids": {"water": {"shape": {"box": {"lower": [0.0, 0.0], "upper": [2.0, 1.0]}}}},
@@ -59,7 +83,8 @@ def test_across_a_periodic_edge():
 
 def test_without_walls_nothing_is_behind_one():
     case = {
-        "space": {"dimensions": 1, "spacing": 0.1}, "time": {"end": 1.0},
+        "space": {"dimensions": 1, "spacing": 0.1},
+        "time": {"end": 1.0},
         "physics": {"sound_speed": 10.0},
         "fluids": {"water": {"shape": {"box": {"lower": [0.0], "upper": [1.0]}}}},
     }

@@ -29,13 +29,22 @@ def test_a_good_scene_is_silent(tmp_path, text):
     assert checked(tmp_path, text) == []
 
 
-@pytest.mark.parametrize("text, sets, says", [
-    (TANK, ("space.spacing=100",),
-     "100 m is larger than the fluids: fluids.water is 0.5 m thick; give at most a tenth of that, 0.05"),
-    (TANK, ("space.spacing=1.2",), "1.2 m is larger than the fluids: fluids.water is 0.5 m"),
-    (WATER + '[fluids.oil.shape.disc]\ncenter = [3.0, 3.0]\nradius = 0.4', ("space.spacing=30",),
-     "30 m is larger than the fluids: fluids.oil is 0.8 m thick"),
-])
+@pytest.mark.parametrize(
+    "text, sets, says",
+    [
+        (
+            TANK,
+            ("space.spacing=100",),
+            "100 m is larger than the fluids: fluids.water is 0.5 m thick; give at most a tenth of that, 0.05",
+        ),
+        (TANK, ("space.spacing=1.2",), "1.2 m is larger than the fluids: fluids.water is 0.5 m"),
+        (
+            WATER + "[fluids.oil.shape.disc]\ncenter = [3.0, 3.0]\nradius = 0.4",
+            ("space.spacing=30",),
+            "30 m is larger than the fluids: fluids.oil is 0.8 m thick",
+        ),
+    ],
+)
 def test_a_huge_spacing_is_the_one_fault(tmp_path, text, sets, says):
     [line] = refused(tmp_path, text, *sets)
     assert line.startswith(f"case.toml: space.spacing: {says}")
@@ -63,14 +72,19 @@ def test_a_scene_without_any_site_is_refused(tmp_path):
 
 def test_a_width_that_is_no_multiple_of_the_spacing_is_warned_of(tmp_path):
     box = "fluids.water.shape.box.upper=[{}, 0.5]"
-    [line] = checked(tmp_path, WATER, "space.spacing=0.03", box.format(0.25), "fluids.water.shape.box.lower=[0.0, 0.2]")
+    [line] = checked(
+        tmp_path, WATER, "space.spacing=0.03", box.format(0.25), "fluids.water.shape.box.lower=[0.0, 0.2]"
+    )
     assert line == (
         "case.toml: fluids.water is 0.25 m wide along x, which is 8.333 spacings of 0.03 m: the "
         "lattice makes it 8; space.spacing = 0.025 fits"
     )
     assert checked(tmp_path, WATER, "space.spacing=0.03125", box.format(0.25)) == []
-    lines = checked(tmp_path, TANK, "walls.tank.shape.difference.minus=[{ box = { lower = [0.0, 0.0], "
-                    "upper = [1.05, 0.7] } }]")
+    lines = checked(
+        tmp_path,
+        TANK,
+        "walls.tank.shape.difference.minus=[{ box = { lower = [0.0, 0.0], upper = [1.05, 0.7] } }]",
+    )
     assert lines[0].startswith("case.toml: walls.tank is 1.05 m wide along x, which is 10.5 spacings")
 
 
@@ -214,12 +228,18 @@ def test_a_round_body_in_the_fluid_is_not_thin(tmp_path):
 
 
 def test_a_plate_between_fluids_is_thin(tmp_path):
-    text = WATER.replace("shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }", """
+    text = (
+        WATER.replace(
+            "shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }",
+            """
 shape.union = [
     { box = { lower = [0.0, 0.0], upper = [1.0, 2.0] } },
     { box = { lower = [1.2, 0.0], upper = [2.0, 2.0] } },
 ]
-""") + "[walls.plate]\nshape.box = { lower = [1.0, 0.0], upper = [1.2, 2.0] }"
+""",
+        )
+        + "[walls.plate]\nshape.box = { lower = [1.0, 0.0], upper = [1.2, 2.0] }"
+    )
     [line] = checked(tmp_path, text, *WEIGHTLESS)
     assert line.startswith("case.toml: walls.plate.shape: 2 layers of particles at [1.05, 0.05]")
 
@@ -295,8 +315,7 @@ def test_a_slow_sound_is_warned_of(tmp_path):
 
 def test_a_large_jitter_is_warned_of(tmp_path):
     assert checked(tmp_path, WATER, "fluids.water.jitter=0.6") == [
-        "case.toml: fluids.water.jitter: 0.6 spacings let neighbours change places; give at most "
-        "0.5"
+        "case.toml: fluids.water.jitter: 0.6 spacings let neighbours change places; give at most 0.5"
     ]
     assert checked(tmp_path, WATER, "fluids.water.jitter=0.5") == []
 
@@ -323,10 +342,13 @@ def test_minimum_pressure_with_a_free_surface_is_warned_of(tmp_path):
     assert line.startswith('case.toml: physics.pressure_gradient: "minimum" is unstable at a free')
 
 
-@pytest.mark.parametrize("text, override", [
-    (TANK, "physics.pressure_gradient=symmetric"),
-    (CLOSED, "physics.pressure_gradient=minimum"),
-])
+@pytest.mark.parametrize(
+    "text, override",
+    [
+        (TANK, "physics.pressure_gradient=symmetric"),
+        (CLOSED, "physics.pressure_gradient=minimum"),
+    ],
+)
 def test_minimum_pressure_without_one_is_silent(tmp_path, text, override):
     assert checked(tmp_path, text, override) == []
 

@@ -173,9 +173,7 @@ def test_nearest_looks_across_a_periodic_edge(tmp_path):
 
 def test_a_particle_is_moved_onto_another(tmp_path):
     still = everything(scene(tmp_path, WATER))
-    moved = everything(
-        scene(tmp_path, WATER, "perturbations=[{position=[0.05, 0.05], shift=[0.1, 0.0]}]")
-    )
+    moved = everything(scene(tmp_path, WATER, "perturbations=[{position=[0.05, 0.05], shift=[0.1, 0.0]}]"))
     [row] = np.flatnonzero((moved.position != still.position).any(axis=1))
     assert still.position[row] == pytest.approx([0.05, 0.05])
     [twin] = np.flatnonzero(np.isclose(still.position, [0.15, 0.05]).all(axis=1))

@@ -74,8 +74,10 @@ def test_height_is_along_gravity(tmp_path):
         (["fluids.water.velocity=[-30.0, 40.0]"], 50.0),
         (["perturbations=[{position=[0.0, 0.0], velocity=[20.0, 0.0]}]"], 20.0),
         (
-            ["fluids.water.velocity=[10.0, 0.0]",
-             "perturbations=[{position=[0.0, 0.0], velocity=[20.0, 0.0]}]"],
+            [
+                "fluids.water.velocity=[10.0, 0.0]",
+                "perturbations=[{position=[0.0, 0.0], velocity=[20.0, 0.0]}]",
+            ],
             30.0,
         ),
     ],
@@ -96,13 +98,16 @@ def test_nothing_that_moves_asks_for_the_sound_speed(tmp_path):
 
 
 def test_materials_are_fluids_then_walls(tmp_path):
-    text = TANK + """
+    text = (
+        TANK
+        + """
 continues = "oil"
 [fluids.oil]
 shape.box = { lower = [0.0, 0.5], upper = [1.0, 0.6] }
 density = 900.0
 viscosity = 1e-4
 """
+    )
     assert scene(tmp_path, text).species == (
         Species("water", Free(), 1000.0, 0.0, pytest.approx(10.0)),
         Species("oil", Free(), 900.0, 1e-4, pytest.approx(9.0)),

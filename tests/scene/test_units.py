@@ -15,18 +15,18 @@ def checked(folder, text, *overrides):
 def test_a_density_of_no_substance_is_warned_of(tmp_path, density, than):
     [line] = checked(tmp_path, TANK, f"fluids.water.density={density}")
     assert line == (
-        f"fluids.water.density: {density:g} kg/m³ is {than}; densities are in kg/m³: water has 1000, "
-        "air 1.2"
+        f"fluids.water.density: {density:g} kg/m³ is {than}; densities are in kg/m³: water has 1000, air 1.2"
     )
     assert checked(tmp_path, TANK, "fluids.water.density=1.2") == []
-
 
 
 def in_millimetres(text: str) -> str:
     """A tank of a metre with the millimetres of its lengths taken for metres."""
     for one, thousand in (
-        ("spacing = 0.1", "spacing = 100.0"), ("[1.0, 0.5]", "[1000.0, 500.0]"),
-        ("[-0.3, -0.3]", "[-300.0, -300.0]"), ("[1.3, 0.7]", "[1300.0, 700.0]"),
+        ("spacing = 0.1", "spacing = 100.0"),
+        ("[1.0, 0.5]", "[1000.0, 500.0]"),
+        ("[-0.3, -0.3]", "[-300.0, -300.0]"),
+        ("[1.3, 0.7]", "[1300.0, 700.0]"),
         ("[1.0, 0.7]", "[1000.0, 700.0]"),
     ):
         text = text.replace(one, thousand)
@@ -39,8 +39,10 @@ def test_millimetres_taken_for_metres_are_warned_of(tmp_path):
         "walls.tank.shape: 1600 m long, and no wave flume is longer than 300 m; lengths are in m: if "
         "they were meant in mm, divide all of them by 1000"
     )
-    weightless = in_millimetres(TANK).replace("gravity = [0.0, -9.8]", "sound_speed = 10.0").replace(
-        'pressure = "hydrostatic"', ""
+    weightless = (
+        in_millimetres(TANK)
+        .replace("gravity = [0.0, -9.8]", "sound_speed = 10.0")
+        .replace('pressure = "hydrostatic"', "")
     )
     assert checked(tmp_path, weightless) == []  # lengths may be in any unit
 

@@ -28,9 +28,7 @@ class Loop:
     """The pair loop of this module's tests, compiled afresh and once for each type of a scene."""
 
     def __init__(self):
-        self.loop = numba.njit(fastmath=FAST, error_model="numpy")(
-            pairs.sum_over_neighbours.py_func
-        )
+        self.loop = numba.njit(fastmath=FAST, error_model="numpy")(pairs.sum_over_neighbours.py_func)
 
     def signature(self, arguments):
         """The types of a call, compiled."""
@@ -79,9 +77,7 @@ def footprint(tmp_path, monkeypatch):
         read = tuple(n for n, x in store.view()._asdict().items() if x is not None)
         halo = plan.refreshed + plan.ghost_fields
         effects = set(map(type, plan.effects))
-        return Footprint(
-            effects, call, plan.arrays, read, halo, bytes_per_refresh(scene, plan, 2)[1]
-        )
+        return Footprint(effects, call, plan.arrays, read, halo, bytes_per_refresh(scene, plan, 2)[1])
 
     return make
 

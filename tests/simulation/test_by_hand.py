@@ -30,17 +30,40 @@ turn = turning(READ)
 
 
 def by_hand(
-    first, last, records, low, begin, lengths, lists, x, y, z, u, v, w, pressure, volume, m, h, c,
-    alpha, beta, inverse_h, kernel_alpha, softening, ax, ay, az, rate,
+    first,
+    last,
+    records,
+    low,
+    begin,
+    lengths,
+    lists,
+    x,
+    y,
+    z,
+    u,
+    v,
+    w,
+    pressure,
+    volume,
+    m,
+    h,
+    c,
+    alpha,
+    beta,
+    inverse_h,
+    kernel_alpha,
+    softening,
+    ax,
+    ay,
+    az,
+    rate,
 ):
     """Continuity, symmetric pressure and artificial viscosity with Wendland's C2 in an open box."""
     front, half = -5.0 * kernel_alpha * inverse_h * inverse_h * m, 0.5 * inverse_h
     eta, ac, bh = 0.01 * h * h, alpha * c, beta * h
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
-        x_i, y_i, z_i, u_i, v_i, w_i, p_i, q_i = (
-            x[k], y[k], z[k], u[k], v[k], w[k], pressure[k], volume[k]
-        )
+        x_i, y_i, z_i, u_i, v_i, w_i, p_i, q_i = (x[k], y[k], z[k], u[k], v[k], w[k], pressure[k], volume[k])
         own = p_i * q_i * q_i
         sx, sy, sz = spread(0.0, records), spread(0.0, records), spread(0.0, records)
         sr = spread(0.0, records)
@@ -66,9 +89,7 @@ def by_hand(
 def simulation():
     """A shifted 3D box in motion, its axes open as far as pairs are concerned."""
     scene = Scene(Box.nearest(3, 57, 3000).case().model_copy(update={"precision": "double"}))
-    open_box = scene.case.model_copy(
-        update={"space": scene.case.space.model_copy(update={"periodic": ()})}
-    )
+    open_box = scene.case.model_copy(update={"space": scene.case.space.model_copy(update={"periodic": ()})})
     scene = Scene(open_box)
     plan = make_plan(scene)
     simulation = Simulation(
@@ -88,11 +109,25 @@ def call_by_hand(s: Simulation) -> tuple:
     [friction] = [e for e in s.plan.effects if isinstance(e, ArtificialViscosity)]
     c = store.constants
     return (
-        store.low, store.low + store.owned, s.engine.records[-1].table, store.low, lists.begin,
-        lists.lengths, lists.lists, *store["position"], *store["predicted_velocity"],
+        store.low,
+        store.low + store.owned,
+        s.engine.records[-1].table,
+        store.low,
+        lists.begin,
+        lists.lengths,
+        lists.lists,
+        *store["position"],
+        *store["predicted_velocity"],
         store["pressure"],
-        store["specific_volume"], c["mass"], c["smoothing_length"], c["sound_speed"],
-        friction.alpha, friction.beta, kernel.inverse_h, kernel.alpha, s.engine.softening,
+        store["specific_volume"],
+        c["mass"],
+        c["smoothing_length"],
+        c["sound_speed"],
+        friction.alpha,
+        friction.beta,
+        kernel.inverse_h,
+        kernel.alpha,
+        s.engine.softening,
         *(np.zeros_like(store["pressure"]) for _ in range(4)),
     )
 
@@ -113,9 +148,7 @@ def in_the_loop(code: str) -> int:
 
 def test_composed_is_as_lean_as_by_hand_and_gives_the_same(simulation):
     options = {"fastmath": FAST, "error_model": "numpy"}
-    hand, composed = numba.njit(**options)(by_hand), numba.njit(**options)(
-        pairs.sum_over_neighbours.py_func
-    )
+    hand, composed = numba.njit(**options)(by_hand), numba.njit(**options)(pairs.sum_over_neighbours.py_func)
     calls = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("psph.simulation.cpu.in_threads", lambda f, *call: calls.append((f, call)))

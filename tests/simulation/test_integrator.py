@@ -23,8 +23,27 @@ def oscillate(theta, steps):
         rate[0] = theta
     for _ in range(steps):
         kick_drift_predict(
-            0, 1, 0.0, 1.0, (), Linear(), FREE, (), MOTIONS, (None,), view, group, None,
-            x, v, predicted, a, density, *rates, volume, pressure,
+            0,
+            1,
+            0.0,
+            1.0,
+            (),
+            Linear(),
+            FREE,
+            (),
+            MOTIONS,
+            (None,),
+            view,
+            group,
+            None,
+            x,
+            v,
+            predicted,
+            a,
+            density,
+            *rates,
+            volume,
+            pressure,
         )
         rates = [rates[2], rates[0], rates[1]]
         rates[0][0] = theta * predicted[0][0]
@@ -71,8 +90,27 @@ def test_walls_stay_and_lost_numbers_are_reported():
     density, volume, pressure = np.ones(2), np.ones(2), np.zeros(2)
     view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
     kick_drift_predict(
-        0, 2, 0.0, 0.1, (), Linear(), FREE, (), MOTIONS, (None,), view, group, None,
-            x, v, predicted, a, density, *rates, volume, pressure,
+        0,
+        2,
+        0.0,
+        0.1,
+        (),
+        Linear(),
+        FREE,
+        (),
+        MOTIONS,
+        (None,),
+        view,
+        group,
+        None,
+        x,
+        v,
+        predicted,
+        a,
+        density,
+        *rates,
+        volume,
+        pressure,
     )
     *_, error, _ = kick(0, 2, 0.0, 0.1, (), FREE, (), MOTIONS, view, group, None, x, v, a, density, rates[0])
     assert x[0][0] == v[0][0] == 0.0 and error == np.inf

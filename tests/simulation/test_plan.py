@@ -41,9 +41,7 @@ def test_a_plain_scene_has_nothing_but_density_and_pressure(planned):
     assert names(plan) == {"Continuity", "SymmetricPressure"}
     assert "viscosity" not in plan.arrays and "viscosity" not in plan.constants
     assert "kernel_sum" not in plan.arrays
-    assert set(plan.refreshed) == {
-        "position", "predicted_velocity", "pressure", "specific_volume"
-    }
+    assert set(plan.refreshed) == {"position", "predicted_velocity", "pressure", "specific_volume"}
     assert plan.ghost_fields == () and plan.reductions == ()
     assert [name for _, name in plan.step_limits(1.0, 0.0)] == ["sound (CFL)"]
 
@@ -129,7 +127,7 @@ def test_diffusion_under_gravity_knows_of_weight(planned):
     _, plan = planned("physics.density_diffusion=0.2", "physics.gravity=[0.0,-9.8]")
     [diffusion] = (e for e in plan.effects if hasattr(e, "delta"))
     assert diffusion == TankDiffusion(0.2, (None, -9.8))
-    walls = 'walls.floor.shape.box={lower=[0.0,-0.2],upper=[1.0,0.0]}'
+    walls = "walls.floor.shape.box={lower=[0.0,-0.2],upper=[1.0,0.0]}"
     _, plan = planned("physics.density_diffusion=0.2", walls)
     assert TankDiffusion(0.2, (None, None)) in plan.effects and "wall" in plan.ghost_fields
     assert "DensityDiffusion" in names(planned("physics.density_diffusion=0.2")[1])

@@ -34,14 +34,20 @@ def box(dim, precision, periodic=False, offset=0.0, sides=None, **physics):
         {
             "precision": precision,
             "space": {
-                "dimensions": dim, "spacing": SPACING, "smoothing": 1.3, "origin": lower,
+                "dimensions": dim,
+                "spacing": SPACING,
+                "smoothing": 1.3,
+                "origin": lower,
                 **({"periodic": ["x", "y", "z"][:dim], **corners} if periodic else {}),
             },
             "time": {"end": 1.0},
             "physics": {"sound_speed": 20.0, "artificial_viscosity": 0.1, **physics},
             "fluids": {
                 name: {
-                    "shape": {"box": part}, "jitter": 0.2, "seed": 5, "pressure": 2000.0 * sign,
+                    "shape": {"box": part},
+                    "jitter": 0.2,
+                    "seed": 5,
+                    "pressure": 2000.0 * sign,
                     "velocity": [sign * v for v in (3.0, -2.0, 1.0)[:dim]],
                 }
                 for name, part, sign in (("left", left, 1.0), ("right", right, 1.5))
@@ -63,9 +69,7 @@ def run(case, steps=3):
     for _ in range(steps):
         sim.step()
     order = np.argsort(sim.store.owned_rows("id"))
-    return [
-        sim.store.owned_rows(name)[order] for name in ("position", "acceleration", "density_rate")
-    ]
+    return [sim.store.owned_rows(name)[order] for name in ("position", "acceleration", "density_rate")]
 
 
 def worst(one, other):
@@ -108,9 +112,7 @@ def drifting(dim, precision, periods, velocity):
     case = box(dim, precision, True, sides=sides)
     cutoff = reach(case) / SPACING / case.space.smoothing
     smoothing = sides / (periods * cutoff)
-    moving = {
-        name: fluid.model_copy(update={"velocity": velocity}) for name, fluid in case.fluids.items()
-    }
+    moving = {name: fluid.model_copy(update={"velocity": velocity}) for name, fluid in case.fluids.items()}
     space = case.space.model_copy(update={"smoothing": smoothing})
     return simulation(case.model_copy(update={"fluids": moving, "space": space}))
 
@@ -177,7 +179,9 @@ for precision in ("double", "mixed"):
 def test_without_compiling_psph_is_plain_python(tmp_path):
     """What docs/contributing.md promises to whoever debugs a formula."""
     job = subprocess.run(
-        [sys.executable, "-c", PLAIN_PYTHON, tmp_path], capture_output=True, text=True,
+        [sys.executable, "-c", PLAIN_PYTHON, tmp_path],
+        capture_output=True,
+        text=True,
         env=clean_environment() | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
     )
     assert job.returncode == 0, job.stderr

@@ -5,6 +5,18 @@ from psph.engine.simd.memory import AHEAD, GROUP, bits, consecutive, steps_betwe
 from psph.engine.simd.sums import fold, total
 
 __all__ = [
-    "AHEAD", "EIGHT", "GROUP", "WIDTH", "bits", "consecutive", "fold", "lanes_of", "spread", "steps_between",
-    "total", "turning", "where", "width_of",
+    "AHEAD",
+    "EIGHT",
+    "GROUP",
+    "WIDTH",
+    "bits",
+    "consecutive",
+    "fold",
+    "lanes_of",
+    "spread",
+    "steps_between",
+    "total",
+    "turning",
+    "where",
+    "width_of",
 ]

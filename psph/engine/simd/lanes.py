@@ -135,11 +135,18 @@ for _functions, _code in (
     for _function in _functions:
         _give(_function, _itself, _code)
 for _function, _symbol in (
-    (operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="),
+    (operator.lt, "<"),
+    (operator.le, "<="),
+    (operator.gt, ">"),
+    (operator.ge, ">="),
 ):
     _give(_function, Mask, _comparison(_symbol))
 for _function, _name in (
-    (math.sqrt, "sqrt"), (np.sqrt, "sqrt"), (math.exp, "exp"), (np.exp, "exp"), (abs, "fabs"),
+    (math.sqrt, "sqrt"),
+    (np.sqrt, "sqrt"),
+    (math.exp, "exp"),
+    (np.exp, "exp"),
+    (abs, "fabs"),
     (round, "rint"),
 ):
     _give(_function, _itself, _llvm(_name), 1)

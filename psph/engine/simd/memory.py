@@ -114,10 +114,15 @@ def _transposed(builder, places, first: int):
     def picked(a, b, picks):
         """Pick from a and b (4 to 7) in each block of four lanes."""
         width = a.type.count
-        return mix(a, b, [
-            block + pick % GROUP + (width if pick >= GROUP else 0)
-            for block in range(0, width, GROUP) for pick in picks
-        ])
+        return mix(
+            a,
+            b,
+            [
+                block + pick % GROUP + (width if pick >= GROUP else 0)
+                for block in range(0, width, GROUP)
+                for pick in picks
+            ],
+        )
 
     def halves(a, b, odd: int):
         """The first or the second pair in each block of four lanes of a, then of b."""
@@ -146,13 +151,13 @@ def _transposed(builder, places, first: int):
         ab, cd = picked(a, b, [0, 4, 1, 5]), picked(c, d, [0, 4, 1, 5])
         ab_high, cd_high = picked(a, b, [2, 6, 3, 7]), picked(c, d, [2, 6, 3, 7])
         return [
-            picked(ab, cd, [0, 1, 4, 5]), picked(ab, cd, [2, 3, 6, 7]),
-            picked(ab_high, cd_high, [0, 1, 4, 5]), picked(ab_high, cd_high, [2, 3, 6, 7]),
+            picked(ab, cd, [0, 1, 4, 5]),
+            picked(ab, cd, [2, 3, 6, 7]),
+            picked(ab_high, cd_high, [0, 1, 4, 5]),
+            picked(ab_high, cd_high, [2, 3, 6, 7]),
         ]
     half = len(places) // 2
-    a, b, c, d = (
-        row(part[t::2]) for part in (places[:half], places[half:]) for t in range(2)
-    )
+    a, b, c, d = (row(part[t::2]) for part in (places[:half], places[half:]) for t in range(2))
     ab, cd = picked(a, b, [0, 4, 2, 6]), picked(c, d, [0, 4, 2, 6])
     ab_odd, cd_odd = picked(a, b, [1, 5, 3, 7]), picked(c, d, [1, 5, 3, 7])
     return [halves(ab, cd, 0), halves(ab_odd, cd_odd, 0), halves(ab, cd, 1), halves(ab_odd, cd_odd, 1)]

@@ -29,9 +29,7 @@ def _on_each(function):
 def _turned_by(builder, lanes, places: int):
     """The lanes moved down by some places, those in front to the end."""
     width = lanes.type.count
-    order = ir.Constant(
-        ir.VectorType(ir.IntType(32), width), [(t + places) % width for t in range(width)]
-    )
+    order = ir.Constant(ir.VectorType(ir.IntType(32), width), [(t + places) % width for t in range(width)])
     return builder.shuffle_vector(lanes, ir.Constant(lanes.type, ir.Undefined), order)
 
 

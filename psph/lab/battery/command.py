@@ -21,9 +21,7 @@ CASES = Path(psph.__file__).parents[1] / "run" / "cases" / "hard"
 FOLDER, BESIDE = Path("battery"), Path("remedies")
 
 
-def battery(
-    comm, quick: bool, out: Path | None, trials: tuple[Trial, ...] | None = None
-) -> list[Row]:
+def battery(comm, quick: bool, out: Path | None, trials: tuple[Trial, ...] | None = None) -> list[Row]:
     """Run the battery, or the quick part of it, into ``out``; rows on rank 0, collective.
 
     Runs that are finished there already are not done again.  Raises BatteryError where the cases
@@ -54,9 +52,7 @@ def remedies(comm, out: Path | None, chosen: Sequence[Remedy] = REMEDIES) -> lis
 def _performed(comm, trials: Sequence[Trial], folder: Path) -> list[Row]:
     """Every run of every trial, said as it ends; rows on rank 0."""
     if not CASES.is_dir():
-        raise BatteryError(
-            f"stability: {CASES} is not there; run it from psph's own folder of sources"
-        )
+        raise BatteryError(f"stability: {CASES} is not there; run it from psph's own folder of sources")
     rows = []
     for trial in trials:
         for column in trial.columns:

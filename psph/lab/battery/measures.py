@@ -78,7 +78,8 @@ def _of_log(log: dict, speed: float, scene) -> dict[str, float]:
     late = fast[time >= (1.0 - LATE) * time[-1]]
     motion = log["kinetic_energy"]
     found = {
-        "speed": float(fast.max()) / speed, "late_speed": float(late.max()),
+        "speed": float(fast.max()) / speed,
+        "late_speed": float(late.max()),
         "growth": _growth(time, fast),
     }
     if motion[0] > 0.0:
@@ -104,7 +105,8 @@ def _of_particles(scene, frame: dict, fluid: dict, speed: float) -> dict[str, fl
     apart = nearest(scene, fluid["position"]) / scene.spacing
     stress = 0.5 * scene.species[0].density * speed**2
     return {
-        "near_least": float(apart.min()), "near_5": float(np.percentile(apart, 5.0)),
+        "near_least": float(apart.min()),
+        "near_5": float(np.percentile(apart, 5.0)),
         "pieces": float(pieces(scene, fluid["position"])),
         "voids": voids(scene, frame["position"], fluid["position"]),
         "noise": checkerboard(scene, frame, fluid) / stress,
@@ -127,9 +129,7 @@ def _conserved(scene, log: dict, first: dict, last: dict, speed: float) -> dict[
         np.linalg.norm(last["velocity"].sum(axis=0) - first["velocity"].sum(axis=0)) / pace
     )
     if not any(scene.periods):
-        found["angular"] = float(
-            np.linalg.norm(_spin(last) - _spin(first)) / max(_lever(first), 1e-300)
-        )
+        found["angular"] = float(np.linalg.norm(_spin(last) - _spin(first)) / max(_lever(first), 1e-300))
     return found
 
 
@@ -173,9 +173,7 @@ def _of_front(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
         seen = window(case.study, time) & (time <= table["time"][-1])
         if not seen.any():
             continue
-        error = partial(
-            _front_error, time[seen], value[seen], table["time"], table[experiment.probe]
-        )
+        error = partial(_front_error, time[seen], value[seen], table["time"], table[experiment.probe])
         yield "front_error", error(0.0)
         # A gate takes its time: what it costs the experiment is not known.
         later = minimize_scalar(error, bounds=(0.0, time[seen][0]), method="bounded")

@@ -16,7 +16,11 @@ from psph.output import style
 PICTURE = "battery.png"
 
 COLOURS = {
-    GOOD: "#0072b2", HOLDS: "#9ecae1", FAILS: "#f5b041", BLEW_UP: "#d55e00", REFUSED: style.WALLS,
+    GOOD: "#0072b2",
+    HOLDS: "#9ecae1",
+    FAILS: "#f5b041",
+    BLEW_UP: "#d55e00",
+    REFUSED: style.WALLS,
 }
 DARK = (GOOD, BLEW_UP)
 """Verdicts whose colour takes white letters."""
@@ -25,9 +29,7 @@ NAME, CELL, ROW, GAP, SNAPSHOT = 3.1, 0.92, 0.23, 0.4, 1.9
 """Width of the names and of a cell, height of a row, a gap, the edge of a snapshot, inches."""
 
 
-def draw(
-    path: Path, trials: Sequence[Trial], rows: Sequence[Row], ends: Iterable[tuple[str, dict]]
-) -> Path:
+def draw(path: Path, trials: Sequence[Trial], rows: Sequence[Row], ends: Iterable[tuple[str, dict]]) -> Path:
     """Write the picture; ``ends``: name and last frame of some runs."""
     columns, ends = columns_of(trials), list(ends)
     wide, tall = CELL * len(columns), ROW * len(trials)
@@ -36,15 +38,20 @@ def draw(
     deep = -(-len(ends) // across) * (SNAPSHOT + 0.35)
     with style.look():
         figure = style.sheet(
-            left + wide + 0.3, top + tall + GAP + deep + 0.25, "What holds, and what does not",
+            left + wide + 0.3,
+            top + tall + GAP + deep + 0.25,
+            "What holds, and what does not",
             "each cell with what the trial is judged by; × and the time at which it blew up",
         )
         _matrix(style.panel(figure, left, top, wide, tall), trials, columns, rows)
         for k, (name, frame) in enumerate(ends):
             down, along = divmod(k, across)
             _end(
-                figure, 0.3 + along * (SNAPSHOT + 0.15),
-                top + tall + GAP + 0.2 + down * (SNAPSHOT + 0.35), name, frame,
+                figure,
+                0.3 + along * (SNAPSHOT + 0.15),
+                top + tall + GAP + 0.2 + down * (SNAPSHOT + 0.35),
+                name,
+                frame,
             )
     return style.save(figure, path)
 
@@ -55,7 +62,12 @@ def _matrix(axes, trials: Sequence[Trial], columns: list[str], rows: Sequence[Ro
         x, y = columns.index(row.column), down[row.trial]
         axes.add_patch(Rectangle((x, y), 1, 1, fc=COLOURS[row.verdict], ec="white", lw=1.5))
         axes.text(
-            x + 0.5, y + 0.52, cell(row)[2:], ha="center", va="center", size=7.5,
+            x + 0.5,
+            y + 0.52,
+            cell(row)[2:],
+            ha="center",
+            va="center",
+            size=7.5,
             color="white" if row.verdict in DARK else style.INK,
         )
     axes.set_xlim(0, len(columns))
@@ -68,7 +80,11 @@ def _matrix(axes, trials: Sequence[Trial], columns: list[str], rows: Sequence[Ro
     found = {row.verdict for row in rows}
     axes.legend(
         handles=[Patch(color=COLOURS[v], label=v) for v in VERDICTS if v in found],
-        loc="upper left", bbox_to_anchor=(0, 0), borderaxespad=0.6, ncol=5, handlelength=1.0,
+        loc="upper left",
+        bbox_to_anchor=(0, 0),
+        borderaxespad=0.6,
+        ncol=5,
+        handlelength=1.0,
         handleheight=1.0,
     )
 
@@ -81,8 +97,9 @@ def _end(figure: Figure, left: float, top: float, name: str, frame: dict) -> Non
     p = frame["pressure"][fluid]
     size = (72.0 * SNAPSHOT) ** 2 / max(len(x), 400) * 0.5
     axes.scatter(*x[~fluid].T, s=size, c=style.WALLS, lw=0)
-    axes.scatter(*x[fluid].T, s=size, c=p, cmap="viridis", lw=0,
-                 vmin=np.percentile(p, 2), vmax=np.percentile(p, 98))
+    axes.scatter(
+        *x[fluid].T, s=size, c=p, cmap="viridis", lw=0, vmin=np.percentile(p, 2), vmax=np.percentile(p, 98)
+    )
     middle = 0.5 * (x.max(axis=0) + x.min(axis=0))
     axes.set_xlim(middle[0] - 0.52 * edge, middle[0] + 0.52 * edge)
     axes.set_ylim(middle[1] - 0.52 * edge, middle[1] + 0.52 * edge)

@@ -84,6 +84,12 @@ def _judging(
 ) -> Trial:
     """A trial of the battery under remedies; a run continues in spite of its guards."""
     return trial._replace(
-        name=name, shown=SHOWN[name][0], end=end, other_end=end, schemes=tuple(changes), fails=(),
-        sets=(*trial.sets, PLAIN, "guards.on_trouble=warn", *besides), changes=changes,
+        name=name,
+        shown=SHOWN[name][0],
+        end=end,
+        other_end=end,
+        schemes=tuple(changes),
+        fails=(),
+        sets=(*trial.sets, PLAIN, "guards.on_trouble=warn", *besides),
+        changes=changes,
     )

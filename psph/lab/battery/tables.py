@@ -79,14 +79,28 @@ def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
     yield ""
     yield from sentences(rows)
     yield ""
-    names = ("growth", "speed", "energy", "momentum", "angular", "near_least", "near_5", "pieces",
-             "voids", "noise", "lost")
+    names = (
+        "growth",
+        "speed",
+        "energy",
+        "momentum",
+        "angular",
+        "near_least",
+        "near_5",
+        "pieces",
+        "voids",
+        "noise",
+        "lost",
+    )
     yield DETAILS
     yield ""
     yield from table(
         ["trial", *(f"`{name}`" for name in names), "seconds"],
-        [[row.trial, *(number(row.found.get(n)) for n in names), number(row.seconds)]
-         for row in rows if row.column == OURS],
+        [
+            [row.trial, *(number(row.found.get(n)) for n in names), number(row.seconds)]
+            for row in rows
+            if row.column == OURS
+        ],
     )
     yield ""
     yield _in_words(name for name in names if name not in shown)
@@ -131,13 +145,31 @@ def as_csv(rows: Sequence[Row]) -> str:
     """Every run with all measures; a measure that a run lacks is empty."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow([
-        "trial", "scheme", "control", "verdict", "status", "reached", "seconds", *MEASURES,
-        "broken",
-    ])
+    writer.writerow(
+        [
+            "trial",
+            "scheme",
+            "control",
+            "verdict",
+            "status",
+            "reached",
+            "seconds",
+            *MEASURES,
+            "broken",
+        ]
+    )
     for row in rows:
-        writer.writerow([
-            row.trial, row.column, row.control, row.verdict, row.status, row.reached, row.seconds,
-            *(row.found.get(name) for name in MEASURES), "; ".join(map(str, row.broken)),
-        ])
+        writer.writerow(
+            [
+                row.trial,
+                row.column,
+                row.control,
+                row.verdict,
+                row.status,
+                row.reached,
+                row.seconds,
+                *(row.found.get(name) for name in MEASURES),
+                "; ".join(map(str, row.broken)),
+            ]
+        )
     return out.getvalue()

@@ -20,9 +20,13 @@ CONTROLS: dict[str, tuple[str, ...]] = {
     "cubic 1.3": ("scheme=sph", "space.smoothing=1.3"),
     "surface 1.3": ("scheme=ssph", "space.smoothing=1.3", "physics.free_surface=0.9"),
     "bare 1.2": (
-        "space.smoothing=1.2", "physics.pair_potential=0", "physics.pair_damping=0",
+        "space.smoothing=1.2",
+        "physics.pair_potential=0",
+        "physics.pair_damping=0",
         "physics.impact_damping=0",
-        "physics.density_diffusion=0", "physics.position_shift=0", "physics.tension_floor=0.01",
+        "physics.density_diffusion=0",
+        "physics.position_shift=0",
+        "physics.tension_floor=0.01",
     ),
 }
 """Schemes that lack what the case needs, or have the paper's equation (14); strengths of zero share
@@ -81,8 +85,11 @@ class Trial(NamedTuple):
         """The keys of the case that a run changes."""
         end = self.end if column == OURS else self.other_end
         return [
-            f"time.end={end!r}", f"output.frames={end / FRAMES!r}", f"output.log={end / ROWS!r}",
-            *self.sets, *self.changes[column],
+            f"time.end={end!r}",
+            f"output.frames={end / FRAMES!r}",
+            f"output.log={end / ROWS!r}",
+            *self.sets,
+            *self.changes[column],
         ]
 
 
@@ -100,8 +107,15 @@ AT_REST = (Bound("late_speed", most=1e-4),)
 def _box(name: str, *sets: str, bounds=AT_REST, speed=1.0, case="box", **more) -> Trial:
     """Case 4.2 in a variant; every scheme has two seconds, since disorder tears p⁻ late."""
     return Trial(
-        name, case, "late_speed", speed, 2.0, 2.0, sets,
-        holds=(*bounds, Bound("near_least", least=0.6)), **more,
+        name,
+        case,
+        "late_speed",
+        speed,
+        2.0,
+        2.0,
+        sets,
+        holds=(*bounds, Bound("near_least", least=0.6)),
+        **more,
     )
 
 
@@ -113,9 +127,16 @@ def _jittered(share: float, *sets: str) -> tuple[str, ...]:
 def _still(name: str, *sets: str, end=20.0, off=0.005, **more) -> Trial:
     """Case 4.1 in a variant; ``off``: how far from theory the probes may be."""
     return Trial(
-        name, "tank", "probe_error", 3.13, end, 10.0, sets,
+        name,
+        "tank",
+        "probe_error",
+        3.13,
+        end,
+        10.0,
+        sets,
         holds=(
-            Bound("probe_error", most=off), Bound("probe_spread", most=5.0),
+            Bound("probe_error", most=off),
+            Bound("probe_spread", most=5.0),
             Bound("noise", most=0.005),
         ),
         **more,
@@ -141,20 +162,36 @@ a user who simulates vortices wants to read their decay from the run to a twenti
 def _patch(name: str, *sets: str, least: float, case="patch", **more) -> Trial:
     """A rotating patch to ωt = 4, with at ``least`` so much of its energy of motion."""
     return Trial(
-        name, case, "kinetic", 0.7, 4.0, 4.0, sets,
+        name,
+        case,
+        "kinetic",
+        0.7,
+        4.0,
+        4.0,
+        sets,
         holds=(
-            *ORDER, Bound("pieces", most=1), Bound("kinetic", least=least),
-            Bound("angular", most=0.01), Bound("momentum", most=1e-13),
+            *ORDER,
+            Bound("pieces", most=1),
+            Bound("kinetic", least=least),
+            Bound("angular", most=0.01),
+            Bound("momentum", most=1e-13),
         ),
         **more,
     )
 
 
 COARSE_PATCH = Trial(
-    "rotating patch, coarse", "patch", "kinetic", 0.7, 3.0, 3.0, ("space.spacing=0.04",),
+    "rotating patch, coarse",
+    "patch",
+    "kinetic",
+    0.7,
+    3.0,
+    3.0,
+    ("space.spacing=0.04",),
     holds=(*ORDER, Bound("pieces", most=1), Bound("kinetic", least=0.85)),
     goals=(Bound("momentum", most=1e-13), Bound("angular", most=0.02)),
-    schemes=ALONE, fails=("no potential", "no shift"),
+    schemes=ALONE,
+    fails=("no potential", "no shift"),
 )
 """Torn by ωt = 3 where it lacks a part; at half the spacing the potential is missed later."""
 
@@ -169,53 +206,92 @@ BATTERY = (
     _box("box, jitter 10 %, viscous", *_jittered(0.1, VISCOUS)),
     _box("cube, jitter 10 %, 3D", case="box_3d", fails=("no background",)),
     Trial(
-        "two particles at one place", "twins", "late_speed", 1.0, 0.5, 0.2,
-        holds=(Bound("late_speed", most=0.1),), goals=AT_REST,
+        "two particles at one place",
+        "twins",
+        "late_speed",
+        1.0,
+        0.5,
+        0.2,
+        holds=(Bound("late_speed", most=0.1),),
+        goals=AT_REST,
     ),
     _still("tank, hydrostatic", fails=("surface 1.3", "cubic 1.3")),
     _still("tank, hydrostatic, 60 s", end=60.0, schemes=ALONE),
     _still("tank, uniform density", UNIFORM, off=0.01, fails=("surface 1.3", "cubic 1.3")),
     _still("tank, uniform density, 60 s", UNIFORM, off=0.01, end=60.0, schemes=ALONE),
-    *(
-        _still(f"tank, h/dx {h:g}", f"space.smoothing={h}", schemes=ALONE)
-        for h in (1.0, 1.1, 1.2, 1.4, 1.5)
-    ),
+    *(_still(f"tank, h/dx {h:g}", f"space.smoothing={h}", schemes=ALONE) for h in (1.0, 1.1, 1.2, 1.4, 1.5)),
     _patch("rotating patch", least=0.93, fails=("no potential", "no shift")),
     _patch("rotating patch, fine", "space.spacing=0.01", least=0.95, schemes=ALONE),
     COARSE_PATCH,
     _patch("rotating cube, 3D", case="patch_3d", least=0.93, fails=("no shift",)),
     Trial(
-        "dam break", "dam_break", "speed", 6.26, 3.0, 3.0,
+        "dam break",
+        "dam_break",
+        "speed",
+        6.26,
+        3.0,
+        3.0,
         holds=(Bound("speed", most=2.5), Bound("front_error", most=0.05)),
         goals=(Bound("speed", most=1.9), Bound("front_begun_later", most=0.05)),
         fails=("no floor", "no impact, no floor"),
     ),
     Trial(
-        "dam break, pressure", "dam_break", "noise", 6.26, 0.8, 0.8,
-        holds=(Bound("noise", most=0.4),), goals=(Bound("noise", most=0.2),), schemes=ALONE,
+        "dam break, pressure",
+        "dam_break",
+        "noise",
+        6.26,
+        0.8,
+        0.8,
+        holds=(Bound("noise", most=0.4),),
+        goals=(Bound("noise", most=0.2),),
+        schemes=ALONE,
         fails=("plain, 0.05",),
     ),
     Trial(
-        "dam break, 3D", "dam_break_3d", "speed", 2.8, 1.5, 1.5,
-        holds=(Bound("speed", most=2.5),), goals=(Bound("speed", most=1.9),),
+        "dam break, 3D",
+        "dam_break_3d",
+        "speed",
+        2.8,
+        1.5,
+        1.5,
+        holds=(Bound("speed", most=2.5),),
+        goals=(Bound("speed", most=1.9),),
     ),
     Trial(
-        "oscillating drop, 20 periods", "drop", "swing", 1.0, 96.5, 40.0, ("output.log=0.02",),
+        "oscillating drop, 20 periods",
+        "drop",
+        "swing",
+        1.0,
+        96.5,
+        40.0,
+        ("output.log=0.02",),
         holds=(*ORDER, Bound("pieces", most=1), LEFT_OF_A_SWING),
         # Its swing holds MU²/4 at the start: half of it shall be left.
         goals=(Bound("energy", least=-0.25, most=0.001), Bound("near_5", least=0.7)),
     ),
     Trial(
-        "stretched strip", "strip", "kinetic", 0.55, 4.0, 4.0,
+        "stretched strip",
+        "strip",
+        "kinetic",
+        0.55,
+        4.0,
+        4.0,
         holds=(*ORDER, Bound("pieces", most=1)),
         goals=(Bound("kinetic", least=0.9), Bound("momentum", most=1e-13)),
     ),
     *(
         Trial(
-            f"Taylor–Green, Re {re:,}", "taylor_green", "energy_left", 1.0, 2.0, 2.0,
+            f"Taylor–Green, Re {re:,}",
+            "taylor_green",
+            "energy_left",
+            1.0,
+            2.0,
+            2.0,
             (f"fluids.water.viscosity={1.0 / re!r}",),
             holds=(
-                *ORDER, Bound("voids", most=0.01), Bound("exact_error", most=0.5),
+                *ORDER,
+                Bound("voids", most=0.01),
+                Bound("exact_error", most=0.5),
                 LEFT_OF_THE_VORTICES,
             ),
             goals=(Bound("exact_error", most=0.2), Bound("near_5", least=0.7)),
@@ -223,27 +299,54 @@ BATTERY = (
         for re in (1000, 10_000)
     ),
     Trial(
-        "impinging jets", "jets", "speed", 1.0, 1.0, 1.0,
+        "impinging jets",
+        "jets",
+        "speed",
+        1.0,
+        1.0,
+        1.0,
         holds=(Bound("speed", most=4.5), Bound("energy", most=0.01)),  # √(2cU), the impact let go
         goals=(Bound("speed", most=3.0), Bound("momentum", most=1e-13)),
     ),
     Trial(
-        "driven cavity, Re 1000", "cavity", "ghia_error", 1.0, 20.0, 20.0,
+        "driven cavity, Re 1000",
+        "cavity",
+        "ghia_error",
+        1.0,
+        20.0,
+        20.0,
         holds=(*ORDER, Bound("voids", most=0.01), Bound("ghia_error", most=0.2)),
         goals=(Bound("ghia_error", most=0.1),),
     ),
     Trial(
-        "sloshing tank", "sloshing", "speed", 1.7, 10.0, 10.0, holds=(Bound("speed", most=2.5),),
+        "sloshing tank",
+        "sloshing",
+        "speed",
+        1.7,
+        10.0,
+        10.0,
+        holds=(Bound("speed", most=2.5),),
         goals=(Bound("noise", most=0.05),),
     ),
     Trial(
-        "thin film, falling particle", "film", "speed", 2.0, 2.0, 2.0,
+        "thin film, falling particle",
+        "film",
+        "speed",
+        2.0,
+        2.0,
+        2.0,
         holds=(Bound("speed", most=2.0),),
         goals=(Bound("speed", most=1.2), Bound("late_speed", most=0.05)),
     ),
     Trial(
-        "particle thrown at a wall", "thrown", "speed", 200.0, 0.2, 0.2,
-        holds=(Bound("speed", most=1.1),), goals=(Bound("late_speed", most=20.0),),
+        "particle thrown at a wall",
+        "thrown",
+        "speed",
+        200.0,
+        0.2,
+        0.2,
+        holds=(Bound("speed", most=1.1),),
+        goals=(Bound("late_speed", most=20.0),),
         fails=("no impact",),
     ),
 )
@@ -254,21 +357,35 @@ SOON = (Bound("late_speed", most=1e-2), Bound("near_least", least=0.6))
 
 QUICK = (
     BATTERY[0]._replace(
-        end=0.1, other_end=0.02, schemes=ALONE, holds=(*SOON, CALM[0]),
+        end=0.1,
+        other_end=0.02,
+        schemes=ALONE,
+        holds=(*SOON, CALM[0]),
         goals=(Bound("late_speed", most=1e-7),),
     ),
     BATTERY[6]._replace(end=0.1, other_end=0.1, schemes=ALONE, holds=SOON),
     COARSE_PATCH,
     Trial(
-        "tank, one second", "tank", "noise", 3.13, 1.0, 1.0,
+        "tank, one second",
+        "tank",
+        "noise",
+        3.13,
+        1.0,
+        1.0,
         holds=(Bound("noise", most=0.02), Bound("probe_error", most=0.05)),
-        schemes=ALONE, fails=("bare 1.2",),
+        schemes=ALONE,
+        fails=("bare 1.2",),
     ),
     Trial(
-        "dam break, coarse", "dam_break", "speed", 6.26, 1.0, 1.0,
-        ("space.spacing=0.1",
-         "walls.tank.shape.difference.from.box={lower=[-0.3, -0.3], upper=[4.3, 3.0]}"),
-        holds=(Bound("speed", most=2.0),), schemes=ALONE,
+        "dam break, coarse",
+        "dam_break",
+        "speed",
+        6.26,
+        1.0,
+        1.0,
+        ("space.spacing=0.1", "walls.tank.shape.difference.from.box={lower=[-0.3, -0.3], upper=[4.3, 3.0]}"),
+        holds=(Bound("speed", most=2.0),),
+        schemes=ALONE,
     ),
 )
 """What the tests run: short and coarse, three sets of loops to compile."""

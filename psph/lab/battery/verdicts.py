@@ -43,14 +43,21 @@ class Row(NamedTuple):
     seconds: float | None
 
 
-def judged(
-    trial: Trial, column: str, result: dict, found: dict[str, float], reached: float
-) -> Row:
+def judged(trial: Trial, column: str, result: dict, found: dict[str, float], reached: float) -> Row:
     """The row of a run that ended as ``result`` says."""
+
     def row(verdict: str, broken: tuple[Broken, ...] = ()) -> Row:
         return Row(
-            trial.name, column, column in trial.fails, verdict, trial.shown, result["status"],
-            found, broken, reached, result.get("seconds"),
+            trial.name,
+            column,
+            column in trial.fails,
+            verdict,
+            trial.shown,
+            result["status"],
+            found,
+            broken,
+            reached,
+            result.get("seconds"),
         )
 
     if result["status"].startswith(REFUSED):
@@ -69,7 +76,7 @@ def _broken(bounds: tuple[Bound, ...], found: dict[str, float], goal=False) -> I
 
 
 def without_effect(rows: Sequence[Row]) -> Iterator[Row]:
-    """The controls that came to their end and missed no bound but those that the default scheme misses too."""
+    """Controls that reached their end and missed no bound but those that the default scheme misses too."""
     ours = {row.trial: set(_fatal(row)) for row in rows if row.column == OURS}
     for row in rows:
         if row.control and row.verdict in (GOOD, HOLDS, FAILS):

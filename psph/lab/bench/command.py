@@ -21,7 +21,10 @@ TENTH, FIVEFOLD, MANY_NEIGHBOURS = 0.1, 5, 110
 
 
 def one(
-    problem: str | None, dimensions: int | None, particles: int | None, neighbours: int | None,
+    problem: str | None,
+    dimensions: int | None,
+    particles: int | None,
+    neighbours: int | None,
     precision: str = "double",
 ) -> list[Asked]:
     """The one problem that is asked for.  BenchError: a number that makes no sense."""
@@ -40,7 +43,10 @@ def one(
 
 
 def standard(
-    problem: str | None, dimensions: int | None, particles: int | None, neighbours: int | None,
+    problem: str | None,
+    dimensions: int | None,
+    particles: int | None,
+    neighbours: int | None,
     precision: str = "double",
 ) -> list[Asked]:
     """The standard set, around ``particles``.  BenchError: another choice beside it."""
@@ -58,8 +64,13 @@ def standard(
 
 
 def bench(
-    comm, asked: list[Asked], compare: Path | None, peer_python: Path | None, as_json: bool,
-    against: Sequence[str] = (), turns: int | None = None,
+    comm,
+    asked: list[Asked],
+    compare: Path | None,
+    peer_python: Path | None,
+    as_json: bool,
+    against: Sequence[str] = (),
+    turns: int | None = None,
 ) -> None:
     """Time each problem and print the results; collective.
 
@@ -91,9 +102,7 @@ def bench(
         print(json.dumps(runs[0] if len(asked) == 1 else {"runs": runs}), flush=True)
 
 
-def prices(
-    comm, dimensions: int | None, particles: int | None, turns: int | None, as_json: bool
-) -> None:
+def prices(comm, dimensions: int | None, particles: int | None, turns: int | None, as_json: bool) -> None:
     """Print what the default scheme costs beside plain SPH, in 2D and 3D or in one of them; collective."""
     from psph.lab.bench.price import price, words
 

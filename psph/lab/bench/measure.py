@@ -58,8 +58,12 @@ class Asked(NamedTuple):
 
 
 def measure(
-    asked: Asked, comm, ceiling: Ceiling, peer_python: Path | None = None,
-    against: Sequence[str] = (), turns: int | None = None,
+    asked: Asked,
+    comm,
+    ceiling: Ceiling,
+    peer_python: Path | None = None,
+    against: Sequence[str] = (),
+    turns: int | None = None,
 ) -> dict:
     """Figures of one problem, ready for JSON: rates are medians over blocks, of all ranks.
 
@@ -103,16 +107,15 @@ def measure(
         "spread": rates.spread,
         "rebuilds": simulation.domain.rebuilds - rebuilds,
         "share": {k: round(v / sum(ours), 4) for k, v in sorted(phases.items())},
-        "roofline": shares(
-            simulation, ceiling, pairs, entries, phases["pairs"] / (blocks * STEPS)
-        ),
+        "roofline": shares(simulation, ceiling, pairs, entries, phases["pairs"] / (blocks * STEPS)),
     }
     if peer:
         result[PEER] = {**peer.described, **_beside(seconds, PEER, count, pairs / count)}
     if rival:
         within = _work(rival, rival_scene)[1] / count
         result[AGAINST] = {
-            "overrides": [*against], "neighbours": round(within, 1),
+            "overrides": [*against],
+            "neighbours": round(within, 1),
             **_beside(seconds, AGAINST, count, within),
         }
     return result
@@ -120,10 +123,14 @@ def measure(
 
 def scene_of(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
     """The problem's scene, with overrides; BenchError where its particles are not the same then."""
-    scene = Scene(checked(
-        f"bench --problem {asked.problem}", layout.tables() | {"precision": asked.precision},
-        against, "--against",
-    ))
+    scene = Scene(
+        checked(
+            f"bench --problem {asked.problem}",
+            layout.tables() | {"precision": asked.precision},
+            against,
+            "--against",
+        )
+    )
     if not against:
         return scene
     like = Scene(layout.case())
@@ -205,8 +212,14 @@ def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
     store, lists, comm = simulation.store, simulation.domain.lists, simulation.comm
     support = scene.kernel.support * scene.smoothing_length
     inside = count_inside(
-        store.view(), simulation.domain.periods, support * support, store.low, store.owned,
-        lists.begin, lists.lengths, lists.lists,
+        store.view(),
+        simulation.domain.periods,
+        support * support,
+        store.low,
+        store.owned,
+        lists.begin,
+        lists.lengths,
+        lists.lists,
     )
     entries = int(lists.lengths[: store.owned].sum())
     return tuple(comm.allreduce(n) for n in (store.owned, int(inside), entries))
@@ -225,7 +238,7 @@ def count_inside(view, periods, support2, low, owned, begin, lengths, lists):
 
 
 def _beside(turns: list[dict], name: str, particles: int, neighbours: float) -> dict:
-    """The figures of another code or setting; ``ratio`` is its seconds over ours, the median over the turns."""
+    """The figures of another code or setting; ``ratio`` is its seconds over ours, a median of the turns."""
     ratios = [turn[name] / turn[OURS] for turn in turns]
     rates = Rates.of([turn[name] for turn in turns], particles)
     ratio = statistics.median(ratios)

@@ -109,9 +109,13 @@ class Peer:
         best = min(SKINS, key=pace)
         pace(best)
         return {
-            "name": "LAMMPS", "version": version, "style": "sph/taitwater",
+            "name": "LAMMPS",
+            "version": version,
+            "style": "sph/taitwater",
             "ranks": self.comm.size,
-            "skin": best, "skins_tried": list(SKINS), "time_step_over_psph": STEP,
+            "skin": best,
+            "skins_tried": list(SKINS),
+            "time_step_over_psph": STEP,
         }
 
 
@@ -199,13 +203,13 @@ class Processes:
                 with _on(cores):
                     self._job = subprocess.Popen(
                         [*launcher, python, lammps_side.__file__, *address],
-                        env=_environment(python, key), stdin=subprocess.DEVNULL,
-                        stdout=self._said, stderr=self._said,
+                        env=_environment(python, key),
+                        stdin=subprocess.DEVNULL,
+                        stdout=self._said,
+                        stderr=self._said,
                     )
             except OSError as error:
-                raise BenchError(
-                    f"bench --peer: {error.filename}: {error.strerror}; {ADVICE}"
-                ) from None
+                raise BenchError(f"bench --peer: {error.filename}: {error.strerror}; {ADVICE}") from None
             self._meet(listener, ranks)
 
     def ask(self, what: str, *details) -> list:
@@ -244,9 +248,7 @@ class Processes:
         while door.is_alive():
             door.join(0.05)
             if self._job.poll() is not None:
-                raise BenchError(
-                    f"bench --peer: no LAMMPS in {self.python} ({self._last_words()}); {ADVICE}"
-                )
+                raise BenchError(f"bench --peer: no LAMMPS in {self.python} ({self._last_words()}); {ADVICE}")
 
     def _last_words(self) -> str:
         self._said.seek(0)

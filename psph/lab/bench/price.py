@@ -62,8 +62,13 @@ def price(comm, dimensions: int, particles: int | None = None, blocks: int | Non
         for block in range(1, blocks + 1)
     ]
     return {
-        "machine": machine(), "dimensions": dimensions, "particles": int(scenes[DEFAULT].counts().sum()),
-        "ranks": comm.size, "threads": threads(), "precision": asked.precision, "turns": blocks,
+        "machine": machine(),
+        "dimensions": dimensions,
+        "particles": int(scenes[DEFAULT].counts().sum()),
+        "ranks": comm.size,
+        "threads": threads(),
+        "precision": asked.precision,
+        "turns": blocks,
         "settings": {
             name: {
                 "keys": [*SETTINGS[name]],
@@ -144,8 +149,8 @@ def words(result: dict) -> Iterator[str]:
     for name, price in result["price"].items():
         other = result["settings"][name]
         yield (
-            f"  plain SPH   {KERNEL} at h/dx {other['smoothing']:g}, {other['neighbours_in_bulk']} neighbours "
-            f"in the bulk, {other['steps']:,} steps in {other['seconds']:.1f} s: the default takes "
-            f"{price['per_step']:.2f} times as long a step, {price['per_second_of_flow']:.2f} times as "
+            f"  plain SPH   {KERNEL} at h/dx {other['smoothing']:g}, {other['neighbours_in_bulk']} "
+            f"neighbours in the bulk, {other['steps']:,} steps in {other['seconds']:.1f} s: the default "
+            f"takes {price['per_step']:.2f} times as long a step, {price['per_second_of_flow']:.2f} times as "
             f"long a second of flow (spread {100 * price['spread']:.0f} %)"
         )

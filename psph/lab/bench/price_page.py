@@ -17,7 +17,10 @@ MARKER = "price"
 
 def table(results: Sequence[dict]) -> Iterator[str]:
     """A row for each plain setting, in 2D and in 3D."""
-    yield "| dam break | plain SPH, h/dx | its neighbours | those of the default | a step | a second of flow | spread |"
+    yield (
+        "| dam break | plain SPH, h/dx | its neighbours | those of the default "
+        "| a step | a second of flow | spread |"
+    )
     yield "|---|---|---|---|---|---|---|"
     for result in results:
         default = result["settings"][DEFAULT]

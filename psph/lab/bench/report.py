@@ -37,16 +37,34 @@ def _tables(runs: list[dict]) -> Iterator[str]:
         yield f"multiply-adds {_best(roofs, 'multiply_add_flops')} Gflop/s."
         yield ""
         yield from _table(
-            ("problem", "particles", "neighbours", "ranks × threads", "precision",
-             "M particle-steps/s a core", "M pairs/s a core", "spread", "LAMMPS", "psph/LAMMPS"),
+            (
+                "problem",
+                "particles",
+                "neighbours",
+                "ranks × threads",
+                "precision",
+                "M particle-steps/s a core",
+                "M pairs/s a core",
+                "spread",
+                "LAMMPS",
+                "psph/LAMMPS",
+            ),
             map(_pace, here),
         )
         yield ""
         yield "Where a step's time goes, and what the pair loop reaches of these two ceilings:"
         yield ""
         yield from _table(
-            ("problem", "particles", "neighbours", "ranks × threads", *PHASES, "the rest",
-             "multiply-adds", "copy"),
+            (
+                "problem",
+                "particles",
+                "neighbours",
+                "ranks × threads",
+                *PHASES,
+                "the rest",
+                "multiply-adds",
+                "copy",
+            ),
             map(_shares, here),
         )
         if scaled := list(_scaled(here)):
@@ -54,8 +72,18 @@ def _tables(runs: list[dict]) -> Iterator[str]:
             yield "More ranks against one: the same particles, or as many to a rank (weak)."
             yield ""
             yield from _table(
-                ("problem", "in the bulk", "precision", "particles on 1 rank", "particles", "ranks",
-                 "times the pace", "efficiency", "spread", "halo and waiting"),
+                (
+                    "problem",
+                    "in the bulk",
+                    "precision",
+                    "particles on 1 rank",
+                    "particles",
+                    "ranks",
+                    "times the pace",
+                    "efficiency",
+                    "spread",
+                    "halo and waiting",
+                ),
                 scaled,
             )
         if compared := [run for run in all_here if AGAINST in run]:
@@ -63,8 +91,18 @@ def _tables(runs: list[dict]) -> Iterator[str]:
             yield "The same particles in turns, block by block in one run: what a choice costs."
             yield ""
             yield from _table(
-                ("problem", "particles", "neighbours", "ranks × threads", "M particle-steps/s",
-                 "against", "its neighbours", "M particle-steps/s", "a step takes, times", "spread"),
+                (
+                    "problem",
+                    "particles",
+                    "neighbours",
+                    "ranks × threads",
+                    "M particle-steps/s",
+                    "against",
+                    "its neighbours",
+                    "M particle-steps/s",
+                    "a step takes, times",
+                    "spread",
+                ),
                 map(_against, compared),
             )
 
@@ -80,10 +118,15 @@ def _scaled(runs: list[dict]) -> Iterator[tuple[str, ...]]:
                 between = many["share"].get("halo", 0.0) + many["share"].get("limits", 0.0)
                 yield (
                     f"{PROBLEMS[many['problem']]}, {many['dimensions']}D",
-                    str(many["neighbours_in_bulk"]), many["precision"],
-                    f"{one['particles']:,}", f"{many['particles']:,}", str(many["ranks"]),
-                    f"{pace:.2f}", _percent(pace / many["ranks"]),
-                    _percent(max(one["spread"], many["spread"])), _percent(between),
+                    str(many["neighbours_in_bulk"]),
+                    many["precision"],
+                    f"{one['particles']:,}",
+                    f"{many['particles']:,}",
+                    str(many["ranks"]),
+                    f"{pace:.2f}",
+                    _percent(pace / many["ranks"]),
+                    _percent(max(one["spread"], many["spread"])),
+                    _percent(between),
                 )
 
 
@@ -111,8 +154,12 @@ def _pace(run: dict) -> tuple[str, ...]:
             f"{peer['ratio']:.2f} (spread {_percent(peer['ratio_spread'])})",
         )
     return (
-        *_what(run), run["precision"], _millions(core["particle_steps_per_second"]),
-        f"{core['pairs_per_second'] / 1e6:.0f}", _percent(run["spread"]), *beside,
+        *_what(run),
+        run["precision"],
+        _millions(core["particle_steps_per_second"]),
+        f"{core['pairs_per_second'] / 1e6:.0f}",
+        _percent(run["spread"]),
+        *beside,
     )
 
 
@@ -126,9 +173,12 @@ def _shares(run: dict) -> tuple[str, ...]:
 def _against(run: dict) -> tuple[str, ...]:
     other = run[AGAINST]
     return (
-        *_what(run), _millions(run["particle_steps_per_second"]),
-        ", ".join(f"`{override}`" for override in other["overrides"]), f"{other['neighbours']:.0f}",
-        _millions(other["particle_steps_per_second"]), f"{other['ratio']:.2f}",
+        *_what(run),
+        _millions(run["particle_steps_per_second"]),
+        ", ".join(f"`{override}`" for override in other["overrides"]),
+        f"{other['neighbours']:.0f}",
+        _millions(other["particle_steps_per_second"]),
+        f"{other['ratio']:.2f}",
         _percent(other["ratio_spread"]),
     )
 

@@ -6,9 +6,21 @@ from pathlib import Path
 from psph.lab.bench.errors import BenchError
 
 KEYS = {
-    "machine", "problem", "dimensions", "particles", "neighbours", "neighbours_in_bulk", "ranks",
-    "threads", "precision", "particle_steps_per_second", "pairs_per_second", "per_core", "spread",
-    "share", "roofline",
+    "machine",
+    "problem",
+    "dimensions",
+    "particles",
+    "neighbours",
+    "neighbours_in_bulk",
+    "ranks",
+    "threads",
+    "precision",
+    "particle_steps_per_second",
+    "pairs_per_second",
+    "per_core",
+    "spread",
+    "share",
+    "roofline",
 }
 """Keys that every result has."""
 

@@ -88,7 +88,8 @@ def _in_units(settings: Settings) -> Settings:
 
 def _plain(found: Growth) -> dict:
     return {
-        "growth_rate": found.rate, "wave_vector": found.wave_vector.tolist(),
+        "growth_rate": found.rate,
+        "wave_vector": found.wave_vector.tolist(),
         "stable": found.stable,
     }
 
@@ -107,10 +108,15 @@ def _map(settings: Settings, folder: Path, as_json: bool) -> None:
     picture.draw(folder / PICTURE, rows, subtitle(settings))
     print(f"wrote {folder}: {CSV}, {PAGE}, {PICTURE}")
     if as_json:
-        print(json.dumps([
-            {"kernel": row.kernel, "state": row.state, "smoothing": h, **_plain(one)}
-            for row in rows for h, one in zip(SMOOTHINGS, row.found)
-        ]))
+        print(
+            json.dumps(
+                [
+                    {"kernel": row.kernel, "state": row.state, "smoothing": h, **_plain(one)}
+                    for row in rows
+                    for h, one in zip(SMOOTHINGS, row.found)
+                ]
+            )
+        )
 
 
 def _settings_of_map(asked: Asked) -> Settings:
@@ -126,14 +132,10 @@ def _settings_of_map(asked: Asked) -> Settings:
 
 def _settings(asked: Asked) -> Settings:
     if asked.kernel not in KERNELS:
-        raise StabilityError(
-            f"stability --kernel {asked.kernel}: not known; one of {', '.join(KERNELS)}"
-        )
+        raise StabilityError(f"stability --kernel {asked.kernel}: not known; one of {', '.join(KERNELS)}")
     smoothing = SMOOTHING if asked.smoothing is None else asked.smoothing
     if not NARROWEST <= smoothing <= WIDEST:
-        raise StabilityError(
-            f"stability --smoothing {asked.smoothing:g}: give {NARROWEST:g} to {WIDEST:g}"
-        )
+        raise StabilityError(f"stability --smoothing {asked.smoothing:g}: give {NARROWEST:g} to {WIDEST:g}")
     for name in ("sound_speed", "density", "spacing"):
         value = getattr(asked, name)
         if value is not None and not 0.0 < value < float("inf"):
@@ -142,8 +144,15 @@ def _settings(asked: Asked) -> Settings:
     pressure, density, spacing = _units(asked)
     unit = (abs(pressure) / density) ** 0.5
     return Settings(
-        asked.kernel, smoothing, asked.lattice, pressure, asked.form, density,
-        asked.sound_speed or STIFF * unit, spacing, tuple(map(_remedy, asked.remedies)),
+        asked.kernel,
+        smoothing,
+        asked.lattice,
+        pressure,
+        asked.form,
+        density,
+        asked.sound_speed or STIFF * unit,
+        spacing,
+        tuple(map(_remedy, asked.remedies)),
     )
 
 
@@ -152,13 +161,10 @@ def _units(asked: Asked) -> tuple[float, float, float]:
     if asked.pressure is None:
         for name in ("density", "spacing"):
             if getattr(asked, name) is not None:
-                raise StabilityError(
-                    f"stability --{name}: needs --pressure; give that too, in Pa"
-                )
+                raise StabilityError(f"stability --{name}: needs --pressure; give that too, in Pa")
         if asked.state is None:
             raise StabilityError(
-                f"stability --kernel {asked.kernel}: give --state {' or '.join(STATES)}, or "
-                "--pressure in Pa"
+                f"stability --kernel {asked.kernel}: give --state {' or '.join(STATES)}, or --pressure in Pa"
             )
         return STATES[asked.state], 1.0, 1.0
     for name in ("density", "spacing"):
@@ -166,8 +172,7 @@ def _units(asked: Asked) -> tuple[float, float, float]:
             raise StabilityError(f"stability --pressure: give --{name} too, all in SI units")
     if not 0.0 < abs(asked.pressure) < float("inf"):
         raise StabilityError(
-            f"stability --pressure {asked.pressure:g}: give a number other than zero, below it "
-            "for tension"
+            f"stability --pressure {asked.pressure:g}: give a number other than zero, below it for tension"
         )
     if asked.state and STATES[asked.state] * asked.pressure < 0.0:
         raise StabilityError(

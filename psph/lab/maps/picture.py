@@ -34,8 +34,10 @@ def draw(path: Path, rows: Sequence[Row], subtitle: str) -> Path:
     height = top + len(STATES) * (tall + GAP) - GAP + style.BOTTOM
     with style.look():
         figure = style.sheet(
-            left + WIDTH + style.RIGHT, height,
-            "Which lattices hold, and how fast the others fall apart", subtitle,
+            left + WIDTH + style.RIGHT,
+            height,
+            "Which lattices hold, and how fast the others fall apart",
+            subtitle,
         )
         for k, state in enumerate(STATES):
             mine = [row for row in rows if row.state == state]
@@ -44,9 +46,7 @@ def draw(path: Path, rows: Sequence[Row], subtitle: str) -> Path:
     return style.save(figure, path)
 
 
-def _panel(
-    figure: Figure, left: float, top: float, tall: float, rows: list[Row], norm, last: bool
-) -> None:
+def _panel(figure: Figure, left: float, top: float, tall: float, rows: list[Row], norm, last: bool) -> None:
     axes = style.panel(figure, left, top, WIDTH, tall)
     rates = np.array([[one.rate for one in row.found] for row in rows])
     stable = np.array([[one.stable for one in row.found] for row in rows])
@@ -54,12 +54,21 @@ def _panel(
     down = np.arange(len(rows) + 1)
     look = {"edgecolors": "white", "linewidth": 0.6}
     axes.pcolormesh(
-        across, down, np.ma.masked_array(np.maximum(rates, SLOW), stable), norm=norm,
-        cmap=COLOURS, **look,
+        across,
+        down,
+        np.ma.masked_array(np.maximum(rates, SLOW), stable),
+        norm=norm,
+        cmap=COLOURS,
+        **look,
     )
     axes.pcolormesh(
-        across, down, np.ma.masked_array(np.ones_like(rates), ~stable), vmin=0, vmax=1,
-        cmap=LinearSegmentedColormap.from_list("stable", [STABLE, STABLE]), **look,
+        across,
+        down,
+        np.ma.masked_array(np.ones_like(rates), ~stable),
+        vmin=0,
+        vmax=1,
+        cmap=LinearSegmentedColormap.from_list("stable", [STABLE, STABLE]),
+        **look,
     )
     axes.set_ylim(len(rows), 0)
     axes.set_yticks(down[:-1] + 0.5, [row.kernel for row in rows])
@@ -72,8 +81,11 @@ def _panel(
         axes.set_xlabel("h/dx")
     else:
         axes.legend(
-            handles=[Patch(color=STABLE, label="stable")], loc="lower right",
-            bbox_to_anchor=(1, 1.05), handlelength=1.0, handleheight=1.0,
+            handles=[Patch(color=STABLE, label="stable")],
+            loc="lower right",
+            bbox_to_anchor=(1, 1.05),
+            handlelength=1.0,
+            handleheight=1.0,
         )
 
 

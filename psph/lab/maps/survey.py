@@ -23,19 +23,14 @@ def survey(settings: Settings) -> Iterator[Row]:
     for state, sign in STATES.items():
         for kernel in KERNELS:
             asked = settings._replace(kernel=kernel, pressure=sign * abs(settings.pressure))
-            yield Row(
-                kernel, state, tuple(growth(asked._replace(smoothing=h)) for h in SMOOTHINGS)
-            )
+            yield Row(kernel, state, tuple(growth(asked._replace(smoothing=h)) for h in SMOOTHINGS))
 
 
 def sentences(rows: Sequence[Row]) -> Iterator[str]:
     """Which h/dx are stable, one line a kernel."""
     for state in STATES:
         mine = [row for row in rows if row.state == state]
-        held = {
-            row.kernel: windows(h for h, one in zip(SMOOTHINGS, row.found) if one.stable)
-            for row in mine
-        }
+        held = {row.kernel: windows(h for h, one in zip(SMOOTHINGS, row.found) if one.stable) for row in mine}
         if not any(held.values()):
             tried = f"{SMOOTHINGS[0]:g} to {SMOOTHINGS[-1]:g}"
             yield f"Under {state} nothing is stable at any h/dx from {tried}."

@@ -24,11 +24,14 @@ UNIT = "√(|P|/ρ)/dx"
 def subtitle(settings: Settings) -> str:
     """The settings of a map."""
     names = {kind: name.replace("_", " ") for name, kind in REMEDIES.items()}
-    return ", ".join([
-        f"{settings.lattice} lattice", f"{settings.form} pressure gradient",
-        f"c = {settings.sound_speed:g} √(|P|/ρ)",
-        *(" ".join([names[type(r)], *(f"{v:g}" for v in r)]) for r in settings.remedies),
-    ])
+    return ", ".join(
+        [
+            f"{settings.lattice} lattice",
+            f"{settings.form} pressure gradient",
+            f"c = {settings.sound_speed:g} √(|P|/ρ)",
+            *(" ".join([names[type(r)], *(f"{v:g}" for v in r)]) for r in settings.remedies),
+        ]
+    )
 
 
 def head() -> str:
@@ -63,14 +66,30 @@ def as_csv(settings: Settings, rows: Sequence[Row]) -> str:
     writer = csv.writer(out, lineterminator="\n")
     axes = "xyz"[: len(rows[0].found[0].wave_vector)]
     writer.writerow(
-        ["lattice", "form", "state", "kernel", "smoothing", "growth_rate", "stable",
-         *(f"wave_{axis}" for axis in axes)]
+        [
+            "lattice",
+            "form",
+            "state",
+            "kernel",
+            "smoothing",
+            "growth_rate",
+            "stable",
+            *(f"wave_{axis}" for axis in axes),
+        ]
     )
     for row in rows:
         for h, one in zip(SMOOTHINGS, row.found):
             writer.writerow(
-                [settings.lattice, settings.form, row.state, row.kernel, h, one.rate,
-                 one.stable, *one.wave_vector.tolist()]
+                [
+                    settings.lattice,
+                    settings.form,
+                    row.state,
+                    row.kernel,
+                    h,
+                    one.rate,
+                    one.stable,
+                    *one.wave_vector.tolist(),
+                ]
             )
     return out.getvalue()
 

@@ -10,8 +10,16 @@ from psph.lab.study.study import Study
 
 
 def study(
-    comm, file, sets: list[str], vary: list[str], grid: bool, effects: bool, out: Path | None,
-    error: float | None, seconds: float | None, files: Path | None = None,
+    comm,
+    file,
+    sets: list[str],
+    vary: list[str],
+    grid: bool,
+    effects: bool,
+    out: Path | None,
+    error: float | None,
+    seconds: float | None,
+    files: Path | None = None,
 ) -> None:
     """Run the study and print its results; collective.
 

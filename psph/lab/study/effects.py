@@ -32,9 +32,7 @@ def answers(row: dict, base: dict) -> dict[str, float]:
     names = [n for n in base if n.startswith(MEAN)] or ["kinetic_energy"]
     if not math.isnan(base["error_l2"]):
         names.append("error_l2")
-    return {
-        n.removeprefix(MEAN).replace("_", " "): row[n] / base[n] - 1.0 for n in names if base[n]
-    }
+    return {n.removeprefix(MEAN).replace("_", " "): row[n] / base[n] - 1.0 for n in names if base[n]}
 
 
 def effects_words(named: dict[str, Settings], rows: list[dict]) -> Iterator[str]:

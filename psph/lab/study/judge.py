@@ -142,8 +142,7 @@ class Judge:
         known_here = self._references_of(what)
         if self.against not in known_here:
             raise StudyError(
-                f"{file}: study.against: {self.against} has no {what}; give one of "
-                f"{', '.join(known_here)}"
+                f"{file}: study.against: {self.against} has no {what}; give one of {', '.join(known_here)}"
             )
         if what not in AT_THE_END:
             self._agree_in_time()
@@ -154,8 +153,8 @@ class Judge:
         last = min(self.case.time.end, math.inf if study.until is None else study.until)
         if study.after >= last:
             raise StudyError(
-                f"{file}: study.after: {study.after:g} s leaves nothing to compare, since the comparison ends at "
-                f"{last:g} s; give an earlier time"
+                f"{file}: study.after: {study.after:g} s leaves nothing to compare, since the comparison "
+                f"ends at {last:g} s; give an earlier time"
             )
         if name not in self.case.experiments:
             return

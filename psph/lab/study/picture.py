@@ -13,8 +13,12 @@ WIDTH, HEIGHT = 6.4, 4.0
 
 
 def draw(
-    path: Path, title: str, subtitle: str, curves: Sequence[tuple[str, list[dict]]],
-    front: Sequence[dict], goal: tuple[float, dict] | None,
+    path: Path,
+    title: str,
+    subtitle: str,
+    curves: Sequence[tuple[str, list[dict]]],
+    front: Sequence[dict],
+    goal: tuple[float, dict] | None,
 ) -> Path:
     """Write the diagram: each of ``curves`` a named list of rows, the Pareto ``front`` beneath.
 
@@ -28,8 +32,9 @@ def draw(
         axes.set_yscale("log")
         if len(front) > 1:
             x, y = zip(*((r["seconds"], 100.0 * r["error_l2"]) for r in front))
-            axes.plot(x, y, color=style.WALLS, lw=6, solid_capstyle="round", zorder=1,
-                      label="nothing beats these")
+            axes.plot(
+                x, y, color=style.WALLS, lw=6, solid_capstyle="round", zorder=1, label="nothing beats these"
+            )
         for k, (name, rows) in enumerate(curves):
             colour = style.LINES[k % len(style.LINES)]
             x = [r["seconds"] for r in rows]
@@ -38,14 +43,26 @@ def draw(
             for row in rows if k == 0 else ():
                 if SPACING in row:
                     axes.annotate(
-                        f"dx {toml(row[SPACING])}", (row["seconds"], 100.0 * row["error_l2"]),
-                        xytext=(5, 5), textcoords="offset points", size=8, color=style.PALE,
+                        f"dx {toml(row[SPACING])}",
+                        (row["seconds"], 100.0 * row["error_l2"]),
+                        xytext=(5, 5),
+                        textcoords="offset points",
+                        size=8,
+                        color=style.PALE,
                     )
         if goal:
             error, row = goal
             axes.axhline(100.0 * error, color=style.INK, lw=0.9, ls=(0, (5, 3)), zorder=2)
-            axes.plot([row["seconds"]], [100.0 * row["error_l2"]], "o", ms=11, mfc="none",
-                      mec=style.INK, label=f"cheapest within {100.0 * error:g} %", zorder=4)
+            axes.plot(
+                [row["seconds"]],
+                [100.0 * row["error_l2"]],
+                "o",
+                ms=11,
+                mfc="none",
+                mec=style.INK,
+                label=f"cheapest within {100.0 * error:g} %",
+                zorder=4,
+            )
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter(lambda number, _: f"{number:g}")

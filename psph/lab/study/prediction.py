@@ -27,8 +27,15 @@ def predicted(folder: Path, case) -> Iterator[str]:
         lines = list(_lines(folder, kept, case))
     except StudyError:
         raise
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError,
-            RecursionError) as error:  # whatever may be wrong with a file that psph has not written
+    except (
+        OSError,
+        ValueError,
+        LookupError,
+        TypeError,
+        AttributeError,
+        ArithmeticError,
+        RecursionError,
+    ) as error:  # whatever may be wrong with a file that psph has not written
         raise StudyError(
             f"{folder}: holds no study ({error}); give the folder that `study` wrote to"
         ) from None

@@ -12,8 +12,12 @@ from psph.output.errors import OutputError
 from psph.output.progress import duration
 
 SHOWN = (
-    ("error_l2", "error L2"), ("error_linf", "error L∞"), ("seconds", "seconds"),
-    ("particle_steps", "particle-steps"), ("bytes", "memory"), ("status", "status"),
+    ("error_l2", "error L2"),
+    ("error_linf", "error L∞"),
+    ("seconds", "seconds"),
+    ("particle_steps", "particle-steps"),
+    ("bytes", "memory"),
+    ("status", "status"),
 )
 """The main columns of a row, shown in tables."""
 

@@ -41,7 +41,14 @@ def _case(file: str, sets: list[str]):
 
 
 ASIDE = (
-    "title", "scheme", "profile", "output", "checkpoint", "guards", "parallel", "study",
+    "title",
+    "scheme",
+    "profile",
+    "output",
+    "checkpoint",
+    "guards",
+    "parallel",
+    "study",
 )
 """Tables and keys of a case that decide neither its answers nor, noticeably, its run time; what a
 scheme and a profile set stands in the tables that they set it in."""
@@ -131,8 +138,12 @@ def _key(case, comm) -> dict:
     """What a result depends on, psph's own sources included: it is used for no other."""
     text = case.model_copy(update={"study": type(case.study)()}).to_toml()
     return {
-        "case": text, "sources": SOURCES, "used": versions(case.catalogue),
-        "processor": processor(), "ranks": comm.size, "threads": threads(),
+        "case": text,
+        "sources": SOURCES,
+        "used": versions(case.catalogue),
+        "processor": processor(),
+        "ranks": comm.size,
+        "threads": threads(),
     }
 
 

@@ -29,7 +29,12 @@ class Study:
     """
 
     def __init__(
-        self, file, sets: list[str], every: list[Settings], folder: Path, comm,
+        self,
+        file,
+        sets: list[str],
+        every: list[Settings],
+        folder: Path,
+        comm,
         files: Path | None = None,
     ):
         self.folder, self.comm, self.every = folder, comm, every
@@ -69,9 +74,7 @@ class Study:
         for k, (settings, case) in enumerate(zip(self.every, self.cases)):
             title = f"run {k + 1} of {len(self.every)}: {name_of(settings)}"
             say(f"{title} ...{self._left(results, k)}")
-            result = perform(
-                case, self.folder / f"run-{k + 1:02d}", self.comm, self.case.study.repeats, say
-            )
+            result = perform(case, self.folder / f"run-{k + 1:02d}", self.comm, self.case.study.repeats, say)
             results.append(result)
             say(f"{title}: {_outcome(result)}")
         return self._rows(results) if self.comm.rank == 0 else []
@@ -120,7 +123,8 @@ class Study:
         """Errors against the finest run become differences from it, and errors hold its own too."""
         shared = {k: v for k, v in self.every[finest].items() if k != SPACING}
         ladder = [
-            row for row, settings in zip(found, self.every)
+            row
+            for row, settings in zip(found, self.every)
             if row["status"] == DONE and {k: v for k, v in settings.items() if k != SPACING} == shared
         ]
         for norm in Judgement._fields:
@@ -150,15 +154,30 @@ class Study:
         scene = Scene(self.case)
         answer = list(answers(pasted, scene, error, seconds)) if error or seconds else []
         title = f"{self.case.title or self.case.name}: what accuracy costs"
-        page = [f"# {title}", "", f"Error: {self.judge.in_words}.", "",
-                *report.markdown(found, keys), "", *(f"- {line}" for line in sentences), ""]
+        page = [
+            f"# {title}",
+            "",
+            f"Error: {self.judge.in_words}.",
+            "",
+            *report.markdown(found, keys),
+            "",
+            *(f"- {line}" for line in sentences),
+            "",
+        ]
         report.write_csv(self.folder / CSV, found)
         report.write(self.folder / PAGE, "\n".join(page))
-        report.write_json(self.folder / KEPT, {
-            "case": self.case.file, "error": self.judge.in_words, "rows": found, "vary": keys,
-            "dimensions": self.case.space.dimensions, "ranks": self.comm.size,
-            "conditions": [conditions(case) for case in self._first_of_each_ladder()],
-        })
+        report.write_json(
+            self.folder / KEPT,
+            {
+                "case": self.case.file,
+                "error": self.judge.in_words,
+                "rows": found,
+                "vary": keys,
+                "dimensions": self.case.space.dimensions,
+                "ranks": self.comm.size,
+                "conditions": [conditions(case) for case in self._first_of_each_ladder()],
+            },
+        )
         good = [row for row in found if row["error_l2"] > 0.0]
         if good:
             self._draw(title, found, good, error)
@@ -211,8 +230,10 @@ class Study:
                 continue
             others = {k: v for k, v in row.items() if k in self.keys and k not in own}
             plain = [
-                other for other in found
-                if other["status"] == DONE and other["error_l2"] > 0.0
+                other
+                for other in found
+                if other["status"] == DONE
+                and other["error_l2"] > 0.0
                 and {k: v for k, v in other.items() if k in self.keys} == others
             ]
             if plain:
@@ -221,7 +242,8 @@ class Study:
     def _limits(self, found: list[dict]) -> Iterator[str]:
         """Means of the probes at zero spacing, from three runs or more."""
         alone = [
-            row for row in found
+            row
+            for row in found
             if row["status"] == DONE and not any(k in row for k in self.keys if k != SPACING)
         ]
         for name in alone[0] if alone else ():
@@ -240,8 +262,12 @@ class Study:
         enough = [row for row in good if error and row["error_l2"] <= error]
         goal = (error, min(enough, key=lambda row: row["seconds"])) if enough else None
         draw(
-            self.folder / PICTURE, title, self.judge.in_words,
-            [curve for curve in curves if curve[1]], pareto(found), goal,
+            self.folder / PICTURE,
+            title,
+            self.judge.in_words,
+            [curve for curve in curves if curve[1]],
+            pareto(found),
+            goal,
         )
 
 
@@ -291,9 +317,7 @@ def ladders_of(
     every = [{k: row[k] for k in keys if k in row} for row in found]
     for shared, places in groups(every):
         part = [found[k] for k in places if found[k]["status"] == DONE]
-        runs = [
-            fit.Run(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part
-        ]
+        runs = [fit.Run(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part]
         enough = len({run.spacing for run in runs if run.error > 0.0}) > 1
         estimated = any(f"{DIFFERENCE}l2" in row for row in part)
         ladder = fit.Ladder(runs, dimensions, estimated) if enough else None

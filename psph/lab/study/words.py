@@ -18,8 +18,7 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
     finest = ladder.runs[-1]
     beginning = f"{name}: " if name else ""
     yield (
-        f"{beginning}{percent(finest.error)} costs {seconds(finest.seconds)} "
-        f"(spacing {finest.spacing:g} m)."
+        f"{beginning}{percent(finest.error)} costs {seconds(finest.seconds)} (spacing {finest.spacing:g} m)."
     )
     if not ladder.steady:
         best = min(ladder.runs, key=lambda run: run.error)
@@ -57,7 +56,8 @@ def own_error_words(own: OwnError) -> str:
     """What was added to the differences from the finest run, and how it is known."""
     how = (
         f"by the order {own.order:.2f} at which differences from it fall"
-        if own.measured else f"for an order of {own.order:.1f}, assumed since these runs do not tell it"
+        if own.measured
+        else f"for an order of {own.order:.1f}, assumed since these runs do not tell it"
     )
     return f"The errors hold that of the finest run itself, estimated as {percent(own.error)} {how}."
 

@@ -26,9 +26,7 @@ class DensityDiffusion(NamedTuple):
     Σ m_i/ρ_i dρ_i/dt = 0.
     """
 
-    delta: Annotated[
-        float, Field(ge=0, description="strength δ", json_schema_extra={"unit": "1"})
-    ] = 0.1
+    delta: Annotated[float, Field(ge=0, description="strength δ", json_schema_extra={"unit": "1"})] = 0.1
 
     def in_scene(self, scene):
         """Under gravity or beside walls, the form that knows of them."""

@@ -26,7 +26,8 @@ class ConservativeSmoothing(NamedTuple):
     alpha: Annotated[
         float,
         Field(
-            ge=0, description="α: part of the mean taken over in a time h/c",
+            ge=0,
+            description="α: part of the mean taken over in a time h/c",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.1

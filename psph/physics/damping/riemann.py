@@ -25,9 +25,7 @@ class RiemannDissipation(NamedTuple):
 
     conserves = ("momentum", "angular momentum")
 
-    eta: Annotated[
-        float, Field(ge=0, description="η of the limiter", json_schema_extra={"unit": "1"})
-    ] = 3.0
+    eta: Annotated[float, Field(ge=0, description="η of the limiter", json_schema_extra={"unit": "1"})] = 3.0
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""

@@ -12,9 +12,7 @@ from psph.vectors import add, adjugate, determinant, dot, less_diagonal, outer, 
 CORRECTED = ("symmetric", "difference")
 """Pressure gradients that work with a corrected kernel gradient."""
 
-CORRECTION = Declared(
-    "gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC
-)
+CORRECTION = Declared("gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC)
 
 
 class GradientCorrection(NamedTuple):
@@ -34,7 +32,9 @@ class GradientCorrection(NamedTuple):
     least: Annotated[
         float,
         Field(
-            gt=0, le=1, description="D₀: the correction fades where the determinant is below it",
+            gt=0,
+            le=1,
+            description="D₀: the correction fades where the determinant is below it",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.5

@@ -16,7 +16,9 @@ class Gravity(NamedTuple):
     acceleration: Annotated[
         tuple[float, ...],
         Field(
-            min_length=1, description="g, one number per dimension", json_schema_extra={"unit": "m/s2"},
+            min_length=1,
+            description="g, one number per dimension",
+            json_schema_extra={"unit": "m/s2"},
         ),
     ]
 
@@ -42,13 +44,13 @@ class CentralForce(NamedTuple):
     drop swings in it between two ellipses.
     """
 
-    frequency: Annotated[
-        float, Field(description="B", json_schema_extra={"unit": "rad/s"})
-    ]
+    frequency: Annotated[float, Field(description="B", json_schema_extra={"unit": "rad/s"})]
     center: Annotated[
         tuple[float, ...],
         Field(
-            min_length=1, description="X, one number per dimension", json_schema_extra={"unit": "m"},
+            min_length=1,
+            description="X, one number per dimension",
+            json_schema_extra={"unit": "m"},
         ),
     ]
 

@@ -198,9 +198,7 @@ class PairDamping(NamedTuple):
 
     conserves = ("momentum", "angular momentum")
 
-    alpha: Annotated[
-        float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})
-    ] = 0.02
+    alpha: Annotated[float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})] = 0.02
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""

@@ -53,7 +53,8 @@ class PairPotential(NamedTuple):
     strength: Annotated[
         float,
         Field(
-            ge=0, description="f: K over ρ₀U², U = c/10 the largest speed",
+            ge=0,
+            description="f: K over ρ₀U², U = c/10 the largest speed",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.008
@@ -61,9 +62,7 @@ class PairPotential(NamedTuple):
     def in_scene(self, scene):
         """The potential of the scene's lattice, for one mass or for several."""
         alike = len({material.mass for material in scene.species}) == 1
-        return neutral_potential(
-            self.strength, scene.sound_speed, scene.spacing, scene.dimensions, alike
-        )
+        return neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions, alike)
 
 
 class NeutralPotential(NamedTuple):
@@ -152,9 +151,7 @@ def neutral_potential(
     heights = np.sqrt(np.abs(weights[1:]))  # the last is below zero, the others are not
     slopes = heights / (ranges * dx) ** 2
     form = NeutralPotential if alike else UnequalPotential
-    return form(
-        height, height / (core * dx), tuple(heights.tolist()), tuple(slopes.tolist())
-    )
+    return form(height, height / (core * dx), tuple(heights.tolist()), tuple(slopes.tolist()))
 
 
 def _forces_over_r(core: float, ranges: np.ndarray, r2: np.ndarray) -> np.ndarray:

@@ -46,7 +46,9 @@ class ParticleShifting(NamedTuple):
     strength: Annotated[
         float,
         Field(
-            ge=0, le=1, description="U over the speed of sound; 0.1: U is the largest speed",
+            ge=0,
+            le=1,
+            description="U over the speed of sound; 0.1: U is the largest speed",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.1
@@ -110,7 +112,9 @@ class PositionShift(NamedTuple):
     strength: Annotated[
         float,
         Field(
-            ge=0, le=1, description="largest U over the speed of sound",
+            ge=0,
+            le=1,
+            description="largest U over the speed of sound",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.1

@@ -20,9 +20,7 @@ OWN_PRESSURE = 10.0
 """Largest background pressure over |p| of the particle (Zhang, Hu & Adams 2017)."""
 
 
-TRANSPORT = Declared(
-    "transport", "m/s", "velocity of the particle minus that of the fluid", VECTOR
-)
+TRANSPORT = Declared("transport", "m/s", "velocity of the particle minus that of the fluid", VECTOR)
 
 
 def _conflicts(physics, kernel):

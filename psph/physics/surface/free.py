@@ -26,7 +26,9 @@ class FreeSurface(NamedTuple):
     ] = 0.9
 
     writes = Declared(
-        "kernel_sum", "1", "sum of W m/rho over the support, the particle included",
+        "kernel_sum",
+        "1",
+        "sum of W m/rho over the support, the particle included",
         start=NOT_YET_SUMMED,
     )
     lagged = True
@@ -68,7 +70,9 @@ class TensionFloor(NamedTuple):
     least: Annotated[
         float,
         Field(
-            gt=0, le=1, description="f: least density of the fluid over its rest density",
+            gt=0,
+            le=1,
+            description="f: least density of the fluid over its rest density",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.98

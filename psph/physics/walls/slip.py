@@ -6,9 +6,7 @@ from psph.fields import VECTOR, Field
 from psph.physics.fluid.viscosity import corrected_friction, friction
 from psph.vectors import add, scale, subtract, zero_like
 
-MIRRORED = Field(
-    "slip", "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", VECTOR
-)
+MIRRORED = Field("slip", "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", VECTOR)
 
 NO_FLUID = 1e-300
 """Keeps a kernel sum without any fluid from dividing by zero, 1/m^d."""

@@ -26,7 +26,7 @@ def whole_waves(setting: Setting, axes: tuple[int, ...], length: float) -> str |
     for axis in axes:
         name, period = "xyz"[axis], setting.periods[axis]
         if period is None:
-            return f"repeats along {name}; add \"{name}\" to space.periodic"
+            return f'repeats along {name}; add "{name}" to space.periodic'
         waves = period / length
         if abs(waves - round(waves)) > 1e-9 * waves or round(waves) < 1:
             return (

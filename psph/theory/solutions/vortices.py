@@ -24,9 +24,7 @@ class TaylorGreen(NamedTuple):
         float,
         Field(gt=0, description="largest speed U at the start", json_schema_extra={"unit": "m/s"}),
     ]
-    length: Annotated[
-        float, Field(gt=0, description="length L of a period", json_schema_extra={"unit": "m"})
-    ]
+    length: Annotated[float, Field(gt=0, description="length L of a period", json_schema_extra={"unit": "m"})]
 
     up_to_a_constant = ("pressure",)
 
@@ -61,9 +59,7 @@ class Gresho(NamedTuple):
     25, 995, zero outside.
     """
 
-    speed: Annotated[
-        float, Field(gt=0, description="largest speed U", json_schema_extra={"unit": "m/s"})
-    ]
+    speed: Annotated[float, Field(gt=0, description="largest speed U", json_schema_extra={"unit": "m/s"})]
     radius: Annotated[
         float, Field(gt=0, description="radius R of that speed", json_schema_extra={"unit": "m"})
     ]

@@ -16,12 +16,8 @@ class SoundWave(NamedTuple):
     §277.
     """
 
-    speed: Annotated[
-        float, Field(gt=0, description="amplitude U", json_schema_extra={"unit": "m/s"})
-    ]
-    length: Annotated[
-        float, Field(gt=0, description="wavelength", json_schema_extra={"unit": "m"})
-    ]
+    speed: Annotated[float, Field(gt=0, description="amplitude U", json_schema_extra={"unit": "m/s"})]
+    length: Annotated[float, Field(gt=0, description="wavelength", json_schema_extra={"unit": "m"})]
 
     up_to_a_constant = ()
 
@@ -54,18 +50,12 @@ class StandingWave(NamedTuple):
     crest on.
     """
 
-    amplitude: Annotated[
-        float, Field(gt=0, description="amplitude A", json_schema_extra={"unit": "m"})
-    ]
-    length: Annotated[
-        float, Field(gt=0, description="wavelength", json_schema_extra={"unit": "m"})
-    ]
-    depth: Annotated[
-        float, Field(gt=0, description="depth H of the water", json_schema_extra={"unit": "m"})
-    ]
-    surface: Annotated[
-        float, Field(description="y of the flat surface", json_schema_extra={"unit": "m"})
-    ] = 0.0
+    amplitude: Annotated[float, Field(gt=0, description="amplitude A", json_schema_extra={"unit": "m"})]
+    length: Annotated[float, Field(gt=0, description="wavelength", json_schema_extra={"unit": "m"})]
+    depth: Annotated[float, Field(gt=0, description="depth H of the water", json_schema_extra={"unit": "m"})]
+    surface: Annotated[float, Field(description="y of the flat surface", json_schema_extra={"unit": "m"})] = (
+        0.0
+    )
 
     up_to_a_constant = ()
 

@@ -161,8 +161,11 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
             matrix[own[a[towards]], :, own[b[towards]], :] -= part
     q = n * d
     return System(
-        stiffness.reshape(q, q), damping.reshape(q, q), push.reshape(q, every),
-        pull.reshape(every, q), diffusion,
+        stiffness.reshape(q, q),
+        damping.reshape(q, q),
+        push.reshape(q, every),
+        pull.reshape(every, q),
+        diffusion,
     ), sites[inner] - layers
 
 
@@ -188,7 +191,9 @@ def _climb(height: Callable, starts: np.ndarray, step: float) -> np.ndarray:
     enough = {"xatol": FINEST, "fatol": FINEST**2 * scale}
     found = [
         minimize(
-            lambda at: -height(at[None])[0], start, method="Nelder-Mead",
+            lambda at: -height(at[None])[0],
+            start,
+            method="Nelder-Mead",
             options={"initial_simplex": start + simplex, **enough},
         )
         for start in starts[order[:STARTS]]

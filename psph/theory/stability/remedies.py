@@ -60,7 +60,8 @@ class ArtificialStress(NamedTuple):
         part = -self.epsilon if uniform.pressure < 0.0 else 0.01
         [nearest] = uniform.weight(np.array([uniform.spacing]))
         return Stress(
-            part * uniform.pressure, part * uniform.response,
+            part * uniform.pressure,
+            part * uniform.response,
             lambda r: (uniform.weight(r) / nearest) ** 4,
         )
 

@@ -56,9 +56,7 @@ def test_bounds_are_those_that_were_asked_for(name):
     [trial] = [trial for trial in BATTERY if trial.name == name]
     ends = {(b.measure, b.least if b.least > -math.inf else b.most) for b in trial.holds}
     assert ASKED[name] <= ends
-    assert trial.end == {"box": 2.0, "box_3d": 2.0, "patch": 4.0, "patch_3d": 4.0}.get(
-        trial.case, trial.end
-    )
+    assert trial.end == {"box": 2.0, "box_3d": 2.0, "patch": 4.0, "patch_3d": 4.0}.get(trial.case, trial.end)
 
 
 @pytest.mark.parametrize("trial", [t for t in EVERY.values() if "jitter" in t.name], ids=lambda t: t.name)
@@ -89,8 +87,15 @@ def test_head_of_a_hard_case(path):
 # Verdicts
 
 PATCH = Trial(
-    "patch", "patch", "kinetic", 1.0, 1.0, 1.0, holds=(Bound("kinetic", least=0.5),),
-    goals=(Bound("kinetic", least=0.9),), fails=("no shift",),
+    "patch",
+    "patch",
+    "kinetic",
+    1.0,
+    1.0,
+    1.0,
+    holds=(Bound("kinetic", least=0.5),),
+    goals=(Bound("kinetic", least=0.9),),
+    fails=("no shift",),
 )
 
 
@@ -103,7 +108,8 @@ PATCH = Trial(
         ({"kinetic": 0.95, "lost": 2.0}, FAILS, ("lost 2 (≤ 0)",)),
         ({"lost": 0.0}, FAILS, ("kinetic not measured (≥ 0.5)", "kinetic not measured (≥ 0.9)")),
         (
-            {"kinetic": float("nan"), "lost": 0.0}, FAILS,
+            {"kinetic": float("nan"), "lost": 0.0},
+            FAILS,
             ("kinetic nan (≥ 0.5)", "kinetic nan (≥ 0.9)"),
         ),
     ],
@@ -154,7 +160,10 @@ def test_the_scheme_holds_and_every_control_fails(quick):
     for row in rows:
         assert (row.verdict not in HELD) if row.control else row.verdict == GOOD, tables.line(row)
     assert {row.column for row in rows if row.control} >= {
-        "no background", "no potential", "no shift", "bare 1.2",
+        "no background",
+        "no potential",
+        "no shift",
+        "bare 1.2",
     }
     falling = next(row for row in rows if row.column == "no background")
     assert falling.found["growth"] > 1000.0 and rows[0].found["growth"] == 0.0

@@ -108,9 +108,7 @@ def test_a_cavity_is_read_on_its_centre_lines():
     places, u = ghia(CASES.parent / "experiments/ghia_1982_u.csv")
     along, v = ghia(CASES.parent / "experiments/ghia_1982_v.csv")
     curves = [(x[:, 1], places, u), (x[:, 0], along, v)]
-    flow = np.stack([
-        np.interp(at, np.sort(p), w[np.argsort(p)]) for at, p, w in curves
-    ], axis=1)
+    flow = np.stack([np.interp(at, np.sort(p), w[np.argsort(p)]) for at, p, w in curves], axis=1)
     for scale, expected in ((1.0, 0.0), (0.0, math.sqrt((u @ u + v @ v) / (len(u) + len(v))))):
         frame = {"position": x, "velocity": scale * flow}
         [(name, error)] = measures._of_cavity(None, case, [frame])

@@ -143,8 +143,15 @@ def test_a_run_that_blew_up_says_when():
 
 @pytest.mark.parametrize(
     ("value", "told"),
-    [(2454.3, "2454"), (0.95512, "0.955"), (1e-7, "1e-07"), (float("inf"), "inf"), (2e9, "2e+09"),
-     (None, "–"), (float("nan"), "–")],
+    [
+        (2454.3, "2454"),
+        (0.95512, "0.955"),
+        (1e-7, "1e-07"),
+        (float("inf"), "inf"),
+        (2e9, "2e+09"),
+        (None, "–"),
+        (float("nan"), "–"),
+    ],
 )
 def test_numbers(value, told):
     assert tables.number(value) == told

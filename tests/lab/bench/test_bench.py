@@ -33,7 +33,10 @@ def psph(*options):
     """A finished ``python -m psph bench`` on one rank."""
     return subprocess.run(
         [sys.executable, "-m", "psph", "bench", *map(str, options)],
-        capture_output=True, text=True, env=clean_environment(), stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
         timeout=120,
     )
 
@@ -82,8 +85,8 @@ def test_a_peer_that_fails_at_one_problem_does_not_end_the_set(result, monkeypat
 @pytest.mark.long
 def test_two_ranks_speak_with_one_voice():
     job = mpirun(
-        2, ["-m", "psph", "bench", "--problem", "dam", "--dimensions", 2, "--particles", 3000,
-            "--json"],
+        2,
+        ["-m", "psph", "bench", "--problem", "dam", "--dimensions", 2, "--particles", 3000, "--json"],
     )
     assert job.returncode == 0, job.stderr
     result = json.loads(job.stdout.splitlines()[-1])
@@ -105,8 +108,9 @@ def test_several_problems_are_one_object(capsys, tmp_path):
 def test_a_choice_takes_turns_with_the_problem(tmp_path):
     choice = ["scheme=stable", "physics.artificial_viscosity=off"]
     options = [part for override in choice for part in ("--against", override)]
-    job = psph("--problem", "falling", "--dimensions", 2, "--particles", 1500, *options, "--turns", 7,
-               "--json")
+    job = psph(
+        "--problem", "falling", "--dimensions", 2, "--particles", 1500, *options, "--turns", 7, "--json"
+    )
     *said, last = job.stdout.splitlines()
     result = json.loads(last)
     other = result["against"]
@@ -127,10 +131,16 @@ def test_the_figures_of_another_are_medians_over_the_turns():
 @pytest.mark.parametrize(
     ("override", "said"),
     [
-        ("space.spacing=0.1", "bench --against space.spacing=0.1: not the same particles any more; "
-         "leave space.spacing as in the problem"),
-        ("space.kernel=cubi", "bench --problem box with --against space.kernel=cubi: space.kernel: "
-         "\"cubi\" is not known; did you mean 'cubic'?"),
+        (
+            "space.spacing=0.1",
+            "bench --against space.spacing=0.1: not the same particles any more; "
+            "leave space.spacing as in the problem",
+        ),
+        (
+            "space.kernel=cubi",
+            "bench --problem box with --against space.kernel=cubi: space.kernel: "
+            "\"cubi\" is not known; did you mean 'cubic'?",
+        ),
     ],
 )
 def test_a_choice_that_cannot_take_turns(override, said):
@@ -157,8 +167,11 @@ def run_of(pace, spread=0.05, **other):
 @pytest.mark.parametrize(
     ("now", "then", "said"),
     [
-        (run_of(120.0), run_of(100.0), "box 3D, 8,000 particles: 1.20 times the speed in F, faster"
-         " (spread 5 % now, 5 % then)"),
+        (
+            run_of(120.0),
+            run_of(100.0),
+            "box 3D, 8,000 particles: 1.20 times the speed in F, faster (spread 5 % now, 5 % then)",
+        ),
         (run_of(80.0), run_of(100.0), "0.80 times the speed in F, slower"),
         (run_of(104.0), run_of(100.0), "1.04 times the speed in F, no difference beyond the spread"),
         (run_of(120.0), run_of(100.0, 0.3), "beyond the spread (spread 5 % now, 30 % then)"),
@@ -229,7 +242,8 @@ def test_ranks_stand_beside_one_rank(result, tmp_path):
     renew(page, tables([file]))
     rows = [line.split(" | ") for line in page.read_text().partition("(weak)")[2].splitlines()[4:]]
     assert [row[3:8] for row in rows if len(row) > 7] == [
-        [f"{n:,}", f"{n:,}", "2", "1.80", "90 %"], [f"{n:,}", f"{2 * n:,}", "2", "1.90", "95 %"],
+        [f"{n:,}", f"{n:,}", "2", "1.80", "90 %"],
+        [f"{n:,}", f"{2 * n:,}", "2", "1.90", "95 %"],
     ]
 
 

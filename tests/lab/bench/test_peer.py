@@ -71,7 +71,8 @@ def test_several_ranks_balance_their_load():
     space, motion = commands(scene, two)
     assert not any("balance" in line for line in space)  # there are no particles yet
     assert motion[-2:] == [
-        "balance 1.05 shift xy 20 1.01", "fix even all balance 100 1.05 shift xy 20 1.01",
+        "balance 1.05 shift xy 20 1.01",
+        "fix even all balance 100 1.05 shift xy 20 1.01",
     ]
 
 
@@ -159,7 +160,10 @@ def test_without_lammps_it_says_what_to_do():
         pytest.skip("LAMMPS is here")
     job = subprocess.run(
         [sys.executable, *["-m", "psph", "bench", "--dimensions", "2", "--particles", "400", "--peer"]],
-        capture_output=True, text=True, env=clean_environment(), stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
         timeout=120,
     )
     assert job.returncode == 2 and len(job.stderr.strip().splitlines()) == 1

@@ -35,7 +35,9 @@ def test_a_step_and_a_second_of_flow_are_told_apart():
     """The default takes 0.3 s for 20 steps, the other 0.4 s for 40 steps of half the length."""
     turns = [{DEFAULT: (0.3, 20), USUAL: (0.4, 40)}] * 10
     assert _price(turns, USUAL) == {
-        "per_step": pytest.approx(1.5), "per_second_of_flow": pytest.approx(0.75), "spread": 0.0,
+        "per_step": pytest.approx(1.5),
+        "per_second_of_flow": pytest.approx(0.75),
+        "spread": 0.0,
     }
     slow = [{DEFAULT: (0.6, 20), USUAL: (0.4, 40)}] * 2 + turns[2:]
     assert _price(slow, USUAL)["per_step"] == pytest.approx(1.5)
@@ -60,12 +62,15 @@ def test_words_and_page(found, tmp_path, capsys):
 def test_the_command_line(monkeypatch, capsys):
     asked = []
     monkeypatch.setattr(
-        "psph.lab.bench.price.price", lambda comm, *details: asked.append(details) or {"dimensions": details[0]}
+        "psph.lab.bench.price.price",
+        lambda comm, *details: asked.append(details) or {"dimensions": details[0]},
     )
     monkeypatch.setattr("psph.lab.bench.price.words", lambda result: ["said"])
     assert main(["bench", "--price", "--json"]) == 0
     assert asked == [(2, None, None), (3, None, None)]
-    assert json.loads(capsys.readouterr().out.splitlines()[-1]) == {"prices": [{"dimensions": 2}, {"dimensions": 3}]}
+    assert json.loads(capsys.readouterr().out.splitlines()[-1]) == {
+        "prices": [{"dimensions": 2}, {"dimensions": 3}]
+    }
     assert main(["bench", "--price", "--dimensions", "3", "--particles", "9", "--turns", "7"]) == 0
     assert asked[2:] == [(3, 9, 7)]
     with pytest.raises(Refused, match="bench --price: has its own dam break; leave --against out"):

@@ -111,8 +111,13 @@ def test_a_film_on_a_wall_is_split_beside_it():
     layout = Falling.nearest(3, 57, 30_000)
     dx = layout.coarse.spacing
     film = ParticleSet(
-        np.zeros(1, np.int64), np.full(1, FLUID, np.uint8), np.zeros(1, np.uint8),
-        dx * np.array([[0.05, 10.0, 20.0]]), np.zeros((1, 3)), np.full(1, 1000.0), np.ones(1),
+        np.zeros(1, np.int64),
+        np.full(1, FLUID, np.uint8),
+        np.zeros(1, np.uint8),
+        dx * np.array([[0.05, 10.0, 20.0]]),
+        np.zeros((1, 3)),
+        np.full(1, 1000.0),
+        np.ones(1),
     )
     x = layout._split(film, 0, 0).position
     assert len(x) == layout.times**3 > 1 and x.min() > 0.0

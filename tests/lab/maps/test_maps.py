@@ -22,9 +22,7 @@ from psph.theory.stability.remedies import REMEDIES
 from psph.theory.stability.uniform import Settings
 from psph.theory.stability.windows import SMOOTHINGS
 
-PAPER = Asked(
-    kernel="cubic", smoothing=1.2, pressure=-2500.0, density=900.0, sound_speed=5.0, spacing=1e-3
-)
+PAPER = Asked(kernel="cubic", smoothing=1.2, pressure=-2500.0, density=900.0, sound_speed=5.0, spacing=1e-3)
 
 
 def answer(capsys, asked):
@@ -37,9 +35,27 @@ def answer(capsys, asked):
 def test_the_command_line():
     """As the documentation gives it, in a process of its own."""
     job = subprocess.run(
-        [sys.executable, "-m", "psph", "stability", "--kernel", "hyperbolic", "--smoothing", "1.2",
-         "--lattice", "square", "--state", "compression", "--form", "symmetric", "--json"],
-        capture_output=True, text=True, env=clean_environment(), stdin=subprocess.DEVNULL,
+        [
+            sys.executable,
+            "-m",
+            "psph",
+            "stability",
+            "--kernel",
+            "hyperbolic",
+            "--smoothing",
+            "1.2",
+            "--lattice",
+            "square",
+            "--state",
+            "compression",
+            "--form",
+            "symmetric",
+            "--json",
+        ],
+        capture_output=True,
+        text=True,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
         timeout=120,
     )
     assert job.returncode == 0 and not job.stderr
@@ -67,9 +83,7 @@ def test_si_units(capsys):
 
 
 def test_sound_speed_is_ten_unless_given(capsys):
-    given = [
-        answer(capsys, Asked(kernel="cubic", state="tension", sound_speed=c)) for c in (10.0, 30.0)
-    ]
+    given = [answer(capsys, Asked(kernel="cubic", state="tension", sound_speed=c)) for c in (10.0, 30.0)]
     usual = answer(capsys, Asked(kernel="cubic", state="tension"))
     assert usual == given[0] and usual[0][0] != given[1][0][0]
     assert "c = 10 √(|P|/ρ)" in usual[0][0]

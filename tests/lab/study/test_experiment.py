@@ -93,8 +93,19 @@ def test_a_file_elsewhere_is_refused_unless_told(file, tmp_path):
 
 def test_the_command_line_tells(tmp_path):
     case = CASES / "hard/dam_break.toml"
-    study = [sys.executable, "-m", "psph", "study", case, "--out", tmp_path / "s",
-             "--set", "time.end=1e-9", "--vary", "time.cfl=0.2,0.3"]
+    study = [
+        sys.executable,
+        "-m",
+        "psph",
+        "study",
+        case,
+        "--out",
+        tmp_path / "s",
+        "--set",
+        "time.end=1e-9",
+        "--vary",
+        "time.cfl=0.2,0.3",
+    ]
     for more, says in (([], "lies outside"), (["--files", CASES], "measured from 0.")):
         job = subprocess.run(
             [*study, *more], capture_output=True, text=True, env=clean_environment(), timeout=60
@@ -103,14 +114,24 @@ def test_the_command_line_tells(tmp_path):
         assert len(job.stderr.strip().splitlines()) == 1
 
 
-@pytest.mark.parametrize("content, says", [
-    ("t,p\n0.0,nan\n", "'nan' is not finite"), ("t,p\ninf,1.0\n", "'inf' is not finite"),
-    ("t,p\n0,5,1,0\n", "4 values in '0,5,1,0', 2 names above"), ("t,p\n0.0\n", "1 values"),
-    ("t,p,p\n0.0,1.0,2.0\n", "more than one column 'p'"), ("t,q\n0.0,1.0\n", "no column 'p'"),
-    ("t,p\n", "holds no rows"), ("", "no column 't'"), ("t,p\n0.0,a\n", "could not convert"),
-    (b"t,p\n\xff,1.0\n", "utf-8"), (f't,p\n0.0,"{"1" * 200_000}\n', "experiments.gauge: "),
-    ("t,p\n0.0,\0\n", "experiments.gauge: "), (None, "No such file"),
-])
+@pytest.mark.parametrize(
+    "content, says",
+    [
+        ("t,p\n0.0,nan\n", "'nan' is not finite"),
+        ("t,p\ninf,1.0\n", "'inf' is not finite"),
+        ("t,p\n0,5,1,0\n", "4 values in '0,5,1,0', 2 names above"),
+        ("t,p\n0.0\n", "1 values"),
+        ("t,p,p\n0.0,1.0,2.0\n", "more than one column 'p'"),
+        ("t,q\n0.0,1.0\n", "no column 'p'"),
+        ("t,p\n", "holds no rows"),
+        ("", "no column 't'"),
+        ("t,p\n0.0,a\n", "could not convert"),
+        (b"t,p\n\xff,1.0\n", "utf-8"),
+        (f't,p\n0.0,"{"1" * 200_000}\n', "experiments.gauge: "),
+        ("t,p\n0.0,\0\n", "experiments.gauge: "),
+        (None, "No such file"),
+    ],
+)
 def test_a_wrong_file_is_one_line(content, says, tmp_path):
     with pytest.raises(StudyError) as caught:
         curve(tmp_path, content=content)
@@ -170,10 +191,22 @@ def test_spoilt_curves(examples, tmp_path):
 @pytest.mark.parametrize("examples", MANY)
 def test_spoilt_tables_of_a_run_and_of_a_study(examples, tmp_path):
     """What psph itself has written, and something else has changed."""
-    row = {"space.spacing": 0.1, "error_l2": 0.1, "seconds": 1.0, "particles": 10, "steps": 5,
-           "status": "done"}
-    kept = {"rows": [row, row | {"space.spacing": 0.05, "error_l2": 0.02, "seconds": 3.0}],
-            "vary": ["space.spacing"], "dimensions": 1, "case": "a", "ranks": 1, "error": "of p"}
+    row = {
+        "space.spacing": 0.1,
+        "error_l2": 0.1,
+        "seconds": 1.0,
+        "particles": 10,
+        "steps": 5,
+        "status": "done",
+    }
+    kept = {
+        "rows": [row, row | {"space.spacing": 0.05, "error_l2": 0.02, "seconds": 3.0}],
+        "vary": ["space.spacing"],
+        "dimensions": 1,
+        "case": "a",
+        "ranks": 1,
+        "error": "of p",
+    }
     case, tally = draft(tmp_path, CASE), Tally()
     kept["conditions"] = [conditions(case)]
     (tmp_path / "box.h5").touch()
@@ -183,8 +216,10 @@ def test_spoilt_tables_of_a_run_and_of_a_study(examples, tmp_path):
     @given(spoilt([json.dumps(kept, indent=1).encode()]), spoilt([b"time,P.p\n0.0,1.0\n0.1,2.0\n"]))
     def run(study, table):
         _written(tmp_path, study, table)
-        for what, kind in ((lambda: list(predicted(tmp_path, case)), StudyError),
-                           (lambda: Run(tmp_path).probes(), OutputError)):
+        for what, kind in (
+            (lambda: list(predicted(tmp_path, case)), StudyError),
+            (lambda: Run(tmp_path).probes(), OutputError),
+        ):
             try:
                 tally["read" if what() else "empty"] += 1
             except kind as error:
@@ -202,10 +237,14 @@ def _written(folder, study, table):
     return folder
 
 
-@pytest.mark.parametrize("given, says", [
-    (["space.spacing=0.2,abc"], "abc is not a number"), (["space.spacing=0.2,true"], "true is not"),
-    (["time.cfl=0.1,0.2", "time.cfl=0.3,0.4"], "given twice"),
-])
+@pytest.mark.parametrize(
+    "given, says",
+    [
+        (["space.spacing=0.2,abc"], "abc is not a number"),
+        (["space.spacing=0.2,true"], "true is not"),
+        (["time.cfl=0.1,0.2", "time.cfl=0.3,0.4"], "given twice"),
+    ],
+)
 def test_a_ladder_that_is_none(given, says):
     with pytest.raises(StudyError, match=says):
         wanted({}, given)
@@ -215,12 +254,16 @@ def test_a_text_of_a_ladder_stays_a_text():
     """It once became whatever TOML made of it: a number, and what follows a # a remark."""
     settings = {"title": "0.5 # x", "space.kernel": "true", "physics.gravity": "off"}
     assert overrides(settings) == [
-        'title="0.5 # x"', 'space.kernel="true"', "physics.gravity=off",
+        'title="0.5 # x"',
+        'space.kernel="true"',
+        "physics.gravity=off",
     ]
 
 
 VALUES = st.one_of(
-    st.floats().map(repr), st.integers().map(str), st.text(max_size=5),
+    st.floats().map(repr),
+    st.integers().map(str),
+    st.text(max_size=5),
     st.sampled_from(["0.1", "0.05", "off", "true", "cubic", "[0", "1e999", "9" * 5000, ""]),
 )
 KEYS = st.sampled_from(["space.spacing", "space.kernel", "time.cfl", "time.end", "profile", "no.key"])

@@ -10,7 +10,9 @@ def test_what_varies_comes_from_the_case_or_the_command_line():
     assert wanted({"space.spacing": (0.2, 0.1)}, []) == {"space.spacing": [0.2, 0.1]}
     given = ["space.spacing=0.02,0.01", "space.kernel=cubic, wendland-c2", "a.b=true,off"]
     assert wanted({"time.cfl": (0.1, 0.2)}, given) == {
-        "space.spacing": [0.02, 0.01], "space.kernel": ["cubic", "wendland-c2"], "a.b": [True, "off"],
+        "space.spacing": [0.02, 0.01],
+        "space.kernel": ["cubic", "wendland-c2"],
+        "a.b": [True, "off"],
     }
 
 

@@ -70,8 +70,12 @@ def study(folder, *options, text=WAVE, ranks=None):
     if ranks:
         return mpirun(ranks, command)
     return subprocess.run(
-        [sys.executable, *command], capture_output=True, text=True, env=clean_environment(),
-        stdin=subprocess.DEVNULL, timeout=120,
+        [sys.executable, *command],
+        capture_output=True,
+        text=True,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
+        timeout=120,
     )
 
 
@@ -153,13 +157,18 @@ def test_a_stored_study_predicts_a_run_outside_the_fit(done, tmp_path):
     [finest] = [r for r in rows_of(tmp_path) if float(r["space.spacing"]) == 0.00625]
     assert 1 / 1.5 < predicted_error / (100 * float(finest["error_l2"])) < 1.5
     job = subprocess.run(
-        [sys.executable, "-m", "psph", "explain", str(folder / "wave.toml"), "--study",
-         str(folder / "out")],
-        capture_output=True, text=True, env=clean_environment(), timeout=60,
+        [sys.executable, "-m", "psph", "explain", str(folder / "wave.toml"), "--study", str(folder / "out")],
+        capture_output=True,
+        text=True,
+        env=clean_environment(),
+        timeout=60,
     )
     assert "From the study in" in job.stdout and "velocity at the end" in job.stdout
-    with pytest.raises(StudyError, match=r"of .*wave\.toml, not of .*wave\.toml: fluids\.air\.density is"
-                       r" 1\.0 there and 2\.0 here; give the folder of a study of .*wave\.toml"):
+    with pytest.raises(
+        StudyError,
+        match=r"of .*wave\.toml, not of .*wave\.toml: fluids\.air\.density is"
+        r" 1\.0 there and 2\.0 here; give the folder of a study of .*wave\.toml",
+    ):
         list(predicted(folder / "out", load(folder / "wave.toml", ["fluids.air.density=2.0"])))
     aside = load(folder / "wave.toml", ["output.log=0.05", "title=again", "study.repeats=1"])
     assert list(predicted(folder / "out", aside))
@@ -204,7 +213,10 @@ def test_a_study_that_is_killed_goes_on_where_it_was(tmp_path):
     file.write_text(WAVE.replace("end = 0.1", "end = 3.0"))  # the last run takes long enough
     command = [sys.executable, "-m", "psph", "study", str(file), "--out", str(tmp_path / "out")]
     with subprocess.Popen(
-        command, stdout=subprocess.PIPE, text=True, env=clean_environment(),
+        command,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=clean_environment(),
         preexec_fn=hears_interrupts,
     ) as job:
         for line in job.stdout:
@@ -241,8 +253,19 @@ def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
         (["--set", "study.against=theory"], "study.against: theory has no velocity"),
         (["--set", "exact.sound_wave.length=0.7"], "exact.sound_wave: repeats every 0.7 m"),
         (["--error", "-1"], "study --error -1: give a number above zero"),
-        (["--set", "exact=off", "--set", "fluids.air.velocity=[1.0]", "--set",
-          "fluids.air.pressure=0.0", "--vary", "time.cfl=0.1,0.2"], "no reference"),
+        (
+            [
+                "--set",
+                "exact=off",
+                "--set",
+                "fluids.air.velocity=[1.0]",
+                "--set",
+                "fluids.air.pressure=0.0",
+                "--vary",
+                "time.cfl=0.1,0.2",
+            ],
+            "no reference",
+        ),
     ],
 )
 def test_what_makes_no_sense_is_said_before_any_run(tmp_path, options, says):
@@ -255,9 +278,20 @@ def test_what_makes_no_sense_is_said_before_any_run(tmp_path, options, says):
 def test_profiles_are_a_choice_that_can_be_pasted(tmp_path):
     """In place of the case's own kernel; the effects are kept alike, so that they compile once."""
     job = study(
-        tmp_path, "--vary", "profile=quick,engineering,reference", "--vary",
-        "space.spacing=0.05,0.025", "--grid", "--error", "0.3", "--set", "precision=double",
-        "--set", "physics.gradient_correction=off", "--set", "study.repeats=1",
+        tmp_path,
+        "--vary",
+        "profile=quick,engineering,reference",
+        "--vary",
+        "space.spacing=0.05,0.025",
+        "--grid",
+        "--error",
+        "0.3",
+        "--set",
+        "precision=double",
+        "--set",
+        "physics.gradient_correction=off",
+        "--set",
+        "study.repeats=1",
     )
     assert job.returncode == 0, job.stderr
     rows = rows_of(tmp_path)
@@ -339,7 +373,10 @@ value_unit = 10.0
     for change, says in (
         ("experiments.gauge.file=none.csv", "No such file"),
         ("experiments.gauge.time=Time", "has no column 'Time'; give one of T, Z"),
-        ("study.after=0.2", "study.after: 0.2 s leaves nothing to compare, since the comparison ends at 0.1 s"),
+        (
+            "study.after=0.2",
+            "study.after: 0.2 s leaves nothing to compare, since the comparison ends at 0.1 s",
+        ),
         ("study.until=0.05", None),  # its first time is enough
     ):
         sets = ["study.error=P.pressure", "study.against=gauge", change]
@@ -378,7 +415,7 @@ def test_values_between_particles_know_of_the_period():
 
 def test_the_finest_run_is_compared_across_the_period(tmp_path):
     """As if its particles stood there three times, side by side."""
-    text = WAVE.replace("velocity = \"exact\"", "velocity = [0.4]").replace("1e-4", "0.5")
+    text = WAVE.replace('velocity = "exact"', "velocity = [0.4]").replace("1e-4", "0.5")
     (tmp_path / "wave.toml").write_text(text)
     sets = ["study.against=finest", "study.error=pressure", "scheme=sph"]
     found = {}
@@ -405,17 +442,16 @@ def test_the_finest_run_judges_where_nothing_else_does(tmp_path):
     errors = [r["error_l2"] for r in rows_of(tmp_path)]
     assert max(map(float, errors)) < 1e-12  # a uniform flow stays one
     case = load(tmp_path / "wave.toml")
-    assert Judge(case).in_words == (
-        "velocity at the end against the finest run, its own error added"
-    )
+    assert Judge(case).in_words == ("velocity at the end against the finest run, its own error added")
     assert alone().size == 1 and json.loads((tmp_path / "out" / "study.json").read_text())["ranks"] == 1
 
 
 def test_errors_against_the_finest_run_hold_its_own(done, tmp_path):
     """By a wave whose exact solution is known: what is promised without it holds against it."""
     asked = 0.01
-    job = study(tmp_path, "--set", "study.against=finest", "--set", "study.error=velocity",
-                "--error", str(asked))
+    job = study(
+        tmp_path, "--set", "study.against=finest", "--set", "study.error=velocity", "--error", str(asked)
+    )
     assert job.returncode == 0, job.stderr
     true = {float(r["space.spacing"]): float(r["error_l2"]) for r in rows_of(done[0])}
     rows = {float(r["space.spacing"]): r for r in rows_of(tmp_path)}
@@ -449,8 +485,10 @@ def test_studies_of_profiles_come_as_one_table(done, tmp_path):
     page.write_text(f"{BEGIN}\n{END}\n")
     kept.mkdir()
     run = {"space.spacing": 0.02, "status": "done", "error_l2": 0.0123, "seconds": 4.2}
-    rows = [run | {"profile": "quick"}, {"profile": "reference", "space.spacing": 0.02,
-                                          "status": "the run blew up at step 3: too fast"}]
+    rows = [
+        run | {"profile": "quick"},
+        {"profile": "reference", "space.spacing": 0.02, "status": "the run blew up at step 3: too fast"},
+    ]
     told = {"vary": ["profile"], "rows": rows, "error": "velocity at the end", "case": "a/wave.toml"}
     (kept / "study.json").write_text(json.dumps(told))
     assert on_page([str(page), str(kept), str(folder / "out")]) == 0
@@ -466,8 +504,14 @@ def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
     kept.mkdir()
     (kept / "study.md").write_text("# Vortex: what accuracy costs\n")
     rows = [
-        {"space.spacing": 0.08 / 2**k, "status": "done", "error_l2": error, "seconds": 0.1 * 8**k,
-         "particles": 100 * 4**k, "steps": 100 * 2**k}
+        {
+            "space.spacing": 0.08 / 2**k,
+            "status": "done",
+            "error_l2": error,
+            "seconds": 0.1 * 8**k,
+            "particles": 100 * 4**k,
+            "steps": 100 * 2**k,
+        }
         for k, error in enumerate((0.16, 0.04, 0.01, 0.003))
     ]
     told = {"vary": ["space.spacing"], "rows": rows, "error": "velocity", "case": "a.toml", "dimensions": 2}

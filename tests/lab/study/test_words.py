@@ -7,8 +7,11 @@ from psph.lab.study.words import advice, against_base, ladder_words, limit_words
 def ladder(*errors: float) -> Ladder:
     """Runs at 0.04, 0.02, 0.01 m with these errors, their seconds those of 1e-7 s a particle-step."""
     return Ladder(
-        [Run(0.04 / 2**k, e, 1e-7 * 625 * 4**k * 100 * 2**k, 625 * 4**k, 100 * 2**k)
-         for k, e in enumerate(errors)], 2,
+        [
+            Run(0.04 / 2**k, e, 1e-7 * 625 * 4**k * 100 * 2**k, 625 * 4**k, 100 * 2**k)
+            for k, e in enumerate(errors)
+        ],
+        2,
     )
 
 

@@ -14,8 +14,14 @@ from psph.theory.solutions.vortices import Gresho, TaylorGreen
 from psph.theory.solutions.waves import SoundWave, StandingWave
 
 FREE = Setting(
-    dimensions=2, density=2.0, viscosity=0.0, sound_speed=10.0, gravity=(0.0, 0.0),
-    lower=(0.0, 0.0), upper=(1.0, 1.0), periods=(1.0, 1.0),
+    dimensions=2,
+    density=2.0,
+    viscosity=0.0,
+    sound_speed=10.0,
+    gravity=(0.0, 0.0),
+    lower=(0.0, 0.0),
+    upper=(1.0, 1.0),
+    periods=(1.0, 1.0),
 )
 STICKY = FREE._replace(viscosity=0.03)
 CHANNEL = STICKY._replace(periods=(1.0, None))

@@ -2,9 +2,7 @@
 
 from psph.theory.stability.uniform import Settings
 
-TENSION = Settings(
-    "cubic", 1.2, "square", -2500.0, density=900.0, sound_speed=5.0, spacing=1e-3
-)
+TENSION = Settings("cubic", 1.2, "square", -2500.0, density=900.0, sound_speed=5.0, spacing=1e-3)
 """Case 4.2 of the paper, in SI units."""
 
 

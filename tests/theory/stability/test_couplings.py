@@ -44,9 +44,7 @@ def acceleration(places, made, h, name, pressure, form, extra):
         return slope * r / np.where(length > 1e-9, length, 1.0)
 
     moved = places(around)
-    divergence = [
-        ((places(x[None]) - places(x + far)) * gradient(-far)).sum() for x in around
-    ]
+    divergence = [((places(x[None]) - places(x + far)) * gradient(-far)).sum() for x in around]
     density = 1.0 + np.array(divergence)
     p = pressure + C * C * (density - 1.0)
     apart = (around[0] + moved[0]) - (around + moved)
@@ -64,6 +62,7 @@ def acceleration(places, made, h, name, pressure, form, extra):
 @pytest.mark.parametrize("name", LATTICES)
 def test_a_wave_meets_the_force_of_the_sums(name, pressure, form):
     """The Jacobian of the nonlinear sums, for a wave with a pair force beside."""
+
     def extra(r):
         return 0.3 * np.maximum(1.0 - r / 3.4, 0.0) ** 3
 
@@ -74,6 +73,7 @@ def test_a_wave_meets_the_force_of_the_sums(name, pressure, form):
     predicted = waves_of(couplings(Uniform(settings)).halved, wave[None]).squares[0]
     found = []
     for unit in np.eye(made.dimensions):
+
         def places(x, size, unit=unit):
             return size * np.cos(x @ wave)[:, None] * unit
 
@@ -102,40 +102,50 @@ def forces(case, positions, densities, velocities):
     sites = np.round(store.owned_rows("position") / case.space.spacing).astype(int)
     moves = store.owned_rows("kind") == FLUID
     pushed, rate = np.zeros((225, 2)), np.zeros(441)
-    pushed[np.ravel_multi_index(sites[moves].T - 3, (15, 15))] = (
-        store.owned_rows("acceleration")[moves]
-    )
+    pushed[np.ravel_multi_index(sites[moves].T - 3, (15, 15))] = store.owned_rows("acceleration")[moves]
     rate[np.ravel_multi_index(sites.T, (21, 21))] = store.owned_rows("density_rate")
     return pushed, rate
 
 
 MORE = (
-    "physics.pressure_gradient=difference", "physics.background_pressure=3000",
-    "physics.density_diffusion=0.2", "physics.artificial_viscosity=0.3", "physics.pair_damping=0.2",
+    "physics.pressure_gradient=difference",
+    "physics.background_pressure=3000",
+    "physics.density_diffusion=0.2",
+    "physics.artificial_viscosity=0.3",
+    "physics.pair_damping=0.2",
     "fluids.fluid.viscosity=1e-4",
 )
+
 
 @pytest.mark.timeout(300)
 @pytest.mark.parametrize(
     ("settings", "sets"),
     [
         (TENSION, ()),
+        pytest.param(TENSION._replace(form="minimum"), ("physics.pressure_gradient=minimum",), marks=LONG),
         pytest.param(
-            TENSION._replace(form="minimum"), ("physics.pressure_gradient=minimum",), marks=LONG
+            TENSION._replace(
+                form="difference",
+                remedies=(
+                    remedies.BackgroundPressure(3000.0),
+                    remedies.DensityDiffusion(0.2),
+                    remedies.ArtificialViscosity(0.3),
+                    remedies.PairDamping(0.4),
+                    remedies.Viscosity(2e-4),
+                ),
+            ),
+            MORE,
+            marks=LONG,
         ),
         pytest.param(
-            TENSION._replace(form="difference", remedies=(
-                remedies.BackgroundPressure(3000.0), remedies.DensityDiffusion(0.2),
-                remedies.ArtificialViscosity(0.3), remedies.PairDamping(0.4),
-                remedies.Viscosity(2e-4),
-            )),
-            MORE, marks=LONG,
-        ),
-        pytest.param(
-            TENSION._replace(remedies=(
-                remedies.ArtificialStress(0.3), remedies.RiemannDissipation(),
-            )),
-            ("physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0"), marks=LONG,
+            TENSION._replace(
+                remedies=(
+                    remedies.ArtificialStress(0.3),
+                    remedies.RiemannDissipation(),
+                )
+            ),
+            ("physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0"),
+            marks=LONG,
         ),
     ],
     ids=["symmetric", "minimum", "all", "stressed"],
@@ -146,9 +156,7 @@ def test_the_box_meets_the_forces_of_psph(settings, sets):
     Twice viscosity and pair damping, once the artificial one: of a(u) and −a(−u) each pair's comes
     once.
     """
-    case = load(
-        "run/cases/negative_pressure_traditional.toml", ["perturbations=off", *sets]
-    )
+    case = load("run/cases/negative_pressure_traditional.toml", ["perturbations=off", *sets])
     system, _ = box_of(couplings(Uniform(settings)), 15, LAYERS)
     rng = np.random.default_rng(5)
     still, thin = np.zeros((225, 2)), np.zeros(441)
@@ -190,8 +198,12 @@ def test_smoothing_is_that_of_the_effect():
     uniform, r = Uniform(TENSION), np.array([0.7e-3, 1.6e-3])
     along, anyhow = remedies.ConservativeSmoothing(0.3).damping(uniform, r)
     particle = seen(
-        position=None, mass=900.0 * uniform.volume, specific_volume=1 / 900.0, wall=0.0,
-        sound_speed=5.0, smoothing_length=uniform.smoothing_length,
+        position=None,
+        mass=900.0 * uniform.volume,
+        specific_volume=1 / 900.0,
+        wall=0.0,
+        sound_speed=5.0,
+        smoothing_length=uniform.smoothing_length,
     )
     pairs = [Pair(r2=x * x, w=w) for x, w in zip(r, uniform.weight(r))]
     found = [ConservativeSmoothing(0.3).shear(particle, particle, pair) for pair in pairs]

@@ -18,8 +18,12 @@ from psph.theory.stability.windows import SMOOTHINGS, windows
 
 @pytest.mark.parametrize(
     ("kernel", "smoothing", "infinite", "box"),
-    [("cubic", 1.2, 2812, 2693), ("cubic", 1.3, 2201, 2127),
-     ("hyperbolic", 1.2, 3107, 3004), ("hyperbolic", 1.3, 2609, 2543)],
+    [
+        ("cubic", 1.2, 2812, 2693),
+        ("cubic", 1.3, 2201, 2127),
+        ("hyperbolic", 1.2, 3107, 3004),
+        ("hyperbolic", 1.3, 2609, 2543),
+    ],
 )
 def test_case_4_2(kernel, smoothing, infinite, box):
     settings = TENSION._replace(kernel=kernel, smoothing=smoothing)
@@ -53,9 +57,7 @@ def test_hyperbolic_under_compression_has_a_window(c):
 
 
 def test_windows_of_the_square_lattice():
-    held = {
-        name: windows(h for h in SMOOTHINGS if is_stable(of(name, h))) for name in KERNELS
-    }
+    held = {name: windows(h for h in SMOOTHINGS if is_stable(of(name, h))) for name in KERNELS}
     assert held["hyperbolic"] == "1.25–1.35" and held["cubic"] == "1.2"
     assert held["gaussian"] == held["wendland-c6"] == ""
 
@@ -130,6 +132,7 @@ def test_a_background_pressure_shifts_the_pressure():
 
 def test_artificial_stress_holds_only_near_1_1():
     """ε = 0.2, n = 4 in case 4.2, where the prototype's runs found the same."""
+
     def rate(h, *added):
         return growth(TENSION._replace(kernel="hyperbolic", smoothing=h, remedies=added)).rate
 
@@ -152,6 +155,7 @@ def test_normalised_gradients_scale():
 
 def test_a_zero_virial_pair_force_of_the_size_of_the_tension_holds():
     """The prototype's ψ = S − κL: its pair virial vanishes, and K ≈ |P| stabilises."""
+
     def psi_slope(r):
         s, wide, kappa = 0.8, 1.17, 0.77122
         near, far = np.maximum(1 - r / 2 / s, 0.0), np.maximum(1 - r / 2 / wide, 0.0)
@@ -195,7 +199,9 @@ def test_friction_of_a_single_wave():
 
 def test_a_box_with_all_remedies_is_bounded_by_the_lattice():
     every = (
-        remedies.Viscosity(0.05), remedies.DensityDiffusion(0.1), remedies.ArtificialStress(0.1),
+        remedies.Viscosity(0.05),
+        remedies.DensityDiffusion(0.1),
+        remedies.ArtificialStress(0.1),
         remedies.NormalisedGradient(),
     )
     settings = of("cubic", 1.2, pressure=-1.0, remedies=every)

