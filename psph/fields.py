@@ -90,7 +90,8 @@ OF_MATERIAL = (
     Field("mass", "kg", "mass"),
     Field("rest_density", "kg/m3", "density at zero pressure"),
     Field("viscosity", "m2/s", "kinematic viscosity"),
-    Field("wall", "1", "1 in a wall, 0 in a fluid, as effects read it"),
+    Field("is_fluid", "1", "1 in a fluid, else 0"),
+    Field("mobile", "1", "1 where forces move the particle, else 0"),
     Field("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""

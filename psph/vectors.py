@@ -5,6 +5,7 @@ straight-line code when compiled: no loop over the axes, no memory.  A symmetric
 from the diagonal on: (xx), (xx, xy, yy), (xx, xy, xz, yy, yz, zz).
 """
 
+import numpy as np
 from numba.core import types
 
 from psph.engine.jit import overload, register_jitable, tuple_of, unrolled
@@ -41,6 +42,30 @@ def subtract(a: Vector, b: Vector) -> Vector:
 def scale(a: Vector, b: float) -> Vector:
     """a · b."""
     return tuple(x * b for x in a)
+
+
+@_each("a[{d}] * b[{d}]")
+def multiply(a: tuple, b: tuple) -> tuple:
+    """The products of the entries."""
+    return tuple(x * y for x, y in zip(a, b))
+
+
+@_each("max(a[{d}] - b[{d}], 0.0)")
+def excess(a: tuple, b: tuple) -> tuple:
+    """By how much each entry of ``a`` is larger than that of ``b``, or 0."""
+    return tuple(max(x - y, 0.0) for x, y in zip(a, b))
+
+
+def plus_less_last(start: float, a: tuple) -> float:
+    """``start`` and all entries of ``a``, the last of them subtracted."""
+    *others, last = a
+    return sum(others, start) - last
+
+
+@overload(plus_less_last)
+def _typed_plus_less_last(start, a):
+    signs = [*"+" * (len(a) - 1), "-"]
+    return unrolled("start, a", "return start " + " ".join(f"{s} a[{n}]" for n, s in enumerate(signs)))
 
 
 @_each("a[{d}][b]")
@@ -108,6 +133,25 @@ def _nearest_image(a, periods):
         for d, period in enumerate(periods)
     )
     return unrolled("a, periods", f"return {tuple_of(parts)}", wrapped=_wrapped)
+
+
+def nearest_to(a: Vector, b: Vector, periods: tuple) -> Vector:
+    """The periodic image of ``a`` that is nearest to ``b``; exactly a where it is a itself."""
+    return tuple(x if p is None else _moved(x, y, p) for x, y, p in zip(a, b, periods))
+
+
+@register_jitable
+def _moved(x, y, period):
+    return x - period * np.rint((x - y) / period)
+
+
+@overload(nearest_to)
+def _nearest_to(a, b, periods):
+    parts = (
+        f"a[{d}]" if isinstance(period, types.NoneType) else f"moved(a[{d}], b[{d}], periods[{d}])"
+        for d, period in enumerate(periods)
+    )
+    return unrolled("a, b, periods", f"return {tuple_of(parts)}", moved=_moved)
 
 
 def outer(a: Vector) -> Vector:

@@ -14,6 +14,7 @@ LAYERS = [
     {"engine"},
     {"formula"},
     {"vectors", "smoothing"},
+    {"composition"},
     {"theory"},
     {"physics"},
     {"particles"},

@@ -7,7 +7,7 @@ import numba
 import numpy as np
 import pytest
 
-from psph.physics.space import BEYOND
+from psph.composition.space import BEYOND
 from psph.smoothing import KERNELS, kernel, normalised, slope_over_r
 
 H = 0.7

@@ -1,27 +1,22 @@
 """Rules between the keys of a case."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.errors import advise
+from psph.case.keys import AXES, Table
 from psph.case.study import EXACT
-from psph.case.tables import AXES, Table
 from psph.physics.roles import ROLES
 from psph.theory.solutions.catalogue import SOLUTIONS, known
-
-if TYPE_CHECKING:
-    from psph.case.model import Case
 
 Location = tuple[str | int, ...]
 Finding = tuple[Location, Any, str]
 """Location, value, and a message that says what is wrong and what to do."""
 
 
-def contradictions(case: Case) -> list[InitErrorDetails]:
+def contradictions(case) -> list[InitErrorDetails]:
     """All contradictions between the keys of a case."""
     rules = (
         _dimensions,
@@ -69,7 +64,7 @@ SHORTEST_OUTPUT = 1e-4 * SMALLEST
 """A thousandth of the shortest run, which is what a resolved case may hold, is taken too."""
 
 
-def _sizes(case: Case) -> Iterator[Finding]:
+def _sizes(case) -> Iterator[Finding]:
     for loc, value in walk(case):
         least = SHORTEST_OUTPUT if loc[:1] == ("output",) else SMALLEST
         if isinstance(value, float) and value and not least <= abs(value) <= LARGEST:
@@ -80,7 +75,7 @@ def _sizes(case: Case) -> Iterator[Finding]:
             )
 
 
-def _dimensions(case: Case) -> Iterator[Finding]:
+def _dimensions(case) -> Iterator[Finding]:
     dimensions = case.space.dimensions
     foreign: Location = ("no key",)  # the shape that does not belong here: one line is enough
     for loc, value in walk(case):
@@ -112,7 +107,7 @@ def _is_vector(value: Any) -> bool:
     return isinstance(value, tuple) and value != () and all(isinstance(x, float) for x in value)
 
 
-def _square(case: Case) -> Iterator[Finding]:
+def _square(case) -> Iterator[Finding]:
     dimensions = case.space.dimensions
     for name, fluid in case.fluids.items():
         rows = fluid.velocity_gradient
@@ -127,7 +122,7 @@ def _square(case: Case) -> Iterator[Finding]:
             )
 
 
-def _axes(case: Case) -> Iterator[Finding]:
+def _axes(case) -> Iterator[Finding]:
     axes = AXES[: case.space.dimensions]
     named = [(("space", "periodic", k), axis) for k, axis in enumerate(case.space.periodic)]
     named.append((("parallel", "axis"), case.parallel.axis))
@@ -137,7 +132,7 @@ def _axes(case: Case) -> Iterator[Finding]:
             yield loc, axis, (f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}")
 
 
-def _domain(case: Case) -> Iterator[Finding]:
+def _domain(case) -> Iterator[Finding]:
     space = case.space
     given = {"lower": space.lower, "upper": space.upper}
     missing = [name for name, corner in given.items() if corner is None]
@@ -158,7 +153,7 @@ def _domain(case: Case) -> Iterator[Finding]:
         )
 
 
-def _hydrostatic(case: Case) -> Iterator[Finding]:
+def _hydrostatic(case) -> Iterator[Finding]:
     if case.physics.gravity is not None and any(case.physics.gravity.acceleration):
         return
     for name, fluid in case.fluids.items():
@@ -170,7 +165,7 @@ def _hydrostatic(case: Case) -> Iterator[Finding]:
             )
 
 
-def _exact(case: Case) -> Iterator[Finding]:
+def _exact(case) -> Iterator[Finding]:
     given = [name for name, value in case.exact if value is not None]
     for extra in given[1:]:
         yield (
@@ -193,13 +188,13 @@ def _exact(case: Case) -> Iterator[Finding]:
                 )
 
 
-def _probed(case: Case) -> Iterator[Finding]:
+def _probed(case) -> Iterator[Finding]:
     for name, probe in case.probes.items():
         if (probe.position is None) == (probe.front is None):
             yield ("probes", name), ..., "give either position or front"
 
 
-def _continued(case: Case) -> Iterator[Finding]:
+def _continued(case) -> Iterator[Finding]:
     for name, wall in case.walls.items():
         if wall.continues is not None and wall.continues not in case.fluids:
             yield (
@@ -209,7 +204,7 @@ def _continued(case: Case) -> Iterator[Finding]:
             )
 
 
-def _friction(case: Case) -> Iterator[Finding]:
+def _friction(case) -> Iterator[Finding]:
     rubs = any(fluid.viscosity for fluid in case.fluids.values())
     central = case.physics.central_friction is not None
     if central and not rubs:
@@ -233,7 +228,7 @@ def _friction(case: Case) -> Iterator[Finding]:
             )
 
 
-def _names(case: Case) -> Iterator[Finding]:
+def _names(case) -> Iterator[Finding]:
     for name in case.walls.keys() & case.fluids.keys():
         yield ("walls", name), ..., "a fluid has this name too; give the wall another"
 
@@ -242,7 +237,7 @@ LARGEST_SINGLE = 1e36
 """Numbers of pairs in single precision stay below, with room for their sums."""
 
 
-def _single(case: Case) -> Iterator[Finding]:
+def _single(case) -> Iterator[Finding]:
     h = case.space.smoothing * case.space.spacing
     largest = h ** -(case.space.dimensions + 2.0)  # W'/r
     if case.precision == "mixed" and not 1.0 / LARGEST_SINGLE < largest < LARGEST_SINGLE:
@@ -263,7 +258,7 @@ MOST_MOMENTS = 1e9
 """Moments of one cadence: far below 1e12, where rounding would shift them."""
 
 
-def _stepped(case: Case) -> Iterator[Finding]:
+def _stepped(case) -> Iterator[Finding]:
     end, step = case.time.end, case.time.step
     if step is not None and end > MOST_STEPS * step:
         yield (
@@ -276,7 +271,7 @@ def _stepped(case: Case) -> Iterator[Finding]:
         )
 
 
-def _due(case: Case) -> Iterator[Finding]:
+def _due(case) -> Iterator[Finding]:
     end = case.time.end
     for name, interval in case.output:
         if interval is not None and end > MOST_MOMENTS * interval:
@@ -290,7 +285,7 @@ def _due(case: Case) -> Iterator[Finding]:
             )
 
 
-def _effects(case: Case) -> Iterator[Finding]:
+def _effects(case) -> Iterator[Finding]:
     """What the effects of a case say of it, and of each other."""
     asked = list(_asked(case))
     for name, value, effect in asked:
@@ -307,7 +302,7 @@ def _effects(case: Case) -> Iterator[Finding]:
             )
 
 
-def _asked(case: Case) -> Iterator[tuple[str, Any, Any]]:
+def _asked(case) -> Iterator[tuple[str, Any, Any]]:
     """The keys of ``physics`` that ask for an effect: name, value where it is a choice, and its class."""
     for entry in case.catalogue.effects:
         table, _, rest = entry.key.partition(".")

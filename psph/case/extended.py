@@ -5,11 +5,11 @@ from typing import Any, Literal
 
 from pydantic import create_model
 
-from psph.case.model import MANY, Case, Space, Wall
+from psph.case.keys import Name, key
+from psph.case.model import Case, Fluid, Space, Wall
 from psph.case.parameters import last_part, table_of
-from psph.case.physics import physics_table
+from psph.case.physics import own_law, physics_table
 from psph.case.schemes import by_default
-from psph.case.tables import Name, key
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
@@ -21,6 +21,10 @@ def case_model(catalogue: Catalogue) -> type[Case]:
         return Case
     physics = physics_table(catalogue.effects + catalogue.states)
     fields: dict[str, Any] = {"physics": (physics, key("what acts on the fluids", make=physics))}
+    if catalogue.states != BUILT_IN.states:
+        law = own_law(catalogue.states)
+        fluid = create_model("Fluid", __base__=Fluid, __doc__=Fluid.__doc__, equation_of_state=law)
+        fields["fluids"] = (dict[Name, fluid], Case.model_fields["fluids"])
     if catalogue.kernels:
         names = (*KERNELS, *map(last_part, catalogue.kernels))
         told = key("smoothing kernel", names[0], otherwise=by_default("space.kernel"))
@@ -30,7 +34,7 @@ def case_model(catalogue: Catalogue) -> type[Case]:
             __doc__=Space.__doc__,
             kernel=(Literal[tuple(dict.fromkeys(names))], told),
         )
-        fields["space"] = (space, key("dimensions, resolution and extent"))
+        fields["space"] = (space, Case.model_fields["space"])
     if catalogue.tables:
         tables = table_of("Tables", "Further tables of a run.", catalogue.tables)
         fields["tables"] = (tables, key("further tables that the run writes", make=tables))
@@ -38,7 +42,7 @@ def case_model(catalogue: Catalogue) -> type[Case]:
         motion = table_of("Motion", "How a wall moves: one of these.", catalogue.motions)
         moved = (motion | None, key("how it moves", None, otherwise="it stays where it is"))
         wall = create_model("Wall", __base__=Wall, __doc__=Wall.__doc__, motion=moved)
-        fields["walls"] = (dict[Name, wall], key("the walls by name", {}, max_length=MANY))
+        fields["walls"] = (dict[Name, wall], Case.model_fields["walls"])
     if catalogue.regions:
         region = create_model(
             "Region",

@@ -12,12 +12,12 @@ from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_
 from pydantic_core import PydanticCustomError
 
 from psph.case.consistency import contradictions
-from psph.case.physics import physics_table
+from psph.case.keys import Axis, Name, Table, Text, Vector, key
+from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
 from psph.case.schemes import SCHEMES, STABLE, by_default, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
-from psph.case.tables import Axis, Name, Table, Text, Vector, key
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
@@ -98,12 +98,16 @@ class Time(Table):
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 
 
+Law, LAW = own_law()
+
+
 class Fluid(Table):
     """A fluid: where it is at the start, and what it is."""
 
     shape: Shape = key("where the fluid is at the start")
     density: float = key("density at zero pressure", 1000.0, unit="kg/m3", gt=0)
     viscosity: float = key("kinematic viscosity; 0: inviscid", 0.0, unit="m2/s", ge=0)
+    equation_of_state: Law = LAW
     velocity: Annotated[Literal[EXACT] | Vector | None, WrapValidator(_velocity)] = key(
         'velocity at the start: numbers, or "exact" (needs [exact])',
         None,

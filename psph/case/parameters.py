@@ -6,7 +6,7 @@ from typing import Annotated, Any, get_origin, get_type_hints
 
 from pydantic import Strict, create_model, model_validator
 
-from psph.case.tables import Table, key
+from psph.case.keys import Table, key
 
 
 class Parameters(Table):

@@ -6,10 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, create_model
 
-from psph.case.parameters import parameters, summary
+from psph.case.keys import Table, key
+from psph.case.parameters import last_part, parameters, summary
 from psph.case.profiles import OFF as TAKEN_OUT
 from psph.case.schemes import by_default
-from psph.case.tables import Table, key
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 
 PREFIX = "physics."
@@ -39,6 +39,13 @@ def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -
     return create_model(
         "Physics", __base__=Table, __doc__="Forces and other effects on the fluids.", **fields
     )
+
+
+def own_law(states: Sequence[Entry] = EQUATIONS_OF_STATE) -> tuple[Any, Any]:
+    """Type and description of the key by which a fluid has an equation of state of its own."""
+    names = tuple(map(last_part, states))
+    told = key("equation of state of this fluid", None, otherwise="physics.equation_of_state")
+    return Literal[names] | None, told
 
 
 def _field(entries: list[Entry]) -> tuple[Any, Any]:

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Self
 from pydantic import Strict, model_validator
 from pydantic_core import PydanticCustomError
 
-from psph.case.tables import Axis, Table, Vector, key
+from psph.case.keys import Axis, Table, Vector, key
 
 
 class Box(Table):

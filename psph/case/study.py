@@ -5,8 +5,8 @@ from typing import Annotated, Any
 
 from pydantic import Field, Strict, StringConstraints, create_model
 
+from psph.case.keys import Table, Text, key
 from psph.case.parameters import parameters, summary
-from psph.case.tables import Table, Text, key
 from psph.theory.solutions.catalogue import SOLUTIONS
 
 EXACT = "exact"

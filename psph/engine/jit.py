@@ -200,6 +200,26 @@ def call_by_type(name: str):
     return call
 
 
+def call_by_number(name: str):
+    """A function ``(values, number, *args) -> values[number].name(*args)`` of values of several classes.
+
+    All formulas give the same type.  Where there is one value, its number is not looked at.
+    """
+
+    def call(values, number, *args):
+        return getattr(values[number], name)(*args)
+
+    @overload(call)
+    def typed(values, number, *args):
+        formulas = {f"formula_{n}": method_of(kind, name) for n, kind in enumerate(values)}
+        lines = ["found = formula_0(values[0], *args)"]
+        for n in range(1, len(values)):
+            lines += [f"if number == {n}:", f"    found = formula_{n}(values[{n}], *args)"]
+        return unrolled("values, number, *args", *lines, "return found", **formulas)
+
+    return call
+
+
 def unrolled(arguments: str, *lines: str, **names):
     """The function of these arguments with these lines, for numba to compile in one piece.
 

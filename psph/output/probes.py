@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
+from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.fields import FLUID, SAVED, by_name
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
-from psph.physics.compose import take
 from psph.physics.walls.dry import DryWall
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract

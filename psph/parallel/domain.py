@@ -5,13 +5,13 @@ import math
 import numpy as np
 from mpi4py import MPI
 
+from psph.composition.space import Metres
 from psph.parallel.halo import Halo
 from psph.parallel.migration import migrate
 from psph.parallel.slabs import Prices, rebalanced
 from psph.particles import neighbours
 from psph.particles.cells import Grid, make_grid, number_cells, planes_of, sort_by_cell
 from psph.particles.store import Store
-from psph.physics.space import Metres
 
 GROWTH = 3.0
 """The grid follows particles that leave the domain up to this many of its lengths outside."""

@@ -27,6 +27,15 @@ class Neighbours(NamedTuple):
     lists: np.ndarray
 
 
+class Near(NamedTuple):
+    """What makes two particles neighbours: their positions in single precision, m, the periods of the
+    axes, m, and the square of the cutoff, m²."""
+
+    position: tuple
+    periods: tuple
+    cutoff2: float
+
+
 def empty(owned: int, entries: int) -> Neighbours:
     """Room for the rows of ``owned`` particles with ``entries`` neighbours in all."""
     return Neighbours(np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), _entries(entries))
@@ -57,27 +66,10 @@ def build(
     position, cutoff = in_single_precision(store, grid, int(starts[0]), cutoff)
     if len(room.begin) < owned:
         room = empty(owned + owned // SPARE, max(len(room.lists), 64 * owned + 1024))
+    near = Near(position, periods, cutoff * cutoff)
     while True:
-        needed = max(
-            in_threads(
-                fill_lists,
-                1,
-                planes + 1,
-                position,
-                periods,
-                cutoff * cutoff,
-                grid.counts,
-                grid.periodic,
-                grid.reach,
-                starts,
-                store.low,
-                owned,
-                lanes,
-                room.begin,
-                room.lengths,
-                room.lists,
-            )
-        )
+        parts = in_threads(fill_lists, 1, planes + 1, near, grid, starts, store.low, owned, lanes, room)
+        needed = max(parts)
         if needed == 0:
             return room
         room = room._replace(lists=_entries(needed + needed // SPARE))
@@ -102,30 +94,15 @@ def in_single_precision(store, grid: Grid, first: int, cutoff: float):
 
 
 @compiled
-def fill_lists(
-    first_plane,
-    last_plane,
-    position,
-    periods,
-    cutoff2,
-    counts,
-    periodic,
-    reach,
-    starts,
-    low,
-    owned,
-    multiple,
-    begin,
-    lengths,
-    lists,
-):
+def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple, room):
     """Fill the rows of some planes; returns 0, or about how many entries are needed for all.
 
     Planes take the part of the lists that is their part of the ``owned`` particles.
     The candidates of a cell are a few ranges of columns, eight to a group; all eight are compared at
     once, and a table packs those that are near.
     """
-    rows, columns = counts[1], counts[2]
+    begin, lengths, lists = room.begin, room.lengths, room.lists
+    rows, columns = grid.counts[1], grid.counts[2]
     from_k = np.empty(18, np.uint64)
     to_k = np.empty(18, np.uint64)
     column_of = np.empty(64, np.uint32)
@@ -146,7 +123,7 @@ def fill_lists(
                 if starts[cell] == starts[cell + 1]:
                     continue
                 ranges, candidates = candidate_ranges(
-                    plane, row, column, rows, columns, periodic, reach, starts, from_k, to_k
+                    plane, row, column, rows, columns, grid.periodic, grid.reach, starts, from_k, to_k
                 )
                 if candidates > len(column_of) * LANES:
                     column_of = np.empty(candidates // 4, np.uint32)
@@ -157,14 +134,14 @@ def fill_lists(
                         done = max(np.int64(i) - low - before, 1)
                         guess = (np.int64(end) - begun) * owned // done + candidates
                         return max(guess, len(lists) + len(lists) // SPARE) + 1024
-                    x_i = at(position, i)
+                    x_i = at(near.position, i)
                     lane = own + i - np.uint64(starts[cell])
                     own_group, own_bit = lane // np.uint64(LANES), one << lane % np.uint64(LANES)
                     valid[own_group] ^= own_bit  # not its own neighbour
                     first = end
                     for g in range(np.uint64(candidates // LANES)):
                         column_g = np.uint64(column_of[g])
-                        bits = near_bits(position, column_g, x_i, periods, cutoff2) & valid[g]
+                        bits = near_bits(near.position, column_g, x_i, near.periods, near.cutoff2) & valid[g]
                         end = append_near(lists, end, column_g, bits)
                     valid[own_group] ^= own_bit
                     begin[i - np.uint64(low)] = first

@@ -6,12 +6,12 @@ a quantity would spread over many; the pair loop turns records into lanes (psph.
 
 import numpy as np
 
+from psph.composition.pair import FOLDED
+from psph.composition.space import FixedPoint
 from psph.engine.jit import elementwise, register_jitable
 from psph.engine.simd import GROUP
 from psph.engine.threads import in_threads
 from psph.particles.store import Store
-from psph.physics.compose import FOLDED
-from psph.physics.space import FixedPoint
 
 LINE = 64
 """Bytes of a cache line."""
@@ -19,13 +19,13 @@ LINE = 64
 NO_SIGN = (-1, -1)
 """Row and place of a sign, where no record has one."""
 
-WALL, CARRIER = "wall", "specific_volume"
-"""A wall is told by the sign of a number that is positive: it takes no place of its own."""
+FLAG, CARRIER = "is_fluid", "specific_volume"
+"""What is no fluid shows in the sign of a number that is positive: the flag takes no place of its own."""
 
 
 def recorded(names: tuple[str, ...]) -> tuple[str, ...]:
     """The fields among ``names`` that take a place in a record."""
-    return tuple(name for name in names if name != WALL or CARRIER not in names)
+    return tuple(name for name in names if name != FLAG or CARRIER not in names)
 
 
 def record_width(numbers: int) -> int:
@@ -36,8 +36,8 @@ def record_width(numbers: int) -> int:
 class Records:
     """The records of one rank's particles.
 
-    ``names`` are the fields that vary and that pairs read of a neighbour; walls among them have a
-    negative specific volume (:data:`CARRIER`).  ``table`` (columns, width) has the columns of the
+    ``names`` are the fields that vary and that pairs read of a neighbour; what is no fluid has
+    a negative specific volume (:data:`CARRIER`).  ``table`` (columns, width) has the columns of the
     store; a record begins with a cache line, or shares it with one other.
     Where ``space`` is fixed point all is in single precision, but for positions: whole steps of
     32 bits, modulo their range.
@@ -51,9 +51,9 @@ class Records:
         self._shown = tuple((name, store.seen_as(name) in self._names) for name in entries)
         rows = [row for name in self._names for row in store.rows[name]]
         self._rows = np.array(rows, np.uint64)
-        self._folded = WALL in names and WALL not in placed
+        self._folded = FLAG in names and FLAG not in placed
         self._sign = (
-            (store.rows[WALL].start, rows.index(store.rows[CARRIER].start)) if self._folded else NO_SIGN
+            (store.rows[FLAG].start, rows.index(store.rows[CARRIER].start)) if self._folded else NO_SIGN
         )
         self._fixed = isinstance(space, FixedPoint)
         self._steps_per_metre = 1.0 / np.array(space.units) if self._fixed else None
@@ -70,7 +70,7 @@ class Records:
                 for name, placed in self._shown
             )
         )
-        return found._replace(wall=FOLDED) if self._folded else found
+        return found._replace(is_fluid=FOLDED) if self._folded else found
 
     def make_room(self) -> None:
         """Room for owned particles and ghosts, after these found new columns."""
@@ -109,7 +109,7 @@ def _aligned(records: int, width: int, kind) -> np.ndarray:
 def fill_records(first, last, data, rows, flag, place, table):
     """Copy ``data[rows[f], k]`` to ``table[k, f]`` for the columns ``first`` to ``last``.
 
-    ``table[k, place]`` is negative where ``data[flag, k]`` is one, else positive; any with NO_SIGN.
+    ``table[k, place]`` is negative where ``data[flag, k]`` is zero, else positive; any with NO_SIGN.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         for f in range(np.uint64(len(rows))):
@@ -131,6 +131,6 @@ def fill_fixed(first, last, data, rows, flag, place, steps_per_metre, table, who
 
 @register_jitable
 def _fold(k, data, flag, place, table):
-    if flag >= 0:  # a fluid whose density has become negative is no wall
+    if flag >= 0:  # a fluid whose density has become negative stays one
         size = abs(table[k, np.uint64(place)])
-        table[k, np.uint64(place)] = -size if data[np.uint64(flag), k] > 0.0 else size
+        table[k, np.uint64(place)] = size if data[np.uint64(flag), k] > 0.0 else -size

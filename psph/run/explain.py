@@ -158,15 +158,16 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     flops = plan.flops_per_pair(scene.periods)
     yield from _early_passes(plan)
     yield f"Pass over the neighbours, one a step, {flops} flops a pair"
-    state = type(plan.state).__name__
+    laws = [type(law).__name__ for law in plan.laws]
     names = [type(call.effect).__name__ for call in plan.called]
-    width = _column([*names, state, *(entry.effect.__name__ for entry in plan.absent)])
+    width = _column([*names, *laws, *(entry.effect.__name__ for entry in plan.absent)])
     for name, call in zip(names, plan.called):
         yield f"  {name:<{width}}{_first_line(call.effect)}"
         yield f"  {'':<{width}}because: {call.reason}"
     yield "Equation of state"
-    yield f"  {state:<{width}}{_first_line(plan.state)}"
-    yield f"  {'':<{width}}because: {plan.state_reason}"
+    for name, law, reason in zip(laws, plan.laws, plan.law_reasons):
+        yield f"  {name:<{width}}{_first_line(law)}"
+        yield f"  {'':<{width}}because: {reason}"
     yield "Not simulated"
     for entry in plan.absent:
         why = plan.dropped.get(entry.effect.__name__) or f"the case does not say {_asked_by(entry.key)}"

@@ -96,13 +96,16 @@ class Guards:
 
     def _energy(self) -> float:
         """Energy of motion, height and compression, J."""
-        sim, state, c = self.simulation, self.scene.state, self.scene.sound_speed
-        return total_energy(
-            sim.comm,
-            sim.store,
-            self.scene.height_gravity,
-            lambda density, rest: state.energy(density, rest, c),
-        )
+        sim, c = self.simulation, self.scene.sound_speed
+        laws, law_of = sim.plan.laws, sim.plan.law_of[sim.store.shown("group")]
+
+        def elastic(density, rest):
+            stored = laws[0].energy(density, rest, c)
+            for number, law in enumerate(laws[1:], 1):
+                stored = np.where(law_of == number, law.energy(density, rest, c), stored)
+            return stored
+
+        return total_energy(sim.comm, sim.store, self.scene.height_gravity, elastic)
 
     def _warn(self, guard: str) -> None:
         """Say so the first, second, fourth, eighth ... time."""

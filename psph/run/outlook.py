@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from psph.scene.species import Start
 from psph.simulation.plan import Plan, words
-from psph.theory.stability import FORMS, STATES, SYMMETRIC, remedies
+from psph.theory.stability import FORMS, STATES, SYMMETRIC, parts
 from psph.theory.stability.growth import growth, is_stable
 from psph.theory.stability.lattices import OF_SCENES
 from psph.theory.stability.uniform import STIFF, Settings
@@ -30,7 +30,7 @@ def outlook(scene, plan: Plan) -> Iterator[str]:
     linear = (effect.linear(scene) for effect in plan.effects if hasattr(effect, "linear"))
     added = tuple(remedy for remedy in linear if remedy is not None)
     if scene.case.space.normalised:
-        added += (remedies.NormalisedGradient(),)
+        added += (parts.NormalisedGradient(),)
     verdicts = [_verdict(s) for s in _settings(scene, lattice, form, added)]
     yield from dict.fromkeys(f"  {state:<20}{says}" for state, says in verdicts)
     left = [words(type(e).__name__) for e in plan.effects if not hasattr(e, "linear")]
@@ -90,9 +90,9 @@ def _form(form: str, pressure: float) -> str:
 
 def _state_at(start, pressure: float) -> tuple[float, float]:
     """ρ in kg/m^d and dp/dρ in m²/s² of a fluid under a pressure."""
-    state, constants = start.state, (start.rest_density, start.sound_speed)
-    density = float(state.density(pressure, *constants))
-    ends = [state.pressure(density * (1.0 + step), *constants) for step in (-NEAR, NEAR)]
+    law, constants = start.law, (start.rest_density, start.sound_speed)
+    density = float(law.density(pressure, *constants))
+    ends = [law.pressure(density * (1.0 + step), *constants) for step in (-NEAR, NEAR)]
     return density, (ends[1] - ends[0]) / (2.0 * NEAR * density)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import psph
-from psph.case.tables import AXES
+from psph.case.keys import AXES
 from psph.engine.jit import processor
 from psph.output import diagnostics
 from psph.output.accuracy import Accuracy

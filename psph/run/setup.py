@@ -54,7 +54,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     examples = (
         tuple((one.effects, one.reductions) for one in plan.passes),
         plan.kernel,
-        plan.state,
+        plan.laws,
         plan.space,
         plan.motions,
         scene.periods,

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.composition import terms
+from psph.composition.pair import geometry, take
+from psph.composition.terms import added, pushed
 from psph.fields import seen_at
 from psph.particles.store import Store
-from psph.physics import compose
-from psph.physics.compose import added, geometry, pushed, take
 from psph.simulation.plan import words
 from psph.simulation.step import Simulation
 from psph.vectors import add, nearest_image, subtract, zero_like
@@ -136,15 +137,15 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
 def _share(effect, i, pairs, dt: float) -> Share:
     alone = (effect,)
     sums = alone if hasattr(effect, "start") else ()
-    a, rate, totals = zero_like(i.position), 0.0, compose.start(sums, i)
+    a, rate, totals = zero_like(i.position), 0.0, terms.start(sums, i)
     for j, pair in pairs:
-        rate = rate + compose.density_rate(alone, i, j, pair)
-        a = pushed(a, pair.x_ij, compose.radial(alone, i, j, pair))
-        a = pushed(a, pair.u_ij, compose.shear(alone, i, j, pair))
-        a = added(a, compose.push(alone, i, j, pair))
-        totals = compose.gather_each(sums, totals, i, j, pair)
-    a = add(add(a, compose.finish_acceleration(sums, totals, i)), compose.body(alone, i))
-    shift = compose.displacement(alone, i, dt)
+        rate = rate + terms.density_rate(alone, i, j, pair)
+        a = pushed(a, pair.x_ij, terms.radial(alone, i, j, pair))
+        a = pushed(a, pair.u_ij, terms.shear(alone, i, j, pair))
+        a = added(a, terms.push(alone, i, j, pair))
+        totals = terms.gather_each(sums, totals, i, j, pair)
+    a = add(add(a, terms.finish_acceleration(sums, totals, i)), terms.body(alone, i))
+    shift = terms.displacement(alone, i, dt)
     name = words(type(effect).__name__)
     return Share(name, np.array(a), float(rate), np.array(shift) / dt if dt else np.zeros(len(a)))
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from psph.case import CaseError
 from psph.case.consistency import MOST_STEPS
-from psph.case.tables import AXES
+from psph.case.keys import AXES
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
 from psph.scene.multiples import misfits

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from psph.case.keys import AXES
 from psph.case.shapes import Box, Difference, Shape
-from psph.case.tables import AXES
 from psph.scene.lattice import TOLERANCE, sites_between
 from psph.scene.shapes import bounds
 

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from psph.case import Case, CaseError
-from psph.case.parameters import as_numbers, chosen
+from psph.case.keys import AXES
+from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
-from psph.case.tables import AXES
 from psph.particles.reach import Reach
-from psph.physics.catalogue import EQUATIONS_OF_STATE
 from psph.physics.motion import Fixed, Free
 from psph.scene.lattice import lattice_around
 from psph.scene.particles import ParticleSet, fill
@@ -68,6 +67,11 @@ class Scene:
         made = ParticleSet.empty(int(self.counts()[first:last].sum()), self.dimensions, first_id)
         fill(made, self, first, last)
         return made
+
+    @property
+    def physics(self):
+        """The table ``[physics]`` of the case."""
+        return self.case.physics
 
     @cached_property
     def gravity(self) -> tuple[float, ...]:
@@ -136,13 +140,6 @@ class Scene:
         return min(self._lowest_pressure(k) for k in range(self.layout.fluids))
 
     @cached_property
-    def state(self):
-        """The equation of state."""
-        key = f"physics.equation_of_state={self.case.physics.equation_of_state}"
-        [entry] = (entry for entry in EQUATIONS_OF_STATE if entry.key == key)
-        return entry.effect()
-
-    @cached_property
     def exact(self):
         """The exact solution that the case names, or None."""
         for name, table in self.case.exact:
@@ -184,6 +181,7 @@ class Scene:
                 self.bodies[source].density,
                 self.bodies[source].viscosity,
                 start.mass(volume),
+                start.law,
                 getattr(self.bodies[index], "no_slip", False),
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
@@ -263,11 +261,17 @@ class Scene:
         continued = [fluids.index(wall.continues) for wall in self.case.walls.values()]
         return [*range(len(fluids)), *continued]
 
+    def _law(self, fluid):
+        """The equation of state of a fluid: its own, or that of all."""
+        name = fluid.equation_of_state or self.case.physics.equation_of_state
+        [law] = (entry.effect for entry in self.case.catalogue.states if last_part(entry) == name)
+        return law()
+
     def _start(self, index: int) -> Start:
         fluid = self.bodies[index]
         hydrostatic, exact = (fluid.pressure == word for word in ("hydrostatic", EXACT))
         return Start(
-            state=self.state,
+            law=self._law(fluid),
             rest_density=fluid.density,
             sound_speed=self.sound_speed,
             pressure=0.0 if hydrostatic or exact else fluid.pressure,

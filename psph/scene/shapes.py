@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from psph.case.keys import AXES
 from psph.case.shapes import Ball, Box, Cylinder, Difference, Disc, Polygon, Shape
-from psph.case.tables import AXES
 
 Corner = tuple[float, ...]
 Grid = Sequence[np.ndarray]

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.case.shapes import Shape
-from psph.fields import WALL
+from psph.fields import FLUID
+from psph.physics.motion import Free
 from psph.scene.lattice import TOLERANCE, Lattice
 from psph.scene.shapes import Grid, inside
 
@@ -21,7 +22,8 @@ class Species(NamedTuple):
 
     ``motion`` is how they move (psph.physics.motion); ``density`` at zero pressure in kg/m³;
     kinematic ``viscosity`` in m²/s; ``mass`` of a particle in kg (per m of depth in 2D, per m² in
-    1D).  A wall takes these from the fluid it continues; ``no_slip`` if that fluid sticks to it.
+    1D); ``law`` is the equation of state (psph.physics.fluid.state).  A wall takes these from the fluid
+    it continues; ``no_slip`` if that fluid sticks to it.
     """
 
     name: str
@@ -29,6 +31,7 @@ class Species(NamedTuple):
     density: float
     viscosity: float
     mass: float
+    law: Any
     no_slip: bool = False
 
     @property
@@ -37,9 +40,14 @@ class Species(NamedTuple):
         return self.motion.kind
 
     @property
-    def wall(self) -> bool:
-        """Whether it is a wall."""
-        return self.kind == WALL
+    def is_fluid(self) -> bool:
+        """Whether it is a fluid."""
+        return self.kind == FLUID
+
+    @property
+    def mobile(self) -> bool:
+        """Whether forces move it."""
+        return isinstance(self.motion, Free)
 
 
 class Start(NamedTuple):
@@ -47,10 +55,10 @@ class Start(NamedTuple):
 
     p = ``pressure`` everywhere, or, with a ``weight`` = ρ₀|g| in Pa/m, p = weight (surface −
     height) and not below 0; ``surface`` in m along ``up``, the unit vector against gravity.  Or p =
-    ``exact`` of the positions (n, dim).  ``state`` is the equation of state.
+    ``exact`` of the positions (n, dim).  ``law`` is the equation of state.
     """
 
-    state: Any
+    law: Any
     rest_density: float
     sound_speed: float
     pressure: float
@@ -80,7 +88,7 @@ class Start(NamedTuple):
 
     def _density(self, pressure):
         with np.errstate(invalid="ignore"):
-            return self.state.density(pressure, self.rest_density, self.sound_speed)
+            return self.law.density(pressure, self.rest_density, self.sound_speed)
 
 
 @dataclass(frozen=True)

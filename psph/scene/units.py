@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from psph.case.tables import AXES
+from psph.case.keys import AXES
 from psph.scene.species import NONE
 
 if TYPE_CHECKING:

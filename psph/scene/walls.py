@@ -1,29 +1,23 @@
 """How many layers of particles a wall has behind the face that a fluid touches."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from psph.scene.lattice import TOLERANCE
 from psph.scene.species import NONE
 
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
-
 Thin = dict[int, tuple[int, tuple[float, ...]]]
 """For a wall that is too thin somewhere: the fewest layers, and a site that has so many."""
 
 
-def layers_needed(scene: Scene) -> int:
+def layers_needed(scene) -> int:
     """Layers that fill the support of a fluid particle at the face of a wall."""
     reach = scene.kernel.support * scene.case.space.smoothing
     return math.ceil(reach - TOLERANCE)
 
 
-def has_free_surface(scene: Scene) -> bool:
+def has_free_surface(scene) -> bool:
     """Whether a fluid site has an empty site beside it, walls and periodic images counted."""
     for first, last in scene.lattice.chunks():
         held = with_surroundings(scene, first, last, 1)
@@ -37,7 +31,7 @@ def has_free_surface(scene: Scene) -> bool:
     return False
 
 
-def thinnest_walls(scene: Scene) -> Thin:
+def thinnest_walls(scene) -> Thin:
     """The walls with fewer layers than needed, by material.
 
     From each wall site that touches a fluid site the wall sites are counted along the axis, away
@@ -81,7 +75,7 @@ def _moved(array: np.ndarray, axis: int, step: int, margin: int) -> np.ndarray:
     return array[tuple(window)]
 
 
-def with_surroundings(scene: Scene, first: int, last: int, margin: int) -> np.ndarray:
+def with_surroundings(scene, first: int, last: int, margin: int) -> np.ndarray:
     """Materials of some planes and of ``margin`` sites around them, across periodic edges."""
     lattice = scene.lattice
     wraps = [
@@ -108,7 +102,7 @@ def with_surroundings(scene: Scene, first: int, last: int, margin: int) -> np.nd
     return held
 
 
-def _keep_thinnest(thin: Thin, scene: Scene, first: int, last: int, material: int, layers) -> None:
+def _keep_thinnest(thin: Thin, scene, first: int, last: int, material: int, layers) -> None:
     site = np.unravel_index(layers.argmin(), layers.shape)
     fewest = int(layers[site])
     if material not in thin or fewest < thin[material][0]:

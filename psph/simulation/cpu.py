@@ -5,6 +5,7 @@ All that depends on how sums are computed on a processor lies behind these few m
 
 import numpy as np
 
+from psph.composition.space import softening
 from psph.engine.threads import in_threads
 from psph.fields import companions, seen_at
 from psph.output.ledger import Ledger
@@ -13,12 +14,11 @@ from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.particles.wetting import mark_wet
-from psph.physics.motion import ANCHOR
-from psph.physics.space import softening
 from psph.simulation.integrator import kick, kick_drift_predict, kick_rows, predict_rows, state_of
-from psph.simulation.pairs import sum_over_neighbours
+from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
+from psph.simulation.rules import Columns, Rules
 
 
 class Engine:
@@ -43,64 +43,26 @@ class Engine:
         )
         self.skin, self._support = Skin(self.domain, scene.reach.skin), scene.reach.support
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
+        self._rules = Rules(
+            plan.carriers, plan.laws, plan.law_of, plan.free, plan.motions, plan.motion_of, scene.periods
+        )
         self._paid = 0.0
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
-        s, plan = self.store, self.plan
-        self._each(
-            kick_drift_predict,
-            time,
-            dt,
-            plan.carriers,
-            plan.state,
-            plan.free,
-            plan.motions,
-            plan.motion_of,
-            self.domain.periods,
-            self._view(pace),
-            s.group,
-            self._anchor,
-            s["position"],
-            s["velocity"],
-            s["predicted_velocity"],
-            s["acceleration"],
-            s["density"],
-            s["density_rate"],
-            s["density_rate_1"],
-            s["density_rate_2"],
-            s["specific_volume"],
-            s["pressure"],
-        )
-        if plan.evolving:
-            self._each(predict_rows, dt, s.data, self._rows_that_evolve())
-        for field in plan.evolving:
+        self._each(kick_drift_predict, time, dt, self._rules, self._view(pace), self._columns())
+        if self.plan.evolving:
+            self._each(predict_rows, dt, self.store.data, self._rows_that_evolve())
+        for field in self.plan.evolving:
             _, *rates = companions(field)
-            s.rotate(*(rate.name for rate in rates))
-        s.rotate("density_rate", "density_rate_1", "density_rate_2")
+            self.store.rotate(*(rate.name for rate in rates))
+        self.store.rotate("density_rate", "density_rate_1", "density_rate_2")
 
     def kick(self, time: float, dt: float, pace: float) -> list[float]:
         """The second kick.  Returns the largest |v|², |a|², strain and square of a shift of this rank."""
-        s, plan = self.store, self.plan
-        if plan.evolving:
-            self._each(kick_rows, dt, s.data, self._rows_that_evolve())
-        parts = self._each(
-            kick,
-            time,
-            dt,
-            plan.carriers,
-            plan.free,
-            plan.motions,
-            plan.motion_of,
-            self._view(pace),
-            s.group,
-            self._anchor,
-            s["position"],
-            s["velocity"],
-            s["acceleration"],
-            s["density"],
-            s["density_rate"],
-        )
+        if self.plan.evolving:
+            self._each(kick_rows, dt, self.store.data, self._rows_that_evolve())
+        parts = self._each(kick, time, dt, self._rules, self._view(pace), self._columns())
         return np.max(parts, axis=0).tolist()
 
     def rebuild(self) -> None:
@@ -130,19 +92,8 @@ class Engine:
 
     def settle_pressure(self, pace: float) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
-        s, plan = self.store, self.plan
-        state_of(
-            s.low,
-            s.low + s.owned,
-            plan.carriers,
-            plan.state,
-            plan.free,
-            self._view(pace),
-            s.group,
-            s["density"],
-            s["specific_volume"],
-            s["pressure"],
-        )
+        s = self.store
+        state_of(s.low, s.low + s.owned, self._rules, self._view(pace), self._columns())
 
     def begin_rates(self) -> None:
         """The rates of earlier steps, before there were any, are the first ones."""
@@ -181,17 +132,9 @@ class Engine:
 
     def _mark(self, effect) -> None:
         """Which walls have fluid in reach."""
-        s = self.store
-        self._each(
-            mark_wet,
-            s.low,
-            *self.domain.lists,
-            self._support**2,
-            self.domain.periods,
-            s["position"],
-            s[effect.told_by],
-            s[effect.marks.name],
-        )
+        s, lists = self.store, self.domain.lists
+        told_by, wet = s[effect.told_by], s[effect.marks.name]
+        self._each(mark_wet, s.low, lists, self._support, self.domain.periods, s["position"], told_by, wet)
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""
@@ -234,33 +177,24 @@ class Engine:
         """One pass over the neighbours of the particles in some columns."""
         if first == last:
             return
-        s, plan, lists, records = self.store, self.plan, self.domain.lists, self.records[one.place]
-        stored = tuple(name and s[name] for name in one.stores)
+        s, plan, records = self.store, self.plan, self.records[one.place]
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         in_threads(
             sum_over_neighbours,
             first,
             last,
-            one.effects,
-            one.reductions,
-            plan.kernel,
-            plan.space,
-            self.softening,
+            Summed(one.effects, one.reductions),
+            Metric(plan.kernel, plan.space, self.softening),
             s.view(),
-            records.view(),
-            records.table,
-            s.low,
-            lists.begin,
-            lists.lengths,
-            lists.lists,
-            *rates,
-            stored,
+            Around(records.view(), records.table, s.low, self.domain.lists),
+            Sums(*rates, tuple(name and s[name] for name in one.stores)),
         )
 
-    @property
-    def _anchor(self):
-        """Where particles stood at the start, if any motion asks for it."""
-        return self.store[ANCHOR.name] if ANCHOR.name in self.store else None
+    def _columns(self) -> Columns:
+        """The arrays that the step advances; no anchor where no motion asks for it."""
+        fields = (s for s in Columns._fields if s != "group")
+        arrays = {name: self.store[name] if name in self.store else None for name in fields}
+        return Columns(group=self.store.group, **arrays)
 
     def _view(self, pace: float):
         """The particles as the plan's carriers see them; a displacement also sees the pace."""

@@ -15,144 +15,87 @@ docs/theory.md derives it, tests/simulation/test_integrator.py measures it.
 
 import numpy as np
 
-from psph.engine.jit import elementwise, register_jitable
-from psph.physics.compose import bearing_density, displacement, limit_density, limit_wall_density, take
-from psph.physics.fluid.state import pressure as state_pressure
-from psph.physics.motion import carry, hurry
+from psph.composition.pair import take
+from psph.composition.terms import displacement, limit_density, limit_wall_density
+from psph.engine.jit import elementwise
+from psph.simulation.rules import borne, carry, hurry
 from psph.vectors import add, at, dot, put, scale
 
 
 @elementwise
-def kick_drift_predict(
-    first,
-    last,
-    time,
-    dt,
-    effects,
-    state,
-    free,
-    motions,
-    motion_of,
-    periods,
-    view,
-    group,
-    anchor,
-    position,
-    velocity,
-    predicted_velocity,
-    acceleration,
-    density,
-    rate,
-    rate_1,
-    rate_2,
-    specific_volume,
-    pressure,
-):
+def kick_drift_predict(first, last, time, dt, rules, view, columns):
     """Kick by half a step, drift to ``time``, and predict what the forces read.
 
-    Columns ``first`` to ``last``; vectors are tuples of component arrays.  The first ``free`` groups
-    move freely; of the others ``motion_of`` has the number of their motion (psph.physics.motion): fixed
-    particles stay, those of the ``motions`` that are prescribed stand where these have them.
+    Columns ``first`` to ``last`` of ``columns``, which ``view`` shows as formulas see them; ``rules``
+    say how the particles of each group move (psph.simulation.rules): fixed ones stay, those whose motion
+    is prescribed stand where it has them.
     """
+    c = columns
     for k in range(np.uint64(first), np.uint64(last)):
-        i = take(view, k)
-        rho = density[k] + dt * (1.75 * rate[k] - rate_1[k] + 0.25 * rate_2[k])
-        density[k] += 0.5 * dt * rate[k]
-        if group[k] < free:
-            kick = scale(at(acceleration, k), 0.5 * dt)
-            v = add(at(velocity, k), kick)
-            put(velocity, k, v)
-            move = add(scale(v, dt), displacement(effects, i, dt))
-            put(position, k, add(at(position, k), move))
-            put(predicted_velocity, k, add(v, kick))
-            rho = limit_density(effects, i, rho)
+        i, group = take(view, k), c.group[k]
+        rate = c.density_rate[k]
+        rho = c.density[k] + dt * (1.75 * rate - c.density_rate_1[k] + 0.25 * c.density_rate_2[k])
+        c.density[k] += 0.5 * dt * rate
+        if group < rules.free:
+            kick = scale(at(c.acceleration, k), 0.5 * dt)
+            v = add(at(c.velocity, k), kick)
+            put(c.velocity, k, v)
+            move = add(scale(v, dt), displacement(rules.effects, i, dt))
+            put(c.position, k, add(at(c.position, k), move))
+            put(c.predicted_velocity, k, add(v, kick))
+            rho = limit_density(rules.effects, i, rho)
         else:
-            rho = limit_wall_density(effects, i, rho)
-            carry(
-                motions,
-                motion_of,
-                group,
-                k,
-                time,
-                periods,
-                anchor,
-                position,
-                velocity,
-                predicted_velocity,
-            )
-        specific_volume[k] = 1.0 / rho
-        pressure[k] = _pressure(effects, state, i, rho, group[k] < free)
+            rho = limit_wall_density(rules.effects, i, rho)
+            carry(rules.motions, rules.motion_of[group], k, time, rules.periods, c)
+        c.specific_volume[k] = 1.0 / rho
+        c.pressure[k] = borne(rules, i, group, rho)
 
 
 @elementwise
-def state_of(first, last, effects, state, free, view, group, density, specific_volume, pressure):
+def state_of(first, last, rules, view, columns):
     """Pressure and specific volume of the columns ``first`` to ``last`` from their density."""
+    c = columns
     for k in range(np.uint64(first), np.uint64(last)):
-        i = take(view, k)
-        specific_volume[k] = 1.0 / density[k]
-        pressure[k] = _pressure(effects, state, i, density[k], group[k] < free)
-
-
-@register_jitable
-def _pressure(effects, state, i, rho, is_free):
-    """Pressure of a particle of density ``rho``, Pa."""
-    bearing = rho if is_free else bearing_density(effects, i, rho)
-    return state_pressure(state, bearing, i.rest_density, i.sound_speed)
+        c.specific_volume[k] = 1.0 / c.density[k]
+        c.pressure[k] = borne(rules, take(view, k), c.group[k], c.density[k])
 
 
 @elementwise
-def kick(
-    first,
-    last,
-    time,
-    dt,
-    effects,
-    free,
-    motions,
-    motion_of,
-    view,
-    group,
-    anchor,
-    position,
-    velocity,
-    acceleration,
-    density,
-    rate,
-):
+def kick(first, last, time, dt, rules, view, columns):
     """Kick by the second half of the step, with the new rates.
 
     Returns the largest |v|² and |a|² of what moves, and |ρ/ρ₀ − 1| and square of a displacement over
     its time step, m²/s², of the fluid, over the columns ``first`` to ``last``; the strain is infinite
-    where any particle has
-    a number that is not finite.
+    where any particle has a number that is not finite.
     """
+    c = columns
     v2_max = 0.0
     a2_max = 0.0
     strain_max = 0.0
     shift2_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
-        i = take(view, k)
-        rho = density[k] + 0.5 * dt * rate[k]
-        if group[k] < free:
-            a = at(acceleration, k)
-            v = add(at(velocity, k), scale(a, 0.5 * dt))
-            put(velocity, k, v)
-            rho = limit_density(effects, i, rho)
+        i, group = take(view, k), c.group[k]
+        rho = c.density[k] + 0.5 * dt * c.density_rate[k]
+        if group < rules.free:
+            a = at(c.acceleration, k)
+            v = add(at(c.velocity, k), scale(a, 0.5 * dt))
+            put(c.velocity, k, v)
+            rho = limit_density(rules.effects, i, rho)
             v2, a2 = dot(v, v), dot(a, a)
-            x = at(position, k)
+            x = at(c.position, k)
             strain = abs(rho / i.rest_density - 1.0)
             finite = v2 + a2 + dot(x, x) + strain < np.inf  # false for NaN too
             v2_max = max(v2_max, v2 if finite else 0.0)
             a2_max = max(a2_max, a2 if finite else 0.0)
             strain_max = max(strain_max, strain if finite else np.inf)
-            shift = displacement(effects, i, 1.0)
+            shift = displacement(rules.effects, i, 1.0)
             shift2_max = max(shift2_max, dot(shift, shift))
         else:
-            rho = limit_wall_density(effects, i, rho)
+            rho = limit_wall_density(rules.effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
-            v2, a2 = hurry(motions, motion_of, group, k, time, dt, anchor)
+            v2, a2 = hurry(rules.motions, rules.motion_of[group], k, time, dt, c)
             v2_max, a2_max = max(v2_max, v2), max(a2_max, a2)
-        density[k] = rho
+        c.density[k] = rho
     return v2_max, a2_max, strain_max, shift2_max
 
 

@@ -1,64 +1,80 @@
 """The pair loop: one pass over the neighbours for every effect of the scene."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
+from psph.composition import terms
+from psph.composition.pair import fetch, geometry, take
+from psph.composition.space import difference, softened
+from psph.composition.terms import added, pushed, store
 from psph.engine.jit import compiled
 from psph.engine.simd import spread, total, width_of
-from psph.physics import compose
-from psph.physics.compose import added, fetch, geometry, pushed, take
-from psph.physics.space import difference, softened
-from psph.vectors import add, put, zero_like
+from psph.vectors import add, zero_like
+
+
+class Summed(NamedTuple):
+    """What a pass sums: its ``effects``, and the ``reductions``, those with a sum of their own."""
+
+    effects: tuple
+    reductions: tuple
+
+
+class Metric(NamedTuple):
+    """How a pair is weighed: the smoothing ``kernel``, the ``space`` of its positions, and the
+    ``softening`` that puts lanes behind the end of a row out of reach (psph.composition.space)."""
+
+    kernel: Any
+    space: Any
+    softening: Any
+
+
+class Around(NamedTuple):
+    """The neighbours: ``records`` of what is read of them, as ``shown`` says, and the ``lists`` of the
+    particles from column ``low`` on (psph.particles.neighbours)."""
+
+    shown: Any
+    records: Any
+    low: Any
+    lists: Any
+
+
+class Sums(NamedTuple):
+    """Where sums go: the array, or None, that each reduction fills; ``acceleration`` and
+    ``density_rate`` are None in a pass that gathers sums alone."""
+
+    acceleration: Any
+    density_rate: Any
+    written: tuple
 
 
 @compiled
-def sum_over_neighbours(
-    first,
-    last,
-    effects,
-    reductions,
-    kernel,
-    space,
-    softening,
-    view,
-    neighbour_view,
-    records,
-    low,
-    begin,
-    lengths,
-    lists,
-    acceleration,
-    density_rate,
-    written,
-):
-    """Rates of the particles in columns ``first`` to ``last``.
+def sum_over_neighbours(first, last, summed, metric, view, around, sums):
+    """Rates of the particles in columns ``first`` to ``last``, which ``view`` shows.
 
-    ``view`` shows the particles themselves, ``records`` what is read of neighbours, as
-    ``neighbour_view`` says.  ``effects`` is the scene's tuple, ``reductions`` those with a sum of
-    their own and ``written``
-    the array, or None, that each of these fills; ``acceleration`` and ``density_rate`` are None in a
-    pass that gathers sums alone.  ``softening`` (psph.physics.space) puts lanes
-    behind the end of a row out of reach.  Sums are in gather form and in the order of the
-    lists, so that they are the same on any number of ranks.
+    Sums are in gather form and in the order of the lists, so that they are the same on any number of
+    ranks.
     """
+    effects, reductions = summed.effects, summed.reductions
+    records, lists = around.records, around.lists
     for k in range(np.uint64(first), np.uint64(last)):
-        row = k - np.uint64(low)
+        row = k - np.uint64(around.low)
         i = take(view, k)
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
-        totals = spread(compose.start(reductions, i), records)
-        end = begin[row] + np.uint64(lengths[row])
-        for n in range(begin[row], end, width_of(records)):
-            added_to_r2 = softened(softening, end - n)
-            j = fetch(neighbour_view, records, lists, n)
-            pair = geometry(kernel, difference(space, i, j, records, k), added_to_r2, i, j)
-            rate = rate + compose.density_rate(effects, i, j, pair)
-            a = pushed(a, pair.x_ij, compose.radial(effects, i, j, pair))
-            a = pushed(a, pair.u_ij, compose.shear(effects, i, j, pair))
-            a = added(a, compose.push(effects, i, j, pair))
-            totals = compose.gather_each(reductions, totals, i, j, pair)
-        sums = compose.fold_each(reductions, totals)
-        force = add(total(a), compose.finish_acceleration(reductions, sums, i))
-        if acceleration is not None:
-            put(acceleration, k, add(force, compose.body(effects, i)))
-            density_rate[k] = total(rate)
-        compose.finish_value(reductions, sums, i, kernel, k, written)
+        totals = spread(terms.start(reductions, i), records)
+        end = lists.begin[row] + np.uint64(lists.lengths[row])
+        for n in range(lists.begin[row], end, width_of(records)):
+            j = fetch(around.shown, records, lists.lists, n)
+            x_ij = difference(metric.space, i, j, records, k)
+            pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
+            rate = rate + terms.density_rate(effects, i, j, pair)
+            a = pushed(a, pair.x_ij, terms.radial(effects, i, j, pair))
+            a = pushed(a, pair.u_ij, terms.shear(effects, i, j, pair))
+            a = added(a, terms.push(effects, i, j, pair))
+            totals = terms.gather_each(reductions, totals, i, j, pair)
+        folded = terms.fold_each(reductions, totals)
+        force = add(total(a), terms.finish_acceleration(reductions, folded, i))
+        store(sums.acceleration, k, add(force, terms.body(effects, i)))
+        store(sums.density_rate, k, total(rate))
+        terms.finish_value(reductions, folded, i, metric.kernel, k, sums.written)

@@ -2,7 +2,7 @@
 
 import re
 from collections import namedtuple
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -10,6 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.case.parameters import as_numbers
+from psph.composition.count import flops_per_pair
+from psph.composition.space import Metres, fixed_point
+from psph.composition.terms import OF_A_PARTICLE
+from psph.composition.trial import Reads, UnknownField, reads
 from psph.fields import (
     IDENTITY,
     OF_EVERY_SCENE,
@@ -22,11 +26,7 @@ from psph.fields import (
     view_of,
 )
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.compose import OF_A_PARTICLE
-from psph.physics.count import flops_per_pair
 from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, Fixed, Free, is_prescribed
-from psph.physics.space import Metres, fixed_point
-from psph.physics.trial import Reads, UnknownField, reads
 from psph.simulation.passes import Pass, make_passes
 
 OF_STATE = ("position", "rest_density", "sound_speed")
@@ -68,11 +68,15 @@ class Plan:
     dropped: dict[str, str]
     """Of effects that the case asks for and the scene has no use for: by their names, why."""
     kernel: Any
-    state: Any
-    state_reason: str
+    laws: tuple[Any, ...]
+    """The equations of state of its fluids and walls."""
+    law_of: np.ndarray
+    """The number of the law of each group."""
+    law_reasons: tuple[str, ...]
+    """The keys of the case that called for each."""
     precision: str
     space: Any
-    """How positions of neighbours are told apart: psph.physics.space."""
+    """How positions of neighbours are told apart: psph.composition.space."""
     smoothing_length: float
     constants: dict[str, float]
     fields: dict[str, Field]
@@ -201,7 +205,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         for _, effect, reason in fitted
     )
     present = {entry for entry, *_ in fitted}
-    [(state, state_reason)] = filter(None, (_called_for(case, e) for e in catalogue.states))
+    laws = _laws(scene, catalogue.states)
     own = set(ALWAYS_READ).union(*(c.reads.own | c.reads.neighbour for c in called))
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
@@ -221,12 +225,13 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
             if entry not in present
         },
         kernel=scene.kernel,
-        state=state,
+        laws=tuple(law for _, law in laws),
+        law_of=np.array([[*laws].index((type(one.law), one.law)) for one in scene.species], np.uint8),
+        law_reasons=tuple(laws.values()),
         precision=case.precision,
         space=fixed_point(scene.smoothing_length, scene.periods)
         if case.precision == "mixed"
         else Metres(tuple(scene.periods)),
-        state_reason=state_reason,
         smoothing_length=scene.smoothing_length,
         constants=shared | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
         fields=fields,
@@ -251,6 +256,19 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
             *(max(material_value(m, f.name) for m in scene.species) for f in OF_MATERIAL),
         ),
     )
+
+
+def _laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
+    """Each equation of state of the scene with its type, and the keys of the case that call for it.
+
+    By type too: named tuples of different types are equal where their values are.
+    """
+    [(_, shared)] = filter(None, (_called_for(scene.case, entry) for entry in entries))
+    reasons: dict[tuple[type, Any], dict[str, None]] = {}
+    for (name, fluid), one in zip(scene.case.fluids.items(), scene.species):
+        own = fluid.equation_of_state and f"fluids.{name}.equation_of_state = {fluid.equation_of_state}"
+        reasons.setdefault((type(one.law), one.law), {})[own or shared] = None
+    return {law: "; ".join(keys) for law, keys in reasons.items()}
 
 
 def _carries(call: Called) -> bool:

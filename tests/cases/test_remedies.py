@@ -4,7 +4,7 @@ import pytest
 from cases.measures import finished, growth_rate
 
 from psph.theory.stability.growth import box_growth
-from psph.theory.stability.remedies import ArtificialStress
+from psph.theory.stability.parts import ArtificialStress
 from psph.theory.stability.uniform import Settings
 
 pytestmark = pytest.mark.timeout(300)

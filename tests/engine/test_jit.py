@@ -15,6 +15,7 @@ import sys
 from typing import NamedTuple
 from psph.engine.jit import call_by_type, compiled
 from psph.simulation.integrator import state_of
+from psph.simulation.rules import Columns, Rules
 from psph.fields import view_of
 from psph.physics.fluid.state import Linear
 import numpy as np
@@ -27,8 +28,12 @@ View = view_of(("position", "rest_density", "sound_speed"))
 view = View((np.zeros(3),), 1.0, 1.0)
 for state in (Linear(), Foreign()) if "foreign" in sys.argv else (Linear(),):
     pressure = np.zeros(3)
-    kind = np.zeros(3, np.uint8)
-    state_of(0, 3, (), state, np.uint8(1), view, kind, np.full(3, 2.0), np.zeros(3), pressure)
+    first = np.zeros(3, np.uint8)
+    rules = Rules((), (state,), first, np.uint8(1), (), first, (None,))
+    columns = dict.fromkeys(Columns._fields) | {
+        "group": first, "density": np.full(3, 2.0), "specific_volume": np.zeros(3), "pressure": pressure
+    }
+    state_of(0, 3, rules, view, Columns(**columns))
     print(pressure[0])
 print(sum(state_of.stats.cache_hits.values()), "from the cache")
 """

@@ -7,8 +7,8 @@ import pytest
 from mpi4py import MPI
 from stores import store_of
 
+from psph.composition.space import Metres
 from psph.parallel.domain import CELLS_A_PARTICLE, Domain
-from psph.physics.space import Metres
 
 NAMES = ("position", "listed_position", "density")
 

@@ -5,25 +5,25 @@ import numpy as np
 import pytest
 from stores import store_of
 
+from psph.composition.pair import FOLDED, fetch
+from psph.composition.space import Metres, fixed_point
 from psph.engine.simd import spread, total, width_of
 from psph.particles.records import Records, record_width, recorded
-from psph.physics.compose import FOLDED, fetch
-from psph.physics.space import Metres, fixed_point
 
-HELD = ("position", "predicted_velocity", "pressure", "specific_volume", "wall")
+HELD = ("position", "predicted_velocity", "pressure", "specific_volume", "is_fluid")
 SPACES = {"double": Metres((None, None)), "mixed": fixed_point(0.1, (None, None))}
 
 
 @numba.njit
 def sums(view, records, lists):
-    """Σ 1/ρ, Σ of the walls and Σ p over the listed particles."""
-    volume, walls, pressure = spread(0.0, records), spread(0.0, records), spread(0.0, records)
+    """Σ 1/ρ, the number of fluid particles and their Σ p over the listed particles."""
+    volume, fluids, pressure = spread(0.0, records), spread(0.0, records), spread(0.0, records)
     for n in range(np.uint64(0), np.uint64(len(lists)), width_of(records)):
         j = fetch(view, records, lists, n)
         volume = volume + j.specific_volume
-        walls = walls + j.wall
-        pressure = pressure + j.pressure * j.wall
-    return total(volume), total(walls), total(pressure)
+        fluids = fluids + j.is_fluid
+        pressure = pressure + j.pressure * j.is_fluid
+    return total(volume), total(fluids), total(pressure)
 
 
 @pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
@@ -31,45 +31,45 @@ def test_a_wall_is_told_by_a_sign_and_takes_no_place(space):
     rng = np.random.default_rng(5)
     store, n = store_of(2, HELD), 16
     block = rng.uniform(0.5, 2.0, (7, n)).astype(np.float32).astype(float)
-    wall = block[-1] = rng.integers(0, 2, n)
-    store.append(np.arange(n), wall.astype(np.uint8), block)
+    fluid = block[-1] = rng.integers(0, 2, n)
+    store.append(np.arange(n), 1 - fluid.astype(np.uint8), block)
     store.reorder(np.arange(n), 0, 0)
     records = Records(store, HELD, space)
     records.make_room()
     records.fill(0, store.total)
     assert records.width == record_width(6) == record_width(sum(len(store.rows[f]) for f in recorded(HELD)))
-    assert records.view().wall is FOLDED
+    assert records.view().is_fluid is FOLDED
     found = sums(records.view(), records.table, np.arange(n, dtype=np.uint32))
     volume, pressure = block[store.rows["specific_volume"].start], block[store.rows["pressure"].start]
-    assert found == pytest.approx((volume.sum(), wall.sum(), (pressure * wall).sum()), rel=1e-6)
-    j = fetch(records.view(), records.table, np.arange(n), int(np.argmax(wall)))
-    assert j.wall == 1.0 and j.specific_volume > 0.0
+    assert found == pytest.approx((volume.sum(), fluid.sum(), (pressure * fluid).sum()), rel=1e-6)
+    j = fetch(records.view(), records.table, np.arange(n), int(np.argmin(fluid)))
+    assert j.is_fluid == 0.0 and j.specific_volume > 0.0
 
 
 def test_without_walls_the_records_are_as_they_stand():
     names = HELD[:-1]
-    store = store_of(2, names, {"wall": 0.0})
+    store = store_of(2, names, {"is_fluid": 1.0})
     store.append(np.arange(3), np.zeros(3, np.uint8), np.full((6, 3), 2.0))
     store.reorder(np.arange(3), 0, 0)
     records = Records(store, names, SPACES["double"])
     records.make_room()
     records.fill(0, store.total)
-    assert records.view().wall == 0.0 and (records.table[:3, :6] == 2.0).all()
+    assert records.view().is_fluid == 1.0 and (records.table[:3, :6] == 2.0).all()
 
 
 @pytest.mark.parametrize("space", SPACES.values(), ids=SPACES)
 def test_a_fluid_of_negative_density_is_no_wall(space):
     """A run that goes on in spite of its guards may have one."""
     store, n = store_of(2, HELD), 16
-    wall = np.arange(n) % 2
+    fluid = np.arange(n) % 2
     block = np.full((7, n), 2.0)
-    block[-1] = wall
+    block[-1] = fluid
     block[store.rows["specific_volume"].start, :4] = -2.0
-    store.append(np.arange(n), wall.astype(np.uint8), block)
+    store.append(np.arange(n), 1 - fluid.astype(np.uint8), block)
     store.reorder(np.arange(n), 0, 0)
     records = Records(store, HELD, space)
     records.make_room()
     records.fill(0, n)
     for k in range(n):
         j = fetch(records.view(), records.table, np.arange(n), k)
-        assert j.wall == wall[k] and j.specific_volume == 2.0
+        assert j.is_fluid == fluid[k] and j.specific_volume == 2.0

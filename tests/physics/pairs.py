@@ -6,9 +6,9 @@ from numba.core import types
 from numba.extending import overload
 from stores import seen
 
+from psph.composition import terms
+from psph.composition.pair import geometry, take
 from psph.engine.jit import method_of
-from psph.physics import compose
-from psph.physics.compose import geometry, take
 from psph.smoothing import kernel
 from psph.vectors import nearest_image, subtract
 
@@ -29,7 +29,8 @@ def view(n=2, dim=2, seed=3):
         mass=rng.uniform(0.05, 0.1, n),
         viscosity=rng.uniform(0.5, 1.0, n),
         kernel_sum=rng.uniform(0.8, 1.0, n),
-        wall=np.resize((0.0, 1.0, 0.0), n),
+        is_fluid=np.resize((1.0, 0.0, 1.0), n),
+        mobile=np.resize((0.0, 1.0, 1.0), n),
         no_slip=np.resize((0.0, 1.0), n),
         wet=np.resize((1.0, 0.0, 0.0), n),
         stress_point=np.resize((1.0, 0.0, 0.0), n),
@@ -96,17 +97,17 @@ def rates(effects, reductions, k, periods, particles, a, b):
     """Everything that one neighbour b does to particle a."""
     i, j = take(particles, a), take(particles, b)
     pair = geometry(k, nearest_image(subtract(i.position, j.position), periods), 1e-24, i, j)
-    totals = compose.gather_each(reductions, compose.start(reductions, i), i, j, pair)
+    totals = terms.gather_each(reductions, terms.start(reductions, i), i, j, pair)
     return (
-        compose.density_rate(effects, i, j, pair),
-        compose.radial(effects, i, j, pair),
-        compose.shear(effects, i, j, pair),
-        compose.push(effects, i, j, pair),
-        compose.body(effects, i),
-        compose.finish_acceleration(reductions, totals, i),
-        compose.limit_density(effects, i, 987.0),
-        compose.limit_wall_density(effects, i, 987.0),
-        compose.bearing_density(effects, i, 987.0),
-        compose.displacement(effects, i, 1e-4),
+        terms.density_rate(effects, i, j, pair),
+        terms.radial(effects, i, j, pair),
+        terms.shear(effects, i, j, pair),
+        terms.push(effects, i, j, pair),
+        terms.body(effects, i),
+        terms.finish_acceleration(reductions, totals, i),
+        terms.limit_density(effects, i, 987.0),
+        terms.limit_wall_density(effects, i, 987.0),
+        terms.bearing_density(effects, i, 987.0),
+        terms.displacement(effects, i, 1e-4),
         stored(reductions, totals, i, k),
     )

@@ -15,8 +15,8 @@ from physics.pairs import ONE_FOR_ALL, pair_of, sums_of, view
 from physics.test_effects import made
 from simulation.test_absence import calling_for
 
+from psph.composition.terms import displacement, push, radial, shear
 from psph.physics.catalogue import CATALOGUE
-from psph.physics.compose import displacement, push, radial, shear
 from psph.physics.fluid.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
 from psph.physics.order.potential import PairPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
@@ -54,7 +54,7 @@ def crowd(dim):
     """Three fluid particles that differ in everything and run into each other."""
     p = view(n=3, dim=dim)
     inward = tuple(u - 3000.0 * x for u, x in zip(p.velocity, p.position))
-    return p._replace(wall=np.zeros(3), velocity=inward)
+    return p._replace(is_fluid=np.ones(3), mobile=np.ones(3), velocity=inward)
 
 
 def rates(effect, p):

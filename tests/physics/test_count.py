@@ -2,6 +2,7 @@
 
 import pytest
 
+from psph.composition.count import flops_per_pair
 from psph.physics.catalogue import (
     BUILT_IN,
     ArtificialViscosity,
@@ -10,7 +11,6 @@ from psph.physics.catalogue import (
     MinimumPressure,
     SymmetricPressure,
 )
-from psph.physics.count import flops_per_pair
 from psph.smoothing import KERNELS, kernel
 
 SHARED = ("mass", "rest_density", "sound_speed", "smoothing_length")

@@ -11,6 +11,7 @@ import pytest
 from long import long_but_for
 from physics.pairs import OPEN, H, pair_of, rates, sums_of, view
 
+from psph.composition.trial import UnknownField, reads
 from psph.physics.catalogue import BUILT_IN, CATALOGUE
 from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.damping.filtering import ConservativeSmoothing
@@ -38,7 +39,6 @@ from psph.physics.order.shifting import LatticeShift, ParticleShifting, lattice_
 from psph.physics.order.stress import NeighbourStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.surface.free import FreeSurface, TensionFloor
-from psph.physics.trial import UnknownField, reads
 from psph.physics.walls.dry import DryWall
 from psph.physics.walls.slip import CorrectedNoSlip, NoSlip
 from psph.smoothing import kernel
@@ -161,7 +161,7 @@ def gathered(effect, particles, i, *others):
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_a_wall_without_slip_mirrors_the_mean_of_the_fluid_around_it(dim):
     p = view(n=5, dim=dim)
-    p = p._replace(wall=np.array([0, 1, 0, 0, 1.0]), no_slip=np.array([0, 1, 0, 0, 0.0]))
+    p = p._replace(is_fluid=np.array([1, 0, 1, 1, 0.0]), no_slip=np.array([0, 1, 0, 0, 0.0]))
     w = np.array([written_out(p, 1, b)[3] for b in (0, 2, 3)])
     u = np.array([[v[b] for v in p.velocity] for b in (0, 2, 3)])
     own = np.array([v[1] for v in p.velocity])
@@ -177,7 +177,7 @@ def test_a_wall_without_slip_mirrors_the_mean_of_the_fluid_around_it(dim):
 def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim, correction):
     """Whichever form of friction the scene takes, no-slip takes the same."""
     physics = SimpleNamespace(gradient_correction=correction, central_friction=None)
-    scene = SimpleNamespace(case=SimpleNamespace(physics=physics))
+    scene = SimpleNamespace(physics=physics)
     viscosity, no_slip = LaminarViscosity().in_scene(scene), NoSlip().in_scene(scene)
     p = view(dim=dim)
     mean, slip = np.full(dim, 0.3), [v[1] for v in p.velocity] - np.full(dim, 0.3)
@@ -303,7 +303,7 @@ def test_density_diffusion(dim):
     assert found == pytest.approx(rate)
     assert found * (excess[1] - excess[0]) > 0.0
     pulled = TankDiffusion(0.3, (0.3, -9.8, 1.0)[:dim])
-    for effect, q in ((DensityDiffusion(0.3), p), (pulled, p._replace(wall=np.zeros(2)))):
+    for effect, q in ((DensityDiffusion(0.3), p), (pulled, p._replace(is_fluid=np.ones(2)))):
         there, back = (effect.density_rate(*pair_of(q, *ends)) for ends in ((0, 1), (1, 0)))
         assert (p.mass / rho) @ (there, back) == pytest.approx(0.0, abs=1e-12 * abs(there))
 
@@ -322,7 +322,7 @@ def test_hydrostatic_diffusion_leaves_a_still_column_alone(dim):
     p, g = view(dim=dim), (0.3, -9.8, 1.0)[:dim]
     depth = np.array(g) @ p.position  # m²/s²
     excess = p.rest_density.mean() * depth / 50.0**2
-    p = p._replace(specific_volume=1 / (p.rest_density + excess), wall=np.zeros(2))
+    p = p._replace(specific_volume=1 / (p.rest_density + excess), is_fluid=np.ones(2))
     pair = pair_of(p, 0, 1)
     plain = DensityDiffusion(0.1).density_rate(*pair)
     still = TankDiffusion(0.1, g).density_rate(*pair)
@@ -335,22 +335,24 @@ def test_walls_take_density_over_and_give_none():
     """A wall without pressure gives none to another either, and draws none off."""
     tank, (i, j, pair) = TankDiffusion(0.1, (0.0, 0.0)), pair_of(view(), 0, 1)
     for own, other, pressure in product((0.0, 1.0), (0.0, 1.0), (-70.0, 0.0, 70.0)):
-        neighbour = j._replace(wall=other, pressure=pressure)
-        rate = tank.density_rate(i._replace(wall=own), neighbour, pair)
-        assert (rate == 0.0) == (other > (own if pressure else 0.0))
+        neighbour = j._replace(is_fluid=other, pressure=pressure)
+        rate = tank.density_rate(i._replace(is_fluid=own), neighbour, pair)
+        assert (rate == 0.0) == (not other and bool(own or not pressure))
 
 
 def test_two_wall_particles_exchange_no_density_by_riemann_problems():
     i, j, pair = pair_of(view(), 0, 1)
     for own, other in product((0.0, 1.0), repeat=2):
-        rate = RiemannDissipation().density_rate(i._replace(wall=own), j._replace(wall=other), pair)
-        assert (rate == 0.0) == (own == other == 1.0)
+        rate = RiemannDissipation().density_rate(i._replace(is_fluid=own), j._replace(is_fluid=other), pair)
+        assert (rate == 0.0) == (own == other == 0.0)
 
 
 def test_a_wall_is_not_shifted():
     effect, p = ParticleShifting(), patch(2, 0.2)
-    assert np.abs(sums_of(effect, p._replace(wall=np.zeros(len(p.mass))), 0)).max() > 0.0
-    assert sums_of(effect, p._replace(wall=np.ones(len(p.mass))), 0) == pytest.approx((0.0, 0.0), abs=0.0)
+    assert np.abs(sums_of(effect, p._replace(is_fluid=np.ones(len(p.mass))), 0)).max() > 0.0
+    assert sums_of(effect, p._replace(is_fluid=np.zeros(len(p.mass))), 0) == pytest.approx(
+        (0.0, 0.0), abs=0.0
+    )
 
 
 def test_a_dry_wall_has_its_rest_density():
@@ -731,7 +733,7 @@ def test_riemann_dissipation(approaching, dim):
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_conservative_smoothing(dim):
-    p = view(dim=dim)._replace(wall=np.zeros(2))
+    p = view(dim=dim)._replace(is_fluid=np.ones(2))
     _, u, _, w, _ = written_out(p, 0, 1)
     effect, (i, j, pair) = ConservativeSmoothing(0.3), pair_of(p, 0, 1)
     mean = (1 / p.specific_volume).mean()
@@ -739,12 +741,12 @@ def test_conservative_smoothing(dim):
     assert effect.shear(i, j, pair) * u == pytest.approx(a)
     back = effect.shear(*pair_of(p, 1, 0)) * -u * p.mass[1]
     assert back == pytest.approx(-p.mass[0] * a)
-    assert effect.shear(i, j._replace(wall=1.0), pair) == 0.0
+    assert effect.shear(i, j._replace(is_fluid=0.0), pair) == 0.0
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_xsph_moves_with_the_mean_and_keeps_both_momenta(dim):
-    p, effect = view(n=3, dim=dim)._replace(wall=np.zeros(3)), XSPH(0.4)
+    p, effect = view(n=3, dim=dim)._replace(is_fluid=np.ones(3), mobile=np.ones(3)), XSPH(0.4)
     momentum, turning = np.zeros(dim), np.zeros((dim, dim))
     for a in range(3):
         expected = np.zeros(dim)
@@ -764,14 +766,17 @@ def test_xsph_moves_with_the_mean_and_keeps_both_momenta(dim):
 
 
 def test_xsph_leaves_walls_alone():
-    p, effect = view(n=3)._replace(wall=np.array([0.0, 1.0, 1.0])), XSPH(0.4)
+    p, effect = (
+        view(n=3)._replace(is_fluid=np.array([1.0, 0.0, 0.0]), mobile=np.array([1.0, 0.0, 0.0])),
+        XSPH(0.4),
+    )
     assert gathered(effect, p, 0, 1, 2) == pytest.approx((0.0, 0.0), abs=0.0)
     assert gathered(effect, p, 1, 0) == pytest.approx((0.0, 0.0), abs=0.0)
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_transport_velocities(dim):
-    p = view(n=3, dim=dim)._replace(wall=np.zeros(3), pressure=np.array([3.0, -900.0, 4e6]))
+    p = view(n=3, dim=dim)._replace(is_fluid=np.ones(3), pressure=np.array([3.0, -900.0, 4e6]))
     rho, c = 1 / p.specific_volume, 50.0
     both, own = np.zeros(dim), np.zeros(dim)
     for b in (1, 2):
@@ -784,7 +789,7 @@ def test_transport_velocities(dim):
     assert gathered(effect, p, 0, 1, 2) == pytest.approx(30.0 * own)
     p = p._replace(pressure=np.array([-4e6, 3.0, 3.0]))
     assert gathered(effect, p, 0, 1, 2) == pytest.approx(0.3 * p.rest_density[0] * c * c * own)
-    p = p._replace(wall=np.array([1.0, 0.0, 0.0]))
+    p = p._replace(is_fluid=np.array([0.0, 1.0, 1.0]))
     assert gathered(effect, p, 0, 1, 2) == pytest.approx((0.0,) * dim, abs=0.0)
 
 

@@ -12,7 +12,7 @@ VELOCITY, STRESS, WALL = range(3)
 
 def three():
     """A velocity point, a stress point and a velocity point in a wall."""
-    return view(n=3)._replace(stress_point=np.array([0.0, 1.0, 0.0]), wall=np.array([0.0, 0.0, 1.0]))
+    return view(n=3)._replace(stress_point=np.array([0.0, 1.0, 0.0]), is_fluid=np.array([1.0, 1.0, 0.0]))
 
 
 @pytest.mark.parametrize("a", (VELOCITY, STRESS))

@@ -76,7 +76,7 @@ def test_no_plane_gives_no_particle(tmp_path):
 def test_hydrostatic_pressure_grows_below_the_surface(tmp_path):
     tank = scene(tmp_path, TANK, "physics.sound_speed=50")
     found = everything(tank)
-    pressure = tank.state.pressure(found.density, 1000.0, 50.0)
+    pressure = tank.species[0].law.pressure(found.density, 1000.0, 50.0)
     depth = np.maximum(0.5 - found.position[:, 1], 0.0)
     assert pressure == pytest.approx(1000.0 * 9.8 * depth, abs=1e-6)
     assert pressure.max() > 1000.0 * 9.8 * 0.7  # the wall below continues the law
@@ -88,7 +88,7 @@ def test_hydrostatic_pressure_follows_any_gravity(tmp_path):
     tank = scene(tmp_path, TANK, "physics.sound_speed=50", "physics.gravity=[3.0, -4.0]")
     found = everything(tank)
     fluid = found.kind == FLUID
-    pressure = tank.state.pressure(found.density, 1000.0, 50.0)[fluid]
+    pressure = tank.species[0].law.pressure(found.density, 1000.0, 50.0)[fluid]
     gradient = np.linalg.lstsq(
         np.column_stack([found.position[fluid], np.ones(fluid.sum())]), pressure, rcond=None
     )[0]
@@ -106,7 +106,7 @@ def test_a_uniform_pressure_holds_in_the_wall_too(tmp_path):
 def test_tait_starts_at_its_own_density(tmp_path):
     tank = scene(tmp_path, TANK, "physics.equation_of_state=tait", "physics.sound_speed=50")
     found = everything(tank)
-    pressure = tank.state.pressure(found.density, 1000.0, 50.0)
+    pressure = tank.species[0].law.pressure(found.density, 1000.0, 50.0)
     assert pressure == pytest.approx(9800.0 * np.maximum(0.5 - found.position[:, 1], 0.0), abs=1e-5)
 
 

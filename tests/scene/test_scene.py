@@ -7,6 +7,7 @@ import pytest
 from drafts import TANK, WATER, draft
 
 from psph.case import CaseError, load
+from psph.physics.fluid.state import Linear
 from psph.physics.motion import Fixed, Free
 from psph.scene import Scene, Species, check
 from psph.scene import lattice as lattices
@@ -109,9 +110,9 @@ viscosity = 1e-4
 """
     )
     assert scene(tmp_path, text).species == (
-        Species("water", Free(), 1000.0, 0.0, pytest.approx(10.0)),
-        Species("oil", Free(), 900.0, 1e-4, pytest.approx(9.0)),
-        Species("tank", Fixed(), 900.0, 1e-4, pytest.approx(9.0)),
+        Species("water", Free(), 1000.0, 0.0, pytest.approx(10.0), Linear()),
+        Species("oil", Free(), 900.0, 1e-4, pytest.approx(9.0), Linear()),
+        Species("tank", Fixed(), 900.0, 1e-4, pytest.approx(9.0), Linear()),
     )
 
 
@@ -119,7 +120,7 @@ viscosity = 1e-4
 def test_a_uniform_pressure_sets_the_mass(tmp_path, state):
     overrides = (f"physics.equation_of_state={state}", "physics.sound_speed=5")
     square = scene(tmp_path, WATER, "fluids.water.pressure=-2500", *overrides)
-    density = square.state.density(-2500.0, 1000.0, 5.0)
+    density = square.species[0].law.density(-2500.0, 1000.0, 5.0)
     assert density < 905.0
     assert square.species[0].mass == pytest.approx(density * 0.01)
 

@@ -7,8 +7,10 @@ from stores import seen
 from psph.physics import motion
 from psph.physics.fluid.state import Linear
 from psph.simulation.integrator import kick, kick_drift_predict
+from psph.simulation.rules import Columns, Rules
 
-FREE, MOTIONS = np.uint8(1), np.array([motion.FREE, motion.FIXED], np.uint8)
+MOTIONS = np.array([motion.FREE, motion.FIXED], np.uint8)
+RULES = Rules((), (Linear(),), np.zeros(2, np.uint8), np.uint8(1), (), MOTIONS, (None,))
 
 
 def oscillate(theta, steps):
@@ -22,33 +24,12 @@ def oscillate(theta, steps):
     for rate in rates:
         rate[0] = theta
     for _ in range(steps):
-        kick_drift_predict(
-            0,
-            1,
-            0.0,
-            1.0,
-            (),
-            Linear(),
-            FREE,
-            (),
-            MOTIONS,
-            (None,),
-            view,
-            group,
-            None,
-            x,
-            v,
-            predicted,
-            a,
-            density,
-            *rates,
-            volume,
-            pressure,
-        )
+        columns = Columns(group, None, x, v, predicted, a, density, *rates, volume, pressure)
+        kick_drift_predict(0, 1, 0.0, 1.0, RULES, view, columns)
         rates = [rates[2], rates[0], rates[1]]
         rates[0][0] = theta * predicted[0][0]
         a[0][0] = -theta * pressure[0]
-        kick(0, 1, 0.0, 1.0, (), FREE, (), MOTIONS, view, group, None, x, v, a, density, rates[0])
+        kick(0, 1, 0.0, 1.0, RULES, view, columns._replace(density_rate=rates[0]))
     return np.hypot(v[0][0], density[0] - 1.0)
 
 
@@ -89,34 +70,13 @@ def test_walls_stay_and_lost_numbers_are_reported():
     rates = [np.zeros(2) for _ in range(3)]
     density, volume, pressure = np.ones(2), np.ones(2), np.zeros(2)
     view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
-    kick_drift_predict(
-        0,
-        2,
-        0.0,
-        0.1,
-        (),
-        Linear(),
-        FREE,
-        (),
-        MOTIONS,
-        (None,),
-        view,
-        group,
-        None,
-        x,
-        v,
-        predicted,
-        a,
-        density,
-        *rates,
-        volume,
-        pressure,
-    )
-    *_, error, _ = kick(0, 2, 0.0, 0.1, (), FREE, (), MOTIONS, view, group, None, x, v, a, density, rates[0])
+    columns = Columns(group, None, x, v, predicted, a, density, *rates, volume, pressure)
+    kick_drift_predict(0, 2, 0.0, 0.1, RULES, view, columns)
+    *_, error, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
     assert x[0][0] == v[0][0] == 0.0 and error == np.inf
     a[0][1] = v[0][1] = 0.0
-    *_, error, _ = kick(0, 2, 0.0, 0.1, (), FREE, (), MOTIONS, view, group, None, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
     assert error == np.inf  # its place is lost
     x[0][1] = 1.0
-    *_, error, _ = kick(0, 2, 0.0, 0.1, (), FREE, (), MOTIONS, view, group, None, x, v, a, density, rates[0])
+    *_, error, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
     assert error == abs(density - 1.0).max() < np.inf

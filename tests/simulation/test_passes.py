@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import pytest
 
+from psph.composition.trial import Reads
 from psph.fields import Field
-from psph.physics.trial import Reads
 from psph.simulation.passes import SumsInACircle, make_passes
 
 A, B, C = (Field(name, "1", f"the sum {name}") for name in "abc")

@@ -1,16 +1,17 @@
 """The plan: what a scene calls for is there, with its reason; what it does not is nowhere."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from drafts import SQUARE
 from mpi4py import MPI
 
 from psph.case import load
+from psph.composition.trial import UnknownField
 from psph.output.ledger import Ledger
-from psph.physics import compose
 from psph.physics.catalogue import BUILT_IN, Entry
 from psph.physics.damping.diffusion import TankDiffusion
-from psph.physics.trial import UnknownField
 from psph.run.explain import explain
 from psph.run.setup import create_particles
 from psph.scene import Scene
@@ -91,7 +92,7 @@ def test_each_key_calls_for_its_effect(planned, override, effect, reason):
     assert effect in plain.split("Not simulated")[1]
 
 
-class Wetness(compose.NamedTuple):
+class Wetness(NamedTuple):
     """An effect that needs what only FreeSurface writes."""
 
     def radial(self, i, j, pair):
@@ -129,7 +130,7 @@ def test_diffusion_under_gravity_knows_of_weight(planned):
     assert diffusion == TankDiffusion(0.2, (None, -9.8))
     walls = "walls.floor.shape.box={lower=[0.0,-0.2],upper=[1.0,0.0]}"
     _, plan = planned("physics.density_diffusion=0.2", walls)
-    assert TankDiffusion(0.2, (None, None)) in plan.effects and "wall" in plan.ghost_fields
+    assert TankDiffusion(0.2, (None, None)) in plan.effects and "is_fluid" in plan.ghost_fields
     assert "DensityDiffusion" in names(planned("physics.density_diffusion=0.2")[1])
 
 

@@ -6,12 +6,12 @@ from pathlib import Path
 import psph
 from psph.case import CaseError, load
 from psph.lab.battery import judgement, picture, tables
-from psph.lab.battery.errors import BatteryError
 from psph.lab.battery.measures import measure
 from psph.lab.battery.remedies import REMEDIES, Remedy
 from psph.lab.battery.remedies import trials as trials_of
 from psph.lab.battery.trials import BATTERY, OURS, QUICK, Trial
 from psph.lab.battery.verdicts import Row, judged
+from psph.lab.errors import BatteryError
 from psph.lab.maps.tables import write
 from psph.lab.study.runs import perform
 from psph.output.errors import OutputError

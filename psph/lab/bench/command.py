@@ -6,11 +6,11 @@ from pathlib import Path
 
 from psph.lab.bench import BOX, FALLING, PROBLEMS
 from psph.lab.bench.compare import compared
-from psph.lab.bench.errors import BenchError, PeerFailed
 from psph.lab.bench.measure import AGAINST, PEER, Asked, measure
 from psph.lab.bench.ranks import on_rank_0
 from psph.lab.bench.results import read_runs
 from psph.lab.bench.roofline import measure_ceiling
+from psph.lab.errors import BenchError, PeerFailed
 
 PARTICLES, DIMENSIONS = 200_000, 3
 NEIGHBOURS = {2: 20, 3: 57}

@@ -13,17 +13,17 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.case import checked
+from psph.composition.pair import take
 from psph.engine.jit import compiled, processor
 from psph.engine.threads import threads
 from psph.lab.bench import BOX, DAM, FALLING
 from psph.lab.bench.box import Box
-from psph.lab.bench.errors import BenchError
 from psph.lab.bench.falling import Falling
 from psph.lab.bench.peer import Peer
 from psph.lab.bench.roofline import Ceiling, shares
 from psph.lab.bench.tank import Tank
+from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
-from psph.physics.compose import take
 from psph.run.setup import compile_ahead
 from psph.scene import Scene
 from psph.simulation.plan import make_plan

@@ -17,8 +17,8 @@ import numpy as np
 
 from psph.fields import FLUID, WALL
 from psph.lab.bench import lammps_side
-from psph.lab.bench.errors import BenchError, PeerFailed
 from psph.lab.bench.ranks import on_rank_0
+from psph.lab.errors import BenchError, PeerFailed
 from psph.physics.fluid.viscosity import ArtificialViscosity
 
 SKINS = (0.01, 0.03, 0.06, 0.1, 0.2)

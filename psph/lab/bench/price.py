@@ -8,11 +8,11 @@ from collections.abc import Iterable, Iterator
 from psph.case.schemes import SCHEMES, STABLE
 from psph.engine.threads import threads
 from psph.lab.bench import DAM
-from psph.lab.bench.errors import BenchError
 from psph.lab.bench.falling import FALLEN
 from psph.lab.bench.measure import LAYOUTS, Asked, machine, scene_of, warmed_up
 from psph.lab.bench.resolution import BALL, KERNEL
 from psph.lab.bench.tank import GRAVITY, HEIGHT
+from psph.lab.errors import BenchError
 from psph.simulation.step import Simulation
 
 DEFAULT, USUAL, ALIKE = "default", "usual", "alike"

@@ -8,8 +8,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from psph.lab.bench.errors import BenchError
 from psph.lab.bench.price import DEFAULT
+from psph.lab.errors import BenchError
 from psph.output.pages import command
 
 MARKER = "price"

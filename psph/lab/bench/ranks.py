@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-from psph.lab.bench.errors import BenchError
+from psph.lab.errors import BenchError
 
 T = TypeVar("T")
 

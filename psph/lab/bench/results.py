@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from psph.lab.bench.errors import BenchError
+from psph.lab.errors import BenchError
 
 KEYS = {
     "machine",

@@ -13,7 +13,7 @@ from psph.smoothing import KERNELS
 from psph.theory.stability import STATES, SYMMETRIC
 from psph.theory.stability.errors import StabilityError
 from psph.theory.stability.growth import Growth, box_growth, growth
-from psph.theory.stability.remedies import REMEDIES
+from psph.theory.stability.parts import REMEDIES
 from psph.theory.stability.uniform import STIFF, Settings
 from psph.theory.stability.windows import SMOOTHINGS
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from psph.lab.maps.survey import Row, sentences
 from psph.output.errors import OutputError, cause
-from psph.theory.stability.remedies import REMEDIES
+from psph.theory.stability.parts import REMEDIES
 from psph.theory.stability.uniform import Settings
 from psph.theory.stability.windows import SMOOTHINGS
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from psph.case import load
+from psph.lab.errors import StudyError
 from psph.lab.study.effects import effects_words, without_each
-from psph.lab.study.errors import StudyError
 from psph.lab.study.ladder import rows, wanted
 from psph.lab.study.study import Study
 

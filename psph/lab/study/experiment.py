@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from psph.lab.study.errors import StudyError
+from psph.lab.errors import StudyError
 
 
 def read_experiment(case, name: str, files: Path | None = None) -> tuple[np.ndarray, np.ndarray]:

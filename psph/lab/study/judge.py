@@ -10,7 +10,7 @@ import numpy as np
 
 from psph.case.study import EXACT
 from psph.fields import FLUID
-from psph.lab.study.errors import StudyError
+from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
 from psph.output.accuracy import NORMS
 from psph.output.interpolation import interpolated

@@ -7,7 +7,7 @@ import tomli_w
 
 from psph.case.profiles import OFF
 from psph.errors import LONGEST_QUOTE, shortened
-from psph.lab.study.errors import StudyError
+from psph.lab.errors import StudyError
 
 SPACING = "space.spacing"
 """The key along which errors fall and costs grow."""

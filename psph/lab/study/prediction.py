@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from psph.errors import LONGEST_QUOTE, one_line, shortened
+from psph.lab.errors import StudyError
 from psph.lab.study import report, words
-from psph.lab.study.errors import StudyError
 from psph.lab.study.fit import Ladder
 from psph.lab.study.ladder import SPACING, name_of, toml
 from psph.lab.study.runs import DONE, conditions

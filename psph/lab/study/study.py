@@ -6,9 +6,9 @@ from pathlib import Path
 
 from psph.case import Case, CaseError, load
 from psph.case.profiles import OFF, choices
+from psph.lab.errors import StudyError
 from psph.lab.study import fit, report, words
 from psph.lab.study.answer import answers
-from psph.lab.study.errors import StudyError
 from psph.lab.study.judge import FINEST, Judge, Judgement, known_values, window
 from psph.lab.study.ladder import PROFILE, SPACING, Settings, groups, name_of
 from psph.lab.study.picture import draw

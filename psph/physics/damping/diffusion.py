@@ -5,8 +5,9 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import helper, where
+from psph.physics.facts import Facts
 from psph.physics.fluid.viscosity import inverse_square
-from psph.theory.stability import remedies
+from psph.theory.stability import parts
 from psph.vectors import along
 
 STABLE = 0.03
@@ -28,9 +29,9 @@ class DensityDiffusion(NamedTuple):
 
     delta: Annotated[float, Field(ge=0, description="strength δ", json_schema_extra={"unit": "1"})] = 0.1
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """Under gravity or beside walls, the form that knows of them."""
-        held = any(scene.gravity) or scene.case.walls
+        held = any(scene.gravity) or not all(one.is_fluid for one in scene.species)
         pull = tuple(g or None for g in scene.gravity)
         return TankDiffusion(self.delta, pull) if held else self
 
@@ -42,9 +43,9 @@ class DensityDiffusion(NamedTuple):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return remedies.DensityDiffusion(self.delta)
+        return parts.DensityDiffusion(self.delta)
 
 
 class TankDiffusion(NamedTuple):
@@ -65,16 +66,16 @@ class TankDiffusion(NamedTuple):
         mean = 0.5 * (i.rest_density + j.rest_density)
         weight = mean / (i.sound_speed * i.sound_speed) * along(pair.x_ij, self.gravity)
         # A fluid takes nothing from a wall, and a wall nothing from one without pressure.
-        giving = where(j.pressure * j.pressure > 0.0, i.wall, 0.0)
-        return where(j.wall > giving, 0.0, _excess(self.delta, i, j, weight)) * _nearness(i, pair)
+        giving = j.is_fluid + (1.0 - i.is_fluid) * (j.pressure * j.pressure)
+        return where(giving > 0.0, _excess(self.delta, i, j, weight), 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return remedies.DensityDiffusion(self.delta)
+        return parts.DensityDiffusion(self.delta)
 
 
 @helper

@@ -4,7 +4,8 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.theory.stability import remedies
+from psph.physics.facts import Facts
+from psph.theory.stability import parts
 
 STABLE = 0.25
 """αcΔt/h must stay below: the fastest mode of a lattice decays at 1.01 αc/h with any kernel, and
@@ -35,7 +36,7 @@ class ConservativeSmoothing(NamedTuple):
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        volume = 2.0 * j.mass * v_i * v_j / (v_i + v_j) * (1.0 - j.wall)
+        volume = 2.0 * j.mass * v_i * v_j / (v_i + v_j) * j.is_fluid
         return -self.alpha * i.sound_speed / i.smoothing_length * volume * pair.w
 
     def longest_step(self, scene):
@@ -43,6 +44,6 @@ class ConservativeSmoothing(NamedTuple):
         mixing = self.alpha * scene.sound_speed
         return STABLE * scene.smoothing_length / mixing if mixing > 0.0 else float("inf")
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return remedies.ConservativeSmoothing(self.alpha)
+        return parts.ConservativeSmoothing(self.alpha)

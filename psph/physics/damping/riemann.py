@@ -5,7 +5,8 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import where
-from psph.theory.stability import remedies
+from psph.physics.facts import Facts
+from psph.theory.stability import parts
 
 STABLE = 0.075
 """cΔt/h must stay below.  The fastest mode of a lattice decays at Sc/h, S ≤ 4.3 over the kernels
@@ -38,13 +39,13 @@ class RiemannDissipation(NamedTuple):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         v_i, v_j = i.specific_volume, j.specific_volume
         jump = (i.pressure - j.pressure) / (i.sound_speed * (v_i + v_j))
-        met = where(i.wall * j.wall > 0.0, 0.0, jump)
+        met = where(i.is_fluid + j.is_fluid > 0.0, jump, 0.0)
         return 2.0 * v_j * v_j * met * pair.r * pair.m_dw_r
 
     def longest_step(self, scene):
         """Δt ≤ 0.075 h/c, s: see STABLE."""
         return STABLE * scene.smoothing_length / scene.sound_speed
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return remedies.RiemannDissipation()
+        return parts.RiemannDissipation()

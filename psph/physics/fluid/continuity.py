@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from psph.physics.facts import Facts
+
 
 class Continuity(NamedTuple):
     """Density changes by the divergence of the velocity.
@@ -13,6 +15,6 @@ class Continuity(NamedTuple):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         return pair.u_dot_x * pair.m_dw_r
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None

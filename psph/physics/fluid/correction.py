@@ -7,6 +7,7 @@ from pydantic import Field
 from psph.fields import SYMMETRIC
 from psph.fields import Field as Declared
 from psph.formula import helper
+from psph.physics.facts import Facts
 from psph.vectors import add, adjugate, determinant, dot, less_diagonal, outer, scale, times, zero_like
 
 CORRECTED = ("symmetric", "difference")
@@ -42,9 +43,9 @@ class GradientCorrection(NamedTuple):
     writes = CORRECTION
     lagged = True
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """The form that belongs to the scene's pressure gradient."""
-        difference = scene.case.physics.pressure_gradient == "difference"
+        difference = scene.physics.pressure_gradient == "difference"
         return DifferenceCorrection(self.least) if difference else self
 
     def start(self, i):

@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.physics.facts import Facts
 from psph.vectors import scale, subtract
 
 
@@ -26,11 +27,11 @@ class Gravity(NamedTuple):
         """g, m/s²."""
         return self.acceleration
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None
 
-    def idle(self, scene, effects):
+    def idle(self, scene: Facts, effects):
         """Why it has no influence, or None."""
         if any(self.acceleration):
             return None

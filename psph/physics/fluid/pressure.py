@@ -6,8 +6,9 @@ from pydantic import Field
 
 from psph.fields import Field as Declared
 from psph.formula import where
+from psph.physics.facts import Facts
 from psph.smoothing import KERNELS, weight
-from psph.theory.stability import remedies
+from psph.theory.stability import parts
 from psph.vectors import add, scale, zero_like
 
 NOT_A_PRESSURE = 1e30
@@ -39,7 +40,7 @@ class SymmetricPressure(NamedTuple):
         v_i, v_j = i.specific_volume, j.specific_volume
         return -(i.pressure * v_i * v_i + j.pressure * v_j * v_j) * pair.m_dw_r
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None
 
@@ -85,7 +86,7 @@ class MinimumPressure(NamedTuple):
                 f"{kernel}; choose another kernel"
             )
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None
 
@@ -104,7 +105,7 @@ class DifferencePressure(NamedTuple):
         v_i, v_j = i.specific_volume, j.specific_volume
         return (i.pressure - j.pressure) * v_i * (v_j * pair.m_dw_r)
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None
 
@@ -141,7 +142,7 @@ class TensileControl(NamedTuple):
         both = (sign * i.pressure + j.pressure) * i.specific_volume
         return -both * (j.specific_volume * pair.m_dw_r)
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None
 
@@ -167,7 +168,7 @@ class BackgroundPressure(NamedTuple):
         ),
     ]
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """With "auto", what the scene needs, or None."""
         if self.pressure != AUTO:
             return self
@@ -177,7 +178,7 @@ class BackgroundPressure(NamedTuple):
         needed = MARGIN * max(-scene.lowest_pressure, dip)
         return BackgroundPressure(needed) if needed > 0.0 else None
 
-    def why_absent(self, scene):
+    def why_absent(self, scene: Facts):
         """Why "auto" gives none."""
         if scene.has_free_surface:
             return "the fluid has a free surface, which it would blow apart"
@@ -188,6 +189,6 @@ class BackgroundPressure(NamedTuple):
         v_i, v_j = i.specific_volume, j.specific_volume
         return -self.pressure * (v_i * v_i + v_j * v_j) * pair.m_dw_r
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return remedies.BackgroundPressure(self.pressure)
+        return parts.BackgroundPressure(self.pressure)

@@ -4,11 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import call_by_type
-
-pressure = call_by_type("pressure")
-"""(state, density, rest_density, sound_speed) → p, Pa, in compiled code and plain Python."""
-
 
 class Linear(NamedTuple):
     """Pressure proportional to the excess of density.

@@ -46,7 +46,7 @@ class StressPoints(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take neighbour j into both."""
-        share = (1.0 - j.wall) * (1.0 - j.stress_point) * j.mass * j.specific_volume * pair.w
+        share = j.is_fluid * (1.0 - j.stress_point) * j.mass * j.specific_volume * pair.w
         return total[0] + share, add(total[1], scale(pair.u_ij, share))
 
     def finish_acceleration(self, total, i):

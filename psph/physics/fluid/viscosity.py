@@ -5,7 +5,8 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import helper
-from psph.theory.stability import remedies
+from psph.physics.facts import Facts
+from psph.theory.stability import parts
 from psph.vectors import add, dot, times
 
 SINGULARITY = 0.01
@@ -69,14 +70,14 @@ class LaminarViscosity(NamedTuple):
 
     conserves = ("momentum",)
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """With corrected gradients, the form that takes them; beside central friction, nothing."""
-        physics = scene.case.physics
+        physics = scene.physics
         if physics.central_friction is not None:
             return None
         return self if physics.gradient_correction is None else CorrectedViscosity()
 
-    def why_absent(self, scene):
+    def why_absent(self, scene: Facts):
         """What takes its place."""
         return "physics.central_friction takes its place"
 
@@ -88,7 +89,7 @@ class LaminarViscosity(NamedTuple):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
         return _longest_step(scene)
 
-    def idle(self, scene, effects):
+    def idle(self, scene: Facts, effects):
         """Why it has no influence, or None."""
         if not scene.expected_speed > 0.0 and not any(scene.gravity):
             return "nothing moves at the start and there is no gravity, so it has nothing to act on"
@@ -179,7 +180,7 @@ class ArtificialViscosity(NamedTuple):
         friction = self.alpha * scene.sound_speed
         return scene.smoothing_length / friction if friction > 0.0 else float("inf")
 
-    def idle(self, scene, effects):
+    def idle(self, scene: Facts, effects):
         """Why it has no influence, or None."""
         if self.alpha or self.beta:
             return None
@@ -212,9 +213,9 @@ class PairDamping(NamedTuple):
         friction = self.alpha * scene.sound_speed
         return scene.smoothing_length / friction if friction > 0.0 else float("inf")
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return remedies.PairDamping(self.alpha)
+        return parts.PairDamping(self.alpha)
 
 
 class ImpactDamping(NamedTuple):

@@ -7,10 +7,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from psph.engine.jit import overload, register_jitable, unrolled
+from psph.composition.pair import Pair
 from psph.fields import view_of
-from psph.physics.compose import Pair
-from psph.theory.stability import remedies
+from psph.formula import helper
+from psph.physics.facts import Facts
+from psph.theory.stability import parts
+from psph.vectors import excess, multiply, plus_less_last, scale
 
 CORES = (1.6, 1.6, 1.3228)
 """Range of the repelling core in spacings, in 1D, 2D and 3D."""
@@ -59,7 +61,7 @@ class PairPotential(NamedTuple):
         ),
     ] = 0.008
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """The potential of the scene's lattice, for one mass or for several."""
         alike = len({material.mass for material in scene.species}) == 1
         return neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions, alike)
@@ -83,7 +85,7 @@ class NeutralPotential(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         return _repulsion(self, pair)
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """The same attraction of pairs in linear theory, among particles of one mass."""
         one = view_of(("mass",))(1.0)
 
@@ -91,7 +93,7 @@ class NeutralPotential(NamedTuple):
             pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
             return -r * np.array([self.radial(one, one, pair) for pair in pairs])
 
-        return remedies.PairForce(attraction)
+        return parts.PairForce(attraction)
 
 
 class UnequalPotential(NeutralPotential):
@@ -105,31 +107,12 @@ class UnequalPotential(NeutralPotential):
         return min(1.0, j.mass * (1.0 / i.mass)) * _repulsion(self, pair)
 
 
-@register_jitable
+@helper
 def _repulsion(potential, pair):
     """−ψ′/r of a pair of one mass, 1/s²."""
-    force = _square(potential.core, potential.steepness, pair.r) * pair.inverse_r
-    return _with_parts(force, potential.heights, potential.slopes, pair.r2)
-
-
-def _with_parts(force, heights, slopes, r2):
-    """``force`` and the smooth parts, the last of which attracts."""
-    *repelling, attracting = (_square(h, s, r2) for h, s in zip(heights, slopes))
-    return force + sum(repelling) - attracting
-
-
-@overload(_with_parts)
-def _typed_with_parts(force, heights, slopes, r2):
-    signs = [*"+" * (len(heights) - 1), "-"]
-    parts = (f"{sign} square(heights[{n}], slopes[{n}], r2)" for n, sign in enumerate(signs))
-    return unrolled("force, heights, slopes, r2", f"return force {' '.join(parts)}", square=_square)
-
-
-@register_jitable
-def _square(height, slope, x):
-    """(``height`` − ``slope`` x)²₊."""
-    inside = max(height - x * slope, 0.0)
-    return inside * inside
+    near = max(potential.core - pair.r * potential.steepness, 0.0)
+    parts = excess(potential.heights, scale(potential.slopes, pair.r2))
+    return plus_less_last(near * near * pair.inverse_r, multiply(parts, parts))
 
 
 def neutral_potential(

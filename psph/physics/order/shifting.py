@@ -8,6 +8,7 @@ from pydantic import Field
 from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.physics.facts import Facts
 from psph.physics.roles import ORDER
 from psph.smoothing import first_moment, slope_over_r, weight
 from psph.vectors import add, dot, scale, zero_like
@@ -74,7 +75,7 @@ class ParticleShifting(NamedTuple):
         near = max((weight(kernel, spacing) * volume) ** 4, LEAST)
         inside = where(total[0] + weight(kernel, 0.0) * volume < SURFACE, 0.0, 1.0)
         crowding = add(total[1], scale(total[2], CROWDING / near))
-        return scale(crowding, inside * i.smoothing_length * (1.0 - i.wall))
+        return scale(crowding, inside * i.smoothing_length * i.is_fluid)
 
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
@@ -119,7 +120,7 @@ class PositionShift(NamedTuple):
         ),
     ] = 0.1
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """The shift that knows what a full neighbourhood sums up to."""
         return lattice_shift(self.strength, scene.kernel, scene.spacing, scene.dimensions)
 

@@ -5,7 +5,8 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import where
-from psph.theory.stability import remedies
+from psph.physics.facts import Facts
+from psph.theory.stability import parts
 
 COMPRESSED = 0.01
 """R over p/ρ² where both pressures are positive, against lines of particles (Monaghan 2000)."""
@@ -28,7 +29,7 @@ class ArtificialStress(NamedTuple):
         Field(ge=0, description="ε: R over |p|/ρ² under tension", json_schema_extra={"unit": "1"}),
     ] = 0.2
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """With the kernel's weight of a neighbour one spacing away."""
         return NeighbourStress(self.epsilon, 1.0 / float(scene.kernel.w(scene.spacing)))
 
@@ -62,6 +63,6 @@ class NeighbourStress(NamedTuple):
         nearness = pair.w * self.inverse_near
         return -(pulled + pressed) * nearness**4 * pair.m_dw_r
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return remedies.ArtificialStress(self.epsilon)
+        return parts.ArtificialStress(self.epsilon)

@@ -83,11 +83,11 @@ class XSPH(NamedTuple):
         """Add m_j/ρ̄_ij (u_j − u_i) W_ij of a fluid neighbour."""
         v_i, v_j = i.specific_volume, j.specific_volume
         volume = 2.0 * j.mass * v_i * v_j / (v_i + v_j)
-        return add(total, scale(pair.u_ij, -volume * pair.w * (1.0 - j.wall)))
+        return add(total, scale(pair.u_ij, -volume * pair.w * j.is_fluid))
 
     def finish_value(self, total, i, kernel):
         """ũ − u of a fluid particle, m/s."""
-        return scale(total, self.epsilon * (1.0 - i.wall))
+        return scale(total, self.epsilon * i.mobile)
 
     conflicts = staticmethod(_conflicts)
 
@@ -178,4 +178,4 @@ def _stiffness(i):
 def _pushed(background, total, i):
     """−(h/8c) p_b Σ, m/s; 0 in a wall."""
     span = HALF_STEP * i.smoothing_length / i.sound_speed
-    return scale(total, -span * background * (1.0 - i.wall))
+    return scale(total, -span * background * i.is_fluid)

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.fields import Field as Declared
+from psph.physics.facts import Facts
 from psph.smoothing import weight
 
 NOT_YET_SUMMED = 2.0
@@ -49,7 +50,7 @@ class FreeSurface(NamedTuple):
         """ρ₀ on the surface, ρ inside, kg/m^d."""
         return i.rest_density if i.kernel_sum < self.threshold else rho
 
-    def idle(self, scene, effects):
+    def idle(self, scene: Facts, effects):
         """Why it has no influence, or None."""
         if scene.has_free_surface:
             return None
@@ -77,11 +78,11 @@ class TensionFloor(NamedTuple):
         ),
     ] = 0.98
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """None in a closed domain, where a fluid may be under tension."""
         return self if scene.has_free_surface else None
 
-    def why_absent(self, scene):
+    def why_absent(self, scene: Facts):
         """What the fluid lacks."""
         return "the fluid has no free surface, and in a closed domain it may be under tension"
 
@@ -95,6 +96,6 @@ class TensionFloor(NamedTuple):
         """ρ that a wall's pressure is taken from, kg/m^d."""
         return max(rho, i.rest_density)
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """It does not act on a small disturbance."""
         return None

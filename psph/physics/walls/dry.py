@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from psph.fields import Field
 from psph.formula import where
+from psph.physics.facts import Facts
 
 
 class DryWall(NamedTuple):
@@ -16,13 +17,13 @@ class DryWall(NamedTuple):
 
     marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0)
     """The field that says whether there was fluid in reach when the neighbours were listed."""
-    told_by = "wall"
+    told_by = "is_fluid"
     """The field of a neighbour that tells fluid from wall."""
 
     def limit_wall_density(self, i, rho):
         """ρ of a wall with fluid in reach, ρ₀ without, kg/m^d."""
         return where(i.wet > 0.0, rho, i.rest_density)
 
-    def linear(self, scene):
+    def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None

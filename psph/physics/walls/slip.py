@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from psph.fields import VECTOR, Field
+from psph.physics.facts import Facts
 from psph.physics.fluid.viscosity import corrected_friction, friction
 from psph.vectors import add, scale, subtract, zero_like
 
@@ -19,7 +20,7 @@ def _start(self, i):
 
 def _gather(self, total, i, j, pair):
     """Take a fluid neighbour j into both."""
-    w = (1.0 - j.wall) * pair.w
+    w = j.is_fluid * pair.w
     return total[0] + w, add(total[1], scale(j.velocity, w))
 
 
@@ -42,9 +43,9 @@ class NoSlip(NamedTuple):
     writes = MIRRORED
     lagged = True
 
-    def in_scene(self, scene):
+    def in_scene(self, scene: Facts):
         """With corrected gradients, the form whose friction has them too."""
-        return self if scene.case.physics.gradient_correction is None else CorrectedNoSlip()
+        return self if scene.physics.gradient_correction is None else CorrectedNoSlip()
 
     def push(self, i, j, pair):
         """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""

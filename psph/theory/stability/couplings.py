@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.theory.stability import SYMMETRIC
-from psph.theory.stability.remedies import Stress
+from psph.theory.stability.parts import Stress
 from psph.theory.stability.uniform import Uniform
 
 FINE = 1e-5

@@ -16,7 +16,7 @@ STIFF = 10.0
 class Settings(NamedTuple):
     """Kernel, lattice and scheme; pressure in Pa, density in kg/m³, c in m/s, spacing in m.
 
-    ``remedies`` are values of `psph.theory.stability.remedies`, or of any class with methods like theirs.
+    ``remedies`` are values of `psph.theory.stability.parts`, or of any class with methods like theirs.
     """
 
     kernel: str

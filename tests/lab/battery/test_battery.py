@@ -10,11 +10,11 @@ from psph.case import load
 from psph.case.schemes import SCHEMES
 from psph.lab.battery import command, tables
 from psph.lab.battery.command import CASES, battery, folder_of
-from psph.lab.battery.errors import BatteryError
 from psph.lab.battery.measures import MEASURES
 from psph.lab.battery.page import main as on_page
 from psph.lab.battery.trials import BATTERY, CONTROLS, OURS, QUICK, Bound, Trial
 from psph.lab.battery.verdicts import BLEW_UP, FAILS, GOOD, HELD, HOLDS, REFUSED, judged, without_effect
+from psph.lab.errors import BatteryError
 from psph.scene import Scene
 
 EVERY = {trial.name: trial for trial in (*BATTERY, *QUICK)}

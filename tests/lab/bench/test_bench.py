@@ -10,10 +10,10 @@ from jobs import clean_environment, mpirun
 from psph.lab.bench import command
 from psph.lab.bench.command import bench
 from psph.lab.bench.compare import compared
-from psph.lab.bench.errors import BenchError, PeerFailed
 from psph.lab.bench.measure import OURS, STEPS, Asked, _beside
 from psph.lab.bench.report import tables
 from psph.lab.bench.results import KEYS, read_runs
+from psph.lab.errors import BenchError, PeerFailed
 from psph.output.errors import OutputError
 from psph.output.pages import BEGIN, END, renew
 from psph.parallel.reductions import alone

@@ -11,12 +11,12 @@ import pytest
 from jobs import clean_environment
 
 from psph.lab.bench.box import Box
-from psph.lab.bench.errors import BenchError
 from psph.lab.bench.falling import Falling
 from psph.lab.bench.measure import Asked, measure
 from psph.lab.bench.peer import Peer, Processes, commands, gathered
 from psph.lab.bench.roofline import Ceiling
 from psph.lab.bench.tank import Tank
+from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.scene import Scene

@@ -8,8 +8,8 @@ from mpi4py import MPI
 from psph.__main__ import main
 from psph.errors import Refused
 from psph.lab.bench import price_page
-from psph.lab.bench.errors import BenchError
 from psph.lab.bench.price import ALIKE, DEFAULT, USUAL, _price, price, words
+from psph.lab.errors import BenchError
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ from psph.fields import FLUID
 from psph.lab.bench import falling
 from psph.lab.bench.box import Box
 from psph.lab.bench.command import one, standard
-from psph.lab.bench.errors import BenchError
 from psph.lab.bench.falling import COARSEST, Falling, fall
 from psph.lab.bench.tank import HEIGHT, Tank
+from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.scene import Scene

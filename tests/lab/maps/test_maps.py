@@ -18,7 +18,7 @@ from psph.smoothing import KERNELS
 from psph.theory.stability import STATES
 from psph.theory.stability.errors import StabilityError
 from psph.theory.stability.growth import growth
-from psph.theory.stability.remedies import REMEDIES
+from psph.theory.stability.parts import REMEDIES
 from psph.theory.stability.uniform import Settings
 from psph.theory.stability.windows import SMOOTHINGS
 

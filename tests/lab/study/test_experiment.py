@@ -18,7 +18,7 @@ from long import LONG
 
 from psph.case import CaseError, load
 from psph.errors import UNPRINTABLE, Foreseen
-from psph.lab.study.errors import StudyError
+from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
 from psph.lab.study.ladder import overrides, rows, wanted
 from psph.lab.study.prediction import predicted

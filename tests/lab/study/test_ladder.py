@@ -2,7 +2,7 @@
 
 import pytest
 
-from psph.lab.study.errors import StudyError
+from psph.lab.errors import StudyError
 from psph.lab.study.ladder import groups, name_of, overrides, rows, wanted
 
 

@@ -14,10 +14,10 @@ from jobs import clean_environment, hears_interrupts, mpirun
 
 from psph.case import load
 from psph.case.profiles import PROFILES, choices
+from psph.lab.errors import StudyError
 from psph.lab.study import runs
 from psph.lab.study.answer import fitting
 from psph.lab.study.effects import effects_words, without_each
-from psph.lab.study.errors import StudyError
 from psph.lab.study.judge import Judge, known_values, series_errors
 from psph.lab.study.page import main as on_page
 from psph.lab.study.prediction import predicted

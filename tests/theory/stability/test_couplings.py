@@ -8,16 +8,16 @@ from stores import seen
 from theory.stability.settings import TENSION, of
 
 from psph.case import load
+from psph.composition.pair import Pair
 from psph.fields import FLUID
 from psph.output.ledger import Ledger
-from psph.physics.compose import Pair
 from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.run.setup import lattice_particles, store_of
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 from psph.smoothing import kernel
-from psph.theory.stability import remedies
+from psph.theory.stability import parts
 from psph.theory.stability.couplings import couplings
 from psph.theory.stability.growth import box_of, waves_of
 from psph.theory.stability.lattices import LATTICES, lattice
@@ -67,7 +67,7 @@ def test_a_wave_meets_the_force_of_the_sums(name, pressure, form):
         return 0.3 * np.maximum(1.0 - r / 3.4, 0.0) ** 3
 
     made, h = lattice(name, 1.0), 1.15
-    pair = remedies.PairForce(lambda r: extra(r))
+    pair = parts.PairForce(lambda r: extra(r))
     settings = of("quintic", 1.15, name, pressure, form=form, sound_speed=C, remedies=(pair,))
     wave = np.array([0.31, 0.17, 0.43])[: made.dimensions] @ made.reciprocal
     predicted = waves_of(couplings(Uniform(settings)).halved, wave[None]).squares[0]
@@ -127,11 +127,11 @@ MORE = (
             TENSION._replace(
                 form="difference",
                 remedies=(
-                    remedies.BackgroundPressure(3000.0),
-                    remedies.DensityDiffusion(0.2),
-                    remedies.ArtificialViscosity(0.3),
-                    remedies.PairDamping(0.4),
-                    remedies.Viscosity(2e-4),
+                    parts.BackgroundPressure(3000.0),
+                    parts.DensityDiffusion(0.2),
+                    parts.ArtificialViscosity(0.3),
+                    parts.PairDamping(0.4),
+                    parts.Viscosity(2e-4),
                 ),
             ),
             MORE,
@@ -140,8 +140,8 @@ MORE = (
         pytest.param(
             TENSION._replace(
                 remedies=(
-                    remedies.ArtificialStress(0.3),
-                    remedies.RiemannDissipation(),
+                    parts.ArtificialStress(0.3),
+                    parts.RiemannDissipation(),
                 )
             ),
             ("physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0"),
@@ -196,12 +196,12 @@ def test_walls_beyond_the_reach_change_nothing():
 def test_smoothing_is_that_of_the_effect():
     """A pair in the fluid, a distance apart: the effect leaves walls out, the theory has none."""
     uniform, r = Uniform(TENSION), np.array([0.7e-3, 1.6e-3])
-    along, anyhow = remedies.ConservativeSmoothing(0.3).damping(uniform, r)
+    along, anyhow = parts.ConservativeSmoothing(0.3).damping(uniform, r)
     particle = seen(
         position=None,
         mass=900.0 * uniform.volume,
         specific_volume=1 / 900.0,
-        wall=0.0,
+        is_fluid=1.0,
         sound_speed=5.0,
         smoothing_length=uniform.smoothing_length,
     )

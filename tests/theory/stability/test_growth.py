@@ -7,7 +7,7 @@ import pytest
 from theory.stability.settings import TENSION, of
 
 from psph.smoothing import KERNELS
-from psph.theory.stability import remedies
+from psph.theory.stability import parts
 from psph.theory.stability.couplings import couplings
 from psph.theory.stability.errors import StabilityError
 from psph.theory.stability.growth import box_growth, growth, is_stable, waves_of
@@ -123,11 +123,11 @@ def test_is_stable_agrees_with_growth():
 
 def test_a_background_pressure_shifts_the_pressure():
     """With −1 + 2 all is as under +1, but for c² − 2P/ρ; and p_b = |P| leaves sound alone."""
-    lifted = of("hyperbolic", 1.3, pressure=-1.0, remedies=(remedies.BackgroundPressure(2.0),))
+    lifted = of("hyperbolic", 1.3, pressure=-1.0, remedies=(parts.BackgroundPressure(2.0),))
     assert growth(lifted).stable
     assert growth(lifted._replace(smoothing=1.2)).rate == pytest.approx(0.2785, abs=5e-4)
-    assert growth(lifted._replace(remedies=(remedies.BackgroundPressure(1.0),))).stable
-    assert not growth(lifted._replace(remedies=(remedies.BackgroundPressure(0.5),))).stable
+    assert growth(lifted._replace(remedies=(parts.BackgroundPressure(1.0),))).stable
+    assert not growth(lifted._replace(remedies=(parts.BackgroundPressure(0.5),))).stable
 
 
 def test_artificial_stress_holds_only_near_1_1():
@@ -136,7 +136,7 @@ def test_artificial_stress_holds_only_near_1_1():
     def rate(h, *added):
         return growth(TENSION._replace(kernel="hyperbolic", smoothing=h, remedies=added)).rate
 
-    stress = remedies.ArtificialStress(0.2)
+    stress = parts.ArtificialStress(0.2)
     assert rate(1.1, stress) == 0.0 < 3700.0 < rate(1.1)
     assert all(0.15 * rate(h) < rate(h, stress) < 0.45 * rate(h) for h in (1.0, 1.2, 1.3, 1.4))
 
@@ -146,7 +146,7 @@ def test_normalised_gradients_scale():
     plain = of("hyperbolic", 1.3, pressure=-1.0, form="symmetric")
     uniform = Uniform(plain)
     assert uniform.first_moment == pytest.approx(0.9740, abs=5e-5)
-    normalised = plain._replace(remedies=(remedies.NormalisedGradient(),))
+    normalised = plain._replace(remedies=(parts.NormalisedGradient(),))
     one, other = couplings(uniform), couplings(Uniform(normalised))
     assert other.stiffness == pytest.approx(one.stiffness / uniform.first_moment)
     assert other.pull == pytest.approx(one.pull / uniform.first_moment)
@@ -168,15 +168,13 @@ def test_a_zero_virial_pair_force_of_the_size_of_the_tension_holds():
     assert abs((r * psi_slope(r)).sum()) < 1e-4 < abs((r * psi_slope(1.1 * r)).sum())
 
     def held(strength):
-        force = remedies.PairForce(lambda r: 2.0 * strength * psi_slope(r))
+        force = parts.PairForce(lambda r: 2.0 * strength * psi_slope(r))
         return growth(of("hyperbolic", 1.3, pressure=-1.0, remedies=(force,))).rate
 
     assert held(0.0) > held(0.3) > held(1.0) and held(3.0) == 0.0
 
 
-@pytest.mark.parametrize(
-    "friction", (remedies.Viscosity(0.2), remedies.ArtificialViscosity(0.5)), ids=["ν", "α"]
-)
+@pytest.mark.parametrize("friction", (parts.Viscosity(0.2), parts.ArtificialViscosity(0.5)), ids=["ν", "α"])
 def test_friction_slows_but_never_holds(friction):
     plain = of("cubic", 1.2, pressure=-1.0)
     slowed = plain._replace(remedies=(friction,))
@@ -188,7 +186,7 @@ def test_friction_slows_but_never_holds(friction):
 def test_friction_of_a_single_wave():
     """λ² + dλ − γ² = 0, the quadratic that the first-order system stands for."""
     plain = of("cubic", 1.2, "row", -1.0)
-    rubbed = plain._replace(remedies=(remedies.Viscosity(0.2),))
+    rubbed = plain._replace(remedies=(parts.Viscosity(0.2),))
     wave = np.array([[np.pi]])  # where sin k·R = 0: density plays no part
     [square] = waves_of(couplings(Uniform(plain)).halved, wave).squares.ravel()
     system = waves_of(couplings(Uniform(rubbed)).halved, wave)
@@ -199,10 +197,10 @@ def test_friction_of_a_single_wave():
 
 def test_a_box_with_all_remedies_is_bounded_by_the_lattice():
     every = (
-        remedies.Viscosity(0.05),
-        remedies.DensityDiffusion(0.1),
-        remedies.ArtificialStress(0.1),
-        remedies.NormalisedGradient(),
+        parts.Viscosity(0.05),
+        parts.DensityDiffusion(0.1),
+        parts.ArtificialStress(0.1),
+        parts.NormalisedGradient(),
     )
     settings = of("cubic", 1.2, pressure=-1.0, remedies=every)
     assert 0.3 * growth(settings).rate < box_growth(settings, 6).rate <= growth(settings).rate

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from psph.physics.compose import Pair
+from psph.composition.pair import Pair
 from psph.physics.order.potential import NEAR, neutral_potential
 from psph.theory.stability.lattices import lattice
 

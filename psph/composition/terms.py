@@ -1,4 +1,4 @@
-"""Composition: a tuple of effects becomes one loop body, selected by the tuple's type.
+"""The terms of the effects of a scene: a tuple of effects becomes one loop body, by the tuple's type.
 
 Each walker below exists twice: as plain Python (``NUMBA_DISABLE_JIT``, tests, the plan's trial
 call) and written out for the tuple's type (psph.engine.jit.unrolled) when numba compiles it.  An effect
@@ -6,127 +6,14 @@ that lacks a method leaves no trace in the compiled loop.
 """
 
 import functools
-import itertools
 import operator
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
 from numba.core import types
 
 from psph.engine.jit import method_of, overload, register_jitable, tuple_of, unrolled
-from psph.engine.simd import fold, total, turning, where
-from psph.smoothing import slope_over_r, weight
-from psph.vectors import add, at, dot, put, scale, subtract, zero_like
-
-FOLDED = True
-"""Stands for ``wall`` in a view of neighbours whose specific volume is negative in walls."""
-
-
-class Pair(NamedTuple):
-    """Geometry of an ordered pair; what no effect reads is not computed."""
-
-    x_ij: Any = None
-    """x_i − x_j, m, nearest periodic image."""
-    u_ij: Any = None
-    """u_i − u_j, m/s."""
-    r2: Any = None
-    """|x_ij|², m²."""
-    r: Any = None
-    """|x_ij|, m."""
-    inverse_r: Any = None
-    """1/|x_ij|, 1/m."""
-    u_dot_x: Any = None
-    """u_ij·x_ij, m²/s."""
-    w: Any = None
-    """W_ij, 1/m^d."""
-    dw_r: Any = None
-    """W′(r)/r, so that ∇W_ij = dw_r x_ij; negative inside the support, zero outside."""
-    m_dw_r: Any = None
-    """m_j W′(r)/r: what neighbour j weighs in a sum over gradients.  All such sums share it."""
-
-
-PAIR_VECTORS = ("x_ij", "u_ij")
-"""Entries of a pair with a number for each axis."""
-
-
-def take(view, k: int):
-    """The values of particle ``k`` of a view (psph.fields.view_of) of all."""
-    return type(view)(
-        *(
-            at(entry, k) if isinstance(entry, tuple) else entry[k] if isinstance(entry, np.ndarray) else entry
-            for entry in view
-        )
-    )
-
-
-@overload(take)
-def _typed_take(view, k):
-    parts = (
-        tuple_of(f"view.{name}[{d}][k]" for d in range(len(kind)))
-        if isinstance(kind, types.BaseTuple)
-        else f"view.{name}[k]"
-        if isinstance(kind, types.Array)
-        else f"view.{name}"
-        for name, kind in zip(view.instance_class._fields, view.types)
-    )
-    return unrolled("view, k", f"return View{tuple_of(parts)}", View=view.instance_class)
-
-
-def fetch(view, records, lists, entry: int):
-    """The values of the neighbours ``lists[entry]`` and following, as lanes.
-
-    Arrays of ``view`` say which quantities the records hold, in this order.
-    """
-    left = list(records[lists[entry]])
-    found = type(view)(
-        *(
-            tuple(left.pop(0) for _ in entry)
-            if isinstance(entry, tuple)
-            else left.pop(0)
-            if isinstance(entry, np.ndarray)
-            else entry
-            for entry in view
-        )
-    )
-    if getattr(found, "wall", None) is not FOLDED:
-        return found
-    signed = found.specific_volume
-    return found._replace(specific_volume=abs(signed), wall=where(signed < 0.0, 1.0, 0.0))
-
-
-@overload(fetch)
-def _typed_fetch(view, records, lists, entry):
-    places, names = itertools.count(), view.instance_class._fields
-    parts = {
-        name: tuple_of(f"numbers[{next(places)}]" for _ in kind)
-        if isinstance(kind, types.BaseTuple)
-        else f"numbers[{next(places)}]"
-        if isinstance(kind, types.Array)
-        else f"view.{name}"
-        for name, kind in zip(names, view.types)
-    }
-    if "wall" in names and isinstance(view.types[names.index("wall")], types.Boolean):
-        signed = parts["specific_volume"]
-        parts |= {"specific_volume": f"abs({signed})", "wall": f"where({signed} < 0.0, 1.0, 0.0)"}
-    return unrolled(
-        "view, records, lists, entry",
-        "numbers = turn(records, lists, entry)",
-        f"return View{tuple_of(parts.values())}",
-        View=view.instance_class,
-        turn=turning(next(places)),
-        where=where,
-    )
-
-
-@register_jitable
-def geometry(kernel, x_ij, softening, i, j):
-    """Pair of the particle views ``i`` and ``j``, ``x_ij`` m apart; ``softening`` (m²) keeps r from zero."""
-    u_ij = subtract(i.velocity, j.velocity)
-    r2 = dot(x_ij, x_ij) + softening
-    r = np.sqrt(r2)
-    inverse_r = 1.0 / r
-    dw_r = slope_over_r(kernel, r, inverse_r)
-    return Pair(x_ij, u_ij, r2, r, inverse_r, dot(u_ij, x_ij), weight(kernel, r), dw_r, j.mass * dw_r)
+from psph.engine.simd import fold, total
+from psph.vectors import add, put, scale, zero_like
 
 
 def _methods(effects, name: str) -> dict[int, Any]:
@@ -315,7 +202,7 @@ def finish_value(reductions, totals, i, kernel, k, written):
     """Store the finished sums that are fields: ``written`` has an array or None for each."""
     for effect, gathered, array in zip(reductions, totals, written):
         if array is not None:
-            _store(array, k, effect.finish_value(gathered, i, kernel))
+            store(array, k, effect.finish_value(gathered, i, kernel))
 
 
 @overload(finish_value)
@@ -329,23 +216,25 @@ def _typed_finish_value(reductions, totals, i, kernel, k, written):
         "reductions, totals, i, kernel, k, written",
         *lines,
         "return",
-        store=_store,
+        store=store,
         **_named(methods),
     )
 
 
-def _store(arrays, k, value):
-    """Write a number into its array, or a vector into its component arrays."""
+def store(arrays, k, value):
+    """Write a number into its array, or a vector into its component arrays; nothing where there is none."""
     if isinstance(arrays, tuple):
         put(arrays, k, value)
-    else:
+    elif arrays is not None:
         arrays[k] = value
 
 
-@overload(_store)
+@overload(store)
 def _typed_store(arrays, k, value):
     if isinstance(arrays, types.BaseTuple):
         return lambda arrays, k, value: put(arrays, k, value)
+    if isinstance(arrays, types.NoneType):
+        return lambda arrays, k, value: None
 
     def number(arrays, k, value):
         arrays[k] = value

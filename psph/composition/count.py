@@ -8,9 +8,10 @@ import operator
 from collections.abc import Iterable
 from typing import Any
 
+from psph.composition import terms
+from psph.composition.pair import geometry
+from psph.composition.terms import added, pushed
 from psph.fields import Field, view_of
-from psph.physics import compose
-from psph.physics.compose import added, geometry, pushed
 from psph.vectors import subtract
 
 TOWARDS = {"velocity": -1.0}
@@ -43,13 +44,13 @@ def flops_per_pair(
     kernel, effects, reductions = (trace.parameters(x) for x in (kernel, effects, reductions))
     x_ij = subtract(i.position, j.position)
     pair = geometry(kernel, x_ij, trace.leaf(0.0, False), i, j)
-    running = trace.running((0.0, (0.0,) * len(periods), compose.start(reductions, i)))
+    running = trace.running((0.0, (0.0,) * len(periods), terms.start(reductions, i)))
     rate, a, totals = running
-    rate = rate + compose.density_rate(effects, i, j, pair)
-    a = pushed(a, pair.x_ij, compose.radial(effects, i, j, pair))
-    a = pushed(a, pair.u_ij, compose.shear(effects, i, j, pair))
-    a = added(a, compose.push(effects, i, j, pair))
-    totals = compose.gather_each(reductions, totals, i, j, pair)
+    rate = rate + terms.density_rate(effects, i, j, pair)
+    a = pushed(a, pair.x_ij, terms.radial(effects, i, j, pair))
+    a = pushed(a, pair.u_ij, terms.shear(effects, i, j, pair))
+    a = added(a, terms.push(effects, i, j, pair))
+    totals = terms.gather_each(reductions, totals, i, j, pair)
     return trace.operations((rate, a, totals))
 
 

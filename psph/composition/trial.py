@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from psph.composition.pair import PAIR_VECTORS, Pair
+from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import Field
-from psph.physics.compose import OF_A_PARTICLE, PAIR_VECTORS, Pair
 
 
 class Reads(NamedTuple):

@@ -1,7 +1,0 @@
-"""Errors of the battery."""
-
-from psph.errors import Refused
-
-
-class BatteryError(Refused):
-    """One line that says what to do."""

@@ -1,0 +1,34 @@
+"""What an effect may ask of the scene that it is in."""
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+
+class Facts(Protocol):
+    """The scene as effects see it in ``in_scene``, ``why_absent``, ``idle`` and ``linear``.
+
+    Each is found when it is asked for: to see a free surface takes a look at every site.
+    """
+
+    physics: Any
+    """The table ``[physics]`` of the case."""
+    dimensions: int
+    spacing: float
+    """dx, m."""
+    smoothing_length: float
+    """h, m."""
+    kernel: Any
+    """Smoothing kernel (psph.smoothing)."""
+    sound_speed: float
+    """c, m/s."""
+    expected_speed: float
+    """Largest speed to come, m/s."""
+    starting_speed: float
+    """Largest speed at the start, m/s."""
+    gravity: Sequence[float]
+    """g, m/s²; zeros without."""
+    species: Sequence[Any]
+    """Fluids and walls (psph.scene.species.Species)."""
+    has_free_surface: bool
+    lowest_pressure: float
+    """Of a fluid at the start, Pa."""
