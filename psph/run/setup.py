@@ -1,6 +1,7 @@
 """From a scene to this rank's particles, and the compiled loops made ready."""
 
 import time
+from contextlib import suppress
 
 import numpy as np
 
@@ -66,7 +67,8 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
         with many_loops():
             _rehearse(scene, plan, store)
     if comm.rank == 0 and not together:
-        ready.touch()
+        with suppress(OSError):  # the folder is gone, or full: loops are compiled once more
+            ready.touch()
         CACHE.prune()
     comm.Barrier()
     return time.perf_counter() - begun
