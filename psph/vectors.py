@@ -165,6 +165,17 @@ def _outer(a):
     return unrolled("a", f"return {tuple_of(parts)}")
 
 
+def dyad(a: Vector, b: Vector) -> Vector:
+    """The matrix a bᵀ, by rows."""
+    return tuple(x * y for x in a for y in b)
+
+
+@overload(dyad)
+def _dyad(a, b):
+    parts = (f"a[{d}] * b[{e}]" for d in range(len(a)) for e in range(len(b)))
+    return unrolled("a, b", f"return {tuple_of(parts)}")
+
+
 def _by_dimension(one, two, three):
     """A function of a matrix and more, the last argument a vector that tells the dimension."""
 
@@ -221,3 +232,39 @@ less_diagonal = _by_dimension(
     lambda m, s, a: (m[0] - s, m[1], m[2], m[3] - s, m[4], m[5] - s),
 )
 """(m, s, a) → m − s on the diagonal; ``a`` is any vector of the dimension."""
+
+symmetric_part = _by_dimension(
+    lambda m, a: (m[0],),
+    lambda m, a: (m[0], 0.5 * (m[1] + m[2]), m[3]),
+    lambda m, a: (m[0], 0.5 * (m[1] + m[3]), 0.5 * (m[2] + m[6]), m[4], 0.5 * (m[5] + m[7]), m[8]),
+)
+"""(m, a) → (m + mᵀ)/2 of a matrix by rows; ``a`` is any vector of the dimension."""
+
+matrix_product = _by_dimension(
+    lambda m, s, a: (m[0] * s[0],),
+    lambda m, s, a: (
+        m[0] * s[0] + m[1] * s[1],
+        m[0] * s[1] + m[1] * s[2],
+        m[2] * s[0] + m[3] * s[1],
+        m[2] * s[1] + m[3] * s[2],
+    ),
+    lambda m, s, a: (
+        m[0] * s[0] + m[1] * s[1] + m[2] * s[2],
+        m[0] * s[1] + m[1] * s[3] + m[2] * s[4],
+        m[0] * s[2] + m[1] * s[4] + m[2] * s[5],
+        m[3] * s[0] + m[4] * s[1] + m[5] * s[2],
+        m[3] * s[1] + m[4] * s[3] + m[5] * s[4],
+        m[3] * s[2] + m[4] * s[4] + m[5] * s[5],
+        m[6] * s[0] + m[7] * s[1] + m[8] * s[2],
+        m[6] * s[1] + m[7] * s[3] + m[8] * s[4],
+        m[6] * s[2] + m[7] * s[4] + m[8] * s[5],
+    ),
+)
+"""(m, s, a) → the matrix m s by rows, of a matrix by rows and a symmetric one."""
+
+norm_squared = _by_dimension(
+    lambda m, a: m[0] * m[0],
+    lambda m, a: m[0] * m[0] + 2.0 * (m[1] * m[1]) + m[2] * m[2],
+    lambda m, a: (m[0] * m[0] + m[3] * m[3] + m[5] * m[5]) + 2.0 * (m[1] * m[1] + m[2] * m[2] + m[4] * m[4]),
+)
+"""(m, a) → the sum of the squares of all entries of m; ``a`` is any vector of the dimension."""

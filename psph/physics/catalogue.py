@@ -4,8 +4,9 @@ from functools import cache
 from typing import NamedTuple
 
 from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name
-from psph.physics.damping.diffusion import DensityDiffusion
+from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusion
 from psph.physics.damping.filtering import ConservativeSmoothing
+from psph.physics.damping.reconstructed import ReconstructedDamping
 from psph.physics.damping.riemann import RiemannDissipation
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import GradientCorrection
@@ -26,7 +27,7 @@ from psph.physics.fluid.viscosity import (
     LaminarViscosity,
     PairDamping,
 )
-from psph.physics.order.potential import PairPotential
+from psph.physics.order.potential import LocalPotential, PairPotential
 from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
@@ -94,16 +95,19 @@ CATALOGUE = (
     Entry("walls.*.continues", DryWall),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.pair_damping", PairDamping),
+    Entry("physics.reconstructed_damping", ReconstructedDamping),
     Entry("physics.impact_damping", ImpactDamping),
     Entry("physics.riemann_dissipation", RiemannDissipation),
     Entry("physics.conservative_smoothing", ConservativeSmoothing),
     Entry("physics.pair_potential", PairPotential),
+    Entry("physics.local_potential", LocalPotential),
     Entry("physics.gravity", Gravity),
     Entry("physics.central_force", CentralForce),
     Entry("physics.free_surface", FreeSurface),
     Entry("physics.tension_floor", TensionFloor),
     Entry("physics.background_pressure", BackgroundPressure),
     Entry("physics.density_diffusion", DensityDiffusion),
+    Entry("physics.fourth_order_diffusion", FourthOrderDiffusion),
     Entry("physics.particle_shifting", ParticleShifting),
     Entry("physics.position_shift", PositionShift),
     Entry("physics.xsph", XSPH),

@@ -17,8 +17,9 @@ from simulation.test_absence import calling_for
 
 from psph.composition.terms import displacement, push, radial, shear
 from psph.physics.catalogue import CATALOGUE
+from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
-from psph.physics.order.potential import PairPotential, neutral_potential
+from psph.physics.order.potential import InDisorder, PairPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
 
@@ -38,6 +39,8 @@ def in_a_scene(effect, dim):
         "PairPotential": lambda: neutral_potential(0.5, 50.0, 0.01, dim, alike=False),
         "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
         "PositionShift": lambda: LatticeShift(0.1, -1e-4, 1e-6),
+        "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4),
+        "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()
 

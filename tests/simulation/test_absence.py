@@ -93,6 +93,17 @@ STICKY = ("walls.side={shape={box={lower=[-0.3,0.0],upper=[0.0,1.0]}}, no_slip=t
 """Overrides: a wall without slip, and the friction that it needs."""
 
 
+CORRECTED = ("physics.gradient_correction=0.5",)
+
+BESIDE = {
+    "physics.central_friction": (VISCOUS,),
+    "physics.reconstructed_damping": CORRECTED,
+    "physics.local_potential": CORRECTED,
+    "physics.fourth_order_diffusion": CORRECTED,
+}
+"""What some effects need beside them."""
+
+
 def calling_for(entry) -> list[str]:
     """Overrides that call for the effect of an entry."""
     key, _, choice = entry.key.partition("=")
@@ -105,7 +116,7 @@ def calling_for(entry) -> list[str]:
     hints = get_type_hints(entry.effect)
     values = {n: [0.5, 0.5] if get_origin(hint) is tuple else 0.5 for n, hint in hints.items()}
     table = f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
-    return [table, VISCOUS] if key == "physics.central_friction" else [table]
+    return [table, *BESIDE.get(key, ())]
 
 
 def not_calling_for(entry) -> list[str]:

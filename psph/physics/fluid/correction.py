@@ -118,6 +118,15 @@ class DifferenceCorrection(NamedTuple):
         return scale(times(i.gradient_correction, pair.x_ij), weight)
 
 
+def needs_correction(physics):
+    """What contradicts an effect that takes corrected gradients of the symmetric form, in words."""
+    if physics.gradient_correction is None or physics.pressure_gradient != "symmetric":
+        yield (
+            "takes corrected gradients; set physics.gradient_correction, and physics.pressure_gradient = "
+            '"symmetric"'
+        )
+
+
 @helper
 def _with_neighbour(total, j, pair):
     volume = j.mass * j.specific_volume

@@ -9,7 +9,7 @@ from psph.formula import where
 from psph.physics.facts import Facts
 from psph.smoothing import KERNELS, weight
 from psph.theory.stability import parts
-from psph.vectors import add, scale, zero_like
+from psph.vectors import add, scale, times, zero_like
 
 NOT_A_PRESSURE = 1e30
 """Stands for a neighbour outside the support in a minimum over pressures, Pa."""
@@ -169,14 +169,21 @@ class BackgroundPressure(NamedTuple):
     ]
 
     def in_scene(self, scene: Facts):
-        """With "auto", what the scene needs, or None."""
-        if self.pressure != AUTO:
-            return self
+        """With "auto", what the scene needs, or None; with corrected gradients, the form that has them."""
+        needed = self._needed(scene) if self.pressure == AUTO else self.pressure
+        if needed is None:
+            return None
+        physics = scene.physics
+        corrected = physics.gradient_correction is not None and physics.pressure_gradient == "symmetric"
+        return CorrectedBackground(needed) if corrected else BackgroundPressure(needed)
+
+    def _needed(self, scene: Facts) -> float | None:
+        """What the start and its flow may lack, Pa, or None."""
         if scene.has_free_surface:
             return None
         dip = 0.5 * max(m.density for m in scene.species) * scene.starting_speed**2
         needed = MARGIN * max(-scene.lowest_pressure, dip)
-        return BackgroundPressure(needed) if needed > 0.0 else None
+        return needed if needed > 0.0 else None
 
     def why_absent(self, scene: Facts):
         """Why "auto" gives none."""
@@ -188,6 +195,30 @@ class BackgroundPressure(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
         return -self.pressure * (v_i * v_i + v_j * v_j) * pair.m_dw_r
+
+    def linear(self, scene: Facts):
+        """Its part in linear theory."""
+        return parts.BackgroundPressure(self.pressure)
+
+
+class CorrectedBackground(NamedTuple):
+    """A constant pressure pushes particles apart, with corrected gradients.
+
+    a_i = −p_b Σ_j m_j (L_i/ρ_i² + L_j/ρ_j²) ∇W_ij, as the pressure itself has them under
+    :class:`psph.physics.fluid.correction.GradientCorrection`: were p corrected and p_b not, disorder
+    would feel −p(L − 1), and a fluid under tension would tear in spite of p_b.  It conserves momentum.
+    """
+
+    conserves = ("momentum",)
+
+    pressure: float
+
+    def push(self, i, j, pair):
+        """Acceleration, m/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        both = add(scale(i.gradient_correction, v_i * v_i), scale(j.gradient_correction, v_j * v_j))
+        whole = add(scale(pair.x_ij, v_i * v_i + v_j * v_j), times(both, pair.x_ij))
+        return scale(whole, -self.pressure * pair.m_dw_r)
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""

@@ -11,8 +11,9 @@ from psph.composition.pair import Pair
 from psph.fields import view_of
 from psph.formula import helper
 from psph.physics.facts import Facts
+from psph.physics.fluid.correction import needs_correction
 from psph.theory.stability import parts
-from psph.vectors import excess, multiply, plus_less_last, scale
+from psph.vectors import excess, multiply, norm_squared, plus_less_last, scale
 
 CORES = (1.6, 1.6, 1.3228)
 """Range of the repelling core in spacings, in 1D, 2D and 3D."""
@@ -105,6 +106,70 @@ class UnequalPotential(NeutralPotential):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         return min(1.0, j.mass * (1.0 / i.mass)) * _repulsion(self, pair)
+
+
+class LocalPotential(NamedTuple):
+    """The pair potential where particles are in disorder or at a surface, and nowhere else.
+
+    The force of :class:`PairPotential` times ½(g_i + g_j), g = min(|L − 1|²/t², 1): L, which corrects
+    gradients, is 1 where neighbours are in order all around.  psph's own.  It costs a flow in good order
+    nothing, keeps momentum and angular momentum, and is no potential: energy is not conserved by it.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    strength: Annotated[
+        float,
+        Field(
+            ge=0,
+            description="f: K over ρ₀U², U = c/10 the largest speed",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 0.008
+    threshold: Annotated[
+        float,
+        Field(
+            gt=0,
+            description="t: size of L − 1 from which on the whole force acts",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 0.2
+
+    def in_scene(self, scene: Facts):
+        """The potential of the scene's lattice."""
+        made = neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions)
+        return InDisorder(*made, 0.5 / self.threshold**2)
+
+    @staticmethod
+    def conflicts(physics, kernel):
+        """Disorder is seen by the corrected gradients."""
+        yield from needs_correction(physics)
+
+
+class InDisorder(NamedTuple):
+    """The pair potential where particles are in disorder or at a surface, and nowhere else.
+
+    The form of :class:`LocalPotential` for the lattice of a scene; ``half`` is 1/(2t²).
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    core: float
+    steepness: float
+    heights: tuple[float, ...]
+    slopes: tuple[float, ...]
+    half: float
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        g = _disorder(self.half, i) + _disorder(self.half, j)
+        return min(1.0, j.mass * (1.0 / i.mass)) * g * _repulsion(self, pair)
+
+
+@helper
+def _disorder(half, i):
+    """½ min(|L − 1|²/t², 1)."""
+    return min(half * norm_squared(i.gradient_correction, i.position), 0.5)
 
 
 @helper

@@ -1,0 +1,91 @@
+"""Friction along pairs that a smooth flow does not feel."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+from psph.fields import SYMMETRIC
+from psph.fields import Field as Declared
+from psph.formula import where
+from psph.physics.facts import Facts
+from psph.physics.fluid.correction import needs_correction
+from psph.physics.fluid.viscosity import inverse_square, lighter
+from psph.vectors import add, dot, dyad, matrix_product, scale, symmetric_part, times, zero_like
+
+NEAR = 0.7
+"""Distance in spacings below which two particles are in disorder, and all of their motion is damped."""
+
+AT_WALLS = 0.02
+"""Speed of approach over the speed of sound that a wall does not damp."""
+
+
+class ReconstructedDamping(NamedTuple):
+    """Numerical friction along the line of a pair, on its motion beside the linear flow: it calms disorder.
+
+    a_i = α c h Σ_j ρ₀ m_j/(ρ_i ρ_j) s′/max(r², 0.01 h²) ∇W_ij, as :class:`PairDamping
+    <psph.physics.fluid.viscosity.PairDamping>`, with s′ = s − g for its s = u_ij·x_ij: the flow that is
+    linear between the two, g = ½ x_ij·(E_i + E_j)·x_ij clipped between 0 and s, is not felt, so that
+    0 ≤ s′/s ≤ 1 and each pair only loses energy; g = 0 where r < 0.7 dx.  E_i = sym(−Σ_j V_j u_ij L_i∇W_ijᵀ)
+    over fluid neighbours is the rate of strain of the step before.  Frontiere, Raskin & Owen (2017), J.
+    Comput. Phys. 332, 160, for a viscosity on approach.  A wall damps what approaches it at more than
+    0.02 c, the excess alone, and nothing else.  It conserves momentum and angular momentum.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    alpha: Annotated[float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})] = 0.05
+
+    def in_scene(self, scene: Facts):
+        """The form that knows the spacing."""
+        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2)
+
+    @staticmethod
+    def conflicts(physics, kernel):
+        """The rate of strain takes corrected gradients."""
+        yield from needs_correction(physics)
+
+
+class BesideLinearFlow(NamedTuple):
+    """Numerical friction along the line of a pair, on its motion beside the linear flow: it calms disorder.
+
+    The form of :class:`ReconstructedDamping` in a scene; ``near2`` is (0.7 dx)², m².
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    alpha: float
+    near2: float
+
+    writes = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC)
+    lagged = True
+
+    def start(self, i):
+        """No neighbour yet."""
+        return dyad(zero_like(i.position), zero_like(i.position))
+
+    def gather(self, total, i, j, pair):
+        """Add −V_j u_ij ∇W_ijᵀ of a fluid neighbour."""
+        weight = -j.specific_volume * pair.m_dw_r * j.is_fluid
+        return add(total, scale(dyad(pair.u_ij, pair.x_ij), weight))
+
+    def finish_value(self, total, i, kernel):
+        """E_i, 1/s."""
+        corrected = add(total, matrix_product(total, i.gradient_correction, i.position))
+        return symmetric_part(corrected, i.position)
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
+        s = pair.u_dot_x
+        g = 0.5 * dot(pair.x_ij, times(add(i.strain, j.strain), pair.x_ij))
+        g = min(max(g, min(s, 0.0)), max(s, 0.0))
+        rest = s - where(pair.r2 > self.near2, g, 0.0)
+        approach = min(s + (AT_WALLS * i.sound_speed) * pair.r, 0.0)
+        felt = where(i.is_fluid * j.is_fluid > 0.0, rest, approach)
+        strength = self.alpha * h * i.sound_speed * (v_i * lighter(i, j))
+        return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r
+
+    def longest_step(self, scene):
+        """Δt ≤ h/(α c), s: that of :class:`psph.physics.fluid.viscosity.PairDamping`."""
+        friction = self.alpha * scene.sound_speed
+        return scene.smoothing_length / friction if friction > 0.0 else float("inf")

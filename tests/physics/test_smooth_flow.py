@@ -1,0 +1,160 @@
+"""What smooth flow does not feel: reconstructed damping, diffusion of fourth order, the local potential."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from drafts import TANK, draft
+from physics.pairs import pair_of, sums_of, view
+
+from psph.case import CaseError
+from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusion
+from psph.physics.damping.reconstructed import BesideLinearFlow
+from psph.physics.fluid.correction import GradientCorrection
+from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
+from psph.physics.fluid.viscosity import PairDamping
+from psph.physics.order.potential import LocalPotential, UnequalPotential, neutral_potential
+
+DIMENSIONS = (1, 2, 3)
+ALPHA, C = 0.3, 50.0
+
+
+def crowd(dim, n=12, seed=5):
+    """Fluid particles in disorder within a support, each with its own L of all the others."""
+    p = view(n=n, dim=dim, seed=seed)._replace(is_fluid=np.ones(n))
+    found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(n)]
+    return p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
+
+
+def linear_flow(p, dim, seed=2):
+    """The same particles in a flow u = G x, with G, its symmetric part as a field, and the part itself."""
+    g = np.random.default_rng(seed).normal(size=(dim, dim))
+    u = g @ np.array(p.position)
+    part = 0.5 * (g + g.T)
+    upper = tuple(np.full(len(p.mass), part[a, b]) for a in range(dim) for b in range(a, dim))
+    return p._replace(velocity=tuple(u), strain=upper), g, upper
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_the_rate_of_strain_of_a_linear_flow_is_exact_in_disorder(dim):
+    p, _, upper = linear_flow(crowd(dim), dim)
+    found = sums_of(BesideLinearFlow(ALPHA, 0.0), p, 3)
+    assert found == pytest.approx([component[0] for component in upper], rel=1e-9)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_a_linear_flow_is_not_damped_and_what_is_beside_it_is(dim):
+    p, _, _ = linear_flow(crowd(dim), dim)
+    smooth, plain = BesideLinearFlow(ALPHA, 0.0), PairDamping(ALPHA)
+    for b in range(1, 5):
+        i, j, pair = pair_of(p, 0, b)
+        scale = abs(plain.radial(i, j, pair))
+        assert scale > 0.0 and abs(smooth.radial(i, j, pair)) < 1e-12 * scale
+        near = BesideLinearFlow(ALPHA, 2.0 * pair.r2)  # a pair in disorder: the whole of it
+        assert near.radial(i, j, pair) == pytest.approx(plain.radial(i, j, pair), rel=1e-12)
+        still = i._replace(strain=tuple(0.0 * e for e in i.strain))
+        at_rest = j._replace(strain=tuple(0.0 * e for e in j.strain))
+        assert smooth.radial(still, at_rest, pair) == pytest.approx(plain.radial(i, j, pair), rel=1e-12)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_each_pair_only_loses_energy_whatever_the_strain(dim):
+    """0 ≤ s′/s ≤ 1: between nothing and what plain pair damping takes."""
+    rng = np.random.default_rng(7)
+    some = 0
+    for _ in range(200):
+        p = view(dim=dim, seed=int(rng.integers(1000)))._replace(is_fluid=np.ones(2))
+        strain = tuple(rng.normal(size=2) * 300.0 for _ in p.gradient_correction)
+        i, j, pair = pair_of(p._replace(strain=strain), 0, 1)
+        share = BesideLinearFlow(ALPHA, 0.0).radial(i, j, pair) / PairDamping(ALPHA).radial(i, j, pair)
+        assert 0.0 <= share <= 1.0 + 1e-12
+        some += 0.01 < share < 0.99
+    assert some > 20
+
+
+def test_a_wall_damps_what_comes_fast_and_nothing_else():
+    p = view()._replace(is_fluid=np.array([1.0, 0.0]), strain=tuple(np.full(2, 9.0) for _ in range(3)))
+    i, j, pair = pair_of(p, 0, 1)
+    effect, plain = BesideLinearFlow(ALPHA, 0.0), PairDamping(ALPHA)
+    for speed in (3.0 * C, 0.03 * C, 0.019 * C, 0.0, -0.5 * C):  # of approach
+        moving = pair._replace(u_dot_x=-speed * pair.r)
+        felt = max(speed - 0.02 * C, 0.0)
+        expected = plain.radial(i, j, pair._replace(u_dot_x=-felt * pair.r))
+        assert effect.radial(i, j, moving) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_the_gradient_of_a_linear_density_is_exact_in_disorder(dim):
+    p = crowd(dim)
+    slope = np.array((300.0, -700.0, 500.0)[:dim])
+    rho = p.rest_density + 20.0 + slope @ p.position
+    p = p._replace(specific_volume=1.0 / rho)
+    found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(len(rho))]  # volumes have changed
+    p = p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
+    assert sums_of(FourthOrderDiffusion(0.1), p, 4) == pytest.approx(slope, rel=1e-9)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_a_quadratic_density_does_not_spread_and_a_step_does(dim):
+    """∇ρ at both ends is that of the parabola: the mean of two slopes is the slope between them."""
+    p = view(dim=dim)._replace(is_fluid=np.ones(2))
+    x, slope, bend = np.array(p.position), np.array((30.0, -70.0, 50.0)[:dim]), 4e3
+    rho = p.rest_density + 2.0 + slope @ x + bend * (x * x).sum(axis=0)
+    gradient = slope[:, None] + 2.0 * bend * x
+    p = p._replace(specific_volume=1.0 / rho, density_gradient=tuple(gradient))
+    pair = pair_of(p, 0, 1)
+    second, fourth = (one.density_rate(*pair) for one in (DensityDiffusion(0.1), FourthOrderDiffusion(0.1)))
+    assert abs(fourth) < 1e-9 * abs(second)
+    wrong = pair_of(p._replace(density_gradient=tuple(-gradient)), 0, 1)  # the control
+    assert abs(FourthOrderDiffusion(0.1).density_rate(*wrong)) > abs(second)
+    flat = pair_of(p._replace(density_gradient=tuple(0.0 * gradient)), 0, 1)
+    assert FourthOrderDiffusion(0.1).density_rate(*flat) == pytest.approx(second, rel=1e-12)
+
+
+def potential(dim):
+    """The form of the local potential in a scene with spacing 0.01 m."""
+    scene = SimpleNamespace(sound_speed=C, spacing=0.01, dimensions=dim)
+    return LocalPotential(0.5, 0.2).in_scene(scene)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_the_potential_acts_in_disorder_alone(dim):
+    p, whole = view(dim=dim), neutral_potential(0.5, C, 0.01, dim, alike=False)
+    assert isinstance(whole, UnequalPotential)
+    symmetric = [np.eye(dim)[a, b] for a in range(dim) for b in range(a, dim)]
+
+    def force(of_i, of_j):
+        correction = tuple(np.array([of_i, of_j]) * e / np.sqrt(dim) for e in symmetric)
+        return potential(dim).radial(*pair_of(p._replace(gradient_correction=correction), 0, 1))
+
+    full = whole.radial(*pair_of(p, 0, 1))
+    assert full != 0.0 and force(0.0, 0.0) == 0.0
+    assert force(0.2, 7.0) == pytest.approx(full, rel=1e-12)
+    assert force(0.0, 0.2) == pytest.approx(0.5 * full, rel=1e-12)
+    assert force(0.1, 0.1) == pytest.approx(0.25 * full, rel=1e-12)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_a_corrected_background_is_the_plain_one_and_what_the_correction_adds(dim):
+    p = view(dim=dim)
+    i, j, pair = pair_of(p, 0, 1)
+    plain = BackgroundPressure(40.0).radial(i, j, pair) * np.array(pair.x_ij)
+    none = tuple(0.0 * e for e in i.gradient_correction)
+    uncorrected = (i._replace(gradient_correction=none), j._replace(gradient_correction=none))
+    assert CorrectedBackground(40.0).push(*uncorrected, pair) == pytest.approx(plain, rel=1e-12)
+    raised, lower = (
+        np.array(GradientCorrection().push(*pair_of(p._replace(pressure=p.pressure + up), 0, 1)))
+        for up in (40.0, 0.0)
+    )
+    added = np.array(CorrectedBackground(40.0).push(i, j, pair)) - plain
+    assert added == pytest.approx(raised - lower, rel=1e-6)
+
+
+def test_they_say_what_they_need(tmp_path):
+    for key in ("reconstructed_damping=0.05", "local_potential=0.008", "fourth_order_diffusion=0.1"):
+        with pytest.raises(CaseError, match="takes corrected gradients; set physics.gradient_correction"):
+            draft(tmp_path, TANK, f"physics.{key}")
+    together = ("scheme=stable", "physics.gradient_correction=1.0", "physics.fourth_order_diffusion=0.1")
+    with pytest.raises(CaseError, match='set that to "off"'):
+        draft(tmp_path, TANK, *together)
+    assert draft(tmp_path, TANK, *together, "physics.density_diffusion=off")
