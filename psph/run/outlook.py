@@ -107,7 +107,7 @@ def _extremes(scene) -> Iterator[tuple[float, Start]]:
     for index, start in zip(fluids, scene.starts):
         own = start.pressure
         if start.weight:
-            own = start.weight * (start.surface - float(scene.census.bottom[index]))
+            own = start.above + start.weight * (start.surface - float(scene.census.bottom[index]))
         expected = start.rest_density * (scene.sound_speed / STIFF) ** 2
         for pressure in (own,) if own else (expected, -expected):
             sign = pressure > 0.0

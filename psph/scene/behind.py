@@ -4,6 +4,7 @@ from functools import cached_property
 
 import numpy as np
 
+from psph.physics.motion import Fixed
 from psph.scene.species import NONE
 
 AT_ONCE = 1 << 15
@@ -11,10 +12,14 @@ AT_ONCE = 1 << 15
 
 
 class Solid:
-    """The walls of a scene, continued outwards where they close a whole side of its particles."""
+    """The walls of a scene that stand still, continued outwards where they close a whole side of its
+    particles.  Of walls that move it knows nothing: where they stood, fluid may be."""
 
     def __init__(self, scene):
         self.scene, self.layout, self.lattice = scene, scene.layout, scene.layout.lattice
+        self._still = np.zeros(NONE + 1, bool)
+        for number, one in enumerate(scene.species):
+            self._still[number] = isinstance(one.motion, Fixed)
 
     def deep(self, position: np.ndarray, depth: float) -> np.ndarray:
         """True where a point of ``position`` (n, dim) lies ``depth`` spacings behind every face.
@@ -22,7 +27,7 @@ class Solid:
         A point that is inside, and so are the points so far away along each axis, both ways.
         """
         found = np.zeros(len(position), bool)
-        if not self.scene.case.walls:
+        if not self._still.any():
             return found
         for first in range(0, len(position), AT_ONCE):
             part = position[first : first + AT_ONCE]
@@ -52,13 +57,15 @@ class Solid:
     def _inside(self, position: np.ndarray) -> np.ndarray:
         """True at points (n, dim) in a wall, or beyond a side that walls close."""
         grid = [self._folded(d, x.copy()) for d, x in enumerate(position.T)]  # unit stride
-        held = self.layout.held(grid, grid[0].shape)
-        found = (held >= self.layout.fluids) & (held < NONE)
+        found = self._still[self.layout.held(grid, grid[0].shape)]
+        low = [x < least for x, least in zip(grid, self.lattice.lower)]
+        high = [x > most for x, most in zip(grid, self.lattice.upper)]
+        # What is above an open top has jumped over a wall: it is not behind it.
+        within = np.ones(len(position), bool)
         for d, (lower, upper) in enumerate(self.closed):
-            if lower:
-                found |= grid[d] < self.lattice.lower[d]
-            if upper:
-                found |= grid[d] > self.lattice.upper[d]
+            within &= (lower | ~low[d]) & (upper | ~high[d])
+        for d, (lower, upper) in enumerate(self.closed):
+            found |= within & (lower & low[d] | upper & high[d])
         return found
 
     def _folded(self, d: int, x: np.ndarray) -> np.ndarray:
@@ -70,4 +77,4 @@ class Solid:
         grid = self.lattice.grid(0, self.lattice.planes)
         grid[d] = grid[d][[side]]
         held = self.layout.held(grid, np.broadcast_shapes(*(x.shape for x in grid)))
-        return bool(((held >= self.layout.fluids) & (held < NONE)).all())
+        return bool(self._still[held].all())

@@ -13,6 +13,7 @@ from psph.physics.fluid.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
 from psph.scene.multiples import misfits
 from psph.scene.scene import SOUND_OVER_SPEED, Scene
+from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
 from psph.scene.units import slips
 from psph.scene.walls import layers_needed, thinnest_walls
@@ -109,6 +110,7 @@ def warnings(scene: Scene) -> Iterator[str]:
         _transport_at_surface,
         _slow_sound,
         _jitter,
+        several_fluids,
         misfits,
         slips,
     ):

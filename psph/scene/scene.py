@@ -13,7 +13,7 @@ from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.motion import Fixed, Free
-from psph.scene.lattice import lattice_around
+from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
@@ -277,9 +277,30 @@ class Scene:
             pressure=0.0 if hydrostatic or exact else fluid.pressure,
             weight=fluid.density * math.hypot(*self.gravity) if hydrostatic else 0.0,
             up=self.up,
-            surface=float(self.census.top[index]) + 0.5 * self.spacing,
+            surface=self._surface(index),
+            above=self._weight_above(index) if hydrostatic else 0.0,
             exact=(lambda x: self.exact.pressure(x, 0.0, self.setting)) if exact else None,
         )
+
+    def _surface(self, fluid: int) -> float:
+        """Height of a fluid's surface at the start, m."""
+        return float(self.census.top[fluid]) + 0.5 * self.spacing
+
+    def _weight_above(self, fluid: int) -> float:
+        """Pressure of the still fluids that rest on this one, Pa: those that begin where it ends, or
+        higher, over some of its ground."""
+        census, total = self.census, 0.0
+        level = [d for d, u in enumerate(self.up) if abs(u) < 0.5]
+        for other in range(self.layout.fluids):
+            bottom = float(census.bottom[other]) - 0.5 * self.spacing
+            apart = (census.lowest[other] > census.highest[fluid]) | (
+                census.highest[other] < census.lowest[fluid]
+            )
+            resting = bottom > self._surface(fluid) - TOLERANCE * self.spacing and not apart[level].any()
+            if resting and self.bodies[other].pressure == "hydrostatic":
+                thickness = self._surface(other) - bottom
+                total += self.bodies[other].density * math.hypot(*self.gravity) * thickness
+        return total
 
     def _fastest_corner(self, fluid: int) -> float:
         """Largest speed at a corner of the box around a fluid whose velocity has a gradient."""

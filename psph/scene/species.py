@@ -53,8 +53,9 @@ class Species(NamedTuple):
 class Start(NamedTuple):
     """State of a material before the first step.
 
-    p = ``pressure`` everywhere, or, with a ``weight`` = ρ₀|g| in Pa/m, p = weight (surface −
-    height) and not below 0; ``surface`` in m along ``up``, the unit vector against gravity.  Or p =
+    p = ``pressure`` everywhere, or, with a ``weight`` = ρ₀|g| in Pa/m, p = above + weight (surface −
+    height) below the surface and 0 over it; ``surface`` in m along ``up``, the unit vector against
+    gravity, ``above`` the weight of the fluids that rest on it, Pa.  Or p =
     ``exact`` of the positions (n, dim).  ``law`` is the equation of state.
     """
 
@@ -65,6 +66,7 @@ class Start(NamedTuple):
     weight: float
     up: tuple[float, ...]
     surface: float
+    above: float = 0.0
     exact: Callable[[np.ndarray], np.ndarray] | None = None
 
     def density(self, position: np.ndarray) -> np.ndarray:
@@ -74,7 +76,7 @@ class Start(NamedTuple):
         if not self.weight:
             return np.full(len(position), self._density(np.float64(self.pressure)))
         depth = self.surface - position @ np.array(self.up)
-        return self._density(self.weight * np.maximum(depth, 0.0))
+        return self._density(np.where(depth > 0.0, self.above + self.weight * depth, 0.0))
 
     def mass(self, volume: float) -> float:
         """Mass in kg of a particle of ``volume`` = dx^d.

@@ -1,8 +1,11 @@
 """Where no fluid can be: behind faces, and beyond sides that walls close."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from psph.case import Case
+from psph.fields import WALL
 from psph.scene import Scene
 from psph.scene.behind import Solid
 
@@ -49,6 +52,9 @@ def test_deep_is_a_spacing_behind_every_face():
         (0.5, -0.5): True,
         (-3.0, 0.5): True,
         (9.0, 0.5): True,  # through the wall and out
+        (9.0, 1.5): False,  # over the rim
+        (-0.35, 1.2): False,
+        (-3.0, -3.0): True,
         (0.5, 1.5): False,
         (0.5, 7.0): False,  # over the open top
         (-0.15, 0.95): False,  # on the rim: the free top is nearer than a spacing
@@ -90,3 +96,20 @@ def test_without_walls_nothing_is_behind_one():
     }
     solid = Solid(Scene(Case.model_validate(case)))
     assert not solid.deep(np.array([[0.5], [9.0]]), 1.0).any()
+
+
+class Lifted(NamedTuple):
+    """A motion that says where its particles are."""
+
+    kind = WALL
+
+    def place(self, anchor, time):
+        """Where they stood."""
+        return anchor
+
+
+def test_where_a_moving_wall_stood_fluid_may_be():
+    solid = tank()
+    moving = tuple(one if one.is_fluid else one._replace(motion=Lifted()) for one in solid.scene.species)
+    solid.scene.species = moving
+    assert not Solid(solid.scene).deep(np.array([[0.5, -0.15], [-3.0, 0.5]]), 1.0).any()

@@ -1,0 +1,46 @@
+"""What several fluids of different density can do wrong in a scene."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+LARGEST_RATIO = 5.0
+"""Of the densities of two fluids in one scene.  A still layer of a fifth of the density on water keeps its
+pressure within some per cent; at a tenth the pressure is 19 % off, at a twentieth 64 %: docs/limits.md."""
+
+ALIKE = 0.01
+"""Densities that differ by less than this part are one for a wall."""
+
+
+def several_fluids(scene) -> Iterator[str]:
+    """Warnings of a scene with fluids of different density, a line each."""
+    fluids = scene.case.fluids
+    for (a, one), (b, other) in combinations(fluids.items(), 2):
+        ratio = max(one.density / other.density, other.density / one.density)
+        if ratio > LARGEST_RATIO:
+            yield (
+                f"fluids.{b}.density: {other.density:g} beside {one.density:g} kg/m3 of fluids.{a}, a ratio "
+                f"of {ratio:.3g}: pressures are far off above {LARGEST_RATIO:g} (docs/limits.md); bring the "
+                "two densities nearer to each other"
+            )
+    if len(fluids) > 1:
+        yield from _walls_of_another_fluid(scene)
+
+
+def _walls_of_another_fluid(scene) -> Iterator[str]:
+    """A wall has the density of one fluid: beside another one pressures do not balance."""
+    names, found = list(scene.case.fluids), set()
+    for first, last in scene.lattice.chunks():
+        held = scene.layout.materials(first, last)
+        for fluid, name in enumerate(names):
+            beside = set(held[scene.layout.near(fluid, first, last, 1)].tolist())
+            found |= {(wall, name) for wall in beside}
+    for number, (wall, body) in enumerate(scene.case.walls.items(), len(names)):
+        own = scene.case.fluids[body.continues]
+        for name in names:
+            density = scene.case.fluids[name].density
+            if (number, name) in found and abs(density / own.density - 1.0) > ALIKE:
+                yield (
+                    f'walls.{wall}.continues: "{body.continues}", but the wall touches fluids.{name} of '
+                    f"{density:g} kg/m3 too, and currents arise along it; make the part there a wall of "
+                    f'its own with continues = "{name}"'
+                )

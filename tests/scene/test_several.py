@@ -1,0 +1,80 @@
+"""Several fluids in a scene: what rests on what, and what cannot balance."""
+
+import numpy as np
+import pytest
+from drafts import draft
+
+from psph.scene import Scene, check
+
+LAYERS = """
+[space]
+dimensions = 2
+spacing = 0.02
+[time]
+end = 0.01
+[physics]
+gravity = [0.0, -9.8]
+sound_speed = 50.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [0.5, 0.3] }
+pressure = "hydrostatic"
+[fluids.oil]
+shape.box = { lower = [0.0, 0.3], upper = [0.5, 0.6] }
+density = 800.0
+pressure = "hydrostatic"
+[walls.floor]
+shape.box = { lower = [0.0, -0.06], upper = [0.5, 0.0] }
+"""
+
+
+def starting_pressure(scene, fluid):
+    """Heights and pressures of a fluid's particles at the start."""
+    found = scene.particles(0, scene.planes, 0)
+    own, species = found.material == fluid, scene.species[fluid]
+    p = species.law.pressure(found.density[own], species.density, scene.sound_speed)
+    return found.position[own][:, 1], p
+
+
+def test_a_still_fluid_bears_what_rests_on_it(tmp_path):
+    scene = Scene(draft(tmp_path, LAYERS))
+    y, p = starting_pressure(scene, 0)
+    assert p == pytest.approx(9.8 * (800.0 * 0.3 + 1000.0 * (0.3 - y)), rel=1e-9)
+    y, p = starting_pressure(scene, 1)
+    assert p == pytest.approx(9.8 * 800.0 * (0.6 - y), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        ("fluids.oil.shape.box={lower=[0.6,0.3],upper=[1.0,0.6]}",),  # beside it
+        ("fluids.oil.pressure=0.0",),
+    ],
+)
+def test_what_does_not_rest_on_it_adds_nothing(tmp_path, keys):
+    y, p = starting_pressure(Scene(draft(tmp_path, LAYERS, *keys)), 0)
+    assert p == pytest.approx(9.8 * 1000.0 * (0.3 - y), rel=1e-9)
+
+
+def test_a_large_ratio_of_densities_is_warned_of(tmp_path):
+    lines = check(Scene(draft(tmp_path, LAYERS, "fluids.oil.density=100.0")))
+    assert any("fluids.oil.density: 100 beside 1000 kg/m3 of fluids.water, a ratio of 10" in x for x in lines)
+    assert not any("a ratio of" in x for x in check(Scene(draft(tmp_path, LAYERS))))
+
+
+def test_a_wall_that_touches_two_fluids_is_warned_of(tmp_path):
+    side = "walls.side={shape={box={lower=[0.5,-0.06],upper=[0.56,0.6]}}}"
+    lines = check(Scene(draft(tmp_path, LAYERS, side)))
+    assert [x.partition(": ")[2] for x in lines if "continues" in x] == [
+        'walls.side.continues: "water", but the wall touches fluids.oil of 800 kg/m3 too, and currents '
+        'arise along it; make the part there a wall of its own with continues = "oil"'
+    ]
+    assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS))))
+    alike = check(Scene(draft(tmp_path, LAYERS, side, "fluids.oil.density=1000.0")))
+    assert not any("continues" in x for x in alike)
+
+
+def test_the_height_of_a_surface_is_half_a_spacing_above_its_particles(tmp_path):
+    starts = Scene(draft(tmp_path, LAYERS)).starts
+    assert [s.surface for s in starts] == pytest.approx([0.3, 0.6, 0.3])
+    assert [s.above for s in starts] == pytest.approx([9.8 * 800.0 * 0.3, 0.0, 9.8 * 800.0 * 0.3])
+    assert np.isfinite(starts[0].density(np.array([[0.1, 0.9]]))).all()
