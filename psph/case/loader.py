@@ -18,6 +18,9 @@ PLACE_IN_LIST = re.compile(r"[0-9]{1,9}")
 HALF = re.compile("[\ud800-\udfff]")
 """Half a character: how Python shows bytes of the command line that are no UTF-8."""
 
+CALLED_A_CHECKPOINT = re.compile(r"checkpoint-\d+")
+"""Name of a case whose frames a run would remove: it takes them for an old checkpoint."""
+
 PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 MOST_BYTES = 1 << 20
@@ -51,7 +54,12 @@ def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set")
     give way.  Raises CaseError with one line for every fault found.
     """
     file = str(path)
-    case = checked(file, _read(file), overrides, option)
+    data = _read(file)
+    if CALLED_A_CHECKPOINT.fullmatch(stem := Path(file).stem):
+        raise CaseError(
+            [f"{file}: its frames would be called {stem}.h5, as a checkpoint is; rename the file"]
+        )
+    case = checked(file, data, overrides, option)
     case._file = file
     return case
 

@@ -70,12 +70,17 @@ def checkpoints(folder: Path) -> list[Path]:
     return [path for _, path in sorted(found, reverse=True)]
 
 
+def half_written(folder: Path) -> list[Path]:
+    """What interrupted writes have left in a folder."""
+    return sorted(Path(folder).glob("checkpoint-*.h5.new"))
+
+
 def remove_checkpoints(folder: Path, after: int = -1) -> None:
     """Remove those of later steps than ``after``, and what an interrupted write has left."""
     for path in checkpoints(folder):
         if int(_NAME.fullmatch(path.name)[1]) > after:
             path.unlink()
-    for path in Path(folder).glob("checkpoint-*.h5.new"):
+    for path in half_written(folder):
         path.unlink()
 
 

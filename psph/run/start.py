@@ -1,6 +1,5 @@
 """A case from the first line to the last."""
 
-import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -8,23 +7,19 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from psph.case.extensions import files_of
 from psph.case.model import Checkpoint
 from psph.engine.jit import CACHE
-from psph.output.checkpoint import COPY, Saved, checkpoints, remove_checkpoints
-from psph.output.errors import OutputError, together
+from psph.output.checkpoint import Saved
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
-from psph.output.pictures import remove_pictures
 from psph.output.progress import Progress
-from psph.output.tables import ERRORS, LOG, PROBES
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
 from psph.run.cost import cost_lines
 from psph.run.explain import slab_planes
+from psph.run.folder import alone_in, make_folder, prepare_folder, reopen_folder
 from psph.run.forecast import long_run
 from psph.run.guards import Guards
-from psph.run.post_mortem import remove_post_mortem
 from psph.run.record import Record
 from psph.run.resume import listed_particles, take_up, write_checkpoint
 from psph.run.room import check_memory
@@ -60,13 +55,17 @@ def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = Non
     how far the run is.  Raises CaseError, TooManyRanks, TooLittleMemory, BlowUp, OutputError or
     Stopped, each on every rank.
     """
-    with Watch(case.checkpoint) as watch:
+    with ExitStack() as held, Watch(case.checkpoint) as watch:
         scene = Scene(case)
         for warning in check(scene):
             (say or _speaker(comm))(f"warning: {warning}", sys.stderr)
-        return _simulate(
-            scene, folder, comm, say, watch, lambda: _prepare_folder(case, folder, comm, overwrite)
-        )
+
+        def prepare() -> None:
+            make_folder(folder, comm)
+            held.enter_context(alone_in(folder, comm))
+            prepare_folder(scene, folder, comm, overwrite)
+
+        return _simulate(scene, folder, comm, say, watch, prepare)
 
 
 def resume(
@@ -78,21 +77,22 @@ def resume(
 ) -> Finished:
     """Go on with the run in ``folder`` from its newest checkpoint, or the ``chosen`` one.
 
-    The ranks may be others than before: the files end as if it had never been stopped.
-    ``extend`` are keys ``time.end=...``, or of output or checkpoint.  Raises what :func:`run` does,
-    and CheckpointError.
+    The ranks may be others than before: in the end the files hold the same as if it had never been
+    stopped.  ``extend`` are keys ``time.end=...``, or of output or checkpoint.  Raises what
+    :func:`run` does, and CheckpointError.
     """
-    case, saved = take_up(folder, comm, extend, chosen)
-    with Watch(case.checkpoint) as watch:
-        return _simulate(
-            Scene(case),
-            folder,
-            comm,
-            say,
-            watch,
-            lambda: _reopen_folder(case, folder, saved),
-            saved,
-        )
+    with alone_in(folder, comm):
+        case, saved = take_up(folder, comm, extend, chosen)
+        with Watch(case.checkpoint) as watch:
+            return _simulate(
+                Scene(case),
+                folder,
+                comm,
+                say,
+                watch,
+                lambda: reopen_folder(case, folder, saved),
+                saved,
+            )
 
 
 def _simulate(
@@ -192,54 +192,6 @@ def _speaker(comm) -> Say:
 
 def _ranks(size: int) -> str:
     return "1 rank" if size == 1 else f"{size} ranks"
-
-
-def _prepare_folder(case, folder: Path, comm, overwrite: bool) -> None:
-    """Make the folder and leave the case in it; a finished run is not overwritten unasked."""
-    trouble = None
-    if comm.rank == 0:
-        try:
-            trouble = None if overwrite else _in_the_way(case, folder)
-            if not trouble:
-                folder.mkdir(parents=True, exist_ok=True)
-                # What has such a name in a folder without a run is none of ours.
-                if (folder / f"{case.name}.h5").exists():
-                    for name in (LOG, PROBES, ERRORS):
-                        (folder / name).unlink(missing_ok=True)
-                    remove_pictures(folder)
-                remove_checkpoints(folder)
-                remove_post_mortem(folder)
-                (folder / COPY).write_text(case.to_toml(), encoding="utf-8")
-                for name, used in zip(case.use, files_of(case.file, case.use)):
-                    (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                    (folder / name).write_bytes(used.read_bytes())  # a resumed run needs it
-        except OSError as error:
-            trouble = f"{folder}: {error.strerror}; choose another folder with --out"
-    trouble = comm.bcast(trouble)
-    if trouble:
-        raise OutputError(trouble)
-
-
-def _in_the_way(case, folder: Path) -> str | None:
-    """What a run would replace in a folder, in words; None where that is nothing."""
-    copy = folder / COPY
-    if (folder / f"{case.name}.h5").exists():
-        resume = f", or go on with it: `python -m psph resume {folder}`" if checkpoints(folder) else ""
-        return f"{folder} holds a run of {case.name}: give --out or --overwrite{resume}"
-    if copy.exists() and copy.read_bytes() != case.to_toml().encode():
-        return f"{copy} holds another case, which would be lost: give --out or --overwrite"
-    return None
-
-
-def _reopen_folder(case, folder: Path, saved: Saved) -> None:
-    """The case as it is now, and no checkpoint of what is to be simulated again."""
-    with together(saved.comm, folder):
-        if saved.comm.rank == 0:
-            fresh = folder / f"{COPY}.new"
-            fresh.write_text(case.to_toml(), encoding="utf-8")
-            os.replace(fresh, folder / COPY)
-            remove_checkpoints(folder, saved.state["steps"])
-            remove_post_mortem(folder)
 
 
 def _summary(
