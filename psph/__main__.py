@@ -7,10 +7,8 @@ import traceback
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from mpi4py import MPI
-
 from psph.errors import Failed, Foreseen, Refused, one_line
-from psph.options import parser
+from psph.run.watch import listen
 
 PATIENCE, BEFORE_THE_START = 1.0, 10.0
 """Seconds a failed rank waits for the others to fail alike before it ends them all.  What is refused
@@ -19,9 +17,19 @@ before anything starts is refused by all, on a busy machine one after the other.
 
 def main(arguments: list[str]) -> int:
     """Do what the command line asks; returns the exit code."""
+    from mpi4py import MPI
+
+    from psph.options import parser
+
     with _rank_0_speaks(MPI.COMM_WORLD):
         options = parser(VERBS).parse_args(_with_verb(arguments))
     return options.verb(options, MPI.COMM_WORLD) or 0
+
+
+def _simulates(arguments: list[str]) -> bool:
+    """Whether this is to be a run, which ends with a checkpoint when a signal asks for it."""
+    first = arguments[0] if arguments else "-"
+    return first in ("run", "resume") or (first not in VERBS and not first.startswith("-"))
 
 
 @contextmanager
@@ -241,6 +249,10 @@ def guarded(arguments: list[str]) -> None:
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:  # it was closed
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))
+    if _simulates(arguments):
+        listen()  # before MPI and the compiler are brought in, which takes a second or two
+    from mpi4py import MPI
+
     last_words = MPI.COMM_WORLD.Dup()
     try:
         code = main(arguments)

@@ -5,9 +5,20 @@ import sys
 from pathlib import Path
 
 import psph
+from psph.errors import Refused
 from psph.lab.bench import PROBLEMS
 from psph.theory.stability import FORMS, STATES
 from psph.theory.stability.lattices import LATTICES
+
+
+class _Folder(argparse.Action):
+    """A folder.  Refused: an empty name, as of a shell's variable that is not set."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        if not values:
+            what = option_string or self.dest
+            raise Refused(f"{what}: an empty name; give a folder, . for the current one")
+        setattr(namespace, self.dest, Path(values))
 
 
 def parser(verbs) -> argparse.ArgumentParser:
@@ -31,9 +42,9 @@ def parser(verbs) -> argparse.ArgumentParser:
             metavar="KEY=VALUE",
             help="override a key of the case, such as time.end=0.5; off removes it (repeatable)",
         )
-    verb["run"].add_argument("--out", type=Path, help="folder of the files (default: the case's name)")
+    verb["run"].add_argument("--out", action=_Folder, help="folder of the files (default: the case's name)")
     verb["run"].add_argument("--overwrite", action="store_true", help="replace an earlier run there")
-    verb["resume"].add_argument("folder", type=Path, help="the folder of the run")
+    verb["resume"].add_argument("folder", action=_Folder, help="the folder of the run")
     verb["resume"].add_argument(
         "--extend",
         action="append",
@@ -50,7 +61,7 @@ def parser(verbs) -> argparse.ArgumentParser:
     verb["explain"].add_argument(
         "--study", type=Path, metavar="DIR", help="predict error and run time from a study"
     )
-    verb["plot"].add_argument("folder", type=Path, help="the folder of a run")
+    verb["plot"].add_argument("folder", action=_Folder, help="the folder of a run")
     verb["plot"].add_argument("--times", type=float, nargs="+", help="times to show, s")
     verb["plot"].add_argument("--field", default="pressure", help="field to show (default: pressure)")
     _add_study_options(verb["study"])
@@ -81,7 +92,7 @@ def _add_study_options(study: argparse.ArgumentParser) -> None:
     )
     study.add_argument("--error", type=float, help="which settings reach this relative error")
     study.add_argument("--seconds", type=float, help="which settings take this many seconds")
-    study.add_argument("--out", type=Path, help="folder of the files (default: CASE-study)")
+    study.add_argument("--out", action=_Folder, help="folder of the files (default: CASE-study)")
 
 
 def _add_stability_options(stability: argparse.ArgumentParser) -> None:
@@ -132,7 +143,7 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
     )
     stability.add_argument(
         "--out",
-        type=Path,
+        action=_Folder,
         help="folder of the map, the battery or the remedies (default: their "
         "names); runs that are finished there are kept",
     )

@@ -13,7 +13,7 @@ from long import long_but_for
 CASE = "run/cases/negative_pressure.toml"
 
 
-def psph(*arguments):
+def psph(*arguments, cwd=None):
     """A finished ``python -m psph`` on one rank."""
     return subprocess.run(
         [sys.executable, "-m", "psph", *map(str, arguments)],
@@ -22,6 +22,7 @@ def psph(*arguments):
         env=clean_environment(),
         stdin=subprocess.DEVNULL,
         timeout=120,
+        cwd=cwd,
     )
 
 
@@ -216,3 +217,23 @@ def test_a_closed_output_stops_nothing(tmp_path):
 @pytest.mark.parametrize("closed", ("2>&-", "2>/dev/full"))
 def test_a_message_that_cannot_be_written_changes_no_code(closed):
     assert shell(f"$PSPH check {CASE} --set space.spacing=-1 {closed}").returncode == 2
+
+
+@pytest.mark.parametrize(
+    "words, what",
+    [
+        ((CASE, "--out", ""), "--out"),
+        (("run", CASE, "--out="), "--out"),
+        (("study", CASE, "--out", ""), "--out"),
+        (("stability", "--out", ""), "--out"),
+        (("resume", ""), "folder"),
+        (("plot", ""), "folder"),
+    ],
+)
+def test_an_empty_name_is_no_folder(tmp_path, words, what):
+    """As of a variable of the shell that is not set."""
+    words = [str(Path(CASE).resolve()) if word == CASE else word for word in words]
+    job = psph(*words, cwd=tmp_path)
+    assert job.returncode == 2
+    assert job.stderr.strip() == f"{what}: an empty name; give a folder, . for the current one"
+    assert list(tmp_path.iterdir()) == []

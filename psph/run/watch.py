@@ -28,6 +28,20 @@ class Call(IntEnum):
 SIGNALS = {signal.SIGUSR1: Call.SIGUSR1, signal.SIGTERM: Call.SIGTERM}
 
 
+_EARLY: set[Call] = set()
+"""What signals have asked for when no Watch was open."""
+
+
+def listen() -> None:
+    """Remember signals from now on for the run that is to come: else they would end the process."""
+    for number in SIGNALS:
+        signal.signal(number, _remember_early)
+
+
+def _remember_early(number, frame) -> None:
+    _EARLY.add(SIGNALS[number])
+
+
 class Stopped(Failed):
     """A run that was told to stop, with a checkpoint to go on from; raised on every rank."""
 
@@ -39,7 +53,7 @@ class Watch:
     """Listens on this rank while it is open: ``with Watch(case.checkpoint) as watch``.
 
     ``limits`` are the keys of the case; the clock starts here.  A signal does nothing but to be
-    remembered, so that the step goes on to its end.
+    remembered, so that the step goes on to its end; so does one that came since :func:`listen`.
     """
 
     def __init__(self, limits):
@@ -51,6 +65,8 @@ class Watch:
 
     def __enter__(self) -> "Watch":
         self._before = {number: signal.signal(number, self._remember) for number in SIGNALS}
+        self._signalled = max({self._signalled, *_EARLY})
+        _EARLY.clear()
         return self
 
     def __exit__(self, *exception) -> None:

@@ -190,6 +190,38 @@ guarded(sys.argv[1:])
 """
 
 
+TOLD_AT_ONCE = """
+import os, signal, sys
+
+class Told:
+    def find_spec(self, name, path=None, target=None):
+        if name == "mpi4py":
+            os.kill(os.getpid(), signal.{number})
+
+sys.meta_path.insert(0, Told())
+from psph.__main__ import guarded
+guarded(sys.argv[1:])
+"""
+"""A signal before MPI is there, which takes a second or two of the start."""
+
+
+@pytest.mark.parametrize("number", ["SIGUSR1", "SIGTERM"])
+def test_a_signal_before_anything_has_begun_is_heard(box, tmp_path, number):
+    told, folder = tmp_path / "told.py", tmp_path / "run"
+    told.write_text(TOLD_AT_ONCE.replace("{number}", number), encoding="utf-8")
+    for arguments in ([box[0], "--out", folder, "--set", LATER], ["resume", folder]):
+        job = mpirun(1, [told, *arguments])
+        assert job.returncode == 75, job.stderr
+        assert f"stopped by {number} at t = 0." in job.stderr
+    assert [path.name for path in checkpoints(folder)] == ["checkpoint-2.h5", "checkpoint-1.h5"]
+
+
+def test_other_verbs_are_ended_by_a_signal(tmp_path):
+    told = tmp_path / "told.py"
+    told.write_text(TOLD_AT_ONCE.replace("{number}", "SIGTERM"), encoding="utf-8")
+    assert mpirun(1, [told, "schema"]).returncode not in (0, 75)
+
+
 def test_a_refusal_is_one_line_and_code_2(box, tmp_path):
     folder = tmp_path / "run"
     shutil.copytree(box[1], folder)
