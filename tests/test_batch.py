@@ -132,7 +132,7 @@ def test_warned_turns_go_back_into_the_queue_and_a_finished_one_rests(home, queu
         assert job.returncode == 0, err
         assert "stopped by SIGUSR1" in err and asked(queue) == ["requeue 77"] * (number + 1)
         assert f"turn {number + 2} goes on from results/box-77/checkpoint-" in out
-        assert ("goes on from checkpoint-" in out.split("Back")[0]) == (number == 1)
+        assert ("resuming from checkpoint-" in out.split("Back")[0]) == (number == 1)
         assert "psph: two words:" in out
         assert not list(home.glob(".psph-*"))
 
@@ -280,7 +280,7 @@ def test_a_job_that_is_warned_puts_itself_back_until_it_is_done(cluster, home, w
         until(lambda: job.ended() or job.state() == "RUNNING", 60)
     assert job.end() == "COMPLETED", job.log()
     assert job.turns() == TURNS, job.log()
-    assert job.log().count("stopped by SIGUSR1") == job.log().count("goes on from checkpoint-") == 2
+    assert job.log().count("stopped by SIGUSR1") == job.log().count("resuming from checkpoint-") == 2
     assert same_files(job.folder, unbroken)
     tell("turns of a job that Slurm warned, to the files of the unbroken run", job.turns())
 
@@ -318,7 +318,7 @@ def test_a_job_that_slurm_puts_back_goes_on_or_begins_anew(cluster, home, whole)
             for path in checkpoints(job.folder):
                 path.unlink()
         assert job.end() == "COMPLETED" and job.turns() == 2, job.log()
-        assert ("goes on from checkpoint-" in job.log()) == left
+        assert ("resuming from checkpoint-" in job.log()) == left
         assert same_files(job.folder, unbroken)
 
 
@@ -338,7 +338,7 @@ def test_a_cancelled_job_stays_away_and_another_goes_on(cluster, home, whole):
     cores = min(os.cpu_count(), 2)
     other = Job(cluster, home, "--ntasks=1", f"--cpus-per-task={cores}", SCRIPT, *shlex.split(way))
     assert other.end() == "COMPLETED", other.log()
-    assert "goes on from checkpoint-" in other.log() and same_files(job.folder, unbroken)
+    assert "resuming from checkpoint-" in other.log() and same_files(job.folder, unbroken)
 
 
 @LONG

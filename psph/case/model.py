@@ -310,7 +310,7 @@ class Case(Table):
     neighbours: Neighbours = key("the neighbour lists", make=Neighbours)
     exact: Exact = key("an exact solution of the case, for its initial state and its errors", make=Exact)
     experiments: dict[Name, Experiment] = key("experiments by name: measured curves to compare with", {})
-    study: Study = key("the keys that `psph study` varies, and its measure of error", make=Study)
+    study: Study = key("the keys that `python -m psph study` varies, and its measure of error", make=Study)
 
     offered: ClassVar[Catalogue] = BUILT_IN
     _file: str = PrivateAttr("case")

@@ -113,7 +113,8 @@ def _rows(whole: Node, table: Node) -> list[str]:
 
 def _row(whole: Node, name: str, node: Node, required: bool) -> str:
     cells = (f"`{name}`", _type(whole, node), _default(node, required), node.get("unit", ""))
-    return f"| {' | '.join(cells)} | {node.get('description', '')} |"
+    meaning = node.get("description", "").replace("|", "\\|")
+    return f"| {' | '.join(cells)} | {meaning} |"
 
 
 def _type(whole: Node, node: Node) -> str:

@@ -51,7 +51,7 @@ def probe_charts(run: Run, case: dict) -> list[Chart]:
 
 
 def log_charts(run: Run, dimensions: int) -> list[Chart]:
-    """Energies, largest speed, error of the density, time step."""
+    """Energies, largest speed, deviation of the density, time step."""
     log = run.log()
     if not log or not len(log["time"]):
         return []
@@ -63,7 +63,7 @@ def log_charts(run: Run, dimensions: int) -> list[Chart]:
     return [
         Chart("energy", ("J/m²", "J/m", "J")[dimensions - 1], time, energies),
         Chart("largest speed", "m/s", time, {"": log["largest_speed"]}),
-        Chart("largest error of the density", "%", time, {"": 100 * log["density_error"]}),
+        Chart("largest deviation of the density", "%", time, {"": 100 * log["density_error"]}),
         Chart("time step", "s", time, {"": np.where(log["dt"] > 0, log["dt"], np.nan)}),
     ]
 

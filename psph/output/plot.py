@@ -223,7 +223,7 @@ class Show:
 
 
 def _view(case: dict, start: dict, frames: Iterable[dict]) -> View:
-    """Gravity points down; in 3D the shortest level axis is cut in the middle."""
+    """Gravity points down, but for a periodic axis; in 3D the shortest level axis is cut in the middle."""
     dimensions, spacing = case["space"]["dimensions"], case["space"]["spacing"]
     corners = np.array([_corners(frame) for frame in (start, *frames)])
     room = corners[0, 1] - corners[0, 0] + spacing
@@ -233,7 +233,9 @@ def _view(case: dict, start: dict, frames: Iterable[dict]) -> View:
     if dimensions == 1:
         return View(1, spacing, 0, 0, None, 0.0, lower[[0, 0]], upper[[0, 0]])
     gravity = case.get("physics", {}).get("gravity", {}).get("acceleration", [0.0] * dimensions)
-    up = int(np.abs(gravity).argmax()) if any(gravity) else dimensions - 1
+    # Along a periodic axis gravity drives a channel: there is no height.
+    pull = [0.0 if "xyz"[d] in case["space"].get("periodic", ()) else abs(g) for d, g in enumerate(gravity)]
+    up = int(np.argmax(pull)) if any(pull) else dimensions - 1
     level = sorted(set(range(dimensions)) - {up}, key=lambda axis: (-room[axis], axis))
     across, cut = level[0], level[1] if dimensions == 3 else None
     axes = [across, up]

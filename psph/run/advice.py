@@ -85,7 +85,10 @@ def _walls(scene, guard: str, suspect) -> Iterator[str]:
     for material, (layers, _) in thinnest_walls(scene).items():
         yield f"make walls.{names[material]} thicker: {need} spacings instead of {layers}"
     if guard == "depth":
-        yield "use a finer space.spacing: a fast particle then interacts with more wall particles"
+        yield (
+            "make the walls higher if it jumped over a rim; else use a finer space.spacing: a fast particle "
+            "then interacts with more wall particles"
+        )
 
 
 def _bound(guard: str) -> Iterator[str]:

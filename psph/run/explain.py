@@ -9,6 +9,7 @@ from psph.parallel.slabs import check_ranks
 from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
+from psph.physics.motion import is_prescribed
 from psph.run.forecast import forecast, forecast_lines, pull, sites_within
 from psph.run.hints import hints
 from psph.run.outlay import output_lines
@@ -105,6 +106,13 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
+    for one in scene.species:
+        if is_prescribed(one.motion):
+            yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"
+    for region, _ in scene.regions:
+        yield f"  region      {type(region).__name__}: {_first_line(region)}"
+    for name, table in scene.tables.items():
+        yield f"  table       {name}.csv: {_first_line(table)}"
     yield (
         f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
         f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
@@ -159,7 +167,7 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     yield from _early_passes(plan)
     yield f"Pass over the neighbours, one a step, {flops} flops a pair"
     laws = [type(law).__name__ for law in plan.laws]
-    names = [type(call.effect).__name__ for call in plan.called]
+    names = [call.name for call in plan.called]
     width = _column([*names, *laws, *(entry.effect.__name__ for entry in plan.absent)])
     for name, call in zip(names, plan.called):
         yield f"  {name:<{width}}{_first_line(call.effect)}"

@@ -46,7 +46,7 @@ def forecast_lines(found: Forecast, ranks: int, end: float) -> Iterator[str]:
     yield f"  expected            {found.steps:,} steps to {end:g} s, limited by {found.limit}"
     yield (
         f"  run time            about {duration(max(found.seconds, 1.0))} on {where}, a guess by the pace of "
-        "docs/performance.md; `psph bench` measures this machine"
+        "docs/performance.md; `python -m psph bench` measures this machine"
     )
 
 

@@ -65,7 +65,7 @@ class Guards:
     def summary(self) -> Iterator[str]:
         """A line for each guard that had something to say, and how often."""
         for guard, times in self.seen.items():
-            yield f"guards.{guard}: passed in {times:,} of the steps that were looked at"
+            yield f"guards.{guard} was exceeded in {times:,} of the steps that were checked"
 
     def _tripped(self) -> Iterator[str]:
         """The keys of the guards whose bounds the last step has passed."""
@@ -184,6 +184,15 @@ class Guards:
     def _fluid(self) -> np.ndarray:
         return self.simulation.store.shown("kind") == FLUID
 
+    def _side_passed(self, suspect: Suspect) -> str | None:
+        """Beyond which side of all walls a particle is, in words; None where it is among them."""
+        lattice = self.scene.lattice
+        for axis, x, least, most in zip("xyz", suspect.value("position"), lattice.lower, lattice.upper):
+            if x < least - self.scene.spacing or x > most + self.scene.spacing:
+                end = least if x < least else most
+                return f"at {axis} = {x:.4g} m, where they end at {end:.4g} m: over the rim, or through"
+        return None
+
     def _words(self, guard: str, suspect: Suspect) -> str:
         """What is wrong, and the bound that it passes."""
         c = self.scene.sound_speed
@@ -208,6 +217,8 @@ class Guards:
                 part = suspect.value("density") / suspect.value("rest_density")
                 return f"{who} has {part:.3g} of its rest density{bound}"
             case "depth":
+                if (side := self._side_passed(suspect)) is not None:
+                    return f"{who} has left the walls {side}{bound}"
                 return f"{who} is behind the face of a wall{bound}"
             case _:
                 return (

@@ -17,7 +17,7 @@ DIGITS = 19
 def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[str]:
     """Frames and tables of a scene whose particles have so many ``neighbours``, in ``steps``."""
     out, particles = scene.case.output, int(scene.counts().sum())
-    yield "Output, of which nothing is written more than once a step"
+    yield "Output, at most once a step"
     frames, each = _moments(scene, out.frames, steps), bytes_per_frame(scene, plan)
     yield f"  frames              {frames:,}, {amount(each)} each, {amount(frames * each)} in all"
     yield f"  log.csv             {_moments(scene, out.log, steps):,} rows"

@@ -55,7 +55,7 @@ def _report(scene, simulation, what, suspect, tries, left) -> Iterator[str]:
     yield from _particle(scene, simulation, suspect)
     yield "\n## What pushed it in the last step\n"
     yield from _pushes(suspect)
-    yield "\n## What stands around it\n"
+    yield "\n## Neighbours\n"
     yield from _neighbours(scene, suspect)
     yield f"\n![Around the particle: pressure and velocity]({PICTURE})\n"
     yield "## What to try\n"
@@ -92,7 +92,7 @@ def _pushes(suspect: Suspect) -> Iterator[str]:
     length = np.linalg.norm(total)
     along = total / length if 0.0 < length < np.inf else np.zeros(len(total))
     yield (
-        "| term | acceleration (m/s²) | along the whole | rate of density (kg/(m³ s)) | "
+        "| term | acceleration (m/s²) | component along the total | rate of density (kg/(m³ s)) | "
         "shift (m/s) |\n|---|---|---|---|---|"
     )
     for share in sorted(suspect.shares, key=lambda s: -np.nan_to_num(_length(s), nan=np.inf)):

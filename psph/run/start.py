@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from psph.case.model import Checkpoint
-from psph.engine.jit import CACHE
+from psph.engine.jit import CACHE, is_kept
 from psph.output.checkpoint import Saved
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
@@ -119,11 +119,12 @@ def _simulate(
         say(line)
     compiling = compile_ahead(scene, plan, comm)
     if compiling > WORTH_SAYING:
-        kept = "" if CACHE.trouble else " (kept for the next run)"
+        own = is_kept(plan.effects, plan.motions, plan.laws, plan.kernel)
+        kept = " (kept for the next run)" if own and not CACHE.trouble else ""
         say(f"compiled in {compiling:.1f} s{kept}")
     simulation, record = _begin(scene, plan, comm, folder, saved)
     if saved:
-        say(f"goes on from {saved.path.name}: step {simulation.steps:,}, {simulation.time:.6g} s")
+        say(f"resuming from {saved.path.name}: step {simulation.steps:,}, {simulation.time:.6g} s")
     first = simulation.steps
     record.write_due()
     guards = Guards(scene, simulation, record, folder, lambda line: say(line, sys.stderr))

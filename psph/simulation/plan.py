@@ -52,11 +52,13 @@ Extremes = namedtuple("Extremes", ("sound_speed", "smoothing_length", *(f.name f
 
 
 class Called(NamedTuple):
-    """An effect of the scene, the key of the case that called for it, and what it reads."""
+    """An effect of the scene, the key of the case that called for it, what it reads, and its name in the
+    catalogue: some effects have forms of their own for a scene."""
 
     effect: Any
     reason: str
     reads: Reads
+    name: str
 
 
 @dataclass(frozen=True)
@@ -201,8 +203,13 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     motions = tuple(motion for _, motion in sorted(prescribed, key=str))
     fields = by_name(catalogue.fields.values(), written, further, [ANCHOR])
     called = tuple(
-        Called(effect, reason, reads(effect, scene.dimensions, scene.kernel, fields))
-        for _, effect, reason in fitted
+        Called(
+            effect,
+            reason,
+            reads(effect, scene.dimensions, scene.kernel, fields),
+            entry.effect.__name__,
+        )
+        for entry, effect, reason in fitted
     )
     present = {entry for entry, *_ in fitted}
     laws = _laws(scene, catalogue.states)

@@ -191,7 +191,7 @@ def test_log_shows_the_change_of_energy_and_growth_in_decades(tank):
     assert [panel.get_title(loc="left") for panel in axes] == [
         "energy (J/m)",
         "largest speed (m/s)",
-        "largest error of the density (%)",
+        "largest deviation of the density (%)",
         "time step ($10^{-4}$ s)",
     ]
 

@@ -87,7 +87,9 @@ def test_through_the_wall(tmp_path):
     trouble, _ = started(boxed(tmp_path, COMM, *lines), tmp_path / "run", COMM)
     number = nearest_fluid(tmp_path / "run", [0.65, 0.45])
     assert "lost a particle at step 100, " in str(trouble)
-    assert f"particle {number} is behind the face of a wall (guards.depth = 1)" in str(trouble)
+    assert f"particle {number} has left the walls at x = " in str(trouble)
+    assert re.search(r"where they end at 1\.\d+ m: over the rim, or through \(guards", str(trouble))
+    assert "make the walls higher if it jumped over a rim" in report_of(tmp_path / "run")[0]
     assert Run(tmp_path / "run").frame(-1)["position"].max() > 1.2 + 0.1
     assert report_of(tmp_path / "run")[1]["pushed hardest by"] == "nothing"  # all alone out there
 
@@ -196,8 +198,8 @@ def test_warned_runs_go_on_and_are_the_same(tmp_path):
     trouble, said = started(warned, tmp_path / "warned", COMM)
     assert trouble is None
     lines = [line for line in said if line.startswith("warning: step")]
-    [count] = [line for line in said if line.startswith("guards.speed: ")]
-    times = int(re.search(r"passed in (\d+) of", count)[1])
+    [count] = [line for line in said if line.startswith("guards.speed was exceeded")]
+    times = int(re.search(r"exceeded in (\d+) of", count)[1])
     assert times > 4 and len(lines) == int(np.log2(times)) + 1 < times
     assert "step 1, " in lines[0] and "step 2, " in lines[1] and "for the 4th time" in lines[2]
     assert not (tmp_path / "warned" / REPORT).exists()

@@ -158,7 +158,7 @@ def test_a_signal_to_a_real_job_loses_nothing(box, tmp_path, number, to, ranks):
     assert len(checkpoints(folder)) >= 1 and not same_files(folder, whole)
     job = mpirun(after, ["-m", "psph", "resume", folder])
     assert job.returncode == 0, job.stderr
-    assert "goes on from checkpoint-" in job.stdout
+    assert "resuming from checkpoint-" in job.stdout
     assert same_files(folder, whole)
 
 

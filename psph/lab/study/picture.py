@@ -32,9 +32,7 @@ def draw(
         axes.set_yscale("log")
         if len(front) > 1:
             x, y = zip(*((r["seconds"], 100.0 * r["error_l2"]) for r in front))
-            axes.plot(
-                x, y, color=style.WALLS, lw=6, solid_capstyle="round", zorder=1, label="nothing beats these"
-            )
+            axes.plot(x, y, color=style.WALLS, lw=6, solid_capstyle="round", zorder=1, label="best choices")
         for k, (name, rows) in enumerate(curves):
             colour = style.LINES[k % len(style.LINES)]
             x = [r["seconds"] for r in rows]

@@ -219,7 +219,7 @@ class PairDamping(NamedTuple):
 
 
 class ImpactDamping(NamedTuple):
-    """Numerical friction where neighbours meet fast: nothing flies through a wall.
+    """Numerical friction where neighbours meet fast: it stops what comes at a wall at up to c.
 
     a_i = −β Σ_j ρ₀ m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0), ρ₀ the
     smaller of the pair's two rest densities: over a length h of matter a speed falls by e^β.  von

@@ -458,7 +458,7 @@ def test_errors_against_the_finest_run_hold_its_own(done, tmp_path):
     for dx, row in rows.items():
         assert 1 / 1.3 < float(row["error_l2"]) / true[dx] < 1.3
     assert float(rows[0.025]["difference_l2"]) < 0.85 * true[0.025]  # what was told as its error
-    assert "The errors hold that of the finest run itself, estimated as" in job.stdout
+    assert "The errors include that of the finest run itself, estimated as" in job.stdout
     answer = job.stdout[job.stdout.index("For an error of 1 %") :].splitlines()
     spacing = float(answer[2].removeprefix("spacing = "))
     order = math.log(true[0.05] / true[0.0125]) / math.log(4.0)
