@@ -89,7 +89,7 @@ def test_through_the_wall(tmp_path):
     assert "lost a particle at step 100, " in str(trouble)
     assert f"particle {number} has left the walls at x = " in str(trouble)
     assert re.search(r"where they end at 1\.\d+ m: over the rim, or through \(guards", str(trouble))
-    assert "make the walls higher if it jumped over a rim" in report_of(tmp_path / "run")[0]
+    assert "Make the walls higher if it jumped over a rim" in report_of(tmp_path / "run")[0]
     assert Run(tmp_path / "run").frame(-1)["position"].max() > 1.2 + 0.1
     assert report_of(tmp_path / "run")[1]["pushed hardest by"] == "nothing"  # all alone out there
 
