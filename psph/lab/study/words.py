@@ -59,7 +59,10 @@ def own_error_words(own: OwnError) -> str:
         if own.measured
         else f"for an order of {own.order:.1f}, assumed since these runs do not tell it"
     )
-    return f"The errors include that of the finest run itself, estimated as {percent(own.error)} {how}."
+    return (
+        f"The errors include that of the finest run itself, estimated as {percent(own.error)} {how}. "
+        "An error that all spacings share is not seen: give an exact solution or an experiment where there is one."
+    )
 
 
 def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
