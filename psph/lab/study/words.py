@@ -61,7 +61,8 @@ def own_error_words(own: OwnError) -> str:
     )
     return (
         f"The errors include that of the finest run itself, estimated as {percent(own.error)} {how}. "
-        "An error that all spacings share is not seen: give an exact solution or an experiment where there is one."
+        "An error that all spacings share is not seen: give an exact solution or an experiment where there "
+        "is one."
     )
 
 
