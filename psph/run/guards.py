@@ -70,7 +70,7 @@ class Guards:
     def _tripped(self) -> Iterator[str]:
         """The keys of the guards whose bounds the last step has passed."""
         simulation, bounds = self.simulation, self.bounds
-        if simulation.speed > bounds.speed * self.scene.sound_speed:
+        if simulation.fluid_speed > bounds.speed * self.scene.sound_speed:
             yield "speed"
         if simulation.strain > bounds.density:
             yield "density"

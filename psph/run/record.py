@@ -172,7 +172,7 @@ class Record:
         sim = self.simulation
         sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.gravity)
         error = diagnostics.density_error(sim.comm, sim.store)
-        self.log.write([sim.time, sim.steps, sim.dt, *sums.tolist(), sim.speed, error])
+        self.log.write([sim.time, sim.steps, sim.dt, *sums.tolist(), sim.fluid_speed, error])
         if self.accuracy:
             self.latest_errors = self.accuracy.errors(sim.time)
             self.errors.write([sim.time, *self.latest_errors])

@@ -59,7 +59,7 @@ class Engine:
         self.store.rotate("density_rate", "density_rate_1", "density_rate_2")
 
     def kick(self, time: float, dt: float, pace: float) -> list[float]:
-        """The second kick.  Returns the largest |v|², |a|², strain and square of a shift of this rank."""
+        """The second kick.  Returns the largest |v|², |a|², strain, squared shift and |v|² of walls here."""
         if self.plan.evolving:
             self._each(kick_rows, dt, self.store.data, self._rows_that_evolve())
         parts = self._each(kick, time, dt, self._rules, self._view(pace), self._columns())

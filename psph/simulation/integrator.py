@@ -64,15 +64,17 @@ def state_of(first, last, rules, view, columns):
 def kick(first, last, time, dt, rules, view, columns):
     """Kick by the second half of the step, with the new rates.
 
-    Returns the largest |v|² and |a|² of what moves, and |ρ/ρ₀ − 1| and square of a displacement over
-    its time step, m²/s², of the fluid, over the columns ``first`` to ``last``; the strain is infinite
-    where any particle has a number that is not finite.
+    Over the columns ``first`` to ``last``, returns the largest |v|² of the fluid, |a|² of all that
+    moves, |ρ/ρ₀ − 1| and square of a displacement over its time step, m²/s², of the fluid, and |v|² of
+    walls whose motion is prescribed; the strain is infinite where any particle has a number that is not
+    finite.
     """
     c = columns
     v2_max = 0.0
     a2_max = 0.0
     strain_max = 0.0
     shift2_max = 0.0
+    wall_v2_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
         rho = c.density[k] + 0.5 * dt * c.density_rate[k]
@@ -94,9 +96,9 @@ def kick(first, last, time, dt, rules, view, columns):
             rho = limit_wall_density(rules.effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
             v2, a2 = hurry(rules.motions, rules.motion_of[group], k, time, dt, c)
-            v2_max, a2_max = max(v2_max, v2), max(a2_max, a2)
+            wall_v2_max, a2_max = max(wall_v2_max, v2), max(a2_max, a2)
         c.density[k] = rho
-    return v2_max, a2_max, strain_max, shift2_max
+    return v2_max, a2_max, strain_max, shift2_max, wall_v2_max
 
 
 @elementwise

@@ -51,17 +51,23 @@ def sum_over_pairs(simulation) -> None:
 
 def kick(simulation) -> None:
     """The second kick, with the new rates."""
-    simulation.pace = simulation.speed  # bounds the shifts of the next step, whose speed is not known
+    simulation.pace = simulation.fluid_speed  # bounds the shifts of the next step, whose speed is not known
     with simulation.ledger("kick"):
         simulation.own_extremes = simulation.engine.kick(simulation.then, simulation.dt, simulation.pace)
 
 
 def find_limits(simulation) -> None:
-    """The largest speed, acceleration, strain, word and shift over all ranks."""
-    *extremes, shift2 = simulation.own_extremes
+    """The largest speeds, acceleration, strain, word and shift over all ranks.
+
+    A scene without shifts or moving walls sends no number for them.
+    """
+    *extremes, shift2, wall2 = simulation.own_extremes
+    displaces, moves = simulation.plan.displaces, bool(simulation.plan.motions)
     with simulation.ledger("limits"):
-        sent = [*extremes, simulation.word(), *([shift2] if simulation.plan.displaces else [])]
+        sent = [*extremes, simulation.word(), *([shift2] * displaces), *([wall2] * moves)]
         found = largest(simulation.comm, sent)
-    simulation.speed, simulation.acceleration = np.sqrt(found[:2]).tolist()
+    simulation.fluid_speed, simulation.acceleration = np.sqrt(found[:2]).tolist()
     simulation.strain, simulation.heard = found[2:4].tolist()
-    simulation.shift = float(np.sqrt(found[4:]).sum())
+    simulation.shift = float(np.sqrt(found[4]) if displaces else 0.0)
+    walls = float(np.sqrt(found[-1]) if moves else 0.0)
+    simulation.speed = max(simulation.fluid_speed, walls)

@@ -22,6 +22,7 @@ CLOCK = (
     "steps",
     "limited_by",
     "speed",
+    "fluid_speed",
     "pace",
     "acceleration",
     "shift",
@@ -42,10 +43,11 @@ class Simulation:
     """Particles, domain and clock; ``step`` advances them.
 
     ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
-    scene.  ``time`` in s, ``dt`` the last step.  Over all ranks ``speed`` is the largest in m/s and
-    ``strain`` the largest |ρ/ρ₀ − 1| of the fluid after the last step, infinite where a number is
-    not finite.  ``word`` is asked at the end of each step for a number from 0 on that a rank wants
-    all others to know; ``heard`` is the largest of them, the same on every rank.
+    scene.  ``time`` in s, ``dt`` the last step.  Over all ranks ``speed`` is the largest in m/s of all
+    that moves, ``fluid_speed`` that of the fluid, and ``strain`` its largest |ρ/ρ₀ − 1| after the last
+    step, infinite where a number is not finite.  ``word`` is asked at the end of each step for a number
+    from 0 on that a rank wants all others to know; ``heard`` is the largest of them, the same on every
+    rank.
     With ``saved`` it goes on from a checkpoint (psph.run.resume), whose particles ``store``
     holds where the lists were made.
     """
@@ -61,7 +63,7 @@ class Simulation:
         self.stages = tuple(stages_of(plan))
         self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
         self.listed = False
-        self.speed, self.pace, self.strain = 0.0, 0.0, 0.0
+        self.speed, self.fluid_speed, self.pace, self.strain = 0.0, 0.0, 0.0, 0.0
         self.acceleration = self.shift = 0.0
         self.energy_at_start: float | None = None
         self.limited_by = ""
@@ -155,8 +157,8 @@ class Simulation:
         """Raise BlowUp where no step can follow: the extremes are the same on every rank."""
         if not self.strain < np.inf:
             what = "a position, velocity or density is not finite"
-        elif self.speed > TOO_FAST * self.plan.constants["sound_speed"]:
-            what = f"a particle moves at {self.speed:.3g} m/s, over {TOO_FAST:g} speeds of sound"
+        elif self.fluid_speed > TOO_FAST * self.plan.constants["sound_speed"]:
+            what = f"a particle moves at {self.fluid_speed:.3g} m/s, over {TOO_FAST:g} speeds of sound"
         else:
             return
         raise BlowUp(f"the run blew up at step {self.steps}, time {self.time:.6g} s: {what}")

@@ -72,11 +72,11 @@ def test_walls_stay_and_lost_numbers_are_reported():
     view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
     columns = Columns(group, None, x, v, predicted, a, density, *rates, volume, pressure)
     kick_drift_predict(0, 2, 0.0, 0.1, RULES, view, columns)
-    *_, error, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
+    *_, error, _, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
     assert x[0][0] == v[0][0] == 0.0 and error == np.inf
     a[0][1] = v[0][1] = 0.0
-    *_, error, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
+    *_, error, _, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
     assert error == np.inf  # its place is lost
     x[0][1] = 1.0
-    *_, error, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
+    *_, error, _, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
     assert error == abs(density - 1.0).max() < np.inf
