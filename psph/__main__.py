@@ -73,10 +73,13 @@ def _explain(options, comm) -> None:
     from psph.run.explain import explain
     from psph.scene import Scene
 
+    ranks = comm.size if options.ranks is None else options.ranks
+    if ranks < 1:
+        raise Refused(f"explain --ranks {ranks}: not a number of ranks; give 1 or more")
     scene = Scene(_load(options))
     _warn(scene, comm)
     if comm.rank == 0:
-        print("\n".join(explain(scene, options.ranks or comm.size)))
+        print("\n".join(explain(scene, ranks)))
         if options.study:
             from psph.lab.study.prediction import predicted
 

@@ -90,6 +90,13 @@ def test_a_command_that_is_none_is_one_line(words, says):
     assert (job.returncode, job.stderr.strip()) == (2, says)
 
 
+@pytest.mark.parametrize("ranks", ["-3", "0"])
+def test_no_ranks_are_refused_in_one_line(ranks):
+    job = psph("explain", CASE, "--ranks", ranks)
+    assert job.returncode == 2 and not job.stdout
+    assert job.stderr.strip() == f"explain --ranks {ranks}: not a number of ranks; give 1 or more"
+
+
 def test_a_fault_in_the_case_is_one_line_and_code_2(tmp_path):
     job = psph("check", CASE, "--set", "space.spacing=-1")
     assert job.returncode == 2 and len(job.stderr.strip().splitlines()) == 1

@@ -84,7 +84,7 @@ class Prices:
         """
         held = np.add.reduceat(histogram, _fitted(bounds, histogram)[:-1])
         known = (held > 0) & (spent > 0)
-        if spent.sum() < WORTH_MEASURING:
+        if spent.sum() < WORTH_MEASURING or not known.any():
             return
         average = spent.sum() / held.sum()
         measured = PAR * (spent[known] / held[known] / average)

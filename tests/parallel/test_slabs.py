@@ -110,6 +110,9 @@ def test_an_accident_empties_no_slab():
     unknown.learn(np.full(10, 100), bounds, np.array([900, 100]))  # a microsecond says nothing
     unknown.learn(np.array([0] * 5 + [100] * 5), bounds, np.array([10**9, 10**9]))  # nor no particle
     assert unknown.each[0] == PAR
+    with np.errstate(all="raise"):
+        unknown.learn(np.zeros(10, int), bounds, np.array([10**9, 10**9]))  # nor an empty scene
+    assert unknown.each[0] == PAR
 
 
 def test_prices_follow_a_grid_that_grows():
