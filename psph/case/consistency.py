@@ -7,6 +7,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.errors import advise
 from psph.case.keys import AXES, Table
+from psph.case.parameters import last_part
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
 from psph.theory.solutions.catalogue import SOLUTIONS, known
@@ -27,6 +28,8 @@ def contradictions(case) -> list[InitErrorDetails]:
         _exact,
         _effects,
         _continued,
+        _moved,
+        _regions,
         _friction,
         _probed,
         _names,
@@ -201,6 +204,31 @@ def _continued(case) -> Iterator[Finding]:
                 ("walls", name, "continues"),
                 wall.continues,
                 (f"no fluid has this name; {advise(wall.continues, case.fluids)}"),
+            )
+
+
+def _moved(case) -> Iterator[Finding]:
+    """Walls that are to move in no way, or in several."""
+    names = [last_part(entry) for entry in case.catalogue.motions]
+    for name, wall in case.walls.items():
+        motion = getattr(wall, "motion", None)
+        asked = [one for one in names if getattr(motion, one, None) is not None]
+        if motion is not None and len(asked) != 1:
+            found = f"a wall cannot move in {len(asked)} ways" if asked else "does not say how the wall moves"
+            yield ("walls", name, "motion"), ..., f"{found}; give one of: {', '.join(names)}"
+
+
+def _regions(case) -> Iterator[Finding]:
+    """Regions that are none, or that let a fluid in that is none."""
+    names = [last_part(entry) for entry in case.catalogue.regions]
+    for name, region in getattr(case, "regions", {}).items():
+        if all(getattr(region, one) is None for one in names):
+            yield ("regions", name), ..., f"does not say what happens there; give one of: {', '.join(names)}"
+        if region.into is not None and region.into not in case.fluids:
+            yield (
+                ("regions", name, "into"),
+                region.into,
+                (f"no fluid has this name; {advise(region.into, case.fluids)}"),
             )
 
 

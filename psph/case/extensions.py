@@ -3,7 +3,7 @@
 import hashlib
 import importlib.util
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,10 +12,16 @@ from psph.case.parameters import last_part
 from psph.smoothing import KERNELS
 
 if TYPE_CHECKING:
-    from psph.physics.catalogue import Catalogue
+    from psph.physics.catalogue import Catalogue, Entry
 
 PREFIX = "psph_used_"
 """Modules of such files are named so: they are loaded once, however many cases use them."""
+
+OWN_TABLES = ("log", "probes", "errors")
+"""What psph itself writes as NAME.csv (psph.output.tables)."""
+
+OWN_KEYS = {"physics.sound_speed", "physics.equation_of_state"}
+"""Keys of ``physics`` that call for no effect."""
 
 
 def catalogue_of(file: str, names: Sequence[str]) -> "Catalogue":
@@ -26,9 +32,11 @@ def catalogue_of(file: str, names: Sequence[str]) -> "Catalogue":
     """
     from psph.physics.catalogue import BUILT_IN, Catalogue
 
-    found = BUILT_IN
+    found, modules = BUILT_IN, {}
     for name in names:
-        more = getattr(_module(file, name), "CATALOGUE", None)
+        modules.setdefault(_module(file, name), name)  # a file named twice is one file
+    for module, name in modules.items():
+        more = getattr(module, "CATALOGUE", None)
         if not isinstance(more, Catalogue):
             raise CaseError(
                 [
@@ -36,10 +44,44 @@ def catalogue_of(file: str, names: Sequence[str]) -> "Catalogue":
                     "psph.physics.catalogue with what it brings"
                 ]
             )
+        for faults in map(_clash, Catalogue._fields, found, more):
+            for says in faults:
+                raise CaseError([f"{file}: use: {name} brings {says}; rename it"])
         for entry in more.kernels:
             _register(file, name, last_part(entry), entry.effect)
         found = found.with_more(more)
     return found
+
+
+def origin(kind: type) -> Path | None:
+    """The file that a case uses and that brought a class; None for what psph itself has."""
+    module = sys.modules[kind.__module__]
+    return Path(module.__file__) if module.__name__.startswith(PREFIX) else None
+
+
+def _clash(group: str, there: "Sequence[Entry]", brought: "Sequence[Entry]") -> Iterator[str]:
+    """What of a group of a catalogue has a name that something has already, in words.
+
+    Several effects may answer to a key such as ``fluids.*.viscosity``, which is no table of their own.
+    """
+    taken = {_name(group, entry) for entry in there} - {""}
+    if group == "effects":
+        taken |= OWN_KEYS
+    for entry in brought:
+        name = _name(group, entry)
+        bare = name.partition("=")[0]
+        if group == "tables" and name.lower() in OWN_TABLES:
+            yield f"{entry.key}, and psph writes {name.lower()}.csv itself"
+        elif name in taken or bare in taken or any(one.startswith(f"{name}=") for one in taken):
+            yield f"{entry.key}, and there is one"
+        taken |= {name} - {""}
+
+
+def _name(group: str, entry: "Entry") -> str:
+    """What must be one entry's alone; empty where several may share it."""
+    if group != "effects":
+        return last_part(entry)
+    return "" if "*" in entry.key else entry.key
 
 
 def _register(file: str, name: str, kernel: str, kind: type) -> None:
@@ -67,9 +109,17 @@ def _module(file: str, name: str):
             [f"{file}: use: {name} is not a Python file in the case's folder or below; put it there"]
         )
     try:
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-    except OSError as error:
-        raise CaseError([f"{file}: use: {path}: {error.strerror}; give a file that is there"]) from None
+        inside = path.resolve().is_relative_to(Path(file).parent.resolve())
+        if inside and path.exists() and not path.is_file():  # a pipe or a device might never end
+            raise CaseError([f"{file}: use: {path} is not a regular file; give a Python file"])
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16] if inside else ""
+    except (OSError, RuntimeError) as error:  # not there, or links in a circle
+        why = getattr(error, "strerror", None) or error
+        raise CaseError([f"{file}: use: {path}: {why}; give a file that is there"]) from None
+    if not inside:
+        raise CaseError(
+            [f"{file}: use: {path} is a link to a file outside the case's folder; put the file itself there"]
+        )
     named = f"{PREFIX}{path.stem}_{digest}"
     if named not in sys.modules:
         spec = importlib.util.spec_from_file_location(named, path)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from psph.composition.pair import PAIR_VECTORS, Pair
 from psph.composition.terms import OF_A_PARTICLE
+from psph.errors import Refused
 from psph.fields import Field
 
 
@@ -20,7 +21,7 @@ class Reads(NamedTuple):
     """Of either particle, in all that is summed over pairs."""
 
 
-class UnknownField(TypeError):
+class UnknownField(Refused):
     """An effect reads something that no particle carries."""
 
 
@@ -35,15 +36,15 @@ SLOPES = ("dw_r", "m_dw_r")
 class _Recorder:
     """Answers every known name with a harmless value and remembers that it was asked."""
 
-    def __init__(self, owner: str, widths: dict[str, int | None]):
-        self._owner, self._widths = owner, widths
+    def __init__(self, owner: str, what: str, widths: dict[str, int | None]):
+        self._owner, self._what, self._widths = owner, what, widths
         self.read: set[str] = set()
         self.value = VALUES[0]
 
     def __getattr__(self, name: str):
         if name not in self._widths:
             known = ", ".join(self._widths)
-            raise UnknownField(f"{self._owner} reads '{name}'; a particle or pair has {known}")
+            raise UnknownField(f"{self._owner} reads '{name}' of a {self._what}; it may read {known}")
         self.read.add(name)
         if several := self._widths[name]:
             return (self.value,) * several
@@ -58,7 +59,8 @@ def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads
     owner = type(effect).__name__
     particle = {name: field.width(dimensions) if field.composed else None for name, field in fields.items()}
     geometry = {name: dimensions if name in PAIR_VECTORS else None for name in Pair._fields}
-    i, j, pair = (_Recorder(owner, widths) for widths in (particle, particle, geometry))
+    i, j = (_Recorder(owner, "particle", particle) for _ in range(2))
+    pair = _Recorder(owner, "pair", geometry)
     for value in VALUES:
         i.value = j.value = pair.value = value
         _sum(effect, i, j, pair, kernel)

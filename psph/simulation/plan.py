@@ -5,7 +5,7 @@ from collections import namedtuple
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,21 +13,11 @@ from psph.case.parameters import as_numbers
 from psph.composition.count import flops_per_pair
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
-from psph.composition.trial import Reads, UnknownField, reads
-from psph.fields import (
-    IDENTITY,
-    OF_EVERY_SCENE,
-    OF_MATERIAL,
-    OF_SCENE,
-    OF_SITE,
-    Field,
-    by_name,
-    companions,
-    view_of,
-)
+from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, Fixed, Free, is_prescribed
 from psph.simulation.passes import Pass, make_passes
+from psph.simulation.reading import Called, called_with, refuse_unwritten
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
@@ -49,16 +39,6 @@ ALWAYS_READ = (
 """What the loops themselves read of a particle, whatever the effects."""
 
 Extremes = namedtuple("Extremes", ("sound_speed", "smoothing_length", *(f.name for f in OF_MATERIAL)))
-
-
-class Called(NamedTuple):
-    """An effect of the scene, the key of the case that called for it, what it reads, and its name in the
-    catalogue: some effects have forms of their own for a scene."""
-
-    effect: Any
-    reason: str
-    reads: Reads
-    name: str
 
 
 @dataclass(frozen=True)
@@ -202,22 +182,14 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     prescribed = {(type(s.motion), s.motion) for s in scene.species if is_prescribed(s.motion)}
     motions = tuple(motion for _, motion in sorted(prescribed, key=str))
     fields = by_name(catalogue.fields.values(), written, further, [ANCHOR])
-    called = tuple(
-        Called(
-            effect,
-            reason,
-            reads(effect, scene.dimensions, scene.kernel, fields),
-            entry.effect.__name__,
-        )
-        for entry, effect, reason in fitted
-    )
+    called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     laws = _laws(scene, catalogue.states)
     own = set(ALWAYS_READ).union(*(c.reads.own | c.reads.neighbour for c in called))
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
-    _refuse_unwritten(called, computed)
+    refuse_unwritten(scene, called, computed)
     anchored = {ANCHOR.name} if motions else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in anchored)
     passes = make_passes(called, stored, lambda name: _array_of(name, stored))
@@ -281,15 +253,6 @@ def _laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
 def _carries(call: Called) -> bool:
     """Whether an effect has a part in kick and drift."""
     return any(hasattr(call.effect, name) for name in OF_A_PARTICLE)
-
-
-def _refuse_unwritten(called, computed: tuple[str, ...]) -> None:
-    """Raise UnknownField where an effect reads what only an absent effect would write."""
-    known = {*computed, *(field.name for field in (*OF_MATERIAL, *OF_SITE, *OF_SCENE))}
-    for call in called:
-        for name in sorted((call.reads.own | call.reads.neighbour) - known):
-            effect = type(call.effect).__name__
-            raise UnknownField(f"{effect} reads '{name}', which no effect of this scene writes")
 
 
 def _array_of(name: str, stored: tuple[str, ...]) -> str:

@@ -1,0 +1,44 @@
+"""What the effects of a scene read of its particles, and whether there is such a thing."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple
+
+from psph.case.extensions import origin
+from psph.composition.trial import Reads, UnknownField, reads
+from psph.errors import one_line
+from psph.fields import OF_MATERIAL, OF_SCENE, OF_SITE, Field
+from psph.physics.catalogue import Entry
+
+
+class Called(NamedTuple):
+    """An effect of the scene, the key of the case that called for it, what it reads, and its name in the
+    catalogue: some effects have forms of their own for a scene."""
+
+    effect: Any
+    reason: str
+    reads: Reads
+    name: str
+
+
+def called_with(entry: Entry, effect, reason: str, scene, fields: Mapping[str, Field]) -> Called:
+    """The effect of an entry and what it reads; raises UnknownField with the file that brought it."""
+    try:
+        found = reads(effect, scene.dimensions, scene.kernel, fields)
+    except UnknownField as error:
+        raise UnknownField(_line(scene, effect, str(error))) from None
+    return Called(effect, reason, found, entry.effect.__name__)
+
+
+def refuse_unwritten(scene, called: Iterable[Called], computed: Iterable[str]) -> None:
+    """Raise UnknownField where an effect reads what only an absent effect would write."""
+    known = [*computed, *(field.name for field in (*OF_MATERIAL, *OF_SITE, *OF_SCENE))]
+    for call in called:
+        for name in sorted((call.reads.own | call.reads.neighbour).difference(known)):
+            says = f"reads '{name}', which no effect of this scene writes; it may read {', '.join(known)}"
+            raise UnknownField(_line(scene, call.effect, f"{call.name} {says}"))
+
+
+def _line(scene, effect, says: str) -> str:
+    """What is wrong with an effect: the case, and the file that it uses."""
+    brought = origin(type(effect))
+    return one_line(f"{scene.case.file}: " + (f"use: {brought}: " if brought else "") + says)
