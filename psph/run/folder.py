@@ -3,6 +3,7 @@
 import fcntl
 import os
 import platform
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -18,6 +19,10 @@ from psph.run.post_mortem import PICTURE, REPORT, remove_post_mortem
 IN_USE = ".psph-in-use"
 """A file that rank 0 holds a lock on while a run goes on, and that names its process."""
 
+PATIENCE = 5.0
+"""Seconds for which the lock of another process is waited for: mpirun may return before the ranks that it
+killed are gone."""
+
 
 @contextmanager
 def alone_in(folder: Path, comm) -> Iterator[None]:
@@ -26,7 +31,7 @@ def alone_in(folder: Path, comm) -> Iterator[None]:
     The lock ends with the process, however it ends.  A file system without locks keeps nobody out.
     Raises OutputError on every rank where another psph is at work.
     """
-    lock, other = _hold(Path(folder) / IN_USE) if comm.rank == 0 else (None, "")
+    lock, other = _hold_soon(Path(folder) / IN_USE) if comm.rank == 0 else (None, "")
     other = comm.bcast(other)
     if other:
         raise OutputError(f"another psph is at work in {folder} ({other}): wait for it or end it")
@@ -37,6 +42,16 @@ def alone_in(folder: Path, comm) -> Iterator[None]:
             with suppress(OSError):
                 (Path(folder) / IN_USE).unlink()
             os.close(lock)
+
+
+def _hold_soon(path: Path) -> tuple[int | None, str]:
+    """As :func:`_hold`, with patience for a run that was killed and is about to be gone."""
+    until = time.monotonic() + PATIENCE
+    while True:
+        lock, other = _hold(path)
+        if not other or time.monotonic() > until:
+            return lock, other
+        time.sleep(0.1)
 
 
 def _hold(path: Path) -> tuple[int | None, str]:

@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -136,6 +138,20 @@ def test_a_folder_where_another_is_at_work_is_refused(tmp_path):
     assert contents(folder) == before
     resume(folder, COMM, ["time.end=2e-3"], **QUIET)
     assert not (folder / IN_USE).exists()
+
+
+def test_one_that_is_about_to_be_gone_is_waited_for(tmp_path):
+    """A job that was killed may be gone a moment after its mpirun."""
+    dying = "import fcntl, sys, time; f = open(sys.argv[1], 'w'); fcntl.flock(f, fcntl.LOCK_EX)"
+    dying += "; print('held', flush=True); time.sleep(1.0)"
+    job = subprocess.Popen(
+        [sys.executable, "-c", dying, tmp_path / IN_USE], stdout=subprocess.PIPE, text=True
+    )
+    assert job.stdout.readline() == "held\n"
+    begun = time.monotonic()
+    with alone_in(tmp_path, COMM):
+        assert time.monotonic() - begun > 0.5
+    job.communicate()
 
 
 def test_what_a_killed_run_left_holds_nobody_up(tmp_path):
