@@ -38,6 +38,12 @@ With 1.0 in 3D a rotating cube clumps: 5 % of its particles come nearer than 0.5
 SOUND_OVER_SPEED = 10.0
 """Speed of sound over the largest speed that a weakly compressible flow should have."""
 
+Strength = Annotated[
+    float,
+    Field(ge=0, description="f: K over ρ₀U², U = c/10 the largest speed", json_schema_extra={"unit": "1"}),
+]
+"""Strength of a potential between pairs, as a case gives it."""
+
 
 class PairPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
@@ -53,14 +59,7 @@ class PairPotential(NamedTuple):
 
     conserves = ("momentum", "angular momentum")
 
-    strength: Annotated[
-        float,
-        Field(
-            ge=0,
-            description="f: K over ρ₀U², U = c/10 the largest speed",
-            json_schema_extra={"unit": "1"},
-        ),
-    ] = 0.008
+    strength: Strength = 0.008
 
     def in_scene(self, scene: Facts):
         """The potential of the scene's lattice, for one mass or for several."""
@@ -118,14 +117,7 @@ class LocalPotential(NamedTuple):
 
     conserves = ("momentum", "angular momentum")
 
-    strength: Annotated[
-        float,
-        Field(
-            ge=0,
-            description="f: K over ρ₀U², U = c/10 the largest speed",
-            json_schema_extra={"unit": "1"},
-        ),
-    ] = 0.008
+    strength: Strength = 0.008
     threshold: Annotated[
         float,
         Field(
