@@ -6,6 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from psph.composition.space import Metres
+from psph.engine.settled import settled
 from psph.parallel.halo import Halo
 from psph.parallel.migration import migrate
 from psph.parallel.slabs import Prices, rebalanced
@@ -59,6 +60,7 @@ class Domain:
         self.halo: Halo | None = None
         self.starts = np.zeros(1, np.int64)
         self.lists = neighbours.empty(0, 0)
+        self._fill = settled(neighbours.fill_lists)
         self.rebuilds = 0
 
     @property
@@ -98,6 +100,7 @@ class Domain:
             self.cutoff,
             self.periods,
             self.lanes,
+            self._fill,
         )
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[: self.store.total] = now[: self.store.total]

@@ -55,12 +55,13 @@ def build(
     cutoff: float,
     periods,
     lanes: int,
+    fill,
 ):
     """Lists of every owned particle, in the global order of cells, then ids.
 
     ``starts`` are the first columns of the cells of ``planes`` owned planes and one ghost plane
     on either side.  ``room`` is used again where it is large enough.  Rows are filled up to a
-    multiple of ``lanes``.
+    multiple of ``lanes``.  ``fill`` is :func:`fill_lists`, or one that is settled.
     """
     owned = store.owned
     position, cutoff = in_single_precision(store, grid, int(starts[0]), cutoff)
@@ -68,7 +69,7 @@ def build(
         room = empty(owned + owned // SPARE, max(len(room.lists), 64 * owned + 1024))
     near = Near(position, periods, cutoff * cutoff)
     while True:
-        parts = in_threads(fill_lists, 1, planes + 1, near, grid, starts, store.low, owned, lanes, room)
+        parts = in_threads(fill, 1, planes + 1, near, grid, starts, store.low, owned, lanes, room)
         needed = max(parts)
         if needed == 0:
             return room

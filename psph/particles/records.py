@@ -60,17 +60,21 @@ class Records:
         self.width = record_width(len(rows))
         self._type = space.record_type
         self.table = np.zeros((0, self.width), self._type)
+        self._of, self._view = None, None
 
     def view(self):
         """A neighbour: an array for what its record holds, else the shared value, FOLDED or None."""
         store = self.store
-        found = type(store.view())(
-            *(
-                store[store.seen_as(name)] if placed else store.constants.get(name)
-                for name, placed in self._shown
+        if self._of is not store.view():  # the store has new arrays
+            found = type(store.view())(
+                *(
+                    store[store.seen_as(name)] if placed else store.constants.get(name)
+                    for name, placed in self._shown
+                )
             )
-        )
-        return found._replace(is_fluid=FOLDED) if self._folded else found
+            self._view = found._replace(is_fluid=FOLDED) if self._folded else found
+            self._of = store.view()
+        return self._view
 
     def make_room(self) -> None:
         """Room for owned particles and ghosts, after these found new columns."""

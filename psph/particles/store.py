@@ -60,6 +60,7 @@ class Store:
             first += width
         self.low = self.owned = self.high = 0
         self._seen_in, self._view = view, None
+        self._arrays: dict[str, np.ndarray | tuple[np.ndarray, ...]] = {}
         self.data = np.zeros((first, SLACK))
         self.id = np.zeros(SLACK, np.int64)
         self.group = np.zeros(SLACK, np.uint8)
@@ -70,10 +71,10 @@ class Store:
 
     def __getitem__(self, name: str):
         """The field over all columns: an array, or a tuple of component arrays."""
-        rows = self.rows[name]
-        if self.fields[name].composed:
-            return tuple(self.data[row] for row in rows)
-        return self.data[rows.start]
+        if name not in self._arrays:
+            rows = tuple(self.data[row] for row in self.rows[name])
+            self._arrays[name] = rows if self.fields[name].composed else rows[0]
+        return self._arrays[name]
 
     def rotate(self, *names: str) -> None:
         """Each field takes the rows of the one before, the first those of the last; no copy.
@@ -82,6 +83,8 @@ class Store:
         """
         rows = [self.rows[name] for name in names]
         self.rows.update(zip(names, [rows[-1], *rows[:-1]]))
+        for name in names:
+            self._arrays.pop(name, None)
 
     @property
     def kind(self) -> np.ndarray:
@@ -154,6 +157,7 @@ class Store:
             new = np.zeros((*old.shape[:-1], wide), old.dtype)
             new[..., : old.shape[-1]] = old
             setattr(self, name, new)
+        self._arrays.clear()
         self._view = None  # it shows the old arrays
 
     def append(self, ids: np.ndarray, groups: np.ndarray, block: np.ndarray) -> None:

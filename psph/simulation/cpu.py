@@ -6,6 +6,7 @@ All that depends on how sums are computed on a processor lies behind these few m
 import numpy as np
 
 from psph.composition.space import softening
+from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import companions, seen_at
 from psph.output.ledger import Ledger
@@ -46,11 +47,13 @@ class Engine:
         self._rules = Rules(
             plan.carriers, plan.laws, plan.law_of, plan.free, plan.motions, plan.motion_of, scene.periods
         )
+        self._predict, self._kick = settled(kick_drift_predict), settled(kick)
+        self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._paid = 0.0
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
-        self._each(kick_drift_predict, time, dt, self._rules, self._view(pace), self._columns())
+        self._each(self._predict, time, dt, self._rules, self._view(pace), self._columns())
         if self.plan.evolving:
             self._each(predict_rows, dt, self.store.data, self._rows_that_evolve())
         for field in self.plan.evolving:
@@ -62,8 +65,8 @@ class Engine:
         """The second kick.  Returns the largest |v|², |a|², strain, squared shift and |v|² of walls here."""
         if self.plan.evolving:
             self._each(kick_rows, dt, self.store.data, self._rows_that_evolve())
-        parts = self._each(kick, time, dt, self._rules, self._view(pace), self._columns())
-        return np.max(parts, axis=0).tolist()
+        parts = self._each(self._kick, time, dt, self._rules, self._view(pace), self._columns())
+        return list(map(max, *parts)) if len(parts) > 1 else list(parts[0])
 
     def rebuild(self) -> None:
         """Put every particle where it belongs and list its neighbours."""
@@ -180,7 +183,7 @@ class Engine:
         s, plan, records = self.store, self.plan, self.records[one.place]
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         in_threads(
-            sum_over_neighbours,
+            self._sums[one.place],
             first,
             last,
             Summed(one.effects, one.reductions),
@@ -192,9 +195,8 @@ class Engine:
 
     def _columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""
-        fields = (s for s in Columns._fields if s != "group")
-        arrays = {name: self.store[name] if name in self.store else None for name in fields}
-        return Columns(group=self.store.group, **arrays)
+        s = self.store
+        return Columns(s.group, *(s[name] if name in s else None for name in Columns._fields[1:]))
 
     def _view(self, pace: float):
         """The particles as the plan's carriers see them; a displacement also sees the pace."""

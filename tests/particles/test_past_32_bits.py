@@ -72,6 +72,7 @@ def near_and_far(tmp_path):
     store.id, store.group = (shifted(tmp_path, a, COLUMNS) for a in (store.id, store.group))
     store.low += COLUMNS
     store._view = None
+    store._arrays.clear()
     table = far.engine.records[-1].table
     far.engine.records[-1].table = sparse(tmp_path, (COLUMNS + len(table), table.shape[1]), table.dtype)
     far.engine.records[-1].table[COLUMNS:] = table
@@ -109,6 +110,7 @@ def test_lists_name_columns_past_2_31(near_and_far):
         domain.cutoff,
         domain.periods,
         domain.lanes,
+        neighbours.fill_lists,
     )
     used = int(near.domain.lists.begin[near.store.owned - 1])
     expected = near.domain.lists.lists[:used].astype(np.int64) + COLUMNS

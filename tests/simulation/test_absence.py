@@ -114,7 +114,7 @@ def calling_for(entry) -> list[str]:
     if "*" in key:
         return [f"{key.replace('*', 'water')}=0.001"]
     hints = get_type_hints(entry.effect)
-    values = {n: [0.5, 0.5] if get_origin(hint) is tuple else 0.5 for n, hint in hints.items()}
+    values = {n: [0.2, 0.2] if get_origin(hint) is tuple else 0.2 for n, hint in hints.items()}
     table = f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
     return [table, *BESIDE.get(key, ())]
 
