@@ -102,6 +102,7 @@ class Show:
             raise OutputError(f"{run.path}: no frame yet; wait for the first one")
         if times is None:
             times = np.linspace(self.times[0], self.times[-1], 4)
+        self._refuse_unreached(times)
         self.chosen = sorted({int(np.abs(self.times - time).argmin()) for time in times})
         self.case = tomllib.loads(run.case_text)
         self.title = self.case.get("title") or run.path.stem
@@ -160,6 +161,17 @@ class Show:
         """The field as one number per particle; the length of a vector."""
         values = frame[self.field].astype(float)
         return np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+
+    def _refuse_unreached(self, times: Sequence[float]) -> None:
+        """OutputError for a time, s, before the first frame or beyond the last."""
+        first, last = float(self.times[0]), float(self.times[-1])
+        half = 0.5 * (last - first) / max(len(self.times) - 1, 1)
+        for time in times:
+            if not first - half <= time <= last + half:
+                raise OutputError(
+                    f"{self.run.path}: --times {time:g}: there are frames from {first:g} to {last:g} s; "
+                    "give times between these"
+                )
 
     def _scale(self) -> Scale:
         """Colours for the fluid of all frames, from zero if that is near.

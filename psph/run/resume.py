@@ -69,6 +69,9 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
     Raises CaseError or CheckpointError on every rank.
     """
     folder = Path(folder)
+    if not (folder / COPY).is_file():
+        lacks = "holds no run" if folder.is_dir() else "there is no such folder"
+        raise CheckpointError(f"{folder}: {lacks}: give the folder that a run has written")
     case = load(folder / COPY, _allowed(extend), "--extend")
     found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
     if not found:

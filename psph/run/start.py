@@ -146,7 +146,12 @@ def _simulate(
             write_checkpoint(simulation, record, case, folder)
         record.write_last()
     whole = time.perf_counter() - stepping
-    for line in _summary(scene, simulation, record, particles, whole, simulation.steps - first):
+    steps = simulation.steps - first
+    if steps:
+        summary = _summary(scene, simulation, record, particles, whole, steps)
+    else:
+        summary = ["no step was left to the end: for a later one, resume with --extend time.end=..."]
+    for line in summary:
         say(line)
     for line in (*guards.summary(), *record.dry_probes()):
         say(line)

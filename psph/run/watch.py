@@ -17,7 +17,8 @@ class Call(IntEnum):
     CHECKPOINT = 1
     WALL_CLOCK = 2
     SIGUSR1 = 3
-    SIGTERM = 4
+    SIGINT = 4
+    SIGTERM = 5
 
     @property
     def ends(self) -> bool:
@@ -26,6 +27,9 @@ class Call(IntEnum):
 
 
 SIGNALS = {signal.SIGUSR1: Call.SIGUSR1, signal.SIGTERM: Call.SIGTERM}
+
+KEYS = {signal.SIGINT: Call.SIGINT}
+"""What a person sends from the keyboard: heard while a Watch is open, and but once."""
 
 
 _EARLY: set[Call] = set()
@@ -54,6 +58,7 @@ class Watch:
 
     ``limits`` are the keys of the case; the clock starts here.  A signal does nothing but to be
     remembered, so that the step goes on to its end; so does one that came since :func:`listen`.
+    The first Ctrl-C is such a signal, the second interrupts.
     """
 
     def __init__(self, limits):
@@ -64,7 +69,8 @@ class Watch:
         self._before = {}
 
     def __enter__(self) -> "Watch":
-        self._before = {number: signal.signal(number, self._remember) for number in SIGNALS}
+        heard = SIGNALS | KEYS
+        self._before = {number: signal.signal(number, self._remember) for number in heard}
         self._signalled = max({self._signalled, *_EARLY})
         _EARLY.clear()
         return self
@@ -74,7 +80,9 @@ class Watch:
             signal.signal(number, handler)
 
     def _remember(self, number, frame) -> None:
-        self._signalled = max(self._signalled, SIGNALS[number])
+        self._signalled = max(self._signalled, (SIGNALS | KEYS)[number])
+        if number in KEYS:
+            signal.signal(number, signal.default_int_handler)
 
     @property
     def wrote_any(self) -> bool:

@@ -79,7 +79,7 @@ def test_one_picture_a_time_and_the_charts(tank):
 
 
 def test_nearest_frames_are_chosen_once(tank):
-    paths = plot(tank.folder, times=[0.3, 0.2, 99.0], field="velocity")
+    paths = plot(tank.folder, times=[0.3, 0.2, 1.1], field="velocity")
     assert [path.stem for path in paths[:2]] == ["velocity_00001", "velocity_00004"]
     assert overview(tank.folder, times=[0.5]).name == "overview.png"
 
@@ -165,6 +165,8 @@ def test_slice_is_the_middle_layer_seen_against_gravity(run_with):
 def test_what_cannot_be_drawn_is_one_line(tank, tmp_path, alone):
     with pytest.raises(OutputError, match="field: colour is not saved; choose one of kind, position"):
         plot(tank.folder, field="colour")
+    with pytest.raises(OutputError, match="--times 9: there are frames from 0 to 1 s; give times between"):
+        plot(tank.folder, times=[0.5, 9.0])
     FrameFile(tank.path, alone, {"case": ""})
     with pytest.raises(OutputError, match="tank.h5: no frame yet"):
         plot(tank.folder)

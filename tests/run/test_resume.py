@@ -197,8 +197,17 @@ def test_a_folder_without_any_says_so(whole, tmp_path):
         path.unlink()
     with pytest.raises(CheckpointError, match="holds no checkpoint: run the case again"):
         resume(folder, COMM, **QUIET)
-    with pytest.raises(CaseError, match="case.toml: No such file"):
+    with pytest.raises(CheckpointError, match="nowhere: there is no such folder: give the folder that"):
         resume(tmp_path / "nowhere", COMM, **QUIET)
+    with pytest.raises(CheckpointError, match="holds no run: give the folder that"):
+        resume(tmp_path, COMM, **QUIET)
+
+
+def test_a_run_at_its_end_has_no_step_left(whole, tmp_path):
+    folder, said = copy(whole, tmp_path / "run"), []
+    resume(folder, COMM, say=lambda line, where=None: said.append(line))
+    assert "no step was left to the end: for a later one, resume with --extend time.end=..." in said
+    assert not any("particle-steps" in line for line in said) and same_files(folder, whole)
 
 
 @pytest.mark.parametrize("text", ["space.spacing=0.1", "time.cfl=0.1", "time", "=1", "output=1"])

@@ -48,6 +48,17 @@ def test_a_signal_is_remembered_and_the_handlers_come_back():
     assert Call.WALL_CLOCK.ends and Call.SIGUSR1.ends and Call.SIGTERM.ends
 
 
+def test_the_first_interrupt_is_remembered_and_the_second_interrupts():
+    before = signal.getsignal(signal.SIGINT)
+    with Watch(limits()) as watch:
+        os.kill(os.getpid(), signal.SIGINT)
+        assert watch.call() is Call.SIGINT and Call.SIGINT.ends
+        with pytest.raises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
 def test_minutes_count_from_the_last_checkpoint(clock):
     watch = Watch(limits(minutes=2.0))
     clock.now += 119.0
@@ -139,7 +150,8 @@ def box(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    "number, to, ranks", [("SIGUSR1", "mpirun", (2, 3)), ("SIGTERM", "one rank", (2, 1))]
+    "number, to, ranks",
+    [("SIGUSR1", "mpirun", (2, 3)), ("SIGTERM", "one rank", (2, 1)), ("SIGINT", "one rank", (1, 1))],
 )
 def test_a_signal_to_a_real_job_loses_nothing(box, tmp_path, number, to, ranks):
     case, whole = box
