@@ -149,7 +149,7 @@ def test_a_finished_run_rests_until_it_shall_go_further(home, queue):
     assert {path.name: path.stat().st_mtime_ns for path in folder.iterdir()} == left
     further = ("resume", "results/box-5", "--extend", "time.end=0.02")
     code, out, _ = turn(home, queue, *further, number=6)
-    assert code == 0 and "goes on from" in out
+    assert code == 0 and "resuming from" in out
     assert turn(home, queue, *further, turn=1, number=6) == rests
     assert asked(queue) == []
 
@@ -160,7 +160,7 @@ def test_a_turn_that_left_no_checkpoint_is_begun_anew(home, queue):
     assert turn(home, queue, *case, number=8)[0] == 0
     (home / "results/box-8/finished").unlink()
     code, out, err = turn(home, queue, *case, turn=1, number=8)
-    assert code == 0 and "goes on from" not in out, err
+    assert code == 0 and "resuming from" not in out, err
 
 
 def test_a_mistake_is_not_repeated(home, queue):

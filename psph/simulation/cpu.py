@@ -42,7 +42,7 @@ class Engine:
             plan.refreshed,
             plan.space.lanes,
         )
-        self.skin, self._support = Skin(self.domain, scene.reach.skin), scene.reach.support
+        self.skin, self._reach = Skin(self.domain, scene.reach.skin), scene.reach
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         self._rules = Rules(
             plan.carriers, plan.laws, plan.law_of, plan.free, plan.motions, plan.motion_of, scene.periods
@@ -137,7 +137,18 @@ class Engine:
         """Which walls have fluid in reach."""
         s, lists = self.store, self.domain.lists
         told_by, wet = s[effect.told_by], s[effect.marks.name]
-        self._each(mark_wet, s.low, lists, self._support, self.domain.periods, s["position"], told_by, wet)
+        reach = self._reach
+        self._each(
+            mark_wet,
+            s.low,
+            lists,
+            reach.support,
+            reach.cutoff,
+            self.domain.periods,
+            s["position"],
+            told_by,
+            wet,
+        )
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""

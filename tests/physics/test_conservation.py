@@ -39,7 +39,7 @@ def in_a_scene(effect, dim):
         "PairPotential": lambda: neutral_potential(0.5, 50.0, 0.01, dim, alike=False),
         "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
         "PositionShift": lambda: LatticeShift(0.1, -1e-4, 1e-6),
-        "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4),
+        "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4, 0.2),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()

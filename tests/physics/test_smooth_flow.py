@@ -8,7 +8,7 @@ from drafts import TANK, draft
 from physics.pairs import pair_of, sums_of, view
 
 from psph.case import CaseError
-from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusion
+from psph.physics.damping.diffusion import BesideSmoothDensity, DensityDiffusion, TankDiffusion
 from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
@@ -24,6 +24,11 @@ def crowd(dim, n=12, seed=5):
     p = view(n=n, dim=dim, seed=seed)._replace(is_fluid=np.ones(n))
     found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(n)]
     return p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
+
+
+def fourth(dim):
+    """Diffusion of fourth order in a scene without gravity."""
+    return BesideSmoothDensity(0.1, (None,) * dim)
 
 
 def linear_flow(p, dim, seed=2):
@@ -91,24 +96,68 @@ def test_the_gradient_of_a_linear_density_is_exact_in_disorder(dim):
     p = p._replace(specific_volume=1.0 / rho)
     found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(len(rho))]  # volumes have changed
     p = p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
-    assert sums_of(FourthOrderDiffusion(0.1), p, 4) == pytest.approx(slope, rel=1e-9)
+    assert sums_of(fourth(dim), p, 4) == pytest.approx(slope, rel=1e-9)
+
+
+def parabola(dim):
+    """Two fluid particles in order, in a density of the second order, with its gradient; and this one."""
+    p = view(dim=dim)._replace(is_fluid=np.ones(2))
+    x, slope, bend = np.array(p.position), np.array((30.0, -70.0, 50.0)[:dim]), 4e3
+    rho = p.rest_density + 2.0 + slope @ x + bend * (x * x).sum(axis=0)
+    gradient = slope[:, None] + 2.0 * bend * x
+    ordered = tuple(0.0 * e for e in p.gradient_correction)
+    p = p._replace(specific_volume=1.0 / rho, gradient_correction=ordered)
+    return p._replace(density_gradient=tuple(gradient)), gradient
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_a_quadratic_density_does_not_spread_and_a_step_does(dim):
     """∇ρ at both ends is that of the parabola: the mean of two slopes is the slope between them."""
-    p = view(dim=dim)._replace(is_fluid=np.ones(2))
-    x, slope, bend = np.array(p.position), np.array((30.0, -70.0, 50.0)[:dim]), 4e3
-    rho = p.rest_density + 2.0 + slope @ x + bend * (x * x).sum(axis=0)
-    gradient = slope[:, None] + 2.0 * bend * x
-    p = p._replace(specific_volume=1.0 / rho, density_gradient=tuple(gradient))
-    pair = pair_of(p, 0, 1)
-    second, fourth = (one.density_rate(*pair) for one in (DensityDiffusion(0.1), FourthOrderDiffusion(0.1)))
-    assert abs(fourth) < 1e-9 * abs(second)
-    wrong = pair_of(p._replace(density_gradient=tuple(-gradient)), 0, 1)  # the control
-    assert abs(FourthOrderDiffusion(0.1).density_rate(*wrong)) > abs(second)
-    flat = pair_of(p._replace(density_gradient=tuple(0.0 * gradient)), 0, 1)
-    assert FourthOrderDiffusion(0.1).density_rate(*flat) == pytest.approx(second, rel=1e-12)
+    p, gradient = parabola(dim)
+    second = DensityDiffusion(0.1).density_rate(*pair_of(p, 0, 1))
+    assert abs(fourth(dim).density_rate(*pair_of(p, 0, 1))) < 1e-9 * abs(second)
+    for wrong in (-gradient, 0.0 * gradient):  # with the wrong sign nothing is taken off, nor added
+        pair = pair_of(p._replace(density_gradient=tuple(wrong)), 0, 1)
+        assert fourth(dim).density_rate(*pair) == pytest.approx(second, rel=1e-12)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_in_disorder_all_of_a_density_spreads(dim):
+    p, _ = parabola(dim)
+    second = DensityDiffusion(0.1).density_rate(*pair_of(p, 0, 1))
+    symmetric = [np.eye(dim)[a, b] for a in range(dim) for b in range(a, dim)]
+    for sizes, share in (((0.2, 0.9), 1.0), ((0.0, 0.2), 0.5), ((0.1, 0.1), 0.25)):
+        rough = tuple(np.array(sizes) * e / np.sqrt(dim) for e in symmetric)
+        found = fourth(dim).density_rate(*pair_of(p._replace(gradient_correction=rough), 0, 1))
+        assert found == pytest.approx(share * second, rel=1e-9)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_density_never_flows_to_where_there_is_more(dim):
+    """0 ≤ s′/s ≤ 1, whatever the gradients say, beside what weight asks for."""
+    rng, some = np.random.default_rng(3), 0
+    pull = (None, -9.8, 4.0)[:dim] if dim > 1 else (-9.8,)
+    for _ in range(200):
+        p = view(dim=dim, seed=int(rng.integers(1000)))._replace(is_fluid=np.ones(2))
+        gradient = tuple(rng.normal(size=2) * 3e4 for _ in range(dim))
+        pair = pair_of(p._replace(density_gradient=gradient), 0, 1)
+        second = TankDiffusion(0.1, pull).density_rate(*pair)
+        share = BesideSmoothDensity(0.1, pull).density_rate(*pair) / second
+        assert -1e-9 <= share <= 1.0 + 1e-9
+        some += 0.01 < share < 0.99
+    assert some > 20
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_damping_is_stronger_in_disorder(dim):
+    p, _, _ = linear_flow(view(dim=dim)._replace(is_fluid=np.ones(2)), dim)
+    p = p._replace(strain=tuple(0.0 * e for e in p.strain))
+    symmetric = [np.eye(dim)[a, b] for a in range(dim) for b in range(a, dim)]
+    for sizes, alpha in (((0.0, 0.0), 0.1), ((0.0, 0.2), 0.2), ((0.3, 0.2), 0.3)):
+        rough = tuple(np.array(sizes) * e / np.sqrt(dim) for e in symmetric)
+        pair = pair_of(p._replace(gradient_correction=rough), 0, 1)
+        found = BesideLinearFlow(0.1, 0.0, 0.2).radial(*pair)
+        assert found == pytest.approx(PairDamping(alpha).radial(*pair), rel=1e-12)
 
 
 def potential(dim):

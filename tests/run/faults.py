@@ -33,7 +33,7 @@ OFTEN = (
 SOON = 10.0
 """Seconds in which a job must end when one of its ranks has died."""
 
-LONGEST_WAIT = 1.0
+LONGEST_WAIT = 0.7
 """Seconds from the first step to a random blow, at the most."""
 
 

@@ -30,7 +30,7 @@ def test_a_killed_rank_ends_the_job_and_loses_nothing(box, tmp_path):
 @pytest.mark.timeout(1800)
 def test_ranks_killed_everywhere_and_at_random(box, tmp_path, capsys):
     trials = Trials(*box, tmp_path, np.random.default_rng(6))
-    trials.go(blows(trials.random, aimed=60, at_random=70))
+    trials.go(blows(trials.random, aimed=60, at_random=80))
     with capsys.disabled():
         print("", *table(trials.fell), f"{trials.finished} runs came to their end", sep="\n")
     assert len(trials.fell) >= 100

@@ -8,7 +8,7 @@ from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.physics.facts import Facts
-from psph.physics.fluid.correction import needs_correction
+from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square
 from psph.theory.stability import parts
 from psph.vectors import add, along, dot, scale, times, zero_like
@@ -66,10 +66,8 @@ class TankDiffusion(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        mean = 0.5 * (i.rest_density + j.rest_density)
-        weight = mean / (i.sound_speed * i.sound_speed) * along(pair.x_ij, self.gravity)
-        giving = _giving(i, j)
-        return where(giving > 0.0, _excess(self.delta, i, j, weight), 0.0) * _nearness(i, pair)
+        taken = _excess(self.delta, i, j, _weight(self.gravity, i, j, pair))
+        return where(_giving(i, j) > 0.0, taken, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
@@ -83,15 +81,39 @@ class TankDiffusion(NamedTuple):
 class FourthOrderDiffusion(NamedTuple):
     """Density spreads between neighbours, but for what a smooth field has: noise alone fades.
 
-    As :class:`DensityDiffusion` with (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) − ½(∇ρ_i + ∇ρ_j)·x_ij in the bracket: zero
-    pair by pair where the density is linear or quadratic, so that weight needs no case of its own.
-    ∇ρ_i = −Σ_j V_j [(ρ − ρ₀)_i − (ρ − ρ₀)_j] L_i∇W_ij is that of the step before.  Antuono, Colagrossi,
-    Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532.  Walls as in :class:`TankDiffusion`.
+    As :class:`DensityDiffusion` with s′ = s − g in the bracket, s = (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) and
+    g = ½(∇ρ_i + ∇ρ_j)·x_ij: zero pair by pair where the density is linear or quadratic.  Antuono,
+    Colagrossi, Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532.  ∇ρ_i = −Σ_j V_j [(ρ − ρ₀)_i −
+    (ρ − ρ₀)_j] L_i∇W_ij is that of the step before.  Walls and weight as in :class:`TankDiffusion`, whose
+    slope is taken from s and from g.  Psph's own: g is clipped between 0 and s, so that nothing ever flows
+    to where there is more, and fades in disorder and at a surface, as :class:`LocalPotential
+    <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2.
     """
 
     delta: Annotated[
         float, Field(ge=0, le=0.2, description="strength δ", json_schema_extra={"unit": "1"})
     ] = 0.1
+
+    def in_scene(self, scene: Facts):
+        """The form that knows gravity."""
+        return BesideSmoothDensity(self.delta, tuple(g or None for g in scene.gravity))
+
+    @staticmethod
+    def conflicts(physics, kernel):
+        """The gradient of the density is a corrected one."""
+        yield from needs_correction(physics)
+        if physics.density_diffusion is not None:
+            yield 'takes the place of physics.density_diffusion; set that to "off"'
+
+
+class BesideSmoothDensity(NamedTuple):
+    """Density spreads between neighbours, but for what a smooth field has: noise alone fades.
+
+    The form of :class:`FourthOrderDiffusion` in a scene; ``gravity`` in m/s², None on an axis without.
+    """
+
+    delta: float
+    gravity: tuple[float | None, ...]
 
     writes = Declared("density_gradient", "kg/m4", "gradient of the density over its rest density", VECTOR)
     lagged = True
@@ -112,24 +134,29 @@ class FourthOrderDiffusion(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        linear = 0.5 * dot(add(i.density_gradient, j.density_gradient), pair.x_ij)
-        giving = _giving(i, j)
-        return where(giving > 0.0, _excess(self.delta, i, j, linear), 0.0) * _nearness(i, pair)
+        weight = _weight(self.gravity, i, j, pair)
+        rise = 1.0 / i.specific_volume - 1.0 / j.specific_volume + (j.rest_density - i.rest_density) - weight
+        smooth = 0.5 * dot(add(i.density_gradient, j.density_gradient), pair.x_ij) - weight
+        smooth = min(max(smooth, min(rise, 0.0)), max(rise, 0.0))
+        ordered = 1.0 - half_disorder(ROUGH, i) - half_disorder(ROUGH, j)
+        mixing = 2.0 * self.delta * i.smoothing_length * i.sound_speed
+        flux = mixing * j.specific_volume * (rise - ordered * smooth)
+        return where(_giving(i, j) > 0.0, flux, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
 
-    @staticmethod
-    def conflicts(physics, kernel):
-        """The gradient of the density is a corrected one."""
-        yield from needs_correction(physics)
-        if physics.density_diffusion is not None:
-            yield 'takes the place of physics.density_diffusion; set that to "off"'
-
     def linear(self, scene: Facts):
         """Its part in linear theory, of the shortest waves."""
         return parts.DensityDiffusion(self.delta)
+
+
+@helper
+def _weight(gravity, i, j, pair):
+    """ρ̄₀ g·x_ij/c², kg/m^d: what the weight of a still column asks for."""
+    mean = 0.5 * (i.rest_density + j.rest_density)
+    return mean / (i.sound_speed * i.sound_speed) * along(pair.x_ij, gravity)
 
 
 @helper

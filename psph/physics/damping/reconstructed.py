@@ -8,7 +8,7 @@ from psph.fields import SYMMETRIC
 from psph.fields import Field as Declared
 from psph.formula import where
 from psph.physics.facts import Facts
-from psph.physics.fluid.correction import needs_correction
+from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square, lighter
 from psph.vectors import add, dot, dyad, matrix_product, scale, symmetric_part, times, zero_like
 
@@ -27,17 +27,26 @@ class ReconstructedDamping(NamedTuple):
     linear between the two, g = ½ x_ij·(E_i + E_j)·x_ij clipped between 0 and s, is not felt, so that
     0 ≤ s′/s ≤ 1 and each pair only loses energy; g = 0 where r < 0.7 dx.  E_i = sym(−Σ_j V_j u_ij L_i∇W_ijᵀ)
     over fluid neighbours is the rate of strain of the step before.  Frontiere, Raskin & Owen (2017), J.
-    Comput. Phys. 332, 160, for a viscosity on approach.  A wall damps what approaches it at more than
-    0.02 c, the excess alone, and nothing else.  It conserves momentum and angular momentum.
+    Comput. Phys. 332, 160, for a viscosity on approach.  In disorder and at a surface, as
+    :class:`LocalPotential <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to
+    ``in_disorder`` where that is larger: psph's own.  A wall damps what approaches it at more than 0.02 c,
+    the excess alone, and nothing else.  It conserves momentum and angular momentum.
     """
 
     conserves = ("momentum", "angular momentum")
 
     alpha: Annotated[float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})] = 0.05
+    in_disorder: Annotated[
+        float,
+        Field(
+            ge=0, description="α in disorder and at a surface, where larger", json_schema_extra={"unit": "1"}
+        ),
+    ] = 0.0
 
     def in_scene(self, scene: Facts):
         """The form that knows the spacing."""
-        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2)
+        more = max(self.in_disorder - self.alpha, 0.0)
+        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2, more)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -48,13 +57,15 @@ class ReconstructedDamping(NamedTuple):
 class BesideLinearFlow(NamedTuple):
     """Numerical friction along the line of a pair, on its motion beside the linear flow: it calms disorder.
 
-    The form of :class:`ReconstructedDamping` in a scene; ``near2`` is (0.7 dx)², m².
+    The form of :class:`ReconstructedDamping` in a scene; ``near2`` is (0.7 dx)², m², ``more`` what α gains
+    in disorder.
     """
 
     conserves = ("momentum", "angular momentum")
 
     alpha: float
     near2: float
+    more: float = 0.0
 
     writes = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC)
     lagged = True
@@ -82,10 +93,11 @@ class BesideLinearFlow(NamedTuple):
         rest = s - where(pair.r2 > self.near2, g, 0.0)
         approach = min(s + (AT_WALLS * i.sound_speed) * pair.r, 0.0)
         felt = where(i.is_fluid * j.is_fluid > 0.0, rest, approach)
-        strength = self.alpha * h * i.sound_speed * (v_i * lighter(i, j))
+        alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
+        strength = alpha * h * i.sound_speed * (v_i * lighter(i, j))
         return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r
 
     def longest_step(self, scene):
-        """Δt ≤ h/(α c), s: that of :class:`psph.physics.fluid.viscosity.PairDamping`."""
-        friction = self.alpha * scene.sound_speed
+        """Δt ≤ h/(α c), s: that of :class:`psph.physics.fluid.viscosity.PairDamping`, of the largest α."""
+        friction = (self.alpha + self.more) * scene.sound_speed
         return scene.smoothing_length / friction if friction > 0.0 else float("inf")

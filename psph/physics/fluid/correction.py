@@ -8,12 +8,30 @@ from psph.fields import SYMMETRIC
 from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.vectors import add, adjugate, determinant, dot, less_diagonal, outer, scale, times, zero_like
+from psph.vectors import (
+    add,
+    adjugate,
+    determinant,
+    dot,
+    less_diagonal,
+    norm_squared,
+    outer,
+    scale,
+    times,
+    zero_like,
+)
 
 CORRECTED = ("symmetric", "difference")
 """Pressure gradients that work with a corrected kernel gradient."""
 
 CORRECTION = Declared("gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC)
+
+
+DISORDER = 0.2
+"""Size t of L − 1 from which on particles are wholly in disorder, or at a surface."""
+
+ROUGH = 0.5 / DISORDER**2
+"""1/(2t²), as :func:`half_disorder` takes it."""
 
 
 class GradientCorrection(NamedTuple):
@@ -125,6 +143,13 @@ def needs_correction(physics):
             "takes corrected gradients; set physics.gradient_correction, and physics.pressure_gradient = "
             '"symmetric"'
         )
+
+
+@helper
+def half_disorder(half, i):
+    """½ min(|L − 1|²/t², 1) with ``half`` = 1/(2t²): of both ends of a pair together between 0, where
+    neighbours are in order all around, and 1."""
+    return min(half * norm_squared(i.gradient_correction, i.position), 0.5)
 
 
 @helper

@@ -11,9 +11,9 @@ from psph.composition.pair import Pair
 from psph.fields import view_of
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.physics.fluid.correction import needs_correction
+from psph.physics.fluid.correction import DISORDER, half_disorder, needs_correction
 from psph.theory.stability import parts
-from psph.vectors import excess, multiply, norm_squared, plus_less_last, scale
+from psph.vectors import excess, multiply, plus_less_last, scale
 
 CORES = (1.6, 1.6, 1.3228)
 """Range of the repelling core in spacings, in 1D, 2D and 3D."""
@@ -125,7 +125,7 @@ class LocalPotential(NamedTuple):
             description="t: size of L − 1 from which on the whole force acts",
             json_schema_extra={"unit": "1"},
         ),
-    ] = 0.2
+    ] = DISORDER
 
     def in_scene(self, scene: Facts):
         """The potential of the scene's lattice."""
@@ -154,14 +154,8 @@ class InDisorder(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        g = _disorder(self.half, i) + _disorder(self.half, j)
+        g = half_disorder(self.half, i) + half_disorder(self.half, j)
         return min(1.0, j.mass * (1.0 / i.mass)) * g * _repulsion(self, pair)
-
-
-@helper
-def _disorder(half, i):
-    """½ min(|L − 1|²/t², 1)."""
-    return min(half * norm_squared(i.gradient_correction, i.position), 0.5)
 
 
 @helper

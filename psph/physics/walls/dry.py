@@ -11,8 +11,10 @@ class DryWall(NamedTuple):
     """A wall that no fluid touches bears nothing: it has its rest density.
 
     ρ_i = ρ₀_i in a wall particle without a fluid particle within the kernel's support.  Which those
-    are is found when the neighbours are listed, so that the pair loop knows nothing of it.  Without
-    it a wall would keep for ever the pressure that it had when the fluid left.
+    are is found when the neighbours are listed, so that the pair loop knows nothing of it.  A wall that
+    was wet becomes dry where the fluid leaves the cutoff of the lists, a skin farther out: were it one
+    distance, still water would tremble, for a wall at the edge of reach would lose its pressure again and
+    again.  Without it a wall would keep for ever the pressure that it had when the fluid left.
     """
 
     marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0)

@@ -27,8 +27,8 @@ class Couplings(NamedTuple):
     """For each neighbour R: ``whole`` (n, d) the lattice numbers of R, and what it does.
 
     ``sites`` (n, d) m; ``stiffness`` (n, d, d) 1/s²; ``damping`` (n, d, d) 1/s; ``push`` (n, d)
-    and ``pull`` (n, d) between δρ and motion; ``diffusion`` (n,) 1/s, and ``spreading`` (n,) 1/s,
-    the part of it that walls take and do not give.
+    and ``pull`` (n, d) between δρ and motion; ``diffusion`` (n,) 1/s, and the parts of it that walls
+    do not give to the fluid, ``spreading`` (n,), or exchange with each other, ``meeting`` (n,).
     """
 
     whole: np.ndarray
@@ -39,6 +39,7 @@ class Couplings(NamedTuple):
     pull: np.ndarray
     diffusion: np.ndarray
     spreading: np.ndarray
+    meeting: np.ndarray
 
     @property
     def halved(self) -> "Couplings":
@@ -66,7 +67,10 @@ def couplings(uniform: Uniform) -> Couplings:
 
     damped = [remedy.damping(uniform, r) for remedy in _with(remedies, "damping")]
     none = np.zeros_like(r)
-    spreading = sum((remedy.spreading(uniform, r) for remedy in _with(remedies, "spreading")), none)
+    spreading, meeting = (
+        sum((getattr(remedy, of)(uniform, r) for remedy in _with(remedies, of)), none)
+        for of in ("spreading", "meeting")
+    )
     return Couplings(
         whole,
         sites,
@@ -74,8 +78,9 @@ def couplings(uniform: Uniform) -> Couplings:
         _matrices(unit, sum((a for a, _ in damped), none), sum((b for _, b in damped), none)),
         (mass * response * slope)[:, None] * unit,
         (mass * slope)[:, None] * unit,
-        sum((remedy.diffusion(uniform, r) for remedy in _with(remedies, "diffusion")), spreading),
+        spreading + meeting,
         spreading,
+        meeting,
     )
 
 

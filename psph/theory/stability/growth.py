@@ -147,7 +147,8 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
     for k, step in enumerate(pairs.whole):
         a = np.flatnonzero(((sites + step >= 0) & (sites + step < shape)).all(axis=1))
         b = np.ravel_multi_index((sites[a] + step).T, shape)
-        taken = pairs.diffusion[k] - pairs.spreading[k] * ~inner[b]
+        taken = pairs.diffusion[k] - pairs.spreading[k] * (inner[a] & ~inner[b])
+        taken -= pairs.meeting[k] * ~(inner[a] | inner[b])
         diffusion[a, a] += taken
         diffusion[a, b] -= taken
         towards = inner[b]

@@ -6,8 +6,9 @@ A remedy has those of these that it needs, each given the :class:`Uniform` that 
 - ``force(uniform, r)``: an attraction of pairs within the kernel's support, m/s² (sites,), so that
   a_a = −Σ_b f x_ab/r,
 - ``damping(uniform, r)``: (along, any): a_a = −Σ_b (along r̂ r̂ᵀ + any) u_ab, 1/s (sites,) or 0,
-- ``diffusion(uniform, r)``: dρ_a/dt = −Σ_b diffusion (ρ_a − ρ_b), 1/s (sites,),
-- ``spreading(uniform, r)``: the same, but for what a wall would give to the fluid, 1/s (sites,),
+- ``spreading(uniform, r)``: dρ_a/dt = −Σ_b spreading (ρ_a − ρ_b), 1/s (sites,), but for what a wall would
+  give to the fluid,
+- ``meeting(uniform, r)``: the same, but for what two wall particles would exchange,
 - ``normalises``: gradients are divided by their first moment.
 """
 
@@ -118,7 +119,7 @@ class DensityDiffusion(NamedTuple):
     delta: float = 0.1
 
     def spreading(self, uniform, r):
-        """Of density in the fluid, and from it to walls."""
+        """Of density in the fluid, and to walls: from it, and from walls that bear a pressure."""
         strength = self.delta * uniform.smoothing_length * uniform.sound_speed
         return -2.0 * strength * uniform.volume * uniform.slope(r) / r
 
@@ -140,8 +141,8 @@ class RiemannDissipation(NamedTuple):
     Their p* is limited, and of second order in small disturbances.
     """
 
-    def diffusion(self, uniform, r):
-        """Of density between neighbours."""
+    def meeting(self, uniform, r):
+        """Of density between neighbours, one of them fluid."""
         return -uniform.sound_speed * uniform.volume * uniform.slope(r)
 
 

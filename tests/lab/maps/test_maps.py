@@ -101,7 +101,7 @@ def test_every_remedy_can_be_asked_for(capsys, name):
     plain = Asked(kernel="cubic", smoothing=1.2, state="tension")
     said, found = answer(capsys, plain._replace(remedies=(name + value,)))
     assert name.replace("_", " ") in said[0]
-    of_density = {"diffusion", "spreading"} & set(dir(REMEDIES[name]))
+    of_density = {"spreading", "meeting"} & set(dir(REMEDIES[name]))
     if not of_density:  # what grows is under tension, whatever sound does
         assert found["growth_rate"] != pytest.approx(answer(capsys, plain)[1]["growth_rate"])
 

@@ -1,0 +1,28 @@
+"""Which walls are wet: fluid makes them so within its reach, and leaves them so a little farther out."""
+
+import numpy as np
+import pytest
+
+from psph.particles.neighbours import Neighbours
+from psph.particles.wetting import mark_wet
+
+SUPPORT, CUTOFF, PERIOD = 1.0, 1.2, 10.0
+
+
+def wet_at(distance, before, other_is_fluid=1.0, first=9.5):
+    """Whether a wall is wet with a neighbour at a distance, across the end of a period, if it was before."""
+    x = np.array([first, (first + distance) % PERIOD])
+    is_fluid, wet = np.array([0.0, other_is_fluid]), np.array([before, 1.0])
+    lists = Neighbours(np.array([0, 1], np.uint64), np.array([1, 1], np.uint32), np.array([1, 0], np.uint32))
+    mark_wet(0, 2, 0, lists, SUPPORT, CUTOFF, (PERIOD,), (x,), is_fluid, wet)
+    assert wet[1] == other_is_fluid  # fluid counts as wet, a wall beside a wall does not
+    return wet[0]
+
+
+@pytest.mark.parametrize(("distance", "was_dry", "was_wet"), [(0.9, 1, 1), (1.1, 0, 1), (1.3, 0, 0)])
+def test_a_wall_stays_what_it_was_between_support_and_cutoff(distance, was_dry, was_wet):
+    assert wet_at(distance, 0.0) == was_dry and wet_at(distance, 1.0) == was_wet
+
+
+def test_another_wall_makes_no_wall_wet():
+    assert wet_at(0.5, 1.0, other_is_fluid=0.0) == 0.0
