@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -168,8 +169,34 @@ def test_a_run_that_blows_up_says_so_on_every_number_of_ranks(tmp_path):
         assert "time.cfl" in job.stderr
 
 
-def test_an_interrupt_is_one_line_and_code_130(tmp_path):
-    words = [sys.executable, "-m", "psph", CASE, "--out", tmp_path, "--set", "time.end=100"]
+SLOWLY = """
+import sys, time
+from psph.run.guards import Guards
+
+Guards.step = lambda self: time.sleep(60.0)
+
+from psph.__main__ import guarded
+guarded(sys.argv[1:])
+"""
+"""Its first step does not end."""
+
+
+def test_interrupts_are_one_line_each_and_the_second_ends_at_once(tmp_path):
+    """The first lets the step end and leaves a checkpoint: code 75, the second has code 130."""
+    program = tmp_path / "slowly.py"
+    program.write_text(SLOWLY, encoding="utf-8")
+    for again, words in ((False, ["-m", "psph"]), (True, [program])):
+        code, said = interrupted([sys.executable, *words, CASE, "--out", tmp_path / f"{again}"], again)
+        if again:
+            assert (code, said) == (130, "interrupted\n")
+        else:
+            assert code == 75 and said.startswith("stopped by SIGINT at t = ") and said.count("\n") == 1
+            assert list((tmp_path / f"{again}").glob("checkpoint-*.h5"))
+
+
+def interrupted(words, again):
+    """How a run ends that is interrupted after its start, and ``again`` a second later."""
+    words = [*words, "--set", "time.end=100"]
     with subprocess.Popen(
         words,
         env=clean_environment(),
@@ -182,8 +209,11 @@ def test_an_interrupt_is_one_line_and_code_130(tmp_path):
         while not job.stdout.readline().startswith("first step"):
             assert job.poll() is None
         job.send_signal(signal.SIGINT)
+        if again:
+            time.sleep(1.0)
+            job.send_signal(signal.SIGINT)
         _, said = job.communicate(timeout=60)
-    assert (job.returncode, said) == (130, "interrupted\n")
+    return job.returncode, said
 
 
 def shell(command):

@@ -17,7 +17,7 @@ from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.riemann import RiemannDissipation
 from psph.physics.fluid.continuity import Continuity
-from psph.physics.fluid.correction import DifferenceCorrection, GradientCorrection
+from psph.physics.fluid.correction import CorrectionBesideWalls, DifferenceCorrection, GradientCorrection
 from psph.physics.fluid.gravity import CentralForce, Gravity
 from psph.physics.fluid.pressure import (
     BackgroundPressure,
@@ -545,6 +545,7 @@ def pulled_down(delta, gravity):
     "one",
     [
         DifferenceCorrection(0.5),
+        CorrectionBesideWalls(0.5, 1e-4),
         CorrectedViscosity(),
         CorrectedNoSlip(),
         TankDiffusion,
@@ -555,6 +556,38 @@ def pulled_down(delta, gravity):
 )
 def test_forms_for_a_scene_are_the_same_compiled(one, dim):
     agree_compiled(one(0.1, (0.3, -9.8, 1.0)[:dim]) if callable(one) else one, dim)
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_in_a_wall_the_correction_is_that_of_a_whole_lattice(dim):
+    """Whatever is missing behind it; in a fluid it is that of the neighbours."""
+    scene = SimpleNamespace(
+        physics=SimpleNamespace(pressure_gradient="symmetric"),
+        species=[SimpleNamespace(is_fluid=True), SimpleNamespace(is_fluid=False)],
+        kernel=kernel("wendland-c2", H, dim),
+        spacing=H / 1.3,
+        dimensions=dim,
+    )
+    effect, p = GradientCorrection(0.01).in_scene(scene), patch(dim)
+    denser = p._replace(specific_volume=0.9 * p.specific_volume)
+    near = 2 * dim + 1  # itself and the nearest: the outer ones are missing
+    for crowd in (p, denser):
+        whole = np.array(sums_of(GradientCorrection(0.01), crowd, 0))
+        assert np.abs(whole).max() > 1e-3
+        in_fluid, in_wall = (crowd._replace(is_fluid=np.full(len(p.mass), one)) for one in (1.0, 0.0))
+        assert sums_of(effect, in_fluid, 0) == pytest.approx(whole, abs=1e-9)
+        assert sums_of(effect, in_wall, 0) == pytest.approx(whole, abs=1e-9)
+        assert sums_of(effect, first(in_wall, near), 0) == pytest.approx(whole, abs=1e-9)
+        assert np.abs(np.array(sums_of(effect, first(in_fluid, near), 0)) - whole).max() > 1e-2
+
+
+def first(p, n):
+    """The first particles of some."""
+
+    def cut(entry):
+        return tuple(map(cut, entry)) if isinstance(entry, tuple) else entry[:n]
+
+    return p._replace(**{k: cut(v) for k, v in p._asdict().items() if isinstance(v, tuple | np.ndarray)})
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)

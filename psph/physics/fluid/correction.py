@@ -8,6 +8,7 @@ from psph.fields import SYMMETRIC
 from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.physics.facts import Facts
+from psph.smoothing import first_moment
 from psph.vectors import (
     add,
     adjugate,
@@ -62,9 +63,13 @@ class GradientCorrection(NamedTuple):
     lagged = True
 
     def in_scene(self, scene: Facts):
-        """The form that belongs to the scene's pressure gradient."""
-        difference = scene.physics.pressure_gradient == "difference"
-        return DifferenceCorrection(self.least) if difference else self
+        """The form that belongs to the scene's pressure gradient, and to its walls."""
+        if scene.physics.pressure_gradient == "difference":
+            return DifferenceCorrection(self.least)
+        if all(one.is_fluid for one in scene.species):
+            return self
+        full = -first_moment(scene.kernel, scene.spacing, scene.dimensions) / scene.dimensions
+        return CorrectionBesideWalls(self.least, scene.spacing**scene.dimensions / full)
 
     def start(self, i):
         """No neighbour yet."""
@@ -84,12 +89,7 @@ class GradientCorrection(NamedTuple):
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
-        v_i, v_j = i.specific_volume, j.specific_volume
-        both = add(
-            scale(i.gradient_correction, i.pressure * v_i * v_i),
-            scale(j.gradient_correction, j.pressure * v_j * v_j),
-        )
-        return scale(times(both, pair.x_ij), -pair.m_dw_r)
+        return _push(i, j, pair)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -99,6 +99,46 @@ class GradientCorrection(NamedTuple):
                 f'does not work with physics.pressure_gradient = "{physics.pressure_gradient}"; use '
                 '"symmetric" or "difference"'
             )
+
+
+class CorrectionBesideWalls(NamedTuple):
+    """Gradients are corrected to be exact for linear fields, in pressure and in continuity, beside walls too.
+
+    As :class:`GradientCorrection`, but in a wall L is that of a whole lattice of its density,
+    L = ``volume``/(m/ρ): behind a wall there is nothing, and an L of what is there would push the fluid in
+    front of it, under a pressure that is the same everywhere.  ``volume`` is dx^d over the mean of the
+    lattice's −Σ_j dx^d x_ij ∇W_ijᵀ, m^d.
+    """
+
+    conserves = ("momentum",)
+
+    least: float
+    volume: float
+
+    writes = CORRECTION
+    lagged = True
+
+    def start(self, i):
+        """No neighbour yet."""
+        return outer(zero_like(i.position))
+
+    def gather(self, total, i, j, pair):
+        """Add −m_j/ρ_j x_ij ∇W_ijᵀ."""
+        return _with_neighbour(total, j, pair)
+
+    def finish_value(self, total, i, kernel):
+        """L − 1."""
+        whole = self.volume / (i.mass * i.specific_volume) - 1.0
+        in_wall = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - i.is_fluid), i.position)
+        return add(scale(_correction(total, self.least, i.position), i.is_fluid), in_wall)
+
+    def density_rate(self, i, j, pair):
+        """What L_i − 1 adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        return _density_rate(i, j, pair)
+
+    def push(self, i, j, pair):
+        """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
+        return _push(i, j, pair)
 
 
 class DifferenceCorrection(NamedTuple):
@@ -162,6 +202,16 @@ def _with_neighbour(total, j, pair):
 def _correction(total, least, like):
     size = determinant(total, like)
     return scale(less_diagonal(adjugate(total, like), size, like), 1.0 / max(size, least))
+
+
+@helper
+def _push(i, j, pair):
+    v_i, v_j = i.specific_volume, j.specific_volume
+    both = add(
+        scale(i.gradient_correction, i.pressure * v_i * v_i),
+        scale(j.gradient_correction, j.pressure * v_j * v_j),
+    )
+    return scale(times(both, pair.x_ij), -pair.m_dw_r)
 
 
 @helper
