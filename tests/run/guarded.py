@@ -1,5 +1,7 @@
 """What the tests of the guards share: a closed box of water at rest, and how it is run."""
 
+from pathlib import Path
+
 from psph.case import load
 from psph.output.errors import together
 from psph.run.start import run
@@ -24,6 +26,9 @@ shape.difference.from.box = { lower = [-0.3, -0.3], upper = [1.5, 1.1] }
 shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.2, 0.8] } }]
 """
 """252 particles, 128 steps."""
+
+SLOWLY = Path(__file__).with_name("slowly.py")
+"""psph as a program whose steps last longer."""
 
 THROWN = ["perturbations=[{ position = [0.65, 0.45], velocity = [100.0, 0.0] }]"]
 """A particle is thrown at the wall at ten speeds of sound."""

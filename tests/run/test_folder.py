@@ -9,7 +9,7 @@ import time
 import pytest
 from jobs import mpirun, ranks_of, started
 from mpi4py import MPI
-from run.guarded import BOX, boxed
+from run.guarded import BOX, SLOWLY, boxed
 
 from psph.case import load
 from psph.output.checkpoint import checkpoints
@@ -175,28 +175,12 @@ def test_a_file_system_without_locks_runs(tmp_path, monkeypatch, failing):
     assert (tmp_path / "run" / "box.h5").exists() and not (tmp_path / "run" / IN_USE).exists()
 
 
-SLOWLY = """
-import sys, time
-from psph.simulation import step
-
-original = step.Simulation.step
-def slow(self, *end):
-    original(self, *end)
-    time.sleep(0.3)
-step.Simulation.step = slow
-
-from psph.__main__ import guarded
-guarded(sys.argv[1:])
-"""
-
-
 @pytest.mark.alone
 def test_a_real_job_holds_its_folder_until_it_is_killed(tmp_path):
     (tmp_path / "box.toml").write_text(BOX, encoding="utf-8")
-    slowly, folder = tmp_path / "slowly.py", tmp_path / "run"
-    slowly.write_text(SLOWLY, encoding="utf-8")
+    folder = tmp_path / "run"
     case = [tmp_path / "box.toml", "--out", folder, "--set", "checkpoint.every=2"]
-    with started(2, [slowly, *case]) as job:
+    with started(2, [SLOWLY, "0.3", *case]) as job:
         deadline = time.monotonic() + 60.0
         while not checkpoints(folder) and time.monotonic() < deadline:
             time.sleep(0.1)

@@ -10,7 +10,7 @@ import pytest
 from jobs import mpirun, ranks_of, started
 from long import long_but_for
 from mpi4py import MPI
-from run.guarded import boxed
+from run.guarded import SLOWLY, boxed
 from run.resuming import BOX, same_files
 
 from psph.output.checkpoint import checkpoints
@@ -157,9 +157,7 @@ def test_a_signal_to_a_real_job_loses_nothing(box, tmp_path, number, to, ranks):
     case, whole = box
     folder, (before, after) = tmp_path / "run", ranks
     # It sleeps after each step, to be met in the midst of the run.
-    slowly = tmp_path / "slowly.py"
-    slowly.write_text(SLOWLY, encoding="utf-8")
-    with started(before, [slowly, case, "--out", folder, "--set", LATER]) as job:
+    with started(before, [SLOWLY, "0.05", case, "--out", folder, "--set", LATER]) as job:
         begun(folder, 4)
         os.kill(job.pid if to == "mpirun" else ranks_of(job)[-1], getattr(signal, number))
         _, said = job.communicate(timeout=60)
@@ -176,30 +174,13 @@ def test_a_signal_to_a_real_job_loses_nothing(box, tmp_path, number, to, ranks):
 
 @pytest.mark.parametrize("number", long_but_for(("SIGTERM",), ("SIGTERM", "SIGINT")))
 def test_mpirun_that_is_told_to_end_lets_the_ranks_save(box, tmp_path, number):
-    slowly = tmp_path / "slowly.py"
-    slowly.write_text(SLOWLY, encoding="utf-8")
     folder, patient = tmp_path / "run", {"OMPI_MCA_odls_base_sigkill_timeout": "3"}
-    with started(2, [slowly, box[0], "--out", folder, "--set", LATER], env=patient) as job:
+    with started(2, [SLOWLY, "0.05", box[0], "--out", folder, "--set", LATER], env=patient) as job:
         begun(folder, 4)
         os.kill(job.pid, getattr(signal, number))
         _, said = job.communicate(timeout=60)
     assert job.returncode == 1  # its own, not that of the ranks
     assert said.count("stopped by SIGTERM at t = 0.") == 1 and len(checkpoints(folder)) >= 1
-
-
-SLOWLY = """
-import sys, time
-from psph.simulation import step
-
-original = step.Simulation.step
-def slow(self, *end):
-    original(self, *end)
-    time.sleep(0.05)
-step.Simulation.step = slow
-
-from psph.__main__ import guarded
-guarded(sys.argv[1:])
-"""
 
 
 TOLD_AT_ONCE = """

@@ -77,7 +77,7 @@ class GradientCorrection(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Add −m_j/ρ_j x_ij ∇W_ijᵀ."""
-        return _with_neighbour(total, j, pair)
+        return add(total, scale(outer(pair.x_ij), -j.mass * j.specific_volume * pair.dw_r))
 
     def finish_value(self, total, i, kernel):
         """L − 1."""
@@ -85,11 +85,16 @@ class GradientCorrection(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """What L_i − 1 adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return _density_rate(i, j, pair)
+        return pair.m_dw_r * dot(pair.u_ij, times(i.gradient_correction, pair.x_ij))
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
-        return _push(i, j, pair)
+        v_i, v_j = i.specific_volume, j.specific_volume
+        both = add(
+            scale(i.gradient_correction, i.pressure * v_i * v_i),
+            scale(j.gradient_correction, j.pressure * v_j * v_j),
+        )
+        return scale(times(both, pair.x_ij), -pair.m_dw_r)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -118,13 +123,8 @@ class CorrectionBesideWalls(NamedTuple):
     writes = CORRECTION
     lagged = True
 
-    def start(self, i):
-        """No neighbour yet."""
-        return outer(zero_like(i.position))
-
-    def gather(self, total, i, j, pair):
-        """Add −m_j/ρ_j x_ij ∇W_ijᵀ."""
-        return _with_neighbour(total, j, pair)
+    start = GradientCorrection.start
+    gather = GradientCorrection.gather
 
     def finish_value(self, total, i, kernel):
         """L − 1."""
@@ -132,13 +132,8 @@ class CorrectionBesideWalls(NamedTuple):
         in_wall = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - i.is_fluid), i.position)
         return add(scale(_correction(total, self.least, i.position), i.is_fluid), in_wall)
 
-    def density_rate(self, i, j, pair):
-        """What L_i − 1 adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return _density_rate(i, j, pair)
-
-    def push(self, i, j, pair):
-        """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
-        return _push(i, j, pair)
+    density_rate = GradientCorrection.density_rate
+    push = GradientCorrection.push
 
 
 class DifferenceCorrection(NamedTuple):
@@ -153,21 +148,10 @@ class DifferenceCorrection(NamedTuple):
     writes = CORRECTION
     lagged = True
 
-    def start(self, i):
-        """No neighbour yet."""
-        return outer(zero_like(i.position))
-
-    def gather(self, total, i, j, pair):
-        """Add −m_j/ρ_j x_ij ∇W_ijᵀ."""
-        return _with_neighbour(total, j, pair)
-
-    def finish_value(self, total, i, kernel):
-        """L − 1."""
-        return _correction(total, self.least, i.position)
-
-    def density_rate(self, i, j, pair):
-        """What L_i − 1 adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        return _density_rate(i, j, pair)
+    start = GradientCorrection.start
+    gather = GradientCorrection.gather
+    finish_value = GradientCorrection.finish_value
+    density_rate = GradientCorrection.density_rate
 
     def push(self, i, j, pair):
         """What L_i − 1 adds to the pressure gradient from differences, m/s²."""
@@ -193,27 +177,6 @@ def half_disorder(half, i):
 
 
 @helper
-def _with_neighbour(total, j, pair):
-    volume = j.mass * j.specific_volume
-    return add(total, scale(outer(pair.x_ij), -volume * pair.dw_r))
-
-
-@helper
 def _correction(total, least, like):
     size = determinant(total, like)
     return scale(less_diagonal(adjugate(total, like), size, like), 1.0 / max(size, least))
-
-
-@helper
-def _push(i, j, pair):
-    v_i, v_j = i.specific_volume, j.specific_volume
-    both = add(
-        scale(i.gradient_correction, i.pressure * v_i * v_i),
-        scale(j.gradient_correction, j.pressure * v_j * v_j),
-    )
-    return scale(times(both, pair.x_ij), -pair.m_dw_r)
-
-
-@helper
-def _density_rate(i, j, pair):
-    return pair.m_dw_r * dot(pair.u_ij, times(i.gradient_correction, pair.x_ij))
