@@ -1,5 +1,6 @@
 """What asks a run for a checkpoint, or for its end: signals and clocks, of whichever rank."""
 
+import atexit
 import signal
 import time
 from enum import IntEnum
@@ -37,9 +38,19 @@ _EARLY: set[Call] = set()
 
 
 def listen() -> None:
-    """Remember signals from now on for the run that is to come: else they would end the process."""
+    """Remember signals from now on for the run that is to come: else they would end the process.
+
+    What comes after the run, once more, does nothing.
+    """
     for number in SIGNALS:
         signal.signal(number, _remember_early)
+    atexit.register(_ignore)
+
+
+def _ignore() -> None:
+    # At its end Python gives signals back their default, which kills, while MPI still waits for all ranks.
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def _remember_early(number, frame) -> None:

@@ -183,6 +183,28 @@ def test_mpirun_that_is_told_to_end_lets_the_ranks_save(box, tmp_path, number):
     assert said.count("stopped by SIGTERM at t = 0.") == 1 and len(checkpoints(folder)) >= 1
 
 
+TOLD_AT_THE_END = """
+import os, signal, time
+from psph.run.watch import listen
+listen()
+from mpi4py import MPI
+
+comm = MPI.COMM_WORLD
+process = comm.bcast(os.getpid(), root=1)
+if comm.rank == 0:
+    time.sleep(1.0)  # the other rank has ended its Python, and waits for this one in MPI_Finalize
+    for number in (signal.SIGUSR1, signal.SIGTERM):
+        os.kill(process, number)
+    time.sleep(0.3)
+"""
+
+
+def test_a_signal_to_a_rank_that_has_ended_does_not_kill_it(tmp_path):
+    (tmp_path / "told.py").write_text(TOLD_AT_THE_END, encoding="utf-8")
+    job = mpirun(2, [tmp_path / "told.py"])
+    assert job.returncode == 0, job.stderr
+
+
 TOLD_AT_ONCE = """
 import os, signal, sys
 
