@@ -32,3 +32,5 @@ class Facts(Protocol):
     has_free_surface: bool
     lowest_pressure: float
     """Of a fluid at the start, Pa."""
+    standing_tension: float
+    """What a fluid lacks to zero pressure at the start, and its flow does not explain, Pa."""

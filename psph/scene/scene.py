@@ -137,7 +137,20 @@ class Scene:
     @cached_property
     def lowest_pressure(self) -> float:
         """The lowest pressure of a fluid at the start, Pa."""
-        return min(self._lowest_pressure(k) for k in range(self.layout.fluids))
+        return min(lowest for lowest, _ in self._pressures)
+
+    @cached_property
+    def standing_tension(self) -> float:
+        """Pa by which a fluid lacks pressure at the start everywhere: what its own flow does not explain.
+
+        Of a fluid whose pressure follows from a flow (an exact solution), its highest pressure below zero;
+        of others the lowest.
+        """
+        borne = (
+            highest if start.exact else lowest
+            for start, (lowest, highest) in zip(self.starts, self._pressures)
+        )
+        return max(0.0, -min(borne))
 
     @cached_property
     def exact(self):
@@ -312,16 +325,22 @@ class Scene:
         velocity = body.sheared(corners) + np.array(self.velocities[fluid])
         return float(np.sqrt((velocity**2).sum(axis=1)).max())
 
-    def _lowest_pressure(self, fluid: int) -> float:
+    @cached_property
+    def _pressures(self) -> tuple[tuple[float, float], ...]:
+        """The lowest and the highest pressure of each fluid at the start, Pa."""
+        return tuple(map(self._range_of_pressure, range(self.layout.fluids)))
+
+    def _range_of_pressure(self, fluid: int) -> tuple[float, float]:
         start = self.starts[fluid]
         if not start.exact:
-            return start.pressure
+            return start.pressure, start.pressure
         found = []
         for first, last in self.lattice.chunks():
             held = self.layout.materials(first, last) == fluid
             grid = self.lattice.grid(first, last)
             found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
-        return float(start.exact(np.concatenate(found)).min())
+        pressure = start.exact(np.concatenate(found))
+        return float(pressure.min()), float(pressure.max())
 
     def _nearest_fluid_site(self, point: tuple[float, ...]) -> tuple[int, int]:
         """(plane, place in the plane) of the fluid site nearest to ``point``; ties: the first."""

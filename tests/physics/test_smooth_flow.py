@@ -1,5 +1,6 @@
 """What smooth flow does not feel: reconstructed damping, diffusion of fourth order, the local potential."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,13 +8,15 @@ import pytest
 from drafts import TANK, draft
 from physics.pairs import pair_of, sums_of, view
 
-from psph.case import CaseError
+from psph.case import CaseError, load
 from psph.physics.damping.diffusion import BesideSmoothDensity, DensityDiffusion, TankDiffusion
 from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
 from psph.physics.fluid.viscosity import PairDamping
 from psph.physics.order.potential import LocalPotential, UnequalPotential, neutral_potential
+from psph.scene import Scene
+from psph.simulation.plan import make_plan
 
 DIMENSIONS = (1, 2, 3)
 ALPHA, C = 0.3, 50.0
@@ -21,7 +24,8 @@ ALPHA, C = 0.3, 50.0
 
 def crowd(dim, n=12, seed=5):
     """Fluid particles in disorder within a support, each with its own L of all the others."""
-    p = view(n=n, dim=dim, seed=seed)._replace(is_fluid=np.ones(n))
+    p = view(n=n, dim=dim, seed=seed)
+    p = p._replace(is_fluid=np.ones(n), mass=p.mass * (20.0 if dim == 1 else 1.0))  # a full row
     found = [sums_of(GradientCorrection(1e-9), p, k) for k in range(n)]
     return p._replace(gradient_correction=tuple(map(np.array, zip(*found))))
 
@@ -45,6 +49,21 @@ def test_the_rate_of_strain_of_a_linear_flow_is_exact_in_disorder(dim):
     p, _, upper = linear_flow(crowd(dim), dim)
     found = sums_of(BesideLinearFlow(ALPHA, 0.0), p, 3)
     assert found == pytest.approx([component[0] for component in upper], rel=1e-9)
+
+
+def test_the_rate_of_strain_fades_where_neighbours_are_in_a_line():
+    p, _, _ = linear_flow(crowd(2, n=2), 2)
+    assert np.abs(sums_of(BesideLinearFlow(ALPHA, 0.0), p, 0)).max() < 1e-9
+
+
+def test_walls_tell_how_neighbours_lie_and_no_rate_of_strain():
+    p, _, _ = linear_flow(crowd(2), 2)
+    walls = p._replace(is_fluid=np.append(np.ones(4), np.zeros(8)))
+    alone = p._replace(
+        mass=np.append(p.mass[:4], np.zeros(8)), specific_volume=np.append(p.specific_volume[:4], np.zeros(8))
+    )
+    beside, without = (np.array(sums_of(BesideLinearFlow(ALPHA, 0.0), q, 3)) for q in (walls, alone))
+    assert 0.0 < np.linalg.norm(beside) < np.linalg.norm(without)
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
@@ -207,3 +226,25 @@ def test_they_say_what_they_need(tmp_path):
     with pytest.raises(CaseError, match='set that to "off"'):
         draft(tmp_path, TANK, *together)
     assert draft(tmp_path, TANK, *together, "physics.density_diffusion=off")
+
+
+CASES = Path(__file__).parents[2] / "run" / "cases" / "hard"
+CORRECTED = ("space.normalised=false", "physics.gradient_correction=1.0")
+
+
+@pytest.mark.parametrize(
+    "case, keys, needed",
+    [
+        ("box", CORRECTED, 1.4 * 2500.0),
+        ("box", (*CORRECTED, "fluids.fluid.velocity=[30.0, 0.0]"), 1.4 * 2500.0),
+        ("box", (*CORRECTED, "fluids.fluid.pressure=2500.0"), None),
+        ("taylor_green", CORRECTED, None),
+        ("taylor_green", (), 1.4 * 0.5),
+        ("patch", CORRECTED, None),
+    ],
+)
+def test_with_corrected_gradients_a_flow_bears_its_own_tension(case, keys, needed):
+    """ "auto" is then what the start lacks everywhere, however fast it drifts; a free surface has none."""
+    plan = make_plan(Scene(load(CASES / f"{case}.toml", list(keys))))
+    found = [e.pressure for e in plan.effects if isinstance(e, (BackgroundPressure, CorrectedBackground))]
+    assert found == pytest.approx([] if needed is None else [needed])

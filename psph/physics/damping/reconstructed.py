@@ -10,7 +10,19 @@ from psph.formula import where
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square, lighter
-from psph.vectors import add, dot, dyad, matrix_product, scale, symmetric_part, times, zero_like
+from psph.vectors import (
+    add,
+    adjugate,
+    determinant,
+    dot,
+    dyad,
+    matrix_product,
+    outer,
+    scale,
+    symmetric_part,
+    times,
+    zero_like,
+)
 
 NEAR = 0.7
 """Distance in spacings below which two particles are in disorder, and all of their motion is damped."""
@@ -19,18 +31,23 @@ AT_WALLS = 0.02
 """Speed of approach over the speed of sound that a wall does not damp."""
 
 
+FEWEST = 0.1
+"""Determinant of M, about 1 on a lattice, below which the rate of strain fades."""
+
+
 class ReconstructedDamping(NamedTuple):
     """Numerical friction along the line of a pair, on its motion beside the linear flow: it calms disorder.
 
     a_i = α c h Σ_j ρ₀ m_j/(ρ_i ρ_j) s′/max(r², 0.01 h²) ∇W_ij, as :class:`PairDamping
     <psph.physics.fluid.viscosity.PairDamping>`, with s′ = s − g for its s = u_ij·x_ij: the flow that is
     linear between the two, g = ½ x_ij·(E_i + E_j)·x_ij clipped between 0 and s, is not felt, so that
-    0 ≤ s′/s ≤ 1 and each pair only loses energy; g = 0 where r < 0.7 dx.  E_i = sym(−Σ_j V_j u_ij L_i∇W_ijᵀ)
-    over fluid neighbours is the rate of strain of the step before.  Frontiere, Raskin & Owen (2017), J.
-    Comput. Phys. 332, 160, for a viscosity on approach.  In disorder and at a surface, as
-    :class:`LocalPotential <psph.physics.order.potential.LocalPotential>` sees it with t = 0.2, α rises to
-    ``in_disorder`` where that is larger: psph's own.  A wall damps what approaches it at more than 0.02 c,
-    the excess alone, and nothing else.  It conserves momentum and angular momentum.
+    0 ≤ s′/s ≤ 1 and each pair only loses energy; g = 0 where r < 0.7 dx.  E_i = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹)
+    is the rate of strain of the step before: the sum over fluid neighbours, M = −Σ_j V_j x_ij ∇W_ijᵀ over all
+    of them, so that it is exact for a linear flow up to a free surface, and smaller beside a wall.
+    Frontiere, Raskin & Owen (2017), J. Comput. Phys. 332, 160, for a viscosity on approach.  In disorder and
+    at a surface, as :class:`LocalPotential <psph.physics.order.potential.LocalPotential>` sees it with
+    t = 0.2, α rises to ``in_disorder`` where that is larger: psph's own.  A wall damps what approaches it at
+    more than 0.02 c, the excess alone, and nothing else.  It conserves momentum and angular momentum.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -69,20 +86,24 @@ class BesideLinearFlow(NamedTuple):
 
     writes = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC)
     lagged = True
+    slow = True
 
     def start(self, i):
-        """No neighbour yet."""
-        return dyad(zero_like(i.position), zero_like(i.position))
+        """No neighbour yet: velocity differences, and how they lie."""
+        return dyad(zero_like(i.position), zero_like(i.position)), outer(zero_like(i.position))
 
     def gather(self, total, i, j, pair):
-        """Add −V_j u_ij ∇W_ijᵀ of a fluid neighbour."""
-        weight = -j.specific_volume * pair.m_dw_r * j.is_fluid
-        return add(total, scale(dyad(pair.u_ij, pair.x_ij), weight))
+        """Add −V_j u_ij ∇W_ijᵀ of a fluid neighbour, and −V_j x_ij ∇W_ijᵀ."""
+        weight = -j.specific_volume * pair.m_dw_r
+        change = scale(dyad(pair.u_ij, pair.x_ij), weight * j.is_fluid)
+        return add(total[0], change), add(total[1], scale(outer(pair.x_ij), weight))
 
     def finish_value(self, total, i, kernel):
         """E_i, 1/s."""
-        corrected = add(total, matrix_product(total, i.gradient_correction, i.position))
-        return symmetric_part(corrected, i.position)
+        changes, place = total
+        size = max(determinant(place, i.position), FEWEST)
+        inverse = scale(adjugate(place, i.position), 1.0 / size)
+        return symmetric_part(matrix_product(changes, inverse, i.position), i.position)
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""

@@ -61,6 +61,7 @@ class GradientCorrection(NamedTuple):
 
     writes = CORRECTION
     lagged = True
+    slow = True
 
     def in_scene(self, scene: Facts):
         """The form that belongs to the scene's pressure gradient, and to its walls."""
@@ -109,8 +110,8 @@ class GradientCorrection(NamedTuple):
 class CorrectionBesideWalls(NamedTuple):
     """Gradients are corrected to be exact for linear fields, in pressure and in continuity, beside walls too.
 
-    As :class:`GradientCorrection`, but in a wall L is that of a whole lattice of its density,
-    L = ``volume``/(m/ρ): behind a wall there is nothing, and an L of what is there would push the fluid in
+    As :class:`GradientCorrection`, but in a wall L is that of a whole lattice of its density, whose sum is
+    1·(m/ρ)/``volume``: behind a wall there is nothing, and an L of what is there would push the fluid in
     front of it, under a pressure that is the same everywhere.  ``volume`` is dx^d over the mean of the
     lattice's −Σ_j dx^d x_ij ∇W_ijᵀ, m^d.
     """
@@ -122,15 +123,16 @@ class CorrectionBesideWalls(NamedTuple):
 
     writes = CORRECTION
     lagged = True
+    slow = True
 
     start = GradientCorrection.start
     gather = GradientCorrection.gather
 
     def finish_value(self, total, i, kernel):
         """L − 1."""
-        whole = self.volume / (i.mass * i.specific_volume) - 1.0
-        in_wall = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - i.is_fluid), i.position)
-        return add(scale(_correction(total, self.least, i.position), i.is_fluid), in_wall)
+        whole = i.mass * i.specific_volume / self.volume
+        behind = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - i.is_fluid), i.position)
+        return _correction(add(scale(total, i.is_fluid), behind), self.least, i.position)
 
     density_rate = GradientCorrection.density_rate
     push = GradientCorrection.push
@@ -147,6 +149,7 @@ class DifferenceCorrection(NamedTuple):
 
     writes = CORRECTION
     lagged = True
+    slow = True
 
     start = GradientCorrection.start
     gather = GradientCorrection.gather

@@ -155,7 +155,8 @@ class BackgroundPressure(NamedTuple):
     Σ_j ∇W_ij/ρ_j would vanish for particles in perfect order; where it does not, p_b restores order
     at the price of noise.  It conserves momentum and, being constant, energy.  A free surface would
     fly apart.  "auto" is 1.4 times what the start lacks to p = 0, or what its fastest flow can make it
-    lack, ρ₀v²/2; and nothing where there is a free surface.
+    lack, ρ₀v²/2; with corrected gradients, which hold the tension of a flow, what the start lacks
+    everywhere; and nothing where there is a free surface.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -173,22 +174,22 @@ class BackgroundPressure(NamedTuple):
         needed = self._needed(scene) if self.pressure == AUTO else self.pressure
         if needed is None:
             return None
-        physics = scene.physics
-        corrected = physics.gradient_correction is not None and physics.pressure_gradient == "symmetric"
-        return CorrectedBackground(needed) if corrected else BackgroundPressure(needed)
+        return CorrectedBackground(needed) if _is_corrected(scene) else BackgroundPressure(needed)
 
     def _needed(self, scene: Facts) -> float | None:
         """What the start and its flow may lack, Pa, or None."""
         if scene.has_free_surface:
             return None
         dip = 0.5 * max(m.density for m in scene.species) * scene.starting_speed**2
-        needed = MARGIN * max(-scene.lowest_pressure, dip)
-        return needed if needed > 0.0 else None
+        lacking = scene.standing_tension if _is_corrected(scene) else max(-scene.lowest_pressure, dip)
+        return MARGIN * lacking if lacking > 0.0 else None
 
     def why_absent(self, scene: Facts):
         """Why "auto" gives none."""
         if scene.has_free_surface:
             return "the fluid has a free surface, which it would blow apart"
+        if _is_corrected(scene):
+            return "corrected gradients hold what its flow pulls, and the start lacks no more"
         return "no pressure is negative at the start, and nothing moves"
 
     def radial(self, i, j, pair):
@@ -199,6 +200,11 @@ class BackgroundPressure(NamedTuple):
     def linear(self, scene: Facts):
         """Its part in linear theory."""
         return parts.BackgroundPressure(self.pressure)
+
+
+def _is_corrected(scene: Facts) -> bool:
+    physics = scene.physics
+    return physics.gradient_correction is not None and physics.pressure_gradient == "symmetric"
 
 
 class CorrectedBackground(NamedTuple):
