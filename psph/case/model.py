@@ -95,6 +95,9 @@ class Time(Table):
 
     end: float = key("simulated time at which the run ends", unit="s", gt=0)
     cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.5)
+    gather_every: int = key(
+        "corrected gradients and other sums that change slowly are renewed in every so many steps", 1, ge=1
+    )
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 
 

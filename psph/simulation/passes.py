@@ -35,22 +35,26 @@ class Pass(NamedTuple):
         return steps % self.every == 0
 
 
-def make_passes(called, stored: tuple[str, ...], seen_as) -> tuple[Pass, ...]:
+def make_passes(called, stored: tuple[str, ...], seen_as, gather_every: int = 1) -> tuple[Pass, ...]:
     """The passes of the effects that were called for, in order; the last gives the rates.
 
     An effect whose sum others read in the same step comes in a pass before theirs; one that is
-    ``lagged`` is content with the sum of the step before, and needs none of its own.  ``stored`` are
+    ``lagged`` is content with the sum of the step before, and needs none of its own.  What is ``slow``
+    also serves for some steps more: if ``gather_every`` is above 1, it comes in a pass that runs as
+    seldom.  ``stored`` are
     the names of all arrays, ``seen_as`` tells the array that formulas see under a name.
     """
-    early = _levels(called)
-    order = sorted({(level, _every(call)) for call, level in early})
+    early = [(call, level, _every(call)) for call, level in _levels(called)]
+    if gather_every > 1:
+        early += [(call, 0, gather_every) for call in called if getattr(call.effect, "slow", False)]
+    order = sorted({(level, every) for _, level, every in early})
     passes, before = [], set()
     for level, every in order:
-        own = [call for call, at in early if (at, _every(call)) == (level, every)]
+        own = [call for call, *at in early if at == [level, every]]
         sums = [call.effect for call in own]
         passes.append(_pass(len(passes), (), sums, own, before, stored, seen_as, every))
         before |= {effect.writes.name for effect in sums}
-    done = {id(call) for call, _ in early}
+    done = {id(call) for call, *_ in early}
     reductions = [
         call.effect
         for call in called

@@ -38,7 +38,10 @@ ALWAYS_READ = (
 )
 """What the loops themselves read of a particle, whatever the effects."""
 
-Extremes = namedtuple("Extremes", ("sound_speed", "smoothing_length", *(f.name for f in OF_MATERIAL)))
+OF_SCENE = ("sound_speed", "smoothing_length", "kernel", "spacing", "dimensions")
+
+Extremes = namedtuple("Extremes", (*OF_SCENE, *(f.name for f in OF_MATERIAL)))
+"""What limits of the time step rest on."""
 
 
 @dataclass(frozen=True)
@@ -192,7 +195,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     refuse_unwritten(scene, called, computed)
     anchored = {ANCHOR.name} if motions else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in anchored)
-    passes = make_passes(called, stored, lambda name: _array_of(name, stored))
+    passes = make_passes(called, stored, lambda name: _array_of(name, stored), case.time.gather_every)
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in passes for name in one.neighbour_fields}
     return Plan(
@@ -230,8 +233,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         cfl=case.time.cfl,
         fixed_step=case.time.step,
         extremes=Extremes(
-            scene.sound_speed,
-            scene.smoothing_length,
+            *(getattr(scene, name) for name in OF_SCENE),
             *(max(material_value(m, f.name) for m in scene.species) for f in OF_MATERIAL),
         ),
     )

@@ -17,7 +17,7 @@ class Family(NamedTuple):
 
     ``along`` is the long axis, ``periodic`` the axes that repeat; ``physics`` holds keys with fixed
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
-    a floor; ``fluids`` how many, of different densities.
+    a floor; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums are taken.
     """
 
     dimensions: int
@@ -29,6 +29,7 @@ class Family(NamedTuple):
     fluids: int = 1
     viscous: bool = False
     kernel: str = ""
+    gather_every: int = 1
     physics: dict = {}
 
 
@@ -106,6 +107,23 @@ FAMILIES = {
     "tank in 3D": Family(3, along="z", walls=True, physics=GRAVITY),
     "pipe": Family(3, along="z", periodic="z", walls=True, viscous=True, fluids=2, physics=GRAVITY),
     "mixed tank": Family(2, precision="mixed", walls=True, physics=GRAVITY),
+    "smooth": Family(
+        2,
+        walls=True,
+        fluids=2,
+        kernel="wendland-c2",
+        gather_every=5,
+        physics={
+            "gradient_correction": (0.5, 1.0),
+            "pair_damping": "off",
+            "pair_potential": "off",
+            "density_diffusion": "off",
+            "fourth_order_diffusion": (0.0, 0.2),
+            "reconstructed_damping": {"alpha": 0.03, "in_disorder": 0.3},
+            "local_potential": {"strength": 0.008, "threshold": 0.2},
+            **GRAVITY,
+        },
+    ),
 }
 
 
@@ -118,7 +136,7 @@ def scene(family: Family, seed: int) -> str:
         "scheme": family.scheme,
         "precision": family.precision,
         "space": _space(family, rng, sizes),
-        "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5)},
+        "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5), "gather_every": family.gather_every},
         "neighbours": {"skin": _drawn(rng, 0.02, 0.3)},
         "parallel": {"axis": family.along},
         "physics": {"sound_speed": 10.0, **_physics(family, rng)},

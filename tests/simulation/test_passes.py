@@ -26,8 +26,9 @@ def effect(writes, in_sum=(), in_rates=(), neighbour=(), **marks):
     return Called(kind(), Reads(every, frozenset(neighbour), frozenset(), frozenset(in_sum), every))
 
 
-def passes_of(*called):
-    return make_passes(called, STORED, lambda name: name.replace("velocity", "predicted_velocity"))
+def passes_of(*called, gather_every=1):
+    seen_as = lambda name: name.replace("velocity", "predicted_velocity")
+    return make_passes(called, STORED, seen_as, gather_every)
 
 
 def stores(passes):
@@ -70,6 +71,26 @@ def test_a_pass_may_run_in_every_third_step():
     by_field = {one.stores: one for one in (first, second)}
     assert [by_field[("a",)].due(n) for n in range(4)] == [True, False, False, True]
     assert all(by_field[("b",)].due(n) and last.due(n) for n in range(4))
+
+
+SLOW = (
+    effect(A, in_rates="a", neighbour="a", lagged=True, slow=True),
+    effect(B, in_sum="a", in_rates="b", lagged=True, slow=True),
+    effect(C, in_rates="c", lagged=True),
+)
+
+
+def test_what_changes_slowly_may_be_gathered_in_every_fifth_step_together():
+    """One that reads another's sum has it as it was five steps before; what is not slow stays."""
+    seldom, last = passes_of(*SLOW, gather_every=5)
+    assert (seldom.stores, last.stores) == (("a", "b"), ("c",))
+    assert [seldom.due(n) for n in range(6)] == [True, False, False, False, False, True]
+    assert last.brought == ("a",) and last.due(1)
+
+
+def test_what_changes_slowly_comes_with_the_rates_unless_told():
+    [only] = passes_of(*SLOW)
+    assert only.stores == ("a", "b", "c") and only.brought == ()
 
 
 def test_a_rate_of_a_field_that_evolves_is_summed_with_the_rates():

@@ -10,12 +10,14 @@ from psph.formula import helper, where
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square
+from psph.smoothing import fastest_smoothing
 from psph.theory.stability import parts
 from psph.vectors import add, along, dot, scale, times, zero_like
 
-STABLE = 0.03
-"""δcΔt/h must stay below.  The fastest mode of a lattice decays at 2Sδc/h, S ≤ 5.5 over the kernels
-(Wendland C2: 3.4); density, predicted with weights 7/4, −1, 1/4, is stable to a third a step."""
+STABLE = 0.15
+"""ShδcΔt must stay below, S the fastest smoothing of the kernel on the lattice (psph.smoothing), h²S = 2 to
+5.7.  The fastest wave decays at 2Shδc; density, predicted with weights 7/4, −1, 1/4, is stable to a third a
+step, and a tenth is left for disorder."""
 
 
 class DensityDiffusion(NamedTuple):
@@ -43,7 +45,7 @@ class DensityDiffusion(NamedTuple):
         return _excess(self.delta, i, j, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
-        """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
+        """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
 
     def linear(self, scene: Facts):
@@ -70,7 +72,7 @@ class TankDiffusion(NamedTuple):
         return where(_giving(i, j) > 0.0, taken, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
-        """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
+        """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
 
     def linear(self, scene: Facts):
@@ -117,6 +119,7 @@ class BesideSmoothDensity(NamedTuple):
 
     writes = Declared("density_gradient", "kg/m4", "gradient of the density over its rest density", VECTOR)
     lagged = True
+    slow = True
 
     def start(self, i):
         """No neighbour yet."""
@@ -144,7 +147,7 @@ class BesideSmoothDensity(NamedTuple):
         return where(_giving(i, j) > 0.0, flux, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
-        """Δt ≤ 0.03 h/(δ c), s: see STABLE."""
+        """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
         return _longest_step(self.delta, scene)
 
     def linear(self, scene: Facts):
@@ -182,5 +185,6 @@ def _nearness(i, pair):
 
 
 def _longest_step(delta: float, scene) -> float:
-    mixing = delta * scene.sound_speed
-    return STABLE * scene.smoothing_length / mixing if mixing > 0.0 else float("inf")
+    spread = fastest_smoothing(scene.kernel, scene.spacing, scene.dimensions)
+    rate = spread * scene.smoothing_length * delta * scene.sound_speed
+    return STABLE / rate if rate > 0.0 else float("inf")
