@@ -13,7 +13,7 @@ LAYERS = [
     {"errors", "fields"},
     {"engine"},
     {"formula"},
-    {"vectors", "smoothing"},
+    {"vectors", "smoothing", "rows"},
     {"composition"},
     {"theory"},
     {"physics"},

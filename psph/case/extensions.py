@@ -126,7 +126,7 @@ def _module(file: str, name: str):
         module = sys.modules[named] = importlib.util.module_from_spec(spec)
         try:
             spec.loader.exec_module(module)
-        except Exception as error:  # whatever is wrong in the person's file
+        except (Exception, SystemExit) as error:  # whatever is wrong in the person's file
             del sys.modules[named]
             raise CaseError([f"{file}: use: {path}: {type(error).__name__}: {error}"]) from None
     return sys.modules[named]

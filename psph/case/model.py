@@ -19,6 +19,7 @@ from psph.case.schemes import SCHEMES, STABLE, by_default, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
+from psph.rows import projected
 from psph.smoothing import KERNELS
 
 if TYPE_CHECKING:  # made from the catalogues of effects and solutions
@@ -96,7 +97,7 @@ class Time(Table):
     end: float = key("simulated time at which the run ends", unit="s", gt=0)
     cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.5)
     gather_every: int = key(
-        "corrected gradients and other sums that change slowly are renewed in every so many steps", 1, ge=1
+        "corrected gradients and other slow sums are renewed every so many steps", 1, ge=1
     )
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 
@@ -141,7 +142,7 @@ class Fluid(Table):
 
     def sheared(self, x: np.ndarray) -> np.ndarray:
         """What ``velocity_gradient`` adds to the velocity at ``x`` (n, dim), m/s (n, dim)."""
-        return (x - np.array(self.velocity_center)) @ np.array(self.velocity_gradient).T
+        return np.column_stack([projected(x - self.velocity_center, row) for row in self.velocity_gradient])
 
 
 class Wall(Table):
@@ -279,14 +280,10 @@ class Case(Table):
         "Python files in the folder of the case or below that bring effects, motions or regions", ()
     )
     scheme: Literal[tuple(SCHEMES)] = key(
-        "stable: the default scheme; sph: plain SPH; ssph: the paper's; for the keys that the case "
-        "does not give itself",
-        STABLE,
+        "stable: the default; sph: plain SPH; ssph: the paper's; for keys that the case does not give", STABLE
     )
     profile: Literal[tuple(PROFILES)] | None = key(
-        "numerical choices by one name, for the keys that the case does not give itself",
-        None,
-        otherwise="no profile",
+        "numerical choices by one name, for keys that the case does not give", None, otherwise="no profile"
     )
     precision: Literal["double", "mixed"] = key(
         "mixed: pairs in single precision, particles and time integration in double", "double"

@@ -8,6 +8,7 @@ from mpi4py import MPI
 from psph.fields import FLUID
 from psph.parallel.reductions import exact_sums, largest
 from psph.particles.store import Store
+from psph.rows import projected
 
 
 def columns(dimensions: int) -> list[str]:
@@ -35,7 +36,7 @@ def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ..
     velocity = store.owned_rows("velocity")[fluid]
     position = store.owned_rows("position")[fluid]
     kinetic = 0.5 * mass * (velocity**2).sum(axis=1)
-    potential = -mass * (position @ np.asarray(gravity))
+    potential = -mass * projected(position, gravity)
     return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
 
 

@@ -116,6 +116,7 @@ class Record:
             "next": [when.next for when in self.schedules.values()],
             "last": list(self.last_written.values()),
             "errors": self.latest_errors,
+            "sampled": [[probe.rows, probe.dry] for probe in self._points()],
         }
 
     def _restore(self, kept: dict) -> None:
@@ -123,6 +124,8 @@ class Record:
         for when, then in zip(self.schedules.values(), kept["next"], strict=True):
             when.next = then
         self.last_written = dict(zip(self.schedules, kept["last"], strict=True))
+        for probe, sampled in zip(self._points(), kept["sampled"], strict=True):
+            probe.rows, probe.dry = sampled
 
     def write_due(self) -> None:
         """Write what is due at the simulation's time."""
@@ -160,12 +163,15 @@ class Record:
 
     def dry_probes(self) -> Iterator[str]:
         """A line for each probe that had no fluid in reach at some time."""
-        for probe in self.probes:
-            if isinstance(probe, Probe) and probe.dry:
+        for probe in self._points():
+            if probe.dry:
                 yield (
                     f"probe {probe.name}: no fluid in reach in {probe.dry:,} of {probe.rows:,} rows, "
                     f"where {PROBES} has nan"
                 )
+
+    def _points(self) -> Iterator[Probe]:
+        return (probe for probe in self.probes if isinstance(probe, Probe))
 
     def write_log(self) -> None:
         """A line of energies, momentum and limits, and one of errors where these are known."""

@@ -80,7 +80,7 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
     now = saved.state["time"]
     if extend and case.time.end <= now:
         raise CheckpointError(
-            f"{saved.path}: time.end = {case.time.end:g} s lies before it, at {now:.6g} s: give a later end"
+            f"{saved.path}: time.end = {case.time.end:g} s is not after it, at {now:.6g} s: give a later end"
         )
     return case.under(saved.header["name"]), saved
 

@@ -32,7 +32,7 @@ def _walls_of_another_fluid(scene) -> Iterator[str]:
     for first, last in scene.lattice.chunks():
         held = scene.layout.materials(first, last)
         for fluid, name in enumerate(names):
-            beside = set(held[scene.layout.near(fluid, first, last, 1)].tolist())
+            beside = set(held[scene.layout.touching(fluid, first, last)].tolist())
             found |= {(wall, name) for wall in beside}
     for number, (wall, body) in enumerate(scene.case.walls.items(), len(names)):
         own = scene.case.fluids[body.continues]

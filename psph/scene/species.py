@@ -10,6 +10,7 @@ import numpy as np
 from psph.case.shapes import Shape
 from psph.fields import FLUID
 from psph.physics.motion import Free
+from psph.rows import projected
 from psph.scene.lattice import TOLERANCE, Lattice
 from psph.scene.shapes import Grid, inside
 
@@ -75,7 +76,7 @@ class Start(NamedTuple):
             return self._density(self.exact(position))
         if not self.weight:
             return np.full(len(position), self._density(np.float64(self.pressure)))
-        depth = self.surface - position @ np.array(self.up)
+        depth = self.surface - projected(position, self.up)
         return self._density(np.where(depth > 0.0, self.above + self.weight * depth, 0.0))
 
     def mass(self, volume: float) -> float:
@@ -125,6 +126,13 @@ class Layout:
             found = _spread(np.moveaxis(found, axis, 0), reach)
             found = np.moveaxis(found, 0, axis)
         return found[first - begin : last - begin]
+
+    def touching(self, material: int, first: int, last: int) -> np.ndarray:
+        """True at the sites of some planes that are of ``material``, or beside such a site along an axis."""
+        begin, end = max(first - 1, 0), min(last + 1, self.lattice.planes)
+        held = self.materials(begin, end) == material
+        ways = (np.moveaxis(_spread(np.moveaxis(held, axis, 0), 1), 0, axis) for axis in range(held.ndim))
+        return np.logical_or.reduce([*ways])[first - begin : last - begin]
 
 
 def _spread(held: np.ndarray, reach: int) -> np.ndarray:

@@ -173,3 +173,11 @@ def test_only_python_files_of_the_case_s_folder_are_used(name, case):
     path.write_text(path.read_text().replace("use = []", f'use = ["{name}"]'))
     with pytest.raises(CaseError, match="use: "):
         load(path)
+
+
+def test_a_used_file_that_leaves_the_program_is_refused(case):
+    path = case()
+    (path.parent / "leaves.py").write_text("raise SystemExit(3)\n", encoding="utf-8")
+    path.write_text(path.read_text().replace("use = []", 'use = ["leaves.py"]'))
+    with pytest.raises(CaseError, match="leaves.py: SystemExit: 3"):
+        load(path)

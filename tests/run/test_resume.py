@@ -210,6 +210,20 @@ def test_a_run_at_its_end_has_no_step_left(whole, tmp_path):
     assert not any("particle-steps" in line for line in said) and same_files(folder, whole)
 
 
+def test_dry_rows_of_a_probe_are_counted_from_the_start_of_the_run(whole, tmp_path):
+    dry = ["probes.beside={position=[1.5,1.45]}", "output.probes=0.01", "time.end=0.1"]
+    for side, ends in (("left", (0.0, 1.5)), ("right", (1.5, 3.0))):  # with room above
+        dry.append(f"fluids.{side}.shape.box={{lower=[{ends[0]},0.0],upper=[{ends[1]},0.8]}}")
+    (tmp_path / "box.toml").write_text(BOX, encoding="utf-8")
+    said = []
+    run(load(tmp_path / "box.toml", dry), tmp_path / "run", COMM, **QUIET)
+    resume(tmp_path / "run", COMM, ["time.end=0.15"], say=lambda line, where=None: said.append(line))
+    values = np.genfromtxt(tmp_path / "run" / "probes.csv", delimiter=",", names=True)["besidepressure"]
+    none, rows = int(np.isnan(values).sum()), len(values)
+    assert 0 < none < rows
+    assert f"probe beside: no fluid in reach in {none} of {rows} rows, where probes.csv has nan" in said
+
+
 @pytest.mark.parametrize("text", ["space.spacing=0.1", "time.cfl=0.1", "time", "=1", "output=1"])
 def test_only_what_changes_no_step_may_be_extended(whole, text):
     with pytest.raises(CaseError, match="would make it another run; give time.end"):
@@ -217,7 +231,7 @@ def test_only_what_changes_no_step_may_be_extended(whole, text):
 
 
 def test_an_end_that_is_past_is_refused(whole):
-    with pytest.raises(CheckpointError, match="time.end = 0.1 s lies before it, at 0.2 s"):
+    with pytest.raises(CheckpointError, match="time.end = 0.1 s is not after it, at 0.2 s"):
         take_up(whole, COMM, ["time.end=0.1"])
 
 

@@ -78,3 +78,12 @@ def test_the_height_of_a_surface_is_half_a_spacing_above_its_particles(tmp_path)
     assert [s.surface for s in starts] == pytest.approx([0.3, 0.6, 0.3])
     assert [s.above for s in starts] == pytest.approx([9.8 * 800.0 * 0.3, 0.0, 9.8 * 800.0 * 0.3])
     assert np.isfinite(starts[0].density(np.array([[0.1, 0.9]]))).all()
+
+
+def test_walls_that_meet_where_the_fluids_do_are_not_warned_of(tmp_path):
+    """Each is beside its own fluid; the other one is only across the corner."""
+    walls = (
+        "walls.low={shape={box={lower=[0.5,-0.06],upper=[0.56,0.3]}}}",
+        'walls.high={continues="oil",shape={box={lower=[0.5,0.3],upper=[0.56,0.6]}}}',
+    )
+    assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS, *walls))))

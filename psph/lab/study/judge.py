@@ -200,9 +200,9 @@ def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:
 
     Σ|e|/Σ|f|, √(Σe²/Σf²) and max|e|/max|f|; NaN where there is none.
     """
-    e, f = (np.linalg.norm(x.reshape(len(x), -1), axis=1) for x in (ours - theirs, theirs))
-    if not len(e):
+    if not len(ours):
         return Judgement(math.nan, math.nan, math.nan)
+    e, f = (np.linalg.norm(x.reshape(len(x), -1), axis=1) for x in (ours - theirs, theirs))
     with np.errstate(invalid="ignore", divide="ignore"):
         l2 = np.sqrt((e * e).sum() / (f * f).sum())
         return Judgement(float(e.sum() / f.sum()), float(l2), float(e.max() / f.max()))

@@ -35,7 +35,7 @@ class ParticleShifting(NamedTuple):
 
     δx_i = −2 U Δt h Σ_j m_j/ρ_j [1 + 0.2 (W_ij/W(dx))⁴] ∇W_ij, U a part of the speed of sound, and
     |δx_i| ≤ U Δt; none where the kernel sum, the particle included, is below 0.85.  Velocity and
-    density change to those at the new place: du_i/dt = (δx_i/Δt·∇)u, dρ_i/dt = δx_i/Δt·∇ρ, with
+    density change to those at the new place: du_i/dt = (δx_i/Δt·∇)u, dρ_i/dt = δx_i/Δt·∇(ρ − ρ₀), with
     gradients from differences.  Lind, Xu, Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun,
     Colagrossi, Marrone & Zhang (2017), Comput. Methods Appl. Mech. Eng. 315, 25.  The sum is that
     of the pass before.  Walls stay, and so does their density.  Momentum and angular momentum are not
@@ -87,9 +87,10 @@ class ParticleShifting(NamedTuple):
         return -j.specific_volume * pair.m_dw_r * along
 
     def density_rate(self, i, j, pair):
-        """One neighbour's share of δx/Δt·∇ρ, kg/(m^d s)."""
+        """One neighbour's share of δx/Δt·∇(ρ − ρ₀), kg/(m^d s)."""
         along = dot(_velocity(self.strength * i.sound_speed, i), pair.x_ij)
-        excess = 1.0 - j.specific_volume * (1.0 / i.specific_volume)
+        level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density)
+        excess = 1.0 - j.specific_volume * level
         return excess * pair.m_dw_r * along
 
 

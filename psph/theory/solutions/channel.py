@@ -61,7 +61,7 @@ class Poiseuille(NamedTuple):
         y = (x[:, 1] - self.lower) / gap
         m = 2.0 * np.arange(TERMS) + 1.0
         decay = 8.0 / (math.pi * m) ** 3 * np.exp(-((math.pi * m) ** 2) * nu * t / gap**2)
-        start = np.sin(math.pi * np.outer(y, m)) @ decay
+        start = _series(y, m, decay)
         return _along_x(force * gap**2 / (2.0 * nu) * (y * (1.0 - y) - start), setting)
 
 
@@ -97,5 +97,13 @@ class Couette(NamedTuple):
         n = np.arange(1.0, TERMS + 1.0)
         sign = np.where(n % 2, -1.0, 1.0)
         decay = np.exp(-((math.pi * n) ** 2) * setting.viscosity * t / gap**2)
-        start = np.sin(math.pi * np.outer(y, n)) @ (2.0 * sign / (math.pi * n) * decay)
+        start = _series(y, n, 2.0 * sign / (math.pi * n) * decay)
         return _along_x(self.speed * (y + start), setting)
+
+
+def _series(y: np.ndarray, waves: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Σ_n w_n sin(nπy), (n,): term by term, since a product of matrices is rounded by its number of rows."""
+    found = np.zeros(len(y))
+    for n, w in zip(waves.tolist(), weights.tolist()):
+        found += w * np.sin(math.pi * n * y)
+    return found

@@ -1,10 +1,12 @@
 """Water at rest."""
 
+import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
+from psph.rows import projected
 from psph.theory.solutions.setting import Setting
 
 
@@ -34,7 +36,6 @@ class Hydrostatic(NamedTuple):
 
     def pressure(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
         """p (n,) in Pa at ``x`` (n, dim) m; the same at all times."""
-        g = np.array(setting.gravity)
-        pull = np.linalg.norm(g)
-        depth = self.surface + x @ g / pull
+        pull = math.hypot(*setting.gravity)
+        depth = self.surface + projected(x, setting.gravity) / pull
         return setting.density * pull * np.maximum(depth, 0.0)

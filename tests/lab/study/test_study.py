@@ -393,6 +393,7 @@ value_unit = 10.0
 def test_norms_and_interpolation_by_hand():
     found = series_errors(np.array([1.0, 2.0]), np.array([2.0, 2.0]))
     assert found == pytest.approx((0.25, math.sqrt(1 / 8), 0.5))
+    assert all(map(math.isnan, series_errors(np.empty(0), np.empty(0))))  # a probe that stayed dry
     grid = (np.indices((20, 20)).reshape(2, -1).T + 0.5) * 0.1
     at = np.array([[0.83, 1.21], [1.5, 0.5]])
     linear = interpolated(grid, grid @ [2.0, 1.0], at, 0.1, (None, None))
