@@ -26,7 +26,7 @@ FAULTS = {
     ),
     "a key that resembles none": (
         replaced("end = 2.0", "end = 2.0\nqqq = 1"),
-        "time.qqq: unknown key; known here: end, cfl, step",
+        "time.qqq: unknown key; known here: end, cfl, gather_every, step",
     ),
     "an unknown table": (WATER + "[fluid.oil]\n", "fluid: unknown key; did you mean 'fluids'?"),
     "an unknown effect": (

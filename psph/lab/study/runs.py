@@ -14,6 +14,7 @@ from psph.output.errors import OutputError
 from psph.parallel.slabs import TooManyRanks
 from psph.run.room import TooLittleMemory
 from psph.run.start import Finished, run
+from psph.run.watch import Stopped
 from psph.simulation.step import BlowUp
 
 ENOUGH = 10.0
@@ -95,6 +96,8 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
         result = {"status": str(trouble)}
     except TooLittleMemory as trouble:
         return {"status": f"not possible here: {trouble}"}  # not kept: more may be free next time
+    except Stopped as stopped:
+        raise Stopped("stopped: the same command goes on after the runs that are done") from stopped
     except (CaseError, TooManyRanks) as trouble:
         result = {"status": f"refused: {trouble}"}
     else:
