@@ -15,9 +15,9 @@ from psph.theory.stability import parts
 from psph.vectors import add, along, dot, scale, times, zero_like
 
 STABLE = 0.15
-"""ShδcΔt must stay below, S the fastest smoothing of the kernel on the lattice (psph.smoothing), h²S = 2 to
-5.7.  The fastest wave decays at 2Shδc; density, predicted with weights 7/4, −1, 1/4, is stable to a third a
-step, and a tenth is left for disorder."""
+"""S h δ c Δt must stay below; S is the fastest smoothing of the kernel on the lattice (psph.smoothing), 1/m²,
+and S h² is 1.9 to 5.7.  The fastest wave decays at the rate 2 S h δ c.  Density, predicted with the weights
+7/4, −1, 1/4, is stable up to a third of its value a step; a tenth of that is left for disorder."""
 
 
 class DensityDiffusion(NamedTuple):
