@@ -3,9 +3,10 @@
 import argparse
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 import psph
-from psph.errors import Refused
+from psph.errors import Refused, one_line
 from psph.lab.bench import PROBLEMS
 from psph.theory.stability import FORMS, STATES
 from psph.theory.stability.lattices import LATTICES
@@ -21,9 +22,17 @@ class _Folder(argparse.Action):
         setattr(namespace, self.dest, Path(values))
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says in one line what is wrong with the arguments."""
+
+    def error(self, message: str) -> NoReturn:
+        """Leave with code 2."""
+        self.exit(2, one_line(f"{self.prog}: {message}; `{self.prog} --help` lists what there is") + "\n")
+
+
 def parser(verbs) -> argparse.ArgumentParser:
     """The parser of the command line; ``verbs`` has of each verb what it does and its help."""
-    made = argparse.ArgumentParser(
+    made = _Parser(
         prog="python -m psph",
         description="Smoothed-particle hydrodynamics on any number of ranks.",
         epilog="mpirun -n 2 python -m psph case.toml",

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from psph.case.errors import CaseError
+from psph.case.errors import CaseError, advise
 from psph.case.parameters import last_part
 from psph.smoothing import KERNELS
 
@@ -47,6 +47,8 @@ def catalogue_of(file: str, names: Sequence[str]) -> "Catalogue":
         for faults in map(_clash, Catalogue._fields, found, more):
             for says in faults:
                 raise CaseError([f"{file}: use: {name} brings {says}; rename it"])
+        for says in _uncalled(more.effects):
+            raise CaseError([f"{file}: use: {name}: {says}"])
         for entry in more.kernels:
             _register(file, name, last_part(entry), entry.effect)
         found = found.with_more(more)
@@ -75,6 +77,20 @@ def _clash(group: str, there: "Sequence[Entry]", brought: "Sequence[Entry]") -> 
         elif name in taken or bare in taken or any(one.startswith(f"{name}=") for one in taken):
             yield f"{entry.key}, and there is one"
         taken |= {name} - {""}
+
+
+def _uncalled(effects: "Sequence[Entry]") -> Iterator[str]:
+    """Methods of effects that nothing calls, in words: a name that is not quite right would do nothing."""
+    from psph.physics.catalogue import methods, methods_of_effects
+
+    known = methods_of_effects()
+    for entry in effects:
+        for method in methods(entry.effect):
+            if method not in known:
+                yield (
+                    f"{entry.effect.__name__} has a method {method} that psph never calls: "
+                    f"{advise(method, sorted(known))} Begin its name with _ if you call it yourself"
+                )
 
 
 def _name(group: str, entry: "Entry") -> str:

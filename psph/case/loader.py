@@ -21,6 +21,9 @@ HALF = re.compile("[\ud800-\udfff]")
 CALLED_A_CHECKPOINT = re.compile(r"checkpoint-\d+")
 """Name of a case whose frames a run would remove: it takes them for an old checkpoint."""
 
+COMMA = re.compile(r"(?:^|=)\s*([-+]?\d+),(\d+)\s*$")
+"""A number such as 0,5 where a value ends."""
+
 PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 MOST_BYTES = 1 << 20
@@ -165,10 +168,12 @@ def _syntax(file: str, text: str, says: str) -> str:
     column = f" (column {place[2]})" if place and place[2] else ""
     what = PLACE.sub("", says)
     written = lines[min(number, len(lines)) - 1].strip()
+    how = (
+        _with_a_point(written) or 'correct this line, for example: key = 1.0, key = "text", key = [0.0, 1.0]'
+    )
     return (
         f"{file}: line {number}: '{shortened(written, LONGEST_QUOTE)}': "
-        f"{what[:1].lower()}{what[1:]}{column}; correct this "
-        'line, for example: key = 1.0, key = "text", key = [0.0, 1.0]'
+        f"{what[:1].lower()}{what[1:]}{column}; {how}"
     )
 
 
@@ -217,4 +222,11 @@ def _value(where: str, text: str) -> Any:
     if BARE_WORD.fullmatch(text):
         return text
     shown = repr(shortened(text, LONGEST_QUOTE))
-    raise CaseError([f"{where}: {shown} is not a value; write it as in TOML: 1.0, [0, 1] or word"])
+    how = _with_a_point(text) or "write it as in TOML: 1.0, [0, 1] or word"
+    raise CaseError([f"{where}: {shown} is not a value; {how}"])
+
+
+def _with_a_point(text: str) -> str:
+    """What to do about a number with a decimal comma at the end of a text; empty where there is none."""
+    found = COMMA.search(text)
+    return f"a decimal point, not a comma: {found[1]}.{found[2]}" if found else ""

@@ -7,7 +7,7 @@ from pydantic import ValidationError
 
 from psph.case.consistency import Location
 from psph.case.errors import advise, dotted, nearest
-from psph.case.structure import alternatives, find, keys_of
+from psph.case.structure import alternatives, find, keys_of, places_of
 from psph.errors import shortened
 
 Details = dict[str, Any]
@@ -93,7 +93,7 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
     if kind == "missing":
         return f"missing; {_how_to_add(loc, schema)}"
     if kind == "extra_forbidden":
-        return f"unknown key; {advise(str(loc[-1]), keys_of(schema, loc[:-1]))}"
+        return f"unknown key; {_where_it_is_known(loc, schema)}"
     if details["loc"][-1] == "[key]":
         return _unknown_name(loc, schema)
     if kind == "psph":
@@ -109,6 +109,16 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
     if limits := _range(schema, node):
         return f"{plain(value)} is out of range; it must be {limits}"
     return f"{plain(value)}: {details['msg']}"
+
+
+def _where_it_is_known(loc: Location, schema: Details) -> str:
+    """The tables that have such a key, or keys of this table that it may be meant for."""
+    name, here = str(loc[-1]), keys_of(schema, loc[:-1])
+    close = nearest(name, here)
+    if places := places_of(schema, name):
+        also = f", or '{close}'" if close else ""
+        return f"did you mean {' or '.join(places)}{also}? A key below a [table] belongs to that table"
+    return advise(name, here)
 
 
 def _how_to_add(loc: Location, schema: Details) -> str:
@@ -129,7 +139,7 @@ def _how_to_give(details: Details, loc: Location, schema: Details) -> str:
         example = f" such as {_list_example(schema, details['loc'])}"
     off = ""
     if isinstance(details["input"], bool) and loc[0] == "physics":
-        off = ", or leave the key out to switch the effect off"
+        off = ', or "off" to switch the effect off'
     return f"give {WANTED[kind]}{example} ({meaning}){off}"
 
 

@@ -8,6 +8,9 @@ from pydantic import Strict, create_model, model_validator
 
 from psph.case.keys import Table, key
 
+NOT_THIS = "not this one"
+"""What the reference says of a choice among several that a case does not make."""
+
 
 class Parameters(Table):
     """The parameters of an effect or a solution; a bare value stands for the first of them."""
@@ -43,7 +46,7 @@ def table_of(name: str, meaning: str, entries: Iterable) -> type[Table]:
     fields: dict[str, Any] = {
         last_part(entry): (
             parameters(entry.effect) | None,
-            key(summary(entry.effect), None, otherwise="not this one"),
+            key(summary(entry.effect), None, otherwise=NOT_THIS),
         )
         for entry in entries
     }

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from psph.case import schema
+from psph.case.parameters import NOT_THIS
 from psph.case.physics import OFF
 from psph.case.structure import Node, alternatives
 
@@ -59,7 +60,7 @@ def _document() -> Iterator[str]:
     yield from _section("At the top", "Keys outside any table.", plain)
     for heading, meaning, table in tables:
         yield from _section(f"`{heading}`", _sentence(meaning), _rows(whole, table))
-        yield from _effects(whole, table)
+        yield from _choices(whole, heading, table)
     yield from _shapes(whole)
 
 
@@ -76,12 +77,12 @@ def _table(whole: Node, name: str, node: Node) -> tuple[str, Node | None]:
     return name, None
 
 
-def _effects(whole: Node, table: Node) -> Iterator[str]:
-    """The parameters of the effects that a table can switch on."""
+def _choices(whole: Node, heading: str, table: Node) -> Iterator[str]:
+    """The parameters of what a table can switch on: effects, and exact solutions."""
     for name, node in table["properties"].items():
-        if node.get("otherwise", "").startswith(OFF):
+        if node.get("otherwise", "").startswith((OFF, NOT_THIS)):
             inner = next(b for b in alternatives(whole, node) if "properties" in b)
-            title, meaning = f"`[physics.{name}]`", _sentence(node["description"])
+            title, meaning = f"`[{heading.strip('[]')}.{name}]`", _sentence(node["description"])
             yield from _section(title, meaning, _rows(whole, inner), level=3)
 
 
@@ -131,7 +132,9 @@ def _kind(whole: Node, node: Node) -> str:
     if "const" in node:
         return f'`"{node["const"]}"`'
     if node["type"] == "array":
-        return f"list of {_plural(_type(whole, node['items']))}"
+        entries = [node["items"]] if "items" in node else node["prefixItems"]
+        kinds = dict.fromkeys(_plural(_type(whole, entry)) for entry in entries)
+        return f"list of {' and '.join(kinds)}"
     if node.get("title") == "Shape":
         return "[shape](#shapes)"
     words = {"object": "table", "string": "text", "integer": "whole number"}

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import Field, Strict, StringConstraints, create_model
 
 from psph.case.keys import Table, Text, key
-from psph.case.parameters import parameters, summary
+from psph.case.parameters import NOT_THIS, parameters, summary
 from psph.theory.solutions.catalogue import SOLUTIONS
 
 EXACT = "exact"
@@ -16,7 +16,7 @@ EXACT = "exact"
 def exact_table(solutions: Mapping[str, type] = SOLUTIONS) -> type[Table]:
     """The model of ``[exact]``: one key for each solution."""
     fields: dict[str, Any] = {
-        name: (parameters(of) | None, key(summary(of), None, otherwise="not this one"))
+        name: (parameters(of) | None, key(summary(of), None, otherwise=NOT_THIS))
         for name, of in solutions.items()
     }
     return create_model(

@@ -25,6 +25,10 @@ class UnknownField(Refused):
     """An effect reads something that no particle carries."""
 
 
+class WrongShape(Refused):
+    """A formula gives a vector for a number, or the other way round."""
+
+
 VALUES = (1.0, 0.5)
 """What a trial answers: formulas compare with zero or a threshold, and each side is to be seen."""
 
@@ -67,7 +71,7 @@ def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads
     in_sum = frozenset(i.read | j.read)
     for value in VALUES:
         i.value = j.value = pair.value = value
-        _rates(effect, i, j, pair)
+        _rates(effect, i, j, pair, dimensions)
     of_pairs = frozenset(i.read | j.read)
     for value in VALUES:
         i.value = value
@@ -87,11 +91,22 @@ def _sum(effect, i, j, pair, kernel) -> None:
         effect.finish_value(total, i, kernel)
 
 
-def _rates(effect, i, j, pair) -> None:
-    for name in ("density_rate", "radial", "shear", "push"):
+def _rates(effect, i, j, pair, dimensions: int) -> None:
+    for name in ("density_rate", "radial", "shear"):
         if hasattr(effect, name):
-            getattr(effect, name)(i, j, pair)
+            _check(effect, name, getattr(effect, name)(i, j, pair), None)
+    if hasattr(effect, "push"):
+        _check(effect, "push", effect.push(i, j, pair), dimensions)
     if hasattr(effect, "finish_acceleration"):
-        effect.finish_acceleration(effect.gather(effect.start(i), i, j, pair), i)
+        total = effect.gather(effect.start(i), i, j, pair)
+        _check(effect, "finish_acceleration", effect.finish_acceleration(total, i), dimensions)
     if hasattr(effect, "body"):
-        effect.body(i)
+        _check(effect, "body", effect.body(i), dimensions)
+
+
+def _check(effect, name: str, value, width: int | None) -> None:
+    """Raise WrongShape where a formula gives a tuple for a number, or none of so many numbers."""
+    found = len(value) if isinstance(value, tuple) else None
+    if found != width:
+        kinds = [f"a tuple of {one} numbers" if one else "a number" for one in (found, width)]
+        raise WrongShape(f"{type(effect).__name__}.{name} gives {kinds[0]}; let it give {kinds[1]}")

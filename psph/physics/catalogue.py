@@ -1,6 +1,8 @@
 """Every effect and the key of a case that calls for it.  A new effect is one line here."""
 
+import sys
 from functools import cache
+from types import FunctionType
 from typing import NamedTuple
 
 from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name
@@ -71,6 +73,20 @@ class Catalogue(NamedTuple):
     def fields(self) -> dict[str, Field]:
         """Every field that a particle can carry, by name: those of the step, and of each effect."""
         return _fields(tuple(entry.effect for entry in self.effects))
+
+
+@cache
+def methods_of_effects() -> frozenset[str]:
+    """Names of the methods that effects have: those of psph's own, in all of their forms."""
+    rooms = {entry.effect.__module__ for entry in CATALOGUE}
+    kinds = (kind for room in rooms for kind in vars(sys.modules[room]).values() if isinstance(kind, type))
+    return frozenset(name for kind in kinds if kind.__module__ in rooms for name in methods(kind))
+
+
+def methods(kind: type) -> list[str]:
+    """The public methods that a class defines itself."""
+    own = (name for name, value in vars(kind).items() if isinstance(value, (FunctionType, staticmethod)))
+    return [name for name in own if not name.startswith("_")]
 
 
 @cache

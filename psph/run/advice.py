@@ -15,6 +15,7 @@ FASTER = 2.0
 def advice(scene, guard: str, suspect) -> list[str]:
     """Things to try, the most promising first; at least one."""
     return [
+        *_driven(scene, guard, suspect),
         *_long_step(scene),
         *_scheme(scene),
         *_pressure(scene, suspect),
@@ -24,6 +25,15 @@ def advice(scene, guard: str, suspect) -> list[str]:
         *_shorter_step(scene),
         *_bound(guard),
     ]
+
+
+def _driven(scene, guard: str, suspect) -> Iterator[str]:
+    c, speed = scene.sound_speed, suspect.speed
+    if scene.driven and guard in ("energy", "speed", "density") and speed > c / SOUND_OVER_SPEED:
+        yield (
+            f"raise physics.sound_speed to {SOUND_OVER_SPEED * speed:.3g} m/s or more: gravity along a "
+            f"periodic axis drives this flow, it has reached c/{c / speed:.2g}, and c is meant for c/10"
+        )
 
 
 def _long_step(scene) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from psph.simulation.plan import Plan, words
+from psph.simulation.plan import Plan
 
 PAIRS = "pairs"
 """The ledger's name of the pair loop."""
@@ -18,10 +18,10 @@ def costs(plan: Plan, periods: tuple, spent: dict[str, float]) -> Iterator[tuple
     a_flop = spent.get(PAIRS, 0.0) / everything
     parts = {name: seconds for name, seconds in spent.items() if name != PAIRS}
     parts[SHARED] = spent.get(PAIRS, 0.0)
-    for effect in plan.effects:
-        others = tuple(e for e in plan.effects if e is not effect)
+    for call in plan.called:
+        others = tuple(e for e in plan.effects if e is not call.effect)
         if own := everything - plan.flops_per_pair(periods, others):
-            parts[f"{PAIRS}: {words(type(effect).__name__)}"] = own * a_flop
+            parts[f"{PAIRS}: {call.title}"] = own * a_flop
             parts[SHARED] -= own * a_flop
     return iter(sorted(parts.items(), key=lambda part: -part[1]))
 

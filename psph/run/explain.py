@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator
 
+from psph.case.profiles import OFF
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
@@ -30,6 +31,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
+    yield from _friction_lines(scene, plan)
     found = forecast(scene, plan, ranks)
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
@@ -178,7 +180,7 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
         yield f"  {'':<{width}}because: {reason}"
     yield "Not simulated"
     for entry in plan.absent:
-        why = plan.dropped.get(entry.effect.__name__) or f"the case does not say {_asked_by(entry.key)}"
+        why = plan.dropped.get(entry.effect.__name__) or _why_absent(scene.case, entry.key)
         yield f"  {entry.effect.__name__:<{width}}{why}"
 
 
@@ -200,6 +202,13 @@ def _early_passes(plan: Plan) -> Iterator[str]:
         yield f"Pass over the neighbours, {often}, before the next: sums of {names}{sent}"
 
 
+def _why_absent(case, key: str) -> str:
+    by, value = case.presets.get(key, (None, OFF))
+    if value != OFF:
+        return f"switched off: {by} has {key}, and the case takes it out"
+    return f"the case does not say {_asked_by(key)}"
+
+
 def _asked_by(key: str) -> str:
     name, _, choice = key.partition("=")
     return f'{name} = "{choice}"' if choice else name
@@ -209,9 +218,29 @@ def _first_line(effect) -> str:
     return type(effect).__doc__.splitlines()[0]
 
 
+def _friction_lines(scene, plan: Plan) -> Iterator[str]:
+    """What numerical friction stands for, beside the viscosity of the fluids."""
+    found = [
+        (call.title, call.effect.numerical_viscosity(scene))
+        for call in plan.called
+        if hasattr(call.effect, "numerical_viscosity")
+    ]
+    if not any(viscosity for _, viscosity in found):
+        return
+    own = [(f"fluids.{name}", fluid.viscosity) for name, fluid in scene.case.fluids.items()]
+    yield "Kinematic viscosity, and what numerical friction acts as in a shear flow"
+    width = _column(name for name, _ in (*own, *found))
+    for name, viscosity in own:
+        yield f"  {name:<{width}}{viscosity:.3g} m²/s"
+    smallest = min((viscosity for _, viscosity in own if viscosity), default=0.0)
+    for name, viscosity in found:
+        times = f", {viscosity / smallest:.2g} times the fluid's" if smallest else ""
+        yield f"  {name:<{width}}{viscosity:.3g} m²/s{times}"
+
+
 def _step_lines(scene, plan: Plan) -> Iterator[str]:
     yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
-    limits = list(plan.step_limits(scene.expected_speed, pull(plan)))
+    limits = list(plan.step_limits(scene.expected_speed, pull(scene)))
     width = _column(name for _, name in limits)
     for step, name in limits:
         yield f"  {name:<{width}}{step:.3g} s"

@@ -32,7 +32,7 @@ class Forecast(NamedTuple):
 
 def forecast(scene, plan: Plan, ranks: int) -> Forecast:
     """What a run of a scene will take on so many ranks, a core each."""
-    step, limit = plan.longest_step(scene.expected_speed, pull(plan))
+    step, limit = plan.longest_step(scene.expected_speed, pull(scene))
     steps = math.ceil(scene.case.time.end / step)
     flops = plan.flops_per_pair(scene.periods)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
@@ -76,10 +76,9 @@ def _what_to_do(scene, limit: str) -> str:
     )
 
 
-def pull(plan: Plan) -> float:
+def pull(scene) -> float:
     """The acceleration to expect, m/s²."""
-    gravity = [e.acceleration for e in plan.effects if hasattr(e, "acceleration")]
-    return max((math.hypot(*g) for g in gravity), default=0.0)
+    return math.hypot(*scene.gravity)
 
 
 def sites_within(scene, radius: float) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from psph.fields import FLUID
 from psph.output.diagnostics import fluid_mass, total_energy
 from psph.output.errors import OutputError
-from psph.parallel.reductions import largest
+from psph.parallel.reductions import largest, wrapped_sums
 from psph.run.advice import advice
 from psph.run.post_mortem import write_post_mortem
 from psph.run.record import Record
@@ -30,8 +30,8 @@ VERBS = {"depth": "lost a particle", CLOCK: "stands still"}
 
 
 class Guards:
-    """Watches a simulation and its record; every method but ``summary`` is collective, and finds
-    the same on any number of ranks.
+    """Watches a simulation and its record; every method is collective, and finds the same on any
+    number of ranks.
 
     ``say`` takes a line and the stream that it is meant for.
     """
@@ -63,9 +63,29 @@ class Guards:
             self._warn(guard)
 
     def summary(self) -> Iterator[str]:
-        """A line for each guard that had something to say, and how often."""
+        """A line for each guard that had something to say, and how often; and of fluid that has left."""
         for guard, times in self.seen.items():
             yield f"guards.{guard} was exceeded in {times:,} of the steps that were checked"
+        [count] = wrapped_sums(self.simulation.comm, [np.count_nonzero(self._gone())])
+        if count:
+            yield (
+                f"{count:,} fluid particles have left the walls, over a rim or through a gap: they are "
+                "a spacing or more below or beside them"
+            )
+
+    def _gone(self) -> np.ndarray:
+        """True for each fluid particle of this rank that is beyond the scene's walls, but not above."""
+        store, scene = self.simulation.store, self.scene
+        fluid = store.shown("kind") == FLUID
+        gone = np.zeros(len(fluid), bool)
+        if not scene.case.walls:
+            return gone
+        lattice = scene.lattice
+        for d, x in enumerate(self.simulation.domain.inside(store.shown("position")).T):
+            down, up = scene.gravity[d] <= 0.0, scene.gravity[d] >= 0.0
+            gone |= down & (x < lattice.lower[d] - scene.spacing)
+            gone |= up & (x > lattice.upper[d] + scene.spacing)
+        return gone & fluid
 
     def _tripped(self) -> Iterator[str]:
         """The keys of the guards whose bounds the last step has passed."""

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from psph.simulation.plan import Plan, words
+from psph.simulation.plan import Plan
 
 
 def hints(scene, plan: Plan) -> Iterator[str]:
     """One line for each effect that finds itself idle: why, and what to remove."""
-    for effect in plan.effects:
-        if hasattr(effect, "idle") and (why := effect.idle(scene, plan.effects)):
-            yield f"{words(type(effect).__name__)}: {why}"
+    for call in plan.called:
+        if hasattr(call.effect, "idle") and (why := call.effect.idle(scene, plan.effects)):
+            yield f"{call.title}: {why}"

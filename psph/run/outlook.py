@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from psph.scene.species import Start
-from psph.simulation.plan import Plan, words
+from psph.simulation.plan import Plan
 from psph.theory.stability import FORMS, STATES, SYMMETRIC, parts
 from psph.theory.stability.growth import growth, is_stable
 from psph.theory.stability.lattices import OF_SCENES
@@ -33,7 +33,7 @@ def outlook(scene, plan: Plan) -> Iterator[str]:
         added += (parts.NormalisedGradient(),)
     verdicts = [_verdict(s) for s in _settings(scene, lattice, form, added)]
     yield from dict.fromkeys(f"  {state:<20}{says}" for state, says in verdicts)
-    left = [words(type(e).__name__) for e in plan.effects if not hasattr(e, "linear")]
+    left = [call.title for call in plan.called if not hasattr(call.effect, "linear")]
     if left:
         yield f"  not included        {', '.join(left)}"
 

@@ -9,7 +9,6 @@ from psph.composition.pair import geometry, take
 from psph.composition.terms import added, pushed
 from psph.fields import seen_at
 from psph.particles.store import Store
-from psph.simulation.plan import words
 from psph.simulation.step import Simulation
 from psph.vectors import add, nearest_image, subtract, zero_like
 
@@ -131,12 +130,12 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
             j = take(view, k)
             x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
             pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
-        return tuple(_share(effect, i, pairs, simulation.dt) for effect in simulation.plan.effects)
+        return tuple(_share(call, i, pairs, simulation.dt) for call in simulation.plan.called)
 
 
-def _share(effect, i, pairs, dt: float) -> Share:
-    alone = (effect,)
-    sums = alone if hasattr(effect, "start") else ()
+def _share(call, i, pairs, dt: float) -> Share:
+    alone = (call.effect,)
+    sums = alone if hasattr(call.effect, "start") else ()
     a, rate, totals = zero_like(i.position), 0.0, terms.start(sums, i)
     for j, pair in pairs:
         rate = rate + terms.density_rate(alone, i, j, pair)
@@ -146,8 +145,7 @@ def _share(effect, i, pairs, dt: float) -> Share:
         totals = terms.gather_each(sums, totals, i, j, pair)
     a = add(add(a, terms.finish_acceleration(sums, totals, i)), terms.body(alone, i))
     shift = terms.displacement(alone, i, dt)
-    name = words(type(effect).__name__)
-    return Share(name, np.array(a), float(rate), np.array(shift) / dt if dt else np.zeros(len(a)))
+    return Share(call.title, np.array(a), float(rate), np.array(shift) / dt if dt else np.zeros(len(a)))
 
 
 def _size(numbers) -> float:

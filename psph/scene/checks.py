@@ -32,6 +32,9 @@ can have more."""
 FARTHEST = 2e9
 """Spacings from 0 at most: farther out a coordinate does not hold ``TOLERANCE`` of one."""
 
+TOO_FAST = 0.2
+"""Mach number that a flow should stay below: its density then varies by some per cent."""
+
 LARGEST_QUIET_JITTER = 0.5
 """In spacings; beyond it neighbours may change places."""
 
@@ -109,6 +112,7 @@ def warnings(scene: Scene) -> Iterator[str]:
         _background_at_surface,
         _transport_at_surface,
         _slow_sound,
+        _driven_flow,
         _jitter,
         several_fluids,
         misfits,
@@ -332,6 +336,28 @@ def _slow_sound(scene: Scene) -> Iterator[str]:
             f"physics.sound_speed: {scene.sound_speed:g} is below ten times the expected speed, "
             f"{scene.expected_speed:.3g} m/s, so density will vary by more than 1 %; "
             f"raise it to {least:.3g}"
+        )
+
+
+def _driven_flow(scene: Scene) -> Iterator[str]:
+    """Gravity along a periodic axis: a free fall, held back between walls at g H²/(8ν)."""
+    if not scene.driven or scene.case.physics.sound_speed is None and scene.exact:
+        return
+    open_axes = [d for d, period in enumerate(scene.periods) if period is None]
+    along = math.hypot(*(g for d, g in enumerate(scene.gravity) if d not in open_axes))
+    fluids = slice(len(scene.case.fluids))
+    top, bottom = scene.census.highest[fluids].max(axis=0), scene.census.lowest[fluids].min(axis=0)
+    across = min((top[d] - bottom[d] + scene.spacing for d in open_axes), default=math.inf)
+    viscosity = max(fluid.viscosity for fluid in scene.case.fluids.values())
+    speed = along * scene.case.time.end
+    if viscosity and across < math.inf:
+        speed = min(speed, along * across**2 / (8.0 * viscosity))
+    if speed > TOO_FAST * scene.sound_speed:
+        yield (
+            f"physics.sound_speed: {scene.sound_speed:.3g} m/s is less than ten times the {speed:.3g} m/s "
+            "that gravity along a periodic axis can drive this flow to by time.end (g t, at most "
+            "g H²/(8ν) between walls); "
+            f"give {SOUND_OVER_SPEED * speed:.3g}, unless something else holds the flow back"
         )
 
 

@@ -85,6 +85,11 @@ class Scene:
         so a potential energy −m g·x would jump where a particle passes it."""
         return tuple(g if period is None else 0.0 for g, period in zip(self.gravity, self.periods))
 
+    @property
+    def driven(self) -> bool:
+        """Whether gravity pulls along a periodic axis: what it can do there is not told by a height."""
+        return self.gravity != self.height_gravity
+
     @cached_property
     def up(self) -> tuple[float, ...]:
         """The unit vector against gravity; zeros without."""

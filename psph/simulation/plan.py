@@ -1,6 +1,5 @@
 """The plan: exactly the effects, fields and messages that a scene calls for, and why."""
 
-import re
 from collections import namedtuple
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -166,9 +165,9 @@ class Plan:
         yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
         if acceleration > 0.0:
             yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
-        for effect in self.effects:
-            if hasattr(effect, "longest_step"):
-                yield effect.longest_step(self.extremes), words(type(effect).__name__)
+        for call in self.called:
+            if hasattr(call.effect, "longest_step"):
+                yield call.effect.longest_step(self.extremes), call.title
 
 
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
@@ -275,11 +274,6 @@ def _motion_numbers(species, motions) -> np.ndarray:
         ],
         np.uint8,
     )
-
-
-def words(name: str) -> str:
-    """``LaminarViscosity`` -> ``laminar viscosity``; an acronym stays one word."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
 
 
 def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:

@@ -1,10 +1,11 @@
 """What the effects of a scene read of its particles, and whether there is such a thing."""
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from psph.case.extensions import origin
-from psph.composition.trial import Reads, UnknownField, reads
+from psph.composition.trial import Reads, UnknownField, WrongShape, reads
 from psph.errors import one_line
 from psph.fields import OF_MATERIAL, OF_SCENE, OF_SITE, Field
 from psph.physics.catalogue import Entry
@@ -19,13 +20,26 @@ class Called(NamedTuple):
     reads: Reads
     name: str
 
+    @property
+    def title(self) -> str:
+        """Its name in words, as it stands in messages: ``DensityDiffusion`` -> ``density diffusion``."""
+        return words(self.name)
+
+
+def words(name: str) -> str:
+    """``LaminarViscosity`` -> ``laminar viscosity``; an acronym stays one word."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
+
 
 def called_with(entry: Entry, effect, reason: str, scene, fields: Mapping[str, Field]) -> Called:
-    """The effect of an entry and what it reads; raises UnknownField with the file that brought it."""
+    """The effect of an entry and what it reads.
+
+    Raises UnknownField or WrongShape with the file that brought it.
+    """
     try:
         found = reads(effect, scene.dimensions, scene.kernel, fields)
-    except UnknownField as error:
-        raise UnknownField(_line(scene, effect, str(error))) from None
+    except (UnknownField, WrongShape) as error:
+        raise type(error)(_line(scene, effect, str(error))) from None
     return Called(effect, reason, found, entry.effect.__name__)
 
 

@@ -28,6 +28,18 @@ FAULTS = {
         replaced("end = 2.0", "end = 2.0\nqqq = 1"),
         "time.qqq: unknown key; known here: end, cfl, gather_every, step",
     ),
+    "a key below the wrong table": (
+        WATER + "end = 1.0\n",
+        "fluids.water.end: unknown key; did you mean time.end? A key below a [table] belongs to that table",
+    ),
+    "a key of another kind of table": (
+        WATER + "[probes.a]\nviscosity = 1.0\n",
+        "probes.a.viscosity: unknown key; did you mean fluids.NAME.viscosity? A key below a [table]",
+    ),
+    "a table below another": (
+        WATER + "[fluids.water.physics]\n",
+        "fluids.water.physics: unknown key; did you mean physics? A key below a [table]",
+    ),
     "an unknown table": (WATER + "[fluid.oil]\n", "fluid: unknown key; did you mean 'fluids'?"),
     "an unknown effect": (
         replaced("[physics]", "[physics]\nfreesurface = 0.9"),
@@ -112,7 +124,7 @@ FAULTS = {
     "an effect switched on like a lamp": (
         replaced("[physics]", "[physics]\nfree_surface = true"),
         "physics.free_surface: true is not a number; give a number (β: below this kernel sum a "
-        "particle is surface), or leave the key out to switch the effect off",
+        'particle is surface), or "off" to switch the effect off',
     ),
     "gravity as a number": (
         replaced("gravity = [0.0, -9.8]", "gravity = 9.8"),

@@ -1,6 +1,7 @@
 """What is wrong with a used file, or with what a case asks of it, is said in one line."""
 
 import os
+import re
 import shutil
 
 import pytest
@@ -8,9 +9,10 @@ from guests.test_guests import GUESTS, HERE, case  # noqa: F401 (a fixture)
 
 from psph.case import CaseError, load
 from psph.case.extensions import OWN_TABLES
-from psph.composition.trial import UnknownField
+from psph.composition.trial import UnknownField, WrongShape
 from psph.errors import LONGEST_LINE
 from psph.output.tables import ERRORS, LOG, PROBES
+from psph.run.explain import explain
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 
@@ -173,3 +175,48 @@ def test_a_link_to_a_file_elsewhere_is_refused_and_not_executed(mine, tmp_path):
     used.symlink_to("there.py")  # the control
     load(path)
     assert mark.exists()
+
+
+@pytest.mark.parametrize(
+    ("formula", "says"),
+    [
+        ("    def radiall(self, i, j, pair):\n        return 0.0\n", "did you mean 'radial'?"),
+        ("    def zap(self, i):\n        return 0.0\n", "known here: bearing_density, body, "),
+    ],
+)
+def test_a_method_that_nothing_calls_is_refused(formula, says, mine):
+    line = line_of(mine('effects=(Entry("physics.mine", Mine),)', formula))
+    assert "mine.py: Mine has a method " in line and "that psph never calls: " + says in line
+
+
+@pytest.mark.parametrize(
+    ("formula", "says"),
+    [
+        (
+            "radial(self, i, j, pair):\n        return pair.x_ij",
+            "radial gives a tuple of 2 numbers; let it give a number",
+        ),
+        (
+            "push(self, i, j, pair):\n        return pair.w",
+            "push gives a number; let it give a tuple of 2 numbers",
+        ),
+        (
+            "body(self, i):\n        return (0.0, 0.0, 1.0)",
+            "body gives a tuple of 3 numbers; let it give a tuple of 2",
+        ),
+        (
+            "density_rate(self, i, j, pair):\n        return (0.0,)",
+            "density_rate gives a tuple of 1 numbers; let",
+        ),
+    ],
+)
+def test_a_formula_of_the_wrong_shape_is_refused(formula, says, mine):
+    path = mine('effects=(Entry("physics.mine", Mine),)', f"    def {formula}\n")
+    with pytest.raises(WrongShape, match="Mine." + re.escape(says)) as refused:
+        make_plan(Scene(load(path, ["physics.mine={}"])))
+    assert "mine.py: " in str(refused.value)
+
+
+def test_an_effect_may_have_an_acceleration_of_its_own(mine):
+    path = mine('effects=(Entry("physics.mine", Mine),)', "    acceleration = 3.0\n")
+    assert [*explain(Scene(load(path, ["physics.mine={}"])), 1)]

@@ -124,3 +124,23 @@ def test_names_and_what_is_said_of_them_stand_in_two_columns(tmp_path):
     begins = line.index("the case")
     [because] = [one for one in lines if one.endswith("because: every scene")]
     assert because.index("because") == begins
+
+
+def test_what_the_case_takes_out_of_its_scheme_is_switched_off(tmp_path):
+    said = [*explain(Scene(draft(tmp_path, TANK, "scheme=stable", "physics.pair_damping=off")), 1)]
+    [line] = [line for line in said if line.startswith("  PairDamping")]
+    assert "switched off: scheme stable has physics.pair_damping, and the case takes it out" in line
+
+
+def test_numerical_friction_stands_beside_the_viscosity_of_the_fluid(tmp_path):
+    keys = ("scheme=stable", "fluids.water.viscosity=0.01", "physics.sound_speed=40")
+    said = [*explain(Scene(draft(tmp_path, TANK, *keys)), 1)]
+    at = next(number for number, line in enumerate(said) if line.startswith("Kinematic viscosity"))
+    assert said[at + 1].split() == ["fluids.water", "0.01", "m²/s"]
+    assert said[at + 2].split() == ["pair", "damping", "0.013", "m²/s,", "1.3", "times", "the", "fluid's"]
+
+
+def test_an_effect_has_one_name(tmp_path):
+    said = "\n".join(explain(Scene(draft(tmp_path, TANK, "scheme=stable")), 1))
+    assert "density diffusion  " in said and "position shift" in said
+    assert "tank diffusion" not in said and "lattice shift" not in said

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drafts import CHANNEL, draft
 from jobs import mpirun
 from mpi4py import MPI
 from run.guarded import THROWN, boxed, started
@@ -244,7 +245,56 @@ def test_the_term_that_pushed_hardest_is_the_one_that_was_made_strong(tmp_path):
     store = simulation.store
     fluid = (store.shown("kind") == 0) * np.linalg.norm(store.shown("acceleration"), axis=1)
     strong = find(simulation, Scene(case), fluid)
-    assert strong.hardest().name == "neutral potential"
+    assert strong.hardest().name == "pair potential"
     weak = steps(load("run/cases/minimal.toml"), COMM, 1)
     weak = find(weak, Scene(case), (weak.store.shown("id") == strong.id) * 1.0)
-    assert weak.hardest().name != "neutral potential"
+    assert weak.hardest().name != "pair potential"
+
+
+LEAKING = """
+scheme = "sph"
+[space]
+dimensions = 2
+spacing = 0.05
+[time]
+end = 0.6
+[physics]
+gravity = [0.0, -9.8]
+artificial_viscosity = 0.1
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [0.3, 0.3] }
+[walls.floor]
+shape.box = { lower = [-0.15, -0.15], upper = [0.6, 0.0] }
+"""
+"""A column on a floor without side walls."""
+
+
+def leaving(folder, *sets):
+    """The lines of a run of it that speak of what has left."""
+    path = folder / "leaking.toml"
+    path.write_text(LEAKING, encoding="utf-8")
+    _, said = started(load(path, sets), folder / "run", COMM)
+    return [line for line in said if "have left the walls" in line]
+
+
+def test_what_falls_out_of_a_scene_is_counted_at_its_end(tmp_path):
+    [line] = leaving(tmp_path)
+    frame = Run(tmp_path / "run").frame(-1)
+    x, y = frame["position"][frame["kind"] == 0].T
+    gone = (y < -0.15 - 0.025) | (x < -0.15 - 0.025) | (x > 0.6 + 0.025)
+    assert int(line.split()[0]) == pytest.approx(gone.sum(), abs=1) and gone.sum() > 5
+
+
+def test_what_jumps_up_or_has_no_walls_has_not_left(tmp_path):
+    assert leaving(tmp_path, "time.end=0.1", "fluids.water.velocity=[0.0, 9.0]") == []
+    assert leaving(tmp_path, "walls=off", "time.end=0.3") == []
+
+
+def test_a_channel_that_gravity_drives_is_told_to_raise_the_speed_of_sound(tmp_path):
+    text = CHANNEL.replace("viscosity = 0.01", "viscosity = 0.002")
+    trouble, _ = started(draft(tmp_path, text, "time.end=60"), tmp_path / "run", COMM)
+    assert re.search(
+        r"guards\.\w+ = .*; raise physics.sound_speed to [\d.]+ m/s or more: gravity along a periodic axis "
+        r"drives this flow, it has reached c/\d\.\d, and c is meant for c/10; ",
+        str(trouble),
+    )

@@ -1,7 +1,7 @@
 """What is refused and what is warned of, and what is not."""
 
 import pytest
-from drafts import TANK, WATER, draft
+from drafts import CHANNEL, TANK, WATER, draft
 
 from psph.case import CaseError
 from psph.scene import Scene, check
@@ -390,3 +390,24 @@ def test_a_time_that_cannot_tell_its_steps_is_refused(tmp_path):
     proposed = line.rsplit(" ", 1)[1]
     assert checked(tmp_path, TANK, f"time.end={proposed}") == []
     assert checked(tmp_path, TANK, "time.end=1e9", "time.step=0.2") == []  # it has another limit
+
+
+@pytest.mark.parametrize(
+    ("sets", "speed", "give"),
+    [
+        ((), "1.25", "12.5"),
+        (("time.end=10",), "1", "10"),
+        (("fluids.water.viscosity=1e-4",), "2", "20"),
+    ],
+)
+def test_a_channel_that_gravity_drives_beyond_its_sound_is_warned_of(tmp_path, sets, speed, give):
+    [line] = checked(tmp_path, CHANNEL, *sets)
+    assert line.startswith("case.toml: physics.sound_speed: 4.47 m/s is less than ten times ")
+    assert f" the {speed} m/s that gravity along a periodic axis" in line and f"; give {give}," in line
+
+
+@pytest.mark.parametrize(
+    "sets", [("physics.sound_speed=12.5",), ("fluids.water.viscosity=0.1",), ("time.end=5",)]
+)
+def test_a_channel_within_its_sound_is_silent(tmp_path, sets):
+    assert checked(tmp_path, CHANNEL, *sets) == []

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 from psph.case import load
+from psph.errors import Failed
 from psph.lab.errors import StudyError
 from psph.lab.study.effects import effects_words, without_each
 from psph.lab.study.ladder import rows, wanted
+from psph.lab.study.runs import DONE
 from psph.lab.study.study import Study
 
 
@@ -52,3 +54,5 @@ def study(
         for line in asked.conclude(found, list(sentences), error, seconds):
             say(line)
         say(f"wrote {folder}: {', '.join(p.name for p in sorted(folder.glob('study.*')))}")
+    if not any(row["status"] == DONE for row in found):
+        raise Failed(f"{file}: study: no run has finished, see their status; {folder} tells more")

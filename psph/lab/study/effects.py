@@ -9,7 +9,8 @@ from psph.lab.study.report import percent
 from psph.lab.study.runs import DONE
 from psph.lab.study.study import MEAN
 from psph.scene import Scene
-from psph.simulation.plan import make_plan, words
+from psph.simulation.plan import make_plan
+from psph.simulation.reading import words
 
 NOTHING = 1e-3
 """A relative change of an answer below this is negligible."""

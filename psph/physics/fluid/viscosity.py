@@ -149,6 +149,11 @@ def _longest_step(scene) -> float:
     return 0.125 * scene.smoothing_length**2 / scene.viscosity
 
 
+def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:
+    """αch/(2(d + 2)), m²/s: friction along lines, averaged over their directions."""
+    return alpha * scene.sound_speed * scene.smoothing_length / (2.0 * (scene.dimensions + 2))
+
+
 class ArtificialViscosity(NamedTuple):
     """Numerical friction between approaching particles: it spreads shocks and calms noise.
 
@@ -175,6 +180,10 @@ class ArtificialViscosity(NamedTuple):
         strength = self.alpha * c - self.beta * h * ((v_i + v_j) * q)
         return 2.0 * h * v_i * (v_j * q) * strength * pair.m_dw_r
 
+    def numerical_viscosity(self, scene: Facts):
+        """The kinematic viscosity of its linear part, m²/s: that of PairDamping for half of the pairs."""
+        return 0.5 * _viscosity_of_pairs(self.alpha, scene)
+
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
         friction = self.alpha * scene.sound_speed
@@ -193,8 +202,8 @@ class PairDamping(NamedTuple):
     a_i = α c h Σ_j ρ₀ m_j/(ρ_i ρ_j) (u_ij·x_ij)/max(r², 0.01 h²) ∇W_ij, ρ₀ the smaller of the
     pair's two rest densities.  Monaghan & Gingold (1983), J.
     Comput. Phys. 52, 374; without the switch, Antuono, Colagrossi, Marrone & Molteni (2010), Comput.
-    Phys. Commun. 181, 532.  It conserves momentum and angular momentum, and acts as a viscosity of about
-    αch/8.
+    Phys. Commun. 181, 532.  It conserves momentum and angular momentum, and acts as a viscosity of
+    αch/(2(d + 2)), αch/8 in 2D.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -207,6 +216,10 @@ class PairDamping(NamedTuple):
         # ρ̄ = ρ_i ρ_j/ρ₀
         strength = self.alpha * h * i.sound_speed * (v_i * lighter(i, j))
         return strength * v_j * (pair.u_dot_x * inverse_square(pair, h)) * pair.m_dw_r
+
+    def numerical_viscosity(self, scene: Facts):
+        """The kinematic viscosity that it acts as, m²/s: αch/(2(d + 2)), the mean over all directions."""
+        return _viscosity_of_pairs(self.alpha, scene)
 
     def longest_step(self, scene):
         """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""

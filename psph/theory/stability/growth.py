@@ -186,7 +186,7 @@ def _climb(height: Callable, starts: np.ndarray, step: float) -> np.ndarray:
     from scipy.optimize import minimize  # late: it takes a while, and runs go without
 
     heights = height(starts)
-    scale = np.abs(heights).max()
+    scale = np.abs(heights).max() or 1.0
     _, order = np.unique(-np.round(heights / scale, 9), return_index=True)
     simplex = step * np.eye(starts.shape[1] + 1, starts.shape[1])
     enough = {"xatol": FINEST, "fatol": FINEST**2 * scale}

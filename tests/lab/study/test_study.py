@@ -247,6 +247,13 @@ def test_a_run_that_blows_up_or_is_refused_is_a_row(tmp_path):
     assert "2 of 5 runs did not finish" in job.stdout
 
 
+def test_a_study_of_which_no_run_finished_fails_and_says_so(tmp_path):
+    text = WAVE.replace('"space.spacing" = [0.05, 0.025, 0.0125]', '"space.spacing" = [0.0512, 0.0124]')
+    job = study(tmp_path, text=text)
+    assert job.returncode == 3 and "2 of 2 runs did not finish" in job.stdout
+    assert "study: no run has finished, see their status" in job.stderr
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [
