@@ -23,7 +23,7 @@ def draw(path: Path, title: str, time: float, scene, around, offset, column: int
     """Draw the particles ``around`` (Store), at ``offset`` m (n, dim) from the one in ``column``.
 
     That one is at ``place`` (dim,) m.  In 3D it is the slice through it that holds the direction of
-    gravity; in 1D the pressure stands upwards.
+    gravity, but for a periodic axis; in 1D the pressure stands upwards.
     """
     across, up, seen = _slice(scene, offset)
     fluid = around.shown("kind") == FLUID
@@ -64,7 +64,8 @@ def _slice(scene, offset: np.ndarray) -> tuple[int, int, np.ndarray]:
     """The axes to the right and upwards, and which particles are seen."""
     if scene.dimensions == 1:
         return 0, 0, np.ones(len(offset), bool)
-    up = int(np.abs(scene.up).argmax()) if any(scene.up) else scene.dimensions - 1
+    pull = np.abs(scene.height_gravity)
+    up = int(pull.argmax()) if pull.any() else scene.dimensions - 1
     across, *cut = (d for d in range(scene.dimensions) if d != up)
     seen = np.ones(len(offset), bool)
     for d in cut:

@@ -27,6 +27,8 @@ SIGNED = 0.1
 """Share of the smaller sign above which a field is drawn with both signs."""
 OUTLIER = 0.25
 """Share of the range by which outliers may extend the colours."""
+VELOCITY, SPEED = "velocity", "speed"
+"""The field, and what is shown of it."""
 TELLING = 4.0
 """Size in points (1/72 inch) above which single particles are visible."""
 
@@ -38,7 +40,7 @@ def plot(folder: Path, times: Sequence[float] | None = None, field: str = "press
     to draw or no such field.
     """
     show = Show(Run(folder), times, field)
-    made = {pictures.name_of(field, k): show.picture([k]) for k in show.chosen}
+    made = {pictures.name_of(show.field, k): show.picture([k]) for k in show.chosen}
     if column := charts.probe_charts(show.run, show.case):
         made[pictures.PROBES] = charts.picture(column, show.title, "probes")
     if column := charts.log_charts(show.run, show.view.dimensions):
@@ -97,7 +99,8 @@ class Show:
     """A field of a run in some of its frames, with one scale and one view."""
 
     def __init__(self, run: Run, times: Sequence[float] | None, field: str):
-        self.run, self.field, self.times = run, field, run.times
+        self.run, self.times = run, run.times
+        self.field = VELOCITY if field == SPEED else field
         if not len(self.times):
             raise OutputError(f"{run.path}: no frame yet; wait for the first one")
         if times is None:
@@ -106,7 +109,7 @@ class Show:
         self.chosen = sorted({int(np.abs(self.times - time).argmin()) for time in times})
         self.case = tomllib.loads(run.case_text)
         self.title = self.case.get("title") or run.path.stem
-        frames = {k: run.frame(k, "position", "kind", field) for k in self.chosen}
+        frames = {k: run.frame(k, "position", "kind", self.field) for k in self.chosen}
         self.view = _view(self.case, run.frame(0, "position"), frames.values())
         self.frames = {k: self.view.of(frame) for k, frame in frames.items()}
         self.scale = self._scale()
@@ -155,7 +158,7 @@ class Show:
         return ", ".join(parts)
 
     def _name(self) -> str:
-        return "speed" if self.field == "velocity" else self.field.replace("_", " ")
+        return SPEED if self.field == VELOCITY else self.field.replace("_", " ")
 
     def _values(self, frame: dict) -> np.ndarray:
         """The field as one number per particle; the length of a vector."""

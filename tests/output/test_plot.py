@@ -104,6 +104,13 @@ def test_particle_has_its_colour_at_its_place(tank):
     assert np.abs(seen / 255 - colours).max() < 0.01
 
 
+def test_speed_is_the_size_of_the_velocity(tank):
+    fast, same = (Show(tank, [0.0], field) for field in ("speed", "velocity"))
+    assert fast.field == same.field == "velocity" and fast.scale.norm.vmax == same.scale.norm.vmax
+    names = {path.name for path in plot(tank.folder, [0.0], "speed")}
+    assert "velocity_00000.png" in names and not any("speed" in name for name in names)
+
+
 def test_title_tells_case_field_and_time(tank):
     texts = [text.get_text() for text in Show(tank, [0.25], "pressure").picture([1]).texts]
     assert texts == ["2D tank", "pressure, t = 0.25 s"]

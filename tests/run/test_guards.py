@@ -14,6 +14,7 @@ from run.resuming import steps
 
 from psph.case import load
 from psph.output.checkpoint import checkpoints
+from psph.output.closeup import _slice
 from psph.output.reader import Run
 from psph.run.guards import EVERY
 from psph.run.post_mortem import PICTURE, REPORT
@@ -298,3 +299,10 @@ def test_a_channel_that_gravity_drives_is_told_to_raise_the_speed_of_sound(tmp_p
         r"drives this flow, it has reached c/\d\.\d, and c is meant for c/10; ",
         str(trouble),
     )
+
+
+def test_a_channel_lies_level_in_the_picture_of_its_post_mortem(tmp_path):
+    scene = Scene(draft(tmp_path, CHANNEL))
+    assert _slice(scene, np.zeros((1, 2)))[:2] == (0, 1)
+    upright = Scene(draft(tmp_path, CHANNEL, "space.periodic=off", "space.lower=off", "space.upper=off"))
+    assert _slice(upright, np.zeros((1, 2)))[:2] == (1, 0)  # there x is a height
