@@ -236,6 +236,15 @@ BATTERY = (
         fails=("no floor", "no impact, no floor"),
     ),
     Trial(
+        "square column, front",
+        "square_column",
+        "front_error",
+        3.43,
+        0.4,
+        0.4,
+        holds=(Bound("front_error", most=0.04), Bound("speed", most=2.5)),
+    ),
+    Trial(
         "dam break, pressure",
         "dam_break",
         "noise",
