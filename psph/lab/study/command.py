@@ -54,5 +54,5 @@ def study(
         for line in asked.conclude(found, list(sentences), error, seconds):
             say(line)
         say(f"wrote {folder}: {', '.join(p.name for p in sorted(folder.glob('study.*')))}")
-    if not any(row["status"] == DONE for row in found):
+    if not comm.bcast(any(row["status"] == DONE for row in found)):  # rank 0 alone has the rows
         raise Failed(f"{file}: study: no run has finished, see their status; {folder} tells more")
