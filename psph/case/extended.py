@@ -9,7 +9,6 @@ from psph.case.keys import Name, key
 from psph.case.model import Case, Fluid, Space, Wall
 from psph.case.parameters import last_part, table_of
 from psph.case.physics import own_law, physics_table
-from psph.case.schemes import by_default
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
@@ -27,7 +26,7 @@ def case_model(catalogue: Catalogue) -> type[Case]:
         fields["fluids"] = (dict[Name, fluid], Case.model_fields["fluids"])
     if catalogue.kernels:
         names = (*KERNELS, *map(last_part, catalogue.kernels))
-        told = key("smoothing kernel", names[0], otherwise=by_default("space.kernel"))
+        told = key("smoothing kernel", names[0])
         space = create_model(
             "Space",
             __base__=Space,

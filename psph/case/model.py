@@ -15,7 +15,7 @@ from psph.case.consistency import contradictions
 from psph.case.keys import Axis, Name, Table, Text, Vector, key
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
-from psph.case.schemes import SCHEMES, STABLE, by_default, scheme_keys
+from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
@@ -60,15 +60,11 @@ class Space(Table):
         unit="1",
         ge=0.6,
         le=4,
-        otherwise=by_default("space.smoothing"),
     )
-    kernel: Literal[tuple(KERNELS)] = key(
-        "smoothing kernel", next(iter(KERNELS)), otherwise=by_default("space.kernel")
-    )
+    kernel: Literal[tuple(KERNELS)] = key("smoothing kernel", next(iter(KERNELS)))
     normalised: bool = key(
         "divide the kernel gradient by its first moment on the initial lattice",
         False,
-        otherwise=by_default("space.normalised"),
     )
     periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("periodic axes", ())
     lower: Vector | None = key(

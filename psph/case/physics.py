@@ -9,7 +9,6 @@ from pydantic import BeforeValidator, create_model
 from psph.case.keys import Table, key
 from psph.case.parameters import last_part, parameters, summary
 from psph.case.profiles import OFF as TAKEN_OUT
-from psph.case.schemes import by_default
 from psph.physics.catalogue import CATALOGUE, EQUATIONS_OF_STATE, Entry
 
 PREFIX = "physics."
@@ -57,8 +56,7 @@ def _field(entries: list[Entry]) -> tuple[Any, Any]:
     effect = entries[0].effect
     table = parameters(effect)
     off = BeforeValidator(_taken_out, json_schema_input_type=table | Literal[TAKEN_OUT] | None)
-    otherwise = "; ".join(filter(None, (OFF, by_default(entries[0].key))))
-    return Annotated[table | None, off], key(summary(effect), None, otherwise=otherwise)
+    return Annotated[table | None, off], key(summary(effect), None, otherwise=OFF)
 
 
 def _taken_out(value: Any) -> Any:

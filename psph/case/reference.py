@@ -9,6 +9,7 @@ from typing import Any
 from psph.case import schema
 from psph.case.parameters import NOT_THIS
 from psph.case.physics import OFF
+from psph.case.schemes import by_default
 from psph.case.structure import Node, alternatives
 
 HEAD = """\
@@ -54,12 +55,12 @@ def _document() -> Iterator[str]:
     for name, node in whole["properties"].items():
         heading, table = _table(whole, name, node)
         if table is None:
-            plain.append(_row(whole, name, node, name in whole["required"]))
+            plain.append(_row(whole, name, name, node, name in whole["required"]))
         else:
             tables.append((heading, node["description"], table))
     yield from _section("At the top", "Keys outside any table.", plain)
     for heading, meaning, table in tables:
-        yield from _section(f"`{heading}`", _sentence(meaning), _rows(whole, table))
+        yield from _section(f"`{heading}`", _sentence(meaning), _rows(whole, heading, table))
         yield from _choices(whole, heading, table)
     yield from _shapes(whole)
 
@@ -82,8 +83,8 @@ def _choices(whole: Node, heading: str, table: Node) -> Iterator[str]:
     for name, node in table["properties"].items():
         if node.get("otherwise", "").startswith((OFF, NOT_THIS)):
             inner = next(b for b in alternatives(whole, node) if "properties" in b)
-            title, meaning = f"`[{heading.strip('[]')}.{name}]`", _sentence(node["description"])
-            yield from _section(title, meaning, _rows(whole, inner), level=3)
+            title, meaning = f"[{heading.strip('[]')}.{name}]", _sentence(node["description"])
+            yield from _section(f"`{title}`", meaning, _rows(whole, title, inner), level=3)
 
 
 def _shapes(whole: Node) -> Iterator[str]:
@@ -94,7 +95,7 @@ def _shapes(whole: Node) -> Iterator[str]:
     for name, node in shapes.items():
         for branch in alternatives(whole, node):
             if "properties" in branch:
-                yield from _section(f"`{name}`", "", _rows(whole, branch), level=3)
+                yield from _section(f"`{name}`", "", _rows(whole, name, branch), level=3)
 
 
 def _section(
@@ -109,13 +110,17 @@ def _section(
     yield ""
 
 
-def _rows(whole: Node, table: Node) -> list[str]:
-    required = table.get("required", ())
-    return [_row(whole, name, node, name in required) for name, node in table["properties"].items()]
+def _rows(whole: Node, heading: str, table: Node) -> list[str]:
+    required, above = table.get("required", ()), heading.strip("[]")
+    return [
+        _row(whole, f"{above}.{name}", name, node, name in required)
+        for name, node in table["properties"].items()
+    ]
 
 
-def _row(whole: Node, name: str, node: Node, required: bool) -> str:
-    cells = (f"`{name}`", _type(whole, node), _default(node, required), node.get("unit", ""))
+def _row(whole: Node, key: str, name: str, node: Node, required: bool) -> str:
+    """``key``: the name with those of its tables."""
+    cells = (f"`{name}`", _type(whole, node), _default(key, node, required), node.get("unit", ""))
     meaning = node.get("description", "").replace("|", "\\|")
     return f"| {' | '.join(cells)} | {meaning} |"
 
@@ -153,10 +158,11 @@ def _bounds(node: Node) -> str:
     return f" {', '.join(found)}" if found else ""
 
 
-def _default(node: Node, required: bool) -> str:
+def _default(key: str, node: Node, required: bool) -> str:
     if required:
         return "**required**"
-    return node.get("otherwise") or _toml(node.get("default"))
+    otherwise, preset = node.get("otherwise") or _toml(node.get("default")), by_default(key)
+    return otherwise if preset.startswith(f"{otherwise} ") else "; ".join(filter(None, (otherwise, preset)))
 
 
 def _toml(value: Any) -> str:

@@ -8,14 +8,16 @@ STABLE, PLAIN = "stable", "sph"
 
 SCHEMES: dict[str, dict[str, Any]] = {
     STABLE: {
-        "space.kernel": "hyperbolic",
-        "space.smoothing": 1.3,
-        "space.normalised": True,
+        "space.kernel": "wendland-c2",
+        "space.smoothing": 1.4,
+        "time.cfl": 0.5,
+        "time.gather_every": 8,
         "physics.pressure_gradient": "symmetric",
-        "physics.density_diffusion": 0.1,
-        "physics.pair_damping": 0.02,
-        "physics.impact_damping": 2.0,
-        "physics.pair_potential": 0.008,
+        "physics.gradient_correction": 0.7,
+        "physics.fourth_order_diffusion": 0.1,
+        "physics.reconstructed_damping": {"alpha": 0.03, "in_disorder": 0.2},
+        "physics.impact_damping": 4.0,
+        "physics.local_potential": {"strength": 0.004, "threshold": 0.2},
         "physics.position_shift": 0.1,
         "physics.tension_floor": 0.98,
         "physics.background_pressure": "auto",
@@ -43,7 +45,9 @@ def by_default(key: str) -> str:
     value = SCHEMES[STABLE].get(key)
     if value is None:
         return ""
-    return f"`{json.dumps(value)}` in the default scheme"
+    inner = value.items() if isinstance(value, dict) else ()
+    text = f"{{ {', '.join(f'{k} = {v}' for k, v in inner)} }}" if inner else json.dumps(value)
+    return f"`{text}` in the default scheme"
 
 
 def scheme_of(data: Mapping[str, Any]) -> Any:

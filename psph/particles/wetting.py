@@ -27,3 +27,20 @@ def mark_wet(first, last, low, lists, support, cutoff, periods, position, is_flu
             found = 1.0 if is_fluid[j] > 0.0 and dot(x, x) < reach * reach else 0.0
             n += np.uint64(1)
         wet[k] = found
+
+
+@compiled
+def rest_dry(first, last, low, lists, is_fluid, wet, group, free):
+    """Rows of dry walls without any fluid in their lists become empty: nothing has to be summed for them.
+
+    Of the columns ``first`` to ``last``, those of groups from number ``free`` on, which forces do not move.
+    """
+    for k in range(np.uint64(first), np.uint64(last)):
+        row = k - np.uint64(low)
+        n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
+        idle = wet[k] == 0.0 and group[k] >= free
+        while idle and n < end:
+            idle = is_fluid[np.uint64(lists.lists[n])] == 0.0
+            n += np.uint64(1)
+        if idle:
+            lists.lengths[row] = 0

@@ -14,7 +14,7 @@ from psph.parallel.domain import Domain
 from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.particles.wetting import mark_wet
+from psph.particles.wetting import mark_wet, rest_dry
 from psph.simulation.integrator import kick, kick_drift_predict, kick_rows, predict_rows, state_of
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
@@ -110,6 +110,8 @@ class Engine:
         """The lists as they were made, then everything as it was when ``saved`` was written."""
         self.domain.relist(saved.state["lower"], saved.state["upper"])
         saved.fill(self.store)
+        for effect in self.plan.marking:
+            self._rest(effect)
         self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
         self._fit_records()
         for records in self.records:
@@ -135,9 +137,8 @@ class Engine:
 
     def _mark(self, effect) -> None:
         """Which walls have fluid in reach."""
-        s, lists = self.store, self.domain.lists
+        s, lists, reach = self.store, self.domain.lists, self._reach
         told_by, wet = s[effect.told_by], s[effect.marks.name]
-        reach = self._reach
         self._each(
             mark_wet,
             s.low,
@@ -149,6 +150,13 @@ class Engine:
             told_by,
             wet,
         )
+        self._rest(effect)
+
+    def _rest(self, effect) -> None:
+        """Nothing is summed for walls out of reach of the fluid."""
+        s = self.store
+        told_by, wet = s[effect.told_by], s[effect.marks.name]
+        self._each(rest_dry, s.low, self.domain.lists, told_by, wet, s.group, self.plan.free)
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""

@@ -28,22 +28,24 @@ def of(case, key):
 def test_stable_is_the_default(tmp_path):
     case = draft(tmp_path, BARE)
     assert case.scheme == "stable"
-    assert {key: of(case, key) for key in SCHEMES["stable"]} == SCHEMES["stable"]
+    firsts = {k: next(iter(v.values())) if isinstance(v, dict) else v for k, v in SCHEMES["stable"].items()}
+    assert {key: of(case, key) for key in SCHEMES["stable"]} == firsts
+    assert case.physics.reconstructed_damping.in_disorder == 0.2 and case.time.gather_every == 8
 
 
 def test_what_the_file_says_wins(tmp_path):
-    case = draft(tmp_path, BARE.replace("[physics]", "[physics]\npair_damping = 0.1"))
-    assert case.physics.pair_damping.alpha == 0.1 and case.preset("physics.pair_damping") is None
-    assert case.physics.pair_potential is not None
+    case = draft(tmp_path, BARE.replace("[physics]", "[physics]\nimpact_damping = 0.1"))
+    assert case.physics.impact_damping.beta == 0.1 and case.preset("physics.impact_damping") is None
+    assert case.physics.local_potential is not None
 
 
 def test_a_part_can_be_left_out(tmp_path):
     for text, sets in (
-        (BARE, ("physics.pair_potential=off",)),
-        (BARE.replace("[physics]", '[physics]\npair_potential = "off"'), ()),
+        (BARE, ("physics.local_potential=off",)),
+        (BARE.replace("[physics]", '[physics]\nlocal_potential = "off"'), ()),
     ):
         case = draft(tmp_path, text, *sets)
-        assert case.physics.pair_potential is None and case.physics.position_shift is not None
+        assert case.physics.local_potential is None and case.physics.position_shift is not None
         assert draft(tmp_path, case.to_toml()) == case
 
 

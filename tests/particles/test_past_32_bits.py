@@ -1,5 +1,7 @@
 """Cells, columns, lists and ids past 2^31: on sparse files, since the memory for them is not here."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from drafts import draft
@@ -73,17 +75,22 @@ def near_and_far(tmp_path):
     store.low += COLUMNS
     store._view = None
     store._arrays.clear()
-    table = far.engine.records[-1].table
-    far.engine.records[-1].table = sparse(tmp_path, (COLUMNS + len(table), table.shape[1]), table.dtype)
-    far.engine.records[-1].table[COLUMNS:] = table
-    fill = far.engine.records[-1].fill  # the columns before these were never ghosts
-    far.engine.records[-1].fill = lambda first, last: fill(max(first, COLUMNS), max(last, COLUMNS))
+    for records in far.engine.records:
+        table = records.table
+        records.table = sparse(tmp_path, (COLUMNS + len(table), table.shape[1]), table.dtype)
+        records.table[COLUMNS:] = table
+        # The columns before these were never ghosts.
+        records.fill = partial(_from_there_on, records.fill)
     domain.starts = domain.starts + COLUMNS
     domain.lists = domain.lists._replace(
         begin=domain.lists.begin + np.uint64(ENTRIES),
         lists=shifted(tmp_path, domain.lists.lists + np.uint32(COLUMNS), ENTRIES),
     )
     return near, far
+
+
+def _from_there_on(fill, first, last):
+    fill(max(first, COLUMNS), max(last, COLUMNS))
 
 
 def test_a_step_is_the_same_past_2_31(near_and_far):

@@ -111,7 +111,9 @@ def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
     assert closed["TensionFloor"].endswith(
         ": the fluid has no free surface, and in a closed domain it may be under tension"
     )
-    assert closed["BackgroundPressure"].endswith(": no pressure is negative at the start, and nothing moves")
+    assert "corrected gradients hold what " in closed["BackgroundPressure"]
+    still = not_simulated(tmp_path, BOX, "physics.background_pressure=auto")
+    assert still["BackgroundPressure"].endswith(": no pressure is negative at the start, and nothing moves")
     assert closed["XSPH"] == "the case does not say physics.xsph"
     rubbed = not_simulated(tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.central_friction={}")
     assert rubbed["LaminarViscosity"].endswith(": physics.central_friction takes its place")
@@ -127,13 +129,13 @@ def test_names_and_what_is_said_of_them_stand_in_two_columns(tmp_path):
 
 
 def test_what_the_case_takes_out_of_its_scheme_is_switched_off(tmp_path):
-    said = [*explain(Scene(draft(tmp_path, TANK, "scheme=stable", "physics.pair_damping=off")), 1)]
-    [line] = [line for line in said if line.startswith("  PairDamping")]
-    assert "switched off: scheme stable has physics.pair_damping, and the case takes it out" in line
+    said = [*explain(Scene(draft(tmp_path, TANK, "scheme=stable", "physics.impact_damping=off")), 1)]
+    [line] = [line for line in said if line.startswith("  ImpactDamping")]
+    assert "switched off: scheme stable has physics.impact_damping, and the case takes it out" in line
 
 
 def test_numerical_friction_stands_beside_the_viscosity_of_the_fluid(tmp_path):
-    keys = ("scheme=stable", "fluids.water.viscosity=0.01", "physics.sound_speed=40")
+    keys = ("physics.pair_damping=0.02", "fluids.water.viscosity=0.01", "physics.sound_speed=40")
     said = [*explain(Scene(draft(tmp_path, TANK, *keys)), 1)]
     at = next(number for number, line in enumerate(said) if line.startswith("Kinematic viscosity"))
     assert said[at + 1].split() == ["fluids.water", "0.01", "m²/s"]
@@ -142,5 +144,5 @@ def test_numerical_friction_stands_beside_the_viscosity_of_the_fluid(tmp_path):
 
 def test_an_effect_has_one_name(tmp_path):
     said = "\n".join(explain(Scene(draft(tmp_path, TANK, "scheme=stable")), 1))
-    assert "density diffusion  " in said and "position shift" in said
+    assert "fourth order diffusion  " in said and "position shift" in said
     assert "tank diffusion" not in said and "lattice shift" not in said

@@ -12,6 +12,7 @@ from psph.composition.trial import UnknownField
 from psph.output.ledger import Ledger
 from psph.physics.catalogue import BUILT_IN, Entry
 from psph.physics.damping.diffusion import TankDiffusion
+from psph.physics.order.shifting import LatticeShift
 from psph.run.explain import explain
 from psph.run.setup import create_particles
 from psph.scene import Scene
@@ -145,5 +146,5 @@ def test_sums_of_the_pass_before_bring_their_fields(planned):
 def test_the_scheme_takes_every_kernel(kernel, planned):
     """A kernel need not have a W′/r of its own."""
     _, plan = planned("scheme=stable", f"space.kernel={kernel}", "space.smoothing=1.4")
-    [shift] = (e for e in plan.effects if hasattr(e, "crowded"))
-    assert shift.full < 0.0 and np.isfinite(shift.crowded) and shift.crowded < 0.0
+    [shift] = (e for e in plan.effects if isinstance(e, LatticeShift))
+    assert shift.full < 0.0 and np.isfinite(shift.near) and shift.near < 0.0

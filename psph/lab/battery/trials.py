@@ -11,7 +11,7 @@ OURS = next(iter(SCHEMES))
 
 CONTROLS: dict[str, tuple[str, ...]] = {
     "no background": ("physics.background_pressure=0",),
-    "no potential": ("physics.pair_potential=0",),
+    "no potential": ("physics.local_potential=0",),
     "no shift": ("physics.position_shift=0",),
     "no impact": ("physics.impact_damping=0",),
     "no floor": ("physics.tension_floor=off",),
@@ -21,10 +21,10 @@ CONTROLS: dict[str, tuple[str, ...]] = {
     "surface 1.3": ("scheme=ssph", "space.smoothing=1.3", "physics.free_surface=0.9"),
     "bare 1.2": (
         "space.smoothing=1.2",
-        "physics.pair_potential=0",
-        "physics.pair_damping=0",
+        "physics.local_potential=0",
+        "physics.reconstructed_damping=0",
         "physics.impact_damping=0",
-        "physics.density_diffusion=0",
+        "physics.fourth_order_diffusion=0",
         "physics.position_shift=0",
         "physics.tension_floor=0.01",
     ),

@@ -20,9 +20,9 @@ def found():
 
 def test_the_default_takes_turns_with_plain_sph_as_it_is_usually_run_and_with_as_many_neighbours(found):
     settings = found["settings"]
-    assert [settings[n]["kernel"] for n in (DEFAULT, USUAL, ALIKE)] == ["hyperbolic", *2 * ["wendland-c2"]]
-    assert [settings[n]["smoothing"] for n in (DEFAULT, USUAL, ALIKE)] == [1.3, 1.2, 1.3]
-    assert [settings[n]["neighbours_in_bulk"] for n in (DEFAULT, USUAL, ALIKE)] == [20, 17, 20]
+    assert [settings[n]["kernel"] for n in (DEFAULT, USUAL, ALIKE)] == 3 * ["wendland-c2"]
+    assert [settings[n]["smoothing"] for n in (DEFAULT, USUAL, ALIKE)] == [1.4, 1.2, 1.4]
+    assert [settings[n]["neighbours_in_bulk"] for n in (DEFAULT, USUAL, ALIKE)] == [24, 17, 24]
     assert 1000 < found["particles"] < 2000 and found["turns"] == 5
     steps = {name: one["steps"] for name, one in settings.items()}
     assert steps[USUAL] > 1.03 * steps[ALIKE]  # the step is limited by h/c, and the fall is as long
