@@ -8,6 +8,7 @@ from mpi4py import MPI
 from psph.fields import WALL
 from psph.output.reader import Run
 from psph.run.start import run
+from psph.simulation import cpu as engine_module
 
 DX, DEPTH = 0.02, 0.3
 
@@ -101,3 +102,29 @@ def test_a_wall_forgets_the_water_that_has_left(tmp_path):
     apart, strain = reach_of(Run(tmp_path / "out").frame(-1))
     assert apart.min() > 2.6 * 1.1 * DX
     assert (strain == 0.0).all()
+
+
+RUNNING = "fluids.water.shape.box.upper=[0.2, 0.3]"
+"""The same water half as wide: it runs over a dry floor against a dry wall."""
+
+
+def frames_of(folder, *sets):
+    """Every field of every frame of a run, and how many rows of its lists were empty at the end."""
+    finished = run(draft(folder, DAM, *sets), folder / "out", MPI.COMM_SELF, say=lambda *_: None)
+    lengths = finished.simulation.domain.lists.lengths[: finished.simulation.store.owned]
+    found = Run(folder / "out")
+    return [found.frame(k) for k in range(len(found.times))], np.count_nonzero(lengths == 0)
+
+
+def test_that_nothing_is_summed_for_dry_walls_changes_no_bit_of_plain_sph(tmp_path, monkeypatch):
+    sets = ("scheme=sph", RUNNING, "time.end=0.3", "probes=off")
+    for name in ("rests", "sums"):
+        (tmp_path / name).mkdir()
+    frames, idle = frames_of(tmp_path / "rests", *sets)
+    monkeypatch.setattr(engine_module, "rest_dry", lambda first, last, *rest: None)
+    same, none = frames_of(tmp_path / "sums", *sets)
+    assert idle > 20 and none == 0 and len(frames) == len(same) == 6
+    for one, other in zip(frames, same):
+        assert all(np.array_equal(one[name], other[name]) for name in one)
+    walls = frames[-1]["kind"] == WALL
+    assert (frames[0]["pressure"][walls] != frames[-1]["pressure"][walls]).any()  # some became wet

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from psph.particles.neighbours import Neighbours
-from psph.particles.wetting import mark_wet
+from psph.particles.wetting import mark_wet, rest_dry
 
 SUPPORT, CUTOFF, PERIOD = 1.0, 1.2, 10.0
 
@@ -26,3 +26,20 @@ def test_a_wall_stays_what_it_was_between_support_and_cutoff(distance, was_dry, 
 
 def test_another_wall_makes_no_wall_wet():
     assert wet_at(0.5, 1.0, other_is_fluid=0.0) == 0.0
+
+
+def lengths_after(wet, is_fluid, group):
+    """The lengths of the rows of three particles, each beside the next one, once dry walls rest."""
+    lists = Neighbours(np.arange(3, dtype=np.uint64), np.ones(3, np.uint32), np.array([1, 2, 0], np.uint32))
+    rest_dry(0, 3, 0, lists, np.array(is_fluid), np.array(wet), np.array(group, np.uint8), np.uint8(1))
+    return lists.lengths.tolist()
+
+
+def test_a_dry_wall_without_fluid_in_its_list_rests():
+    """The first has a wall beside it, the second a fluid, out of reach but listed."""
+    assert lengths_after(wet=[0.0, 0.0, 1.0], is_fluid=[0.0, 0.0, 1.0], group=[1, 1, 0]) == [0, 1, 1]
+
+
+def test_what_is_wet_or_moves_freely_does_not_rest():
+    assert lengths_after(wet=[1.0, 0.0, 1.0], is_fluid=[0.0, 0.0, 0.0], group=[1, 1, 1]) == [1, 0, 1]
+    assert lengths_after(wet=[0.0, 0.0, 0.0], is_fluid=[0.0, 0.0, 0.0], group=[0, 0, 1]) == [1, 1, 0]
