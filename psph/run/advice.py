@@ -71,7 +71,8 @@ def _pressure(scene, suspect) -> Iterator[str]:
 def _friction(scene) -> Iterator[str]:
     physics = scene.case.physics
     viscous = any(material.viscosity for material in scene.species)
-    if physics.artificial_viscosity is None and physics.pair_damping is None and not viscous:
+    damped = physics.artificial_viscosity or physics.pair_damping or physics.reconstructed_damping
+    if not damped and not viscous:
         yield "give physics.artificial_viscosity = 0.05: this fluid has no damping"
 
 

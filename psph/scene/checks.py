@@ -301,6 +301,7 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
     rubs = (
         physics.artificial_viscosity
         or physics.pair_damping
+        or physics.reconstructed_damping
         or any(fluid.viscosity for fluid in scene.case.fluids.values())
     )
     disordered = any(fluid.jitter for fluid in scene.case.fluids.values())

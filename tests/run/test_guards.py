@@ -16,6 +16,7 @@ from psph.case import load
 from psph.output.checkpoint import checkpoints
 from psph.output.closeup import _slice
 from psph.output.reader import Run
+from psph.run.advice import _friction
 from psph.run.guards import EVERY
 from psph.run.post_mortem import PICTURE, REPORT
 from psph.run.resume import take_up
@@ -306,3 +307,11 @@ def test_a_channel_lies_level_in_the_picture_of_its_post_mortem(tmp_path):
     assert _slice(scene, np.zeros((1, 2)))[:2] == (0, 1)
     upright = Scene(draft(tmp_path, CHANNEL, "space.periodic=off", "space.lower=off", "space.upper=off"))
     assert _slice(upright, np.zeros((1, 2)))[:2] == (1, 0)  # there x is a height
+
+
+@pytest.mark.parametrize(("scheme", "undamped"), [("sph", True), ("stable", False)])
+def test_only_a_fluid_without_damping_is_told_that_it_has_none(tmp_path, scheme, undamped):
+    scene = Scene(
+        draft(tmp_path, CHANNEL, f"scheme={scheme}", "fluids.water.viscosity=0", "walls.plates.no_slip=off")
+    )
+    assert bool([*_friction(scene)]) == undamped

@@ -359,7 +359,7 @@ BATTERY = (
         fails=("no impact",),
     ),
 )
-"""Everything; lengths are such that a laptop takes the better part of an hour."""
+"""Everything; lengths are such that a laptop takes half an hour."""
 
 SOON = (Bound("late_speed", most=1e-2), Bound("near_least", least=0.6))
 """What a box shall hold before it has come to rest."""

@@ -14,7 +14,8 @@ class DryWall(NamedTuple):
     are is found when the neighbours are listed, so that the pair loop knows nothing of it.  A wall that
     was wet becomes dry where the fluid leaves the cutoff of the lists, a skin farther out: were it one
     distance, still water would tremble, for a wall at the edge of reach would lose its pressure again and
-    again.  Without it a wall would keep for ever the pressure that it had when the fluid left.
+    again.  Without it a wall would keep for ever the pressure that it had when the fluid left.  Where no
+    fluid is even listed, nothing is summed for such a wall (psph.particles.wetting.rest_dry).
     """
 
     marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0)
