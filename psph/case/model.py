@@ -204,7 +204,13 @@ class Checkpoint(Table):
     every: int | None = key(
         "steps from one checkpoint to the next", None, unit="1", otherwise="not by steps", ge=1
     )
-    minutes: float = key("wall-clock time from one checkpoint to the next", 10.0, unit="min", gt=0)
+    minutes: float | None = key(
+        "wall-clock time from one checkpoint to the next",
+        None,
+        unit="min",
+        otherwise="a hundred times what one takes, 5 s at least and 10 min at most",
+        gt=0,
+    )
     wall_clock: float | None = key(
         "wall-clock time of the job: shortly before its end the run writes a checkpoint and stops",
         None,

@@ -137,6 +137,7 @@ def _simulate(
         progress = Progress(comm, case.time.end, case.title or case.name, particles, lines)
         at_last.callback(progress.close)
         simulation.word = watch.call
+        watch.begin_steps()
         while simulation.time < case.time.end:
             guards.step()
             record.write_due()

@@ -11,6 +11,13 @@ NOTICE = 0.01
 """Part of the wall-clock limit that is left unused: the job began before psph did."""
 
 
+SHARE = 0.01
+"""Part of the time that goes into checkpoints of which the case says nothing."""
+
+SOONEST, LATEST = 5.0, 600.0
+"""Such checkpoints are no closer and no farther apart than this, s."""
+
+
 class Call(IntEnum):
     """What a rank asks for; the largest of all ranks counts."""
 
@@ -100,6 +107,10 @@ class Watch:
         """Whether a checkpoint has been written since this is open."""
         return self._longest_write > 0.0
 
+    def begin_steps(self) -> None:
+        """The first step begins: what came before it was neither a step nor worth a checkpoint."""
+        self._saved = self._looked = time.monotonic()
+
     def call(self) -> Call:
         """What this rank asks for at the end of a step."""
         now = time.monotonic()
@@ -109,7 +120,7 @@ class Watch:
             return self._signalled
         if self._runs_out(now):
             return Call.WALL_CLOCK
-        if now - self._saved >= 60.0 * self.limits.minutes:
+        if now - self._saved >= self._apart():
             return Call.CHECKPOINT
         return Call.NOTHING
 
@@ -117,6 +128,12 @@ class Watch:
         """A checkpoint has been written just now, in so many seconds."""
         self._longest_write = max(self._longest_write, seconds)
         self._saved = self._looked = time.monotonic()
+
+    def _apart(self) -> float:
+        """Seconds from one checkpoint to the next."""
+        if self.limits.minutes is not None:
+            return 60.0 * self.limits.minutes
+        return min(max(self._longest_write / SHARE, SOONEST), LATEST)
 
     def _runs_out(self, now: float) -> bool:
         """Whether the job could end before two more steps and two slow checkpoints."""

@@ -71,6 +71,16 @@ def test_minutes_count_from_the_last_checkpoint(clock):
     assert watch.call() is Call.CHECKPOINT
 
 
+def test_a_checkpoint_of_which_the_case_says_nothing_takes_a_hundredth_of_the_time(clock):
+    watch = Watch(limits(minutes=None))
+    for took, apart in ((0.01, 5.0), (0.2, 20.0), (0.1, 20.0), (30.0, 600.0)):
+        watch.wrote(took)
+        clock.now += apart - 0.1
+        assert watch.call() is Call.NOTHING
+        clock.now += 0.1
+        assert watch.call() is Call.CHECKPOINT
+
+
 def test_the_limit_leaves_room_for_a_slow_step_and_a_slow_checkpoint(clock):
     watch = Watch(limits(wall_clock=100.0))
     for _ in range(10):
@@ -101,8 +111,8 @@ def test_a_signal_in_the_midst_of_a_step_is_heard_at_its_end(tmp_path, monkeypat
     assert [path.name for path in checkpoints(tmp_path / "run")] == ["checkpoint-5.h5"]
 
 
-@pytest.mark.parametrize("sets, last", [((), 20), (("checkpoint.minutes=12.0",), 24)])
-def test_a_long_run_leaves_a_checkpoint_every_ten_minutes(tmp_path, clock, sets, last):
+@pytest.mark.parametrize("minutes, last", [(10.0, 20), (12.0, 24)])
+def test_a_run_leaves_a_checkpoint_after_so_many_minutes(tmp_path, clock, minutes, last):
     """A minute passes from one look at the clock to the next, and each step has one."""
 
     def later():
@@ -110,7 +120,7 @@ def test_a_long_run_leaves_a_checkpoint_every_ten_minutes(tmp_path, clock, sets,
         return clock.now
 
     module.time.monotonic = later
-    case = boxed(tmp_path, MPI.COMM_SELF, "time.step=2e-3", "time.end=0.05", *sets)
+    case = boxed(tmp_path, MPI.COMM_SELF, "time.step=2e-3", "time.end=0.05", f"checkpoint.minutes={minutes}")
     run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
     found = [path.name for path in checkpoints(tmp_path / "run")]
     assert found == ["checkpoint-25.h5", f"checkpoint-{last}.h5"]
@@ -118,7 +128,6 @@ def test_a_long_run_leaves_a_checkpoint_every_ten_minutes(tmp_path, clock, sets,
 
 def test_a_short_run_leaves_none(tmp_path):
     case = boxed(tmp_path, MPI.COMM_SELF, "time.end=0.01")
-    assert case.checkpoint.minutes == 10.0
     run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
     assert checkpoints(tmp_path / "run") == []
 
