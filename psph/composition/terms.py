@@ -145,6 +145,22 @@ def _typed_start(reductions, i):
     return unrolled("reductions, i", f"return {sums}", **_named(methods))
 
 
+def concerns(effects, reductions, i):
+    """Whether a pass has a sum for particle i: ``effects``, which give rates, have one for each."""
+    if effects:
+        return True
+    return any(not hasattr(effect, "has_sum") or effect.has_sum(i) > 0.0 for effect in reductions)
+
+
+@overload(concerns)
+def _typed_concerns(effects, reductions, i):
+    methods = _methods(reductions, "has_sum")
+    if len(effects) or len(methods) < len(reductions):
+        return lambda effects, reductions, i: True
+    asked = " or ".join(f"{call} > 0.0" for call in _calls("reductions", methods, "i"))
+    return unrolled("effects, reductions, i", f"return {asked}", **_named(methods))
+
+
 def gather_each(reductions, totals, i, j, pair):
     """All sums with the neighbours j in them."""
     return tuple(effect.gather(total, i, j, pair) for effect, total in zip(reductions, totals))

@@ -86,6 +86,8 @@ def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads
 def _sum(effect, i, j, pair, kernel) -> None:
     if not hasattr(effect, "start"):
         return
+    if hasattr(effect, "has_sum"):
+        effect.has_sum(i)
     total = effect.gather(effect.start(i), i, j, pair)
     if hasattr(effect, "finish_value"):
         effect.finish_value(total, i, kernel)

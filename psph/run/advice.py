@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from psph.case.model import Guards
+from psph.case.running import Guards
 from psph.case.schemes import STABLE
 from psph.fields import FLUID
 from psph.scene.scene import SOUND_OVER_SPEED

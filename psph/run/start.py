@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from psph.case.model import Checkpoint
+from psph.case.running import Checkpoint
 from psph.engine.jit import CACHE, is_kept
 from psph.output.checkpoint import Saved
 from psph.output.frames import funnel_notice

@@ -13,6 +13,7 @@ from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.motion import Fixed, Free
+from psph.physics.walls.conditions import DYNAMIC
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
@@ -201,6 +202,7 @@ class Scene:
                 start.mass(volume),
                 start.law,
                 getattr(self.bodies[index], "no_slip", False),
+                getattr(self.bodies[index], "condition", DYNAMIC),
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
         )

@@ -10,6 +10,7 @@ import numpy as np
 from psph.case.shapes import Shape
 from psph.fields import FLUID
 from psph.physics.motion import Free
+from psph.physics.walls.conditions import DYNAMIC, EXTRAPOLATED
 from psph.rows import projected
 from psph.scene.lattice import TOLERANCE, Lattice
 from psph.scene.shapes import Grid, inside
@@ -24,7 +25,8 @@ class Species(NamedTuple):
     ``motion`` is how they move (psph.physics.motion); ``density`` at zero pressure in kg/m³;
     kinematic ``viscosity`` in m²/s; ``mass`` of a particle in kg (per m of depth in 2D, per m² in
     1D); ``law`` is the equation of state (psph.physics.fluid.state).  A wall takes these from the fluid
-    it continues; ``no_slip`` if that fluid sticks to it.
+    it continues; ``no_slip`` if that fluid sticks to it; ``condition`` is what it sets to the fluid before it
+    (psph.physics.walls.conditions).
     """
 
     name: str
@@ -34,6 +36,7 @@ class Species(NamedTuple):
     mass: float
     law: Any
     no_slip: bool = False
+    condition: str = DYNAMIC
 
     @property
     def kind(self) -> int:
@@ -44,6 +47,11 @@ class Species(NamedTuple):
     def is_fluid(self) -> bool:
         """Whether it is a fluid."""
         return self.kind == FLUID
+
+    @property
+    def extrapolated(self) -> bool:
+        """Whether it is a wall whose pressure is that of the fluid before it."""
+        return self.condition == EXTRAPOLATED
 
     @property
     def mobile(self) -> bool:

@@ -15,7 +15,14 @@ from psph.parallel.skin import Skin
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.particles.wetting import mark_wet, rest_dry
-from psph.simulation.integrator import kick, kick_drift_predict, kick_rows, predict_rows, state_of
+from psph.simulation.integrator import (
+    kick,
+    kick_drift_predict,
+    kick_rows,
+    predict_rows,
+    settle_told,
+    state_of,
+)
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
@@ -45,7 +52,14 @@ class Engine:
         self.skin, self._reach = Skin(self.domain, scene.reach.skin), scene.reach
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         self._rules = Rules(
-            plan.carriers, plan.laws, plan.law_of, plan.free, plan.motions, plan.motion_of, scene.periods
+            plan.carriers,
+            plan.laws,
+            plan.law_of,
+            plan.told,
+            plan.free,
+            plan.motions,
+            plan.motion_of,
+            scene.periods,
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
@@ -91,7 +105,9 @@ class Engine:
                 self._sum_while_refreshing(one, fields)
             else:
                 self._sum_all(one)
-            stale, written = (), written | set(one.stores)
+            if one.settles:
+                self._each(settle_told, self._rules, self._view(0.0), self._columns())
+            stale, written = (), written | one.written
 
     def settle_pressure(self, pace: float) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""

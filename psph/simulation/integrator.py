@@ -18,7 +18,7 @@ import numpy as np
 from psph.composition.pair import take
 from psph.composition.terms import displacement, limit_density, limit_wall_density
 from psph.engine.jit import elementwise
-from psph.simulation.rules import borne, carry, hurry
+from psph.simulation.rules import borne, carry, density, hurry
 from psph.vectors import add, at, dot, put, scale
 
 
@@ -58,6 +58,20 @@ def state_of(first, last, rules, view, columns):
     for k in range(np.uint64(first), np.uint64(last)):
         c.specific_volume[k] = 1.0 / c.density[k]
         c.pressure[k] = borne(rules, take(view, k), c.group[k], c.density[k])
+
+
+@elementwise
+def settle_told(first, last, rules, view, columns):
+    """Density and specific volume of the columns ``first`` to ``last`` whose pressure a pass has told."""
+    c = columns
+    for k in range(np.uint64(first), np.uint64(last)):
+        i, group = take(view, k), c.group[k]
+        if rules.told[group]:
+            law = rules.law_of[group]
+            rho = density(rules.laws, law, c.pressure[k], i.rest_density, i.sound_speed)
+            c.density[k] = rho
+            c.specific_volume[k] = 1.0 / rho
+            c.pressure[k] = borne(rules, i, group, rho)
 
 
 @elementwise

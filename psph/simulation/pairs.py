@@ -60,6 +60,8 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(around.low)
         i = take(view, k)
+        if not terms.concerns(effects, reductions, i):
+            continue
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
         totals = spread(terms.start(reductions, i), records)

@@ -2,6 +2,8 @@
 
 from typing import Any, NamedTuple
 
+from psph.fields import PRESSURE, SPECIFIC_VOLUME
+
 
 class SumsInACircle(TypeError):
     """Effects that need each other's sums of the same step."""
@@ -14,7 +16,7 @@ class Pass(NamedTuple):
     that gathers sums alone; ``reductions`` have sums of their own; ``stores`` names the field, or None,
     that each of these fills.  ``neighbour_fields`` are what it reads of a neighbour, ``brought`` those
     among them that an earlier pass writes: ghosts need them again whenever that one has run.  It runs in
-    every ``every``-th step.
+    every ``every``-th step.  A pass that fills the pressure of some particles ``settles`` their density too.
     """
 
     place: int
@@ -24,6 +26,16 @@ class Pass(NamedTuple):
     neighbour_fields: tuple[str, ...]
     brought: tuple[str, ...]
     every: int
+
+    @property
+    def settles(self) -> bool:
+        """Whether it gives particles a pressure, and so a density."""
+        return PRESSURE.name in self.stores
+
+    @property
+    def written(self) -> set[str]:
+        """The fields that it fills."""
+        return {name for stored in self.stores if stored for name in _with_it(stored)}
 
     @property
     def gives_rates(self) -> bool:
@@ -53,7 +65,7 @@ def make_passes(called, stored: tuple[str, ...], seen_as, gather_every: int = 1)
         own = [call for call, *at in early if at == [level, every]]
         sums = [call.effect for call in own]
         passes.append(_pass(len(passes), (), sums, own, before, stored, seen_as, every))
-        before |= {effect.writes.name for effect in sums}
+        before |= passes[-1].written
     done = {id(call) for call, *_ in early}
     reductions = [
         call.effect
@@ -82,6 +94,11 @@ def _pass(place, effects, reductions, called, before, stored, seen_as, every) ->
     )
 
 
+def _with_it(name: str) -> tuple[str, ...]:
+    """What changes with a field: with the pressure the density, as the forces read it."""
+    return (name, SPECIFIC_VOLUME.name) if name == PRESSURE.name else (name,)
+
+
 def _filled(effect, before) -> str | None:
     """The array that takes the effect's sum, unless an earlier pass has filled it."""
     field = getattr(effect, "writes", None)
@@ -106,7 +123,7 @@ def _levels(called) -> list[tuple[Any, int]]:
         ready = {
             name: call
             for name, call in early.items()
-            if name not in levels and not (call.reads.in_sum & early.keys()) - levels.keys()
+            if name not in levels and not (call.reads.in_sum & early.keys()) - levels.keys() - {name}
         }
         if not ready:
             names = ", ".join(sorted(type(c.effect).__name__ for n, c in early.items() if n not in levels))

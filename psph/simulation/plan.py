@@ -56,6 +56,8 @@ class Plan:
     """The equations of state of its fluids and walls."""
     law_of: np.ndarray
     """The number of the law of each group."""
+    told: np.ndarray
+    """Whether a pass gives the particles of a group their pressure: (groups,)."""
     law_reasons: tuple[str, ...]
     """The keys of the case that called for each."""
     precision: str
@@ -195,6 +197,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     anchored = {ANCHOR.name} if motions else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in anchored)
     passes = make_passes(called, stored, lambda name: _array_of(name, stored), case.time.gather_every)
+    fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in passes for name in one.neighbour_fields}
     return Plan(
@@ -208,6 +211,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         kernel=scene.kernel,
         laws=tuple(law for _, law in laws),
         law_of=np.array([[*laws].index((type(one.law), one.law)) for one in scene.species], np.uint8),
+        told=np.array([any(_tells(c.effect, one) for c in called) for one in scene.species], bool),
         law_reasons=tuple(laws.values()),
         precision=case.precision,
         space=fixed_point(scene.smoothing_length, scene.periods)
@@ -219,7 +223,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         seen=tuple(field for name, field in fields.items() if name in own),
         arrays=stored,
         passes=passes,
-        refreshed=tuple(n for n in stored if n in neighbour and n in computed and n not in brought),
+        refreshed=tuple(n for n in stored if n in fresh and n in computed),
         ghost_fields=tuple(
             n for n in stored if n in varying and n in neighbour | told_by or n in neighbour and n in brought
         ),
@@ -259,6 +263,11 @@ def _carries(call: Called) -> bool:
 def _array_of(name: str, stored: tuple[str, ...]) -> str:
     """The array that formulas see under a name: the predicted one of what evolves."""
     return f"predicted_{name}" if f"predicted_{name}" in stored else name
+
+
+def _tells(effect, material) -> bool:
+    """Whether an effect gives particles of a material their pressure."""
+    return hasattr(effect, "tells") and material_value(material, effect.tells) > 0.0
 
 
 def _motion_numbers(species, motions) -> np.ndarray:

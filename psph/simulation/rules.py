@@ -11,6 +11,8 @@ place = call_by_number("place")
 """(motions, number, anchor, time) → x, m."""
 velocity = call_by_number("velocity")
 """(motions, number, anchor, time) → v, m/s."""
+density = call_by_number("density")
+"""(laws, number, pressure, rest_density, sound_speed) → ρ, kg/m^d."""
 pressure = call_by_number("pressure")
 """(laws, number, density, rest_density, sound_speed) → p, Pa."""
 
@@ -21,12 +23,13 @@ class Rules(NamedTuple):
     ``effects`` are those with a part in them.  ``laws`` are the scene's equations of state and
     ``law_of`` has the number of each group's.  The first ``free`` groups move freely; ``motion_of`` has
     the number of each group's motion (psph.physics.motion), from PRESCRIBED on one of ``motions``.
-    ``periods`` m, None for an open axis.
+    ``periods`` m, None for an open axis.  ``told`` are the groups to which a pass gives their pressure.
     """
 
     effects: tuple
     laws: tuple
     law_of: Any
+    told: Any
     free: Any
     motions: tuple
     motion_of: Any

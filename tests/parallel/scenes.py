@@ -17,7 +17,7 @@ class Family(NamedTuple):
 
     ``along`` is the long axis, ``periodic`` the axes that repeat; ``physics`` holds keys with fixed
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
-    a floor; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums are taken.
+    a floor, and ``condition`` of what kind; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums are taken.
     """
 
     dimensions: int
@@ -28,6 +28,7 @@ class Family(NamedTuple):
     walls: bool = False
     fluids: int = 1
     viscous: bool = False
+    condition: str = "dynamic"
     kernel: str = ""
     gather_every: int = 1
     physics: dict = {}
@@ -107,6 +108,9 @@ FAMILIES = {
     "tank in 3D": Family(3, along="z", walls=True, physics=GRAVITY),
     "pipe": Family(3, along="z", periodic="z", walls=True, viscous=True, fluids=2, physics=GRAVITY),
     "mixed tank": Family(2, precision="mixed", walls=True, physics=GRAVITY),
+    "borne": Family(
+        2, walls=True, fluids=2, viscous=True, condition="extrapolated", gather_every=3, physics=GRAVITY
+    ),
     "smooth": Family(
         2,
         walls=True,
@@ -144,8 +148,12 @@ def scene(family: Family, seed: int) -> str:
         "perturbations": [_perturbation(rng, sizes) for _ in range(rng.integers(0, 3))],
     }
     if family.walls:
-        case["walls"] = {"wall": {"shape": _wall(family, sizes), "no_slip": family.viscous}}
+        case["walls"] = {"wall": _wall_of(family, sizes)}
     return tomli_w.dumps(case)
+
+
+def _wall_of(family: Family, sizes) -> dict:
+    return {"shape": _wall(family, sizes), "no_slip": family.viscous, "condition": family.condition}
 
 
 def axes(family: Family) -> str:

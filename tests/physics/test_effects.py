@@ -11,6 +11,7 @@ import pytest
 from long import long_but_for
 from physics.pairs import OPEN, H, pair_of, rates, sums_of, view
 
+from psph.composition.pair import take
 from psph.composition.trial import UnknownField, reads
 from psph.physics.catalogue import BUILT_IN, CATALOGUE
 from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
@@ -40,6 +41,7 @@ from psph.physics.order.stress import NeighbourStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.dry import DryWall
+from psph.physics.walls.extrapolated import ExtrapolatedWall
 from psph.physics.walls.slip import CorrectedNoSlip, NoSlip
 from psph.smoothing import kernel
 
@@ -170,6 +172,24 @@ def test_a_wall_without_slip_mirrors_the_mean_of_the_fluid_around_it(dim):
     assert gathered(NoSlip(), p, 4, 0, 1, 2, 3) == (0.0,) * dim  # a wall that does not ask
     assert gathered(NoSlip(), p, 0, 1, 2, 3, 4) == (0.0,) * dim  # fluid
     assert gathered(NoSlip(), p, 1, 4) == (0.0,) * dim  # no fluid in reach
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_an_extrapolated_wall_has_the_pressure_of_the_fluid_and_its_weight(dim):
+    gravity = (2.0, -9.8, 0.5)[:dim]
+    effect = ExtrapolatedWall().in_scene(SimpleNamespace(gravity=gravity))
+    p = view(n=5, dim=dim)
+    p = p._replace(is_fluid=np.array([1, 0, 1, 1, 0.0]), extrapolated=np.array([0, 1, 0, 0, 0.0]))
+    fluid = (0, 2, 3)
+    w = np.array([written_out(p, 1, b)[3] for b in fluid])
+    depth = np.array([written_out(p, 1, b)[0] @ gravity for b in fluid])
+    told = p.pressure[[*fluid]] + depth / p.specific_volume[[*fluid]]
+    assert gathered(effect, p, 1, 0, 2, 3, 4) == pytest.approx(w @ told / w.sum())  # 4 is a wall too
+    assert gathered(effect, p, 1, 4) == 0.0  # no fluid in reach
+    for other in (0, 4):  # fluid, and a wall that does not ask
+        assert gathered(effect, p, other, 1, 2, 3) == p.pressure[other]
+        assert not effect.has_sum(take(p, other))
+    assert effect.has_sum(take(p, 1))
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import pytest
 
 from psph.composition.trial import Reads
-from psph.fields import Field
+from psph.fields import PRESSURE, Field
 from psph.simulation.passes import SumsInACircle, make_passes
 
 A, B, C = (Field(name, "1", f"the sum {name}") for name in "abc")
-STORED = ("position", "predicted_velocity", "mass", "pressure", "a", "b", "c")
+STORED = ("position", "predicted_velocity", "mass", "pressure", "specific_volume", "a", "b", "c")
 
 
 class Called(NamedTuple):
@@ -44,6 +44,16 @@ def test_a_sum_that_pairs_read_comes_before_and_travels():
     first, last = passes_of(effect(A, in_rates="a", neighbour="a"))
     assert (first.gives_rates, last.gives_rates) == (False, True)
     assert first.stores == ("a",) and last.stores == () and last.brought == ("a",)
+
+
+def test_a_pressure_that_a_pass_tells_settles_the_density_and_travels_twice():
+    """What it reads of a neighbour is that of the step; what it writes goes to the ghosts once more."""
+    tells = effect(PRESSURE, in_sum=("pressure",), in_rates=("pressure",), neighbour=("pressure",))
+    reads = effect(A, in_rates=("specific_volume",), neighbour=("specific_volume",), lagged=True)
+    first, last = passes_of(tells, reads)
+    assert first.settles and not last.settles and first.stores == ("pressure",)
+    assert first.written == {"pressure", "specific_volume"}
+    assert first.brought == () and set(last.brought) == {"pressure", "specific_volume"}
 
 
 def test_what_is_read_of_the_particle_alone_does_not_travel():

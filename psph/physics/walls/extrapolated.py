@@ -1,0 +1,61 @@
+"""Walls whose pressure follows from that of the fluid before them."""
+
+from typing import NamedTuple
+
+from psph.fields import PRESSURE
+from psph.physics.facts import Facts
+from psph.physics.walls.slip import NO_FLUID
+from psph.vectors import along
+
+
+class ExtrapolatedWall(NamedTuple):
+    """A wall bears the pressure of the fluid before it, continued into the wall by the weight of the fluid.
+
+    p_w = Σ_f (p_f + ρ_f g·x_wf) W_wf / Σ_f W_wf over the fluid, 0 where none is in reach, and ρ_w = ρ(p_w)
+    by the wall's equation of state.  Adami, Hu & Adams (2012), J. Comput. Phys. 231, 7057, eqs. (27), (28),
+    for walls that do not accelerate.  It is gathered before the forces, from the pressures of the same step:
+    one of the step before would feed the waves that a wall reflects.
+    """
+
+    writes = PRESSURE
+    tells = "extrapolated"
+
+    def in_scene(self, scene: Facts):
+        """The form that knows gravity."""
+        return ExtrapolatedUnderGravity(tuple(g or None for g in scene.gravity))
+
+
+class ExtrapolatedUnderGravity(NamedTuple):
+    """A wall bears the pressure of the fluid before it, continued into the wall by the weight of the fluid.
+
+    The form of :class:`ExtrapolatedWall` in a scene; ``gravity`` in m/s², None on an axis without.
+    """
+
+    gravity: tuple[float | None, ...]
+
+    writes = PRESSURE
+    """In other particles it stays as it is."""
+    tells = "extrapolated"
+    """Particles with a 1 here take their density from this pressure."""
+
+    def has_sum(self, i):
+        """Above 0 in such a wall: there are no sums for other particles."""
+        return i.extrapolated
+
+    def start(self, i):
+        """No fluid yet: Σ W and Σ p W."""
+        return 0.0, 0.0
+
+    def gather(self, total, i, j, pair):
+        """Take a fluid neighbour j into both."""
+        w = j.is_fluid * pair.w
+        p = j.pressure + along(pair.x_ij, self.gravity) / j.specific_volume
+        return total[0] + w, total[1] + p * w
+
+    def finish_value(self, total, i, kernel):
+        """p_w in such a wall, Pa; the pressure that it has in all other particles."""
+        return i.pressure + i.extrapolated * (total[1] / max(total[0], NO_FLUID) - i.pressure)
+
+    def linear(self, scene: Facts):
+        """Linear theory includes it as it is."""
+        return None
