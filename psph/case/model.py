@@ -159,7 +159,8 @@ class Wall(Table):
     )
     condition: Literal[CONDITIONS] = key(
         "dynamic: its particles' density evolves as that of the fluid; extrapolated: their pressure is that "
-        "of the fluid before it, continued by its weight",
+        "of the fluid before it, continued by its weight; repulsive: they repel the fluid; penalty: the wall "
+        "pushes back what is nearer than half a spacing. The last two bear no pressure",
         DYNAMIC,
     )
     continues: Name | None = key(

@@ -7,21 +7,21 @@ from psph.vectors import at, dot, nearest_image, subtract
 
 
 @compiled
-def mark_wet(first, last, low, lists, support, cutoff, periods, position, is_fluid, wet):
+def mark_wet(first, last, low, lists, support, cutoff, periods, position, group, bearing, is_fluid, wet):
     """``wet`` of the columns ``first`` to ``last``: 0 in a wall without fluid in reach, else 1.
 
     A wall becomes wet where fluid comes within the kernel's ``support``, m, and dry where it leaves the
     ``cutoff`` of the lists, m: between the two it stays what it was, so that water that trembles does not
     make a wall at the edge of its reach lose its pressure again and again.  ``lists`` are
     :class:`psph.particles.neighbours.Neighbours` of the particles from column ``low`` on; ``is_fluid`` 1
-    in a fluid, else 0.
+    in a fluid, else 0.  Particles of a ``group`` that is not ``bearing`` stay dry.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
         found = is_fluid[k]
         reach = cutoff if wet[k] > 0.0 else support
         n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
-        while found == 0.0 and n < end:
+        while found == 0.0 and bearing[group[k]] and n < end:
             j = np.uint64(lists.lists[n])
             x = nearest_image(subtract(at(position, k), at(position, j)), periods)
             found = 1.0 if is_fluid[j] > 0.0 and dot(x, x) < reach * reach else 0.0
@@ -30,16 +30,17 @@ def mark_wet(first, last, low, lists, support, cutoff, periods, position, is_flu
 
 
 @compiled
-def rest_dry(first, last, low, lists, is_fluid, wet, group, free):
+def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, free):
     """Rows of dry walls without any fluid in their lists become empty: nothing has to be summed for them.
 
-    Of the columns ``first`` to ``last``, those of groups from number ``free`` on, which forces do not move.
+    Of the columns ``first`` to ``last``, those of groups from number ``free`` on, which forces do not
+    move.  One that is not ``bearing`` needs no sum even with fluid around.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
         n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
         idle = wet[k] == 0.0 and group[k] >= free
-        while idle and n < end:
+        while idle and bearing[group[k]] and n < end:
             idle = is_fluid[np.uint64(lists.lists[n])] == 0.0
             n += np.uint64(1)
         if idle:

@@ -34,9 +34,11 @@ from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.surface.free import FreeSurface, TensionFloor
-from psph.physics.walls.conditions import EXTRAPOLATED
+from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
+from psph.physics.walls.penalty import PenaltyWall
+from psph.physics.walls.repulsive import RepulsiveWall
 from psph.physics.walls.slip import NoSlip
 
 
@@ -112,6 +114,8 @@ CATALOGUE = (
     Entry("walls.*.no_slip", NoSlip),
     Entry("walls.*.continues", DryWall),
     Entry(f"walls.*.condition={EXTRAPOLATED}", ExtrapolatedWall),
+    Entry(f"walls.*.condition={REPULSIVE}", RepulsiveWall),
+    Entry(f"walls.*.condition={PENALTY}", PenaltyWall),
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.pair_damping", PairDamping),
     Entry("physics.reconstructed_damping", ReconstructedDamping),

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+SOUND_OVER_SPEED = 10.0
+"""Speed of sound over the largest speed of a flow: density then varies by about 1 % (Monaghan 1994)."""
+
 
 class Facts(Protocol):
     """The scene as effects see it in ``in_scene``, ``why_absent``, ``idle`` and ``linear``.

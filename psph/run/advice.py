@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from psph.case.running import Guards
 from psph.case.schemes import STABLE
 from psph.fields import FLUID
-from psph.scene.scene import SOUND_OVER_SPEED
+from psph.physics.facts import SOUND_OVER_SPEED
 from psph.scene.walls import layers_needed, thinnest_walls
 
 FASTER = 2.0

@@ -10,13 +10,13 @@ from psph.fields import FLUID
 from psph.output.diagnostics import fluid_mass, total_energy
 from psph.output.errors import OutputError
 from psph.parallel.reductions import largest, wrapped_sums
+from psph.physics.facts import SOUND_OVER_SPEED
 from psph.run.advice import advice
 from psph.run.post_mortem import write_post_mortem
 from psph.run.record import Record
 from psph.run.resume import newest_checkpoint, write_checkpoint
 from psph.run.suspect import Suspect, find
 from psph.scene.behind import Solid
-from psph.scene.scene import SOUND_OVER_SPEED
 from psph.simulation.step import BlowUp, Simulation, TimeLost
 
 EVERY = 100

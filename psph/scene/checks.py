@@ -9,10 +9,11 @@ import numpy as np
 from psph.case import CaseError
 from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
+from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.lattice import TOLERANCE
 from psph.scene.multiples import misfits
-from psph.scene.scene import SOUND_OVER_SPEED, Scene
+from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
 from psph.scene.units import slips

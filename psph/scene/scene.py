@@ -12,6 +12,7 @@ from psph.case.keys import AXES
 from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
+from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import Fixed, Free
 from psph.physics.walls.conditions import DYNAMIC
 from psph.scene.lattice import TOLERANCE, lattice_around
@@ -22,9 +23,6 @@ from psph.scene.walls import has_free_surface
 from psph.smoothing import kernel, normalised
 from psph.theory.solutions.catalogue import SOLUTIONS
 from psph.theory.solutions.setting import Setting
-
-SOUND_OVER_SPEED = 10.0
-"""Speed of sound over the largest speed: density then varies by about 1 % (Monaghan 1994)."""
 
 
 class Scene:

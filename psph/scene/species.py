@@ -10,7 +10,7 @@ import numpy as np
 from psph.case.shapes import Shape
 from psph.fields import FLUID
 from psph.physics.motion import Free
-from psph.physics.walls.conditions import DYNAMIC, EXTRAPOLATED
+from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.rows import projected
 from psph.scene.lattice import TOLERANCE, Lattice
 from psph.scene.shapes import Grid, inside
@@ -49,9 +49,24 @@ class Species(NamedTuple):
         return self.kind == FLUID
 
     @property
+    def bearing(self) -> bool:
+        """Whether its particles bear a pressure."""
+        return self.condition in BEARING
+
+    @property
     def extrapolated(self) -> bool:
         """Whether it is a wall whose pressure is that of the fluid before it."""
         return self.condition == EXTRAPOLATED
+
+    @property
+    def repulsive(self) -> bool:
+        """Whether it is a wall whose particles repel the fluid."""
+        return self.condition == REPULSIVE
+
+    @property
+    def penalty(self) -> bool:
+        """Whether it is a wall that pushes back what comes too near."""
+        return self.condition == PENALTY
 
     @property
     def mobile(self) -> bool:

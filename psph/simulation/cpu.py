@@ -163,6 +163,8 @@ class Engine:
             reach.cutoff,
             self.domain.periods,
             s["position"],
+            s.group,
+            self.plan.bearing,
             told_by,
             wet,
         )
@@ -172,7 +174,8 @@ class Engine:
         """Nothing is summed for walls out of reach of the fluid."""
         s = self.store
         told_by, wet = s[effect.told_by], s[effect.marks.name]
-        self._each(rest_dry, s.low, self.domain.lists, told_by, wet, s.group, self.plan.free)
+        plan, lists = self.plan, self.domain.lists
+        self._each(rest_dry, s.low, lists, told_by, wet, s.group, plan.bearing, plan.free)
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""

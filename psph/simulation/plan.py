@@ -58,6 +58,8 @@ class Plan:
     """The number of the law of each group."""
     told: np.ndarray
     """Whether a pass gives the particles of a group their pressure: (groups,)."""
+    bearing: np.ndarray
+    """Whether the particles of a group bear a pressure: (groups,)."""
     law_reasons: tuple[str, ...]
     """The keys of the case that called for each."""
     precision: str
@@ -212,6 +214,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         laws=tuple(law for _, law in laws),
         law_of=np.array([[*laws].index((type(one.law), one.law)) for one in scene.species], np.uint8),
         told=np.array([any(_tells(c.effect, one) for c in called) for one in scene.species], bool),
+        bearing=np.array([one.bearing for one in scene.species], bool),
         law_reasons=tuple(laws.values()),
         precision=case.precision,
         space=fixed_point(scene.smoothing_length, scene.periods)

@@ -111,6 +111,8 @@ FAMILIES = {
     "borne": Family(
         2, walls=True, fluids=2, viscous=True, condition="extrapolated", gather_every=3, physics=GRAVITY
     ),
+    "repelled": Family(2, walls=True, condition="repulsive", physics=GRAVITY),
+    "pushed back": Family(2, walls=True, viscous=True, condition="penalty", physics=GRAVITY),
     "smooth": Family(
         2,
         walls=True,

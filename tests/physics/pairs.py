@@ -33,6 +33,8 @@ def view(n=2, dim=2, seed=3):
         mobile=np.resize((0.0, 1.0, 1.0), n),
         no_slip=np.resize((0.0, 1.0), n),
         extrapolated=np.resize((0.0, 1.0, 1.0), n),
+        repulsive=np.resize((0.0, 1.0), n),
+        penalty=np.resize((0.0, 1.0), n),
         wet=np.resize((1.0, 0.0, 0.0), n),
         stress_point=np.resize((1.0, 0.0, 0.0), n),
         slip=tuple(rng.normal(size=n) for _ in range(dim)),

@@ -42,6 +42,8 @@ from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, Tra
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
+from psph.physics.walls.penalty import PenaltyWall, Spring, mean_distance
+from psph.physics.walls.repulsive import RepulsiveWall
 from psph.physics.walls.slip import CorrectedNoSlip, NoSlip
 from psph.smoothing import kernel
 
@@ -190,6 +192,53 @@ def test_an_extrapolated_wall_has_the_pressure_of_the_fluid_and_its_weight(dim):
         assert gathered(effect, p, other, 1, 2, 3) == p.pressure[other]
         assert not effect.has_sum(take(p, other))
     assert effect.has_sum(take(p, 1))
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_the_particles_of_a_repulsive_wall_repel_the_fluid(dim):
+    dx, speed = H / 1.4, 3.0
+    effect = RepulsiveWall().in_scene(SimpleNamespace(spacing=dx, smoothing_length=H, expected_speed=speed))
+    p = view(n=3, dim=dim)
+    p = p._replace(is_fluid=np.array([1.0, 0.0, 1.0]))
+    x, _, r, *_ = written_out(p, 0, 1)
+    w = 1.77 / 32 * (1 + 2.5 * r / H + 2 * (r / H) ** 2) * max(2 - r / H, 0) ** 5
+    expected = speed**2 / 2 * x / (r * max(r - dx / 3, 0.1 * dx)) * w
+    assert effect.radial(*pair_of(p, 0, 1)) * x == pytest.approx(expected)
+    assert effect.radial(*pair_of(p, 0, 2)) == 0.0  # a neighbour that is no such wall
+    assert effect.radial(*pair_of(p, 1, 1 + 1)) == 0.0  # a wall is not pushed
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_a_penalty_wall_pushes_back_along_its_normal_what_is_too_near(dim):
+    effect = Spring(stiffness=900.0, damping=30.0, rest=10.0 * H)
+    p = view(n=4, dim=dim)
+    p = p._replace(is_fluid=np.array([1.0, 0.0, 0.0, 1.0]), penalty=np.array([0.0, 1.0, 1.0, 0.0]))
+
+    def pushed(effect, i, *others):
+        one, total = take(p, i), effect.start(take(p, i))
+        for b in others:
+            total = effect.gather(total, *pair_of(p, i, b))
+        return np.array(effect.finish_acceleration(total, one))
+
+    w = np.array([written_out(p, 0, b)[3] for b in (1, 2)])
+    away, motion = (w @ [written_out(p, 0, b)[k] for b in (1, 2)] / w.sum() for k in (0, 1))
+    d = np.sqrt(away @ away)
+    expected = (900.0 * (10.0 * H - d) - 30.0 * motion @ away / d) * away / d
+    assert pushed(effect, 0, 1, 2, 3) == pytest.approx(expected)  # 3 is fluid
+    assert not pushed(effect._replace(rest=0.9 * d), 0, 1, 2).any()  # far enough
+    assert not pushed(effect, 0, 3).any()  # no wall in reach
+    assert not pushed(effect, 1, 2).any()  # a wall is not pushed
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_half_a_spacing_before_a_flat_penalty_wall_nothing_pushes(dim):
+    dx, one = 0.1, kernel("wendland-c2", 0.14, dim)
+    rest = (
+        PenaltyWall().in_scene(SimpleNamespace(kernel=one, spacing=dx, dimensions=dim, sound_speed=20.0)).rest
+    )
+    assert rest == mean_distance(one, dx, dim)
+    assert dx < rest < 1.3 * dx  # the first layer, a spacing away, weighs most
+    assert mean_distance(kernel("wendland-c2", 0.28, dim), 2 * dx, dim) == pytest.approx(2 * rest)
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)

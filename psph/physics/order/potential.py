@@ -10,7 +10,7 @@ from pydantic import Field
 from psph.composition.pair import Pair
 from psph.fields import view_of
 from psph.formula import helper
-from psph.physics.facts import Facts
+from psph.physics.facts import SOUND_OVER_SPEED, Facts
 from psph.physics.fluid.correction import DISORDER, half_disorder, needs_correction
 from psph.theory.stability import parts
 from psph.vectors import excess, multiply, plus_less_last, scale
@@ -34,9 +34,6 @@ AT_NEAR = (1.0, 1.0, 1.5)
 """What −ψ′ is there, over dx^-(d+1).
 
 With 1.0 in 3D a rotating cube clumps: 5 % of its particles come nearer than 0.57 dx to another."""
-
-SOUND_OVER_SPEED = 10.0
-"""Speed of sound over the largest speed that a weakly compressible flow should have."""
 
 Strength = Annotated[
     float,

@@ -102,7 +102,8 @@ class PositionShift(NamedTuple):
     larger than the largest speed of the flow: still water is left alone, where the shift of a constant U
     would stir a lattice under tension.  The weight n is psph's own: the usual 1 also sees the rows that are
     missing above the second row of a surface, and would push that row outwards for ever (a rotating patch
-    gains 1.5 % of angular momentum, with n 0.5 %).  Two spacings off n is 0.09.
+    gains 1.5 % of angular momentum, with n 0.5 %).  Two spacings off n is 0.09.  It is left out
+    beside walls that bear no pressure: against them it pumps energy.
     Velocity and density go along unchanged, so that momentum is conserved to round-off.  Lind, Xu,
     Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun et al. (2017), Comput. Methods Appl.
     Mech. Eng. 315, 25.
@@ -124,7 +125,13 @@ class PositionShift(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """The shift that knows what a full neighbourhood sums up to."""
+        if not all(one.bearing for one in scene.species):
+            return None
         return lattice_shift(self.strength, scene.kernel, scene.spacing, scene.dimensions)
+
+    def why_absent(self, scene: Facts):
+        """Why it has no form in the scene."""
+        return "it pumps energy beside walls that bear no pressure"
 
 
 class LatticeShift(NamedTuple):

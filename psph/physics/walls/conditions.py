@@ -6,4 +6,14 @@ DYNAMIC = "dynamic"
 EXTRAPOLATED = "extrapolated"
 """Its pressure is that of the fluid before it (psph.physics.walls.extrapolated)."""
 
-CONDITIONS = (DYNAMIC, EXTRAPOLATED)
+REPULSIVE = "repulsive"
+"""Its particles repel the fluid, and bear nothing (psph.physics.walls.repulsive)."""
+
+PENALTY = "penalty"
+"""It pushes back what comes too near, and bears nothing (psph.physics.walls.penalty)."""
+
+CONDITIONS = (DYNAMIC, EXTRAPOLATED, REPULSIVE, PENALTY)
+
+BEARING = (DYNAMIC, EXTRAPOLATED)
+"""Their particles bear a pressure.  Those of other walls fill the support of the fluid at rest density: they
+stay dry (psph.physics.walls.dry), and no sum is made for them."""

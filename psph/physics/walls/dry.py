@@ -16,6 +16,7 @@ class DryWall(NamedTuple):
     distance, still water would tremble, for a wall at the edge of reach would lose its pressure again and
     again.  Without it a wall would keep for ever the pressure that it had when the fluid left.  Where no
     fluid is even listed, nothing is summed for such a wall (psph.particles.wetting.rest_dry).
+    A wall whose condition bears no pressure (psph.physics.walls.conditions) is always dry.
     """
 
     marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0)
