@@ -10,6 +10,7 @@ from psph.case.keys import AXES, Table
 from psph.case.parameters import last_part
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
+from psph.physics.walls.conditions import MIRROR
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 Location = tuple[str | int, ...]
@@ -24,6 +25,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         _square,
         _axes,
         _domain,
+        _mirrored,
         _hydrostatic,
         _exact,
         _effects,
@@ -154,6 +156,28 @@ def _domain(case) -> Iterator[Finding]:
             space.upper,
             ("not above space.lower on every axis; let every number exceed that of space.lower"),
         )
+
+
+def _mirrored(case) -> Iterator[Finding]:
+    """Mirrors where none can be."""
+    space, gravity = case.space, case.physics.gravity
+    walls = [("walls", name, "condition") for name, wall in case.walls.items() if wall.condition == MIRROR]
+    for loc in (*([("space", "symmetry")] if space.symmetry else ()), *walls):
+        if space.dimensions == 1:
+            yield loc, ..., "mirrors need two or three dimensions"
+        if case.precision == "mixed":
+            yield loc, ..., 'mirrors do not work with precision = "mixed"; use "double"'
+    for side in space.symmetry:
+        axis, end = AXES.index(side[0]), side[2:]
+        loc = ("space", "symmetry")
+        if axis >= space.dimensions:
+            yield loc, side, f"no axis in {space.dimensions}D; give another side"
+        elif getattr(space, end) is None:
+            yield loc, side, f"the plane stands at the end of the domain; give space.{end}"
+        elif side[0] in space.periodic:
+            yield loc, side, f"the axis {side[0]} is periodic; remove one of the two"
+        elif gravity is not None and gravity.acceleration[axis]:
+            yield loc, side, 'gravity pulls through the plane; a wall with condition = "mirror" bears weight'
 
 
 def _hydrostatic(case) -> Iterator[Finding]:

@@ -13,6 +13,9 @@ AXES = ("x", "y", "z")
 
 Axis = Literal["x", "y", "z"]
 
+SIDES = tuple(f"{axis}.{end}" for axis in AXES for end in ("lower", "upper"))
+"""Names of the sides of a domain."""
+
 Vector = Annotated[tuple[float, ...], Strict(False), Field(min_length=1)]
 """One number per dimension, a list in TOML.  The numbers themselves stay strict."""
 

@@ -12,7 +12,7 @@ from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_
 from pydantic_core import PydanticCustomError
 
 from psph.case.consistency import contradictions
-from psph.case.keys import Axis, Name, Table, Text, Vector, key
+from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
 from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
@@ -69,14 +69,17 @@ class Space(Table):
         False,
     )
     periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("periodic axes", ())
+    symmetry: Annotated[tuple[Literal[SIDES], ...], Strict(False)] = key(
+        "sides of the domain that are planes of symmetry: what is before one is seen behind it once more", ()
+    )
     lower: Vector | None = key(
-        "lowest corner of the domain; required where an axis is periodic",
+        "lowest corner of the domain; required where an axis is periodic or has a plane of symmetry",
         None,
         unit="m",
         otherwise="found from the shapes",
     )
     upper: Vector | None = key(
-        "highest corner of the domain; required where an axis is periodic",
+        "highest corner of the domain; required where an axis is periodic or has a plane of symmetry",
         None,
         unit="m",
         otherwise="found from the shapes",
@@ -160,7 +163,9 @@ class Wall(Table):
     condition: Literal[CONDITIONS] = key(
         "dynamic: its particles' density evolves as that of the fluid; extrapolated: their pressure is that "
         "of the fluid before it, continued by its weight; repulsive: they repel the fluid; penalty: the wall "
-        "pushes back what is nearer than half a spacing. The last two bear no pressure",
+        "pushes back what is nearer than half a spacing (these two bear no pressure); mirror: no particles, "
+        "the fluid sees its image behind a plane: a box along a whole side of the fluids, or a box around "
+        "them less a box",
         DYNAMIC,
     )
     continues: Name | None = key(

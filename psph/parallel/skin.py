@@ -1,9 +1,11 @@
 """How long the lists hold: a bound on how far any two neighbours may have drifted apart."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from psph.composition.mirrors import Plane
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import largest
 from psph.particles.drift import bounding_boxes, largest_differences
@@ -19,6 +21,9 @@ ones hold: of 0.7, 0.8 and 0.9 the best in a dam break in 2D."""
 PART_OF_PERIOD = 0.25
 """Nor does it by more than this part of any period: the nearest image takes one period off at the
 most."""
+
+NEAR_PLANE = 1.5
+"""Cutoffs from a mirror within which particles count as near it: whoever sees an image is within one."""
 
 REMEMBERED = (
     "drifted",
@@ -42,11 +47,12 @@ class Skin:
     2 a (t + Δt)), with the fastest shift s of a particle beside its velocity.  The predicted velocity
     that is measured still contains half a step of the acceleration before, and lacks half a step of
     the present one: a is the largest of both and of all since, Δt the longest of these steps.
-    The same on every rank.
+    Beside a mirror one neighbour may be an image: what both do across the plane counts too, twice the most
+    that any particle there does.  The same on every rank.
     """
 
-    def __init__(self, domain: Domain, width: float):
-        self.domain, self.width = domain, width
+    def __init__(self, domain: Domain, width: float, planes: Sequence[Plane] = ()):
+        self.domain, self.width, self._planes = domain, width, planes
         lengths = [p for p in domain.periods if p is not None]
         self._farthest = min(PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf))
         self._before = [0.0, 0.0]
@@ -121,5 +127,24 @@ class Skin:
             store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach, grid.periodic
         )
         mine = largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic)
-        self._apart, self._closing, self.drifted = np.sqrt(largest(domain.comm, mine)).tolist()
+        found = np.sqrt(largest(domain.comm, [*mine, *self._across_planes()]))
+        self._apart, self._closing, self.drifted = found[:3].tolist()
+        if self._planes:
+            self._apart += 2.0 * float(found[3])
+            self._closing += 2.0 * float(found[4])
         self._since = 0.0
+
+    def _across_planes(self) -> list[float]:
+        """Squares of the farthest way and of the highest speed of this rank's particles across a mirror
+        that they are near; nothing where there is none."""
+        store = self.domain.store
+        most = [0.0, 0.0]
+        for plane in self._planes:
+            x, listed, v = (
+                store[name][plane.axis][store.inner]
+                for name in ("position", "listed_position", "predicted_velocity")
+            )
+            near = np.abs(x - plane.at) < NEAR_PLANE * self.domain.cutoff
+            for place, ways in enumerate((x - listed, v)):
+                most[place] = max(most[place], float(np.square(ways[near]).max(initial=0.0)))
+        return most if self._planes else []

@@ -78,7 +78,7 @@ class Guards:
         store, scene = self.simulation.store, self.scene
         fluid = store.shown("kind") == FLUID
         gone = np.zeros(len(fluid), bool)
-        if not scene.case.walls:
+        if not scene.walls:
             return gone
         lattice = scene.lattice
         for d, x in enumerate(self.simulation.domain.inside(store.shown("position")).T):

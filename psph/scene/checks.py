@@ -128,7 +128,7 @@ def _key(scene: Scene, material: int) -> str:
     fluids = list(scene.case.fluids)
     if material < len(fluids):
         return f"fluids.{fluids[material]}"
-    return f"walls.{list(scene.case.walls)[material - len(fluids)]}"
+    return f"walls.{list(scene.walls)[material - len(fluids)]}"
 
 
 def _point(x) -> str:

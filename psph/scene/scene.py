@@ -14,8 +14,9 @@ from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import Fixed, Free
-from psph.physics.walls.conditions import DYNAMIC
+from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.lattice import TOLERANCE, lattice_around
+from psph.scene.mirrors import clipped, planes_of
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
@@ -30,7 +31,8 @@ class Scene:
 
     The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the
     domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
-    hold a particle, ``planes`` its planes across ``axis``.
+    hold a particle, ``planes`` its planes across ``axis``, ``mirror_planes`` its
+    mirrors; ``walls`` are those with particles, by name.
     """
 
     def __init__(self, case: Case):
@@ -41,14 +43,18 @@ class Scene:
         self.kernel = kernel(space.kernel, self.smoothing_length, space.dimensions)
         if space.normalised:
             self.kernel = normalised(self.kernel, self.spacing, space.dimensions)
-        self.bodies: tuple[Any, ...] = (*case.fluids.values(), *case.walls.values())
+        self.walls = {name: wall for name, wall in case.walls.items() if wall.condition != MIRROR}
+        self.bodies: tuple[Any, ...] = (*case.fluids.values(), *self.walls.values())
         shapes = tuple(body.shape for body in self.bodies)
         axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
-        self.lattice = lattice_around(map(bounds, shapes), space.origin, self.spacing, axis)
+        self.mirror_planes = planes_of(case)
+        boxes = (clipped(bounds(shape), self.mirror_planes) for shape in shapes)
+        self.lattice = lattice_around(boxes, space.origin, self.spacing, axis)
         self.layout = Layout(self.lattice, shapes, len(case.fluids))
         self.axis, self.planes = self.lattice.axis, self.lattice.planes
-        self.lower = self.lattice.lower if space.lower is None else space.lower
-        self.upper = self.lattice.upper if space.upper is None else space.upper
+        found = self.lattice.lower, self.lattice.upper
+        given = (ends if own is None else own for ends, own in zip(found, (space.lower, space.upper)))
+        self.lower, self.upper = clipped(tuple(given), self.mirror_planes)
         self.periods = tuple(
             up - low if name in space.periodic else None
             for name, low, up in zip(AXES, self.lower, self.upper)
@@ -190,7 +196,7 @@ class Scene:
     @cached_property
     def species(self) -> tuple[Species, ...]:
         """Each fluid, then each wall."""
-        names, volume = (*self.case.fluids, *self.case.walls), self.spacing**self.dimensions
+        names, volume = (*self.case.fluids, *self.walls), self.spacing**self.dimensions
         return tuple(
             Species(
                 name,
@@ -276,7 +282,7 @@ class Scene:
     def _sources(self) -> list[int]:
         """For each material the index of the fluid whose properties it has."""
         fluids = list(self.case.fluids)
-        continued = [fluids.index(wall.continues) for wall in self.case.walls.values()]
+        continued = [fluids.index(wall.continues) for wall in self.walls.values()]
         return [*range(len(fluids)), *continued]
 
     def _law(self, fluid):

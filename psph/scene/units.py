@@ -44,7 +44,7 @@ def _long_tank(scene: "Scene") -> Iterator[str]:
     if not any(scene.gravity):
         return
     case, census = scene.case, scene.census
-    keys = [*(f"fluids.{n}" for n in case.fluids), *(f"walls.{n}" for n in case.walls)]
+    keys = [*(f"fluids.{n}" for n in case.fluids), *(f"walls.{n}" for n in scene.walls)]
     sizes = (census.highest - census.lowest).max(axis=1) + scene.spacing
     longest = int(sizes.argmax())
     if sizes[longest] > LONGEST_TANK:
@@ -58,9 +58,12 @@ def _falls_out(scene: "Scene") -> Iterator[str]:
     """Fluid in a scene with walls, none of which lies where gravity pulls it."""
     axis = int(np.abs(scene.gravity).argmax())
     pull = scene.gravity[axis]
-    if not pull or not scene.case.walls or scene.periods[axis] is not None:
+    if not pull or not scene.walls or scene.periods[axis] is not None:
         return
-    unheld = _unheld(scene, axis, int(math.copysign(1, pull)))
+    sign = int(math.copysign(1, pull))
+    if (axis, sign) in ((plane.axis, plane.side) for plane in scene.mirror_planes):
+        return
+    unheld = _unheld(scene, axis, sign)
     if unheld > MOST_UNHELD:
         towards = f"{'+' if pull > 0.0 else '−'}{AXES[axis]}"
         yield (

@@ -1,9 +1,11 @@
 """How many layers of particles a wall has behind the face that a fluid touches."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
+from psph.composition.mirrors import ABOVE, BELOW
 from psph.scene.lattice import TOLERANCE
 from psph.scene.species import NONE
 
@@ -39,7 +41,7 @@ def thinnest_walls(scene) -> Thin:
     tip of a round body is not thin.
     """
     need, thin = layers_needed(scene), Thin()
-    if not scene.case.walls:
+    if not scene.walls:
         return thin
     for first, last in scene.lattice.chunks():
         held = with_surroundings(scene, first, last, need)
@@ -76,8 +78,9 @@ def _moved(array: np.ndarray, axis: int, step: int, margin: int) -> np.ndarray:
 
 
 def with_surroundings(scene, first: int, last: int, margin: int) -> np.ndarray:
-    """Materials of some planes and of ``margin`` sites around them, across periodic edges."""
+    """Materials of some planes and of ``margin`` sites around them, across periodic edges and in mirrors."""
     lattice = scene.lattice
+    mirrored = set(_mirrored_sides(scene))
     wraps = [
         period is not None and round(period / scene.spacing) == count
         for period, count in zip(scene.periods, lattice.counts)
@@ -85,7 +88,12 @@ def with_surroundings(scene, first: int, last: int, margin: int) -> np.ndarray:
     nothing = np.full(lattice.shape(0, 1), NONE, np.uint8)
 
     def plane(k: int) -> np.ndarray:
-        k = k % lattice.planes if wraps[scene.axis] else k
+        if wraps[scene.axis]:
+            k %= lattice.planes
+        elif k < 0 and (scene.axis, BELOW) in mirrored:
+            k = -1 - k
+        elif k >= lattice.planes and (scene.axis, ABOVE) in mirrored:
+            k = 2 * lattice.planes - 1 - k
         return scene.layout.materials(k, k + 1) if 0 <= k < lattice.planes else nothing
 
     held = np.concatenate(
@@ -96,10 +104,26 @@ def with_surroundings(scene, first: int, last: int, margin: int) -> np.ndarray:
         ]
     )
     for place, d in enumerate(lattice.axes[1:], start=1):
-        width = [(margin, margin) if k == place else (0, 0) for k in range(held.ndim)]
-        how = {"mode": "wrap"} if wraps[d] else {"constant_values": NONE}
-        held = np.pad(held, width, **how)
+        if wraps[d]:
+            held = np.pad(held, _at(place, (margin, margin), held.ndim), mode="wrap")
+            continue
+        for side, ends in ((BELOW, (margin, 0)), (ABOVE, (0, margin))):
+            beyond = {"mode": "symmetric"} if (d, side) in mirrored else {"constant_values": NONE}
+            held = np.pad(held, _at(place, ends, held.ndim), **beyond)
     return held
+
+
+def _mirrored_sides(scene) -> Iterator[tuple[int, int]]:
+    """Axis and side of the lattice's ends at which a mirror stands."""
+    ends = {BELOW: scene.lattice.lower, ABOVE: scene.lattice.upper}
+    for plane in scene.mirror_planes:
+        if abs(ends[plane.side][plane.axis] - plane.at) < 0.5 * scene.spacing:
+            yield plane.axis, plane.side
+
+
+def _at(place: int, ends: tuple[int, int], axes: int) -> list[tuple[int, int]]:
+    """Widths for ``np.pad``: ``ends`` along the axis at one place."""
+    return [ends if k == place else (0, 0) for k in range(axes)]
 
 
 def _keep_thinnest(thin: Thin, scene, first: int, last: int, material: int, layers) -> None:

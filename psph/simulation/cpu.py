@@ -5,6 +5,7 @@ All that depends on how sums are computed on a processor lies behind these few m
 
 import numpy as np
 
+from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
@@ -12,6 +13,7 @@ from psph.fields import companions, seen_at
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain
 from psph.parallel.skin import Skin
+from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.particles.wetting import mark_wet, rest_dry
@@ -49,7 +51,7 @@ class Engine:
             plan.refreshed,
             plan.space.lanes,
         )
-        self.skin, self._reach = Skin(self.domain, scene.reach.skin), scene.reach
+        self.skin, self._reach = Skin(self.domain, scene.reach.skin, plan.planes), scene.reach
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         self._rules = Rules(
             plan.carriers,
@@ -63,7 +65,7 @@ class Engine:
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
-        self._paid = 0.0
+        self._mirrors, self._paid = plan.mirrors, 0.0
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
@@ -85,6 +87,7 @@ class Engine:
     def rebuild(self) -> None:
         """Put every particle where it belongs and list its neighbours."""
         with self.ledger("rebuild"):
+            bring_back(self.store, self.plan.planes)
             self.domain.rebuild(self.spent_on_pairs())
             for effect in self.plan.marking:
                 self._mark(effect)
@@ -181,6 +184,7 @@ class Engine:
         """Room for the records of new columns, and for the longest of new lists."""
         for records in self.records:
             records.make_room()
+        self._mirrors = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
         longest = int(self.domain.lists.lengths[: self.store.owned].max(initial=0))
         self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
 
@@ -227,7 +231,7 @@ class Engine:
             Summed(one.effects, one.reductions),
             Metric(plan.kernel, plan.space, self.softening),
             s.view(),
-            Around(records.view(), records.table, s.low, self.domain.lists),
+            Around(records.view(), records.table, s.low, self.domain.lists, self._mirrors),
             Sums(*rates, tuple(name and s[name] for name in one.stores)),
         )
 

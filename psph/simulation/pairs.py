@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.composition import terms
+from psph.composition.mirrors import entries, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
 from psph.composition.terms import added, pushed, store
@@ -30,13 +31,15 @@ class Metric(NamedTuple):
 
 
 class Around(NamedTuple):
-    """The neighbours: ``records`` of what is read of them, as ``shown`` says, and the ``lists`` of the
-    particles from column ``low`` on (psph.particles.neighbours)."""
+    """The neighbours: ``records`` of what is read of them, as ``shown`` says, the ``lists`` of the
+    particles from column ``low`` on (psph.particles.neighbours), and the ``mirrors`` that show them once
+    more (psph.composition.mirrors), or None."""
 
     shown: Any
     records: Any
     low: Any
     lists: Any
+    mirrors: Any
 
 
 class Sums(NamedTuple):
@@ -65,16 +68,17 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
         totals = spread(terms.start(reductions, i), records)
-        end = lists.begin[row] + np.uint64(lists.lengths[row])
-        for n in range(lists.begin[row], end, width_of(records)):
-            j = fetch(around.shown, records, lists.lists, n)
-            x_ij = difference(metric.space, i, j, records, k)
-            pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
-            rate = rate + terms.density_rate(effects, i, j, pair)
-            a = pushed(a, pair.x_ij, terms.radial(effects, i, j, pair))
-            a = pushed(a, pair.u_ij, terms.shear(effects, i, j, pair))
-            a = added(a, terms.push(effects, i, j, pair))
-            totals = terms.gather_each(reductions, totals, i, j, pair)
+        for look in range(looks(around.mirrors)):
+            columns, begin, end = entries(around.mirrors, look, lists, row, k, i)
+            for n in range(begin, end, width_of(records)):
+                j = image(around.mirrors, look, i, fetch(around.shown, records, columns, n))
+                x_ij = difference(metric.space, i, j, records, k)
+                pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
+                rate = rate + terms.density_rate(effects, i, j, pair)
+                a = pushed(a, pair.x_ij, terms.radial(effects, i, j, pair))
+                a = pushed(a, pair.u_ij, terms.shear(effects, i, j, pair))
+                a = added(a, terms.push(effects, i, j, pair))
+                totals = terms.gather_each(reductions, totals, i, j, pair)
         folded = terms.fold_each(reductions, totals)
         force = add(total(a), terms.finish_acceleration(reductions, folded, i))
         store(sums.acceleration, k, add(force, terms.body(effects, i)))

@@ -10,9 +10,11 @@ import numpy as np
 
 from psph.case.parameters import as_numbers
 from psph.composition.count import flops_per_pair
+from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
+from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, Fixed, Free, is_prescribed
 from psph.simulation.passes import Pass, make_passes
@@ -62,6 +64,10 @@ class Plan:
     """Whether the particles of a group bear a pressure: (groups,)."""
     law_reasons: tuple[str, ...]
     """The keys of the case that called for each."""
+    planes: tuple[Plane, ...]
+    """Mirrors: planes of symmetry, and walls that are one."""
+    mirrors: Any
+    """What is seen in them (psph.composition.mirrors), or None."""
     precision: str
     space: Any
     """How positions of neighbours are told apart: psph.composition.space."""
@@ -216,6 +222,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         told=np.array([any(_tells(c.effect, one) for c in called) for one in scene.species], bool),
         bearing=np.array([one.bearing for one in scene.species], bool),
         law_reasons=tuple(laws.values()),
+        planes=scene.mirror_planes,
+        mirrors=mirrors_of(scene.mirror_planes, scene.gravity, scene.reach.cutoff),
         precision=case.precision,
         space=fixed_point(scene.smoothing_length, scene.periods)
         if case.precision == "mixed"

@@ -12,7 +12,10 @@ REPULSIVE = "repulsive"
 PENALTY = "penalty"
 """It pushes back what comes too near, and bears nothing (psph.physics.walls.penalty)."""
 
-CONDITIONS = (DYNAMIC, EXTRAPOLATED, REPULSIVE, PENALTY)
+MIRROR = "mirror"
+"""A plane without particles: the fluid sees its own image behind it (psph.composition.mirrors)."""
+
+CONDITIONS = (DYNAMIC, EXTRAPOLATED, REPULSIVE, PENALTY, MIRROR)
 
 BEARING = (DYNAMIC, EXTRAPOLATED)
 """Their particles bear a pressure.  Those of other walls fill the support of the fluid at rest density: they

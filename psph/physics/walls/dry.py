@@ -24,6 +24,14 @@ class DryWall(NamedTuple):
     told_by = "is_fluid"
     """The field of a neighbour that tells fluid from wall."""
 
+    def in_scene(self, scene: Facts):
+        """Nothing where no wall has particles."""
+        return None if all(one.is_fluid for one in scene.species) else self
+
+    def why_absent(self, scene: Facts):
+        """Why it has no form in the scene."""
+        return "no wall has particles"
+
     def limit_wall_density(self, i, rho):
         """ρ of a wall with fluid in reach, ρ₀ without, kg/m^d."""
         return where(i.wet > 0.0, rho, i.rest_density)

@@ -44,8 +44,15 @@ class NoSlip(NamedTuple):
     lagged = True
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form whose friction has them too."""
+        """With corrected gradients, the form whose friction has them too; nothing where the fluid sticks to
+        mirrors alone, which show it a velocity themselves."""
+        if not any(one.no_slip for one in scene.species):
+            return None
         return self if scene.physics.gradient_correction is None else CorrectedNoSlip()
+
+    def why_absent(self, scene: Facts):
+        """Why it has no form in the scene."""
+        return "the fluid sticks to mirrors alone"
 
     def push(self, i, j, pair):
         """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""

@@ -1,0 +1,116 @@
+"""Plane mirrors of a scene: its planes of symmetry, and walls that are one."""
+
+import numpy as np
+
+from psph.case import Case, CaseError
+from psph.case.keys import AXES
+from psph.case.shapes import Box, Difference, Shape
+from psph.composition.mirrors import ABOVE, BELOW, Plane
+from psph.physics.walls.conditions import MIRROR
+from psph.scene.lattice import TOLERANCE
+from psph.scene.shapes import Corner, bounds
+
+Ends = tuple[np.ndarray, np.ndarray]
+
+
+def planes_of(case: Case) -> tuple[Plane, ...]:
+    """The mirrors of a case: those of its domain, then those of its walls.
+
+    Raises CaseError where one stands between two planes of the lattice, where one axis has two on one side,
+    or where a wall has no flat face that the fluid is before.
+    """
+    found = [(f"space.symmetry: {side}", plane) for side, plane in _of_domain(case)]
+    held = _around([bounds(fluid.shape) for fluid in case.fluids.values()])
+    for name, wall in case.walls.items():
+        if wall.condition == MIRROR:
+            found += [(f"walls.{name}", plane) for plane in _of_wall(case, name, wall, held)]
+    seen: dict[tuple[int, int], str] = {}
+    for key, plane in found:
+        _refuse_between_sites(case, key, plane)
+        first = seen.setdefault((plane.axis, plane.side), key)
+        if first != key:
+            raise CaseError([f"{case.file}: {key}: {first} mirrors the same side; remove one of the two"])
+    return tuple(plane for _, plane in found)
+
+
+def clipped(box: tuple[Corner, Corner], planes: tuple[Plane, ...]) -> tuple[Corner, Corner]:
+    """The corners of a box, m, without what lies behind mirrors."""
+    lower, upper = map(list, box)
+    for plane in planes:
+        d = plane.axis
+        lower[d], upper[d] = (
+            (max(lower[d], plane.at), upper[d])
+            if plane.side == BELOW
+            else (lower[d], min(upper[d], plane.at))
+        )
+    return tuple(lower), tuple(upper)
+
+
+def _of_domain(case: Case):
+    for side in case.space.symmetry:
+        axis, end = AXES.index(side[0]), side[2:]
+        corner = case.space.lower if end == "lower" else case.space.upper
+        yield side, Plane(axis, BELOW if end == "lower" else ABOVE, corner[axis])
+
+
+def _of_wall(case: Case, name: str, wall, held: Ends):
+    """The faces of a wall that the fluids, which ``held`` encloses, are before."""
+    faces = list(_faces(wall.shape, held, TOLERANCE * case.space.spacing))
+    if not faces:
+        raise CaseError(
+            [
+                f"{case.file}: walls.{name}.condition: a mirror is flat and infinite: give a box along a "
+                "whole side of the fluids, or a box around them with a box taken out (difference)"
+            ]
+        )
+    still = (0.0,) * case.space.dimensions
+    for axis, side, at in faces:
+        yield Plane(axis, side, at, wall.no_slip, wall.velocity or still)
+
+
+def _faces(shape: Shape, held: Ends, tolerance: float):
+    low, high = held
+    match shape.form:
+        case Box(lower=lower, upper=upper):
+            beside = [
+                (d, side, at)
+                for d in range(len(lower))
+                for side, at, away in (
+                    (BELOW, upper[d], low[d] - upper[d]),
+                    (ABOVE, lower[d], lower[d] - high[d]),
+                )
+                if away >= -tolerance
+            ]
+            if len(beside) == 1:
+                [(axis, *_)] = beside
+                others = [d for d in range(len(lower)) if d != axis]
+                if all(lower[d] <= low[d] + tolerance and upper[d] >= high[d] - tolerance for d in others):
+                    yield from beside
+        case Difference(base=Shape(box=Box() as outer), minus=(Shape(box=Box() as room),)):
+            inside = all(a <= b + tolerance for a, b in zip(room.lower, low)) and all(
+                a >= b - tolerance for a, b in zip(room.upper, high)
+            )
+            for d in range(len(low) if inside else 0):
+                if outer.lower[d] < room.lower[d] - tolerance:
+                    yield d, BELOW, room.lower[d]
+                if outer.upper[d] > room.upper[d] + tolerance:
+                    yield d, ABOVE, room.upper[d]
+
+
+def _around(boxes: list[tuple[Corner, Corner]]) -> Ends:
+    lower, upper = zip(*boxes)
+    return np.min(lower, axis=0), np.max(upper, axis=0)
+
+
+def _refuse_between_sites(case: Case, key: str, plane: Plane) -> None:
+    dx, axis = case.space.spacing, AXES[plane.axis]
+    origin = case.space.origin[plane.axis]
+    spacings = (plane.at - origin) / dx
+    if abs(spacings - round(spacings)) > TOLERANCE * max(1.0, abs(spacings)):
+        raise CaseError(
+            [
+                f"{case.file}: {key}: the mirror at {axis} = {plane.at:g} m is not between two planes of "
+                f"the lattice, at {origin:g} m + k {dx:g} m; choose a space.spacing that divides the "
+                "distance, or another space.origin"
+            ]
+        )
