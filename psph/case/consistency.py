@@ -177,7 +177,7 @@ def _mirrored(case) -> Iterator[Finding]:
         elif side[0] in space.periodic:
             yield loc, side, f"the axis {side[0]} is periodic; remove one of the two"
         elif gravity is not None and gravity.acceleration[axis]:
-            yield loc, side, 'gravity pulls through the plane; a wall with condition = "mirror" bears weight'
+            yield loc, side, 'gravity pulls through it; a wall with condition = "mirror" bears weight'
 
 
 def _hydrostatic(case) -> Iterator[Finding]:

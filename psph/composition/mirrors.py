@@ -44,8 +44,8 @@ class Mirrors(NamedTuple):
 
     It moves with ``turn_velocity[m]`` v + ``shift_velocity[m]``, m/s; the first is the particle itself.
     Arrays are (images, dim).  ``gravity`` in m/s², None on an axis without: a still column goes on behind
-    the plane.  ``reach`` m: farther from a plane nothing is seen in it.  ``own`` has the number of each
-    column, so that a particle can stand in a row of its own.
+    the plane.  ``reach`` m: farther from a plane nothing is seen in it.  From entry ``own`` of the lists
+    on each column stands once, in order: a particle in a row of its own.
     """
 
     turn: Any
@@ -55,6 +55,10 @@ class Mirrors(NamedTuple):
     gravity: tuple
     reach: float
     own: Any
+
+    def seen(self, m: int, point) -> tuple[float, ...]:
+        """Image m of a point, m."""
+        return tuple((self.turn[m] * point + self.shift[m]).tolist())
 
 
 def mirrors_of(planes: Sequence[Plane], gravity, reach: float) -> Mirrors | None:
@@ -68,7 +72,7 @@ def mirrors_of(planes: Sequence[Plane], gravity, reach: float) -> Mirrors | None
     found = [_reflections(chosen, dimensions) for chosen in product(*beside)]
     turn, shift, turn_velocity, shift_velocity = (np.array(rows) for rows in zip(*found))
     pull = tuple(float(g) or None for g in gravity)
-    return Mirrors(turn, shift, turn_velocity, shift_velocity, pull, reach, np.zeros(1, np.uint32))
+    return Mirrors(turn, shift, turn_velocity, shift_velocity, pull, reach, np.uint64(0))
 
 
 def _reflections(chosen, dimensions: int):
@@ -87,79 +91,94 @@ def _reflections(chosen, dimensions: int):
     return turn, shift, turn_velocity, shift_velocity
 
 
-def with_own_rows(mirrors: Mirrors | None, columns: int, lists) -> Mirrors | None:
-    """The mirrors for so many columns, whose neighbours are in ``lists``."""
+def with_own_rows(mirrors: Mirrors | None, columns: int, lists):
+    """The mirrors for so many columns, and their ``lists`` (psph.particles.neighbours) with each column
+    once more behind them."""
     if mirrors is None:
-        return None
+        return None, lists
     own = np.minimum(np.arange(columns + AHEAD), max(columns - 1, 0)).astype(lists.lists.dtype)
-    return mirrors._replace(own=own)
+    longer = np.concatenate([lists.lists, own])[: len(lists.lists) + columns]
+    return mirrors._replace(own=np.uint64(len(lists.lists))), lists._replace(lists=longer)
 
 
-def looks(mirrors) -> int:
-    """How often a particle looks at its row: once, and for each image at the row and at itself."""
-    return 1 if mirrors is None else 2 * len(mirrors.turn) - 1
+def images(mirrors: Mirrors | None) -> int:
+    """How many of each particle there are to see, itself among them."""
+    return 1 if mirrors is None else len(mirrors.turn)
+
+
+def looks(mirrors, i) -> int:
+    """How often a particle looks at its row: once, and near a plane for each image at the row and at
+    itself."""
+    return 1 if mirrors is None else _looks(mirrors, i)
 
 
 @overload(looks)
-def _typed_looks(mirrors):
+def _typed_looks(mirrors, i):
     if isinstance(mirrors, types.NoneType):
-        return lambda mirrors: 1
-    return lambda mirrors: 2 * len(mirrors.turn) - 1
+        return lambda mirrors, i: 1
+    return lambda mirrors, i: _looks(mirrors, i)
 
 
-def entries(mirrors, look, lists, row, k, i):
-    """The list, the first entry and the one behind the last, of what particle i in column k looks at."""
+@register_jitable
+def _looks(mirrors, i):
+    found = 1
+    for m in range(1, len(mirrors.turn)):
+        if _near(mirrors, m, i):
+            found = 2 * m + 1
+    return found
+
+
+def ends(mirrors, look, lists, row, k, i):
+    """The first entry and the one behind the last in ``lists`` of what particle i in column k looks at."""
     begin = lists.begin[row]
-    if mirrors is None or look == 0:
-        return lists.lists, begin, begin + np.uint64(lists.lengths[row])
-    return _behind(mirrors, look, lists, row, k, i)
+    end = begin + np.uint64(lists.lengths[row])
+    return (begin, end) if mirrors is None else _ends(mirrors, look, begin, end, k, i)
 
 
-@overload(entries)
-def _typed_entries(mirrors, look, lists, row, k, i):
+@overload(ends)
+def _typed_ends(mirrors, look, lists, row, k, i):
     if isinstance(mirrors, types.NoneType):
         return lambda mirrors, look, lists, row, k, i: (
-            lists.lists,
             lists.begin[row],
             lists.begin[row] + np.uint64(lists.lengths[row]),
         )
-    return lambda mirrors, look, lists, row, k, i: _behind(mirrors, look, lists, row, k, i)
+    return lambda mirrors, look, lists, row, k, i: _ends(
+        mirrors, look, lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row]), k, i
+    )
 
 
 @register_jitable
-def _behind(mirrors, look, lists, row, k, i):
-    begin = lists.begin[row]
-    length = np.uint64(lists.lengths[row])
+def _ends(mirrors, look, begin, end, k, i):
     if look == 0:
-        return lists.lists, begin, begin + length
-    if length == np.uint64(0) or not _near(mirrors, (look + 1) // 2, i):
-        return lists.lists, begin, begin
+        return begin, end
+    if begin == end or not _near(mirrors, (look + 1) // 2, i):
+        return begin, begin
     if look % 2 == 1:
-        return lists.lists, begin, begin + length
-    return mirrors.own, np.uint64(k), np.uint64(k) + np.uint64(1)
+        return begin, end
+    return mirrors.own + np.uint64(k), mirrors.own + np.uint64(k) + np.uint64(1)
 
 
 @register_jitable
-def _near(mirrors, image, i):
+def _near(mirrors, m, i):
     """Whether particle i is near all planes of an image."""
     near = True
-    for d, x in enumerate(i.position):
-        away = abs(2.0 * x - mirrors.shift[image, d])
-        near = near and (mirrors.turn[image, d] > 0.0 or away < 2.0 * mirrors.reach)
+    for d in range(mirrors.turn.shape[1]):
+        away = abs(2.0 * i.position[d] - mirrors.shift[m, d])
+        near = near and (mirrors.turn[m, d] > 0.0 or away < 2.0 * mirrors.reach)
     return near
 
 
 def image(mirrors, look, i, j):
     """Neighbours j as particle i sees them at a look: a field is a vector, a symmetric
     matrix or a matrix by the number of its components."""
-    return j if mirrors is None else _image(mirrors, (look + 1) // 2, i, j)
+    return j if mirrors is None or look == 0 else _image(mirrors, (look + 1) // 2, i, j)
 
 
 @overload(image)
 def _typed_image(mirrors, look, i, j):
     if isinstance(mirrors, types.NoneType):
         return lambda mirrors, look, i, j: j
-    return lambda mirrors, look, i, j: _image(mirrors, (look + 1) // 2, i, j)
+    return lambda mirrors, look, i, j: j if look == 0 else _image(mirrors, (look + 1) // 2, i, j)
 
 
 def _image(mirrors, m, i, j):
@@ -199,7 +218,9 @@ def _text(name: str, width: int, dimensions: int) -> str:
     if name == "specific_volume":
         squared = "(i.sound_speed * i.sound_speed)"
         return f"j.specific_volume / (1.0 + j.specific_volume * (weight(mirrors, m, i, j) / {squared}))"
-    signs = {
+    if name == "density":
+        return "j.density + weight(mirrors, m, i, j) / (i.sound_speed * i.sound_speed)"
+    signs: dict[int, list[tuple[int, ...]]] = {
         dimensions: [(d,) for d in axes],
         dimensions * (dimensions + 1) // 2: [(d, e) for d in axes for e in axes if d <= e],
         dimensions**2: [(d, e) for d in axes for e in axes],

@@ -1,12 +1,14 @@
 """Probes: fields interpolated at fixed points, and how far the fluid reaches."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
+from psph.composition.mirrors import image, images
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
-from psph.fields import FLUID, SAVED, by_name
+from psph.fields import FLUID, SAVED, by_name, view_of
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.physics.walls.dry import DryWall
@@ -23,11 +25,13 @@ class Probe:
     """Fields of the fluid at one point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968).
 
     The sums are over the fluid and the walls that it wets, so that at a wall the mean is not that of
-    one side alone.  ``position`` (dim,) m; ``fields`` names of saved fields; ``rows`` counts the
-    values taken so far, ``dry`` those of them without fluid in reach.
+    one side alone; beside ``mirrors`` (psph.composition.mirrors) over images too.  ``position`` (dim,) m;
+    ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry`` those of them without
+    fluid in reach.
     """
 
-    def __init__(self, name: str, position: tuple[float, ...], fields: tuple[str, ...]):
+    def __init__(self, name: str, position: tuple[float, ...], fields: tuple[str, ...], mirrors=None):
+        self.mirrors = mirrors
         self.name, self.position, self.fields = name, tuple(map(float, position)), fields
         self.rows = self.dry = 0
 
@@ -45,31 +49,36 @@ class Probe:
         Every rank finds the near ones among its own particles, wherever these have drifted since
         the lists were made; the sums do not depend on how particles are spread.  Collective.
         """
-        store = domain.store
-        rows = np.array([row for field in self.fields for row in store.rows[field]], np.int64)
-        radius = kernel.support / kernel.inverse_h
-        near = np.empty(store.owned, np.int64)
-        found = find_near(
-            self.position,
-            domain.periods,
-            store["position"],
-            store.low,
-            store.low + store.owned,
-            radius * radius,
-            near,
-        )
-        near = near[:found]
-        fluid = store.kind[near] == FLUID
-        if DryWall.marks in store:
-            near, fluid = (x[store[DryWall.marks][near] > 0.0] for x in (near, fluid))
-        terms = np.empty((len(near), 1 + len(rows)))
-        weigh(self.position, kernel, domain.periods, store.view(), near, store.data, rows, terms)
+        seen = (self._seen(domain, kernel, m) for m in range(images(self.mirrors)))
+        fluid, terms = map(np.concatenate, zip(*seen))
         wetting, total, *sums = exact_sums(domain.comm, np.column_stack([terms[:, 0] * fluid, terms]))
         self.rows += 1
         if wetting > 0.0:
             return np.array(sums) / total
         self.dry += 1
-        return np.full(len(rows), np.nan)
+        return np.full(len(sums), np.nan)
+
+    def _seen(self, domain: Domain, kernel, m: int) -> tuple[np.ndarray, np.ndarray]:
+        """Which of this rank's particles in reach, or of their images m in mirrors, are fluid; and W V_j and
+        W V_j f_j of each."""
+        store = domain.store
+        # An image is as far from the point as the particle from the image of the point.
+        point = self.mirrors.seen(m, self.position) if m else self.position
+        rows = np.array([row for field in self.fields for row in store.rows[field]], np.int64)
+        radius = kernel.support / kernel.inverse_h
+        near = np.empty(store.owned, np.int64)
+        first, last = store.low, store.low + store.owned
+        found = find_near(point, domain.periods, store["position"], first, last, radius * radius, near)
+        near = near[:found]
+        fluid = store.kind[near] == FLUID
+        if DryWall.marks in store:
+            near, fluid = (x[store[DryWall.marks][near] > 0.0] for x in (near, fluid))
+        terms = np.empty((len(near), 1 + len(rows)))
+        weigh(point, kernel, domain.periods, store.view(), near, store.data, rows, terms)
+        if m:
+            values = np.column_stack(list(values_behind(self.mirrors, m, store, near, self.fields)))
+            terms[:, 1:] = terms[:, :1] * values
+        return fluid, terms
 
 
 class Front:
@@ -88,6 +97,21 @@ class Front:
         fluid = store.owned_rows("kind") == FLUID
         reach = store.owned_rows("position")[fluid, self.axis].max(initial=-np.inf)
         return np.array(largest(domain.comm, [float(reach)]))
+
+
+def values_behind(mirrors, m: int, store, near: np.ndarray, fields: tuple[str, ...]) -> Iterator[np.ndarray]:
+    """Each component of some ``fields`` of image m of the columns ``near``."""
+
+    def at_near(name: str):
+        value = store[name] if name in store else store.constants[name]
+        return at(value, near) if isinstance(value, tuple) else value[near] if np.ndim(value) else value
+
+    shown = tuple(dict.fromkeys(("position", *fields)))
+    own = view_of(("rest_density", "sound_speed"))(*map(at_near, ("rest_density", "sound_speed")))
+    seen = image(mirrors, 2 * m, own, view_of(shown)(*map(at_near, shown)))
+    for field in fields:
+        value = getattr(seen, field)
+        yield from value if isinstance(value, tuple) else (value,)
 
 
 @elementwise

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator
 
+from psph.case.keys import AXES
 from psph.case.profiles import OFF
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
@@ -111,6 +112,9 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     for one in scene.species:
         if is_prescribed(one.motion):
             yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"
+    for plane in scene.mirror_planes:
+        sticks = "; the fluid sticks to it" if plane.sticks else ""
+        yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
     for region, _ in scene.regions:
         yield f"  region      {type(region).__name__}: {_first_line(region)}"
     for name, table in scene.tables.items():

@@ -34,10 +34,10 @@ class Schedule:
         return True
 
 
-def probes_of(case) -> list[Probe | Front]:
-    """The probes that a case asks for."""
+def probes_of(case, mirrors=None) -> list[Probe | Front]:
+    """The probes that a case asks for, beside ``mirrors`` (psph.composition.mirrors)."""
     return [
-        Front(name, AXES.index(p.front)) if p.front else Probe(name, p.position, tuple(p.fields))
+        Front(name, AXES.index(p.front)) if p.front else Probe(name, p.position, tuple(p.fields), mirrors)
         for name, p in case.probes.items()
     ]
 
@@ -69,7 +69,7 @@ class Record:
         kept = saved and saved.header["record"]
         sizes = kept["sizes"] if kept else {}
         self.written = 0
-        self.probes = probes_of(case)
+        self.probes = probes_of(case, simulation.plan.mirrors)
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
         self.probe_table = None
         if names:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.composition import terms
+from psph.composition.mirrors import image, images
 from psph.composition.pair import geometry, take
 from psph.composition.terms import added, pushed
 from psph.fields import seen_at
@@ -119,17 +120,19 @@ def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -
 
 
 def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -> tuple:
-    """What each effect does to a particle, by its plain formulas over its neighbours."""
+    """What each effect does to a particle, by its plain formulas over its neighbours, in mirrors too."""
     view = seen_at(around.view(), simulation.pace)
     reach = scene.kernel.support * scene.smoothing_length
     near = np.flatnonzero(np.linalg.norm(offset, axis=1) <= reach)
     i = take(view, column)
+    mirrors = simulation.plan.mirrors
     pairs = []
     with np.errstate(all="ignore"):
-        for k in near[near != column]:
-            j = take(view, k)
-            x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
-            pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
+        for m in range(images(mirrors)):
+            for k in near if m else near[near != column]:
+                j = image(mirrors, 2 * m, i, take(view, k))
+                x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
+                pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
         return tuple(_share(call, i, pairs, simulation.dt) for call in simulation.plan.called)
 
 

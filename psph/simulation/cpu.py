@@ -65,7 +65,7 @@ class Engine:
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
-        self._mirrors, self._paid = plan.mirrors, 0.0
+        self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
@@ -184,7 +184,7 @@ class Engine:
         """Room for the records of new columns, and for the longest of new lists."""
         for records in self.records:
             records.make_room()
-        self._mirrors = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
+        self._mirrors, self._lists = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
         longest = int(self.domain.lists.lengths[: self.store.owned].max(initial=0))
         self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
 
@@ -231,7 +231,7 @@ class Engine:
             Summed(one.effects, one.reductions),
             Metric(plan.kernel, plan.space, self.softening),
             s.view(),
-            Around(records.view(), records.table, s.low, self.domain.lists, self._mirrors),
+            Around(records.view(), records.table, s.low, self._lists, self._mirrors),
             Sums(*rates, tuple(name and s[name] for name in one.stores)),
         )
 

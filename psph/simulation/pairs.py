@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.composition import terms
-from psph.composition.mirrors import entries, image, looks
+from psph.composition.mirrors import ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
 from psph.composition.terms import added, pushed, store
@@ -68,10 +68,10 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
         totals = spread(terms.start(reductions, i), records)
-        for look in range(looks(around.mirrors)):
-            columns, begin, end = entries(around.mirrors, look, lists, row, k, i)
+        for look in range(looks(around.mirrors, i)):
+            begin, end = ends(around.mirrors, look, lists, row, k, i)
             for n in range(begin, end, width_of(records)):
-                j = image(around.mirrors, look, i, fetch(around.shown, records, columns, n))
+                j = image(around.mirrors, look, i, fetch(around.shown, records, lists.lists, n))
                 x_ij = difference(metric.space, i, j, records, k)
                 pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
                 rate = rate + terms.density_rate(effects, i, j, pair)

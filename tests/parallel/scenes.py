@@ -17,7 +17,8 @@ class Family(NamedTuple):
 
     ``along`` is the long axis, ``periodic`` the axes that repeat; ``physics`` holds keys with fixed
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
-    a floor, and ``condition`` of what kind; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums are taken.
+    a floor, and ``condition`` of what kind; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
+    are taken; ``symmetry`` its planes.
     """
 
     dimensions: int
@@ -31,6 +32,7 @@ class Family(NamedTuple):
     condition: str = "dynamic"
     kernel: str = ""
     gather_every: int = 1
+    symmetry: tuple[str, ...] = ()
     physics: dict = {}
 
 
@@ -111,8 +113,6 @@ FAMILIES = {
     "borne": Family(
         2, walls=True, fluids=2, viscous=True, condition="extrapolated", gather_every=3, physics=GRAVITY
     ),
-    "repelled": Family(2, walls=True, condition="repulsive", physics=GRAVITY),
-    "pushed back": Family(2, walls=True, viscous=True, condition="penalty", physics=GRAVITY),
     "smooth": Family(
         2,
         walls=True,
@@ -130,6 +130,12 @@ FAMILIES = {
             **GRAVITY,
         },
     ),
+    "repelled": Family(2, walls=True, condition="repulsive", physics=GRAVITY),
+    "pushed back": Family(2, walls=True, viscous=True, condition="penalty", physics=GRAVITY),
+    "mirrored": Family(
+        2, walls=True, viscous=True, fluids=2, condition="mirror", gather_every=3, physics=GRAVITY
+    ),
+    "half": Family(3, along="z", symmetry=("x.lower", "z.lower"), gather_every=3),
 }
 
 
@@ -178,6 +184,12 @@ def _space(family: Family, rng, sizes) -> dict:
     if family.kernel:
         support = {"quintic": 3.0}.get(family.kernel, 2.0)
         space |= {"kernel": family.kernel, "smoothing": round(_drawn(rng, 1.1 * 2.0, REACH) / support, 3)}
+    if family.symmetry:
+        space |= {
+            "symmetry": list(family.symmetry),
+            "lower": [0.0] * len(sizes),
+            "upper": [2.0 * n for n in sizes],
+        }
     if family.periodic:
         room = 0.0 if not family.walls else 5 * SPACING
         free = [0.0 if name in family.periodic else room for name in axes(family)]

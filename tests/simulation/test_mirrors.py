@@ -1,0 +1,251 @@
+"""Mirrors: what stands behind a plane is the image of what stands before it."""
+
+from itertools import product
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from drafts import draft, refusal
+from mpi4py import MPI
+
+from psph.composition.mirrors import ABOVE, BELOW, Plane, image, images, mirrors_of
+from psph.fields import view_of
+from psph.output.ledger import Ledger
+from psph.output.probes import Probe
+from psph.run.setup import create_particles
+from psph.scene import Scene
+from psph.scene.walls import has_free_surface
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+CROSS = """
+space = { dimensions = 2, spacing = 0.05, lower = [-1.0, -1.0], upper = [1.0, 1.0] }
+time.end = 1.0
+physics.sound_speed = 20.0
+neighbours.skin = 0.001
+[fluids.water]
+shape.box = { lower = [-0.5, -0.5], upper = [0.5, 0.5] }
+velocity_gradient = [[1.0, 0.0], [0.0, -1.0]]
+"""
+"""Lists that hardly last: the wholes and their parts take them at the same steps, to rounding."""
+
+QUARTER = ("space.lower=[0.0, 0.0]", 'space.symmetry=["x.lower", "y.lower"]')
+
+TANK = """
+space = { dimensions = 2, spacing = 0.05 }
+time.end = 1.0
+physics.gravity = [0.0, -9.8]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
+pressure = "hydrostatic"
+viscosity = 1e-3
+[walls.tank]
+condition = "mirror"
+shape.difference.from.box = { lower = [-0.15, -0.15], upper = [1.15, 0.6] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.0, 0.6] } }]
+"""
+
+
+def simulated(case, steps):
+    """The simulation of a case after so many steps."""
+    scene = Scene(case)
+    plan = make_plan(scene)
+    simulation = Simulation(
+        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
+    )
+    for _ in range(steps):
+        simulation.step()
+    return simulation
+
+
+def sorted_state(simulation, quarter=False):
+    """Position, velocity and pressure, a row a particle, from the lowest x and y on."""
+    store = simulation.store
+    rows = np.column_stack([store.shown(name) for name in ("position", "velocity", "pressure")])
+    rows = rows[(rows[:, :2] > 0.0).all(axis=1)] if quarter else rows
+    return rows[np.lexsort(rows[:, :2].round(6).T)]
+
+
+SIDES = (-1.0, 1.0)
+
+
+def shifted(sides):
+    """Perturbations that put a particle, and its images, over a plane."""
+    each = (f"{{ position = [{0.025 * s}, {0.225 * t}], shift = [{-0.03 * s}, 0.0] }}" for s, t in sides)
+    return f"perturbations=[{', '.join(each)}]"
+
+
+def test_a_quarter_between_two_planes_is_a_quarter_of_the_whole(tmp_path):
+    """The corner sees images of images; a particle that crosses a plane is followed by its image."""
+    whole = simulated(draft(tmp_path, CROSS, shifted(product(SIDES, SIDES))), 40)
+    part = simulated(draft(tmp_path, CROSS, *QUARTER, shifted([(1.0, 1.0)])), 40)
+    expected = sorted_state(whole, quarter=True)
+    assert expected.shape == (100, 5)
+    assert sorted_state(part) == pytest.approx(expected, abs=1e-7, rel=1e-9)
+
+
+def test_without_the_planes_the_quarter_is_another_flow(tmp_path):
+    """The control: at its inner edges it has a free surface."""
+    whole = simulated(draft(tmp_path, CROSS), 40)
+    part = simulated(draft(tmp_path, CROSS, "fluids.water.shape.box.lower=[0.0, 0.0]"), 40)
+    away = sorted_state(part)[:, 2:4] - sorted_state(whole, quarter=True)[:, 2:4]
+    assert np.abs(away).max() > 0.05
+
+
+def test_water_rests_in_a_tank_of_mirrors(tmp_path):
+    """Images bear the weight of the water between, the corners too; walls have no particles."""
+    simulation = simulated(draft(tmp_path, TANK), 100)
+    assert simulation.store.owned == 200 and simulation.fluid_speed < 2e-3
+    simulation.settle_pressure()
+    probe = Probe("corner", (0.0, 0.0), ("pressure", "velocity", "density"), simulation.plan.mirrors)
+    pressure, *velocity, density = probe.sample(simulation.domain, simulation.plan.kernel)
+    c = simulation.plan.constants["sound_speed"]
+    assert pressure == pytest.approx(4900.0, rel=0.01)
+    assert density == pytest.approx(1000.0 + 4900.0 / c**2, rel=1e-4)
+    assert velocity == pytest.approx([0.0, 0.0], abs=1e-15)  # the images' cancel it
+
+
+def test_water_falls_without_the_mirrors(tmp_path):
+    """The control."""
+    simulation = simulated(draft(tmp_path, TANK.partition("[walls")[0]), 100)
+    assert simulation.fluid_speed > 0.5
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+@pytest.mark.parametrize("sticks", (False, True))
+def test_images_are_reflections(dim, sticks):
+    rng, g, rho, c = np.random.default_rng(5), np.array([0.3, -9.8, 2.0][:dim]), 900.0, 15.0
+    belt = tuple([0.4, 0.0, 0.7][:dim])
+    planes = (Plane(0, BELOW, 0.2), Plane(1, ABOVE, 1.5, sticks, belt))
+    mirrors = mirrors_of(planes, tuple(g), 0.3)
+    assert images(mirrors) == 4 and images(None) == 1
+    names = (
+        "position",
+        "velocity",
+        "pressure",
+        "specific_volume",
+        "density",
+        "strain",
+        "matrix",
+        "mass",
+        "wet",
+    )
+    x, v, vector, full = (
+        rng.normal(size=dim),
+        rng.normal(size=dim),
+        rng.normal(size=dim),
+        rng.normal(size=(dim, dim)),
+    )
+    symmetric = full + full.T
+    upper = np.triu_indices(dim)
+    j = view_of((*names, "crowding"))(
+        tuple(x),
+        tuple(v),
+        5.0,
+        1e-3,
+        1000.0,
+        tuple(symmetric[upper]),
+        tuple(full.ravel()),
+        2.0,
+        None,
+        tuple(vector),
+    )
+    i = SimpleNamespace(rest_density=rho, sound_speed=c)
+    assert image(mirrors, 0, i, j) is j
+    found = {}
+    for m in range(1, 4):
+        seen = image(mirrors, 2 * m, i, j)
+        assert seen == image(mirrors, 2 * m - 1, i, j)
+        turn = np.diag(mirrors.turn[m])
+        there = np.array(seen.position)
+        found[tuple(mirrors.turn[m][:2])] = there, np.array(seen.velocity)
+        assert np.array(seen.crowding) == pytest.approx(turn @ vector)
+        assert np.array(seen.strain) == pytest.approx((turn @ symmetric @ turn)[upper])
+        assert np.array(seen.matrix).reshape(dim, dim) == pytest.approx(turn @ full @ turn)
+        weight = rho * g @ (there - x)
+        assert seen.pressure == pytest.approx(5.0 + weight)
+        assert 1.0 / seen.specific_volume == pytest.approx(1000.0 + weight / c**2)
+        assert seen.density == pytest.approx(1000.0 + weight / c**2)
+        assert seen.mass == 2.0 and seen.wet is None
+    first, second = np.ones(dim), np.ones(dim)
+    first[0], second[1] = -1.0, -1.0
+    across = np.array([0.4, *[0.0] * (dim - 1)]), np.array([0.0, 3.0, 0.0][:dim])
+    slides = first * v
+    assert found[-1.0, 1.0] == (pytest.approx(first * x + across[0]), pytest.approx(slides))
+    beyond = (lambda u: 2.0 * np.array(belt) - u) if sticks else (lambda u: second * u)
+    assert found[1.0, -1.0] == (pytest.approx(second * x + across[1]), pytest.approx(beyond(v)))
+    assert found[-1.0, -1.0] == (
+        pytest.approx(first * second * x + sum(across)),
+        pytest.approx(beyond(slides)),
+    )
+
+
+def test_fluid_at_a_mirror_has_no_free_surface_there(tmp_path):
+    box = ("fluids.water.shape.box.lower=[0.0, 0.0]", "space.lower=[0.0, 0.0]", "space.upper=[0.5, 0.5]")
+    sides = 'space.symmetry=["x.lower", "x.upper", "y.lower", "y.upper"]'
+    assert not has_free_surface(Scene(draft(tmp_path, CROSS, *box, sides)))
+    assert has_free_surface(Scene(draft(tmp_path, CROSS, *box, sides.replace(', "y.upper"', ""))))
+
+
+def test_lists_last_shorter_where_particles_move_across_a_mirror(tmp_path):
+    """All move as one, so nothing comes nearer but the images."""
+    moving = (
+        "neighbours.skin=0.2",
+        "fluids.water.velocity_gradient=off",
+        "fluids.water.velocity=[-1.0, 0.0]",
+        "fluids.water.shape.box.lower=[0.0, -0.5]",
+        "space.lower=[0.0, -1.0]",
+    )
+    free = simulated(draft(tmp_path, CROSS, *moving), 25)
+    held = simulated(draft(tmp_path, CROSS, *moving, 'space.symmetry=["x.lower"]'), 25)
+    assert free.domain.rebuilds == 1 < held.domain.rebuilds
+    assert (held.store.shown("position")[:, 0] > -0.2 * 0.14).all()
+
+
+@pytest.mark.parametrize(
+    ("keys", "says"),
+    [
+        (('space.symmetry=["z.lower"]',), 'space.symmetry: "z.lower": no axis in 2D; give another side'),
+        (
+            ('space.symmetry=["x.lower"]', 'space.periodic=["x"]'),
+            'space.symmetry: "x.lower": the axis x is periodic; remove one of the two',
+        ),
+        (
+            ('space.symmetry=["y.lower"]', "physics.gravity=[0.0, -9.8]"),
+            'space.symmetry: "y.lower": gravity pulls through it; a wall with condition = "mirror" bears weight',
+        ),
+        (
+            ('space.symmetry=["x.lower"]', 'precision="mixed"'),
+            'space.symmetry: mirrors do not work with precision = "mixed"; use "double"',
+        ),
+    ],
+)
+def test_a_mirror_where_none_can_be_is_refused(tmp_path, keys, says):
+    assert any(says in line for line in refusal(tmp_path, CROSS, *keys))
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "says"),
+    [
+        (
+            CROSS,
+            ('space.symmetry=["x.lower"]', "space.lower=[-0.51, -1.0]"),
+            "not between two planes of the lattice",
+        ),
+        (TANK, ("walls.tank.shape={ disc = { center = [0.5, 0.2], radius = 2.0 } }",), "a mirror is flat"),
+        (
+            TANK,
+            ("walls.tank.shape={ box = { lower = [0.2, -0.1], upper = [1.0, 0.0] } }",),
+            "a mirror is flat",
+        ),
+        (
+            TANK,
+            ("space.lower=[0.0, -0.5]", "space.upper=[1.0, 1.0]", 'space.symmetry=["x.lower"]'),
+            "walls.tank: space.symmetry: x.lower mirrors the same side; remove one of the two",
+        ),
+    ],
+)
+def test_a_mirror_that_does_not_fit_the_scene_is_refused(tmp_path, text, keys, says):
+    with pytest.raises(Exception, match="mirror") as refused:
+        Scene(draft(tmp_path, text, *keys))
+    assert says in str(refused.value)
