@@ -157,12 +157,14 @@ def _study(options, comm) -> None:
 
 
 def _stability(options, comm) -> None:
-    if options.judged:
-        from psph.lab.battery.command import remedies
+    if options.compared:
+        from psph.lab.battery.command import compare
+        from psph.lab.battery.remedies import comparison
+        from psph.lab.battery.wall_kinds import WALLS
 
         if options.battery or options.quick:
-            raise Refused("stability --remedies: stands alone; leave --battery and --quick out")
-        remedies(comm, options.out)
+            raise Refused(f"stability --{options.compared}: stands alone; leave --battery and --quick out")
+        compare(comm, comparison() if options.compared == "remedies" else WALLS, options.out)
         return
     if options.battery or options.quick:
         from psph.lab.battery.command import battery

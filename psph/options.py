@@ -146,14 +146,22 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
     stability.add_argument("--quick", action="store_true", help="the part of the battery that takes a minute")
     stability.add_argument(
         "--remedies",
-        dest="judged",
-        action="store_true",
+        dest="compared",
+        action="store_const",
+        const="remedies",
         help="run each remedy alone in cases in which plain SPH fails instead",
+    )
+    stability.add_argument(
+        "--walls",
+        dest="compared",
+        action="store_const",
+        const="walls",
+        help="run hard cases with walls of every condition instead",
     )
     stability.add_argument(
         "--out",
         action=_Folder,
-        help="folder of the map, the battery or the remedies (default: their "
+        help="folder of the map, the battery, the remedies or the walls (default: their "
         "names); runs that are finished there are kept",
     )
     stability.add_argument("--json", action="store_true", help="one JSON object as the last line")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 RUN = Path(__file__).parents[1] / "run"
-PARTS = {"accuracy": ("study",), "stability": ("maps", "battery", "remedies")}
+PARTS = {"accuracy": ("study",), "stability": ("maps", "battery", "remedies", "walls")}
 
 
 @pytest.fixture

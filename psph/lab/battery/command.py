@@ -1,14 +1,13 @@
-"""The verbs ``stability --battery`` and ``--remedies``."""
+"""The verbs ``stability --battery``, ``--remedies`` and ``--walls``."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import psph
 from psph.case import CaseError, load
-from psph.lab.battery import judgement, picture, tables
+from psph.lab.battery import comparison, picture, tables
+from psph.lab.battery.comparison import Comparison
 from psph.lab.battery.measures import measure
-from psph.lab.battery.remedies import REMEDIES, Remedy
-from psph.lab.battery.remedies import trials as trials_of
 from psph.lab.battery.trials import BATTERY, OURS, QUICK, Trial
 from psph.lab.battery.verdicts import Row, judged
 from psph.lab.errors import BatteryError
@@ -18,7 +17,7 @@ from psph.output.errors import OutputError
 from psph.output.reader import Run
 
 CASES = Path(psph.__file__).parents[1] / "run" / "cases" / "hard"
-FOLDER, BESIDE = Path("battery"), Path("remedies")
+FOLDER = Path("battery")
 
 
 def battery(comm, quick: bool, out: Path | None, trials: tuple[Trial, ...] | None = None) -> list[Row]:
@@ -37,15 +36,15 @@ def battery(comm, quick: bool, out: Path | None, trials: tuple[Trial, ...] | Non
     return rows
 
 
-def remedies(comm, out: Path | None, chosen: Sequence[Remedy] = REMEDIES) -> list[Row]:
-    """Run the trials of the remedies, each alone; rows on rank 0."""
-    folder, every = out or BESIDE, trials_of(chosen)
-    rows = _performed(comm, every, folder)
+def compare(comm, of: Comparison, out: Path | None) -> list[Row]:
+    """Run the trials of a comparison under each of its choices; rows on rank 0."""
+    folder = out or Path(of.name)
+    rows = _performed(comm, of.trials, folder)
     if comm.rank == 0:
-        write(folder / judgement.CSV, tables.as_csv(rows))
-        write(folder / judgement.PAGE, "\n".join(judgement.markdown(every, rows)) + "\n")
-        _say("", *judgement.matrix(every, rows))
-        _say(f"wrote {folder}: {judgement.CSV}, {judgement.PAGE}")
+        write(folder / of.csv, tables.as_csv(rows))
+        write(folder / of.page, "\n".join(comparison.markdown(of, rows)) + "\n")
+        _say("", *comparison.matrix(of, rows))
+        _say(f"wrote {folder}: {of.csv}, {of.page}")
     return rows
 
 

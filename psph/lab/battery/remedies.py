@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from psph.lab.battery.comparison import Comparison, judging
 from psph.lab.battery.trials import QUICK, Trial
 
 PLAIN = "scheme=sph"
@@ -70,6 +71,11 @@ SHOWN = {
 """Trials and the measures shown of each, the main one first."""
 
 
+def comparison(remedies: Sequence[Remedy] = REMEDIES) -> Comparison:
+    """Each remedy alone, side by side."""
+    return Comparison("remedies", "remedy", trials(remedies), SHOWN)
+
+
 def trials(remedies: Sequence[Remedy] = REMEDIES) -> tuple[Trial, ...]:
     """Three of the quick battery with its bounds, each under every remedy."""
     inside = {one.name: one.sets + one.without for one in remedies}
@@ -84,14 +90,5 @@ def trials(remedies: Sequence[Remedy] = REMEDIES) -> tuple[Trial, ...]:
 def _judging(
     name: str, trial: Trial, end: float, changes: dict[str, tuple[str, ...]], *besides: str
 ) -> Trial:
-    """A trial of the battery under remedies; a run continues in spite of its guards."""
-    return trial._replace(
-        name=name,
-        shown=SHOWN[name][0],
-        end=end,
-        other_end=end,
-        schemes=tuple(changes),
-        fails=(),
-        sets=(*trial.sets, PLAIN, "guards.on_trouble=warn", *besides),
-        changes=changes,
-    )
+    sets = (*trial.sets, PLAIN, *besides)
+    return judging(trial, name, changes, shown=SHOWN[name][0], end=end, sets=sets)

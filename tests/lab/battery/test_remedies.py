@@ -8,11 +8,12 @@ from mpi4py import MPI
 from psph.__main__ import main
 from psph.case import load
 from psph.errors import Refused
-from psph.lab.battery import command, judgement, tables
-from psph.lab.battery.command import CASES, remedies
+from psph.lab.battery import command, comparison, tables
+from psph.lab.battery.command import CASES, compare
+from psph.lab.battery.comparison_page import main as on_page
 from psph.lab.battery.measures import MEASURES
 from psph.lab.battery.remedies import PLAIN, REMEDIES, SHOWN, Remedy, trials
-from psph.lab.battery.remedies_page import main as on_page
+from psph.lab.battery.remedies import comparison as comparison_of
 from psph.lab.battery.verdicts import BLEW_UP, FAILS, GOOD, Row
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -63,7 +64,7 @@ def test_the_rows_are_told_apart():
 def some(tmp_path_factory):
     """(folder, rows) of plain SPH, a shift and the default scheme."""
     folder = tmp_path_factory.mktemp("remedies")
-    return folder, remedies(MPI.COMM_SELF, folder, (REMEDIES[0], SHIFT, OWN))
+    return folder, compare(MPI.COMM_SELF, comparison_of((REMEDIES[0], SHIFT, OWN)), folder)
 
 
 def found(rows, trial, remedy):
@@ -100,7 +101,7 @@ def test_files_and_page(some, tmp_path, capsys):
     assert [(r["trial"], r["scheme"]) for r in table] == [(r.trial, r.column) for r in rows]
     page = tmp_path / "page.md"
     page.write_text("# A\n<!-- remedies: begin -->\nbefore\n<!-- remedies: end -->\nafter\n")
-    assert on_page([str(page), str(folder)]) == 0
+    assert on_page(["remedies", str(page), str(folder)]) == 0
     made = page.read_text(encoding="utf-8")
     assert "before\n" not in made and "after\n" in made
     plain, shift, own = (f"| `{one.name}` |" for one in (REMEDIES[0], SHIFT, OWN))
@@ -109,7 +110,7 @@ def test_files_and_page(some, tmp_path, capsys):
     assert cells[1].startswith("− 2") and len(cells) == 1 + sum(map(len, SHOWN.values()))
     assert made.index(plain) < made.index(shift) < made.index(own)
     assert "- patch holds: `lost` ≤ 0, `near_5` ≥ 0.6" in made
-    assert on_page([str(page), str(tmp_path)]) == 2 and on_page([]) == 2
+    assert on_page(["remedies", str(page), str(tmp_path)]) == 2 and on_page([]) == 2
     assert "give the folder of a comparison of remedies" in capsys.readouterr().err
 
 
@@ -118,7 +119,7 @@ def test_finished_runs_are_not_done_again(some, capsys):
     folder, rows = some
     logs = sorted(folder.glob("*/log.csv"))
     before = [path.stat().st_mtime_ns for path in logs]
-    assert remedies(MPI.COMM_SELF, folder, (REMEDIES[0], SHIFT, OWN)) == rows
+    assert compare(MPI.COMM_SELF, comparison_of((REMEDIES[0], SHIFT, OWN)), folder) == rows
     assert [path.stat().st_mtime_ns for path in logs] == before and len(logs) == len(rows) == 9
     said = capsys.readouterr().out
     assert 'patch, scheme = "sph": fails at t = 2' in said and "wrote" in said
@@ -137,7 +138,7 @@ def test_a_run_that_blew_up_says_when():
     ]
     late = {"kinetic": 9.0, "pieces": 7.0}
     rows.append(Row("patch", NAMES[0], False, BLEW_UP, "kinetic", "torn", late, (), 1.25, None))
-    _, _, told, *_ = judgement.markdown(every, rows)
+    _, _, told, *_ = comparison.markdown(comparison_of(REMEDIES[:1]), rows)
     assert "| − 2454 | – | – |" in told and told.endswith("| × 1.2 s | – | – | – |")
 
 
@@ -159,9 +160,10 @@ def test_numbers(value, told):
 
 def test_the_command_line(monkeypatch, tmp_path):
     asked = []
-    monkeypatch.setattr(command, "remedies", lambda comm, out: asked.append(out))
-    assert main(["stability", "--remedies", "--out", str(tmp_path)]) == 0
-    assert asked == [tmp_path]
+    monkeypatch.setattr(command, "compare", lambda comm, of, out: asked.append((of.name, out)))
+    for name in ("remedies", "walls"):
+        assert main(["stability", f"--{name}", "--out", str(tmp_path)]) == 0
+    assert asked == [("remedies", tmp_path), ("walls", tmp_path)]
     for other in ("--battery", "--quick"):
         with pytest.raises(Refused, match="^stability --remedies: stands alone"):
             main(["stability", "--remedies", other])

@@ -1,0 +1,37 @@
+"""Walls of every condition in the same trials."""
+
+from psph.lab.battery.comparison import Comparison, judging
+from psph.lab.battery.trials import BATTERY, Bound, Trial
+from psph.physics.walls.conditions import CONDITIONS
+
+SHOWN = {
+    "tank": ("probe_error", "probe_spread", "noise", "energy"),
+    "dam break": ("front_error", "speed", "energy", "lost"),
+    "sloshing": ("noise", "speed", "energy"),
+    "cavity": ("ghia_error", "near_5"),
+}
+"""Trials and the measures shown of each, the main one first."""
+
+
+def _of_case(case: str) -> Trial:
+    return next(trial for trial in BATTERY if trial.case == case)
+
+
+def _walls(*names: str) -> dict[str, tuple[str, ...]]:
+    """The keys that give all walls of a case one condition, by the condition."""
+    return {kind: tuple(f"walls.{name}.condition={kind}" for name in names) for kind in CONDITIONS}
+
+
+def _judging(name: str, case: str, end: float, *walls: str, holds=()) -> Trial:
+    trial = _of_case(case)
+    return judging(trial, name, _walls(*walls), shown=SHOWN[name][0], end=end, holds=holds or trial.holds)
+
+
+TRIALS = (
+    _judging("tank", "tank", 10.0, "tank"),
+    _judging("dam break", "dam_break", 2.0, "tank", holds=(Bound("speed", most=2.0),)),
+    _judging("sloshing", "sloshing", 10.0, "tank"),
+    _judging("cavity", "cavity", 20.0, "basin", "lid"),
+)
+
+WALLS = Comparison("walls", "condition", TRIALS, SHOWN)
