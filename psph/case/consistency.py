@@ -219,6 +219,8 @@ def _probed(case) -> Iterator[Finding]:
     for name, probe in case.probes.items():
         if (probe.position is None) == (probe.front is None):
             yield ("probes", name), ..., "give either position or front"
+        elif probe.extent and (probe.front or min(probe.extent) < 0.0):
+            yield ("probes", name, "extent"), probe.extent, "give lengths of 0 or more, beside a position"
 
 
 def _continued(case) -> Iterator[Finding]:

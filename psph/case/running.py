@@ -11,6 +11,13 @@ class Probe(Table):
     """Measurements over time: fields at a point, or the front of the fluid."""
 
     position: Vector | None = key("where", None, unit="m", otherwise="give front")
+    extent: Vector | None = key(
+        "lengths along the axes of a sensor around the position: what is written is the mean over it, with "
+        "no pressure where no fluid reaches it",
+        None,
+        unit="m",
+        otherwise="a point",
+    )
     front: Axis | None = key(
         "the largest coordinate of the fluid along this axis", None, otherwise="give position"
     )

@@ -8,7 +8,7 @@ import numpy as np
 from psph.composition.mirrors import image, images
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
-from psph.fields import FLUID, SAVED, by_name, view_of
+from psph.fields import FLUID, PRESSURE, SAVED, by_name, view_of
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.physics.walls.dry import DryWall
@@ -17,22 +17,26 @@ from psph.vectors import at, dot, nearest_image, subtract
 
 MEASURED = by_name(SAVED)
 
+ROUNDING = 1e-9
+"""In spacings: a length that is a whole number of them but for rounding has that many points."""
+
 FRONT = "front"
 """The quantity of a probe that follows the fluid."""
 
 
 class Probe:
-    """Fields of the fluid at one point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968).
+    """Fields of the fluid at a point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968), or their mean over some.
 
     The sums are over the fluid and the walls that it wets, so that at a wall the mean is not that of
-    one side alone; beside ``mirrors`` (psph.composition.mirrors) over images too.  ``position`` (dim,) m;
-    ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry`` those of them without
-    fluid in reach.
+    one side alone; beside ``mirrors`` (psph.composition.mirrors) over images too.  ``points`` (n, dim) m:
+    of a sensor those of its area, of which one without fluid in reach bears no pressure, and counts for
+    nothing else.  ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry`` those of
+    them without fluid in reach of any point.
     """
 
-    def __init__(self, name: str, position: tuple[float, ...], fields: tuple[str, ...], mirrors=None):
+    def __init__(self, name: str, points: np.ndarray, fields: tuple[str, ...], mirrors=None):
+        self.name, self.points, self.fields = name, np.atleast_2d(points), fields
         self.mirrors = mirrors
-        self.name, self.position, self.fields = name, tuple(map(float, position)), fields
         self.rows = self.dry = 0
 
     def columns(self, dimensions: int) -> list[str]:
@@ -49,21 +53,38 @@ class Probe:
         Every rank finds the near ones among its own particles, wherever these have drifted since
         the lists were made; the sums do not depend on how particles are spread.  Collective.
         """
-        seen = (self._seen(domain, kernel, m) for m in range(images(self.mirrors)))
-        fluid, terms = map(np.concatenate, zip(*seen))
-        wetting, total, *sums = exact_sums(domain.comm, np.column_stack([terms[:, 0] * fluid, terms]))
+        seen = [self._around(domain, kernel, point) for point in self.points]
+        width = 2 + sum(len(domain.store.rows[field]) for field in self.fields)
+        terms = np.zeros((sum(map(len, seen)), len(seen) * width))
+        last = 0
+        for place, own in enumerate(seen):
+            first, last = last, last + len(own)
+            terms[first:last, place * width : (place + 1) * width] = own
+        sums = exact_sums(domain.comm, terms).reshape(len(seen), width)
         self.rows += 1
-        if wetting > 0.0:
-            return np.array(sums) / total
-        self.dry += 1
-        return np.full(len(sums), np.nan)
+        wet = sums[:, 0] > 0.0
+        if not wet.any():
+            self.dry += 1
+            return np.full(width - 2, np.nan)
+        values = sums[wet, 2:] / sums[wet, 1:2]
+        # What no fluid reaches bears no pressure.
+        counted = [
+            len(wet) if f == PRESSURE.name else wet.sum() for f in self.fields for _ in domain.store.rows[f]
+        ]
+        return values.sum(axis=0) / counted
 
-    def _seen(self, domain: Domain, kernel, m: int) -> tuple[np.ndarray, np.ndarray]:
+    def _around(self, domain: Domain, kernel, point) -> np.ndarray:
+        """Of this rank's particles around a point, and of images: W V_j in the fluid, W V_j, W V_j f_j."""
+        seen = (self._seen(domain, kernel, point, m) for m in range(images(self.mirrors)))
+        fluid, terms = map(np.concatenate, zip(*seen))
+        return np.column_stack([terms[:, 0] * fluid, terms])
+
+    def _seen(self, domain: Domain, kernel, point, m: int) -> tuple[np.ndarray, np.ndarray]:
         """Which of this rank's particles in reach, or of their images m in mirrors, are fluid; and W V_j and
         W V_j f_j of each."""
         store = domain.store
         # An image is as far from the point as the particle from the image of the point.
-        point = self.mirrors.seen(m, self.position) if m else self.position
+        point = self.mirrors.seen(m, point) if m else tuple(map(float, point))
         rows = np.array([row for field in self.fields for row in store.rows[field]], np.int64)
         radius = kernel.support / kernel.inverse_h
         near = np.empty(store.owned, np.int64)
@@ -79,6 +100,15 @@ class Probe:
             values = np.column_stack(list(values_behind(self.mirrors, m, store, near, self.fields)))
             terms[:, 1:] = terms[:, :1] * values
         return fluid, terms
+
+
+def sensor(position, extent, spacing: float) -> np.ndarray:
+    """Points (n, dim) of a sensor around ``position``: so many per length of ``extent`` (dim,), m, that they
+    stand at most a ``spacing`` apart."""
+    counts = [max(1, math.ceil(length / spacing - ROUNDING)) for length in extent]
+    along = [length * ((np.arange(n) + 0.5) / n - 0.5) for length, n in zip(extent, counts)]
+    grid = np.meshgrid(*along, indexing="ij")
+    return np.array(position) + np.column_stack([x.ravel() for x in grid])
 
 
 class Front:

@@ -15,7 +15,7 @@ from psph.output.accuracy import Accuracy
 from psph.output.checkpoint import Saved
 from psph.output.errors import together
 from psph.output.frames import FrameFile
-from psph.output.probes import Front, Probe
+from psph.output.probes import Front, Probe, sensor
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
 from psph.simulation.step import Simulation
 
@@ -37,9 +37,17 @@ class Schedule:
 def probes_of(case, mirrors=None) -> list[Probe | Front]:
     """The probes that a case asks for, beside ``mirrors`` (psph.composition.mirrors)."""
     return [
-        Front(name, AXES.index(p.front)) if p.front else Probe(name, p.position, tuple(p.fields), mirrors)
+        Front(name, AXES.index(p.front))
+        if p.front
+        else Probe(name, _points(p, case.space), tuple(p.fields), mirrors)
         for name, p in case.probes.items()
     ]
+
+
+def _points(probe, space) -> np.ndarray:
+    """Where a probe looks (n, dim), m."""
+    extent = probe.extent or (0.0,) * space.dimensions
+    return sensor(probe.position, extent, space.spacing)
 
 
 class Record:

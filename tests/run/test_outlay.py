@@ -98,7 +98,7 @@ def test_amounts_are_readable():
 def test_hundreds_of_probes_read_what_one_alone_would_in_a_time_that_grows_with_them(finished):
     case, folder, simulation = finished
     kernel = Scene(case).kernel
-    probes = [Probe(name, p.position, tuple(p.fields)) for name, p in case.probes.items()]
+    probes = [Probe(name, np.array(p.position), tuple(p.fields)) for name, p in case.probes.items()]
     last = Run(folder).probes()
     for probe in (probes[0], probes[150], probes[299]):
         values = probe.sample(simulation.domain, kernel)
