@@ -99,7 +99,9 @@ def _add_study_options(study: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="files that the case names may be in DIR or below (default: the case's folder)",
     )
-    study.add_argument("--error", type=float, help="which settings reach this relative error")
+    study.add_argument(
+        "--error", type=float, help="which settings reach this relative error, such as 0.03 for 3 %%"
+    )
     study.add_argument("--seconds", type=float, help="which settings take this many seconds")
     study.add_argument("--out", action=_Folder, help="folder of the files (default: CASE-study)")
 

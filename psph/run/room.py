@@ -1,5 +1,7 @@
 """Whether a run fits into the memory, told before it takes any."""
 
+import math
+
 from psph.errors import Refused
 from psph.parallel.machine import free_memory, ranks_here
 from psph.run.explain import bytes_of_rank
@@ -8,8 +10,40 @@ from psph.simulation.plan import Plan
 GIB = 2.0**30
 
 
+LEAST_BYTES = 300
+"""Of a particle, under any scheme: a run never needs less."""
+
+
+QUICKLY_COUNTED = 1e8
+"""So many sites are counted within seconds."""
+
+
 class TooLittleMemory(Refused):
     """The machine would run out of memory."""
+
+
+def check_size(scene, comm) -> None:
+    """Raise TooLittleMemory on every rank where the fluids by their volume alone need more than all memory.
+
+    Before the sites are counted, which takes hours where they are too many by far.
+    """
+    sites = (
+        sum(_least_volume(fluid.shape) for fluid in scene.case.fluids.values())
+        / scene.spacing**scene.dimensions
+    )
+    free = sum(comm.allgather(free_memory() / ranks_here(comm)))
+    if sites > QUICKLY_COUNTED and sites * LEAST_BYTES > free:
+        raise TooLittleMemory(
+            f"{scene.case.name}: about {sites:.2g} particles need at least "
+            f"{sites * LEAST_BYTES / GIB:.3g} GiB, {free / GIB:.1f} GiB are free: use more machines, or a "
+            "larger space.spacing"
+        )
+
+
+def _least_volume(shape) -> float:
+    """What a shape holds at the least, m^d: of a box its volume; nothing is known of others."""
+    box = shape.box
+    return math.prod(up - low for low, up in zip(box.lower, box.upper)) if box else 0.0
 
 
 def check_memory(scene, plan: Plan, comm) -> None:

@@ -22,7 +22,7 @@ from psph.run.forecast import long_run
 from psph.run.guards import Guards
 from psph.run.record import Record
 from psph.run.resume import listed_particles, take_up, write_checkpoint
-from psph.run.room import check_memory
+from psph.run.room import check_memory, check_size
 from psph.run.setup import compile_ahead, create_particles
 from psph.run.watch import Call, Stopped, Watch
 from psph.scene import Scene, check
@@ -57,6 +57,7 @@ def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = Non
     """
     with ExitStack() as held, Watch(case.checkpoint) as watch:
         scene = Scene(case)
+        check_size(scene, comm)
         for warning in check(scene):
             (say or _speaker(comm))(f"warning: {warning}", sys.stderr)
 

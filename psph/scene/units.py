@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.physics.fluid.viscosity import FRICTION_STEP
 from psph.scene.species import NONE
 
 if TYPE_CHECKING:
@@ -19,13 +20,17 @@ table-top tank longer than that."""
 LIGHTEST, HEAVIEST = 0.05, 25_000.0
 """kg/m³: hydrogen has 0.08 at room temperature, osmium 22,600."""
 
+MOST_SHORTER = 200.0
+"""How many times friction may shorten the time steps that sound allows, without a warning: the slow flow
+between plates of run/cases/poiseuille.toml has 15."""
+
 MOST_UNHELD = 0.5
 """Part of a fluid's columns that may fall past all walls without a warning."""
 
 
 def slips(scene: "Scene") -> Iterator[str]:
     """A line for each number that is likely not meant."""
-    for kind in (_densities, _long_tank, _falls_out):
+    for kind in (_densities, _viscosities, _long_tank, _falls_out):
         yield from kind(scene)
 
 
@@ -36,6 +41,18 @@ def _densities(scene: "Scene") -> Iterator[str]:
             yield (
                 f"fluids.{name}.density: {fluid.density:g} kg/m³ is {than}; densities are in kg/m³: "
                 "water has 1000, air 1.2"
+            )
+
+
+def _viscosities(scene: "Scene") -> Iterator[str]:
+    """A viscosity that shortens the time step far below what sound allows."""
+    for name, fluid in scene.case.fluids.items():
+        h = scene.smoothing_length
+        times = fluid.viscosity * scene.case.time.cfl / (FRICTION_STEP * h * scene.sound_speed)
+        if times > MOST_SHORTER:
+            yield (
+                f"fluids.{name}.viscosity: {fluid.viscosity:g} m²/s makes time steps {times:.2g} times "
+                "shorter than sound does; it is the kinematic viscosity in m²/s: water has 1e-6, honey 7e-3"
             )
 
 

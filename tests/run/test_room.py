@@ -5,6 +5,8 @@ from drafts import draft
 from mpi4py import MPI
 from run.test_explain import BOX
 
+from psph.lab.study.runs import perform
+from psph.lab.study.study import Study
 from psph.run import explain as words
 from psph.run import room
 from psph.run.explain import bytes_of_rank, explain
@@ -65,3 +67,42 @@ def test_the_ranks_of_a_machine_count_together_and_all_refuse(mpi_tmp_path, monk
         room.check_memory(scene, plan, comm)
     monkeypatch.setattr(room, "free_memory", lambda: together)
     room.check_memory(scene, plan, comm)
+
+
+HUGE = """
+space = { dimensions = 2, spacing = 1e-5 }
+time.end = 1.0
+physics.gravity = [0.0, -9.8]
+fluids.water.shape.box = { lower = [0.0, 0.0], upper = [4.0, 2.0] }
+"""
+"""8·10¹⁰ sites: to count them takes hours."""
+
+
+@pytest.mark.timeout(30)
+def test_a_lattice_that_no_machine_holds_is_refused_before_its_sites_are_counted(tmp_path):
+    case = draft(tmp_path, HUGE)
+    for go in (
+        lambda: run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None),
+        lambda: Study(case.file, [], [{}], tmp_path / "study", MPI.COMM_SELF),
+    ):
+        with pytest.raises(
+            TooLittleMemory, match=r"case: about 8e\+10 particles need at least 2.24e\+04 GiB"
+        ):
+            go()
+
+
+@pytest.mark.timeout(120)
+def test_a_rung_of_a_study_that_no_machine_holds_does_not_end_the_others(tmp_path):
+    case = draft(tmp_path, HUGE, "space.spacing=0.5", "time.end=0.01")
+    study = Study(
+        case.file,
+        ["space.spacing=0.5", "time.end=0.01"],
+        [{"space.spacing": x} for x in (0.5, 1e-5)],
+        tmp_path / "study",
+        MPI.COMM_SELF,
+    )
+    coarse, huge = (
+        perform(one, tmp_path / str(k), MPI.COMM_SELF, 1, lambda line: None)
+        for k, one in enumerate(study.cases)
+    )
+    assert coarse["status"] == "done" and huge["status"].startswith("not possible here: case")

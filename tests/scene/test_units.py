@@ -68,3 +68,11 @@ def test_gravity_that_pulls_the_fluid_out_is_warned_of(tmp_path, axis):
 
 def test_free_fall_without_walls_is_silent(tmp_path):
     assert checked(tmp_path, WATER, "physics.gravity=[0.0, 9.8]") == []
+
+
+def test_a_viscosity_that_shortens_the_time_steps_far_below_those_of_sound_is_warned_of(tmp_path):
+    """The dynamic one in mPa s, or that of another unit: honey has 7e-3 m²/s."""
+    found = [checked(tmp_path, WATER + f"viscosity = {nu}") for nu in (7e-3, 700.0)]
+    assert not any("viscosity" in line for line in found[0])
+    [told] = [line for line in found[1] if "fluids.water.viscosity" in line]
+    assert "times shorter than sound does; it is the kinematic viscosity" in told

@@ -86,4 +86,5 @@ def _cells(of: Comparison, row: Row) -> Iterator[str]:
     """The main measure with its mark, then the others; dashes for a run that ended early."""
     yield tables.cell(row)
     for name in of.shown[row.trial][1:]:
-        yield "–" if row.verdict in (BLEW_UP, REFUSED) else tables.number(row.found.get(name))
+        value = row.seconds if name == tables.SECONDS else row.found.get(name)
+        yield "–" if row.verdict in (BLEW_UP, REFUSED) else tables.number(value)

@@ -14,6 +14,11 @@ CSV, PAGE = "battery.csv", "battery.md"
 DETAILS = f"All that was measured of `{OURS}`:"
 """Where the part of a page ends."""
 
+SECONDS = "seconds"
+"""What a run took, shown like a measure of it."""
+
+MEANINGS = MEASURES | {SECONDS: "what the run took, s"}
+
 MARKS = {GOOD: "+", HOLDS: "~", FAILS: "−", BLEW_UP: "×", REFUSED: "?"}
 """A verdict in one character."""
 
@@ -114,7 +119,7 @@ def legend(shown: Iterable[str]) -> Iterator[str]:
 
 
 def _in_words(measures: Iterable[str]) -> str:
-    return "; ".join(f"`{name}`: {MEASURES[name]}" for name in measures) + "."
+    return "; ".join(f"`{name}`: {MEANINGS[name]}" for name in measures) + "."
 
 
 def table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:

@@ -1,14 +1,15 @@
 """Walls of every condition in the same trials."""
 
 from psph.lab.battery.comparison import Comparison, judging
+from psph.lab.battery.tables import SECONDS
 from psph.lab.battery.trials import BATTERY, Bound, Trial
 from psph.physics.walls.conditions import CONDITIONS
 
 SHOWN = {
-    "tank": ("probe_error", "probe_spread", "noise", "energy"),
-    "dam break": ("front_error", "speed", "energy", "lost"),
-    "sloshing": ("noise", "speed", "energy"),
-    "cavity": ("ghia_error", "near_5"),
+    "tank": ("probe_error", "probe_spread", "noise", "energy", SECONDS),
+    "dam break": ("front_error", "speed", "energy", "lost", SECONDS),
+    "sloshing": ("noise", "speed", "energy", SECONDS),
+    "cavity": ("ghia_error", "near_5", SECONDS),
 }
 """Trials and the measures shown of each, the main one first."""
 

@@ -17,7 +17,12 @@ def answers(ladders, scene: Scene, error: float | None, seconds: float | None) -
     """
     steady = [(shared, ladder) for shared, _, ladder in ladders if ladder and ladder.steady]
     if not steady:
-        yield "no answer: this needs two runs that differ in the spacing alone."
+        several = any(ladder and len(ladder.runs) > 1 for _, _, ladder in ladders)
+        yield (
+            "no answer: the errors of these runs do not fall steadily with the spacing."
+            if several
+            else "no answer: this needs two runs that differ in the spacing alone."
+        )
         return
     found = []
     for shared, ladder in steady:

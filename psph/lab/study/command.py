@@ -30,6 +30,8 @@ def study(
     for name, value in (("error", error), ("seconds", seconds)):
         if value is not None and not value > 0.0:
             raise StudyError(f"study --{name} {value:g}: give a number above zero")
+    if error is not None and error >= 1.0:
+        raise StudyError(f"study --error {error:g}: a relative error below 1; for 3 % give 0.03")
     case = load(file, sets)
     if effects:
         named = without_each(case)

@@ -14,6 +14,7 @@ from psph.lab.study.ladder import PROFILE, SPACING, Settings, groups, name_of
 from psph.lab.study.picture import draw
 from psph.lab.study.runs import DONE, cases, conditions, perform
 from psph.output.reader import Run as Folder
+from psph.run.room import check_size
 from psph.scene import Scene, check
 from psph.scene.multiples import misfits
 
@@ -24,8 +25,8 @@ class Study:
     """The runs of a study in ``folder``; methods are collective but where they say otherwise.
 
     ``file`` is the case, ``sets`` what ``--set`` gave, ``every`` the settings of each run, ``files``
-    the folder that the case's files may lie in, where it is not its own.  Raises CaseError or
-    StudyError before anything is run.
+    the folder that the case's files may lie in, where it is not its own.  Raises CaseError,
+    TooLittleMemory or StudyError before anything is run.
     """
 
     def __init__(
@@ -39,7 +40,9 @@ class Study:
     ):
         self.folder, self.comm, self.every = folder, comm, every
         self.case = load(file, sets)
-        check(Scene(self.case))
+        scene = Scene(self.case)
+        check_size(scene, comm)
+        check(scene)
         self.judge = Judge(self.case, files)
         self.keys = list(dict.fromkeys(key for settings in every for key in settings))
         self.cases = cases(file, sets, every)
@@ -58,7 +61,7 @@ class Study:
         """CaseError where no value of a key is one; StudyError where runs have no reference."""
         for key in self.keys:
             with_it = [case for case, s in zip(self.cases, self.every) if key in s]
-            if all(isinstance(case, CaseError) for case in with_it):
+            if with_it and all(isinstance(case, CaseError) for case in with_it):
                 raise with_it[0]
         if self.judge.against == FINEST and len({s.get(SPACING) for s in self.every}) < 2:
             raise StudyError(

@@ -89,7 +89,7 @@ def limit_words(what: str, found: Extrapolated, finest: float, runs: int) -> str
         f"{what} goes to {value.value:.6g}{within(value, '.3g')} at zero spacing, with order "
         f"{found.order.value:.2f}{within(found.order, '.2f')}"
     )
-    if value.value:
+    if value.value and not found.order.low <= 0.0:
         text += f"; the finest run is {percent(abs(finest / value.value - 1.0))} off"
     return f"{text}{unknown(value, runs)}."
 

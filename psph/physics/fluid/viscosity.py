@@ -145,8 +145,12 @@ class CentralFriction(NamedTuple):
         return _longest_step(scene)
 
 
+FRICTION_STEP = 0.125
+"""Largest ν Δt/h² (Morris, Fox & Zhu 1997)."""
+
+
 def _longest_step(scene) -> float:
-    return 0.125 * scene.smoothing_length**2 / scene.viscosity
+    return FRICTION_STEP * scene.smoothing_length**2 / scene.viscosity
 
 
 def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:
