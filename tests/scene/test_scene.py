@@ -134,6 +134,7 @@ def test_a_uniform_pressure_sets_the_mass(tmp_path, state):
         ("negative_pressure_traditional", [225, 216]),
         ("dam_break", [5000, 1518]),
         ("dam_break_3d", [10850, 24891, 144]),
+        ("dam_break_on_box", [5208, 12240, 80]),
         ("minimal", [1250, 621]),
     ],
 )
