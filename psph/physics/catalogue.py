@@ -6,6 +6,7 @@ from types import FunctionType
 from typing import NamedTuple
 
 from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name
+from psph.physics.damping.acoustic import AcousticDamper
 from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusion
 from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.reconstructed import ReconstructedDamping
@@ -119,6 +120,7 @@ CATALOGUE = (
     Entry("physics.artificial_viscosity", ArtificialViscosity),
     Entry("physics.pair_damping", PairDamping),
     Entry("physics.reconstructed_damping", ReconstructedDamping),
+    Entry("physics.acoustic_damper", AcousticDamper),
     Entry("physics.impact_damping", ImpactDamping),
     Entry("physics.riemann_dissipation", RiemannDissipation),
     Entry("physics.conservative_smoothing", ConservativeSmoothing),

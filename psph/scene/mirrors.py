@@ -1,6 +1,6 @@
 """Plane mirrors of a scene: its planes of symmetry, and walls that are one."""
 
-import numpy as np
+from collections.abc import Sequence
 
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
@@ -10,8 +10,6 @@ from psph.physics.walls.conditions import MIRROR
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import Corner, bounds
 
-Ends = tuple[np.ndarray, np.ndarray]
-
 
 def planes_of(case: Case) -> tuple[Plane, ...]:
     """The mirrors of a case: those of its domain, then those of its walls.
@@ -20,7 +18,7 @@ def planes_of(case: Case) -> tuple[Plane, ...]:
     or where a wall has no flat face that the fluid is before.
     """
     found = [(f"space.symmetry: {side}", plane) for side, plane in _of_domain(case)]
-    held = _around([bounds(fluid.shape) for fluid in case.fluids.values()])
+    held = around([bounds(fluid.shape) for fluid in case.fluids.values()])
     for name, wall in case.walls.items():
         if wall.condition == MIRROR:
             found += [(f"walls.{name}", plane) for plane in _of_wall(case, name, wall, held)]
@@ -46,6 +44,12 @@ def clipped(box: tuple[Corner, Corner], planes: tuple[Plane, ...]) -> tuple[Corn
     return tuple(lower), tuple(upper)
 
 
+def around(boxes: Sequence[tuple[Corner, Corner]]) -> tuple[Corner, Corner]:
+    """The corners, m, of the smallest box that holds all boxes."""
+    lower, upper = zip(*boxes)
+    return tuple(map(min, zip(*lower))), tuple(map(max, zip(*upper)))
+
+
 def _of_domain(case: Case):
     for side in case.space.symmetry:
         axis, end = AXES.index(side[0]), side[2:]
@@ -53,7 +57,7 @@ def _of_domain(case: Case):
         yield side, Plane(axis, BELOW if end == "lower" else ABOVE, corner[axis])
 
 
-def _of_wall(case: Case, name: str, wall, held: Ends):
+def _of_wall(case: Case, name: str, wall, held: tuple[Corner, Corner]):
     """The faces of a wall that the fluids, which ``held`` encloses, are before."""
     faces = list(_faces(wall.shape, held, TOLERANCE * case.space.spacing))
     if not faces:
@@ -68,7 +72,7 @@ def _of_wall(case: Case, name: str, wall, held: Ends):
         yield Plane(axis, side, at, wall.no_slip, wall.velocity or still)
 
 
-def _faces(shape: Shape, held: Ends, tolerance: float):
+def _faces(shape: Shape, held: tuple[Corner, Corner], tolerance: float):
     low, high = held
     match shape.form:
         case Box(lower=lower, upper=upper):
@@ -95,11 +99,6 @@ def _faces(shape: Shape, held: Ends, tolerance: float):
                     yield d, BELOW, room.lower[d]
                 if outer.upper[d] > room.upper[d] + tolerance:
                     yield d, ABOVE, room.upper[d]
-
-
-def _around(boxes: list[tuple[Corner, Corner]]) -> Ends:
-    lower, upper = zip(*boxes)
-    return np.min(lower, axis=0), np.max(upper, axis=0)
 
 
 def _refuse_between_sites(case: Case, key: str, plane: Plane) -> None:

@@ -16,7 +16,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import Fixed, Free
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.lattice import TOLERANCE, lattice_around
-from psph.scene.mirrors import clipped, planes_of
+from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
@@ -52,7 +52,8 @@ class Scene:
         self.lattice = lattice_around(boxes, space.origin, self.spacing, axis)
         self.layout = Layout(self.lattice, shapes, len(case.fluids))
         self.axis, self.planes = self.lattice.axis, self.lattice.planes
-        found = self.lattice.lower, self.lattice.upper
+        mirrors = (bounds(wall.shape) for wall in case.walls.values() if wall.condition == MIRROR)
+        found = around([(self.lattice.lower, self.lattice.upper), *mirrors])
         given = (ends if own is None else own for ends, own in zip(found, (space.lower, space.upper)))
         self.lower, self.upper = clipped(tuple(given), self.mirror_planes)
         self.periods = tuple(

@@ -46,6 +46,7 @@ def view(n=2, dim=2, seed=3):
         density_gradient=tuple(rng.normal(size=n) * 300 for _ in range(dim)),
         crowding=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
         gradient_correction=tuple(rng.normal(size=n) * 0.1 for _ in range(dim * (dim + 1) // 2)),
+        compression=rng.normal(size=n) * 1000,
         transport=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
         rest_density=rng.uniform(800, 1000, n),
     )

@@ -17,6 +17,7 @@ from simulation.test_absence import calling_for
 
 from psph.composition.terms import displacement, push, radial, shear
 from psph.physics.catalogue import CATALOGUE
+from psph.physics.damping.acoustic import CorrectedDamper
 from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
 from psph.physics.order.potential import InDisorder, PairPotential, neutral_potential
@@ -79,7 +80,7 @@ def rates(effect, p):
 
 
 @pytest.mark.parametrize("dim", (1, 2, 3))
-@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedViscosity])
+@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedViscosity, CorrectedDamper])
 def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
     forces, moves = rates(in_a_scene(effect, dim), crowd(dim))
     assert np.abs(forces).max() + np.abs(moves).max() > 0.0

@@ -14,6 +14,7 @@ from psph.output.ledger import Ledger
 from psph.output.probes import Probe
 from psph.run.setup import create_particles
 from psph.scene import Scene
+from psph.scene.checks import faults
 from psph.scene.walls import has_free_surface
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
@@ -103,6 +104,15 @@ def test_water_rests_in_a_tank_of_mirrors(tmp_path):
     assert pressure == pytest.approx(4900.0, rel=0.01)
     assert density == pytest.approx(1000.0 + 4900.0 / c**2, rel=1e-4)
     assert velocity == pytest.approx([0.0, 0.0], abs=1e-15)  # the images' cancel it
+
+
+def test_a_tank_of_mirrors_is_part_of_the_domain(tmp_path):
+    """Water in a part of it, a probe on its far wall, and what lies behind the wall."""
+    wide = TANK.replace("1.15", "2.15").replace("1.0, 0.6", "2.0, 0.6")
+    near, far = (Scene(draft(tmp_path, f"{wide}[probes.wall]\nposition = [{x}, 0.1]\n")) for x in (2.0, 2.1))
+    assert near.lower == (0.0, 0.0) and near.upper == (2.0, 0.6)
+    assert not any("probes" in line for line in faults(near))
+    assert any("outside the domain [0, 0] to [2, 0.6]" in line for line in faults(far))
 
 
 def test_water_falls_without_the_mirrors(tmp_path):

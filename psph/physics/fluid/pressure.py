@@ -174,21 +174,21 @@ class BackgroundPressure(NamedTuple):
         needed = self._needed(scene) if self.pressure == AUTO else self.pressure
         if needed is None:
             return None
-        return CorrectedBackground(needed) if _is_corrected(scene) else BackgroundPressure(needed)
+        return CorrectedBackground(needed) if is_corrected(scene) else BackgroundPressure(needed)
 
     def _needed(self, scene: Facts) -> float | None:
         """What the start and its flow may lack, Pa, or None."""
         if scene.has_free_surface:
             return None
         dip = 0.5 * max(m.density for m in scene.species) * scene.starting_speed**2
-        lacking = scene.standing_tension if _is_corrected(scene) else max(-scene.lowest_pressure, dip)
+        lacking = scene.standing_tension if is_corrected(scene) else max(-scene.lowest_pressure, dip)
         return MARGIN * lacking if lacking > 0.0 else None
 
     def why_absent(self, scene: Facts):
         """Why "auto" gives none."""
         if scene.has_free_surface:
             return "the fluid has a free surface, which it would blow apart"
-        if _is_corrected(scene):
+        if is_corrected(scene):
             return "corrected gradients hold what its flow pulls, and the start lacks no more"
         return "no pressure is negative at the start, and nothing moves"
 
@@ -202,7 +202,8 @@ class BackgroundPressure(NamedTuple):
         return parts.BackgroundPressure(self.pressure)
 
 
-def _is_corrected(scene: Facts) -> bool:
+def is_corrected(scene: Facts) -> bool:
+    """Whether the symmetric pressure gradient takes corrected gradients."""
     physics = scene.physics
     return physics.gradient_correction is not None and physics.pressure_gradient == "symmetric"
 

@@ -1,0 +1,92 @@
+"""A bulk viscosity: sound fades, and a flow that keeps its volume does not feel it."""
+
+from typing import Annotated, NamedTuple
+
+from pydantic import Field
+
+from psph.fields import Field as Declared
+from psph.physics.facts import Facts
+from psph.physics.fluid.pressure import is_corrected
+from psph.vectors import add, dot, scale, times
+
+STABLE = 0.25
+"""αcΔt/h must stay below: the wave that fades fastest does so at (1.42)² αc/h over kernels, lattices and
+h/dx, and the rate of compression is that of the pass before."""
+
+
+class AcousticDamper(NamedTuple):
+    """A pressure against the rate of compression: sound and impacts fade, and shear does not feel it.
+
+    q_i = α h c dρ_i/dt, of a fluid and with the dρ/dt of :class:`Continuity
+    <psph.physics.fluid.continuity.Continuity>` alone in the pass before, acts as a pressure beside p:
+    a_i = −Σ_j m_j (q_i/ρ_i² + q_j/ρ_j²) ∇W_ij, with corrected gradients in both where the pressure has
+    them.  It takes Σ_i m_i α h c (dρ_i/dt)²/ρ_i² from the motion.  It does not see the shortest waves, whose
+    divergence a sum over neighbours misses.  Sun, Pilloton, Antuono & Colagrossi (2023), J. Comput.
+    Phys. 483, 112056.  It conserves momentum, and angular momentum too without corrected gradients.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    alpha: Annotated[float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})] = 0.3
+
+    writes = Declared("compression", "Pa", "pressure against the rate of compression")
+    lagged = True
+
+    def in_scene(self, scene: Facts):
+        """With corrected gradients, the form that has them."""
+        return CorrectedDamper(self.alpha) if is_corrected(scene) else self
+
+    def start(self, i):
+        """No neighbour yet."""
+        return 0.0
+
+    def gather(self, total, i, j, pair):
+        """Add a neighbour's share of dρ_i/dt."""
+        return total + pair.u_dot_x * pair.m_dw_r
+
+    def finish_value(self, total, i, kernel):
+        """q_i, Pa."""
+        return self.alpha * i.smoothing_length * i.sound_speed * total * i.is_fluid
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        return -(i.compression * v_i * v_i + j.compression * v_j * v_j) * pair.m_dw_r
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.25 h/(α c), s: see STABLE."""
+        damping = self.alpha * scene.sound_speed
+        return STABLE * scene.smoothing_length / damping if damping > 0.0 else float("inf")
+
+
+class CorrectedDamper(NamedTuple):
+    """A pressure against the rate of compression, with corrected gradients.
+
+    As :class:`AcousticDamper`: dρ_i/dt takes L_i, and a_i = −Σ_j m_j (q_i L_i/ρ_i² + q_j L_j/ρ_j²) ∇W_ij, as
+    the pressure itself under :class:`psph.physics.fluid.correction.GradientCorrection`, so that the work
+    of q is that of compression.  It conserves momentum.
+    """
+
+    conserves = ("momentum",)
+
+    alpha: float
+
+    writes = AcousticDamper.writes
+    lagged = True
+
+    start = AcousticDamper.start
+    finish_value = AcousticDamper.finish_value
+    longest_step = AcousticDamper.longest_step
+
+    def gather(self, total, i, j, pair):
+        """Add a neighbour's share of dρ_i/dt."""
+        corrected = pair.u_dot_x + dot(pair.u_ij, times(i.gradient_correction, pair.x_ij))
+        return total + corrected * pair.m_dw_r
+
+    def push(self, i, j, pair):
+        """Acceleration, m/s²."""
+        v_i, v_j = i.specific_volume, j.specific_volume
+        q_i, q_j = i.compression * v_i * v_i, j.compression * v_j * v_j
+        both = add(scale(i.gradient_correction, q_i), scale(j.gradient_correction, q_j))
+        whole = add(scale(pair.x_ij, q_i + q_j), times(both, pair.x_ij))
+        return scale(whole, -pair.m_dw_r)
