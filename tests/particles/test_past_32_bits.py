@@ -86,6 +86,7 @@ def near_and_far(tmp_path):
         begin=domain.lists.begin + np.uint64(ENTRIES),
         lists=shifted(tmp_path, domain.lists.lists + np.uint32(COLUMNS), ENTRIES),
     )
+    far.engine._lists = domain.lists
     return near, far
 
 
