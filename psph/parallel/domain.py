@@ -1,6 +1,7 @@
 """A rank's part of the domain: rebuild it (wrap, balance, migrate, sort, halo, list), refresh it."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -19,40 +20,50 @@ GROWTH = 3.0
 
 STEPS_A_LENGTH = 8
 """It does so in steps of this part of the domain's length: a new grid at each rebuild would order
-neighbours anew each time."""
+neighbours differently each time."""
 
 CELLS_A_PARTICLE = 2.0
 """It follows them no farther than where it has so many cells per particle, or as many as the domain."""
 
 
+class Extent(NamedTuple):
+    """The corners of a domain, m, with a period in m or None for each axis; slabs cut it across ``axis``."""
+
+    axis: int
+    lower: tuple[float, ...]
+    upper: tuple[float, ...]
+    periods: tuple[float | None, ...]
+
+
+class Travels(NamedTuple):
+    """Names of the fields that ghosts need once at a rebuild, and of those that they need in each step."""
+
+    at_rebuild: tuple[str, ...]
+    refreshed: tuple[str, ...]
+
+
 class Domain:
     """The slab of one rank, its ghosts and its neighbour lists.
 
-    ``cutoff`` is the kernel's support and the skin together, m; ``lower`` and ``upper`` the
-    corners of the domain, m; ``periods`` a length or None for each axis; ``ghost_fields`` what
-    ghosts need once at a rebuild and ``refreshed`` what they need in each step; ``lanes``
-    is how many entries of a list the pair loop takes at once.
+    ``cutoff`` is the kernel's support and the skin together, m; ``travels`` says what ghosts need;
+    ``lanes`` is how many entries of a list the pair loop takes at once.
     """
 
     def __init__(
         self,
         comm: MPI.Comm,
         store: Store,
-        axis: int,
+        extent: Extent,
         cutoff: float,
-        lower,
-        upper,
-        periods,
-        ghost_fields: tuple[str, ...],
-        refreshed: tuple[str, ...],
+        travels: Travels,
         lanes: int = Metres.lanes,
     ):
-        self.comm, self.store = comm, store
-        self.axis, self.cutoff, self.periods = axis, cutoff, tuple(periods)
-        self.lower, self.upper = tuple(lower), tuple(upper)
+        self.comm, self.store, self.cutoff = comm, store, cutoff
+        self.axis, self.periods = extent.axis, tuple(extent.periods)
+        self.lower, self.upper = tuple(extent.lower), tuple(extent.upper)
         self._home = (self.lower, self.upper)
         self._particles = comm.allreduce(store.owned)
-        self.ghost_fields, self.refreshed = ghost_fields, refreshed
+        self.ghost_fields, self.refreshed = travels
         self.lanes = lanes
         self.bounds: np.ndarray | None = None
         self.prices = Prices(comm.size)

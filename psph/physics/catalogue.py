@@ -1,4 +1,4 @@
-"""Every effect and the key of a case that calls for it.  A new effect is one line here."""
+"""Every effect, and the key of a case that switches it on.  A new effect is one line here."""
 
 import sys
 from functools import cache
@@ -44,7 +44,7 @@ from psph.physics.walls.slip import NoSlip
 
 
 class Entry(NamedTuple):
-    """An effect and what calls for it.
+    """An effect and what switches it on.
 
     ``key`` is empty (every scene), a key of the case (present: the effect is on, and its value
     holds the effect's parameters), or ``key=name`` for one of several choices, the first of which

@@ -11,7 +11,7 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import companions, seen_at
 from psph.output.ledger import Ledger
-from psph.parallel.domain import Domain
+from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin
 from psph.particles.planes import bring_back
 from psph.particles.records import Records
@@ -42,13 +42,9 @@ class Engine:
         self.domain = Domain(
             comm,
             store,
-            scene.axis,
+            Extent(scene.axis, scene.lower, scene.upper, scene.periods),
             scene.reach.cutoff,
-            scene.lower,
-            scene.upper,
-            scene.periods,
-            plan.ghost_fields,
-            plan.refreshed,
+            Travels(plan.ghost_fields, plan.refreshed),
             plan.space.lanes,
         )
         self.skin, self._reach = Skin(self.domain, scene.reach.skin, plan.planes), scene.reach

@@ -1,4 +1,4 @@
-"""The plan: exactly the effects, fields and messages that a scene calls for, and why."""
+"""The plan: exactly the effects, fields and messages that a scene needs, and why."""
 
 from collections import namedtuple
 from collections.abc import Iterable, Iterator
@@ -316,12 +316,12 @@ def material_value(material, name: str) -> float:
 
 
 def _in_scene(effect, scene):
-    """The form of an effect that a scene calls for, or None."""
+    """The form of an effect that a scene needs, or None."""
     return effect.in_scene(scene) if hasattr(effect, "in_scene") else effect
 
 
 def _why_dropped(effect, scene, reason: str) -> str:
-    """Why an effect that ``reason`` calls for has no form in a scene."""
+    """Why an effect that ``reason`` asks for has no form in a scene."""
     why = effect.why_absent(scene) if hasattr(effect, "why_absent") else "this scene has no use for it"
     return f"left out, though {reason}: {why}"
 

@@ -7,7 +7,7 @@ import pytest
 from mpi4py import MPI
 from stores import store_of
 
-from psph.parallel.domain import Domain
+from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin
 from psph.particles.drift import bounding_boxes, largest_differences
 
@@ -22,17 +22,8 @@ def domain_of(n, dim, periodic=(), seed=3):
     block[list(store.rows["position"])] = rng.uniform(0, 1, (dim, n))
     store.append(np.arange(n), np.zeros(n, np.uint8), block)
     periods = tuple(1.0 if d in periodic else None for d in range(dim))
-    domain = Domain(
-        MPI.COMM_SELF,
-        store,
-        0,
-        CUTOFF,
-        (0.0,) * dim,
-        (1.0,) * dim,
-        periods,
-        (),
-        ("position", "predicted_velocity"),
-    )
+    extent = Extent(0, (0.0,) * dim, (1.0,) * dim, periods)
+    domain = Domain(MPI.COMM_SELF, store, extent, CUTOFF, Travels((), ("position", "predicted_velocity")))
     domain.rebuild()
     return domain
 
@@ -125,17 +116,8 @@ def test_bodies_that_were_far_apart_are_seen_in_time(axis, away, slab):
     block = np.zeros((len(store.data), 2))
     block[list(store.rows["position"])] = x.T
     store.append(np.arange(2), np.zeros(2, np.uint8), block)
-    domain = Domain(
-        MPI.COMM_SELF,
-        store,
-        slab,
-        CUTOFF,
-        (0.0,) * 3,
-        (1.0,) * 3,
-        (None,) * 3,
-        (),
-        ("position", "predicted_velocity"),
-    )
+    extent = Extent(slab, (0.0,) * 3, (1.0,) * 3, (None,) * 3)
+    domain = Domain(MPI.COMM_SELF, store, extent, CUTOFF, Travels((), ("position", "predicted_velocity")))
     domain.rebuild()
     flying = int(np.argmax(np.array(store["position"])[axis, store.inner]))
     row = store.low + flying

@@ -8,7 +8,7 @@ from mpi4py import MPI
 from stores import store_of
 
 from psph.composition.space import Metres
-from psph.parallel.domain import CELLS_A_PARTICLE, Domain
+from psph.parallel.domain import CELLS_A_PARTICLE, Domain, Extent, Travels
 
 NAMES = ("position", "listed_position", "density")
 
@@ -22,7 +22,8 @@ def domain_of(positions, cutoff, lower, upper, periods, axis=0, comm=MPI.COMM_SE
     block[list(store.rows["position"])] = positions[mine].T
     block[store.rows["density"].start] = mine
     store.append(mine, np.zeros(len(mine), np.uint8), block)
-    domain = Domain(comm, store, axis, cutoff, lower, upper, periods, ("density",), ("position",))
+    extent = Extent(axis, lower, upper, periods)
+    domain = Domain(comm, store, extent, cutoff, Travels(("density",), ("position",)))
     domain.rebuild()
     return domain
 
