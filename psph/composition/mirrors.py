@@ -7,7 +7,7 @@ image is seen the same way.
 """
 
 from collections.abc import Sequence
-from itertools import product
+from itertools import permutations, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -39,26 +39,33 @@ ABSENT = -1
 """Components of an entry that a scene does not need."""
 
 
-class Mirrors(NamedTuple):
-    """All that is seen beside a plane: image m of a particle stands at ``turn[m]`` x + ``shift[m]``, m.
+class Reflection(NamedTuple):
+    """An image of a particle stands at ``turn`` x + ``shift``, m, and moves with ``turn_velocity`` v +
+    ``shift_velocity``, m/s.  ``gravity`` in m/s², None on an axis without: a still column goes on behind the
+    plane."""
 
-    It moves with ``turn_velocity[m]`` v + ``shift_velocity[m]``, m/s; the first is the particle itself.
-    Arrays are (images, dim).  ``gravity`` in m/s², None on an axis without: a still column goes on behind
-    the plane.  ``reach`` m: farther from a plane nothing is seen in it.  From entry ``own`` of the lists
-    on each column stands once, in order: a particle in a row of its own.
+    turn: tuple[float, ...]
+    shift: tuple[float, ...]
+    turn_velocity: tuple[float, ...]
+    shift_velocity: tuple[float, ...]
+    gravity: tuple[float | None, ...]
+
+    def seen(self, point) -> tuple[float, ...]:
+        """The image of a point, m."""
+        return tuple(turn * float(x) + shift for turn, x, shift in zip(self.turn, point, self.shift))
+
+
+class Mirrors(NamedTuple):
+    """All that is seen beside a plane: a particle itself is the first of the ``reflections``.
+
+    ``reach`` m: farther from a plane nothing is seen in it.  From entry ``own`` of the lists on each column
+    stands once, in order: a particle in a row of its own.  Numbers in tuples, no arrays: for those compiled
+    code would count references at every particle.
     """
 
-    turn: Any
-    shift: Any
-    turn_velocity: Any
-    shift_velocity: Any
-    gravity: tuple
+    reflections: tuple[Reflection, ...]
     reach: float
     own: Any
-
-    def seen(self, m: int, point) -> tuple[float, ...]:
-        """Image m of a point, m."""
-        return tuple((self.turn[m] * point + self.shift[m]).tolist())
 
 
 def mirrors_of(planes: Sequence[Plane], gravity, reach: float) -> Mirrors | None:
@@ -69,26 +76,37 @@ def mirrors_of(planes: Sequence[Plane], gravity, reach: float) -> Mirrors | None
     beside: list[list[Plane | None]] = [
         [None, *(plane for plane in planes if plane.axis == d)] for d in range(dimensions)
     ]
-    found = [_reflections(chosen, dimensions) for chosen in product(*beside)]
-    turn, shift, turn_velocity, shift_velocity = (np.array(rows) for rows in zip(*found))
     pull = tuple(float(g) or None for g in gravity)
-    return Mirrors(turn, shift, turn_velocity, shift_velocity, pull, reach, np.uint64(0))
+    found = (_reflection(list(filter(None, chosen)), pull) for chosen in product(*beside))
+    return Mirrors(tuple(found), reach, np.uint64(0))
 
 
-def _reflections(chosen, dimensions: int):
-    """One reflection after the other, in the planes among ``chosen``."""
+def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...]) -> Reflection:
+    """One reflection after the other, in the planes ``chosen``.
+
+    Where walls of several velocities meet, the velocity of the image depends on which comes first: the mean
+    is taken of all orders.
+    """
+    dimensions = len(gravity)
     turn, shift = np.ones(dimensions), np.zeros(dimensions)
-    turn_velocity, shift_velocity = np.ones(dimensions), np.zeros(dimensions)
-    for plane in filter(None, chosen):
+    for plane in chosen:
         turn[plane.axis], shift[plane.axis] = -1.0, 2.0 * plane.at
-        turned = np.arange(dimensions) == plane.axis
+    seen = [_velocities(order, dimensions) for order in permutations(chosen)]
+    rows = (turn, shift, *np.mean(seen, axis=0))
+    return Reflection(*(tuple(row.tolist()) for row in rows), gravity)
+
+
+def _velocities(order: Sequence[Plane], dimensions: int):
+    """What turns a velocity into that of the last image, and what is added."""
+    turn, shift = np.ones(dimensions), np.zeros(dimensions)
+    for plane in order:
+        sign = np.ones(dimensions)
+        sign[: dimensions if plane.sticks else 0] = -1.0
+        sign[plane.axis] = -1.0
+        turn, shift = sign * turn, sign * shift
         if plane.sticks:
-            turned[:] = True
-        sign = np.where(turned, -1.0, 1.0)
-        turn_velocity, shift_velocity = sign * turn_velocity, sign * shift_velocity
-        if plane.sticks:
-            shift_velocity += 2.0 * np.array(plane.velocity)
-    return turn, shift, turn_velocity, shift_velocity
+            shift += 2.0 * np.array(plane.velocity)
+    return turn, shift
 
 
 def with_own_rows(mirrors: Mirrors | None, columns: int, lists):
@@ -103,7 +121,7 @@ def with_own_rows(mirrors: Mirrors | None, columns: int, lists):
 
 def images(mirrors: Mirrors | None) -> int:
     """How many of each particle there are to see, itself among them."""
-    return 1 if mirrors is None else len(mirrors.turn)
+    return 1 if mirrors is None else len(mirrors.reflections)
 
 
 def looks(mirrors, i) -> int:
@@ -122,36 +140,30 @@ def _typed_looks(mirrors, i):
 @register_jitable
 def _looks(mirrors, i):
     found = 1
-    for m in range(1, len(mirrors.turn)):
-        if _near(mirrors, m, i):
+    for m in range(1, len(mirrors.reflections)):
+        if _near(mirrors.reflections[m], mirrors.reach, i):
             found = 2 * m + 1
     return found
 
 
-def ends(mirrors, look, lists, row, k, i):
-    """The first entry and the one behind the last in ``lists`` of what particle i in column k looks at."""
-    begin = lists.begin[row]
-    end = begin + np.uint64(lists.lengths[row])
-    return (begin, end) if mirrors is None else _ends(mirrors, look, begin, end, k, i)
+def ends(mirrors, look, begin, end, k, i):
+    """The first entry of the lists and the one behind the last of what particle i in column k looks at;
+    its row is from ``begin`` to ``end``."""
+    return (begin, end) if mirrors is None or look == 0 else _ends(mirrors, look, begin, end, k, i)
 
 
 @overload(ends)
-def _typed_ends(mirrors, look, lists, row, k, i):
+def _typed_ends(mirrors, look, begin, end, k, i):
     if isinstance(mirrors, types.NoneType):
-        return lambda mirrors, look, lists, row, k, i: (
-            lists.begin[row],
-            lists.begin[row] + np.uint64(lists.lengths[row]),
-        )
-    return lambda mirrors, look, lists, row, k, i: _ends(
-        mirrors, look, lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row]), k, i
-    )
+        return lambda mirrors, look, begin, end, k, i: (begin, end)
+    return lambda mirrors, look, begin, end, k, i: _ends(mirrors, look, begin, end, k, i)
 
 
 @register_jitable
 def _ends(mirrors, look, begin, end, k, i):
     if look == 0:
         return begin, end
-    if begin == end or not _near(mirrors, (look + 1) // 2, i):
+    if begin == end or not _near(mirrors.reflections[(look + 1) // 2], mirrors.reach, i):
         return begin, begin
     if look % 2 == 1:
         return begin, end
@@ -159,35 +171,47 @@ def _ends(mirrors, look, begin, end, k, i):
 
 
 @register_jitable
-def _near(mirrors, m, i):
+def _near(reflection, reach, i):
     """Whether particle i is near all planes of an image."""
     near = True
-    for d in range(mirrors.turn.shape[1]):
-        away = abs(2.0 * i.position[d] - mirrors.shift[m, d])
-        near = near and (mirrors.turn[m, d] > 0.0 or away < 2.0 * mirrors.reach)
+    for d in range(len(reflection.turn)):
+        away = abs(2.0 * i.position[d] - reflection.shift[d])
+        near = near and (reflection.turn[d] > 0.0 or away < 2.0 * reach)
     return near
 
 
-def image(mirrors, look, i, j):
-    """Neighbours j as particle i sees them at a look: a field is a vector, a symmetric
-    matrix or a matrix by the number of its components."""
-    return j if mirrors is None or look == 0 else _image(mirrors, (look + 1) // 2, i, j)
+def at_look(mirrors, look):
+    """The reflection that a particle sees at a look; None where there are no mirrors."""
+    return None if mirrors is None else mirrors.reflections[(look + 1) // 2]
+
+
+@overload(at_look)
+def _typed_at_look(mirrors, look):
+    if isinstance(mirrors, types.NoneType):
+        return lambda mirrors, look: None
+    return lambda mirrors, look: mirrors.reflections[(look + 1) // 2]
+
+
+def image(reflection, i, j):
+    """Neighbours j as particle i sees them in a reflection, under ``gravity``: a field is a vector, a
+    symmetric matrix or a matrix by the number of its components."""
+    return j if reflection is None else _image(reflection, i, j)
 
 
 @overload(image)
-def _typed_image(mirrors, look, i, j):
-    if isinstance(mirrors, types.NoneType):
-        return lambda mirrors, look, i, j: j
-    return lambda mirrors, look, i, j: j if look == 0 else _image(mirrors, (look + 1) // 2, i, j)
+def _typed_image(reflection, i, j):
+    if isinstance(reflection, types.NoneType):
+        return lambda reflection, i, j: j
+    return lambda reflection, i, j: _image(reflection, i, j)
 
 
-def _image(mirrors, m, i, j):
+def _image(reflection, i, j):
     widths = (ABSENT if entry is None else len(entry) if isinstance(entry, tuple) else 0 for entry in j)
-    return _seen(type(j), tuple(widths))(mirrors, m, i, j)
+    return _seen(type(j), tuple(widths))(reflection, i, j)
 
 
 @overload(_image)
-def _typed_image_of(mirrors, m, i, j):
+def _typed_image_of(reflection, i, j):
     widths = (
         ABSENT if isinstance(kind, types.NoneType) else len(kind) if isinstance(kind, types.BaseTuple) else 0
         for kind in j.types
@@ -196,10 +220,10 @@ def _typed_image_of(mirrors, m, i, j):
 
 
 def _seen(view, widths: tuple[int, ...]):
-    """The function (mirrors, m, i, j) → image m of a ``view`` j whose entries have so many components."""
+    """The function (reflection, i, j) → the image of a ``view`` j whose entries have so many components."""
     dimensions = widths[view._fields.index("position")]
     parts = (_text(name, width, dimensions) for name, width in zip(view._fields, widths))
-    return unrolled("mirrors, m, i, j", f"return View{tuple_of(parts)}", View=view, weight=weight_behind)
+    return unrolled("reflection, i, j", f"return View{tuple_of(parts)}", View=view, weight=weight_behind)
 
 
 def _text(name: str, width: int, dimensions: int) -> str:
@@ -208,18 +232,18 @@ def _text(name: str, width: int, dimensions: int) -> str:
     if width == ABSENT:
         return f"j.{name}"
     if name == "position":
-        return tuple_of(f"mirrors.turn[m, {d}] * j.position[{d}] + mirrors.shift[m, {d}]" for d in axes)
+        return tuple_of(f"reflection.turn[{d}] * j.position[{d}] + reflection.shift[{d}]" for d in axes)
     if name == "velocity":
         return tuple_of(
-            f"mirrors.turn_velocity[m, {d}] * j.velocity[{d}] + mirrors.shift_velocity[m, {d}]" for d in axes
+            f"reflection.turn_velocity[{d}] * j.velocity[{d}] + reflection.shift_velocity[{d}]" for d in axes
         )
     if name == "pressure":
-        return "j.pressure + weight(mirrors, m, i, j)"
+        return "j.pressure + weight(reflection, i, j)"
     if name == "specific_volume":
         squared = "(i.sound_speed * i.sound_speed)"
-        return f"j.specific_volume / (1.0 + j.specific_volume * (weight(mirrors, m, i, j) / {squared}))"
+        return f"j.specific_volume / (1.0 + j.specific_volume * (weight(reflection, i, j) / {squared}))"
     if name == "density":
-        return "j.density + weight(mirrors, m, i, j) / (i.sound_speed * i.sound_speed)"
+        return "j.density + weight(reflection, i, j) / (i.sound_speed * i.sound_speed)"
     signs: dict[int, list[tuple[int, ...]]] = {
         dimensions: [(d,) for d in axes],
         dimensions * (dimensions + 1) // 2: [(d, e) for d in axes for e in axes if d <= e],
@@ -227,26 +251,26 @@ def _text(name: str, width: int, dimensions: int) -> str:
     }
     if not width:
         return f"j.{name}"
-    turns = (" * ".join(f"mirrors.turn[m, {d}]" for d in odd) for odd in signs[width])
+    turns = (" * ".join(f"reflection.turn[{d}]" for d in odd) for odd in signs[width])
     return tuple_of(f"{turn} * j.{name}[{place}]" for place, turn in enumerate(turns))
 
 
 @register_jitable
-def weight_behind(mirrors, m, i, j):
+def weight_behind(reflection, i, j):
     """By how much the pressure of a still column is higher at the image than at j itself, Pa."""
-    return i.rest_density * along(_way(mirrors, m, j), mirrors.gravity)
+    return i.rest_density * along(_way(reflection, j), reflection.gravity)
 
 
-def _way(mirrors, m, j):
+def _way(reflection, j):
     """From j to its image, m."""
-    return tuple(mirrors.turn[m, d] * x + mirrors.shift[m, d] - x for d, x in enumerate(j.position))
+    return tuple(reflection.turn[d] * x + reflection.shift[d] - x for d, x in enumerate(j.position))
 
 
 @overload(_way)
-def _typed_way(mirrors, m, j):
+def _typed_way(reflection, j):
     kinds = dict(zip(j.instance_class._fields, j.types))
     parts = (
-        f"mirrors.turn[m, {d}] * j.position[{d}] + mirrors.shift[m, {d}] - j.position[{d}]"
+        f"reflection.turn[{d}] * j.position[{d}] + reflection.shift[{d}] - j.position[{d}]"
         for d in range(len(kinds["position"]))
     )
-    return unrolled("mirrors, m, j", f"return {tuple_of(parts)}")
+    return unrolled("reflection, j", f"return {tuple_of(parts)}")

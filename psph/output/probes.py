@@ -84,7 +84,7 @@ class Probe:
         W V_j f_j of each."""
         store = domain.store
         # An image is as far from the point as the particle from the image of the point.
-        point = self.mirrors.seen(m, point) if m else tuple(map(float, point))
+        point = self.mirrors.reflections[m].seen(point) if m else tuple(map(float, point))
         rows = np.array([row for field in self.fields for row in store.rows[field]], np.int64)
         radius = kernel.support / kernel.inverse_h
         near = np.empty(store.owned, np.int64)
@@ -97,7 +97,9 @@ class Probe:
         terms = np.empty((len(near), 1 + len(rows)))
         weigh(point, kernel, domain.periods, store.view(), near, store.data, rows, terms)
         if m:
-            values = np.column_stack(list(values_behind(self.mirrors, m, store, near, self.fields)))
+            values = np.column_stack(
+                list(values_behind(self.mirrors.reflections[m], store, near, self.fields))
+            )
             terms[:, 1:] = terms[:, :1] * values
         return fluid, terms
 
@@ -129,8 +131,8 @@ class Front:
         return np.array(largest(domain.comm, [float(reach)]))
 
 
-def values_behind(mirrors, m: int, store, near: np.ndarray, fields: tuple[str, ...]) -> Iterator[np.ndarray]:
-    """Each component of some ``fields`` of image m of the columns ``near``."""
+def values_behind(reflection, store, near: np.ndarray, fields: tuple[str, ...]) -> Iterator[np.ndarray]:
+    """Each component of some ``fields`` of the images of the columns ``near`` in a reflection."""
 
     def at_near(name: str):
         value = store[name] if name in store else store.constants[name]
@@ -138,7 +140,7 @@ def values_behind(mirrors, m: int, store, near: np.ndarray, fields: tuple[str, .
 
     shown = tuple(dict.fromkeys(("position", *fields)))
     own = view_of(("rest_density", "sound_speed"))(*map(at_near, ("rest_density", "sound_speed")))
-    seen = image(mirrors, 2 * m, own, view_of(shown)(*map(at_near, shown)))
+    seen = image(reflection, own, view_of(shown)(*map(at_near, shown)))
     for field in fields:
         value = getattr(seen, field)
         yield from value if isinstance(value, tuple) else (value,)

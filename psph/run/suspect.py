@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.composition import terms
-from psph.composition.mirrors import image, images
+from psph.composition.mirrors import at_look, image, images
 from psph.composition.pair import geometry, take
 from psph.composition.terms import added, pushed
 from psph.fields import seen_at
@@ -130,7 +130,7 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
     with np.errstate(all="ignore"):
         for m in range(images(mirrors)):
             for k in near if m else near[near != column]:
-                j = image(mirrors, 2 * m, i, take(view, k))
+                j = image(at_look(mirrors, 2 * m), i, take(view, k))
                 x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
                 pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
         return tuple(_share(call, i, pairs, simulation.dt) for call in simulation.plan.called)

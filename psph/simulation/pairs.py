@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.composition import terms
-from psph.composition.mirrors import ends, image, looks
+from psph.composition.mirrors import at_look, ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
 from psph.composition.terms import added, pushed, store
@@ -59,7 +59,7 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
     ranks.
     """
     effects, reductions = summed.effects, summed.reductions
-    records, lists = around.records, around.lists
+    records, lists, mirrors = around.records, around.lists, around.mirrors
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(around.low)
         i = take(view, k)
@@ -68,10 +68,13 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
         totals = spread(terms.start(reductions, i), records)
-        for look in range(looks(around.mirrors, i)):
-            begin, end = ends(around.mirrors, look, lists, row, k, i)
+        for look in range(looks(mirrors, i)):
+            begin = lists.begin[row]
+            end = begin + np.uint64(lists.lengths[row])
+            begin, end = ends(mirrors, look, begin, end, k, i)
+            reflection = at_look(mirrors, look)
             for n in range(begin, end, width_of(records)):
-                j = image(around.mirrors, look, i, fetch(around.shown, records, lists.lists, n))
+                j = image(reflection, i, fetch(around.shown, records, lists.lists, n))
                 x_ij = difference(metric.space, i, j, records, k)
                 pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
                 rate = rate + terms.density_rate(effects, i, j, pair)

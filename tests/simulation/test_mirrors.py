@@ -8,7 +8,7 @@ import pytest
 from drafts import draft, refusal
 from mpi4py import MPI
 
-from psph.composition.mirrors import ABOVE, BELOW, Plane, image, images, mirrors_of
+from psph.composition.mirrors import ABOVE, BELOW, Plane, at_look, image, images, mirrors_of
 from psph.fields import view_of
 from psph.output.ledger import Ledger
 from psph.output.probes import Probe
@@ -161,14 +161,14 @@ def test_images_are_reflections(dim, sticks):
         tuple(vector),
     )
     i = SimpleNamespace(rest_density=rho, sound_speed=c)
-    assert image(mirrors, 0, i, j) is j
+    assert image(None, i, j) is j and image(at_look(mirrors, 0), i, j) == j
     found = {}
     for m in range(1, 4):
-        seen = image(mirrors, 2 * m, i, j)
-        assert seen == image(mirrors, 2 * m - 1, i, j)
-        turn = np.diag(mirrors.turn[m])
+        seen = image(at_look(mirrors, 2 * m), i, j)
+        assert at_look(mirrors, 2 * m - 1) == at_look(mirrors, 2 * m) == mirrors.reflections[m]
+        turn = np.diag(mirrors.reflections[m].turn)
         there = np.array(seen.position)
-        found[tuple(mirrors.turn[m][:2])] = there, np.array(seen.velocity)
+        found[tuple(mirrors.reflections[m].turn[:2])] = there, np.array(seen.velocity)
         assert np.array(seen.crowding) == pytest.approx(turn @ vector)
         assert np.array(seen.strain) == pytest.approx((turn @ symmetric @ turn)[upper])
         assert np.array(seen.matrix).reshape(dim, dim) == pytest.approx(turn @ full @ turn)
@@ -184,10 +184,16 @@ def test_images_are_reflections(dim, sticks):
     assert found[-1.0, 1.0] == (pytest.approx(first * x + across[0]), pytest.approx(slides))
     beyond = (lambda u: 2.0 * np.array(belt) - u) if sticks else (lambda u: second * u)
     assert found[1.0, -1.0] == (pytest.approx(second * x + across[1]), pytest.approx(beyond(v)))
-    assert found[-1.0, -1.0] == (
-        pytest.approx(first * second * x + sum(across)),
-        pytest.approx(beyond(slides)),
-    )
+    both = 0.5 * (beyond(slides) + first * beyond(v))  # whichever is seen in the other
+    assert found[-1.0, -1.0] == (pytest.approx(first * second * x + sum(across)), pytest.approx(both))
+
+
+def test_the_image_in_a_corner_of_a_lid_and_a_side_goes_as_the_fluid_does():
+    """Seen in the side first it would go at v + 2U, in the lid first at v − 2U: either blows a cavity up."""
+    lid, side = Plane(1, ABOVE, 1.0, True, (0.7, 0.0)), Plane(0, ABOVE, 1.0, True, (0.0, 0.0))
+    j = view_of(("position", "velocity"))((0.9, 0.95), (0.3, -0.2))
+    seen = image(mirrors_of((side, lid), (0.0, 0.0), 0.3).reflections[3], None, j)
+    assert seen.position == pytest.approx((1.1, 1.05)) and seen.velocity == pytest.approx((0.3, -0.2))
 
 
 def test_fluid_at_a_mirror_has_no_free_surface_there(tmp_path):
