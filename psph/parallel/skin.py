@@ -127,24 +127,25 @@ class Skin:
             store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach, grid.periodic
         )
         mine = largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic)
-        found = np.sqrt(largest(domain.comm, [*mine, *self._across_planes()]))
-        self._apart, self._closing, self.drifted = found[:3].tolist()
-        if self._planes:
-            self._apart += 2.0 * float(found[3])
-            self._closing += 2.0 * float(found[4])
+        found = largest(domain.comm, [*mine, *self._across_planes()]).tolist()
+        apart, closing, drifted, *across = found
+        # From an image a particle differs across the plane by the sum of both, along it as from the other.
+        ways, speeds = across[::2], across[1::2]
+        self._apart, self._closing = (apart + 4.0 * sum(ways)) ** 0.5, (closing + 4.0 * sum(speeds)) ** 0.5
+        self.drifted = drifted**0.5
         self._since = 0.0
 
     def _across_planes(self) -> list[float]:
-        """Squares of the farthest way and of the highest speed of this rank's particles across a mirror
-        that they are near; nothing where there is none."""
+        """Squares of the farthest way, m², and of the highest speed, m²/s², of this rank's particles across
+        the mirrors that they are near, of each axis with mirrors in turn."""
         store = self.domain.store
-        most = [0.0, 0.0]
+        most: dict[int, list[float]] = {plane.axis: [0.0, 0.0] for plane in self._planes}
         for plane in self._planes:
             x, listed, v = (
                 store[name][plane.axis][store.inner]
                 for name in ("position", "listed_position", "predicted_velocity")
             )
             near = np.abs(x - plane.at) < NEAR_PLANE * self.domain.cutoff
-            for place, ways in enumerate((x - listed, v)):
-                most[place] = max(most[place], float(np.square(ways[near]).max(initial=0.0)))
-        return most if self._planes else []
+            found = (float(np.square(ways[near]).max(initial=0.0)) for ways in (x - listed, v))
+            most[plane.axis] = list(map(max, most[plane.axis], found))
+        return [square for squares in most.values() for square in squares]

@@ -103,5 +103,5 @@ def test_the_form_follows_the_pressure_gradient_and_the_step_the_coefficient():
         physics = SimpleNamespace(gradient_correction=least, pressure_gradient=gradient)
         assert type(AcousticDamper(0.4).in_scene(SimpleNamespace(physics=physics))) is form
     scene = SimpleNamespace(smoothing_length=H, sound_speed=C)
-    assert AcousticDamper(0.5).longest_step(scene) == pytest.approx(0.5 * H / C)
-    assert AcousticDamper(0.0).longest_step(scene) == float("inf")
+    assert AcousticDamper(0.25).longest_step(scene) == pytest.approx(0.4 * H / C)
+    assert AcousticDamper(1.0).longest_step(scene) == pytest.approx(0.25 * H / C)

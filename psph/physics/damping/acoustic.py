@@ -9,9 +9,9 @@ from psph.physics.facts import Facts
 from psph.physics.fluid.pressure import is_corrected
 from psph.vectors import add, dot, scale, times
 
-STABLE = 0.25
-"""αcΔt/h must stay below: the wave that fades fastest does so at (1.42)² αc/h over kernels, lattices and
-h/dx, and the rate of compression is that of the pass before."""
+STABLE = 0.5
+"""(1 + α) cΔt/h stays below: the rate of compression is that of the pass before, and with 0.3 at 0.5 h/c a
+tank of water gains energy, with 0.3 at 0.4 and 1.0 at 0.25 it does not."""
 
 
 class AcousticDamper(NamedTuple):
@@ -54,9 +54,8 @@ class AcousticDamper(NamedTuple):
         return -(i.compression * v_i * v_i + j.compression * v_j * v_j) * pair.m_dw_r
 
     def longest_step(self, scene):
-        """Δt ≤ 0.25 h/(α c), s: see STABLE."""
-        damping = self.alpha * scene.sound_speed
-        return STABLE * scene.smoothing_length / damping if damping > 0.0 else float("inf")
+        """Δt ≤ 0.5 h/((1 + α) c), s: see STABLE."""
+        return STABLE * scene.smoothing_length / ((1.0 + self.alpha) * scene.sound_speed)
 
 
 class CorrectedDamper(NamedTuple):
