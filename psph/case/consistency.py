@@ -8,6 +8,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from psph.case.errors import advise
 from psph.case.keys import AXES, Table
 from psph.case.parameters import last_part
+from psph.case.schemes import STABLE
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
 from psph.physics.walls.conditions import MIRROR
@@ -21,6 +22,7 @@ Finding = tuple[Location, Any, str]
 def contradictions(case) -> list[InitErrorDetails]:
     """All contradictions between the keys of a case."""
     rules = (
+        _named,
         _dimensions,
         _square,
         _axes,
@@ -45,6 +47,15 @@ def contradictions(case) -> list[InitErrorDetails]:
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
         for loc, value, says in found
     ]
+
+
+def _named(case) -> Iterator[Finding]:
+    if case.profile and case.scheme != STABLE:
+        yield (
+            ("profile",),
+            case.profile,
+            f'it changes the default scheme, and scheme = "{case.scheme}" is another; remove one of the two',
+        )
 
 
 def walk(value: Any, loc: Location = ()) -> Iterator[tuple[Location, Any]]:

@@ -193,7 +193,7 @@ class Case(Table):
         "stable: the default; sph: plain SPH; ssph: the paper's; for keys that the case does not give", STABLE
     )
     profile: Literal[tuple(PROFILES)] | None = key(
-        "numerical choices by one name, for keys that the case does not give", None, otherwise="no profile"
+        "changes of the default scheme by one name", None, otherwise="no profile"
     )
     precision: Literal["double", "mixed"] = key(
         "mixed: pairs in single precision, particles and time integration in double", "double"

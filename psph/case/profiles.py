@@ -9,64 +9,22 @@ OFF = "off"
 """The value that removes a key from the case."""
 
 PROFILES: dict[str, dict[str, Any]] = {
-    "quick": {
-        "precision": "mixed",
-        "space.kernel": "wendland-c2",
-        "space.smoothing": 1.3,
-        "time.cfl": 0.4,
-        "physics.pressure_gradient": "symmetric",
-        "physics.density_diffusion": 0.05,
-        "physics.particle_shifting": OFF,
-        "physics.gradient_correction": OFF,
-    },
-    "engineering": {
-        "precision": "double",
-        "space.kernel": "wendland-c2",
-        "space.smoothing": 1.4,
-        "time.cfl": 0.3,
-        "physics.pressure_gradient": "symmetric",
-        "physics.density_diffusion": 0.1,
-        "physics.particle_shifting": OFF,
-        "physics.gradient_correction": 0.5,
-    },
-    "reference": {
-        "precision": "double",
-        "space.kernel": "wendland-c2",
-        "space.smoothing": 2.0,
-        "time.cfl": 0.3,
-        "physics.pressure_gradient": "symmetric",
-        "physics.density_diffusion": 0.1,
-        "physics.particle_shifting": OFF,
-        "physics.gradient_correction": 0.5,
-    },
+    "quick": {"precision": "mixed"},
+    "reference": {"physics.local_potential": OFF},
 }
-"""Keys and values; docs/accuracy.md has the error and cost of each.  Neither shifting nor pressure
-from differences works at a free surface yet, so these profiles use neither.  Half these steps change no
-error of the cases by more than 2 % of itself, sound apart."""
+"""By which keys each differs from the default scheme; docs/accuracy.md has the error and cost of each."""
 
-PERIODIC: dict[str, dict[str, Any]] = {
-    "quick": {
-        "physics.pressure_gradient": "difference",
-        "physics.particle_shifting": 0.1,
-    },
-    "engineering": {
-        "physics.pressure_gradient": "difference",
-        "physics.particle_shifting": 0.1,
-    },
-    "reference": {
-        "physics.pressure_gradient": "difference",
-        "physics.density_diffusion": 0.2,
-        "physics.particle_shifting": 0.1,
-    },
+CLOSED: dict[str, dict[str, Any]] = {
+    "quick": PROFILES["quick"],
+    "reference": {"physics.position_shift": OFF, "physics.particle_shifting": 0.1},
 }
-"""The keys that differ in a domain that is periodic along every axis: the fluid has no surface, and
-under tension particles clump without shifting."""
+"""The same in a domain that is periodic along every axis.  There the fluid has no surface, and a shift may
+carry velocity along, which at a surface ruins the flow."""
 
 
 def choices(profile: str, dimensions: int, periodic: tuple[str, ...]) -> dict[str, Any]:
     """Dotted keys and values of a profile, in a domain that is periodic along these axes."""
-    closed = len(set(periodic)) == dimensions
-    return PROFILES[profile] | (PERIODIC[profile] if closed else {})
+    return (CLOSED if len(set(periodic)) == dimensions else PROFILES)[profile]
 
 
 def fill(data: dict[str, Any], touched: list[tuple[str | int, ...]]) -> dict[tuple[str, ...], str]:
@@ -77,17 +35,18 @@ def fill(data: dict[str, Any], touched: list[tuple[str | int, ...]]) -> dict[tup
     """
     filled: dict[tuple[str, ...], str] = {}
     data["scheme"] = scheme_of(data)
-    for name, keys in (("profile", _profile_keys(data)), ("scheme", _scheme_keys(data))):
-        for key, value in keys.items():
-            path = tuple(key.split("."))
-            table = data.setdefault(path[0], {}) if len(path) > 1 else data
-            if not isinstance(table, dict) or any(_share(path, other) for other in touched):
-                continue
-            if value == OFF and (name,) in touched:
-                table.pop(path[-1], None)
-            elif value != OFF and ((name,) in touched or path[-1] not in table):
-                table[path[-1]] = value
-                filled[path] = f"{name} {data[name]}"
+    named = {key: ("scheme", value) for key, value in _scheme_keys(data).items()}
+    named |= {key: ("profile", value) for key, value in _profile_keys(data).items()}
+    for key, (name, value) in named.items():
+        path = tuple(key.split("."))
+        table = data.setdefault(path[0], {}) if len(path) > 1 else data
+        if not isinstance(table, dict) or any(_share(path, other) for other in touched):
+            continue
+        if value == OFF and (name,) in touched:
+            table.pop(path[-1], None)
+        elif value != OFF and ((name,) in touched or path[-1] not in table):
+            table[path[-1]] = value
+            filled[path] = f"{name} {data[name]}"
     return filled
 
 

@@ -34,8 +34,8 @@ An effect is on when its key is there; `{}` takes all its defaults. A bare value
 first key of its table: `free_surface = 0.9` means `free_surface = { threshold = 0.9 }`.
 
 A `scheme` sets the keys that the case does not give itself; without one it is `"stable"`, the default
-scheme ([scheme.md](scheme.md)). A `profile` sets further numerical choices and replaces the default
-scheme by plain SPH: [accuracy.md](accuracy.md#profiles) has the keys of each profile and what they cost.
+scheme ([scheme.md](scheme.md)). A `profile` changes a few keys of the default
+scheme, towards speed or accuracy: [accuracy.md](accuracy.md#profiles) has the keys and what they cost.
 `"off"` switches off an effect of either. Given for one run, `--set profile=reference` or `--set
 scheme=sph`, they replace the keys of the file.
 """

@@ -51,8 +51,8 @@ def by_default(key: str) -> str:
 
 
 def scheme_of(data: Mapping[str, Any]) -> Any:
-    """The scheme that a file names; else the default scheme, or plain SPH with a profile."""
-    return data.get("scheme", PLAIN if "profile" in data else STABLE)
+    """The scheme that a file names; else the default scheme."""
+    return data.get("scheme", STABLE)
 
 
 def scheme_keys(scheme: str, free_surface: bool) -> dict[str, Any]:

@@ -55,12 +55,6 @@ def test_a_scheme_on_the_command_line_wins(tmp_path):
     assert draft(tmp_path, text, "scheme=ssph").space.kernel == "hyperbolic"
 
 
-def test_beside_a_profile_the_scheme_is_plain(tmp_path):
-    case = draft(tmp_path, 'profile = "quick"\n' + BARE)
-    assert case.scheme == "sph" and case.physics.pair_potential is None
-    assert case.space.kernel == "wendland-c2"
-
-
 def test_ssph_has_the_pressure_gradient_that_the_paper_has_for_the_case(tmp_path):
     ssph = 'scheme = "ssph"\n' + BARE
     assert draft(tmp_path, ssph).physics.pressure_gradient == "minimum"

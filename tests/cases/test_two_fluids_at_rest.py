@@ -43,7 +43,7 @@ def fastest(tmp_path, *keys):
     [
         ("scheme=sph", "physics.particle_shifting=0.1", "physics.density_diffusion=0.1"),
         ("profile=quick",),
-        ("profile=engineering",),
+        ("profile=reference",),
     ],
 )
 def test_they_stay_at_rest(tmp_path, keys):

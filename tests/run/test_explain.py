@@ -82,13 +82,16 @@ def test_one_rank_of_an_open_domain_sends_nothing_and_two_send_to_one_side(tmp_p
 
 
 def test_explain_says_what_comes_from_the_profile(tmp_path):
-    text = 'profile = "reference"\n' + BOX.replace("jitter", "viscosity = 1e-3\njitter")
+    text = 'profile = "quick"\n' + BOX.replace("jitter", "viscosity = 1e-3\njitter").replace(
+        'scheme = "sph"\n', ""
+    )
     lines = list(explain(Scene(draft(tmp_path, text, "space.smoothing=1.2")), 1))
-    assert "  profile     reference, except space.smoothing" in lines
-    assert "              physics.gradient_correction = 0.5" in lines
+    assert "  scheme      stable, except space.smoothing" in lines
+    place = lines.index("  profile     quick")
+    assert lines[place + 1] == "              precision = mixed"
     assert not any("space.smoothing =" in line for line in lines)
-    because = [line for line in lines if "because:" in line and "profile reference" in line]
-    assert any("physics.density_diffusion = { delta = " in line for line in because)
+    because = [line for line in lines if "because:" in line and "scheme stable" in line]
+    assert any("physics.position_shift = " in line for line in because)
     assert not any("viscosity" in line for line in because)
     assert not any("profile" in line for line in explain(Scene(draft(tmp_path, BOX)), 1))
 

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from psph.case.profiles import PROFILES
+from psph.case.profiles import OFF, PROFILES
 from psph.lab.study.ladder import PROFILE, SPACING, toml
 from psph.lab.study.report import percent, seconds
 from psph.lab.study.runs import DONE
@@ -58,13 +58,13 @@ def _profiles(every: list[dict]) -> Iterator[str]:
     """A line for each case and spacing: error and seconds of each profile."""
     yield "## The cost of profiles"
     yield ""
-    yield f"| case | error of | spacing | {' | '.join(PROFILES)} |"
-    yield "|---" * (3 + len(PROFILES)) + "|"
+    yield f"| case | error of | spacing | default scheme | {' | '.join(PROFILES)} |"
+    yield "|---" * (4 + len(PROFILES)) + "|"
     for kept in every:
-        rows = {(row.get(SPACING), row[PROFILE]): row for row in kept["rows"] if PROFILE in row}
+        rows = {(row.get(SPACING), row.get(PROFILE, OFF)): row for row in kept["rows"]}
         what = kept["error"].partition(" ")[0]
         for spacing in sorted({dx for dx, _ in rows if dx}, reverse=True):
-            cells = (_cell(rows.get((spacing, name))) for name in PROFILES)
+            cells = (_cell(rows.get((spacing, name))) for name in (OFF, *PROFILES))
             yield f"| {Path(kept['case']).stem} | {what} | {toml(spacing)} | {' | '.join(cells)} |"
     yield ""
 
