@@ -504,9 +504,10 @@ def test_profiles_are_as_the_page_has_them():
     told = {key: [cell.split(" / ") for cell in cells.split(" | ")] for key, cells in rows}
     for place, name in enumerate(profiles.PROFILES):
         plain, periodic = (profiles.choices(name, 2, axes) for axes in ((), ("x", "y")))
-        assert list(plain) == list(told)
+        assert {*plain, *periodic} <= {*told}
         for key, cells in told.items():
-            assert [cells[place][0], cells[place][-1]] == [str(plain[key]), str(periodic[key])], key
+            wanted = [str(keys.get(key, "–")) for keys in (plain, periodic)]
+            assert [cells[place][0], cells[place][-1]] == wanted, key
 
 
 def test_the_theory_has_a_row_for_every_effect_and_its_claims():
