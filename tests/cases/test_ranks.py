@@ -24,6 +24,7 @@ END = {
     "dam_break": 0.02,
     "dam_break_3d": 0.01,
     "dam_break_on_box": 0.01,
+    "impact_pressure": 0.01,
     "minimal": 0.05,
     "taylor_green": 0.05,
     "poiseuille": 0.02,
