@@ -171,13 +171,15 @@ def _domain(case) -> Iterator[Finding]:
 
 def _mirrored(case) -> Iterator[Finding]:
     """Mirrors where none can be."""
-    space, gravity = case.space, case.physics.gravity
+    space, gravity, central = case.space, case.physics.gravity, case.physics.central_force
     walls = [("walls", name, "condition") for name, wall in case.walls.items() if wall.condition == MIRROR]
     for loc in (*([("space", "symmetry")] if space.symmetry else ()), *walls):
         if space.dimensions == 1:
             yield loc, ..., "mirrors need two or three dimensions"
         if case.precision == "mixed":
             yield loc, ..., 'mirrors do not work with precision = "mixed"; use "double"'
+        if case.physics.pressure_gradient == "stress_points":
+            yield loc, ..., 'mirrors do not work with physics.pressure_gradient = "stress_points"'
     for side in space.symmetry:
         axis, end = AXES.index(side[0]), side[2:]
         loc = ("space", "symmetry")
@@ -187,6 +189,11 @@ def _mirrored(case) -> Iterator[Finding]:
             yield loc, side, f"the plane stands at the end of the domain; give space.{end}"
         elif side[0] in space.periodic:
             yield loc, side, f"the axis {side[0]} is periodic; remove one of the two"
+        elif (
+            central is not None
+            and abs(central.center[axis] - getattr(space, end)[axis]) > 1e-9 * space.spacing
+        ):
+            yield loc, side, "physics.central_force pulls through it; put its center on the plane"
         elif gravity is not None and gravity.acceleration[axis]:
             yield loc, side, 'gravity pulls through it; a wall with condition = "mirror" bears weight'
 

@@ -41,13 +41,15 @@ ABSENT = -1
 
 class Reflection(NamedTuple):
     """An image of a particle stands at ``turn`` x + ``shift``, m, and moves with ``turn_velocity`` v +
-    ``shift_velocity``, m/s.  ``gravity`` in m/s², None on an axis without: a still column goes on behind the
+    ``shift_velocity``, m/s.  ``turn_strain`` are the signs that the components of a rate of strain take,
+    upper triangle by rows.  ``gravity`` in m/s², None on an axis without: a still column goes on behind the
     plane."""
 
     turn: tuple[float, ...]
     shift: tuple[float, ...]
     turn_velocity: tuple[float, ...]
     shift_velocity: tuple[float, ...]
+    turn_strain: tuple[float, ...]
     gravity: tuple[float | None, ...]
 
     def seen(self, point) -> tuple[float, ...]:
@@ -92,8 +94,22 @@ def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...]) -> Refle
     for plane in chosen:
         turn[plane.axis], shift[plane.axis] = -1.0, 2.0 * plane.at
     seen = [_velocities(order, dimensions) for order in permutations(chosen)]
-    rows = (turn, shift, *np.mean(seen, axis=0))
+    turn_velocity, shift_velocity = np.mean(seen, axis=0)
+    strain = _strain_turned({plane.axis for plane in chosen if plane.sticks}, turn, turn_velocity)
+    rows = (turn, shift, turn_velocity, shift_velocity, strain)
     return Reflection(*(tuple(row.tolist()) for row in rows), gravity)
+
+
+def _strain_turned(sticking: set[int], turn: np.ndarray, turn_velocity: np.ndarray) -> np.ndarray:
+    """Signs of the components of a rate of strain, upper triangle by rows.
+
+    ∂v_d/∂x_e takes that of v_d times that of x_e.  Where these differ for d, e and e, d, across a plane that
+    the fluid sticks to, the shear counts, ∂v/∂n along the plane: the other is zero on it.
+    """
+    signs = np.outer(turn_velocity, turn)
+    for n in sticking:
+        signs[n] = np.where(np.arange(len(turn)) == n, signs[n], signs[:, n])
+    return signs[np.triu_indices(len(turn))]
 
 
 def _velocities(order: Sequence[Plane], dimensions: int):
@@ -244,6 +260,10 @@ def _text(name: str, width: int, dimensions: int) -> str:
         return f"j.specific_volume / (1.0 + j.specific_volume * (weight(reflection, i, j) / {squared}))"
     if name == "density":
         return "j.density + weight(reflection, i, j) / (i.sound_speed * i.sound_speed)"
+    if name == "strain":
+        return tuple_of(f"reflection.turn_strain[{place}] * j.strain[{place}]" for place in range(width))
+    if name == "slip":
+        return tuple_of(f"reflection.turn_velocity[{d}] * j.slip[{d}]" for d in axes)
     signs: dict[int, list[tuple[int, ...]]] = {
         dimensions: [(d,) for d in axes],
         dimensions * (dimensions + 1) // 2: [(d, e) for d in axes for e in axes if d <= e],

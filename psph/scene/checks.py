@@ -54,6 +54,7 @@ def faults(scene: Scene) -> Iterator[str]:
         return  # the others would only follow from it
     places = list(_spacing_faults(scene)) or [
         *_domain_faults(scene),
+        *_mirror_faults(scene),
         *_site_faults(scene),
         *_probe_faults(scene),
         *_exact_faults(scene),
@@ -152,6 +153,20 @@ def _domain_faults(scene: Scene) -> Iterator[str]:
             yield (
                 f"space.upper: the domain is {period:.6g} m long along the periodic axis {name}, "
                 f"the kernel needs {least:.6g}; make it longer or space.spacing smaller"
+            )
+
+
+def _mirror_faults(scene: Scene) -> Iterator[str]:
+    """Two mirrors so near each other that an image of an image would be seen."""
+    reach = scene.kernel.support * scene.smoothing_length * (1.0 + scene.case.neighbours.skin)
+    faces: dict[int, list[float]] = {}
+    for plane in scene.mirror_planes:
+        faces.setdefault(plane.axis, []).append(plane.at)
+    for axis, at in faces.items():
+        if max(at) - min(at) < reach and len(at) > 1:
+            yield (
+                f"space: the mirrors at {AXES[axis]} = {min(at):g} and {max(at):g} m are nearer to each "
+                f"other than the kernel and the skin reach, {reach:.4g} m; make space.spacing smaller"
             )
 
 

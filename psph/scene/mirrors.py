@@ -25,6 +25,10 @@ def planes_of(case: Case) -> tuple[Plane, ...]:
     seen: dict[tuple[int, int], str] = {}
     for key, plane in found:
         _refuse_between_sites(case, key, plane)
+        if AXES[plane.axis] in case.space.periodic:
+            raise CaseError(
+                [f"{case.file}: {key}: the axis {AXES[plane.axis]} is periodic; remove one of the two"]
+            )
         first = seen.setdefault((plane.axis, plane.side), key)
         if first != key:
             raise CaseError([f"{case.file}: {key}: {first} mirrors the same side; remove one of the two"])
@@ -68,7 +72,22 @@ def _of_wall(case: Case, name: str, wall, held: tuple[Corner, Corner]):
             ]
         )
     still = (0.0,) * case.space.dimensions
+    if any(wall.velocity or ()) and not wall.no_slip:
+        raise CaseError(
+            [
+                f"{case.file}: walls.{name}.velocity: without no_slip a mirror drags nothing along; set "
+                "no_slip = true, or leave the velocity out"
+            ]
+        )
     for axis, side, at in faces:
+        if (wall.velocity or still)[axis]:
+            raise CaseError(
+                [
+                    f"{case.file}: walls.{name}.velocity: {wall.velocity[axis]:g} m/s across its face "
+                    f"{AXES[axis]} = {at:g} m: a mirror moves along its face alone; give each face a wall "
+                    "of its own"
+                ]
+            )
         yield Plane(axis, side, at, wall.no_slip, wall.velocity or still)
 
 
