@@ -32,6 +32,7 @@ END = {
     "standing_wave": 0.02,
     "elliptic_drop": 1e-3,
     "gresho": 0.05,
+    "gresho_default": 0.05,
     "sound_wave": 2.0,
     "still_water": 0.02,
     "hard/drop": 0.05,

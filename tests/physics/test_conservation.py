@@ -66,7 +66,8 @@ def rates(effect, p):
     n, dim = len(p.mass), len(p.position)
     if hasattr(effect, "writes"):
         stored = [sums_of(effect, p, k) for k in range(n)]
-        p = p._replace(**{effect.writes.name: tuple(map(np.array, zip(*stored)))})
+        values = np.array(stored).T
+        p = p._replace(**{effect.writes.name: tuple(values) if values.ndim > 1 else values})
     forces, moves = np.zeros((n, dim)), np.zeros((n, dim))
     for a in range(n):
         for b in set(range(n)) - {a}:
