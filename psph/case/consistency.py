@@ -6,17 +6,15 @@ from typing import Any
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.errors import advise
+from psph.case.findings import Finding, Location
 from psph.case.keys import AXES, Table
+from psph.case.measured import due, gauged, probed
 from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
 from psph.physics.walls.conditions import MIRROR
 from psph.theory.solutions.catalogue import SOLUTIONS, known
-
-Location = tuple[str | int, ...]
-Finding = tuple[Location, Any, str]
-"""Location, value, and a message that says what is wrong and what to do."""
 
 
 def contradictions(case) -> list[InitErrorDetails]:
@@ -35,11 +33,12 @@ def contradictions(case) -> list[InitErrorDetails]:
         _moved,
         _regions,
         _friction,
-        _probed,
+        probed,
+        gauged,
         _names,
         _single,
         _stepped,
-        _due,
+        due,
     )
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
     return [
@@ -233,14 +232,6 @@ def _exact(case) -> Iterator[Finding]:
                 )
 
 
-def _probed(case) -> Iterator[Finding]:
-    for name, probe in case.probes.items():
-        if (probe.position is None) == (probe.front is None):
-            yield ("probes", name), ..., "give either position or front"
-        elif probe.extent and (probe.front or min(probe.extent) < 0.0):
-            yield ("probes", name, "extent"), probe.extent, "give lengths of 0 or more, beside a position"
-
-
 def _continued(case) -> Iterator[Finding]:
     for name, wall in case.walls.items():
         if wall.continues is not None and wall.continues not in case.fluids:
@@ -326,9 +317,6 @@ LARGEST_LOSS = 1e-6
 MOST_STEPS = LARGEST_LOSS * 2.0**53
 """Equal steps from zero on until they are: a time has 53 binary digits."""
 
-MOST_MOMENTS = 1e9
-"""Moments of one cadence: far below 1e12, where rounding would shift them."""
-
 
 def _stepped(case) -> Iterator[Finding]:
     end, step = case.time.end, case.time.step
@@ -341,20 +329,6 @@ def _stepped(case) -> Iterator[Finding]:
                 f"the time; give at least {1.1 * end / MOST_STEPS:.2g}"
             ),
         )
-
-
-def _due(case) -> Iterator[Finding]:
-    end = case.time.end
-    for name, interval in case.output:
-        if interval is not None and end > MOST_MOMENTS * interval:
-            yield (
-                ("output", name),
-                interval,
-                (
-                    f"gives more than {MOST_MOMENTS:.0e} outputs until {end:g} s; give at least "
-                    f"{1.1 * end / MOST_MOMENTS:.2g} (an interval below the time step writes every step)"
-                ),
-            )
 
 
 def _effects(case) -> Iterator[Finding]:

@@ -5,8 +5,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from psph.case.consistency import Location
 from psph.case.errors import advise, dotted, nearest
+from psph.case.findings import Location
 from psph.case.structure import alternatives, find, keys_of, places_of
 from psph.errors import shortened
 

@@ -12,6 +12,7 @@ from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_
 from pydantic_core import PydanticCustomError
 
 from psph.case.consistency import contradictions
+from psph.case.gauges import Gauge
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
@@ -208,6 +209,9 @@ class Case(Table):
     )
     walls: dict[Name, Wall] = key("the walls by name: particles that do not move", {}, max_length=MANY)
     probes: dict[Name, Probe] = key("the probes by name: points where fields are measured over time", {})
+    gauges: dict[Name, Gauge] = key(
+        "the gauges by name: forces, levels, flows and others, each with a table of its own", {}
+    )
     perturbations: Annotated[tuple[Perturbation, ...], Strict(False)] = key(
         "kicks and shifts of single particles", ()
     )
@@ -239,6 +243,11 @@ class Case(Table):
     def name(self) -> str:
         """The file's name without folder and ending."""
         return Path(self._file).stem
+
+    @property
+    def loaded(self) -> set[str]:
+        """Names of the walls on which the fluid's push is asked for."""
+        return {name for gauge in self.gauges.values() if gauge.force for name in gauge.force.on}
 
     @cached_property
     def presets(self) -> dict[str, tuple[str, Any]]:
@@ -289,6 +298,10 @@ class Case(Table):
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
         for fluid in self.fluids.values():
             _fill(fluid, velocity=zeros, velocity_center=zeros)
+        for gauge in self.gauges.values():
+            _fill(gauge, every=self.output.probes)
+            if gauge.force:
+                _fill(gauge.force, about=zeros)
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
         for wall in self.walls.values():

@@ -119,6 +119,9 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
         yield f"  region      {type(region).__name__}: {_first_line(region)}"
     for name, table in scene.tables.items():
         yield f"  table       {name}.csv: {_first_line(table)}"
+    for name, gauge in case.gauges.items():
+        measures = _first_line(getattr(gauge, gauge.kind))
+        yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in gauge-{name}.csv"
     yield (
         f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
         f"(h/dx {case.space.smoothing:g}), support {support:g} m, "

@@ -12,6 +12,7 @@ from psph.case.extensions import files_of
 from psph.errors import LONGEST_QUOTE, one_line, shortened
 from psph.output.checkpoint import COPY, Saved, checkpoints, half_written, remove_checkpoints
 from psph.output.errors import OutputError, together
+from psph.output.gauges import gauges_of
 from psph.output.pictures import remove_pictures
 from psph.output.tables import ERRORS, LOG, PROBES
 from psph.run.post_mortem import PICTURE, REPORT, remove_post_mortem
@@ -169,6 +170,6 @@ def _files_of_a_run(scene, folder: Path) -> Iterator[Path]:
     yield from checkpoints(folder)
     yield from half_written(folder)
     frames = scene.case.name
-    tables = (f"{name}.csv" for name in scene.tables)
+    tables = (f"{name}.csv" for name in (*scene.tables, *gauges_of(scene)))
     for name in (f"{frames}.xmf", f"{frames}.h5.new", LOG, PROBES, ERRORS, *tables, REPORT, PICTURE):
         yield folder / name

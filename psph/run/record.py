@@ -15,6 +15,7 @@ from psph.output.accuracy import Accuracy
 from psph.output.checkpoint import Saved
 from psph.output.errors import together
 from psph.output.frames import FrameFile
+from psph.output.gauges import gauges_of
 from psph.output.probes import Front, Probe, sensor
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
 from psph.simulation.step import Simulation
@@ -103,7 +104,7 @@ class Record:
                     folder / f"{name}.csv", ["time", *table.columns(scene)], comm, sizes.get(f"{name}.csv")
                 ),
             )
-            for name, table in scene.tables.items()
+            for name, table in (scene.tables | gauges_of(scene, simulation.plan.mirrors)).items()
         ]
         self.schedules |= {partial(self.write_further, *one): Schedule(one[0].every) for one in self.further}
         self.last_written = dict.fromkeys(self.schedules, -1)
@@ -192,7 +193,7 @@ class Record:
             self.errors.write([sim.time, *self.latest_errors])
 
     def write_further(self, table, file: CsvTable) -> None:
-        """A line of a table that the case's own files bring."""
+        """A line of a gauge, or of a table that the case's own files bring."""
         file.write([self.simulation.time, *map(float, table.row(self.simulation))])
 
     def close(self) -> None:

@@ -11,6 +11,7 @@ from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
+from psph.scene.gauging import misplaced, shown
 from psph.scene.lattice import TOLERANCE
 from psph.scene.multiples import misfits
 from psph.scene.scene import Scene
@@ -56,7 +57,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *_domain_faults(scene),
         *_mirror_faults(scene),
         *_site_faults(scene),
-        *_probe_faults(scene),
+        *misplaced(scene),
         *_exact_faults(scene),
     ]
     for line in places or _state_faults(scene):  # an empty shape has no pressure
@@ -132,10 +133,6 @@ def _key(scene: Scene, material: int) -> str:
     return f"walls.{list(scene.walls)[material - len(fluids)]}"
 
 
-def _point(x) -> str:
-    return f"[{', '.join(f'{value:.6g}' for value in x)}]"
-
-
 def _domain_faults(scene: Scene) -> Iterator[str]:
     reach = scene.kernel.support * scene.smoothing_length
     least = SLABS_IN_A_PERIOD * reach * (1.0 + scene.case.neighbours.skin)
@@ -197,12 +194,12 @@ def _site_faults(scene: Scene) -> Iterator[str]:
     for (one, other), site in sorted(census.clashes.items()):
         if one < walls <= other:
             yield (
-                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; subtract "
+                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {shown(site)}; subtract "
                 "the fluid with shape = { difference = { from = ..., minus = [...] } }"
             )
         elif other < walls:
             yield (
-                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {_point(site)}; subtract "
+                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {shown(site)}; subtract "
                 "one from the other with difference"
             )
     yield from _particles_outside(scene)
@@ -221,18 +218,6 @@ def _particles_outside(scene: Scene) -> Iterator[str]:
                     f"the domain from {scene.lower[d]:.6g} to {scene.upper[d]:.6g}; make the "
                     "shape smaller, or change space.lower and space.upper"
                 )
-
-
-def _probe_faults(scene: Scene) -> Iterator[str]:
-    for name, probe in scene.case.probes.items():
-        if probe.position is None:
-            continue
-        ends = zip(scene.lower, probe.position, scene.upper)
-        if not all(low <= x <= up for low, x, up in ends):
-            yield (
-                f"probes.{name}.position: {_point(probe.position)} lies outside the domain "
-                f"{_point(scene.lower)} to {_point(scene.upper)}; move it inside"
-            )
 
 
 def _exact_faults(scene: Scene) -> Iterator[str]:
@@ -271,7 +256,7 @@ def _thin_walls(scene: Scene) -> Iterator[str]:
         reach = scene.kernel.support * scene.case.space.smoothing
         yield (
             f"{_key(scene, material)}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
-            f"{_point(site)}, the kernel reaches over {reach:.3g}; make the wall at least "
+            f"{shown(site)}, the kernel reaches over {reach:.3g}; make the wall at least "
             f"{need} spacings ({need * scene.spacing:.6g} m) thick"
         )
 

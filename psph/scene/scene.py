@@ -208,6 +208,7 @@ class Scene:
                 start.law,
                 getattr(self.bodies[index], "no_slip", False),
                 getattr(self.bodies[index], "condition", DYNAMIC),
+                name in self.case.loaded,
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
         )

@@ -26,7 +26,7 @@ class Species(NamedTuple):
     kinematic ``viscosity`` in m²/s; ``mass`` of a particle in kg (per m of depth in 2D, per m² in
     1D); ``law`` is the equation of state (psph.physics.fluid.state).  A wall takes these from the fluid
     it continues; ``no_slip`` if that fluid sticks to it; ``condition`` is what it sets to the fluid before it
-    (psph.physics.walls.conditions).
+    (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for.
     """
 
     name: str
@@ -37,6 +37,7 @@ class Species(NamedTuple):
     law: Any
     no_slip: bool = False
     condition: str = DYNAMIC
+    loaded: bool = False
 
     @property
     def kind(self) -> int:

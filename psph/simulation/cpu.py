@@ -5,6 +5,7 @@ All that depends on how sums are computed on a processor lies behind these few m
 
 import numpy as np
 
+from psph.composition.loads import Loads
 from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
 from psph.engine.settled import settled
@@ -27,7 +28,7 @@ from psph.simulation.integrator import (
 )
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
-from psph.simulation.plan import Plan
+from psph.simulation.plan import LOAD, Plan
 from psph.simulation.rules import Columns, Rules
 
 
@@ -61,6 +62,7 @@ class Engine:
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
+        self._load = settled(sum_over_neighbours)
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
 
     def predict(self, time: float, dt: float, pace: float) -> None:
@@ -107,6 +109,9 @@ class Engine:
             if one.settles:
                 self._each(settle_told, self._rules, self._view(0.0), self._columns())
             stale, written = (), written | one.written
+        if self.plan.loaded is not None:
+            with self.ledger("loads"):
+                self._sum_loads(self.plan.passes[-1])
 
     def settle_pressure(self, pace: float) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
@@ -229,6 +234,18 @@ class Engine:
             s.view(),
             Around(records.view(), records.table, s.low, self._lists, self._mirrors),
             Sums(*rates, tuple(name and s[name] for name in one.stores)),
+        )
+
+    def _sum_loads(self, one: Pass) -> None:
+        """What the fluid alone does to the groups whose load is asked for, as ``one`` has the rates."""
+        s, plan, records = self.store, self.plan, self.records[one.place]
+        self._each(
+            self._load,
+            Summed(one.effects, (), Loads(plan.loaded, s.group)),
+            Metric(plan.kernel, plan.space, self.softening),
+            s.view(),
+            Around(records.view(), records.table, s.low, self._lists, self._mirrors),
+            Sums(s[LOAD.name], None, ()),
         )
 
     def _columns(self) -> Columns:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.composition import terms
+from psph.composition.loads import by_fluid, from_outside, is_loaded
 from psph.composition.mirrors import at_look, ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
@@ -15,10 +16,12 @@ from psph.vectors import add, zero_like
 
 
 class Summed(NamedTuple):
-    """What a pass sums: its ``effects``, and the ``reductions``, those with a sum of their own."""
+    """What a pass sums: its ``effects``, and the ``reductions``, those with a sum of their own; in a pass of
+    ``loads`` (psph.composition.loads) what the fluid alone does to some groups."""
 
     effects: tuple
     reductions: tuple
+    loads: Any = None
 
 
 class Metric(NamedTuple):
@@ -58,9 +61,11 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
     Sums are in gather form and in the order of the lists, so that they are the same on any number of
     ranks.
     """
-    effects, reductions = summed.effects, summed.reductions
+    effects, reductions, loads = summed.effects, summed.reductions, summed.loads
     records, lists, mirrors = around.records, around.lists, around.mirrors
     for k in range(np.uint64(first), np.uint64(last)):
+        if not is_loaded(loads, k):
+            continue
         row = k - np.uint64(around.low)
         i = take(view, k)
         if not terms.concerns(effects, reductions, i):
@@ -78,12 +83,12 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
                 x_ij = difference(metric.space, i, j, records, k)
                 pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
                 rate = rate + terms.density_rate(effects, i, j, pair)
-                a = pushed(a, pair.x_ij, terms.radial(effects, i, j, pair))
-                a = pushed(a, pair.u_ij, terms.shear(effects, i, j, pair))
-                a = added(a, terms.push(effects, i, j, pair))
+                a = pushed(a, pair.x_ij, by_fluid(loads, j, terms.radial(effects, i, j, pair)))
+                a = pushed(a, pair.u_ij, by_fluid(loads, j, terms.shear(effects, i, j, pair)))
+                a = added(a, by_fluid(loads, j, terms.push(effects, i, j, pair)))
                 totals = terms.gather_each(reductions, totals, i, j, pair)
         folded = terms.fold_each(reductions, totals)
         force = add(total(a), terms.finish_acceleration(reductions, folded, i))
-        store(sums.acceleration, k, add(force, terms.body(effects, i)))
+        store(sums.acceleration, k, add(force, from_outside(loads, effects, i)))
         store(sums.density_rate, k, total(rate))
         terms.finish_value(reductions, folded, i, metric.kernel, k, sums.written)

@@ -13,7 +13,17 @@ from psph.composition.count import flops_per_pair
 from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
-from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
+from psph.fields import (
+    IDENTITY,
+    OF_EVERY_SCENE,
+    OF_MATERIAL,
+    OF_SITE,
+    VECTOR,
+    Field,
+    by_name,
+    companions,
+    view_of,
+)
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, Fixed, Free, is_prescribed
@@ -38,6 +48,11 @@ ALWAYS_READ = (
     "smoothing_length",
 )
 """What the loops themselves read of a particle, whatever the effects."""
+
+LOAD = Field("load", "m/s2", "acceleration by the fluid alone, of particles whose load is asked for", VECTOR)
+
+LOADED_READ = ("is_fluid",)
+"""What a pass of loads reads of a neighbour, beside what its effects read."""
 
 OF_SCENE = ("sound_speed", "smoothing_length", "kernel", "spacing", "dimensions")
 
@@ -93,6 +108,8 @@ class Plan:
     """The prescribed motions of the scene's walls."""
     motion_of: np.ndarray
     """The number of the motion of each group: psph.physics.motion."""
+    loaded: np.ndarray | None
+    """Whether the push of the fluid alone is summed on the particles of a group: (groups,); None: on none."""
     regions: tuple[Any, ...]
     """Where particles appear or vanish, each with the number of the fluid that comes."""
     cfl: float
@@ -193,18 +210,23 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     further = tuple(field for one in evolving for field in companions(one))
     prescribed = {(type(s.motion), s.motion) for s in scene.species if is_prescribed(s.motion)}
     motions = tuple(motion for _, motion in sorted(prescribed, key=str))
-    fields = by_name(catalogue.fields.values(), written, further, [ANCHOR])
+    fields = by_name(catalogue.fields.values(), written, further, [ANCHOR, LOAD])
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     laws = _laws(scene, catalogue.states)
-    own = set(ALWAYS_READ).union(*(c.reads.own | c.reads.neighbour for c in called))
+    loaded = np.array([one.loaded for one in scene.species], bool)
+    for_loads = LOADED_READ if loaded.any() else ()
+    own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
     refuse_unwritten(scene, called, computed)
-    anchored = {ANCHOR.name} if motions else set()
-    stored = tuple(n for n in fields if n in computed or n in varying or n in anchored)
-    passes = make_passes(called, stored, lambda name: _array_of(name, stored), case.time.gather_every)
+    further_fields = {ANCHOR.name} if motions else set()
+    further_fields |= {LOAD.name} if loaded.any() else set()
+    stored = tuple(n for n in fields if n in computed or n in varying or n in further_fields)
+    passes = make_passes(
+        called, stored, lambda name: _array_of(name, stored), case.time.gather_every, for_loads
+    )
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in passes for name in one.neighbour_fields}
@@ -243,6 +265,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
         motions=motions,
         motion_of=_motion_numbers(scene.species, motions),
+        loaded=loaded if loaded.any() else None,
         regions=scene.regions,
         cfl=case.time.cfl,
         fixed_step=case.time.step,

@@ -10,7 +10,8 @@ from run.guarded import boxed, started
 from run.resuming import steps
 from run.test_guards import push_once, report_of
 
-from psph.case.consistency import LARGEST_LOSS, MOST_MOMENTS, MOST_STEPS
+from psph.case.consistency import LARGEST_LOSS, MOST_STEPS
+from psph.case.measured import MOST_MOMENTS
 from psph.output.checkpoint import checkpoints
 from psph.output.reader import Run
 from psph.run.record import Schedule

@@ -1,0 +1,97 @@
+"""Gauges of a case: numbers that a run measures over time, each in a file of its own."""
+
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Strict, model_validator
+from pydantic_core import PydanticCustomError
+
+from psph.case.keys import Axis, Name, Table, Vector, key
+
+
+class Force(Table):
+    """Force and moment of the fluid on walls."""
+
+    on: Annotated[tuple[Name, ...], Strict(False)] = key("names of walls, taken together", min_length=1)
+    about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
+
+
+class Level(Table):
+    """Water level along a straight line, as a wave gauge measures it."""
+
+    foot: Vector = key("the lower end of the line, from which the level is counted", unit="m")
+    top: Vector = key("its upper end", unit="m")
+
+    @model_validator(mode="after")
+    def _has_a_length(self) -> Self:
+        if self.foot == self.top:
+            raise PydanticCustomError("psph", "has no length; let 'top' lie above 'foot'")
+        return self
+
+
+class Highest(Table):
+    """The largest coordinate of the fluid along an axis: its front, or its highest drop."""
+
+    axis: Axis = key("the axis")
+
+
+class Point(Table):
+    """Fields of the fluid at a point."""
+
+    position: Vector = key("where", unit="m")
+    fields: Annotated[tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)] = key(
+        "what is measured", ("pressure", "velocity"), min_length=1
+    )
+
+
+class Sensor(Table):
+    """Mean pressure over a round sensor on a wall; parts of it that no fluid reaches bear none."""
+
+    position: Vector = key("its centre, on the face of the wall", unit="m")
+    axis: Axis = key("the direction that it faces, across the wall")
+    diameter: float = key("its diameter", unit="m", gt=0)
+
+
+class Flow(Table):
+    """Flow of the fluid through a section across an axis, positive along it."""
+
+    lower: Vector = key("lowest corner of the section; along one axis equal to 'upper'", unit="m")
+    upper: Vector = key("its highest corner", unit="m")
+
+    @model_validator(mode="after")
+    def _is_a_section(self) -> Self:
+        flat = [low == up for low, up in zip(self.lower, self.upper)]
+        if sum(flat) != 1 or any(low > up for low, up in zip(self.lower, self.upper)):
+            raise PydanticCustomError(
+                "psph",
+                "is no section across an axis; let 'lower' and 'upper' be equal along that axis, and 'upper' "
+                "the larger along the others",
+            )
+        return self
+
+
+class Gauge(Table):
+    """A gauge: exactly one of these kinds, and how often it is read."""
+
+    KINDS: ClassVar = ("force", "level", "highest", "point", "sensor", "flow")
+
+    force: Force | None = key("force and moment of the fluid on walls", None, otherwise="another kind")
+    level: Level | None = key("water level along a line", None, otherwise="another kind")
+    highest: Highest | None = key("largest coordinate of the fluid", None, otherwise="another kind")
+    point: Point | None = key("fields at a point", None, otherwise="another kind")
+    sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise="another kind")
+    flow: Flow | None = key("flow through a section", None, otherwise="another kind")
+    every: float | None = key("time between rows", None, unit="s", otherwise="output.probes", gt=0)
+
+    @property
+    def kind(self) -> str:
+        """The name of its kind."""
+        [name] = (name for name in self.KINDS if getattr(self, name) is not None)
+        return name
+
+    @model_validator(mode="after")
+    def _has_one_kind(self) -> Self:
+        given = [name for name in self.KINDS if getattr(self, name) is not None]
+        if len(given) != 1:
+            said = f"{' and '.join(given)} in one gauge" if given else "does not say what it measures"
+            raise PydanticCustomError("psph", f"{said}; give one of {', '.join(self.KINDS)}")
+        return self

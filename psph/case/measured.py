@@ -1,0 +1,58 @@
+"""Rules between the keys that say what a run measures and writes."""
+
+from collections.abc import Iterator
+
+from psph.case.errors import advise
+from psph.case.findings import Finding
+from psph.case.keys import AXES
+from psph.physics.walls.conditions import BEARING
+
+MOST_MOMENTS = 1e9
+"""Moments of one cadence: far below 1e12, where rounding would shift them."""
+
+
+def probed(case) -> Iterator[Finding]:
+    """Probes that say too much or too little."""
+    for name, probe in case.probes.items():
+        if (probe.position is None) == (probe.front is None):
+            yield ("probes", name), ..., "give either position or front"
+        elif probe.extent and (probe.front or min(probe.extent) < 0.0):
+            yield ("probes", name, "extent"), probe.extent, "give lengths of 0 or more, beside a position"
+
+
+def gauged(case) -> Iterator[Finding]:
+    """Gauges of walls that are not there, or on which no force is known."""
+    axes = AXES[: case.space.dimensions]
+    for name, gauge in case.gauges.items():
+        asked = getattr(gauge, gauge.kind)
+        if getattr(asked, "axis", None) is not None and asked.axis not in axes:
+            where = f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}"
+            yield ("gauges", name, gauge.kind, "axis"), asked.axis, where
+        for place, wall in enumerate(gauge.force.on if gauge.force else ()):
+            loc = ("gauges", name, "force", "on", place)
+            if wall not in case.walls:
+                yield loc, wall, f"no wall has this name; {advise(wall, case.walls)}"
+            elif case.walls[wall].condition not in BEARING:
+                known = " or ".join(f'"{one}"' for one in BEARING)
+                yield (
+                    loc,
+                    wall,
+                    f'a wall with condition = "{case.walls[wall].condition}" bears no force; take {known}',
+                )
+
+
+def due(case) -> Iterator[Finding]:
+    """Intervals so short that moments of output would be lost in rounding."""
+    end = case.time.end
+    cadences = [(("output", name), interval) for name, interval in case.output]
+    cadences += [(("gauges", name, "every"), gauge.every) for name, gauge in case.gauges.items()]
+    for loc, interval in cadences:
+        if interval is not None and end > MOST_MOMENTS * interval:
+            yield (
+                loc,
+                interval,
+                (
+                    f"gives more than {MOST_MOMENTS:.0e} outputs until {end:g} s; give at least "
+                    f"{1.1 * end / MOST_MOMENTS:.2g} (an interval below the time step writes every step)"
+                ),
+            )

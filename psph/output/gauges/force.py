@@ -1,0 +1,47 @@
+"""Force and moment of the fluid on walls."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.parallel.reductions import exact_sums
+
+
+class ForceGauge(NamedTuple):
+    """Force and moment of the fluid on the walls of some ``groups``.
+
+    F = Σ_w m_w a_w and T = Σ_w (x_w − X) × m_w a_w over their particles, with the accelerations a_w by
+    their neighbours in the fluid alone, without gravity: what the fluid feels of these particles,
+    turned round.  X is ``about``, m (dim,).  N and N m; per metre of depth in 2D.
+    """
+
+    name: str
+    every: float
+    groups: tuple[int, ...]
+    about: tuple[float, ...]
+
+    def columns(self, scene) -> list[str]:
+        """Their names, without the time: ``drag.force_x``, ``drag.moment_z``."""
+        forces = [f"{self.name}.force_{axis}" for axis in "xyz"[: scene.dimensions]]
+        return [*forces, *(f"{self.name}.moment_{axis}" for axis in turns(scene.dimensions))]
+
+    def row(self, simulation) -> np.ndarray:
+        """The values, the same on every rank."""
+        store = simulation.store
+        held = np.isin(store.shown("group"), self.groups)
+        force = store.shown("mass")[held, None] * store.shown("load")[held]
+        arm = simulation.domain.inside(store.shown("position")[held]) - np.array(self.about)
+        return exact_sums(simulation.comm, np.column_stack([force, *moments(arm, force)]))
+
+
+def turns(dimensions: int) -> str:
+    """The axes about which something can turn."""
+    return ("", "z", "xyz")[dimensions - 1]
+
+
+def moments(arm: np.ndarray, force: np.ndarray) -> Iterator[np.ndarray]:
+    """Components of arm × force, each (n,), of arms and forces (n, dim)."""
+    for axis in turns(arm.shape[1]):
+        a, b = {"x": (1, 2), "y": (2, 0), "z": (0, 1)}[axis]
+        yield arm[:, a] * force[:, b] - arm[:, b] * force[:, a]

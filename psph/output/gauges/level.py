@@ -1,0 +1,98 @@
+"""Water level along a line."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.composition.mirrors import images
+from psph.composition.pair import take
+from psph.engine.jit import elementwise
+from psph.fields import FLUID
+from psph.parallel.reductions import wrapped_sums
+from psph.smoothing import weight
+from psph.vectors import at, dot, nearest_image, scale, subtract
+
+SURFACE = 0.5
+"""Share of the kernel that lies in the fluid at a flat surface."""
+
+UNIT = 2.0**40
+"""Whole numbers in a share of one: the sums do not depend on the order."""
+
+
+class LevelGauge(NamedTuple):
+    """Water level along a line from its ``foot`` to its ``top`` (dim,) m, in so many equal ``parts``.
+
+    The fluid's share of the kernel, S(x) = Σ_j V_j W(x − x_j) over the fluid, is ½ at a flat surface.
+    ``level`` is the distance from the foot to the highest point of the line where S = ½, ``wetted`` the
+    length of the line with S ≥ ½, which is what a wire in the water measures; both m, 0 where all is
+    dry.  They differ where drops or a breaking wave are above the water.
+    """
+
+    name: str
+    every: float
+    foot: tuple[float, ...]
+    top: tuple[float, ...]
+    parts: int
+
+    def columns(self, scene) -> list[str]:
+        """Their names, without the time."""
+        return [f"{self.name}.level", f"{self.name}.wetted"]
+
+    def row(self, simulation) -> tuple[float, float]:
+        """The values, the same on every rank."""
+        return surfaces(self._shares(simulation), math.dist(self.foot, self.top) / self.parts)
+
+    def _shares(self, simulation) -> np.ndarray:
+        """S at the ends of the parts of the line (parts + 1,)."""
+        store, plan, domain = simulation.store, simulation.plan, simulation.domain
+        found = np.zeros(self.parts + 1, np.int64)
+        first, last = store.low, store.low + store.owned
+        is_fluid = store.kinds[store.group] == FLUID
+        for m in range(images(plan.mirrors)):
+            # An image is as far from a point as the particle from the image of the point.
+            ends = (plan.mirrors.reflections[m].seen(x) if m else x for x in (self.foot, self.top))
+            foot, top = (tuple(map(float, end)) for end in ends)
+            step = scale(subtract(top, foot), 1.0 / self.parts)
+            weigh_line(foot, step, plan.kernel, domain.periods, store.view(), first, last, is_fluid, found)
+        sums = np.array(wrapped_sums(simulation.comm, found.astype(np.uint64)), np.uint64)
+        return sums.astype(np.float64) / UNIT
+
+
+def surfaces(share: np.ndarray, step: float) -> tuple[float, float]:
+    """The highest place where ``share`` (n,), at places 0, ``step`` ... m, falls below ½, and the length with
+    more than that, m; between the places it is a straight line."""
+    wet = share >= SURFACE
+    if not wet.any():
+        return 0.0, 0.0
+    inside = 0.5 * step * (wet[1:].astype(float) + wet[:-1])
+    for n in np.flatnonzero(wet[1:] != wet[:-1]).tolist():
+        crossing = (share[n] - SURFACE) / (share[n] - share[n + 1])
+        inside[n] = step * (crossing if wet[n] else 1.0 - crossing)
+    highest = int(np.flatnonzero(wet)[-1])
+    if highest == len(share) - 1:
+        return step * highest, float(inside.sum())
+    beyond = (share[highest] - SURFACE) / (share[highest] - share[highest + 1])
+    return step * (highest + beyond), float(inside.sum())
+
+
+@elementwise
+def weigh_line(foot, step, kernel, periods, view, first, last, is_fluid, found):
+    """Add V_j W of fluid in columns ``first`` to ``last`` to ``found`` (n,), at foot + n step, in UNITs."""
+    radius = kernel.support / kernel.inverse_h
+    long2 = dot(step, step)
+    for k in range(np.uint64(first), np.uint64(last)):
+        if is_fluid[k]:
+            j = take(view, k)
+            from_foot = nearest_image(subtract(at(view.position, k), foot), periods)
+            along = dot(from_foot, step) / long2
+            aside = subtract(from_foot, scale(step, along))
+            left2 = radius * radius - dot(aside, aside)
+            if left2 > 0.0:
+                reach = math.sqrt(left2 / long2)
+                begin = max(0, int(math.ceil(along - reach)))
+                end = min(len(found), int(math.floor(along + reach)) + 1)
+                for n in range(begin, end):
+                    x = subtract(from_foot, scale(step, float(n)))
+                    share = weight(kernel, math.sqrt(dot(x, x))) * j.mass * j.specific_volume
+                    found[n] += np.int64(np.rint(share * UNIT))

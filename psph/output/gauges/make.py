@@ -1,0 +1,46 @@
+"""The gauges that a case asks for."""
+
+import math
+from typing import Any
+
+from psph.case.keys import AXES
+from psph.output.gauges.flow import FlowGauge
+from psph.output.gauges.force import ForceGauge
+from psph.output.gauges.level import LevelGauge
+from psph.output.gauges.points import PointGauge, disc
+from psph.output.probes import Front, Probe
+
+FILE = "gauge-{}"
+"""The table of a gauge, without its ending."""
+
+PER_SPACING = 4
+"""Points of the line of a level in a spacing."""
+
+
+def gauges_of(scene, mirrors=None) -> dict[str, Any]:
+    """Each gauge of a scene by the name of its table; beside ``mirrors`` (psph.composition.mirrors)."""
+    return {
+        FILE.format(name): gauge_of(scene, name, table, mirrors) for name, table in scene.case.gauges.items()
+    }
+
+
+def gauge_of(scene, name: str, table, mirrors=None):
+    """The gauge of one table of ``[gauges]``: every, columns(scene) and row(simulation)."""
+    asked, every = getattr(table, table.kind), table.every
+    match table.kind:
+        case "force":
+            groups = [k for k, one in enumerate(scene.species) if one.name in asked.on]
+            return ForceGauge(name, every, tuple(groups), asked.about)
+        case "level":
+            parts = math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9)
+            return LevelGauge(name, every, asked.foot, asked.top, max(1, parts))
+        case "flow":
+            [axis] = (d for d, ends in enumerate(zip(asked.lower, asked.upper)) if ends[0] == ends[1])
+            return FlowGauge(name, every, axis, asked.lower, asked.upper)
+        case "highest":
+            return PointGauge(Front(name, AXES.index(asked.axis)), every)
+        case "point":
+            return PointGauge(Probe(name, asked.position, asked.fields, mirrors), every)
+        case _:
+            points = disc(asked.position, AXES.index(asked.axis), asked.diameter, scene.spacing)
+            return PointGauge(Probe(name, points, ("pressure",), mirrors), every)
