@@ -6,7 +6,7 @@ from typing import Any
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.errors import advise
-from psph.case.findings import Finding, Location
+from psph.case.findings import Finding, Location, asked_of
 from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
 from psph.case.parameters import last_part
@@ -333,7 +333,7 @@ def _stepped(case) -> Iterator[Finding]:
 
 def _effects(case) -> Iterator[Finding]:
     """What the effects of a case say of it, and of each other."""
-    asked = list(_asked(case))
+    asked = list(asked_of(case))
     for name, value, effect in asked:
         if hasattr(effect, "conflicts"):
             for says in effect.conflicts(case.physics, case.space.kernel):
@@ -346,13 +346,3 @@ def _effects(case) -> Iterator[Finding]:
                 ...,
                 (f'physics.{present[-1]} {role.does}; set it to "off", or remove this key'),
             )
-
-
-def _asked(case) -> Iterator[tuple[str, Any, Any]]:
-    """The keys of ``physics`` that ask for an effect: name, value where it is a choice, and its class."""
-    for entry in case.catalogue.effects:
-        table, _, rest = entry.key.partition(".")
-        name, _, choice = rest.partition("=")
-        value = getattr(case.physics, name, None) if table == "physics" else None
-        if value is not None and (value == choice or not choice):
-            yield name, value if choice else ..., entry.effect

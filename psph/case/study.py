@@ -25,14 +25,14 @@ def exact_table(solutions: Mapping[str, type] = SOLUTIONS) -> type[Table]:
 
 
 class Experiment(Table):
-    """A measured curve over time, to compare a column of probes.csv with."""
+    """A measured curve over time, to compare a column of probes.csv or of a gauge with."""
 
     file: Text = key(
         "CSV file in the case's folder or below; lines that begin with # are comments", min_length=1
     )
     time: Text = key("name of its column of times")
     value: Text = key("name of its column of values")
-    probe: Text = key("the column of probes.csv to compare with, such as tip.front")
+    probe: Text = key("the column of probes.csv or of a gauge to compare with, such as tip.front")
     time_unit: float = key("seconds per unit of its times", 1.0, unit="s", gt=0)
     value_unit: float = key("its unit of values, in the probe's unit", 1.0, unit="1")
 
@@ -53,7 +53,7 @@ class Study(Table):
     grid: bool = key("all combinations of the values, not one key at a time", False)
     error: Text | None = key(
         "what is compared: velocity, pressure or density of the fluid at the end, or a column of "
-        "probes.csv over time",
+        "probes.csv or of a gauge over time",
         None,
         otherwise="the first that the reference has",
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from psph.errors import one_line
 from psph.output.errors import OutputError, cause
-from psph.output.tables import ERRORS, LOG, PROBES
+from psph.output.tables import ERRORS, GAUGE, LOG, PROBES
 
 T = TypeVar("T")
 
@@ -75,6 +75,17 @@ class Run:
     def probes(self) -> dict[str, np.ndarray]:
         """The columns of ``probes.csv`` by name; empty if the case has no probes."""
         return _columns(self.folder / PROBES)
+
+    def gauges(self) -> dict[str, dict[str, np.ndarray]]:
+        """The columns of each gauge by the gauge's name."""
+        begin, end = GAUGE.split("{}")
+        found = sorted(self.folder.glob(GAUGE.format("*")))
+        return {path.name.removeprefix(begin).removesuffix(end): _columns(path) for path in found}
+
+    def measured(self, column: str) -> dict[str, np.ndarray]:
+        """The table, of the probes or of a gauge, that has a column such as ``tip.front``; empty: none."""
+        tables = (self.probes(), *self.gauges().values())
+        return next((table for table in tables if column in table), {})
 
     def log(self) -> dict[str, np.ndarray]:
         """The columns of ``log.csv`` by name."""

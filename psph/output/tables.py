@@ -11,6 +11,9 @@ from psph.output.errors import OutputError, cause, together
 LOG, PROBES, ERRORS = "log.csv", "probes.csv", "errors.csv"
 """The tables of a run: log, probes, errors against the exact solution."""
 
+GAUGE = "gauge-{}.csv"
+"""The table of a gauge of that name."""
+
 
 class CsvTable:
     """A CSV file with a line of names, written by rank 0; the other ranks may call it all the same.

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from psph.case.keys import AXES
 from psph.case.profiles import OFF
+from psph.output.tables import GAUGE
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
@@ -121,7 +122,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
         yield f"  table       {name}.csv: {_first_line(table)}"
     for name, gauge in case.gauges.items():
         measures = _first_line(getattr(gauge, gauge.kind))
-        yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in gauge-{name}.csv"
+        yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
     yield (
         f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
         f"(h/dx {case.space.smoothing:g}), support {support:g} m, "

@@ -170,6 +170,6 @@ def _files_of_a_run(scene, folder: Path) -> Iterator[Path]:
     yield from checkpoints(folder)
     yield from half_written(folder)
     frames = scene.case.name
-    tables = (f"{name}.csv" for name in (*scene.tables, *gauges_of(scene)))
+    tables = (*(f"{name}.csv" for name in scene.tables), *gauges_of(scene))
     for name in (f"{frames}.xmf", f"{frames}.h5.new", LOG, PROBES, ERRORS, *tables, REPORT, PICTURE):
         yield folder / name

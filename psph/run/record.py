@@ -97,14 +97,11 @@ class Record:
             self.write_probes: Schedule(out.probes),
             self.write_log: Schedule(out.log),
         }
+        further = {f"{name}.csv": table for name, table in scene.tables.items()}
+        further |= gauges_of(scene, simulation.plan.mirrors)
         self.further = [
-            (
-                table,
-                CsvTable(
-                    folder / f"{name}.csv", ["time", *table.columns(scene)], comm, sizes.get(f"{name}.csv")
-                ),
-            )
-            for name, table in (scene.tables | gauges_of(scene, simulation.plan.mirrors)).items()
+            (table, CsvTable(folder / file, ["time", *table.columns(scene)], comm, sizes.get(file)))
+            for file, table in further.items()
         ]
         self.schedules |= {partial(self.write_further, *one): Schedule(one[0].every) for one in self.further}
         self.last_written = dict.fromkeys(self.schedules, -1)

@@ -13,6 +13,7 @@ from psph.fields import FLUID
 from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
 from psph.output.accuracy import NORMS
+from psph.output.gauges import gauges_of
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
 from psph.run.record import probes_of
@@ -36,14 +37,14 @@ class Judgement(NamedTuple):
 class Judge:
     """The quantity and the reference of a case's errors; reads the files of its runs.
 
-    ``what`` is a field at the end or a column of probes.csv, ``against`` the reference.  Raises
+    ``what`` is a field at the end or a column of probes.csv or of a gauge, ``against`` the reference.  Raises
     StudyError where the case has no such thing.  ``files`` is the folder that its files lie in or
     below, where it is not that of the case.
     """
 
     def __init__(self, case, files: Path | None = None):
         self.case, self.files, study = case, files, case.study
-        self.columns = _probe_columns(case)
+        self.columns = _columns(case)
         self.against = study.against or self._first_reference()
         self.what = study.error or self._first_known()
         self._agree()
@@ -60,7 +61,7 @@ class Judge:
         run = Run(folder)
         if self.what in AT_THE_END:
             return self._fields(run, finest)
-        time, values = known_values(run.probes(), self.what)
+        time, values = known_values(run.measured(self.what), self.what)
         if not len(time):
             return series_errors(time, values)
         theirs, of_theirs = self._curve(run, finest)
@@ -93,7 +94,7 @@ class Judge:
         if self.against == FINEST:
             if run.folder == finest:
                 return (lambda t: np.full(len(t), math.nan)), None
-            of_finest = known_values(Run(finest).probes(), self.what)
+            of_finest = known_values(Run(finest).measured(self.what), self.what)
             return (lambda t: np.interp(t, *of_finest)), None
         time, value = self.measured
         return (lambda t: np.interp(t, time, value)), time
@@ -171,16 +172,19 @@ class Judge:
         solution = Scene(self.case).exact
         name, _, quantity = what.partition(".")
         field = quantity.partition("_")[0] if quantity else what
-        if solution and field in known(solution):
+        probe = self.case.probes.get(name)
+        if solution and field in known(solution) and (probe or not quantity):
             found.append(EXACT)
-        if quantity and quantity in self.case.probes[name].theory:
+        if probe and quantity in probe.theory:
             found.append(THEORY)
         return [*found, FINEST]
 
 
-def _probe_columns(case) -> list[str]:
-    """The columns of probes.csv that a case makes."""
-    return [c for probe in probes_of(case) for c in probe.columns(case.space.dimensions)]
+def _columns(case) -> list[str]:
+    """The columns of probes.csv and of gauges that a case makes."""
+    scene = Scene(case)
+    probes = [c for probe in probes_of(case) for c in probe.columns(case.space.dimensions)]
+    return [*probes, *(c for gauge in gauges_of(scene).values() for c in gauge.columns(scene))]
 
 
 def window(study, time: np.ndarray) -> np.ndarray:
@@ -190,7 +194,7 @@ def window(study, time: np.ndarray) -> np.ndarray:
 
 
 def known_values(table: dict[str, np.ndarray], column: str) -> tuple[np.ndarray, np.ndarray]:
-    """Times in s and values of a column of probes.csv, but for rows without fluid in reach (nan)."""
+    """Times in s and values of a column of a table, but for rows without fluid in reach (nan)."""
     known = np.isfinite(table[column])
     return table["time"][known], table[column][known]
 

@@ -9,18 +9,16 @@ from psph.output.gauges.force import ForceGauge
 from psph.output.gauges.level import LevelGauge
 from psph.output.gauges.points import PointGauge, disc
 from psph.output.probes import Front, Probe
-
-FILE = "gauge-{}"
-"""The table of a gauge, without its ending."""
+from psph.output.tables import GAUGE
 
 PER_SPACING = 4
 """Points of the line of a level in a spacing."""
 
 
 def gauges_of(scene, mirrors=None) -> dict[str, Any]:
-    """Each gauge of a scene by the name of its table; beside ``mirrors`` (psph.composition.mirrors)."""
+    """Each gauge of a scene by the file of its table; beside ``mirrors`` (psph.composition.mirrors)."""
     return {
-        FILE.format(name): gauge_of(scene, name, table, mirrors) for name, table in scene.case.gauges.items()
+        GAUGE.format(name): gauge_of(scene, name, table, mirrors) for name, table in scene.case.gauges.items()
     }
 
 
@@ -29,8 +27,9 @@ def gauge_of(scene, name: str, table, mirrors=None):
     asked, every = getattr(table, table.kind), table.every
     match table.kind:
         case "force":
-            groups = [k for k, one in enumerate(scene.species) if one.name in asked.on]
-            return ForceGauge(name, every, tuple(groups), asked.about)
+            names = (*scene.case.fluids, *scene.walls)
+            groups = tuple(k for k, one in enumerate(names) if one in asked.on)
+            return ForceGauge(name, every, groups, asked.about)
         case "level":
             parts = math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9)
             return LevelGauge(name, every, asked.foot, asked.top, max(1, parts))

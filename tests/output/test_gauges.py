@@ -1,0 +1,257 @@
+"""Gauges: forces, levels and flows against what is exact."""
+
+import math
+
+import numpy as np
+import pytest
+from drafts import TANK, WATER, draft, refusal
+from mpi4py import MPI
+
+from psph.fields import FLUID
+from psph.output.gauges import gauges_of
+from psph.output.gauges.level import surfaces
+from psph.output.gauges.points import disc
+from psph.output.ledger import Ledger
+from psph.run.setup import create_particles
+from psph.scene import Scene
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+STIRRED = """
+[space]
+dimensions = 2
+spacing = 0.1
+[time]
+end = 1.0
+gather_every = {every}
+[physics]
+gravity = [1.0, -9.8]
+sound_speed = 30.0
+[fluids.heavy]
+shape.box = {{ lower = [0.0, 0.0], upper = [1.0, 0.4] }}
+density = 1200.0
+viscosity = 0.03
+velocity = [0.5, -0.4]
+jitter = 0.2
+[fluids.light]
+shape.box = {{ lower = [0.0, 0.4], upper = [1.0, 0.8] }}
+density = 900.0
+viscosity = 0.01
+velocity = [-0.8, 0.3]
+jitter = 0.1
+[walls.floor]
+shape.box = {{ lower = [-0.3, -0.3], upper = [1.3, 0.0] }}
+condition = "{condition}"
+no_slip = true
+[walls.sides]
+shape.union = [
+  {{ box = {{ lower = [-0.3, 0.0], upper = [0.0, 1.0] }} }},
+  {{ box = {{ lower = [1.0, 0.0], upper = [1.3, 1.0] }} }},
+]
+condition = "{condition}"
+continues = "light"
+[gauges.floor.force]
+on = ["floor"]
+[gauges.sides.force]
+on = ["sides"]
+about = [0.3, 0.7]
+[gauges.all.force]
+on = ["floor", "sides"]
+about = [0.5, 0.2]
+"""
+"""Two fluids in disorder between two walls."""
+
+
+def started(case, steps=0):
+    """A simulation of a case after some steps, and its scene."""
+    scene = Scene(case)
+    plan = make_plan(scene)
+    simulation = Simulation(
+        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
+    )
+    for _ in range(steps):
+        simulation.step()
+    return simulation, scene
+
+
+def readings(simulation, scene) -> dict[str, float]:
+    """What every gauge reads, by column."""
+    simulation.settle_pressure()
+    found = {}
+    for gauge in gauges_of(scene, simulation.plan.mirrors).values():
+        found |= dict(zip(gauge.columns(scene), map(float, gauge.row(simulation)), strict=True))
+    return found
+
+
+@pytest.mark.parametrize("condition", ["dynamic", "extrapolated"])
+@pytest.mark.parametrize("every", [1, 4])
+def test_force_on_walls_is_what_the_fluid_feels_of_them_turned_round(tmp_path, condition, every):
+    case = draft(tmp_path, STIRRED.format(condition=condition, every=every))
+    simulation, scene = started(case, 7)
+    read, store = readings(simulation, scene), simulation.store
+    fluid = store.shown("kind") == FLUID
+    mass = store.shown("mass")[fluid, None]
+    # The fluids' pushes on each other cancel in the sum; gravity is not of the walls.
+    push = (mass * (store.shown("acceleration")[fluid] - np.array(scene.gravity))).sum(axis=0)
+    total = np.array([read["all.force_x"], read["all.force_y"]])
+    parts = np.array([[read[f"{of}.force_{axis}"] for axis in "xy"] for of in ("floor", "sides")])
+    size = np.abs(mass * store.shown("acceleration")[fluid]).sum()
+    assert np.abs(parts).min() > 1e-3 * size  # each wall bears something along each axis
+    assert np.abs(total + push).max() < 1e-13 * size
+    assert np.abs(parts.sum(axis=0) - total).max() < 1e-13 * size
+
+
+def test_moments_are_about_the_point_of_the_gauge(tmp_path):
+    simulation, scene = started(draft(tmp_path, STIRRED.format(condition="dynamic", every=1)), 3)
+    read, store = readings(simulation, scene), simulation.store
+    held = store.shown("group") == 3
+    force = store.shown("mass")[held, None] * store.shown("load")[held]
+    x, y = (store.shown("position")[held] - np.array([0.3, 0.7])).T
+    assert read["sides.moment_z"] == pytest.approx(float((x * force[:, 1] - y * force[:, 0]).sum()), rel=1e-9)
+    about_zero = float((x * force[:, 1] - y * force[:, 0]).sum()) + 0.3 * read["sides.force_y"]
+    assert read["sides.moment_z"] != pytest.approx(about_zero - 0.7 * read["sides.force_x"], rel=1e-3)
+
+
+AT_REST = (
+    TANK
+    + """
+[gauges.bottom.force]
+on = ["tank"]
+[gauges.middle.level]
+foot = [0.43, 0.0]
+top = [0.43, 0.7]
+[gauges.slanted.level]
+foot = [0.2, 0.0]
+top = [0.8, 0.6]
+[gauges.dry.level]
+foot = [0.5, 0.6]
+top = [0.5, 0.7]
+[gauges.top.highest]
+axis = "y"
+[gauges.inside.point]
+position = [0.5, 0.25]
+[gauges.round.sensor]
+position = [1.0, 0.25]
+axis = "x"
+diameter = 0.2
+"""
+)
+
+
+def test_still_water_rests_on_its_tank(tmp_path):
+    simulation, scene = started(draft(tmp_path, AT_REST))
+    read = readings(simulation, scene)
+    weight = 1000.0 * 9.8 * 0.5 * 1.0
+    assert read["bottom.force_y"] == pytest.approx(-weight, rel=0.08)  # its top row has no pressure yet
+    assert abs(read["bottom.force_x"]) < 1e-9 * weight
+    assert read["middle.level"] == pytest.approx(0.5, abs=0.005)
+    assert read["middle.wetted"] == pytest.approx(0.5, abs=0.02)
+    assert read["slanted.level"] == pytest.approx(0.5 * math.sqrt(2.0), abs=0.01)
+    assert read["dry.level"] == read["dry.wetted"] == 0.0
+    assert read["top.front"] == pytest.approx(0.45)
+    assert read["inside.pressure"] == pytest.approx(2450.0, rel=0.02)
+    assert read["inside.velocity_x"] == 0.0
+    assert read["round.pressure"] == pytest.approx(2450.0, rel=0.02)
+
+
+def test_level_counts_drops_and_wetted_length_does_not_the_air_below_them():
+    share = np.array([0.9, 0.9, 0.3, 0.1, 0.7, 0.2, 0.0])
+    level, wetted = surfaces(share, 0.1)
+    assert level == pytest.approx(0.4 + 0.1 * 0.2 / 0.5)
+    assert wetted == pytest.approx(0.1 + 0.1 * 0.4 / 0.6 + 0.1 * 0.2 / 0.6 + 0.1 * 0.2 / 0.5)
+    assert surfaces(np.ones(3), 0.1) == pytest.approx((0.2, 0.2))
+    assert surfaces(np.zeros(3), 0.1) == (0.0, 0.0)
+
+
+def test_level_beside_a_plane_of_symmetry_is_that_of_the_whole(tmp_path):
+    line = "gauges.wall.level={foot=[0.0, 0.0], top=[0.0, 0.7]}"
+    half = ("space.symmetry=['x.lower']", "space.lower=[0.0, -0.3]", "space.upper=[1.3, 0.7]")
+    whole = readings(*started(draft(tmp_path, AT_REST, "gauges.wall.level={foot=[0.5,0.0], top=[0.5,0.7]}")))
+    mirrored = readings(*started(draft(tmp_path, AT_REST, line, *half)))
+    assert mirrored["wall.level"] == pytest.approx(whole["wall.level"], rel=1e-9)
+
+
+STREAM = """
+[space]
+dimensions = 2
+spacing = 0.1
+periodic = ["x"]
+lower = [0.0, 0.0]
+upper = [3.0, 1.0]
+[time]
+end = 1.0
+[physics]
+sound_speed = 30.0
+[fluids.upper]
+shape.box = { lower = [0.0, 0.5], upper = [3.0, 1.0] }
+velocity = [2.0, 0.0]
+density = 800.0
+[fluids.lower]
+shape.box = { lower = [0.0, 0.0], upper = [3.0, 0.5] }
+velocity = [-0.5, 0.0]
+density = 1000.0
+[gauges.all.flow]
+lower = [0.03, 0.0]
+upper = [0.03, 1.0]
+[gauges.part.flow]
+lower = [2.21, 0.5]
+upper = [2.21, 0.8]
+[gauges.along.flow]
+lower = [1.0, 0.5]
+upper = [2.0, 0.5]
+"""
+
+
+def test_flow_through_a_section_is_speed_times_area(tmp_path):
+    read = readings(*started(draft(tmp_path, STREAM)))
+    assert read["all.flow"] == pytest.approx(2.0 * 0.5 - 0.5 * 0.5, rel=0.01)
+    assert read["all.mass_flow"] == pytest.approx(800.0 - 250.0, rel=0.01)
+    assert read["part.flow"] == pytest.approx(0.6, rel=0.01)
+    assert read["along.flow"] == 0.0
+
+
+def test_a_disc_has_points_a_spacing_apart_at_most():
+    assert disc((1.0, 2.0), 0, 0.1, 0.1).tolist() == [[1.0, 2.0]]
+    assert disc((1.0, 2.0), 0, 0.2, 0.1) == pytest.approx(np.array([[1.0, 1.95], [1.0, 2.05]]))
+    plate = disc((1.0, 2.0, 3.0), 1, 1.0, 0.05)
+    assert np.all(plate[:, 1] == 2.0) and plate.mean(axis=0) == pytest.approx([1.0, 2.0, 3.0])
+    assert len(plate) * (1.0 / 20) ** 2 == pytest.approx(math.pi / 4.0, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("override", "says"),
+    [
+        ("gauges.a.force.on=['side']", "gauges.a.force.on.0: 'side': no wall has this name; "),
+        ("gauges.a.level={foot=[0.0,0.0],top=[0.0,0.0]}", "gauges.a.level: has no length; "),
+        ("gauges.a.flow={lower=[0.0,0.0],upper=[1.0,1.0]}", "gauges.a.flow: is no section across an axis; "),
+        ("gauges.a.every=0.1", "gauges.a: does not say what it measures; give one of force, level, "),
+        ("gauges.a={highest={axis='x'},point={position=[0.0,0.0]}}", "gauges.a: highest and point in one"),
+        ("gauges.a.highest.axis='z'", "gauges.a.highest.axis: 'z': no axis in 2D; give one of x, y"),
+        ("gauges.a={highest={axis='x'},every=1e-12}", "gauges.a.every: 1e-12: gives more than 1e+09 outputs"),
+        ("gauges.a.sensor={position=[0.0,0.0],axis='x',diameter=0.0}", "gauges.a.sensor.diameter"),
+    ],
+)
+def test_gauges_that_can_measure_nothing_are_refused(tmp_path, override, says):
+    [line] = refusal(tmp_path, TANK, override)
+    assert says in line
+
+
+@pytest.mark.parametrize("gradient", ["minimum", "difference", "tensile_control"])
+def test_no_force_where_pairs_do_not_push_back(tmp_path, gradient):
+    force = "gauges.a.force.on=['tank']"
+    [line] = refusal(tmp_path, TANK, force, f"physics.pressure_gradient={gradient}")
+    assert "gauges.a.force: " in line and f"physics.pressure_gradient = {gradient}" in line
+
+
+@pytest.mark.parametrize("condition", ["repulsive", "penalty"])
+def test_no_force_on_walls_that_bear_none(tmp_path, condition):
+    [line] = refusal(tmp_path, TANK, "gauges.a.force.on=['tank']", f"walls.tank.condition={condition}")
+    assert f'a wall with condition = "{condition}" bears no force; take "dynamic" or "extrapolated"' in line
+
+
+def test_scenes_without_forces_sum_no_loads(tmp_path):
+    plain, asked = (make_plan(Scene(draft(tmp_path, text))) for text in (TANK, AT_REST))
+    assert plain.loaded is None and "load" not in plain.arrays
+    assert asked.loaded.tolist() == [False, True] and set(asked.arrays) - set(plain.arrays) == {"load"}
+    level = WATER + "gauges.top.highest.axis = 'y'"
+    assert make_plan(Scene(draft(tmp_path, level))).arrays == make_plan(Scene(draft(tmp_path))).arrays

@@ -1,0 +1,125 @@
+"""Rigid bodies without a fluid, against exact motions."""
+
+import math
+
+import numpy as np
+import pytest
+
+from psph.physics.rigid.bodies import Bodies, Body
+from psph.physics.rigid.lines import Line, longest_step, pulls
+
+FREE, FIXED = (True,) * 3, (False,) * 3
+BRICK = (2.0, 0.1, -0.2, 0.1, 3.0, 0.15, -0.2, 0.15, 4.5)
+"""Inertia of a body without symmetry, kg m²."""
+
+
+def body(**different):
+    """A free body off the origin; what differs is given."""
+    return Body("brick", 3.0, (1.0, -2.0, 0.5), BRICK, (0.0,) * 3, (0.0,) * 3, FREE, FREE)._replace(
+        **different
+    )
+
+
+def moved(bodies, dt, steps, lines=()):
+    """The bodies after so many steps under their weight and ``lines``."""
+    force, torque, _ = pulls(lines, bodies)
+    bodies.load(force, torque)
+    for n in range(1, steps + 1):
+        bodies.drift(n * dt, dt)
+        force, torque, _ = pulls(lines, bodies)
+        bodies.load(force, torque)
+        bodies.kick(n * dt, dt)
+    return bodies
+
+
+def test_free_fall_is_a_parabola():
+    thrown = moved(Bodies([body(velocity=(1.0, 2.0, -0.5))], (0.3, 0.0, -9.8)), 1e-3, 1000)
+    assert thrown.place[0] == pytest.approx([1.0 + 1.0 + 0.15, 0.0, 0.5 - 0.5 - 4.9], abs=1e-12)
+    assert thrown.velocity[0] == pytest.approx([1.3, 2.0, -10.3], abs=1e-12)
+
+
+def test_free_spin_keeps_its_angular_momentum_and_energy():
+    spinning = Bodies([body(spin=(2.0, -1.0, 5.0)), body(spin=(0.1, 6.0, 0.2))], (0.0, 0.0, -9.8))
+    momentum, energy = spinning.angular_momentum.copy(), spinning.kinetic_energy()
+    spinning = moved(spinning, 1e-3, 3000)
+    assert np.array_equal(spinning.angular_momentum, momentum)
+    fallen = 0.5 * 3.0 * (9.8 * 3.0) ** 2
+    assert spinning.kinetic_energy() - fallen == pytest.approx(energy, rel=1e-5)
+    assert spinning.turn @ spinning.turn.transpose(0, 2, 1) == pytest.approx(
+        np.array([np.eye(3)] * 2), abs=1e-12
+    )
+    assert not np.allclose(spinning.spin[0], [2.0, -1.0, 5.0], atol=0.1)  # it tumbles
+
+
+def test_a_spinning_top_precesses_as_euler_says():
+    # I = diag(1, 1, 2): ω turns about the axis of the top at (I₃ − I₁) ω₃/I₁ in the body, L stays.
+    inertia = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0)
+    top = Bodies([body(inertia=inertia, spin=(0.5, 0.0, 3.0))], (0.0,) * 3)
+    dt, steps = 5e-4, 2000
+    top = moved(top, dt, steps)
+    own = top.turn[0].T @ top.spin[0]
+    turned = 3.0 * dt * steps
+    assert own == pytest.approx([0.5 * math.cos(turned), 0.5 * math.sin(turned), 3.0], abs=1e-6)
+
+
+def test_a_turn_about_one_axis_has_no_error():
+    door = body(slides=FIXED, turns=(False, True, False), spin=(1.0, 4.0, 1.0))
+    turned = moved(Bodies([door], (0.0, 0.0, -9.8)), 1e-2, 500)
+    assert turned.angle == pytest.approx([20.0], abs=1e-12)
+    assert turned.place[0] == pytest.approx([1.0, -2.0, 0.5]) and turned.spin[0] == pytest.approx(
+        [0.0, 4.0, 0.0]
+    )
+
+
+def test_a_pendulum_swings_as_long_as_it_should():
+    # About z in the plane: M 3 kg at 0.8 m, I_zz 4.5 about its centre; small swings: T = 2π √((I + Ml²)/Mgl).
+    length, small = 0.8, 1e-3
+    centre = (length * math.sin(small), -length * math.cos(small), 0.0)
+    bob = body(centre=centre, pivot=(0.0, 0.0, 0.0), slides=FIXED, turns=(False, False, True))
+    bodies = Bodies([bob], (0.0, -9.8))
+    period = 2.0 * math.pi * math.sqrt((4.5 + 3.0 * length**2) / (3.0 * 9.8 * length))
+    bodies = moved(bodies, period / 4000, 3000)  # three quarters: passing the middle
+    assert bodies.centre[0, 0] == pytest.approx(0.0, abs=1e-3 * length * small)
+    assert np.linalg.norm(bodies.centre[0]) == pytest.approx(length, rel=1e-14)
+
+
+def test_a_body_on_a_spring_swings_as_long_as_it_should_and_a_damper_brakes_it():
+    spring = Line("s", 0, (1.0, -2.0, 0.5), None, (1.0, -2.0, 1.5), 12.0, 1.0, 0.0, False)
+    # Thrown off its rest along the line.
+    swinging = Bodies([body(velocity=(0.0, 0.0, 0.1))], (0.0,) * 3)
+    period = 2.0 * math.pi / math.sqrt(12.0 / 3.0)
+    steps = 2000
+    assert period / steps < longest_step([spring], swinging)
+    swinging = moved(swinging, 0.75 * period / steps, steps, [spring])
+    assert swinging.place[0, 2] - 0.5 == pytest.approx(-0.05, rel=1e-4)
+    assert swinging.velocity[0, 2] == pytest.approx(0.0, abs=1e-4)
+    damped = spring._replace(damping=0.6)
+    braked = moved(Bodies([body(velocity=(0.0, 0.0, 0.1))], (0.0,) * 3), period / steps, steps, [damped])
+    rate, swing = 0.6 / (2 * 3.0), math.sqrt(4.0 - (0.6 / 6.0) ** 2)
+    exact = 0.1 / swing * math.exp(-rate * period) * math.sin(swing * period)
+    assert braked.place[0, 2] - 0.5 == pytest.approx(exact, abs=1e-6)
+
+
+def test_lines_between_bodies_push_back_what_pulls():
+    bodies = Bodies([body(), body(mass=5.0, centre=(3.0, 0.0, 0.0))], (0.0,) * 3)
+    line = Line("l", 0, (1.2, -1.8, 0.4), 1, (2.5, 0.3, 0.1), 7.0, 0.5, 0.2, False)
+    force, torque, tension = pulls([line], bodies)
+    assert tension[0] > 1.0 and force.sum(axis=0) == pytest.approx([0.0] * 3, abs=1e-15)
+    total = torque + np.cross(bodies.place, force)
+    assert np.abs(torque).max() > 0.1 and total.sum(axis=0) == pytest.approx([0.0] * 3, abs=1e-14)
+    slack = line._replace(length=5.0, pulls_only=True)
+    assert not pulls([slack], bodies)[0].any()
+    assert pulls([slack._replace(pulls_only=False)], bodies)[2][0] < 0.0
+
+
+def test_a_held_body_stays_until_its_time():
+    dropped = moved(Bodies([body(held=0.5)], (0.0, 0.0, -10.0)), 1e-3, 1000)
+    assert dropped.place[0, 2] == pytest.approx(0.5 - 5.0 * 0.5**2, abs=0.02)
+    assert moved(Bodies([body(held=2.0)], (0.0, 0.0, -10.0)), 1e-3, 1000).place[0, 2] == 0.5
+
+
+def test_what_is_not_free_stays():
+    guided = body(slides=(False, True, False), turns=FIXED, velocity=(1.0, 1.0, 1.0), spin=(1.0, 1.0, 1.0))
+    bodies = moved(Bodies([guided], (1.0, 2.0, 3.0)), 1e-2, 100)
+    assert bodies.place[0] == pytest.approx([1.0, -2.0 + 1.0 + 1.0, 0.5])
+    assert np.array_equal(bodies.turn[0], np.eye(3)) and not bodies.spin.any()
