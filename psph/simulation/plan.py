@@ -16,7 +16,7 @@ from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, Fixed, Free, is_prescribed
+from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, RIGID, Fixed, Free, deforms, is_rigid
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
 
@@ -90,9 +90,13 @@ class Plan:
     free: np.uint8
     """How many groups move freely: these come first."""
     motions: tuple[Any, ...]
-    """The prescribed motions of the scene's walls."""
+    """The prescribed motions of the scene's walls that deform them."""
     motion_of: np.ndarray
     """The number of the motion of each group: psph.physics.motion."""
+    rigid: tuple[Any, ...]
+    """The motions that have a pose: psph.simulation.poses."""
+    pose_of: np.ndarray
+    """The row of the pose of each group; 0 where it has none."""
     regions: tuple[Any, ...]
     """Where particles appear or vanish, each with the number of the fluid that comes."""
     cfl: float
@@ -134,6 +138,11 @@ class Plan:
     def marking(self) -> tuple:
         """Effects with a field that is found when the neighbours are listed."""
         return tuple(e for e in self.effects if hasattr(e, "marks"))
+
+    @property
+    def moves_walls(self) -> bool:
+        """Whether walls move as they are told."""
+        return bool(self.motions or self.rigid)
 
     @cached_property
     def starts_twice(self) -> bool:
@@ -191,8 +200,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     written += tuple(effect.marks for effect in marking)
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
-    prescribed = {(type(s.motion), s.motion) for s in scene.species if is_prescribed(s.motion)}
-    motions = tuple(motion for _, motion in sorted(prescribed, key=str))
+    motions, rigid = (_distinct(scene.species, one_of) for one_of in (deforms, is_rigid))
     fields = by_name(catalogue.fields.values(), written, further, [ANCHOR])
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
@@ -202,7 +210,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     shared, varying = _split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
     refuse_unwritten(scene, called, computed)
-    anchored = {ANCHOR.name} if motions else set()
+    anchored = {ANCHOR.name} if motions or rigid else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in anchored)
     passes = make_passes(called, stored, lambda name: _array_of(name, stored), case.time.gather_every)
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
@@ -243,6 +251,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
         motions=motions,
         motion_of=_motion_numbers(scene.species, motions),
+        rigid=rigid,
+        pose_of=np.array([_row_of(one.motion, rigid) for one in scene.species], np.uint8),
         regions=scene.regions,
         cfl=case.time.cfl,
         fixed_step=case.time.step,
@@ -281,16 +291,27 @@ def _tells(effect, material) -> bool:
     return hasattr(effect, "tells") and material_value(material, effect.tells) > 0.0
 
 
-def _motion_numbers(species, motions) -> np.ndarray:
+def _distinct(species, one_of) -> tuple:
+    """The different motions of some species that are ``one_of`` these."""
     # By type too: named tuples of different types are equal where their values are.
+    found = {(type(s.motion), s.motion) for s in species if one_of(s.motion)}
+    return tuple(motion for _, motion in sorted(found, key=str))
+
+
+def _row_of(motion, among: tuple) -> int:
+    """The place of a motion among others, 0 where it is none of them."""
+    told = [(type(one), one) for one in among]
+    return told.index((type(motion), motion)) if (type(motion), motion) in told else 0
+
+
+def _motion_numbers(species, motions) -> np.ndarray:
     numbers = {Free: FREE, Fixed: FIXED}
-    told = [(type(motion), motion) for motion in motions]
     return np.array(
         [
-            numbers[type(one.motion)]
-            if type(one.motion) in numbers
-            else PRESCRIBED + told.index((type(one.motion), one.motion))
-            for one in species
+            RIGID
+            if is_rigid(s.motion)
+            else numbers.get(type(s.motion), PRESCRIBED + _row_of(s.motion, motions))
+            for s in species
         ],
         np.uint8,
     )
