@@ -1,12 +1,16 @@
 """How the particles of a species move: freely, not at all, or as they are told.
 
-A motion is a typed value, as an effect is.  One that is prescribed has two methods, of a particle's
-``anchor`` (where it stood at the start, m) and the time (s):
+A motion is a typed value, as an effect is.  A rigid one is a function of time alone: it has one method,
+
+    pose(time)              → a psph.physics.rigid.pose.Pose,
+
+which is evaluated once a step.  One that deforms a wall has two methods, of a particle's ``anchor`` (where
+it stood at the start, m) and the time (s), which are compiled into the loops:
 
     place(anchor, time)     → where it is, m
     velocity(anchor, time)  → the time derivative of that, m/s
 
-so that its particles never drift from where they belong, however many steps a run takes.
+Neither is integrated, so that particles never drift from where they belong, however many steps a run takes.
 """
 
 from typing import NamedTuple
@@ -14,6 +18,15 @@ from typing import NamedTuple
 from psph.fields import FLUID, VECTOR, WALL, Field
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
+
+APPARENT = Field(
+    "apparent",
+    "m/s2",
+    "force per mass of an accelerated frame, less the acceleration of a moving wall",
+    VECTOR,
+)
+
+WORK = Field("work", "J", "energy that a moving wall, or the force of an accelerated frame, has given")
 
 
 class Free(NamedTuple):
@@ -28,10 +41,20 @@ class Fixed(NamedTuple):
     kind = WALL
 
 
-FREE, FIXED, PRESCRIBED = 0, 1, 2
-"""Numbers of motions in compiled loops: of prescribed ones, the first."""
+FREE, FIXED, RIGID, PRESCRIBED = 0, 1, 2, 3
+"""Numbers of motions in compiled loops: of those that deform, the first."""
 
 
 def is_prescribed(motion) -> bool:
     """Whether a motion says where its particles are."""
+    return deforms(motion) or is_rigid(motion)
+
+
+def deforms(motion) -> bool:
+    """Whether a motion says so for each particle by itself."""
     return hasattr(motion, "place")
+
+
+def is_rigid(motion) -> bool:
+    """Whether a motion has a pose."""
+    return hasattr(motion, "pose")

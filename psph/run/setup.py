@@ -58,6 +58,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
         plan.laws,
         plan.space,
         plan.motions,
+        bool(plan.rigid) or None,
         scene.periods,
         store.view(),
     )

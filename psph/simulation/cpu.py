@@ -29,6 +29,7 @@ from psph.simulation.integrator import (
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 from psph.simulation.plan import LOAD, Plan
+from psph.simulation.poses import Poses, corners_of
 from psph.simulation.rules import Columns, Rules
 
 
@@ -50,6 +51,7 @@ class Engine:
         )
         self.skin, self._reach = Skin(self.domain, scene.reach.skin, plan.planes), scene.reach
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
+        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.dimensions)
         self._rules = Rules(
             plan.carriers,
             plan.laws,
@@ -58,6 +60,8 @@ class Engine:
             plan.free,
             plan.motions,
             plan.motion_of,
+            self.poses.maps,
+            plan.pose_of,
             scene.periods,
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
@@ -130,6 +134,7 @@ class Engine:
         """The lists as they were made, then everything as it was when ``saved`` was written."""
         self.domain.relist(saved.state["lower"], saved.state["upper"])
         saved.fill(self.store)
+        self.poses.restore(saved.state["poses"], saved.state["time"])
         for effect in self.plan.marking:
             self._rest(effect)
         self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)

@@ -46,7 +46,7 @@ def kick_drift_predict(first, last, time, dt, rules, view, columns):
             rho = limit_density(rules.effects, i, rho)
         else:
             rho = limit_wall_density(rules.effects, i, rho)
-            carry(rules.motions, rules.motion_of[group], k, time, rules.periods, c)
+            carry(rules, group, k, time, c)
         c.specific_volume[k] = 1.0 / rho
         c.pressure[k] = borne(rules, i, group, rho)
 
@@ -109,7 +109,7 @@ def kick(first, last, time, dt, rules, view, columns):
         else:
             rho = limit_wall_density(rules.effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
-            v2, a2 = hurry(rules.motions, rules.motion_of[group], k, time, dt, c)
+            v2, a2 = hurry(rules, group, k, time, dt, c)
             wall_v2_max, a2_max = max(wall_v2_max, v2), max(a2_max, a2)
         c.density[k] = rho
     return v2_max, a2_max, strain_max, shift2_max, wall_v2_max

@@ -26,7 +26,7 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, Fixed, Free, is_prescribed
+from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, RIGID, Fixed, Free, deforms, is_rigid
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
 
@@ -105,9 +105,13 @@ class Plan:
     free: np.uint8
     """How many groups move freely: these come first."""
     motions: tuple[Any, ...]
-    """The prescribed motions of the scene's walls."""
+    """The prescribed motions of the scene's walls that deform them."""
     motion_of: np.ndarray
     """The number of the motion of each group: psph.physics.motion."""
+    rigid: tuple[Any, ...]
+    """The motions that have a pose: psph.simulation.poses."""
+    pose_of: np.ndarray
+    """The row of the pose of each group; 0 where it has none."""
     loaded: np.ndarray | None
     """Whether the push of the fluid alone is summed on the particles of a group: (groups,); None: on none."""
     regions: tuple[Any, ...]
@@ -151,6 +155,11 @@ class Plan:
     def marking(self) -> tuple:
         """Effects with a field that is found when the neighbours are listed."""
         return tuple(e for e in self.effects if hasattr(e, "marks"))
+
+    @property
+    def moves_walls(self) -> bool:
+        """Whether walls move as they are told."""
+        return bool(self.motions or self.rigid)
 
     @cached_property
     def starts_twice(self) -> bool:
@@ -208,8 +217,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     written += tuple(effect.marks for effect in marking)
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
-    prescribed = {(type(s.motion), s.motion) for s in scene.species if is_prescribed(s.motion)}
-    motions = tuple(motion for _, motion in sorted(prescribed, key=str))
+    motions, rigid = (_distinct(scene.species, one_of) for one_of in (deforms, is_rigid))
     fields = by_name(catalogue.fields.values(), written, further, [ANCHOR, LOAD])
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
@@ -221,7 +229,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     shared, varying = _split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
     refuse_unwritten(scene, called, computed)
-    further_fields = {ANCHOR.name} if motions else set()
+    further_fields = {ANCHOR.name} if motions or rigid else set()
     further_fields |= {LOAD.name} if loaded.any() else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in further_fields)
     passes = make_passes(
@@ -265,6 +273,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
         motions=motions,
         motion_of=_motion_numbers(scene.species, motions),
+        rigid=rigid,
+        pose_of=np.array([_row_of(one.motion, rigid) for one in scene.species], np.uint8),
         loaded=loaded if loaded.any() else None,
         regions=scene.regions,
         cfl=case.time.cfl,
@@ -304,16 +314,27 @@ def _tells(effect, material) -> bool:
     return hasattr(effect, "tells") and material_value(material, effect.tells) > 0.0
 
 
-def _motion_numbers(species, motions) -> np.ndarray:
+def _distinct(species, one_of) -> tuple:
+    """The different motions of some species that are ``one_of`` these."""
     # By type too: named tuples of different types are equal where their values are.
+    found = {(type(s.motion), s.motion) for s in species if one_of(s.motion)}
+    return tuple(motion for _, motion in sorted(found, key=str))
+
+
+def _row_of(motion, among: tuple) -> int:
+    """The place of a motion among others, 0 where it is none of them."""
+    told = [(type(one), one) for one in among]
+    return told.index((type(motion), motion)) if (type(motion), motion) in told else 0
+
+
+def _motion_numbers(species, motions) -> np.ndarray:
     numbers = {Free: FREE, Fixed: FIXED}
-    told = [(type(motion), motion) for motion in motions]
     return np.array(
         [
-            numbers[type(one.motion)]
-            if type(one.motion) in numbers
-            else PRESCRIBED + told.index((type(one.motion), one.motion))
-            for one in species
+            RIGID
+            if is_rigid(s.motion)
+            else numbers.get(type(s.motion), PRESCRIBED + _row_of(s.motion, motions))
+            for s in species
         ],
         np.uint8,
     )

@@ -62,7 +62,7 @@ def find_limits(simulation) -> None:
     A scene without shifts or moving walls sends no number for them.
     """
     *extremes, shift2, wall2 = simulation.own_extremes
-    displaces, moves = simulation.plan.displaces, bool(simulation.plan.motions)
+    displaces, moves = simulation.plan.displaces, simulation.plan.moves_walls
     with simulation.ledger("limits"):
         sent = [*extremes, simulation.word(), *([shift2] * displaces), *([wall2] * moves)]
         found = largest(simulation.comm, sent)

@@ -80,7 +80,8 @@ class Simulation:
         self.dt, self.limited_by, self.then = self._next_step(end)
         self._refuse_lost(self.dt)
         with self.ledger("skin"):
-            self.listed = self.skin.holds(self.dt, self.speed, self.acceleration, self.shift)
+            jolt = self.engine.poses.advance(self.then, self.dt)
+            self.listed = self.skin.holds(self.dt, self.speed, max(self.acceleration, jolt), self.shift)
         for stage in self.stages:
             stage(self)
         self.time = self.then
@@ -95,7 +96,11 @@ class Simulation:
         """All that the next steps rest on but for the numbers of the particles."""
         numbers = {name: getattr(self, name) for name in CLOCK}
         corners = {"lower": self.domain.lower, "upper": self.domain.upper}
-        rest = {"skin": self.skin.state(), "population": self.population.state()}
+        rest = {
+            "skin": self.skin.state(),
+            "population": self.population.state(),
+            "poses": self.engine.poses.state(),
+        }
         return numbers | corners | rest
 
     def bytes_held(self) -> int:

@@ -39,6 +39,8 @@ GUESTS = {
     "elastic": "physics.elasticity = 1e4",
     "curvature": "physics.curvature = 0.5",
     "swinging": "walls.floor.motion.swinging = { amplitude = [0.03, 0.0], frequency = 20.0 }",
+    "rolling": "walls.side = { shape.box = { lower = [1.0, 0.7], upper = [2.0, 0.9] }, "
+    "motion.rolling = { amplitude = 0.4, frequency = 10.0, center = [1.5, 0.9] } }",
     "passing": """regions.sink.drain = { lower = [1.2, 0.3], upper = [1.6, 0.7] }
 regions.source.spring = { start = [3.6, 0.8], end = [3.6, 1.1], spacing = 0.1, speed = 30.0 }""",
 }

@@ -10,7 +10,8 @@ from psph.simulation.integrator import kick, kick_drift_predict
 from psph.simulation.rules import Columns, Rules
 
 MOTIONS = np.array([motion.FREE, motion.FIXED], np.uint8)
-RULES = Rules((), (Linear(),), np.zeros(2, np.uint8), np.zeros(2, bool), np.uint8(1), (), MOTIONS, (None,))
+NUMBERS = np.zeros(2, np.uint8)
+RULES = Rules((), (Linear(),), NUMBERS, np.zeros(2, bool), np.uint8(1), (), MOTIONS, None, NUMBERS, (None,))
 
 
 def oscillate(theta, steps):

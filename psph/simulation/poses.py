@@ -1,0 +1,78 @@
+"""The poses of all that moves as a whole, and their maps in one small array that the loops read."""
+
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+
+from psph.physics.motion import is_rigid
+from psph.physics.rigid.pose import PLACE, VELOCITY, maps
+
+
+class Poses:
+    """One row for each rigid motion of a scene, the same on every rank without any message.
+
+    ``motions`` have a pose at any time (psph.physics.motion); ``corners`` (rows, n, dim) are points, m,
+    around all particles of each row as they stand at the start.  ``maps`` (rows, 3, dim, 1 + dim) place
+    the particles (psph.physics.rigid.pose.maps); None where nothing is rigid, so that loops have no code
+    for it.  The array stays the same object: loops see each change.
+    """
+
+    def __init__(self, motions: Sequence, corners: np.ndarray, dimensions: int):
+        self.motions, self._corners, self._dimensions = tuple(motions), corners, dimensions
+        self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
+        self.turn_to(0.0)
+
+    def turn_to(self, time: float) -> None:
+        """Have all that is prescribed by time where it is at ``time``, s."""
+        for row, motion in enumerate(self.motions):
+            self.maps[row] = maps(motion.pose(time), self._dimensions)
+
+    def advance(self, time: float, dt: float) -> float:
+        """The same after a step of ``dt`` s that ends at ``time``.
+
+        Returns the largest acceleration, m/s², that can be told from this step of any of their particles,
+        jumps of the velocity included: what the lists must stand.
+        """
+        if not self.motions:
+            return 0.0
+        before = self._at_corners()
+        self.turn_to(time)
+        (x, v), (x_0, v_0) = self._at_corners(), before
+        strayed, gained = x - x_0 - v_0 * dt, v - v_0
+        most = max(2.0 * _longest(strayed) / dt, _longest(gained)) / dt
+        return float(most)
+
+    def state(self) -> dict:
+        """What the next steps rest on beside the time: nothing of what is prescribed."""
+        return {}
+
+    def restore(self, state: dict, time: float) -> None:
+        """Go on from there at ``time``, s."""
+        self.turn_to(time)
+
+    def _at_corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """Places, m, and velocities, m/s, of the corners of all rows (rows, n, dim)."""
+        return tuple(self._mapped(self.maps[:, which]) for which in (PLACE, VELOCITY))
+
+    def _mapped(self, chosen: np.ndarray) -> np.ndarray:
+        """The corners by an affine map each: sums in a fixed order, on any processor."""
+        found = np.repeat(chosen[:, None, :, 0], self._corners.shape[1], axis=1)
+        for e in range(self._dimensions):
+            found = found + chosen[:, None, :, 1 + e] * self._corners[:, :, None, e]
+        return found
+
+
+def corners_of(scene, plan) -> np.ndarray:
+    """The corners of boxes around the particles of each rigid motion at the start, m (rows, 2^dim, dim)."""
+    found = []
+    for row in range(len(plan.rigid)):
+        moved = [n for n, s in enumerate(scene.species) if is_rigid(s.motion) and plan.pose_of[n] == row]
+        ends = scene.census.lowest[moved].min(axis=0), scene.census.highest[moved].max(axis=0)
+        found.append(list(product(*zip(*ends))))
+    return np.array(found)
+
+
+def _longest(vectors: np.ndarray) -> float:
+    """The length of the longest of vectors (rows, n, dim)."""
+    return float(np.sqrt((vectors**2).sum(axis=-1).max()))
