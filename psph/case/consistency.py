@@ -5,6 +5,7 @@ from typing import Any
 
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from psph.case.bodies import held_together
 from psph.case.errors import advise
 from psph.case.findings import Finding, Location, asked_of
 from psph.case.keys import AXES, Table
@@ -36,6 +37,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         probed,
         gauged,
         _names,
+        held_together,
         _single,
         _stepped,
         due,
@@ -233,10 +235,10 @@ def _exact(case) -> Iterator[Finding]:
 
 
 def _continued(case) -> Iterator[Finding]:
-    for name, wall in case.walls.items():
+    for name, wall in case.solids.items():
         if wall.continues is not None and wall.continues not in case.fluids:
             yield (
-                ("walls", name, "continues"),
+                (case.table_of(name), name, "continues"),
                 wall.continues,
                 (f"no fluid has this name; {advise(wall.continues, case.fluids)}"),
             )
@@ -276,16 +278,16 @@ def _friction(case) -> Iterator[Finding]:
             ...,
             ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key"),
         )
-    for name, wall in case.walls.items():
+    for name, wall in case.solids.items():
         if wall.no_slip and not rubs:
             yield (
-                ("walls", name, "no_slip"),
+                (case.table_of(name), name, "no_slip"),
                 True,
                 ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip"),
             )
         elif wall.no_slip and central:
             yield (
-                ("walls", name, "no_slip"),
+                (case.table_of(name), name, "no_slip"),
                 True,
                 ("does not work with physics.central_friction; remove one of the two"),
             )

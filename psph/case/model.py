@@ -11,6 +11,7 @@ import tomli_w
 from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
 from pydantic_core import PydanticCustomError
 
+from psph.case.bodies import Body
 from psph.case.consistency import contradictions
 from psph.case.gauges import Gauge
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
@@ -208,6 +209,7 @@ class Case(Table):
         max_length=MANY,
     )
     walls: dict[Name, Wall] = key("the walls by name: particles that do not move", {}, max_length=MANY)
+    bodies: dict[Name, Body] = key("the rigid bodies by name", {}, max_length=MANY)
     probes: dict[Name, Probe] = key("the probes by name: points where fields are measured over time", {})
     gauges: dict[Name, Gauge] = key(
         "the gauges by name: forces, levels, flows and others, each with a table of its own", {}
@@ -246,8 +248,18 @@ class Case(Table):
 
     @property
     def loaded(self) -> set[str]:
-        """Names of the walls on which the fluid's push is asked for."""
-        return {name for gauge in self.gauges.values() if gauge.force for name in gauge.force.on}
+        """Names of the walls and bodies on which the fluid's push is asked for."""
+        gauged = {name for gauge in self.gauges.values() if gauge.force for name in gauge.force.on}
+        return gauged | set(self.bodies)
+
+    @property
+    def solids(self) -> dict[str, Wall | Body]:
+        """Walls and bodies by name."""
+        return {**self.walls, **self.bodies}
+
+    def table_of(self, solid: str) -> str:
+        """The table that holds a wall or a body of that name."""
+        return "walls" if solid in self.walls else "bodies"
 
     @cached_property
     def presets(self) -> dict[str, tuple[str, Any]]:
@@ -304,8 +316,8 @@ class Case(Table):
                 _fill(gauge.force, about=zeros)
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
-        for wall in self.walls.values():
-            _fill(wall, velocity=zeros, continues=next(iter(self.fluids)))
+        for solid in (*self.walls.values(), *self.bodies.values()):
+            _fill(solid, velocity=zeros, continues=next(iter(self.fluids)))
         return self
 
 

@@ -52,6 +52,13 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     return np.where(finite, sums, np.nan)
 
 
+def whole_sums(comm: MPI.Comm, values: np.ndarray) -> np.ndarray:
+    """Sums of arrays of whole numbers, int64, over all ranks; collective."""
+    total = np.array(values, dtype=np.int64)
+    comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
+    return total
+
+
 def wrapped_sums(comm: MPI.Comm, values) -> list[int]:
     """Sums of whole numbers below 2⁶⁴ over all ranks, modulo 2⁶⁴; collective."""
     total = np.array(values, dtype=np.uint64)

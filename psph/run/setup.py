@@ -7,6 +7,7 @@ import numpy as np
 
 from psph.engine.jit import CACHE, is_kept, many_loops, marker
 from psph.output.checkpoint import checksum
+from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
@@ -59,10 +60,12 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
         plan.space,
         plan.motions,
         bool(plan.rigid) or None,
+        plan.loaded is not None,
         scene.periods,
         store.view(),
     )
-    ready = marker("step and probes" if scene.case.probes else "step", *examples)
+    measured = "step and probes" if scene.case.probes or scene.case.gauges else "step"
+    ready = marker(measured, *examples)
     together = comm.bcast(ready is None or not is_kept(*examples) or ready.exists())
     if together or comm.rank == 0:
         with many_loops():
@@ -86,4 +89,6 @@ def _rehearse(scene, plan: Plan, store: Store) -> None:
     rehearsal.settle_pressure()
     for probe in probes_of(scene.case):
         probe.sample(rehearsal.domain, scene.kernel)
+    for gauge in gauges_of(scene, plan.mirrors).values():
+        gauge.row(rehearsal)
     checksum(store.id, 0)  # a run that is told to end may have a second for its checkpoint

@@ -125,14 +125,6 @@ def warnings(scene: Scene) -> Iterator[str]:
             yield f"{scene.case.file}: {line}"
 
 
-def _key(scene: Scene, material: int) -> str:
-    """``fluids.water`` or ``walls.tank``."""
-    fluids = list(scene.case.fluids)
-    if material < len(fluids):
-        return f"fluids.{fluids[material]}"
-    return f"walls.{list(scene.walls)[material - len(fluids)]}"
-
-
 def _domain_faults(scene: Scene) -> Iterator[str]:
     reach = scene.kernel.support * scene.smoothing_length
     least = SLABS_IN_A_PERIOD * reach * (1.0 + scene.case.neighbours.skin)
@@ -187,19 +179,19 @@ def _site_faults(scene: Scene) -> Iterator[str]:
     for material, size in enumerate(census.sizes):
         if not size:
             yield (
-                f"{_key(scene, material)}.shape: no lattice site lies in it; make it larger than "
+                f"{scene.key_of(material)}.shape: no lattice site lies in it; make it larger than "
                 "space.spacing, or move it"
             )
     walls = len(scene.case.fluids)
     for (one, other), site in sorted(census.clashes.items()):
         if one < walls <= other:
             yield (
-                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {shown(site)}; subtract "
+                f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
                 "the fluid with shape = { difference = { from = ..., minus = [...] } }"
             )
         elif other < walls:
             yield (
-                f"{_key(scene, other)}.shape: overlaps {_key(scene, one)} at {shown(site)}; subtract "
+                f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
                 "one from the other with difference"
             )
     yield from _particles_outside(scene)
@@ -214,7 +206,7 @@ def _particles_outside(scene: Scene) -> Iterator[str]:
             if lowest < low or highest >= up:
                 far = lowest if lowest < low else highest
                 yield (
-                    f"{_key(scene, material)}.shape: a particle at {name} = {far:.6g} m outside "
+                    f"{scene.key_of(material)}.shape: a particle at {name} = {far:.6g} m outside "
                     f"the domain from {scene.lower[d]:.6g} to {scene.upper[d]:.6g}; make the "
                     "shape smaller, or change space.lower and space.upper"
                 )
@@ -255,7 +247,7 @@ def _thin_walls(scene: Scene) -> Iterator[str]:
     for material, (layers, site) in sorted(thinnest_walls(scene).items()):
         reach = scene.kernel.support * scene.case.space.smoothing
         yield (
-            f"{_key(scene, material)}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
+            f"{scene.key_of(material)}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
             f"{shown(site)}, the kernel reaches over {reach:.3g}; make the wall at least "
             f"{need} spacings ({need * scene.spacing:.6g} m) thick"
         )

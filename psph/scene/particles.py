@@ -127,7 +127,7 @@ def _sheared(chunk: ParticleSet, scene) -> None:
 
 def _as_exact(chunk: ParticleSet, scene) -> None:
     """Velocity and density of the exact solution, where each particle now is."""
-    for index, body in enumerate(scene.bodies):
+    for index, body in enumerate(scene.parts):
         rows = chunk.material == index
         if body.velocity == EXACT and rows.any():
             chunk.velocity[rows] += scene.exact.velocity(chunk.position[rows], 0.0, scene.setting)

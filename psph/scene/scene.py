@@ -14,7 +14,9 @@ from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import Fixed, Free
+from psph.physics.rigid.bodies import Body
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
+from psph.scene.bodies import rigid_bodies
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.particles import ParticleSet, fill
@@ -32,7 +34,8 @@ class Scene:
     The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the
     domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
     hold a particle, ``planes`` its planes across ``axis``, ``mirror_planes`` its
-    mirrors; ``walls`` are those with particles, by name.
+    mirrors; ``walls`` are those with particles, by name, ``solids`` these and the rigid bodies;
+    ``parts`` has the tables of the case that hold particles: fluids, walls, bodies.
     """
 
     def __init__(self, case: Case):
@@ -44,13 +47,14 @@ class Scene:
         if space.normalised:
             self.kernel = normalised(self.kernel, self.spacing, space.dimensions)
         self.walls = {name: wall for name, wall in case.walls.items() if wall.condition != MIRROR}
-        self.bodies: tuple[Any, ...] = (*case.fluids.values(), *self.walls.values())
-        shapes = tuple(body.shape for body in self.bodies)
+        self.solids: dict[str, Any] = {**self.walls, **case.bodies}
+        self.parts: tuple[Any, ...] = (*case.fluids.values(), *self.solids.values())
+        shapes = tuple(part.shape for part in self.parts)
         axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
         self.mirror_planes = planes_of(case)
         boxes = (clipped(bounds(shape), self.mirror_planes) for shape in shapes)
         self.lattice = lattice_around(boxes, space.origin, self.spacing, axis)
-        self.layout = Layout(self.lattice, shapes, len(case.fluids))
+        self.layout = Layout(self.lattice, shapes, len(case.fluids), len(case.bodies))
         self.axis, self.planes = self.lattice.axis, self.lattice.planes
         mirrors = (bounds(wall.shape) for wall in case.walls.values() if wall.condition == MIRROR)
         found = around([(self.lattice.lower, self.lattice.upper), *mirrors])
@@ -182,7 +186,7 @@ class Scene:
         return self._setting(math.nan)
 
     def _setting(self, sound_speed: float) -> Setting:
-        fluid = self.bodies[0]
+        fluid = self.parts[0]
         return Setting(
             self.dimensions,
             fluid.density,
@@ -197,17 +201,17 @@ class Scene:
     @cached_property
     def species(self) -> tuple[Species, ...]:
         """Each fluid, then each wall."""
-        names, volume = (*self.case.fluids, *self.walls), self.spacing**self.dimensions
+        names, volume = (*self.case.fluids, *self.solids), self.spacing**self.dimensions
         return tuple(
             Species(
                 name,
                 self._motion(index),
-                self.bodies[source].density,
-                self.bodies[source].viscosity,
+                self.parts[source].density,
+                self.parts[source].viscosity,
                 start.mass(volume),
                 start.law,
-                getattr(self.bodies[index], "no_slip", False),
-                getattr(self.bodies[index], "condition", DYNAMIC),
+                getattr(self.parts[index], "no_slip", False),
+                getattr(self.parts[index], "condition", DYNAMIC),
                 name in self.case.loaded,
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
@@ -217,8 +221,20 @@ class Scene:
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""
         if index < self.layout.fluids:
             return Free()
-        asked = chosen(getattr(self.bodies[index], "motion", None), self.case.catalogue.motions)
+        if index >= self.layout.first_body:
+            return self.rigid_bodies[index - self.layout.first_body]
+        asked = chosen(getattr(self.parts[index], "motion", None), self.case.catalogue.motions)
         return next(iter(asked.values()), Fixed())
+
+    @cached_property
+    def rigid_bodies(self) -> tuple[Body, ...]:
+        """What the bodies of the case are."""
+        return rigid_bodies(self)
+
+    def key_of(self, part: int) -> str:
+        """The key of the case that holds a part: ``fluids.water``, ``walls.tank``, ``bodies.buoy``."""
+        name = (*self.case.fluids, *self.solids)[part]
+        return f"fluids.{name}" if part < self.layout.fluids else f"{self.case.table_of(name)}.{name}"
 
     @cached_property
     def tables(self) -> dict[str, Any]:
@@ -250,7 +266,7 @@ class Scene:
     def velocities(self) -> tuple[tuple[float, ...], ...]:
         """Velocity of each material at the start, m/s; zeros where it differs by place."""
         still = (0.0,) * self.dimensions
-        return tuple(still if b.velocity == EXACT else b.velocity for b in self.bodies)
+        return tuple(still if b.velocity == EXACT else b.velocity for b in self.parts)
 
     @cached_property
     def kicks(self) -> dict[tuple[int, int], np.ndarray]:
@@ -284,7 +300,7 @@ class Scene:
     def _sources(self) -> list[int]:
         """For each material the index of the fluid whose properties it has."""
         fluids = list(self.case.fluids)
-        continued = [fluids.index(wall.continues) for wall in self.walls.values()]
+        continued = [fluids.index(solid.continues) for solid in self.solids.values()]
         return [*range(len(fluids)), *continued]
 
     def _law(self, fluid):
@@ -294,7 +310,7 @@ class Scene:
         return law()
 
     def _start(self, index: int) -> Start:
-        fluid = self.bodies[index]
+        fluid = self.parts[index]
         hydrostatic, exact = (fluid.pressure == word for word in ("hydrostatic", EXACT))
         return Start(
             law=self._law(fluid),
@@ -323,14 +339,14 @@ class Scene:
                 census.highest[other] < census.lowest[fluid]
             )
             resting = bottom > self._surface(fluid) - TOLERANCE * self.spacing and not apart[level].any()
-            if resting and self.bodies[other].pressure == "hydrostatic":
+            if resting and self.parts[other].pressure == "hydrostatic":
                 thickness = self._surface(other) - bottom
-                total += self.bodies[other].density * math.hypot(*self.gravity) * thickness
+                total += self.parts[other].density * math.hypot(*self.gravity) * thickness
         return total
 
     def _fastest_corner(self, fluid: int) -> float:
         """Largest speed at a corner of the box around a fluid whose velocity has a gradient."""
-        body = self.bodies[fluid]
+        body = self.parts[fluid]
         if not body.velocity_gradient:
             return 0.0
         ends = np.array([self.census.lowest[fluid], self.census.highest[fluid]])

@@ -34,13 +34,13 @@ def _walls_of_another_fluid(scene) -> Iterator[str]:
         for fluid, name in enumerate(names):
             beside = set(held[scene.layout.touching(fluid, first, last)].tolist())
             found |= {(wall, name) for wall in beside}
-    for number, (wall, body) in enumerate(scene.walls.items(), len(names)):
+    for number, body in enumerate(scene.solids.values(), len(names)):
         own = scene.case.fluids[body.continues]
         for name in names:
             density = scene.case.fluids[name].density
             if (number, name) in found and abs(density / own.density - 1.0) > ALIKE:
                 yield (
-                    f'walls.{wall}.continues: "{body.continues}", but the wall touches fluids.{name} of '
+                    f'{scene.key_of(number)}.continues: "{body.continues}", but it touches fluids.{name} of '
                     f"{density:g} kg/m3 too, and currents arise along it; make the part there a wall of "
                     f'its own with continues = "{name}"'
                 )

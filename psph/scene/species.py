@@ -120,16 +120,29 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True)
 class Layout:
-    """Which material holds which site: fluids first, then walls, in the order of the case."""
+    """Which material holds which site: fluids first, then walls, then bodies, in the order of the case.
+
+    ``bodies`` of them, the last, take the place of fluids where both are.
+    """
 
     lattice: Lattice
     shapes: tuple[Shape, ...]
     fluids: int
+    bodies: int = 0
+
+    @property
+    def first_body(self) -> int:
+        """The number of the first body."""
+        return len(self.shapes) - self.bodies
 
     def masks(self, grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:
-        """For each material, True at the sites inside its shape."""
+        """For each material, True at the sites that it claims."""
         tolerance = TOLERANCE * self.lattice.spacing
-        return [np.broadcast_to(inside(s, grid, tolerance), shape) for s in self.shapes]
+        masks = [np.broadcast_to(inside(s, grid, tolerance), shape) for s in self.shapes]
+        if not self.bodies:
+            return masks
+        taken = reduce(np.logical_or, masks[self.first_body :])
+        return [mask & ~taken for mask in masks[: self.fluids]] + masks[self.fluids :]
 
     def materials(self, first: int, last: int) -> np.ndarray:
         """Material of each site of some planes, uint8; the first that claims a site has it."""

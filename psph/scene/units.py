@@ -60,13 +60,12 @@ def _long_tank(scene: "Scene") -> Iterator[str]:
     """Only under gravity: without it lengths may be in any unit."""
     if not any(scene.gravity):
         return
-    case, census = scene.case, scene.census
-    keys = [*(f"fluids.{n}" for n in case.fluids), *(f"walls.{n}" for n in scene.walls)]
+    census = scene.census
     sizes = (census.highest - census.lowest).max(axis=1) + scene.spacing
     longest = int(sizes.argmax())
     if sizes[longest] > LONGEST_TANK:
         yield (
-            f"{keys[longest]}.shape: {sizes[longest]:.4g} m long, and no wave flume is longer than "
+            f"{scene.key_of(longest)}.shape: {sizes[longest]:.4g} m long, and no wave flume is longer than "
             f"{LONGEST_TANK:g} m; lengths are in m: if they were meant in mm, divide all of them by 1000"
         )
 

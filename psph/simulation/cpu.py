@@ -18,6 +18,7 @@ from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.particles.wetting import mark_wet, rest_dry
+from psph.simulation.floating import Floating
 from psph.simulation.integrator import (
     kick,
     kick_drift_predict,
@@ -51,7 +52,8 @@ class Engine:
         )
         self.skin, self._reach = Skin(self.domain, scene.reach.skin, plan.planes), scene.reach
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
-        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.dimensions)
+        floating = Floating(scene, plan) if plan.floats else None
+        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.dimensions, floating)
         self._rules = Rules(
             plan.carriers,
             plan.laws,
@@ -113,9 +115,15 @@ class Engine:
             if one.settles:
                 self._each(settle_told, self._rules, self._view(0.0), self._columns())
             stale, written = (), written | one.written
-        if self.plan.loaded is not None:
-            with self.ledger("loads"):
-                self._sum_loads(self.plan.passes[-1])
+
+    def push_bodies(self, time: float, dt: float) -> None:
+        """The second kick of rigid bodies at ``time``, by the pushes that the last pass has summed; without a
+        step ``dt`` these alone."""
+        floating = self.poses.floating
+        floating.load(self.store, self.domain)
+        if dt > 0.0:
+            floating.bodies.kick(time, dt)
+        self.poses.turn_to(time)
 
     def settle_pressure(self, pace: float) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
@@ -229,29 +237,14 @@ class Engine:
         if first == last:
             return
         s, plan, records = self.store, self.plan, self.records[one.place]
+        around = Around(records.view(), records.table, s.low, self._lists, self._mirrors)
+        seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
+        if one.gives_rates and plan.loaded is not None:  # first: the pass renews what is lagged
+            loads = Summed(one.effects, (), Loads(plan.loaded, s.group))
+            in_threads(self._load, first, last, loads, *seen, Sums(s[LOAD.name], None, ()))
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
-        in_threads(
-            self._sums[one.place],
-            first,
-            last,
-            Summed(one.effects, one.reductions),
-            Metric(plan.kernel, plan.space, self.softening),
-            s.view(),
-            Around(records.view(), records.table, s.low, self._lists, self._mirrors),
-            Sums(*rates, tuple(name and s[name] for name in one.stores)),
-        )
-
-    def _sum_loads(self, one: Pass) -> None:
-        """What the fluid alone does to the groups whose load is asked for, as ``one`` has the rates."""
-        s, plan, records = self.store, self.plan, self.records[one.place]
-        self._each(
-            self._load,
-            Summed(one.effects, (), Loads(plan.loaded, s.group)),
-            Metric(plan.kernel, plan.space, self.softening),
-            s.view(),
-            Around(records.view(), records.table, s.low, self._lists, self._mirrors),
-            Sums(s[LOAD.name], None, ()),
-        )
+        sums = Sums(*rates, tuple(name and s[name] for name in one.stores))
+        in_threads(self._sums[one.place], first, last, Summed(one.effects, one.reductions), *seen, sums)
 
     def _columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""

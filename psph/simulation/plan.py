@@ -27,6 +27,7 @@ from psph.fields import (
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, RIGID, Fixed, Free, deforms, is_rigid
+from psph.scene.bodies import body_step
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
 
@@ -114,6 +115,8 @@ class Plan:
     """The row of the pose of each group; 0 where it has none."""
     loaded: np.ndarray | None
     """Whether the push of the fluid alone is summed on the particles of a group: (groups,); None: on none."""
+    body_step: float | None
+    """The longest step that rigid bodies stand, s; None without bodies."""
     regions: tuple[Any, ...]
     """Where particles appear or vanish, each with the number of the fluid that comes."""
     cfl: float
@@ -161,6 +164,11 @@ class Plan:
         """Whether walls move as they are told."""
         return bool(self.motions or self.rigid)
 
+    @property
+    def floats(self) -> bool:
+        """Whether there are rigid bodies that forces move."""
+        return self.body_step is not None
+
     @cached_property
     def starts_twice(self) -> bool:
         """Whether forces rest on sums of the pass before: then the first are computed twice."""
@@ -201,6 +209,8 @@ class Plan:
         yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
         if acceleration > 0.0:
             yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
+        if self.body_step is not None and self.body_step < np.inf:
+            yield self.body_step, "bodies"
         for call in self.called:
             if hasattr(call.effect, "longest_step"):
                 yield call.effect.longest_step(self.extremes), call.title
@@ -276,6 +286,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         rigid=rigid,
         pose_of=np.array([_row_of(one.motion, rigid) for one in scene.species], np.uint8),
         loaded=loaded if loaded.any() else None,
+        body_step=body_step(scene) if scene.case.bodies else None,
         regions=scene.regions,
         cfl=case.time.cfl,
         fixed_step=case.time.step,

@@ -13,20 +13,25 @@ class Poses:
     """One row for each rigid motion of a scene, the same on every rank without any message.
 
     ``motions`` have a pose at any time (psph.physics.motion); ``corners`` (rows, n, dim) are points, m,
-    around all particles of each row as they stand at the start.  ``maps`` (rows, 3, dim, 1 + dim) place
+    around all particles of each row as they stand at the start.  ``floating`` are the bodies among them that
+    forces move (psph.simulation.floating), or None.  ``maps`` (rows, 3, dim, 1 + dim) place
     the particles (psph.physics.rigid.pose.maps); None where nothing is rigid, so that loops have no code
     for it.  The array stays the same object: loops see each change.
     """
 
-    def __init__(self, motions: Sequence, corners: np.ndarray, dimensions: int):
+    def __init__(self, motions: Sequence, corners: np.ndarray, dimensions: int, floating=None):
         self.motions, self._corners, self._dimensions = tuple(motions), corners, dimensions
+        self.floating = floating
+        self._told = sorted(set(range(len(self.motions))) - set(floating.rows if floating else ()))
         self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
         self.turn_to(0.0)
 
     def turn_to(self, time: float) -> None:
         """Have all that is prescribed by time where it is at ``time``, s."""
-        for row, motion in enumerate(self.motions):
-            self.maps[row] = maps(motion.pose(time), self._dimensions)
+        for row in self._told:
+            self.maps[row] = maps(self.motions[row].pose(time), self._dimensions)
+        if self.floating:
+            self.maps[self.floating.rows] = self.floating.maps()
 
     def advance(self, time: float, dt: float) -> float:
         """The same after a step of ``dt`` s that ends at ``time``.
@@ -37,6 +42,8 @@ class Poses:
         if not self.motions:
             return 0.0
         before = self._at_corners()
+        if self.floating:
+            self.floating.bodies.drift(time, dt)
         self.turn_to(time)
         (x, v), (x_0, v_0) = self._at_corners(), before
         strayed, gained = x - x_0 - v_0 * dt, v - v_0
@@ -44,11 +51,13 @@ class Poses:
         return float(most)
 
     def state(self) -> dict:
-        """What the next steps rest on beside the time: nothing of what is prescribed."""
-        return {}
+        """What the next steps rest on beside the time: of bodies, nothing of what is prescribed."""
+        return self.floating.bodies.state() if self.floating else {}
 
     def restore(self, state: dict, time: float) -> None:
         """Go on from there at ``time``, s."""
+        if self.floating:
+            self.floating.bodies.restore(state)
         self.turn_to(time)
 
     def _at_corners(self) -> tuple[np.ndarray, np.ndarray]:

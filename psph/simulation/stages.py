@@ -18,6 +18,8 @@ def stages_of(plan) -> Iterator[Stage]:
         yield populate
     yield renew_lists
     yield sum_over_pairs
+    if plan.floats:
+        yield push_bodies
     yield kick
     yield find_limits
 
@@ -47,6 +49,12 @@ def renew_lists(simulation) -> None:
 def sum_over_pairs(simulation) -> None:
     """Every pass over the neighbours that is due."""
     simulation.engine.sum(simulation.steps, ghosts_are_fresh=not simulation.listed)
+
+
+def push_bodies(simulation) -> None:
+    """The second kick of rigid bodies, with the new forces."""
+    with simulation.ledger("bodies"):
+        simulation.engine.push_bodies(simulation.then, simulation.dt)
 
 
 def kick(simulation) -> None:

@@ -9,7 +9,7 @@ from psph.composition.mirrors import images
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.fields import FLUID
-from psph.parallel.reductions import wrapped_sums
+from psph.parallel.reductions import whole_sums
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, scale, subtract
 
@@ -54,9 +54,10 @@ class LevelGauge(NamedTuple):
             ends = (plan.mirrors.reflections[m].seen(x) if m else x for x in (self.foot, self.top))
             foot, top = (tuple(map(float, end)) for end in ends)
             step = scale(subtract(top, foot), 1.0 / self.parts)
-            weigh_line(foot, step, plan.kernel, domain.periods, store.view(), first, last, is_fluid, found)
-        sums = np.array(wrapped_sums(simulation.comm, found.astype(np.uint64)), np.uint64)
-        return sums.astype(np.float64) / UNIT
+            radius = plan.kernel.support / plan.kernel.inverse_h
+            seen = (plan.kernel, domain.periods, store.view())
+            weigh_line(foot, step, radius, *seen, first, last, is_fluid, found)
+        return whole_sums(simulation.comm, found).astype(np.float64) / UNIT
 
 
 def surfaces(share: np.ndarray, step: float) -> tuple[float, float]:
@@ -77,9 +78,11 @@ def surfaces(share: np.ndarray, step: float) -> tuple[float, float]:
 
 
 @elementwise
-def weigh_line(foot, step, kernel, periods, view, first, last, is_fluid, found):
-    """Add V_j W of fluid in columns ``first`` to ``last`` to ``found`` (n,), at foot + n step, in UNITs."""
-    radius = kernel.support / kernel.inverse_h
+def weigh_line(foot, step, radius, kernel, periods, view, first, last, is_fluid, found):
+    """Add V_j W of fluid in columns ``first`` to ``last`` to ``found`` (n,), at foot + n step, in UNITs.
+
+    ``radius`` m is the support of the kernel.
+    """
     long2 = dot(step, step)
     for k in range(np.uint64(first), np.uint64(last)):
         if is_fluid[k]:

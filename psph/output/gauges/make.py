@@ -27,7 +27,7 @@ def gauge_of(scene, name: str, table, mirrors=None):
     asked, every = getattr(table, table.kind), table.every
     match table.kind:
         case "force":
-            names = (*scene.case.fluids, *scene.walls)
+            names = (*scene.case.fluids, *scene.solids)
             groups = tuple(k for k, one in enumerate(names) if one in asked.on)
             return ForceGauge(name, every, groups, asked.about)
         case "level":

@@ -10,11 +10,27 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from psph.fields import WALL
 from psph.physics.rigid.pose import Pose, in_space, rotation
 from psph.vectors import Vector
 
 FIRST_TO_LAST = ((2, 0.5), (1, 0.5), (0, 1.0), (1, 0.5), (2, 0.5))
 """Principal axes, and the part of the step for which a body turns about each."""
+
+
+KEPT = (
+    "place",
+    "velocity",
+    "angular_momentum",
+    "turn",
+    "frame",
+    "angle",
+    "force",
+    "torque",
+    "ahead",
+    "spin_ahead",
+)
+"""The arrays of a state."""
 
 
 class Body(NamedTuple):
@@ -39,6 +55,8 @@ class Body(NamedTuple):
     pivot: Vector | None = None
     held: float = 0.0
     motion: Any = None
+
+    kind = WALL
 
     def pose(self, time: float) -> Pose:
         """Where what is not free has the body at ``time``, s."""
@@ -128,6 +146,32 @@ class Bodies:
     def spin(self) -> np.ndarray:
         """Angular velocities, rad/s (n, 3)."""
         return self.spin_ahead
+
+    @property
+    def acceleration(self) -> np.ndarray:
+        """Of the reference points by the last forces, m/s² (n, 3)."""
+        return np.where(self.slides, self.force / self.mass, 0.0)
+
+    @property
+    def angular_acceleration(self) -> np.ndarray:
+        """By the last torques, rad/s² (n, 3): I⁻¹ (T − ω × L)."""
+        found = np.zeros_like(self.torque)
+        found[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(self.torque)[:, None]
+        if len(self.tumbling):
+            spin, momentum = self.spin_ahead[self.tumbling], self.angular_momentum[self.tumbling]
+            twist = self.torque[self.tumbling] - np.cross(spin, momentum)
+            own = np.einsum("nde,nd->ne", self.frame, twist) / self.moments
+            found[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
+        return found
+
+    def state(self) -> dict:
+        """What the next steps rest on, as lists of numbers."""
+        return {name: getattr(self, name).tolist() for name in KEPT}
+
+    def restore(self, state: dict) -> None:
+        """Go on from there."""
+        for name in KEPT:
+            setattr(self, name, np.array(state[name], dtype=float).reshape(getattr(self, name).shape))
 
     def at(self, row: int, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where a point of a body has come that was at ``point`` (3,) m at the start, and its velocity,

@@ -1,0 +1,157 @@
+"""Rigid bodies of a case: what they are, what holds them, and the rules between their keys."""
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Strict
+
+from psph.case.errors import advise
+from psph.case.findings import Finding
+from psph.case.keys import AXES, Name, Table, Vector, key
+from psph.case.shapes import Shape
+from psph.physics.walls.conditions import BEARING, DYNAMIC
+
+SLIDES = AXES
+"""Names of the free directions."""
+
+TURNS = tuple(f"turn_{axis}" for axis in AXES)
+"""Names of the free turns, each about an axis."""
+
+
+def freedoms(dimensions: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The directions and the turns that there are."""
+    return SLIDES[:dimensions], (TURNS[2:] if dimensions == 2 else TURNS if dimensions == 3 else ())
+
+
+class Line(Table):
+    """A spring with a damper, or a mooring line, between a point of the body and another point."""
+
+    at: Vector = key("the point of the body, where it is at the start", unit="m")
+    anchor: Vector = key("the other point, where it is at the start", unit="m")
+    to: Name | None = key("the body that the other point belongs to", None, otherwise="none: it stays")
+    stiffness: float = key("force per length", unit="N/m", ge=0)
+    length: float | None = key(
+        "length without tension", None, unit="m", otherwise="the distance of the points at the start", ge=0
+    )
+    damping: float = key("force per speed at which it becomes longer", 0.0, unit="N s/m", ge=0)
+    pulls_only: bool = key("slack where it is shorter than its length: a mooring line without weight", False)
+
+
+class Body(Table):
+    """A rigid body that the fluid, its weight and lines move."""
+
+    shape: Shape = key("where the body is at the start; it takes the place of fluids there")
+    density: float | None = key(
+        "mass over the volume of its particles", None, unit="kg/m3", otherwise="give mass", gt=0
+    )
+    mass: float | None = key(
+        "its mass; in 2D per metre of depth", None, unit="kg", otherwise="give density", gt=0
+    )
+    centre: Vector | None = key(
+        "centre of mass at the start", None, unit="m", otherwise="that of its particles"
+    )
+    inertia: Annotated[tuple[Vector, ...], Strict(False)] | float | None = key(
+        "moment of inertia about the centre of mass: a number in 2D, three rows in 3D",
+        None,
+        unit="kg m2",
+        otherwise="that of its particles",
+    )
+    free: Annotated[tuple[Literal[SLIDES + TURNS], ...], Strict(False)] | None = key(
+        "what it is free to do: move along x, y, z and turn about them, turn_x, turn_y, turn_z; of turns "
+        "none, one or all",
+        None,
+        otherwise="everything; with a pivot all turns",
+    )
+    pivot: Vector | None = key(
+        "a point of the body that stays where it is: a hinge or a ball joint",
+        None,
+        unit="m",
+        otherwise="none",
+    )
+    velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
+    spin: Vector | float | None = key(
+        "angular velocity at the start: a number in 2D, three in 3D", None, unit="rad/s", otherwise="zeros"
+    )
+    held: float = key("until this time it stays where it is", 0.0, unit="s", ge=0)
+    lines: dict[Name, Line] = key("springs, dampers and mooring lines by name", {})
+    no_slip: bool = key("the fluid has the body's velocity at its face; needs a viscosity", False)
+    condition: Literal[BEARING] = key("what the body sets to the fluid before it, as a wall does", DYNAMIC)
+    continues: Name | None = key(
+        "the fluid whose density and initial pressure its particles have",
+        None,
+        otherwise="the first fluid",
+    )
+
+    def freed(self, dimensions: int) -> tuple[str, ...]:
+        """What it is free to do."""
+        slides, turns = freedoms(dimensions)
+        if self.free is None:
+            return turns if self.pivot else (*slides, *turns)
+        return self.free
+
+
+def held_together(case) -> Iterator[Finding]:
+    """Bodies that cannot be, in a case with space.dimensions."""
+    dimensions = case.space.dimensions
+    slides, turns = freedoms(dimensions)
+    for name, body in case.bodies.items():
+        here = ("bodies", name)
+        if dimensions == 1:
+            yield here, ..., "bodies need two or three dimensions"
+            continue
+        if (body.mass is None) == (body.density is None):
+            yield here, ..., "give either mass or density"
+        for place, one in enumerate(body.free or ()):
+            if one not in (*slides, *turns):
+                known = ", ".join((*slides, *turns))
+                yield (*here, "free", place), one, f"there is no such motion in {dimensions}D; give {known}"
+        freed = body.freed(dimensions)
+        if dimensions == 3 and sum(one in turns for one in freed) == 2:
+            yield (
+                (*here, "free"),
+                ...,
+                "two turns; a body turns about no axis, one, or all three",
+            )
+        if body.pivot and set(freed) & set(slides):
+            yield (
+                (*here, "pivot"),
+                body.pivot,
+                "what has a pivot moves along no axis; let free hold turns only",
+            )
+        yield from _sized(here, body, dimensions)
+        for line, table in body.lines.items():
+            if table.to is not None and (table.to not in case.bodies or table.to == name):
+                others = [other for other in case.bodies if other != name]
+                says = f"no other body has this name; {advise(table.to, others)}"
+                yield (*here, "lines", line, "to"), table.to, says
+    for name in case.bodies.keys() & (case.fluids.keys() | case.walls.keys()):
+        yield ("bodies", name), ..., "a fluid or a wall has this name too; give the body another"
+
+
+def _sized(here, body: Body, dimensions: int) -> Iterator[Finding]:
+    """Numbers in 2D, vectors and matrices in 3D."""
+    flat = dimensions == 2
+    if body.spin is not None and isinstance(body.spin, float) != flat:
+        yield (*here, "spin"), body.spin, "give one number in 2D, three in 3D"
+    if body.inertia is None:
+        return
+    if isinstance(body.inertia, float) != flat:
+        yield (*here, "inertia"), body.inertia, "give one number in 2D, three rows of three in 3D"
+    elif flat and body.inertia <= 0.0:
+        yield (*here, "inertia"), body.inertia, "is not above zero; a body has some"
+    elif not flat:
+        yield from _positive(here, body.inertia)
+
+
+def _positive(here, rows) -> Iterator[Finding]:
+    loc = (*here, "inertia")
+    if len(rows) != 3 or any(len(row) != 3 for row in rows):
+        yield loc, rows, "give three rows of three numbers"
+        return
+    matrix = np.array(rows)
+    moments = np.linalg.eigvalsh(matrix)
+    if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=0.0):
+        yield loc, rows, "is not symmetric; let row i have in place j what row j has in place i"
+    elif moments[0] <= 0.0 or moments[2] > (moments[0] + moments[1]) * (1.0 + 1e-9):
+        yield loc, rows, "no mass has such moments: each is above zero and none exceeds the sum of the others"

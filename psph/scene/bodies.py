@@ -1,0 +1,119 @@
+"""Mass and inertia of rigid bodies from the sites that they hold, and what holds them."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from psph.case.bodies import SLIDES, TURNS
+from psph.physics.rigid.bodies import Bodies, Body
+from psph.physics.rigid.lines import Line, longest_step
+from psph.physics.rigid.pose import in_space
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+
+class Volume(NamedTuple):
+    """``volume`` in m^d, ``centre`` (3,) m and ``spread`` (3, 3) m², the mean of (x − c)(x − c)ᵀ, of
+    what is full."""
+
+    volume: float
+    centre: np.ndarray
+    spread: np.ndarray
+
+    def inertia(self, mass: float) -> np.ndarray:
+        """Moments about the centre, kg m² (3, 3), of a ``mass`` in kg that fills it evenly."""
+        return mass * (np.trace(self.spread) * np.eye(3) - self.spread)
+
+
+def volume_of(scene: "Scene", material: int) -> Volume:
+    """What the sites of a material fill, a cell of the lattice each."""
+    d, dx, count = scene.dimensions, scene.spacing, 0
+    middle = np.array(scene.lattice.lower)  # sums are taken about a point near by
+    first, second = np.zeros(d), np.zeros((d, d))
+    for begin, end in scene.lattice.chunks():
+        held = scene.layout.materials(begin, end) == material
+        grid = scene.lattice.grid(begin, end)
+        x = np.stack([np.broadcast_to(a, held.shape)[held] for a in grid], axis=1) - middle
+        count, first, second = count + len(x), first + x.sum(axis=0), second + x.T @ x
+    if not count:
+        return Volume(0.0, np.full(3, np.nan), np.full((3, 3), np.nan))
+    mean = first / count
+    spread = np.zeros((3, 3))
+    spread[:d, :d] = second / count - np.outer(mean, mean) + dx * dx / 12.0 * np.eye(d)
+    return Volume(count * dx**d, np.array(in_space(tuple(mean + middle))), spread)
+
+
+def rigid_bodies(scene: "Scene") -> tuple[Body, ...]:
+    """The bodies of a scene."""
+    return tuple(
+        _body(scene, number, name, table)
+        for number, (name, table) in enumerate(scene.case.bodies.items(), scene.layout.first_body)
+    )
+
+
+def _body(scene: "Scene", number: int, name: str, table) -> Body:
+    filled, dimensions = volume_of(scene, number), scene.dimensions
+    mass = table.mass or table.density * filled.volume
+    inertia = filled.inertia(mass)
+    if table.inertia is not None and dimensions == 2:
+        inertia[2, 2] = table.inertia
+    elif table.inertia is not None:
+        inertia = np.array(table.inertia)
+    spin = (0.0, 0.0, table.spin or 0.0) if dimensions == 2 else tuple(table.spin or (0.0,) * 3)
+    freed = table.freed(dimensions)
+    return Body(
+        name,
+        mass,
+        in_space(table.centre) if table.centre else tuple(filled.centre.tolist()),
+        tuple(inertia.ravel().tolist()),
+        in_space(table.velocity),
+        spin,
+        tuple(one in freed for one in SLIDES),
+        tuple(one in freed for one in TURNS),
+        in_space(table.pivot) if table.pivot else None,
+        table.held,
+    )
+
+
+def lines_of(scene: "Scene", order: Sequence[str]) -> tuple[Line, ...]:
+    """The lines of all bodies, whose rows have the names in ``order``."""
+    rows = {name: row for row, name in enumerate(order)}
+    return tuple(
+        Line(
+            f"{name}.{line}",
+            rows[name],
+            in_space(table.at),
+            None if table.to is None else rows[table.to],
+            in_space(table.anchor),
+            table.stiffness,
+            math.dist(table.at, table.anchor) if table.length is None else table.length,
+            table.damping,
+            table.pulls_only,
+        )
+        for name, body in scene.case.bodies.items()
+        for line, table in body.lines.items()
+    )
+
+
+def body_step(scene: "Scene") -> float:
+    """The longest step that the bodies of a scene stand, s.
+
+    That of their lines; and Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within h of its
+    surface A, whose push in a step would move it too far.
+    """
+    own = scene.rigid_bodies
+    bodies = Bodies(own, scene.gravity)
+    shortest = longest_step(lines_of(scene, [one.name for one in own]), bodies)
+    h, c, dx, d = scene.smoothing_length, scene.sound_speed, scene.spacing, scene.dimensions
+    for number, one in enumerate(own, scene.layout.first_body):
+        count = float(scene.census.sizes[number])
+        area = (
+            2.0 * d * count ** ((d - 1.0) / d) * dx ** (d - 1)
+        )  # of a cube with so many sites: no body has less
+        share = one.mass / (scene.species[number].density * area * h)
+        if any(one.slides) and share < 1.0:
+            shortest = min(shortest, 0.5 * share**0.5 * h / c)
+    return shortest
