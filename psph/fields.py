@@ -95,6 +95,7 @@ OF_MATERIAL = (
     Field("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
     Field("extrapolated", "1", "1 in a wall whose pressure is that of the fluid before it, else 0"),
     Field("repulsive", "1", "1 in a wall whose particles repel the fluid, else 0"),
+    Field("solid", "1", "number of a rigid body from 2 on, 1 in a wall, 0 in a fluid"),
     Field("penalty", "1", "1 in a wall that pushes back what comes too near, else 0"),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""

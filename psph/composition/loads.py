@@ -1,4 +1,4 @@
-"""What the fluid alone does to a wall or a body: the sum over its neighbours in the fluid."""
+"""What the fluid alone does to a wall or a body: the sum over its neighbours in the fluid; and contacts."""
 
 from typing import Any, NamedTuple
 
@@ -12,11 +12,13 @@ from psph.vectors import scale, zero_like
 class Loads(NamedTuple):
     """A pass that sums the push of the fluid alone, on the groups that are ``loaded`` (groups,).
 
-    ``group`` has the group of each column.  None in its place: a pass over all particles and neighbours.
+    ``group`` has the group of each column; ``contacts`` are effects by which solids push each other, which
+    count whatever the neighbour.  None in its place: a pass over all particles and neighbours.
     """
 
     loaded: Any
     group: Any
+    contacts: tuple = ()
 
 
 def is_loaded(loads, k):
@@ -43,6 +45,18 @@ def _typed_by_fluid(loads, j, coefficient):
     if isinstance(coefficient, types.BaseTuple):
         return lambda loads, j, coefficient: scale(coefficient, j.is_fluid)
     return lambda loads, j, coefficient: j.is_fluid * coefficient
+
+
+def by_contact(loads, i, j, pair):
+    """Coefficient of x_ij in the acceleration by contacts, 1/s², or None."""
+    return None if loads is None else terms.radial(loads.contacts, i, j, pair)
+
+
+@overload(by_contact)
+def _typed_by_contact(loads, i, j, pair):
+    if isinstance(loads, types.NoneType):
+        return lambda loads, i, j, pair: None
+    return lambda loads, i, j, pair: terms.radial(loads.contacts, i, j, pair)
 
 
 def from_outside(loads, effects, i):

@@ -29,19 +29,26 @@ def mark_wet(first, last, low, lists, support, cutoff, periods, position, group,
         wet[k] = found
 
 
+FIRST_BODY = 2
+"""Number of a first rigid body among solids: 0 is no solid, 1 a wall."""
+
+
 @compiled
-def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, free):
+def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, solid_of, free):
     """Rows of dry walls without any fluid in their lists become empty: nothing has to be summed for them.
 
-    Of the columns ``first`` to ``last``, those of groups from number ``free`` on, which forces do not
-    move.  One that is not ``bearing`` needs no sum even with fluid around.
+    Nor for those of a rigid body, unless it may touch another solid: ``solid_of`` has the number of each
+    group's. Of the columns ``first`` to ``last``, those of groups from number ``free`` on, which forces
+    do not move.  One that is not ``bearing`` needs no sum even with fluid around.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
         n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
         idle = wet[k] == 0.0 and group[k] >= free
         while idle and bearing[group[k]] and n < end:
-            idle = is_fluid[np.uint64(lists.lists[n])] == 0.0
+            j = np.uint64(lists.lists[n])
+            own, other = solid_of[group[k]], solid_of[group[j]]
+            idle = is_fluid[j] == 0.0 and (own < FIRST_BODY or own == other)
             n += np.uint64(1)
         if idle:
             lists.lengths[row] = 0

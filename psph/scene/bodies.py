@@ -8,6 +8,7 @@ import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.physics.rigid.bodies import Bodies, Body
+from psph.physics.rigid.contact import contact_of
 from psph.physics.rigid.lines import Line, longest_step
 from psph.physics.rigid.pose import in_space
 
@@ -101,8 +102,9 @@ def lines_of(scene: "Scene", order: Sequence[str]) -> tuple[Line, ...]:
 def body_step(scene: "Scene") -> float:
     """The longest step that the bodies of a scene stand, s.
 
-    That of their lines; and Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within h of its
-    surface A, whose push in a step would move it too far.
+    That of their lines; Δt ≤ 0.5 √(M/Nk) for a body that stands on a face of N particles of stiffness k
+    (psph.physics.rigid.contact); and Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid
+    within h of its surface A, whose push in a step would move it too far.
     """
     own = scene.rigid_bodies
     bodies = Bodies(own, scene.gravity)
@@ -113,6 +115,8 @@ def body_step(scene: "Scene") -> float:
         area = (
             2.0 * d * count ** ((d - 1.0) / d) * dx ** (d - 1)
         )  # of a cube with so many sites: no body has less
+        pressed = count ** ((d - 1.0) / d)  # particles of a face that stands on another
+        shortest = min(shortest, 0.5 * (one.mass / (pressed * contact_of(scene).stiffness)) ** 0.5)
         share = one.mass / (scene.species[number].density * area * h)
         if any(one.slides) and share < 1.0:
             shortest = min(shortest, 0.5 * share**0.5 * h / c)

@@ -213,6 +213,7 @@ class Scene:
                 getattr(self.parts[index], "no_slip", False),
                 getattr(self.parts[index], "condition", DYNAMIC),
                 name in self.case.loaded,
+                self.layout.solid_of(index),
             )
             for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
         )

@@ -9,6 +9,7 @@ import numpy as np
 
 from psph.case.shapes import Shape
 from psph.fields import FLUID
+from psph.particles.wetting import FIRST_BODY
 from psph.physics.motion import Free
 from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.rows import projected
@@ -26,7 +27,8 @@ class Species(NamedTuple):
     kinematic ``viscosity`` in m²/s; ``mass`` of a particle in kg (per m of depth in 2D, per m² in
     1D); ``law`` is the equation of state (psph.physics.fluid.state).  A wall takes these from the fluid
     it continues; ``no_slip`` if that fluid sticks to it; ``condition`` is what it sets to the fluid before it
-    (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for.
+    (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for;
+    ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body from 2 on.
     """
 
     name: str
@@ -38,6 +40,7 @@ class Species(NamedTuple):
     no_slip: bool = False
     condition: str = DYNAMIC
     loaded: bool = False
+    solid: int = 0
 
     @property
     def kind(self) -> int:
@@ -134,6 +137,12 @@ class Layout:
     def first_body(self) -> int:
         """The number of the first body."""
         return len(self.shapes) - self.bodies
+
+    def solid_of(self, material: int) -> int:
+        """0 for a fluid, 1 for a wall, and another number for each body."""
+        if material < self.fluids:
+            return 0
+        return max(1, material - self.first_body + FIRST_BODY)
 
     def masks(self, grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:
         """For each material, True at the sites that it claims."""

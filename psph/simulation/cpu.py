@@ -192,7 +192,8 @@ class Engine:
         s = self.store
         told_by, wet = s[effect.told_by], s[effect.marks.name]
         plan, lists = self.plan, self.domain.lists
-        self._each(rest_dry, s.low, lists, told_by, wet, s.group, plan.bearing, plan.free)
+        rests = (s.group, plan.bearing, plan.solid_of, plan.free)
+        self._each(rest_dry, s.low, lists, told_by, wet, *rests)
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""
@@ -240,7 +241,7 @@ class Engine:
         around = Around(records.view(), records.table, s.low, self._lists, self._mirrors)
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
         if one.gives_rates and plan.loaded is not None:  # first: the pass renews what is lagged
-            loads = Summed(one.effects, (), Loads(plan.loaded, s.group))
+            loads = Summed(one.effects, (), Loads(plan.loaded, s.group, plan.contacts))
             in_threads(self._load, first, last, loads, *seen, Sums(s[LOAD.name], None, ()))
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         sums = Sums(*rates, tuple(name and s[name] for name in one.stores))

@@ -5,7 +5,7 @@ import numpy as np
 from psph.fields import OF_MATERIAL, OF_SITE
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
-from psph.simulation.plan import material_value
+from psph.simulation.groups import material_value
 
 
 def block_of(scene, store: Store, species, position, velocity, density) -> np.ndarray:

@@ -1,14 +1,13 @@
 """The plan: exactly the effects, fields and messages that a scene needs, and why."""
 
 from collections import namedtuple
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from psph.case.parameters import as_numbers
 from psph.composition.count import flops_per_pair
 from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
@@ -26,8 +25,11 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, RIGID, Fixed, Free, deforms, is_rigid
+from psph.physics.motion import ANCHOR, Free, deforms, is_rigid
+from psph.physics.rigid.contact import contact_of
 from psph.scene.bodies import body_step
+from psph.simulation.calling import called_for, in_scene, why_dropped
+from psph.simulation.groups import distinct, laws, material_value, motion_numbers, row_of, tells
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
 
@@ -54,6 +56,9 @@ LOAD = Field("load", "m/s2", "acceleration by the fluid alone, of particles whos
 
 LOADED_READ = ("is_fluid",)
 """What a pass of loads reads of a neighbour, beside what its effects read."""
+
+CONTACTS_READ = ("solid",)
+"""What contacts read of a particle beside that."""
 
 OF_SCENE = ("sound_speed", "smoothing_length", "kernel", "spacing", "dimensions")
 
@@ -115,6 +120,10 @@ class Plan:
     """The row of the pose of each group; 0 where it has none."""
     loaded: np.ndarray | None
     """Whether the push of the fluid alone is summed on the particles of a group: (groups,); None: on none."""
+    contacts: tuple[Any, ...]
+    """How solids push each other: one effect where there are bodies, else none."""
+    solid_of: np.ndarray
+    """The number of the solid that each group is: 0 none, 1 a wall, from 2 on a rigid body."""
     body_step: float | None
     """The longest step that rigid bodies stand, s; None without bodies."""
     regions: tuple[Any, ...]
@@ -219,21 +228,22 @@ class Plan:
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     """The plan of a scene (psph.scene.Scene), with what its case or another catalogue offers."""
     case, catalogue = scene.case, catalogue or scene.case.catalogue
-    calls = [(entry, *found) for entry in catalogue.effects if (found := _called_for(case, entry))]
-    fits = [(entry, _in_scene(effect, scene), reason) for entry, effect, reason in calls]
+    calls = [(entry, *found) for entry in catalogue.effects if (found := called_for(case, entry))]
+    fits = [(entry, in_scene(effect, scene), reason) for entry, effect, reason in calls]
     fitted = [fit for fit in fits if fit[1] is not None]
     marking = [effect for _, effect, _ in fitted if hasattr(effect, "marks")]
     written = tuple(effect.writes for _, effect, _ in fitted if hasattr(effect, "writes"))
     written += tuple(effect.marks for effect in marking)
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
-    motions, rigid = (_distinct(scene.species, one_of) for one_of in (deforms, is_rigid))
+    motions, rigid = (distinct(scene.species, one_of) for one_of in (deforms, is_rigid))
     fields = by_name(catalogue.fields.values(), written, further, [ANCHOR, LOAD])
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
-    laws = _laws(scene, catalogue.states)
+    own_laws = laws(scene, catalogue.states)
     loaded = np.array([one.loaded for one in scene.species], bool)
-    for_loads = LOADED_READ if loaded.any() else ()
+    contacts = (contact_of(scene),) if scene.case.bodies else ()
+    for_loads = (*LOADED_READ * bool(loaded.any()), *CONTACTS_READ * bool(contacts))
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
@@ -252,16 +262,16 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         called=called,
         absent=tuple(e for e in catalogue.effects if e not in present),
         dropped={
-            entry.effect.__name__: _why_dropped(effect, scene, reason)
+            entry.effect.__name__: why_dropped(effect, scene, reason)
             for entry, effect, reason in calls
             if entry not in present
         },
         kernel=scene.kernel,
-        laws=tuple(law for _, law in laws),
-        law_of=np.array([[*laws].index((type(one.law), one.law)) for one in scene.species], np.uint8),
-        told=np.array([any(_tells(c.effect, one) for c in called) for one in scene.species], bool),
+        laws=tuple(law for _, law in own_laws),
+        law_of=np.array([[*own_laws].index((type(one.law), one.law)) for one in scene.species], np.uint8),
+        told=np.array([any(tells(c.effect, one) for c in called) for one in scene.species], bool),
         bearing=np.array([one.bearing for one in scene.species], bool),
-        law_reasons=tuple(laws.values()),
+        law_reasons=tuple(own_laws.values()),
         planes=scene.mirror_planes,
         mirrors=mirrors_of(scene.mirror_planes, scene.gravity, scene.reach.cutoff),
         precision=case.precision,
@@ -282,10 +292,12 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         kinds=tuple(species.kind for species in scene.species),
         free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
         motions=motions,
-        motion_of=_motion_numbers(scene.species, motions),
+        motion_of=motion_numbers(scene.species, motions),
         rigid=rigid,
-        pose_of=np.array([_row_of(one.motion, rigid) for one in scene.species], np.uint8),
+        pose_of=np.array([row_of(one.motion, rigid) for one in scene.species], np.uint8),
         loaded=loaded if loaded.any() else None,
+        contacts=contacts,
+        solid_of=np.array([one.solid for one in scene.species], np.uint8),
         body_step=body_step(scene) if scene.case.bodies else None,
         regions=scene.regions,
         cfl=case.time.cfl,
@@ -297,19 +309,6 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     )
 
 
-def _laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
-    """Each equation of state of the scene with its type, and the keys of the case that call for it.
-
-    By type too: named tuples of different types are equal where their values are.
-    """
-    [(_, shared)] = filter(None, (_called_for(scene.case, entry) for entry in entries))
-    reasons: dict[tuple[type, Any], dict[str, None]] = {}
-    for (name, fluid), one in zip(scene.case.fluids.items(), scene.species):
-        own = fluid.equation_of_state and f"fluids.{name}.equation_of_state = {fluid.equation_of_state}"
-        reasons.setdefault((type(one.law), one.law), {})[own or shared] = None
-    return {law: "; ".join(keys) for law, keys in reasons.items()}
-
-
 def _carries(call: Called) -> bool:
     """Whether an effect has a part in kick and drift."""
     return any(hasattr(call.effect, name) for name in OF_A_PARTICLE)
@@ -318,37 +317,6 @@ def _carries(call: Called) -> bool:
 def _array_of(name: str, stored: tuple[str, ...]) -> str:
     """The array that formulas see under a name: the predicted one of what evolves."""
     return f"predicted_{name}" if f"predicted_{name}" in stored else name
-
-
-def _tells(effect, material) -> bool:
-    """Whether an effect gives particles of a material their pressure."""
-    return hasattr(effect, "tells") and material_value(material, effect.tells) > 0.0
-
-
-def _distinct(species, one_of) -> tuple:
-    """The different motions of some species that are ``one_of`` these."""
-    # By type too: named tuples of different types are equal where their values are.
-    found = {(type(s.motion), s.motion) for s in species if one_of(s.motion)}
-    return tuple(motion for _, motion in sorted(found, key=str))
-
-
-def _row_of(motion, among: tuple) -> int:
-    """The place of a motion among others, 0 where it is none of them."""
-    told = [(type(one), one) for one in among]
-    return told.index((type(motion), motion)) if (type(motion), motion) in told else 0
-
-
-def _motion_numbers(species, motions) -> np.ndarray:
-    numbers = {Free: FREE, Fixed: FIXED}
-    return np.array(
-        [
-            RIGID
-            if is_rigid(s.motion)
-            else numbers.get(type(s.motion), PRESCRIBED + _row_of(s.motion, motions))
-            for s in species
-        ],
-        np.uint8,
-    )
 
 
 def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
@@ -363,66 +331,3 @@ def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
         else:
             varying.append(name)
     return shared, (*varying, *(field.name for field in OF_SITE if field.name in names))
-
-
-def material_value(material, name: str) -> float:
-    """A material's value of one of the fields ``OF_MATERIAL``."""
-    return float(getattr(material, "density" if name == "rest_density" else name))
-
-
-def _in_scene(effect, scene):
-    """The form of an effect that a scene needs, or None."""
-    return effect.in_scene(scene) if hasattr(effect, "in_scene") else effect
-
-
-def _why_dropped(effect, scene, reason: str) -> str:
-    """Why an effect that ``reason`` asks for has no form in a scene."""
-    why = effect.why_absent(scene) if hasattr(effect, "why_absent") else "this scene has no use for it"
-    return f"left out, though {reason}: {why}"
-
-
-def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
-    """The effect with its parameters and why it is there, or None."""
-    if not entry.key:
-        return entry.effect(), "every scene"
-    key, _, choice = entry.key.partition("=")
-    for path, value, given in _values(case, key.split(".")):
-        by = f"{path} = {_plain(value)}" + _origin(case, path, given)
-        if choice:
-            if value == choice:
-                return entry.effect(), by
-        elif "*" in key:
-            if value:
-                return entry.effect(), by
-        elif value is not None:
-            return entry.effect(**as_numbers(value)), by
-    return None
-
-
-def _origin(case, path: str, given: bool) -> str:
-    """Where a value comes from, where the case does not give it."""
-    if name := case.preset(path):
-        return f" ({name})"
-    return "" if given else " (default)"
-
-
-def _values(node, keys: list[str], path: str = "", given: bool = True):
-    """Every (path, value, whether the case gives it) that a key with ``*`` stands for."""
-    if not keys:
-        yield path, node, given
-        return
-    head, *rest = keys
-    names = list(node) if head == "*" else [head]
-    for name in names:
-        below = node[name] if isinstance(node, dict) else getattr(node, name)
-        set_here = isinstance(node, dict) or name in node.model_fields_set
-        yield from _values(below, rest, f"{path}.{name}".strip("."), given and set_here)
-
-
-def _plain(value) -> str:
-    if hasattr(type(value), "model_fields"):
-        inner = ", ".join(f"{k} = {_plain(v)}" for k, v in dict(value).items())
-        return "{ " + inner + " }"
-    if isinstance(value, bool):
-        return str(value).lower()
-    return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"

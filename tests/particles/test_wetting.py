@@ -33,11 +33,12 @@ def test_fluid_does_not_wet_a_wall_that_bears_nothing():
     assert wet_at(0.5, 1.0, bearing=False) == 0.0
 
 
-def lengths_after(wet, is_fluid, group, bearing=True):
+def lengths_after(wet, is_fluid, group, bearing=True, solid_of=(0, 1)):
     """The lengths of the rows of three particles, each beside the next one, once dry walls rest."""
     lists = Neighbours(np.arange(3, dtype=np.uint64), np.ones(3, np.uint32), np.array([1, 2, 0], np.uint32))
-    bears = np.array([True, bearing])
-    rest_dry(0, 3, 0, lists, np.array(is_fluid), np.array(wet), np.array(group, np.uint8), bears, np.uint8(1))
+    bears, solids = np.array([True] + [bearing] * (len(solid_of) - 1)), np.array(solid_of, np.uint8)
+    groups = np.array(group, np.uint8)
+    rest_dry(0, 3, 0, lists, np.array(is_fluid), np.array(wet), groups, bears, solids, np.uint8(1))
     return lists.lengths.tolist()
 
 
@@ -58,3 +59,10 @@ def test_a_wall_that_bears_nothing_rests_beside_the_fluid():
         0,
         1,
     ]
+
+
+def test_a_body_that_may_touch_another_solid_does_not_rest():
+    """The first is of a body beside a wall, the second of the wall beside another body, the third of that body."""
+    dry = {"wet": [0.0] * 3, "is_fluid": [0.0] * 3, "solid_of": (0, 1, 2, 3)}
+    assert lengths_after(group=[2, 1, 3], **dry) == [1, 0, 1]
+    assert lengths_after(group=[2, 2, 2], **dry) == [0, 0, 0]
