@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Strict
 
 from psph.case.errors import advise
-from psph.case.findings import Finding
+from psph.case.findings import Finding, one_sided
 from psph.case.keys import AXES, Name, Table, Vector, key
 from psph.case.shapes import Shape
 from psph.physics.walls.conditions import BEARING, DYNAMIC
@@ -125,6 +125,10 @@ def held_together(case) -> Iterator[Finding]:
                 others = [other for other in case.bodies if other != name]
                 says = f"no other body has this name; {advise(table.to, others)}"
                 yield (*here, "lines", line, "to"), table.to, says
+    if case.bodies:
+        for key in one_sided(case):
+            says = f"{key} does not push back what pushes, so that no force on a body is known; take another"
+            yield ("bodies",), ..., says
     for name in case.bodies.keys() & (case.fluids.keys() | case.walls.keys()):
         yield ("bodies", name), ..., "a fluid or a wall has this name too; give the body another"
 

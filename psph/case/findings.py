@@ -7,6 +7,12 @@ Location = tuple[str | int, ...]
 Finding = tuple[Location, Any, str]
 """Location, value, and a message that says what is wrong and what to do."""
 
+MOMENTUM = "momentum"
+"""What an effect says that it conserves."""
+
+OF_PAIRS = ("radial", "shear", "push", "finish_acceleration")
+"""Methods by which an effect pushes."""
+
 
 def asked_of(case) -> Iterator[tuple[str, Any, Any]]:
     """The keys of ``physics`` that ask for an effect: name, value where it is a choice, and its class."""
@@ -16,3 +22,13 @@ def asked_of(case) -> Iterator[tuple[str, Any, Any]]:
         value = getattr(case.physics, name, None) if table == "physics" else None
         if value is not None and (value == choice or not choice):
             yield name, value if choice else ..., entry.effect
+
+
+def one_sided(case) -> list[str]:
+    """The keys of ``physics`` whose effects push without being pushed back."""
+    return [
+        f"physics.{name}" + ("" if value is ... else f" = {value}")
+        for name, value, effect in asked_of(case)
+        if any(hasattr(effect, method) for method in OF_PAIRS)
+        and MOMENTUM not in getattr(effect, "conserves", ())
+    ]

@@ -9,9 +9,11 @@ from psph.case.keys import Axis, Name, Table, Vector, key
 
 
 class Force(Table):
-    """Force and moment of the fluid on walls."""
+    """Force and moment of the fluid on walls and bodies."""
 
-    on: Annotated[tuple[Name, ...], Strict(False)] = key("names of walls, taken together", min_length=1)
+    on: Annotated[tuple[Name, ...], Strict(False)] = key(
+        "names of walls and bodies, taken together", min_length=1
+    )
     about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
 
 
@@ -69,17 +71,24 @@ class Flow(Table):
         return self
 
 
+class Motion(Table):
+    """Place, turn, speed of a rigid body, and what acts on it."""
+
+    of: Name = key("the name of the body")
+
+
 class Gauge(Table):
     """A gauge: exactly one of these kinds, and how often it is read."""
 
-    KINDS: ClassVar = ("force", "level", "highest", "point", "sensor", "flow")
+    KINDS: ClassVar = ("force", "level", "highest", "point", "sensor", "flow", "motion")
 
-    force: Force | None = key("force and moment of the fluid on walls", None, otherwise="another kind")
+    force: Force | None = key("force and moment of the fluid", None, otherwise="another kind")
     level: Level | None = key("water level along a line", None, otherwise="another kind")
     highest: Highest | None = key("largest coordinate of the fluid", None, otherwise="another kind")
     point: Point | None = key("fields at a point", None, otherwise="another kind")
     sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise="another kind")
     flow: Flow | None = key("flow through a section", None, otherwise="another kind")
+    motion: Motion | None = key("motion of a rigid body", None, otherwise="another kind")
     every: float | None = key("time between rows", None, unit="s", otherwise="output.probes", gt=0)
 
     @property

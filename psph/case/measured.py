@@ -3,15 +3,9 @@
 from collections.abc import Iterator
 
 from psph.case.errors import advise
-from psph.case.findings import Finding, asked_of
+from psph.case.findings import Finding, one_sided
 from psph.case.keys import AXES
 from psph.physics.walls.conditions import BEARING
-
-MOMENTUM = "momentum"
-"""What an effect says that it conserves."""
-
-OF_PAIRS = ("radial", "shear", "push", "finish_acceleration")
-"""Methods by which an effect pushes."""
 
 MOST_MOMENTS = 1e9
 """Moments of one cadence: far below 1e12, where rounding would shift them."""
@@ -29,18 +23,15 @@ def probed(case) -> Iterator[Finding]:
 def gauged(case) -> Iterator[Finding]:
     """Gauges of walls that are not there, or on which no force is known."""
     axes = AXES[: case.space.dimensions]
-    one_sided = [
-        f"physics.{name}" + ("" if value is ... else f" = {value}")
-        for name, value, effect in asked_of(case)
-        if any(hasattr(effect, method) for method in OF_PAIRS)
-        and MOMENTUM not in getattr(effect, "conserves", ())
-    ]
     for name, gauge in case.gauges.items():
         asked = getattr(gauge, gauge.kind)
         if getattr(asked, "axis", None) is not None and asked.axis not in axes:
             where = f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}"
             yield ("gauges", name, gauge.kind, "axis"), asked.axis, where
-        for key in one_sided if gauge.force else ():
+        if gauge.motion and gauge.motion.of not in case.bodies:
+            says = f"no body has this name; {advise(gauge.motion.of, case.bodies)}"
+            yield ("gauges", name, "motion", "of"), gauge.motion.of, says
+        for key in one_sided(case) if gauge.force else ():
             says = f"{key} does not push back what pushes, so that no force on a wall is known; take another"
             yield ("gauges", name, "force"), ..., says
         for place, wall in enumerate(gauge.force.on if gauge.force else ()):

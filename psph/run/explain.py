@@ -17,6 +17,7 @@ from psph.run.forecast import forecast, forecast_lines, pull, sites_within
 from psph.run.hints import hints
 from psph.run.outlay import output_lines
 from psph.run.outlook import outlook
+from psph.scene.bodies import in_words
 from psph.simulation.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
@@ -110,8 +111,10 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
+    for body in scene.rigid_bodies:
+        yield f"  body        {body.name}: {in_words(scene, body)}"
     for one in scene.species:
-        if is_prescribed(one.motion):
+        if is_prescribed(one.motion) and one.name not in case.bodies:
             yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"
     for plane in scene.mirror_planes:
         sticks = "; the fluid sticks to it" if plane.sticks else ""

@@ -79,6 +79,17 @@ def _body(scene: "Scene", number: int, name: str, table) -> Body:
     )
 
 
+def in_words(scene: "Scene", body: Body) -> str:
+    """Mass, density over that of its fluid, centre and freedom of a body."""
+    number = [one.name for one in scene.species].index(body.name)
+    volume = float(scene.census.sizes[number]) * scene.spacing**scene.dimensions
+    ratio = body.mass / volume / scene.species[number].density
+    freed = ", ".join(scene.case.bodies[body.name].freed(scene.dimensions)) or "nothing"
+    where = ", ".join(f"{x:.4g}" for x in body.centre[: scene.dimensions])
+    until = f"; held until {body.held:g} s" if body.held else ""
+    return f"{body.mass:.4g} kg, {ratio:.3g} of the fluid's density, centre ({where}) m; free: {freed}{until}"
+
+
 def lines_of(scene: "Scene", order: Sequence[str]) -> tuple[Line, ...]:
     """The lines of all bodies, whose rows have the names in ``order``."""
     rows = {name: row for row, name in enumerate(order)}

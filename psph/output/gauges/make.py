@@ -7,6 +7,7 @@ from psph.case.keys import AXES
 from psph.output.gauges.flow import FlowGauge
 from psph.output.gauges.force import ForceGauge
 from psph.output.gauges.level import LevelGauge
+from psph.output.gauges.motion import MotionGauge
 from psph.output.gauges.points import PointGauge, disc
 from psph.output.probes import Front, Probe
 from psph.output.tables import GAUGE
@@ -36,6 +37,8 @@ def gauge_of(scene, name: str, table, mirrors=None):
         case "flow":
             [axis] = (d for d, ends in enumerate(zip(asked.lower, asked.upper)) if ends[0] == ends[1])
             return FlowGauge(name, every, axis, asked.lower, asked.upper)
+        case "motion":
+            return MotionGauge(name, every, asked.of)
         case "highest":
             return PointGauge(Front(name, AXES.index(asked.axis)), every)
         case "point":

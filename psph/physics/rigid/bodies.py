@@ -18,6 +18,9 @@ FIRST_TO_LAST = ((2, 0.5), (1, 0.5), (0, 1.0), (1, 0.5), (2, 0.5))
 """Principal axes, and the part of the step for which a body turns about each."""
 
 
+HALF_TURN = 1e-7
+"""Below this the sine of a turn tells nothing of its axis."""
+
 KEPT = (
     "place",
     "velocity",
@@ -172,6 +175,22 @@ class Bodies:
         """Go on from there."""
         for name in KEPT:
             setattr(self, name, np.array(state[name], dtype=float).reshape(getattr(self, name).shape))
+
+    def turned(self, row: int) -> np.ndarray:
+        """The turn of a body since the start as axis times angle, rad (3,)."""
+        if row in self.hinged:
+            return self.axis[row] * self.angle[self.hinged == row][0]
+        m = self.turn[row]
+        twist = np.array([m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]])
+        size = float(np.sqrt(twist @ twist))
+        angle = np.arctan2(size, np.trace(m) - 1.0)
+        if size > HALF_TURN:
+            return twist * (angle / size)
+        if angle < 1.0:
+            return 0.5 * twist
+        axis = np.sqrt(np.maximum(0.5 * (np.diag(m) + 1.0), 0.0))  # half a turn: m = 2 n nᵀ − 1
+        first = int(axis.argmax())
+        return angle * np.copysign(axis, m[first] + np.eye(3)[first])
 
     def at(self, row: int, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where a point of a body has come that was at ``point`` (3,) m at the start, and its velocity,

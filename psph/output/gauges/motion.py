@@ -1,0 +1,49 @@
+"""Motion of a rigid body."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.output.gauges.force import turns
+
+
+class MotionGauge(NamedTuple):
+    """Where the body of a name is, how it moves and what acts on it.
+
+    ``x`` of its centre of mass, m, its ``velocity`` in m/s; ``turn``, the rotation since the start as
+    the vector of its axis times its angle in rad (counted past a turn about one axis), ``spin`` in
+    rad/s; ``force`` and ``moment`` of all that acts on it, weight and lines included, about its pivot or
+    centre of mass, N and N m; the ``tension`` of each of its lines, N.
+    """
+
+    name: str
+    every: float
+    body: str
+
+    def columns(self, scene) -> list[str]:
+        """Their names, without the time."""
+        axes, round_about = "xyz"[: scene.dimensions], turns(scene.dimensions)
+        named = [f"centre_{axis}" for axis in axes] + [f"velocity_{axis}" for axis in axes]
+        named += [f"turn_{axis}" for axis in round_about] + [f"spin_{axis}" for axis in round_about]
+        named += [f"force_{axis}" for axis in axes] + [f"moment_{axis}" for axis in round_about]
+        named += [f"tension_{line}" for line in scene.case.bodies[self.body].lines]
+        return [f"{self.name}.{one}" for one in named]
+
+    def row(self, simulation) -> list[float]:
+        """The values, the same on every rank."""
+        floating = simulation.engine.poses.floating
+        bodies, d = floating.bodies, simulation.store.dimensions
+        [k] = (k for k, one in enumerate(bodies.bodies) if one.name == self.body)
+        slid, turned = slice(0, d), slice(2, 3) if d == 2 else slice(0, 3)
+        arm = bodies.arm[k]
+        velocity = bodies.ahead[k] + np.cross(bodies.spin[k], arm)
+        parts = (
+            bodies.centre[k, slid],
+            velocity[slid],
+            bodies.turned(k)[turned],
+            bodies.spin[k, turned],
+            bodies.force[k, slid],
+            bodies.torque[k, turned],
+        )
+        own = (t for line, t in zip(floating.lines, floating.tensions.tolist()) if line.body == k)
+        return [*np.concatenate(parts).tolist(), *own]

@@ -1,0 +1,298 @@
+"""Rigid bodies in a fluid and beside walls."""
+
+import math
+
+import numpy as np
+import pytest
+from drafts import draft, refusal
+from mpi4py import MPI
+
+from psph.fields import FLUID
+from psph.output.gauges import gauges_of
+from psph.output.ledger import Ledger
+from psph.physics.rigid.pose import rotation
+from psph.run.setup import create_particles
+from psph.scene import Scene
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+POOL = """
+[space]
+dimensions = 2
+spacing = {dx}
+[time]
+end = 10.0
+[physics]
+gravity = [0.0, -9.81]
+[fluids.water]
+shape.box = {{ lower = [0.0, 0.0], upper = [1.0, 0.4] }}
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = {{ lower = [-0.15, -0.15], upper = [1.15, 0.8] }}
+shape.difference.minus = [{{ box = {{ lower = [0.0, 0.0], upper = [1.0, 0.8] }} }}]
+"""
+
+STIRRED = """
+[space]
+dimensions = 2
+spacing = 0.05
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.0, 1.2]
+[time]
+end = 1.0
+gather_every = 3
+[physics]
+sound_speed = 30.0
+[fluids.heavy]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.6] }
+density = 1200.0
+viscosity = 0.02
+velocity = [0.5, -0.4]
+jitter = 0.2
+[fluids.light]
+shape.box = { lower = [0.0, 0.6], upper = [1.0, 1.2] }
+density = 900.0
+viscosity = 0.01
+velocity = [-0.8, 0.3]
+jitter = 0.1
+[bodies.one]
+shape.disc = { center = [0.3, 0.6], radius = 0.19 }
+density = 700.0
+no_slip = true
+velocity = [0.3, 0.2]
+spin = 2.0
+[bodies.other]
+shape.box = { lower = [0.85, 0.3], upper = [1.0, 0.5] }
+mass = 50.0
+continues = "light"
+"""
+"""Two fluids in disorder around two bodies, in a domain without ends."""
+
+
+def started(case):
+    """A simulation of a case, its bodies and its scene."""
+    scene = Scene(case)
+    plan = make_plan(scene)
+    simulation = Simulation(
+        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
+    )
+    return simulation, simulation.engine.poses.floating.bodies, scene
+
+
+def momentum(simulation, bodies) -> np.ndarray:
+    """Of fluids and bodies, kg m/s."""
+    store = simulation.store
+    fluid = store.shown("kind") == FLUID
+    flowing = (store.shown("mass")[fluid, None] * store.shown("velocity")[fluid]).sum(axis=0)
+    return flowing + (bodies.mass * bodies.velocity).sum(axis=0)[:2]
+
+
+def test_fluids_and_bodies_keep_their_momentum_together(tmp_path):
+    simulation, bodies, _ = started(draft(tmp_path, STIRRED))
+    begun, own = momentum(simulation, bodies), bodies.velocity.copy()
+    size = np.abs(simulation.store.shown("mass")[:, None] * simulation.store.shown("velocity")).sum()
+    for _ in range(60):
+        simulation.step()
+    assert np.abs(bodies.velocity - own).max() > 0.05  # they have been pushed
+    assert np.abs(momentum(simulation, bodies) - begun).max() < 1e-12 * size
+
+
+def test_particles_stay_where_their_body_has_them(tmp_path):
+    simulation, bodies, _ = started(draft(tmp_path, STIRRED))
+    store = simulation.store
+    for _ in range(60):
+        simulation.step()
+    held = np.flatnonzero(store.shown("group") == 2)
+    row = [one.name for one in bodies.bodies].index("one")
+    there = [bodies.at(row, np.append(anchor, 0.0))[0][:2] for anchor in store.shown("anchor")[held]]
+    apart = simulation.domain.inside(store.shown("position")[held]) - simulation.domain.inside(
+        np.array(there)
+    )
+    assert np.abs(apart).max() < 1e-12
+
+
+def test_a_body_far_from_all_falls_and_spins_exactly(tmp_path):
+    text = (
+        POOL.format(dx=0.05)
+        + """
+[bodies.brick]
+shape.box = { lower = [0.2, 2.0], upper = [0.4, 2.3] }
+density = 400.0
+velocity = [0.3, 1.0]
+spin = -3.0
+"""
+    )
+    simulation, bodies, _ = started(draft(tmp_path, text))
+    while simulation.time < 0.3:
+        simulation.step(0.3)
+    assert bodies.place[0, :2] == pytest.approx([0.3 + 0.09, 2.15 + 0.3 - 0.5 * 9.81 * 0.09], rel=1e-12)
+    assert bodies.angle[0] == pytest.approx(-0.9, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.3, 0.8])
+def test_a_floating_box_comes_to_its_draft(tmp_path, ratio):
+    side = 0.2
+    afloat = 0.4 - ratio * side  # its lower face, before the water that it displaces rises
+    text = (
+        POOL.format(dx=0.025)
+        + f"""
+[bodies.box]
+shape.box = {{ lower = [0.4, {0.025 * round(afloat / 0.025)}], upper = [0.6, {0.025 * round(afloat / 0.025) + side}] }}
+density = {1000.0 * ratio}
+free = ["x", "y"]
+[gauges.box.motion]
+of = "box"
+[gauges.left.level]
+foot = [0.15, 0.0]
+top = [0.15, 0.7]
+[gauges.push.force]
+on = ["box"]
+"""
+    )
+    simulation, bodies, scene = started(draft(tmp_path, text))
+    bottoms, levels, pushes = [], [], []
+    while simulation.time < 1.5:
+        simulation.step()
+        if simulation.time > 0.9 and simulation.steps % 8 == 0:
+            simulation.settle_pressure()
+            read = {}
+            for gauge in gauges_of(scene).values():
+                read |= dict(zip(gauge.columns(scene), map(float, gauge.row(simulation)), strict=True))
+            bottoms.append(read["box.centre_y"] - 0.5 * side)
+            levels.append(read["left.level"])
+            pushes.append(read["push.force_y"])
+    draught = np.mean(levels) - np.mean(bottoms)
+    assert draught == pytest.approx(ratio * side, abs=0.5 * 0.025 + 0.01 * side)
+    assert np.mean(pushes) == pytest.approx(1000.0 * ratio * side**2 * 9.81, rel=0.03)
+
+
+def test_bodies_rest_on_each_other_and_on_the_floor(tmp_path):
+    text = (
+        POOL.format(dx=0.05)
+        + """
+[walls.table]
+shape.box = { lower = [1.15, -0.15], upper = [2.5, 0.0] }
+[bodies.low]
+shape.box = { lower = [1.7, 0.1], upper = [2.0, 0.3] }
+density = 2000.0
+[bodies.high]
+shape.box = { lower = [1.6, 0.4], upper = [2.1, 0.6] }
+density = 800.0
+"""
+    )
+    simulation, bodies, _ = started(draft(tmp_path, text))
+    while simulation.time < 1.2:
+        simulation.step()
+    low, high = ([one.name for one in bodies.bodies].index(name) for name in ("low", "high"))
+    assert bodies.place[low, 1] == pytest.approx(0.1, abs=0.005)
+    assert bodies.place[high, 1] == pytest.approx(0.3, abs=0.01)
+    assert np.abs(bodies.velocity).max() < 0.02 and np.abs(bodies.angle).max() < 1e-3
+    # Newton's third law: what the floor bears is the weight of both, and the upper rests on the lower.
+    assert bodies.force[high, 1] == pytest.approx(0.0, abs=0.05 * 80.0 * 9.81)
+
+
+def test_a_gate_on_a_hinge_turns_about_its_hinge(tmp_path):
+    text = (
+        POOL.format(dx=0.05)
+        + """
+[bodies.gate]
+shape.box = { lower = [0.6, 0.15], upper = [0.7, 0.75] }
+density = 1500.0
+pivot = [0.65, 0.7]
+spin = 1.5
+"""
+    )
+    simulation, bodies, _ = started(draft(tmp_path, text))
+    for _ in range(150):
+        simulation.step()
+    assert np.array_equal(bodies.place[0], [0.65, 0.7, 0.0]) and abs(bodies.angle[0]) > 0.02
+    held = np.flatnonzero(simulation.store.shown("group") == 2)
+    far = simulation.store.shown("position")[held] - [0.65, 0.7]
+    begun = simulation.store.shown("anchor")[held] - [0.65, 0.7]
+    assert np.linalg.norm(far, axis=1) == pytest.approx(np.linalg.norm(begun, axis=1), rel=1e-12)
+
+
+def test_mass_and_inertia_are_those_of_the_shape(tmp_path):
+    text = (
+        POOL.format(dx=0.05)
+        + """
+[bodies.plate]
+shape.box = { lower = [0.2, 0.5], upper = [0.5, 0.6] }
+density = 700.0
+[bodies.ring]
+shape.disc = { center = [0.7, 0.6], radius = 0.1 }
+mass = 3.0
+inertia = 0.25
+centre = [0.71, 0.6]
+"""
+    )
+    plate, ring = Scene(draft(tmp_path, text)).rigid_bodies
+    assert plate.mass == pytest.approx(700.0 * 0.03)
+    assert plate.centre == pytest.approx((0.35, 0.55, 0.0))
+    assert plate.inertia[8] == pytest.approx(21.0 * (0.09 + 0.01) / 12.0)
+    assert (ring.mass, ring.inertia[8], ring.centre) == (3.0, 0.25, (0.71, 0.6, 0.0))
+
+
+def test_scenes_without_bodies_have_nothing_of_them(tmp_path):
+    plain = make_plan(Scene(draft(tmp_path, POOL.format(dx=0.05))))
+    asked = make_plan(Scene(draft(tmp_path, STIRRED)))
+    assert not plain.floats and not plain.contacts and plain.body_step is None
+    assert not {"load", "anchor", "solid"} & set(plain.arrays)
+    assert asked.floats and {"load", "anchor", "solid"} <= set(asked.arrays)
+
+
+BRICK = "bodies.brick.shape.box={lower=[0.2,0.5],upper=[0.4,0.7]}"
+
+
+@pytest.mark.parametrize(
+    ("overrides", "says"),
+    [
+        ((), "bodies.brick: give either mass or density"),
+        (("bodies.brick.mass=0.0",), "mass: 0.0 is out of range"),
+        (("bodies.brick.density=-1.0",), "density: -1.0 is out of range"),
+        (
+            ("bodies.brick.mass=1.0", "bodies.brick.free=['z']"),
+            "there is no such motion in 2D; give x, y, turn_z",
+        ),
+        (("bodies.brick.mass=1.0", "bodies.brick.inertia=-2.0"), "is not above zero"),
+        (("bodies.brick.mass=1.0", "bodies.brick.spin=[1.0,2.0]"), "give one number in 2D, three in 3D"),
+        (
+            ("bodies.brick.mass=1.0", "bodies.brick.pivot=[0.3,0.6]", "bodies.brick.free=['x','turn_z']"),
+            "what has a pivot moves along no axis",
+        ),
+        (
+            (
+                "bodies.brick.mass=1.0",
+                "bodies.brick.lines.rope={at=[0.3,0.6],anchor=[0.3,0.0],stiffness=1.0,to='crane'}",
+            ),
+            "no other body has this name",
+        ),
+        (
+            ("bodies.brick.mass=1.0", "physics.pressure_gradient=minimum", "scheme=sph"),
+            "physics.pressure_gradient = minimum does not push back what pushes",
+        ),
+        (("bodies.brick.mass=1.0", "gauges.g.motion.of=tank"), "no body has this name"),
+    ],
+)
+def test_bodies_that_cannot_be_are_refused(tmp_path, overrides, says):
+    lines = refusal(tmp_path, POOL.format(dx=0.05), BRICK, *overrides)
+    assert len(lines) == 1 and says in lines[0]
+
+
+def test_a_turn_is_told_as_axis_times_angle(tmp_path):
+    text = (
+        POOL.format(dx=0.05)
+        + """
+[bodies.brick]
+shape.box = { lower = [0.2, 2.0], upper = [0.4, 2.3] }
+mass = 1.0
+"""
+    )
+    _, bodies, _ = started(draft(tmp_path, text))
+    for axis, angle in (((0.6, 0.0, 0.8), 2.5), ((0.0, -1.0, 0.0), math.pi), ((0.0, 0.0, 1.0), 1e-9)):
+        bodies.hinged = np.array([], int)
+        bodies.turn[0] = np.reshape(rotation(axis, angle), (3, 3))
+        told = bodies.turned(0)
+        told = told if told @ np.array(axis) > 0.0 else -told  # half a turn has no sign
+        assert told == pytest.approx(angle * np.array(axis), rel=1e-6, abs=1e-15)
