@@ -8,8 +8,8 @@ from psph.physics.rigid.bodies import Bodies, Body
 from psph.physics.rigid.lines import pulls
 from psph.scene.bodies import lines_of
 
-UNITS = 2.0**40
-"""Whole numbers in the push of one particle under the pressure ρ₀c²: room for four million of them."""
+BITS = 58
+"""Of whole numbers of 64 bits, for a push of ρ₀c² on all particles of bodies: room for sixteen times that."""
 
 
 class Floating:
@@ -31,7 +31,9 @@ class Floating:
             if isinstance(one.motion, Body):
                 self._body_of[group] = own.index(one.motion)
         pressure = max(one.density for one in scene.species) * scene.sound_speed**2
-        self._force_unit = pressure * scene.spacing ** (scene.dimensions - 1) / UNITS
+        count = int(scene.census.sizes[scene.layout.first_body :].sum())
+        units = 2.0 ** (BITS - count.bit_length())
+        self._force_unit = pressure * scene.spacing ** (scene.dimensions - 1) / units
         length = max(up - low for low, up in zip(scene.lower, scene.upper))
         self._torque_unit = self._force_unit * length
 
