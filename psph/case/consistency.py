@@ -7,6 +7,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.errors import advise
 from psph.case.keys import AXES, Table
+from psph.case.motion import misfits
 from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
 from psph.case.study import EXACT
@@ -252,14 +253,12 @@ def _continued(case) -> Iterator[Finding]:
 
 
 def _moved(case) -> Iterator[Finding]:
-    """Walls that are to move in no way, or in several."""
-    names = [last_part(entry) for entry in case.catalogue.motions]
-    for name, wall in case.walls.items():
-        motion = getattr(wall, "motion", None)
-        asked = [one for one in names if getattr(motion, one, None) is not None]
-        if motion is not None and len(asked) != 1:
-            found = f"a wall cannot move in {len(asked)} ways" if asked else "does not say how the wall moves"
-            yield ("walls", name, "motion"), ..., f"{found}; give one of: {', '.join(names)}"
+    """Motions that are none, or none here."""
+    moving = {("walls", name, "motion"): wall for name, wall in case.walls.items()}
+    for loc, one in (moving | {("frame", "motion"): case.frame}).items():
+        for place, name, says in misfits(one.motion or (), case.space.dimensions):
+            inner = (place,) if len(one.motion) > 1 else ()
+            yield (*loc, *inner, *([name] if name else [])), ..., says
 
 
 def _regions(case) -> Iterator[Finding]:

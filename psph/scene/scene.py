@@ -9,6 +9,7 @@ import numpy as np
 
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
+from psph.case.motion import motion_of
 from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
@@ -216,8 +217,14 @@ class Scene:
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""
         if index < self.layout.fluids:
             return Free()
-        asked = chosen(getattr(self.bodies[index], "motion", None), self.case.catalogue.motions)
-        return next(iter(asked.values()), Fixed())
+        parts = self.bodies[index].motion
+        return motion_of(parts) if parts else Fixed()
+
+    @cached_property
+    def frame(self):
+        """How the frame of reference moves (psph.physics.rigid.motion.Rigid), or None."""
+        parts = self.case.frame.motion
+        return motion_of(parts) if parts else None
 
     @cached_property
     def tables(self) -> dict[str, Any]:

@@ -16,7 +16,8 @@ from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import ANCHOR, FIXED, FREE, PRESCRIBED, RIGID, Fixed, Free, deforms, is_rigid
+from psph.physics.motion import APPARENT, OF_MOTION, WORK, Free
+from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
 
@@ -157,12 +158,22 @@ class Plan:
     @cached_property
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
-        return tuple(call.effect for call in self.called if _carries(call))
+        return tuple(call.effect for call in self._carrying)
+
+    @property
+    def _carrying(self) -> list[Called]:
+        return [c for c in self.called if _carries(c) or self.books_work and hasattr(c.effect, "body")]
+
+    @property
+    def books_work(self) -> bool:
+        """Whether particles carry the energy that walls, or a moving frame, have given."""
+        return WORK.name in self.arrays
 
     @cached_property
     def uncarried(self) -> dict[str, None]:
         """What neither the equation of state nor the carriers read of a particle."""
-        read = set(OF_STATE).union(*(call.reads.own for call in self.called if _carries(call)))
+        read = set(OF_STATE).union(*(call.reads.own for call in self._carrying))
+        read |= {"mass"} if self.books_work else set()
         return dict.fromkeys(field.name for field in self.seen if field.name not in read)
 
     def flops_per_pair(self, periods: tuple, effects: tuple | None = None) -> int:
@@ -200,8 +211,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     written += tuple(effect.marks for effect in marking)
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
-    motions, rigid = (_distinct(scene.species, one_of) for one_of in (deforms, is_rigid))
-    fields = by_name(catalogue.fields.values(), written, further, [ANCHOR])
+    movement = movement_of(scene.species)
+    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION)
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     laws = _laws(scene, catalogue.states)
@@ -209,9 +220,10 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
-    refuse_unwritten(scene, called, computed)
-    anchored = {ANCHOR.name} if motions or rigid else set()
-    stored = tuple(n for n in fields if n in computed or n in varying or n in anchored)
+    told = carried_fields(movement, scene.frame)
+    refuse_unwritten(scene, called, (*computed, *told))
+    told = {name for name in told if name in own or name != APPARENT.name}
+    stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     passes = make_passes(called, stored, lambda name: _array_of(name, stored), case.time.gather_every)
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
@@ -249,10 +261,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         evolving=evolving,
         kinds=tuple(species.kind for species in scene.species),
         free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
-        motions=motions,
-        motion_of=_motion_numbers(scene.species, motions),
-        rigid=rigid,
-        pose_of=np.array([_row_of(one.motion, rigid) for one in scene.species], np.uint8),
+        **movement._asdict(),
         regions=scene.regions,
         cfl=case.time.cfl,
         fixed_step=case.time.step,
@@ -289,32 +298,6 @@ def _array_of(name: str, stored: tuple[str, ...]) -> str:
 def _tells(effect, material) -> bool:
     """Whether an effect gives particles of a material their pressure."""
     return hasattr(effect, "tells") and material_value(material, effect.tells) > 0.0
-
-
-def _distinct(species, one_of) -> tuple:
-    """The different motions of some species that are ``one_of`` these."""
-    # By type too: named tuples of different types are equal where their values are.
-    found = {(type(s.motion), s.motion) for s in species if one_of(s.motion)}
-    return tuple(motion for _, motion in sorted(found, key=str))
-
-
-def _row_of(motion, among: tuple) -> int:
-    """The place of a motion among others, 0 where it is none of them."""
-    told = [(type(one), one) for one in among]
-    return told.index((type(motion), motion)) if (type(motion), motion) in told else 0
-
-
-def _motion_numbers(species, motions) -> np.ndarray:
-    numbers = {Free: FREE, Fixed: FIXED}
-    return np.array(
-        [
-            RIGID
-            if is_rigid(s.motion)
-            else numbers.get(type(s.motion), PRESCRIBED + _row_of(s.motion, motions))
-            for s in species
-        ],
-        np.uint8,
-    )
 
 
 def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
@@ -357,7 +340,7 @@ def _called_for(case, entry: Entry) -> tuple[Any, str] | None:
         if choice:
             if value == choice:
                 return entry.effect(), by
-        elif "*" in key:
+        elif "*" in key or isinstance(value, tuple):
             if value:
                 return entry.effect(), by
         elif value is not None:

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from psph.physics.motion import is_rigid
-from psph.physics.rigid.pose import PLACE, VELOCITY, maps
+from psph.physics.rigid.pose import PLACE, VELOCITY, ZERO, in_space, inertia, maps
 
 
 class Poses:
@@ -16,17 +16,23 @@ class Poses:
     around all particles of each row as they stand at the start.  ``maps`` (rows, 3, dim, 1 + dim) place
     the particles (psph.physics.rigid.pose.maps); None where nothing is rigid, so that loops have no code
     for it.  The array stays the same object: loops see each change.
+    ``frame`` is what a moving frame of reference adds to ``gravity``, m/s² (psph.physics.rigid.pose.inertia),
+    or None.
     """
 
-    def __init__(self, motions: Sequence, corners: np.ndarray, dimensions: int):
+    def __init__(self, motions: Sequence, corners: np.ndarray, dimensions: int, frame=None, gravity=ZERO):
         self.motions, self._corners, self._dimensions = tuple(motions), corners, dimensions
+        self._frame, self._gravity = frame, in_space(gravity)
         self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
+        self.frame = None if frame is None else np.zeros((2, dimensions, 1 + dimensions))
         self.turn_to(0.0)
 
     def turn_to(self, time: float) -> None:
         """Have all that is prescribed by time where it is at ``time``, s."""
         for row, motion in enumerate(self.motions):
             self.maps[row] = maps(motion.pose(time), self._dimensions)
+        if self._frame is not None:
+            self.frame[:] = inertia(self._frame.pose(time), self._gravity, self._dimensions)
 
     def advance(self, time: float, dt: float) -> float:
         """The same after a step of ``dt`` s that ends at ``time``.
@@ -35,6 +41,7 @@ class Poses:
         jumps of the velocity included: what the lists must stand.
         """
         if not self.motions:
+            self.turn_to(time)
             return 0.0
         before = self._at_corners()
         self.turn_to(time)

@@ -116,7 +116,7 @@ ASKED = {
     "a motion that is none": (
         "swinging",
         None,
-        "walls.floor.motion: does not say how the wall moves; give one of: swinging",
+        "walls.floor.motion: does not say how it moves; give one of: translation, ",
     ),
 }
 
