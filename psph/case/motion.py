@@ -318,8 +318,10 @@ def motions_type(entries: tuple = ()) -> Any:
     return Annotated[several, BeforeValidator(_as_list, json_schema_input_type=kind | several)]
 
 
-def motion_of(parts: tuple[Motion, ...]) -> Any:
-    """The motion that is made of these parts (psph.physics.motion)."""
+def motion_of(parts: tuple[Motion, ...] | None) -> Any:
+    """The motion that is made of these parts (psph.physics.motion), or None where there are none."""
+    if not parts:
+        return None
     made = tuple(one.part for one in parts)
     if len(made) == 1 and parts[0].way not in BUILT_IN:
         return made[0]

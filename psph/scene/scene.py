@@ -18,6 +18,7 @@ from psph.physics.motion import Fixed, Free
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.mirrors import around, clipped, planes_of
+from psph.scene.moving import largest_speed
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
@@ -110,12 +111,12 @@ class Scene:
 
     @cached_property
     def expected_speed(self) -> float:
-        """The largest of √(2gH), free fall over the fluids' height, any initial speed and the
-        exact solution's, m/s."""
+        """The largest of √(2gH), free fall over the fluids' height, and any speed of the start or of walls
+        and frames that move, m/s."""
         fluids = slice(len(self.case.fluids))
         height = self.census.top[fluids].max() - self.census.bottom[fluids].min() + self.spacing
         falling = math.sqrt(2.0 * math.hypot(*self.gravity) * max(height, 0.0))
-        return max(falling, self.starting_speed)
+        return max(falling, self.starting_speed, largest_speed(self))
 
     @cached_property
     def starting_speed(self) -> float:
@@ -198,11 +199,11 @@ class Scene:
     @cached_property
     def species(self) -> tuple[Species, ...]:
         """Each fluid, then each wall."""
-        names, volume = (*self.case.fluids, *self.walls), self.spacing**self.dimensions
+        volume = self.spacing**self.dimensions
         return tuple(
             Species(
                 name,
-                self._motion(index),
+                self.species_in_motion[index],
                 self.bodies[source].density,
                 self.bodies[source].viscosity,
                 start.mass(volume),
@@ -210,21 +211,34 @@ class Scene:
                 getattr(self.bodies[index], "no_slip", False),
                 getattr(self.bodies[index], "condition", DYNAMIC),
             )
-            for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
+            for index, (name, source, start) in enumerate(zip(self.names, self._sources, self.starts))
         )
 
     def _motion(self, index: int):
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""
         if index < self.layout.fluids:
             return Free()
-        parts = self.bodies[index].motion
-        return motion_of(parts) if parts else Fixed()
+        return motion_of(self.bodies[index].motion) or Fixed()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the fluids, then of the walls."""
+        return (*self.case.fluids, *self.walls)
+
+    @cached_property
+    def species_in_motion(self) -> tuple[Any, ...]:
+        """The motion of each species: known before any speed of sound is."""
+        return tuple(map(self._motion, range(len(self.bodies))))
+
+    def folded(self, d: int, x: np.ndarray) -> np.ndarray:
+        """Coordinates along axis ``d`` within the period there, m."""
+        period, low = self.periods[d], self.lower[d]
+        return x if period is None else x - period * np.floor((x - low) / period)
 
     @cached_property
     def frame(self):
         """How the frame of reference moves (psph.physics.rigid.motion.Rigid), or None."""
-        parts = self.case.frame.motion
-        return motion_of(parts) if parts else None
+        return motion_of(self.case.frame.motion)
 
     @cached_property
     def tables(self) -> dict[str, Any]:

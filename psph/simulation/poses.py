@@ -50,6 +50,18 @@ class Poses:
         most = max(2.0 * _longest(strayed) / dt, _longest(gained)) / dt
         return float(most)
 
+    def taken_back(self, row: int, position: np.ndarray) -> np.ndarray:
+        """Where points at ``position`` (n, dim) were at the start if they moved by a row, m."""
+        place = self.maps[row, PLACE]
+        away = position - place[:, 0]
+        return sum(away[:, d, None] * place[d, 1:] for d in range(self._dimensions))
+
+    @property
+    def around(self) -> tuple[np.ndarray, np.ndarray]:
+        """The corners of a box around all particles of all rows as they stand now, m."""
+        places = self._at_corners()[0]
+        return places.min(axis=(0, 1)), places.max(axis=(0, 1))
+
     def state(self) -> dict:
         """What the next steps rest on beside the time: nothing of what is prescribed."""
         return {}
