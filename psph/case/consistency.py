@@ -7,7 +7,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.errors import advise
 from psph.case.keys import AXES, Table
-from psph.case.motion import misfits
+from psph.case.moved import moved
 from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
 from psph.case.study import EXACT
@@ -33,7 +33,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         _exact,
         _effects,
         _continued,
-        _moved,
+        moved,
         _regions,
         _friction,
         _probed,
@@ -250,15 +250,6 @@ def _continued(case) -> Iterator[Finding]:
                 wall.continues,
                 (f"no fluid has this name; {advise(wall.continues, case.fluids)}"),
             )
-
-
-def _moved(case) -> Iterator[Finding]:
-    """Motions that are none, or none here."""
-    moving = {("walls", name, "motion"): wall for name, wall in case.walls.items()}
-    for loc, one in (moving | {("frame", "motion"): case.frame}).items():
-        for place, name, says in misfits(one.motion or (), case.space.dimensions):
-            inner = (place,) if len(one.motion) > 1 else ()
-            yield (*loc, *inner, *([name] if name else [])), ..., says
 
 
 def _regions(case) -> Iterator[Finding]:

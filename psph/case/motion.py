@@ -260,7 +260,7 @@ class Motion(Table):
     sinusoid: Sinusoid | None = key("an oscillation of place or angle", None)
     acceleration: Acceleration | None = key("a constant acceleration from rest", None)
     series: Series | None = key("places or angles by time, from a CSV file", None)
-    start: float = key("time from which the part acts", 0.0, unit="s")
+    start: float = key("time from which the part acts", 0.0, unit="s", ge=0)
     end: float | None = key("time until which it acts", None, unit="s", otherwise="it never ends")
     ramp: float = key(
         "time over which it is switched on from its start, and off before its end", 0.0, unit="s", ge=0

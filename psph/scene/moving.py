@@ -121,8 +121,8 @@ def motion_warnings(scene) -> Iterator[str]:
         share = found.speed / scene.sound_speed
         if share > QUICK:
             yield (
-                f"{key}: {found.speed:.3g} m/s is {share:.2g} of the speed of sound, so that the fluid before it "
-                f"is compressed; give physics.sound_speed = {10.0 * found.speed:.3g} or more"
+                f"{key}: {found.speed:.3g} m/s is {share:.2g} of the speed of sound, which compresses the "
+                f"fluid before it; give physics.sound_speed = {10.0 * found.speed:.3g} or more"
             )
         yield from _leaving(scene, key, found)
         if met := _first_met(scene, number):

@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-from psph.physics.facts import Facts
-
 
 class MovingFrame(NamedTuple):
     """The frame of reference moves: the fluid feels the forces of inertia, and gravity turns.
@@ -17,7 +15,3 @@ class MovingFrame(NamedTuple):
     def body(self, i):
         """It, m/s²."""
         return i.apparent
-
-    def linear(self, scene: Facts):
-        """Linear theory has no place for it."""
-        return "linear theory knows of no frame that moves"
