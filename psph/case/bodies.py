@@ -9,6 +9,7 @@ from pydantic import Strict
 from psph.case.errors import advise
 from psph.case.findings import Finding, one_sided
 from psph.case.keys import AXES, Name, Table, Vector, key
+from psph.case.motion import Motions
 from psph.case.shapes import Shape
 from psph.physics.walls.conditions import BEARING, DYNAMIC
 
@@ -73,6 +74,9 @@ class Body(Table):
     spin: Vector | float | None = key(
         "angular velocity at the start: a number in 2D, three in 3D", None, unit="rad/s", otherwise="zeros"
     )
+    motion: Motions | None = key(
+        "how it moves in what it is not free to do, as `walls.NAME.motion`", None, otherwise="not at all"
+    )
     held: float = key("until this time it stays where it is", 0.0, unit="s", ge=0)
     lines: dict[Name, Line] = key("springs, dampers and mooring lines by name", {})
     no_slip: bool = key("the fluid has the body's velocity at its face; needs a viscosity", False)
@@ -120,6 +124,14 @@ def held_together(case) -> Iterator[Finding]:
                 "what has a pivot moves along no axis; let free hold turns only",
             )
         yield from _sized(here, body, dimensions)
+        if body.motion and set(freed) >= {*slides, *turns}:
+            yield (
+                (*here, "motion"),
+                ...,
+                "the body is free to do everything; leave out of free what moves so",
+            )
+        if case.frame.motion:
+            yield here, ..., "bodies know of no frame that moves; remove one of the two, or move the tank"
         for line, table in body.lines.items():
             if table.to is not None and (table.to not in case.bodies or table.to == name):
                 others = [other for other in case.bodies if other != name]

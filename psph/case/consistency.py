@@ -10,6 +10,7 @@ from psph.case.errors import advise
 from psph.case.findings import Finding, Location, asked_of
 from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
+from psph.case.moved import moved
 from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
 from psph.case.study import EXACT
@@ -31,7 +32,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         _exact,
         _effects,
         _continued,
-        _moved,
+        moved,
         _regions,
         _friction,
         probed,
@@ -242,17 +243,6 @@ def _continued(case) -> Iterator[Finding]:
                 wall.continues,
                 (f"no fluid has this name; {advise(wall.continues, case.fluids)}"),
             )
-
-
-def _moved(case) -> Iterator[Finding]:
-    """Walls that are to move in no way, or in several."""
-    names = [last_part(entry) for entry in case.catalogue.motions]
-    for name, wall in case.walls.items():
-        motion = getattr(wall, "motion", None)
-        asked = [one for one in names if getattr(motion, one, None) is not None]
-        if motion is not None and len(asked) != 1:
-            found = f"a wall cannot move in {len(asked)} ways" if asked else "does not say how the wall moves"
-            yield ("walls", name, "motion"), ..., f"{found}; give one of: {', '.join(names)}"
 
 
 def _regions(case) -> Iterator[Finding]:

@@ -7,6 +7,7 @@ from pydantic import create_model
 
 from psph.case.keys import Name, key
 from psph.case.model import Case, Fluid, Space, Wall
+from psph.case.motion import motions_type
 from psph.case.parameters import last_part, table_of
 from psph.case.physics import own_law, physics_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
@@ -38,8 +39,7 @@ def case_model(catalogue: Catalogue) -> type[Case]:
         tables = table_of("Tables", "Further tables of a run.", catalogue.tables)
         fields["tables"] = (tables, key("further tables that the run writes", make=tables))
     if catalogue.motions:
-        motion = table_of("Motion", "How a wall moves: one of these.", catalogue.motions)
-        moved = (motion | None, key("how it moves", None, otherwise="it stays where it is"))
+        moved = (motions_type(catalogue.motions) | None, Wall.model_fields["motion"])
         wall = create_model("Wall", __base__=Wall, __doc__=Wall.__doc__, motion=moved)
         fields["walls"] = (dict[Name, wall], Case.model_fields["walls"])
     if catalogue.regions:

@@ -13,8 +13,10 @@ from pydantic_core import PydanticCustomError
 
 from psph.case.bodies import Body
 from psph.case.consistency import contradictions
+from psph.case.extensions import versions
 from psph.case.gauges import Gauge
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
+from psph.case.motion import Motions, series_in
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
 from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
@@ -149,7 +151,7 @@ class Fluid(Table):
 
 
 class Wall(Table):
-    """A wall: particles that do not move."""
+    """A wall: particles that stay where they are, or move as they are told."""
 
     shape: Shape = key("where the wall is")
     velocity: Vector | None = key(
@@ -157,6 +159,11 @@ class Wall(Table):
         None,
         unit="m/s",
         otherwise="zeros",
+    )
+    motion: Motions | None = key(
+        "how the wall moves: a part, or a list of parts of which each moves what those before it have made",
+        None,
+        otherwise="it stays where it is",
     )
     no_slip: bool = key(
         "the fluid has the wall's velocity at the face of the wall; needs a viscosity",
@@ -174,6 +181,16 @@ class Wall(Table):
         "the fluid whose density and initial pressure the wall has",
         None,
         otherwise="the first fluid",
+    )
+
+
+class Frame(Table):
+    """A frame of reference that moves: places and velocities are told in it."""
+
+    motion: Motions | None = key(
+        "how the frame moves, as `walls.NAME.motion`: the fluid feels forces of inertia, and gravity turns",
+        None,
+        otherwise="it rests",
     )
 
 
@@ -208,8 +225,11 @@ class Case(Table):
         min_length=1,
         max_length=MANY,
     )
-    walls: dict[Name, Wall] = key("the walls by name: particles that do not move", {}, max_length=MANY)
+    walls: dict[Name, Wall] = key(
+        "the walls by name: particles that the fluid runs into", {}, max_length=MANY
+    )
     bodies: dict[Name, Body] = key("the rigid bodies by name", {}, max_length=MANY)
+    frame: Frame = key("a frame of reference that moves", make=Frame)
     probes: dict[Name, Probe] = key("the probes by name: points where fields are measured over time", {})
     gauges: dict[Name, Gauge] = key(
         "the gauges by name: forces, levels, flows and others, each with a table of its own", {}
@@ -260,6 +280,17 @@ class Case(Table):
     def table_of(self, solid: str) -> str:
         """The table that holds a wall or a body of that name."""
         return "walls" if solid in self.walls else "bodies"
+
+    @property
+    def series(self) -> list:
+        """The series of motions that the case names (psph.case.motion.Series)."""
+        moving = [*(solid.motion for solid in self.solids.values()), self.frame.motion]
+        return [series for parts in moving for series in series_in(parts or ())]
+
+    @property
+    def versions(self) -> list[str]:
+        """A word for each file that the case uses: another content gives another word."""
+        return [*versions(self.catalogue), *(series.found.digest for series in self.series)]
 
     @cached_property
     def presets(self) -> dict[str, tuple[str, Any]]:

@@ -56,6 +56,12 @@ def total_energy(comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic
     return float(exact_sums(comm, energy[:, None])[0])
 
 
+def work_done(comm: MPI.Comm, store: Store) -> float:
+    """Energy that moving walls and frames have given since the start, J; the same bits on any number of
+    ranks, collective."""
+    return float(exact_sums(comm, store.shown("work")[:, None])[0])
+
+
 def fluid_mass(comm: MPI.Comm, store: Store) -> float:
     """Mass of the fluid, kg; the same bits on any number of ranks, collective."""
     mass = np.where(store.shown("kind") == FLUID, store.shown("mass"), 0.0)

@@ -13,6 +13,7 @@ from psph.physics.damping.reconstructed import ReconstructedDamping
 from psph.physics.damping.riemann import RiemannDissipation
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import GradientCorrection
+from psph.physics.fluid.frame import MovingFrame
 from psph.physics.fluid.gravity import CentralForce, Gravity
 from psph.physics.fluid.pressure import (
     BackgroundPressure,
@@ -128,6 +129,7 @@ CATALOGUE = (
     Entry("physics.local_potential", LocalPotential),
     Entry("physics.gravity", Gravity),
     Entry("physics.central_force", CentralForce),
+    Entry("frame.motion", MovingFrame),
     Entry("physics.free_surface", FreeSurface),
     Entry("physics.tension_floor", TensionFloor),
     Entry("physics.background_pressure", BackgroundPressure),

@@ -30,6 +30,8 @@ class Facts(Protocol):
     """Largest speed at the start, m/s."""
     gravity: Sequence[float]
     """g, m/s²; zeros without."""
+    frame: Any
+    """How the frame of reference moves (psph.physics.rigid.motion.Rigid); None where it rests."""
     species: Sequence[Any]
     """Fluids and walls (psph.scene.species.Species)."""
     has_free_surface: bool

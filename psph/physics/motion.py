@@ -28,6 +28,9 @@ APPARENT = Field(
 
 WORK = Field("work", "J", "energy that a moving wall, or the force of an accelerated frame, has given")
 
+OF_MOTION = (ANCHOR, APPARENT, WORK)
+"""What particles carry only where something moves as it is told."""
+
 
 class Free(NamedTuple):
     """Particles move as forces have them."""

@@ -12,12 +12,13 @@ from psph.parallel.slabs import check_ranks
 from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
-from psph.physics.motion import is_prescribed
+from psph.physics.motion import deforms
 from psph.run.forecast import forecast, forecast_lines, pull, sites_within
 from psph.run.hints import hints
 from psph.run.outlay import output_lines
 from psph.run.outlook import outlook
 from psph.scene.bodies import in_words
+from psph.scene.moving import motion_lines
 from psph.simulation.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
@@ -113,8 +114,9 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     yield f"  materials   {names}"
     for body in scene.rigid_bodies:
         yield f"  body        {body.name}: {in_words(scene, body)}"
+    yield from motion_lines(scene)
     for one in scene.species:
-        if is_prescribed(one.motion) and one.name not in case.bodies:
+        if deforms(one.motion):
             yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"
     for plane in scene.mirror_planes:
         sticks = "; the fluid sticks to it" if plane.sticks else ""

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from psph.fields import FLUID
-from psph.output.diagnostics import fluid_mass, total_energy
+from psph.output.diagnostics import fluid_mass, total_energy, work_done
 from psph.output.errors import OutputError
 from psph.parallel.reductions import largest, wrapped_sums
 from psph.physics.facts import SOUND_OVER_SPEED
+from psph.physics.motion import is_prescribed
 from psph.run.advice import advice
 from psph.run.post_mortem import write_post_mortem
 from psph.run.record import Record
@@ -39,7 +40,10 @@ class Guards:
     def __init__(self, scene, simulation: Simulation, record: Record, folder: Path, say: Callable):
         self.scene, self.simulation, self.record = scene, simulation, record
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
-        self.solid = Solid(scene)
+        moving = [one for one in scene.species if is_prescribed(one.motion)]
+        self._books = not simulation.plan.regions and all(one.bearing for one in moving)
+        self.solids = [(Solid(scene), None)]
+        self.solids += [(Solid(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
         self.seen: Counter[str] = Counter()
         mass = fluid_mass(simulation.comm, simulation.store)
         self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
@@ -80,12 +84,21 @@ class Guards:
         gone = np.zeros(len(fluid), bool)
         if not scene.walls:
             return gone
-        lattice = scene.lattice
+        lower, upper = self._around
         for d, x in enumerate(self.simulation.domain.inside(store.shown("position")).T):
             down, up = scene.gravity[d] <= 0.0, scene.gravity[d] >= 0.0
-            gone |= down & (x < lattice.lower[d] - scene.spacing)
-            gone |= up & (x > lattice.upper[d] + scene.spacing)
+            gone |= down & (x < lower[d] - scene.spacing)
+            gone |= up & (x > upper[d] + scene.spacing)
         return gone & fluid
+
+    @property
+    def _around(self) -> tuple[np.ndarray, np.ndarray]:
+        """The corners of a box around the particles at the start, and walls where they stand now, m."""
+        lower, upper = np.array(self.scene.lattice.lower), np.array(self.scene.lattice.upper)
+        if not self.simulation.plan.rigid:
+            return lower, upper
+        now = self.simulation.engine.poses.around
+        return np.minimum(lower, now[0]), np.maximum(upper, now[1])
 
     def _tripped(self) -> Iterator[str]:
         """The keys of the guards whose bounds the last step has passed."""
@@ -98,7 +111,7 @@ class Guards:
             with simulation.ledger("guards"):
                 slow = [
                     ("depth", largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
-                    ("energy", not simulation.plan.regions and self._gain() > bounds.energy),
+                    ("energy", self._books and self._gain() > bounds.energy),
                 ]
             yield from (name for name, passed in slow if passed)
 
@@ -107,7 +120,11 @@ class Guards:
         store = self.simulation.store
         hidden = store.shown("kind") == FLUID
         places = self.simulation.domain.inside(store.shown("position")[hidden])
-        hidden[hidden] = self.solid.deep(places, self.bounds.depth)
+        deep = np.zeros(len(places), bool)
+        for solid, row in self.solids:
+            then = places if row is None else self.simulation.engine.poses.taken_back(row, places)
+            deep |= solid.deep(then, self.bounds.depth)
+        hidden[hidden] = deep
         return hidden
 
     def _gain(self) -> float:
@@ -115,7 +132,7 @@ class Guards:
         return (self._energy() - self.simulation.energy_at_start) / self._unit
 
     def _energy(self) -> float:
-        """Energy of motion, height and compression, J."""
+        """Energy of motion, height and compression less what moving walls and frames have given, J."""
         sim, c = self.simulation, self.scene.sound_speed
         laws, law_of = sim.plan.laws, sim.plan.law_of[sim.store.shown("group")]
 
@@ -125,7 +142,8 @@ class Guards:
                 stored = np.where(law_of == number, law.energy(density, rest, c), stored)
             return stored
 
-        return total_energy(sim.comm, sim.store, self.scene.height_gravity, elastic)
+        whole = total_energy(sim.comm, sim.store, self.scene.height_gravity, elastic)
+        return whole - (work_done(sim.comm, sim.store) if sim.plan.books_work else 0.0)
 
     def _warn(self, guard: str) -> None:
         """Say so the first, second, fourth, eighth ... time."""
@@ -206,8 +224,7 @@ class Guards:
 
     def _side_passed(self, suspect: Suspect) -> str | None:
         """Beyond which side of all walls a particle is, in words; None where it is among them."""
-        lattice = self.scene.lattice
-        for axis, x, least, most in zip("xyz", suspect.value("position"), lattice.lower, lattice.upper):
+        for axis, x, least, most in zip("xyz", suspect.value("position"), *self._around):
             if x < least - self.scene.spacing or x > most + self.scene.spacing:
                 end = least if x < least else most
                 return f"at {axis} = {x:.4g} m, where they end at {end:.4g} m: over the rim, or through"

@@ -11,6 +11,7 @@ from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
+from psph.physics.motion import OF_MOTION
 from psph.run.record import probes_of
 from psph.scene.particles import ParticleSet
 from psph.simulation.filling import block_of
@@ -59,8 +60,12 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
         plan.laws,
         plan.space,
         plan.motions,
-        bool(plan.rigid) or None,
         plan.loaded is not None,
+        (
+            bool(plan.rigid) or None,
+            bool(scene.frame) or None,
+            *(f.name in plan.arrays or None for f in OF_MOTION),
+        ),
         scene.periods,
         store.view(),
     )

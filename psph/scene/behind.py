@@ -7,19 +7,24 @@ import numpy as np
 from psph.physics.motion import Fixed
 from psph.scene.species import NONE
 
+FIXED = Fixed()
+
 AT_ONCE = 1 << 15
 """Points that are processed together: their arrays fit into the processor's cache."""
 
 
 class Solid:
-    """The walls of a scene that stand still, continued outwards where they close a whole side of its
-    particles.  Of walls that move it knows nothing: where they stood, fluid may be."""
+    """The walls of a scene that move together, by ``motion``, where they stood at the start; continued
+    outwards where they close a whole side of its particles.
 
-    def __init__(self, scene):
+    Of walls whose motion deforms them it knows nothing: where they stood, fluid may be.
+    """
+
+    def __init__(self, scene, motion=FIXED):
         self.scene, self.layout, self.lattice = scene, scene.layout, scene.layout.lattice
         self._still = np.zeros(NONE + 1, bool)
         for number, one in enumerate(scene.species):
-            self._still[number] = isinstance(one.motion, Fixed)
+            self._still[number] = one.motion == motion and type(one.motion) is type(motion)
 
     def deep(self, position: np.ndarray, depth: float) -> np.ndarray:
         """True where a point of ``position`` (n, dim) lies ``depth`` spacings behind every face.
@@ -56,7 +61,7 @@ class Solid:
 
     def _inside(self, position: np.ndarray) -> np.ndarray:
         """True at points (n, dim) in a wall, or beyond a side that walls close."""
-        grid = [self._folded(d, x.copy()) for d, x in enumerate(position.T)]  # unit stride
+        grid = [self.scene.folded(d, x.copy()) for d, x in enumerate(position.T)]  # unit stride
         found = self._still[self.layout.held(grid, grid[0].shape)]
         low = [x < least for x, least in zip(grid, self.lattice.lower)]
         high = [x > most for x, most in zip(grid, self.lattice.upper)]
@@ -67,10 +72,6 @@ class Solid:
         for d, (lower, upper) in enumerate(self.closed):
             found |= within & (lower & low[d] | upper & high[d])
         return found
-
-    def _folded(self, d: int, x: np.ndarray) -> np.ndarray:
-        period, low = self.scene.periods[d], self.scene.lower[d]
-        return x if period is None else x - period * np.floor((x - low) / period)
 
     def _all_wall(self, d: int, side: int) -> bool:
         """Whether the outermost sites at this end of axis ``d`` are all wall."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
+from psph.case.motion import motion_of
 from psph.physics.rigid.bodies import Bodies, Body
 from psph.physics.rigid.contact import contact_of
 from psph.physics.rigid.lines import Line, longest_step
@@ -76,6 +77,7 @@ def _body(scene: "Scene", number: int, name: str, table) -> Body:
         tuple(one in freed for one in TURNS),
         in_space(table.pivot) if table.pivot else None,
         table.held,
+        motion_of(table.motion),
     )
 
 

@@ -13,6 +13,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.gauging import misplaced, shown
 from psph.scene.lattice import TOLERANCE
+from psph.scene.moving import motion_warnings
 from psph.scene.multiples import misfits
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
@@ -108,6 +109,7 @@ def _far_faults(scene: Scene) -> Iterator[str]:
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
     for kind in (
+        motion_warnings,
         _thin_walls,
         _surface_threshold,
         _minimum_at_surface,

@@ -9,6 +9,7 @@ import numpy as np
 
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
+from psph.case.motion import motion_of
 from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
@@ -17,8 +18,10 @@ from psph.physics.motion import Fixed, Free
 from psph.physics.rigid.bodies import Body
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.bodies import rigid_bodies
+from psph.scene.kicked import nearest_fluid_site
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.mirrors import around, clipped, planes_of
+from psph.scene.moving import largest_speed
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
@@ -113,12 +116,12 @@ class Scene:
 
     @cached_property
     def expected_speed(self) -> float:
-        """The largest of √(2gH), free fall over the fluids' height, any initial speed and the
-        exact solution's, m/s."""
+        """The largest of √(2gH), free fall over the fluids' height, and any speed of the start or of walls
+        and frames that move, m/s."""
         fluids = slice(len(self.case.fluids))
         height = self.census.top[fluids].max() - self.census.bottom[fluids].min() + self.spacing
         falling = math.sqrt(2.0 * math.hypot(*self.gravity) * max(height, 0.0))
-        return max(falling, self.starting_speed)
+        return max(falling, self.starting_speed, largest_speed(self))
 
     @cached_property
     def starting_speed(self) -> float:
@@ -201,11 +204,11 @@ class Scene:
     @cached_property
     def species(self) -> tuple[Species, ...]:
         """Each fluid, then each wall."""
-        names, volume = (*self.case.fluids, *self.solids), self.spacing**self.dimensions
+        volume = self.spacing**self.dimensions
         return tuple(
             Species(
                 name,
-                self._motion(index),
+                self.species_in_motion[index],
                 self.parts[source].density,
                 self.parts[source].viscosity,
                 start.mass(volume),
@@ -215,7 +218,7 @@ class Scene:
                 name in self.case.loaded,
                 self.layout.solid_of(index),
             )
-            for index, (name, source, start) in enumerate(zip(names, self._sources, self.starts))
+            for index, (name, source, start) in enumerate(zip(self.names, self._sources, self.starts))
         )
 
     def _motion(self, index: int):
@@ -224,8 +227,27 @@ class Scene:
             return Free()
         if index >= self.layout.first_body:
             return self.rigid_bodies[index - self.layout.first_body]
-        asked = chosen(getattr(self.parts[index], "motion", None), self.case.catalogue.motions)
-        return next(iter(asked.values()), Fixed())
+        return motion_of(self.parts[index].motion) or Fixed()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the fluids, then of walls and bodies."""
+        return (*self.case.fluids, *self.solids)
+
+    @cached_property
+    def species_in_motion(self) -> tuple[Any, ...]:
+        """The motion of each species: known before any speed of sound is."""
+        return tuple(map(self._motion, range(len(self.parts))))
+
+    def folded(self, d: int, x: np.ndarray) -> np.ndarray:
+        """Coordinates along axis ``d`` within the period there, m."""
+        period, low = self.periods[d], self.lower[d]
+        return x if period is None else x - period * np.floor((x - low) / period)
+
+    @cached_property
+    def frame(self):
+        """How the frame of reference moves (psph.physics.rigid.motion.Rigid), or None."""
+        return motion_of(self.case.frame.motion)
 
     @cached_property
     def rigid_bodies(self) -> tuple[Body, ...]:
@@ -275,7 +297,7 @@ class Scene:
         to its position, m (2, dim)."""
         kicks: dict[tuple[int, int], np.ndarray] = {}
         for kick in self.case.perturbations:
-            site = self._nearest_fluid_site(kick.position)
+            site = nearest_fluid_site(self, kick.position)
             kicks[site] = kicks.get(site, 0.0) + np.array([kick.velocity, kick.shift])
         return kicks
 
@@ -371,26 +393,3 @@ class Scene:
             found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
         pressure = start.exact(np.concatenate(found))
         return float(pressure.min()), float(pressure.max())
-
-    def _nearest_fluid_site(self, point: tuple[float, ...]) -> tuple[int, int]:
-        """(plane, place in the plane) of the fluid site nearest to ``point``; ties: the first."""
-        grid = self.lattice.grid(0, self.planes)
-        squares = [self._squares(d, x, point[d]) for d, x in enumerate(grid)]
-        along = squares[self.axis].ravel()
-        best = (math.inf, -1, -1)
-        for plane in np.argsort(along, kind="stable").tolist():
-            if along[plane] > best[0]:
-                break
-            squares[self.axis] = along[plane : plane + 1].reshape(grid[self.axis][:1].shape)
-            fluid = self.layout.materials(plane, plane + 1) < self.layout.fluids
-            distance = np.where(fluid, sum(squares), math.inf).ravel()
-            place = int(distance.argmin())
-            best = min(best, (float(distance[place]), plane, place))
-        return best[1:]
-
-    def _squares(self, d: int, x: np.ndarray, to: float) -> np.ndarray:
-        """Squared distances along an axis in spacings, rounded so that ties are ties."""
-        away = x - to
-        if self.periods[d] is not None:
-            away -= self.periods[d] * np.rint(away / self.periods[d])
-        return np.round((away / self.spacing) ** 2, 6)

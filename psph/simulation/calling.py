@@ -31,7 +31,7 @@ def called_for(case, entry: Entry) -> tuple[Any, str] | None:
         if choice:
             if value == choice:
                 return entry.effect(), by
-        elif "*" in key:
+        elif "*" in key or isinstance(value, tuple):
             if value:
                 return entry.effect(), by
         elif value is not None:

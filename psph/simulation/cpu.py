@@ -53,7 +53,7 @@ class Engine:
         self.skin, self._reach = Skin(self.domain, scene.reach.skin, plan.planes), scene.reach
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         floating = Floating(scene, plan) if plan.floats else None
-        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.dimensions, floating)
+        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.frame, scene.gravity, floating)
         self._rules = Rules(
             plan.carriers,
             plan.laws,
@@ -64,6 +64,7 @@ class Engine:
             plan.motion_of,
             self.poses.maps,
             plan.pose_of,
+            self.poses.frame,
             scene.periods,
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
@@ -143,9 +144,9 @@ class Engine:
         self.domain.relist(saved.state["lower"], saved.state["upper"])
         saved.fill(self.store)
         self.poses.restore(saved.state["poses"], saved.state["time"])
-        for effect in self.plan.marking:
-            self._rest(effect)
         self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
+        for effect in self.plan.marking:
+            self._rest(effect)  # what ghosts are counts too
         self._fit_records()
         for records in self.records:
             records.fill(0, self.store.total)

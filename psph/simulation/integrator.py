@@ -18,7 +18,8 @@ import numpy as np
 from psph.composition.pair import take
 from psph.composition.terms import displacement, limit_density, limit_wall_density
 from psph.engine.jit import elementwise
-from psph.simulation.rules import borne, carry, density, hurry
+from psph.simulation.carried import carry, feel, give, hurry
+from psph.simulation.rules import borne, density
 from psph.vectors import add, at, dot, put, scale
 
 
@@ -47,6 +48,7 @@ def kick_drift_predict(first, last, time, dt, rules, view, columns):
         else:
             rho = limit_wall_density(rules.effects, i, rho)
             carry(rules, group, k, time, c)
+        feel(rules, group, k, time, dt, c)
         c.specific_volume[k] = 1.0 / rho
         c.pressure[k] = borne(rules, i, group, rho)
 
@@ -111,6 +113,7 @@ def kick(first, last, time, dt, rules, view, columns):
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
             v2, a2 = hurry(rules, group, k, time, dt, c)
             wall_v2_max, a2_max = max(wall_v2_max, v2), max(a2_max, a2)
+        give(rules, i, group, k, dt, c)
         c.density[k] = rho
     return v2_max, a2_max, strain_max, shift2_max, wall_v2_max
 

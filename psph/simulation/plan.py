@@ -25,11 +25,12 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import ANCHOR, Free, deforms, is_rigid
+from psph.physics.motion import APPARENT, OF_MOTION, WORK, Free
 from psph.physics.rigid.contact import contact_of
 from psph.scene.bodies import body_step
 from psph.simulation.calling import called_for, in_scene, why_dropped
-from psph.simulation.groups import distinct, laws, material_value, motion_numbers, row_of, tells
+from psph.simulation.groups import laws, material_value, tells
+from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
 
@@ -191,12 +192,22 @@ class Plan:
     @cached_property
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
-        return tuple(call.effect for call in self.called if _carries(call))
+        return tuple(call.effect for call in self._carrying)
+
+    @property
+    def _carrying(self) -> list[Called]:
+        return [c for c in self.called if _carries(c) or self.books_work and hasattr(c.effect, "body")]
+
+    @property
+    def books_work(self) -> bool:
+        """Whether particles carry the energy that walls, or a moving frame, have given."""
+        return WORK.name in self.arrays
 
     @cached_property
     def uncarried(self) -> dict[str, None]:
         """What neither the equation of state nor the carriers read of a particle."""
-        read = set(OF_STATE).union(*(call.reads.own for call in self.called if _carries(call)))
+        read = set(OF_STATE).union(*(call.reads.own for call in self._carrying))
+        read |= {"mass"} if self.books_work else set()
         return dict.fromkeys(field.name for field in self.seen if field.name not in read)
 
     def flops_per_pair(self, periods: tuple, effects: tuple | None = None) -> int:
@@ -236,8 +247,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     written += tuple(effect.marks for effect in marking)
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
-    motions, rigid = (distinct(scene.species, one_of) for one_of in (deforms, is_rigid))
-    fields = by_name(catalogue.fields.values(), written, further, [ANCHOR, LOAD])
+    movement = movement_of(scene.species)
+    fields = by_name(catalogue.fields.values(), written, further, (*OF_MOTION, LOAD))
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     own_laws = laws(scene, catalogue.states)
@@ -248,10 +259,11 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
-    refuse_unwritten(scene, called, computed)
-    further_fields = {ANCHOR.name} if motions or rigid else set()
-    further_fields |= {LOAD.name} if loaded.any() else set()
-    stored = tuple(n for n in fields if n in computed or n in varying or n in further_fields)
+    told = carried_fields(movement, scene.frame)
+    refuse_unwritten(scene, called, (*computed, *told))
+    told = {name for name in told if name in own or name != APPARENT.name}
+    told |= {LOAD.name} if loaded.any() else set()
+    stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     passes = make_passes(
         called, stored, lambda name: _array_of(name, stored), case.time.gather_every, for_loads
     )
@@ -291,10 +303,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         evolving=evolving,
         kinds=tuple(species.kind for species in scene.species),
         free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
-        motions=motions,
-        motion_of=motion_numbers(scene.species, motions),
-        rigid=rigid,
-        pose_of=np.array([row_of(one.motion, rigid) for one in scene.species], np.uint8),
+        **movement._asdict(),
         loaded=loaded if loaded.any() else None,
         contacts=contacts,
         solid_of=np.array([one.solid for one in scene.species], np.uint8),

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from psph.physics.motion import is_rigid
-from psph.physics.rigid.pose import PLACE, VELOCITY, maps
+from psph.physics.rigid.pose import PLACE, VELOCITY, ZERO, in_space, inertia, maps
 
 
 class Poses:
@@ -17,13 +17,17 @@ class Poses:
     forces move (psph.simulation.floating), or None.  ``maps`` (rows, 3, dim, 1 + dim) place
     the particles (psph.physics.rigid.pose.maps); None where nothing is rigid, so that loops have no code
     for it.  The array stays the same object: loops see each change.
+    ``frame`` is what a moving frame of reference adds to ``gravity``, m/s² (psph.physics.rigid.pose.inertia),
+    or None.
     """
 
-    def __init__(self, motions: Sequence, corners: np.ndarray, dimensions: int, floating=None):
-        self.motions, self._corners, self._dimensions = tuple(motions), corners, dimensions
-        self.floating = floating
+    def __init__(self, motions: Sequence, corners: np.ndarray, frame=None, gravity=ZERO, floating=None):
+        self.motions, self._corners, self._dimensions = tuple(motions), corners, len(gravity)
+        self._frame, self._gravity, self.floating = frame, in_space(gravity), floating
         self._told = sorted(set(range(len(self.motions))) - set(floating.rows if floating else ()))
+        dimensions = self._dimensions
         self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
+        self.frame = None if frame is None else np.zeros((2, dimensions, 1 + dimensions))
         self.turn_to(0.0)
 
     def turn_to(self, time: float) -> None:
@@ -32,6 +36,8 @@ class Poses:
             self.maps[row] = maps(self.motions[row].pose(time), self._dimensions)
         if self.floating:
             self.maps[self.floating.rows] = self.floating.maps()
+        if self._frame is not None:
+            self.frame[:] = inertia(self._frame.pose(time), self._gravity, self._dimensions)
 
     def advance(self, time: float, dt: float) -> float:
         """The same after a step of ``dt`` s that ends at ``time``.
@@ -40,6 +46,7 @@ class Poses:
         jumps of the velocity included: what the lists must stand.
         """
         if not self.motions:
+            self.turn_to(time)
             return 0.0
         before = self._at_corners()
         if self.floating:
@@ -49,6 +56,18 @@ class Poses:
         strayed, gained = x - x_0 - v_0 * dt, v - v_0
         most = max(2.0 * _longest(strayed) / dt, _longest(gained)) / dt
         return float(most)
+
+    def taken_back(self, row: int, position: np.ndarray) -> np.ndarray:
+        """Where points at ``position`` (n, dim) were at the start if they moved by a row, m."""
+        place = self.maps[row, PLACE]
+        away = position - place[:, 0]
+        return sum(away[:, d, None] * place[d, 1:] for d in range(self._dimensions))
+
+    @property
+    def around(self) -> tuple[np.ndarray, np.ndarray]:
+        """The corners of a box around all particles of all rows as they stand now, m."""
+        places = self._at_corners()[0]
+        return places.min(axis=(0, 1)), places.max(axis=(0, 1))
 
     def state(self) -> dict:
         """What the next steps rest on beside the time: of bodies, nothing of what is prescribed."""

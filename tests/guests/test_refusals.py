@@ -116,7 +116,7 @@ ASKED = {
     "a motion that is none": (
         "swinging",
         None,
-        "walls.floor.motion: does not say how the wall moves; give one of: swinging",
+        "walls.floor.motion: does not say how it moves; give one of: translation, ",
     ),
 }
 
@@ -134,7 +134,10 @@ def test_a_wall_moves_in_one_way(mine, tmp_path):
     shutil.copy(HERE / "swinging.py", tmp_path)
     more = f"{SWINGING}\nwalls.floor.motion.still = {{}}"
     says = line_of(mine(f"motions=({STILL},)", more=more, used=("swinging.py", "mine.py")))
-    assert says.endswith("walls.floor.motion: a wall cannot move in 2 ways; give one of: swinging, still")
+    assert says.endswith(
+        "walls.floor.motion: a part moves in one way, not in 2; give one of: translation, rotation, "
+        "sinusoid, acceleration, series, swinging, still"
+    )
 
 
 @pytest.mark.parametrize(

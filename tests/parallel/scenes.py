@@ -18,7 +18,7 @@ class Family(NamedTuple):
     ``along`` is the long axis, ``periodic`` the axes that repeat; ``physics`` holds keys with fixed
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
     a floor, and ``condition`` of what kind; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
-    are taken; ``symmetry`` its planes.
+    are taken; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference.
     """
 
     dimensions: int
@@ -33,6 +33,8 @@ class Family(NamedTuple):
     kernel: str = ""
     gather_every: int = 1
     symmetry: tuple[str, ...] = ()
+    moves: bool = False
+    framed: bool = False
     physics: dict = {}
 
 
@@ -130,6 +132,11 @@ FAMILIES = {
             **GRAVITY,
         },
     ),
+    "rolled": Family(2, walls=True, fluids=2, viscous=True, moves=True, physics=GRAVITY),
+    "rolled in 3D": Family(3, along="z", walls=True, condition="extrapolated", moves=True, physics=GRAVITY),
+    "framed": Family(
+        2, walls=True, viscous=True, condition="extrapolated", moves=True, framed=True, physics=GRAVITY
+    ),
     "repelled": Family(2, walls=True, condition="repulsive", physics=GRAVITY),
     "pushed back": Family(2, walls=True, viscous=True, condition="penalty", physics=GRAVITY),
     "mirrored": Family(
@@ -157,11 +164,30 @@ def scene(family: Family, seed: int) -> str:
     }
     if family.walls:
         case["walls"] = {"wall": _wall_of(family, sizes)}
+    if family.moves:
+        case["walls"]["wall"]["motion"] = _motion(family, rng, sizes)
+    if family.framed:
+        case["frame"] = {"motion": _motion(family, rng, sizes)}
     return tomli_w.dumps(case)
 
 
 def _wall_of(family: Family, sizes) -> dict:
     return {"shape": _wall(family, sizes), "no_slip": family.viscous, "condition": family.condition}
+
+
+def _motion(family: Family, rng, sizes) -> list[dict]:
+    """A swing about some point, and a way that begins at some time, with a ramp or at once."""
+    swing = {
+        "angle": _drawn(rng, 0.02, 0.2),
+        "center": (rng.random(len(sizes)) * sizes).round(3).tolist(),
+        "frequency": _drawn(rng, 0.5, 3.0),
+        "phase": _drawn(rng, 0.0, 3.0),
+    }
+    if family.dimensions == 3:
+        swing["axis"] = [1.0, *_vector(rng, 2, 1.0)]
+    way = {"velocity": _vector(rng, family.dimensions, 1.0)}
+    start, ramp = _drawn(rng, 0.0, 0.05), _drawn(rng, 0.0, 0.1)
+    return [{"sinusoid": swing}, {"translation": way, "start": start, "ramp": ramp}]
 
 
 def axes(family: Family) -> str:

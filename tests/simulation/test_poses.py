@@ -66,9 +66,9 @@ class Jump:
 
 
 def test_a_jump_of_the_velocity_is_told_before_the_step_that_it_happens_in():
-    poses = Poses([Jump()], np.zeros((1, 4, 2)), 2)
+    poses = Poses([Jump()], np.zeros((1, 4, 2)), None, (0.0, 0.0))
     poses.turn_to(0.9)
     assert poses.advance(0.95, 0.05) == 0.0
     assert poses.advance(1.05, 0.1) == pytest.approx(3.0 / 0.1)
     assert poses.advance(1.06, 0.01) == pytest.approx(0.0, abs=1e-10)
-    assert Poses([], np.zeros((0, 4, 2)), 2).maps is None
+    assert Poses([], np.zeros((0, 4, 2)), None, (0.0, 0.0)).maps is None

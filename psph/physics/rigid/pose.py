@@ -97,6 +97,22 @@ def maps(pose: Pose, dimensions: int) -> np.ndarray:
     return found
 
 
+def inertia(pose: Pose, gravity: Vector, dimensions: int) -> np.ndarray:
+    """What a frame with this ``pose`` adds to gravity (psph.physics.fluid.frame): (2, dim, 1 + dim).
+
+    An affine map of the place and one of the velocity, as those of :func:`maps`; ``gravity`` in m/s².
+    """
+    back, (_, moving, bending) = transposed(pose.rotation), maps(pose, 3)
+    found = np.zeros((2, dimensions, 1 + dimensions))
+    pull = subtract(subtract(turned(back, gravity), gravity), turned(back, tuple(bending[:, 0].tolist())))
+    for d in range(dimensions):
+        found[0, d, 0] = pull[d]
+        for e in range(dimensions):
+            found[0, d, 1 + e] = -dot(back[3 * d : 3 * d + 3], tuple(bending[:, 1 + e].tolist()))
+            found[1, d, 1 + e] = -2.0 * dot(back[3 * d : 3 * d + 3], tuple(moving[:, 1 + e].tolist()))
+    return found
+
+
 def rotation(axis: Vector, angle: float) -> Vector:
     """The matrix that turns by ``angle`` rad about the unit vector ``axis`` (Rodrigues)."""
     x, y, z = axis

@@ -1,0 +1,49 @@
+"""Rules between the motions of a case and its other keys."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from psph.case.keys import AXES
+from psph.case.motion import Turning, misfits
+from psph.physics.walls.conditions import MIRROR
+
+
+def moved(case) -> Iterator[tuple[tuple, Any, str]]:
+    """Motions that are none, or none here: location, value and message."""
+    found = {("walls", name, "motion"): wall.motion for name, wall in case.walls.items()}
+    found |= {("bodies", name, "motion"): body.motion for name, body in case.bodies.items()}
+    for loc, parts in (found | {("frame", "motion"): case.frame.motion}).items():
+        for place, name, says in misfits(parts or (), case.space.dimensions):
+            inner = (place,) if len(parts) > 1 else ()
+            yield (*loc, *inner, *([name] if name else [])), ..., says
+    yield from _walls(case)
+    yield from _frame(case)
+
+
+def _walls(case) -> Iterator[tuple[tuple, Any, str]]:
+    for name, wall in case.walls.items():
+        if wall.motion and wall.condition == MIRROR:
+            yield ("walls", name, "motion"), ..., "a mirror stands still; give the wall another condition"
+        if wall.motion and any(wall.velocity or ()):
+            yield (
+                ("walls", name, "velocity"),
+                wall.velocity,
+                "is of a wall that stands; its motion gives it one; remove one of the two",
+            )
+
+
+def _frame(case) -> Iterator[tuple[tuple, Any, str]]:
+    loc, parts, space = ("frame", "motion"), case.frame.motion, case.space
+    if not parts:
+        return
+    if any(len(one.ways) == 1 and not hasattr(one.part, "pose") for one in parts):
+        yield loc, ..., "is no rigid motion; give one of psph's own"
+    if space.symmetry or any(wall.condition == MIRROR for wall in case.walls.values()):
+        yield loc, ..., "does not work with mirrors, which know of no frame that moves; remove one of the two"
+    turns = [getattr(one, one.way) for one in parts if len(one.ways) == 1]
+    axes = [one.axis for one in turns if isinstance(one, Turning) and one.turns]
+    for axis in axes:
+        along = [name for name, a in zip(AXES, axis or ()) if a]
+        if space.periodic and list(space.periodic) != along:
+            yield loc, ..., "a frame that turns has no periodic axis, but for the one that it turns about"
+            return

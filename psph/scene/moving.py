@@ -1,0 +1,186 @@
+"""Walls and frames that move: how far and how fast, in words, and what they run into."""
+
+from collections.abc import Iterator
+from functools import cache
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.case.keys import AXES
+from psph.case.motion import BUILT_IN
+from psph.physics.motion import is_rigid
+from psph.physics.rigid.pose import PLACE, maps
+
+MOMENTS = 1000
+"""Times of a run at which a motion is looked at."""
+
+LOOKS, LOOKED_AT = 100, 4000
+"""Times at which walls that meet are looked for, and sites of a wall that are looked at."""
+
+QUICK = 0.1
+"""Part of the speed of sound above which a wall is said to be fast: it compresses the fluid by a tenth."""
+
+
+class Sweep(NamedTuple):
+    """What a motion does until the end of a run, as far as can be seen at some moments.
+
+    ``lower``, ``upper`` of the box that it sweeps, the longest ``way`` of a point from where it was, m; the
+    largest ``speed``, m/s, and ``acceleration``, m/s²; the largest ``jump`` of a velocity at the start, m/s.
+    """
+
+    lower: np.ndarray
+    upper: np.ndarray
+    way: float
+    speed: float
+    acceleration: float
+    jump: float
+
+
+def moments(end: float, count: int) -> np.ndarray:
+    """Times from 0 to ``end`` that no period divides: the golden section's multiples."""
+    return np.array([0.0, *(end * ((k * 0.6180339887498949) % 1.0) for k in range(1, count)), end])
+
+
+@cache
+def sweep(motion, lower: tuple[float, ...], upper: tuple[float, ...], end: float) -> Sweep:
+    """Of all points in a box that move by ``motion``."""
+    corners = list(product(*zip(lower, upper)))
+    found = np.stack([maps(motion.pose(t), len(lower)) for t in moments(end, MOMENTS)])
+    points = np.array(corners)
+    x, v, a = (found[:, which, :, :1] + found[:, which, :, 1:] @ points.T for which in range(3))
+    longest = (float(np.sqrt((z**2).sum(axis=1)).max()) for z in (x - points.T, v, a, v[:1]))
+    way, speed, acceleration, jump = longest
+    return Sweep(x.min(axis=(0, 2)), x.max(axis=(0, 2)), way, speed, acceleration, jump)
+
+
+def moving_walls(scene) -> Iterator[tuple[int, str, Sweep]]:
+    """Each wall that moves rigidly: its number among the species, its name and what it does."""
+    half, end = 0.5 * scene.spacing, scene.case.time.end
+    for number, one in enumerate(scene.species_in_motion):
+        if is_rigid(one):
+            low = tuple((scene.census.lowest[number] - half).tolist())
+            high = tuple((scene.census.highest[number] + half).tolist())
+            yield number, scene.names[number], sweep(one, low, high, end)
+
+
+def frame_sweep(scene) -> Sweep | None:
+    """What a moving frame does to the box around the scene."""
+    if scene.frame is None:
+        return None
+    return sweep(scene.frame, tuple(scene.lower), tuple(scene.upper), scene.case.time.end)
+
+
+def largest_speed(scene) -> float:
+    """Of walls that move rigidly, or of the frame, m/s."""
+    speeds = [found.speed for _, _, found in moving_walls(scene)]
+    framed = frame_sweep(scene)
+    return max([*speeds, *([framed.speed] if framed else [])], default=0.0)
+
+
+def motion_lines(scene) -> Iterator[str]:
+    """What moves, in words, for `explain`."""
+    tables = {f"walls.{name}": (found, scene.walls[name]) for _, name, found in moving_walls(scene)}
+    if framed := frame_sweep(scene):
+        tables["frame"] = (framed, scene.case.frame)
+    for key, (found, table) in tables.items():
+        parts = [_part_in_words(part) for part in table.motion]
+        yield f"  motion      {key}: {'; then '.join(parts)}"
+        yield (
+            f"              at most {found.way:.3g} m from its start, {found.speed:.3g} m/s "
+            f"({found.speed / scene.sound_speed:.2g} c), {found.acceleration:.3g} m/s2"
+        )
+        if found.jump > 0.0:
+            yield f"              it begins at once with {found.jump:.3g} m/s"
+
+
+def _part_in_words(part) -> str:
+    if part.way not in BUILT_IN:
+        return part.way
+    told = (
+        f"{name} {_plain(value)}"
+        for name, value in getattr(part, part.way)
+        if value is not None and not (name == "phase" and value == 0.0)
+    )
+    when = [f"from {part.start:g} s"] if part.start else []
+    when += [f"to {part.end:g} s"] if part.end is not None else []
+    when += [f"ramp {part.ramp:g} s"] if part.ramp else []
+    return " ".join([part.way, ", ".join([*told, *when])])
+
+
+def _plain(value) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_plain, value))}]"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def motion_warnings(scene) -> Iterator[str]:
+    """What of the motions of walls may not be meant so."""
+    for number, name, found in moving_walls(scene):
+        key = f"walls.{name}.motion"
+        share = found.speed / scene.sound_speed
+        if share > QUICK:
+            yield (
+                f"{key}: {found.speed:.3g} m/s is {share:.2g} of the speed of sound, which compresses the "
+                f"fluid before it; give physics.sound_speed = {10.0 * found.speed:.3g} or more"
+            )
+        yield from _leaving(scene, key, found)
+        if met := _first_met(scene, number):
+            time, other, place = met
+            yield (
+                f"{key}: at {time:.3g} s it is in walls.{other}, near "
+                f"({', '.join(f'{x:.3g}' for x in place)}): they run through each other"
+            )
+
+
+def _leaving(scene, key: str, found: Sweep) -> Iterator[str]:
+    """Where a wall leaves the domain that the case gives, along an axis that does not repeat."""
+    for end, given, reached in (
+        ("lower", scene.case.space.lower, found.lower),
+        ("upper", scene.case.space.upper, found.upper),
+    ):
+        for d in (d for d, period in enumerate(scene.periods) if given and period is None):
+            beyond = reached[d] - given[d] if end == "upper" else given[d] - reached[d]
+            if beyond > 1e-6 * scene.spacing:
+                yield (
+                    f"{key}: it comes to {AXES[d]} = {reached[d]:.3g} m, beyond space.{end}; this works, but "
+                    "lists take longer than with a larger domain"
+                )
+
+
+def _first_met(scene, number: int) -> tuple[float, str, np.ndarray] | None:
+    """The first time looked at when a wall is within another one, the name of that, and where."""
+    sites = _sites(scene, number)
+    motions, dimensions = scene.species_in_motion, scene.dimensions
+    others = [n for n in range(scene.layout.fluids, len(motions)) if motions[n] != motions[number]]
+    for time in np.sort(moments(scene.case.time.end, LOOKS)):
+        places = _moved(motions[number], sites, time, dimensions)
+        for rest in {id(motions[n]): motions[n] for n in others}.values():
+            back = _taken_back(rest, places, time, dimensions) if is_rigid(rest) else places
+            grid = [scene.folded(d, x) for d, x in enumerate(back.T)]
+            held = scene.layout.held(grid, grid[0].shape)
+            for n in (n for n in others if motions[n] is rest or motions[n] == rest):
+                if (within := held == n).any():
+                    return float(time), scene.names[n], places[np.argmax(within)]
+    return None
+
+
+def _sites(scene, number: int) -> np.ndarray:
+    """Places of some of a wall's particles at the start (n, dim)."""
+    found = []
+    for first, last in scene.lattice.chunks():
+        held = scene.layout.materials(first, last) == number
+        grid = scene.lattice.grid(first, last)
+        found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
+    sites = np.concatenate(found)
+    return sites[:: max(1, len(sites) // LOOKED_AT)]
+
+
+def _moved(motion, points: np.ndarray, time: float, dimensions: int) -> np.ndarray:
+    place = maps(motion.pose(time), dimensions)[PLACE]
+    return place[:, 0] + points @ place[:, 1:].T
+
+
+def _taken_back(motion, points: np.ndarray, time: float, dimensions: int) -> np.ndarray:
+    place = maps(motion.pose(time), dimensions)[PLACE]
+    return (points - place[:, 0]) @ place[:, 1:]

@@ -1,0 +1,248 @@
+"""What moves as it is told: where its particles stand, what they feel, and what they give.
+
+Each part is there twice, for motions by a formula (psph.physics.motion) and for poses
+(psph.simulation.poses), and in the compiled loop only where the scene has such.
+"""
+
+from numba.core import types
+
+from psph.composition.terms import body
+from psph.engine.jit import call_by_number, overload, register_jitable, tuple_of, unrolled
+from psph.physics.motion import FIXED, PRESCRIBED, RIGID
+from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
+from psph.vectors import add, at, dot, nearest_to, put, scale, subtract, zero_like
+
+place = call_by_number("place")
+"""(motions, number, anchor, time) → x, m."""
+velocity = call_by_number("velocity")
+"""(motions, number, anchor, time) → v, m/s."""
+
+
+@register_jitable
+def carry(rules, group, k, time, columns):
+    """Put particle ``k`` of a wall where the motion of its ``group`` has it at ``time``, if it moves."""
+    number = rules.motion_of[group]
+    _carry_by_formula(rules.motions, number, k, time, rules.periods, columns)
+    _carry_by_pose(rules.poses, rules.pose_of, number, group, k, rules.periods, columns)
+
+
+@register_jitable
+def hurry(rules, group, k, time, dt, columns):
+    """|v|² and |a|² of particle ``k`` by its prescribed motion, m²/s², m²/s⁴; zeros without one."""
+    return _hurry(rules.motions, rules.poses, rules, group, k, time, dt, columns)
+
+
+@register_jitable
+def feel(rules, group, k, time, dt, columns):
+    """Store the force per mass of a moving frame on particle ``k`` less its prescribed acceleration, m/s²."""
+    _feel(columns.apparent, rules, group, k, time, dt, columns)
+
+
+@register_jitable
+def give(rules, i, group, k, dt, columns):
+    """Book what particle ``k``, seen as ``i``, gives in a step of ``dt`` s, J.
+
+    A wall that moves pushes back with −m_i a_i, a_i by its neighbours alone: with all of them, for then the
+    work in its own compression is in the sum too.  To fluid the force of a moving frame gives it.
+    """
+    _give(columns.work, rules, i, group, k, dt, columns)
+
+
+@register_jitable
+def affine(maps, row, which, a):
+    """The vector ``a`` by one of the affine maps of a row (psph.physics.rigid.pose.maps)."""
+    return mapped(maps[row], which, a)
+
+
+def mapped(maps, which, a):
+    """The vector ``a`` by one of some affine maps."""
+    return tuple(m[0] + dot(tuple(m[1:]), a) for m in maps[which])
+
+
+@overload(mapped)
+def _typed_mapped(maps, which, a):
+    n = len(a)
+    sums = (
+        " + ".join([f"maps[which, {d}, 0]", *(f"maps[which, {d}, {1 + e}] * a[{e}]" for e in range(n))])
+        for d in range(n)
+    )
+    return unrolled("maps, which, a", f"return {tuple_of(sums)}")
+
+
+def _carry_by_formula(motions, number, k, time, periods, columns):
+    if motions:
+        _carry_formula(motions, number, k, time, periods, columns)
+
+
+def _carry_formula(motions, number, k, time, periods, columns):
+    if number >= PRESCRIBED:
+        anchor = at(columns.anchor, k)
+        x = place(motions, number - PRESCRIBED, anchor, time)
+        v = velocity(motions, number - PRESCRIBED, anchor, time)
+        settle(columns, k, x, v, periods)
+
+
+@overload(_carry_by_formula)
+def _typed_carry_by_formula(motions, number, k, time, periods, columns):
+    return _carry_formula if len(motions) else lambda motions, number, k, time, periods, columns: None
+
+
+def _carry_by_pose(poses, pose_of, number, group, k, periods, columns):
+    if poses is not None:
+        _carry_pose(poses, pose_of, number, group, k, periods, columns)
+
+
+def _carry_pose(poses, pose_of, number, group, k, periods, columns):
+    if number == RIGID:
+        anchor, row = at(columns.anchor, k), pose_of[group]
+        x, v = affine(poses, row, PLACE, anchor), affine(poses, row, VELOCITY, anchor)
+        settle(columns, k, x, v, periods)
+
+
+@overload(_carry_by_pose)
+def _typed_carry_by_pose(poses, pose_of, number, group, k, periods, columns):
+    if isinstance(poses, types.NoneType):
+        return lambda poses, pose_of, number, group, k, periods, columns: None
+    return _carry_pose
+
+
+@register_jitable
+def settle(columns, k, x, v, periods):
+    """Put particle ``k`` at ``x``, or at the image of it that is nearest to where it is, with ``v``."""
+    put(columns.position, k, nearest_to(x, at(columns.position, k), periods))
+    put(columns.velocity, k, v)
+    put(columns.predicted_velocity, k, v)
+
+
+@register_jitable
+def prescribed_acceleration(rules, group, k, time, dt, columns):
+    """a of particle ``k`` by its prescribed motion, m/s²; zeros without one."""
+    number = rules.motion_of[group]
+    by_formula = _acceleration_by_formula(rules.motions, number, k, time, dt, columns)
+    return add(by_formula, _acceleration_by_pose(rules.poses, rules.pose_of, number, group, k, columns))
+
+
+def _acceleration_by_formula(motions, number, k, time, dt, columns):
+    if not motions:
+        return zero_like(columns.position)
+    return _acceleration_formula(motions, number, k, time, dt, columns)
+
+
+def _acceleration_formula(motions, number, k, time, dt, columns):
+    """By the change of the velocity in the step."""
+    anchor = at(columns.anchor, k)
+    if number < PRESCRIBED:
+        return zero_like(anchor)
+    v = velocity(motions, number - PRESCRIBED, anchor, time)
+    before = velocity(motions, number - PRESCRIBED, anchor, time - dt)
+    return scale(subtract(v, before), 1.0 / dt if dt > 0.0 else 0.0)
+
+
+@overload(_acceleration_by_formula)
+def _typed_acceleration_by_formula(motions, number, k, time, dt, columns):
+    if len(motions):
+        return _acceleration_formula
+    return lambda motions, number, k, time, dt, columns: zero_like(columns.position)
+
+
+def _acceleration_by_pose(poses, pose_of, number, group, k, columns):
+    if poses is None:
+        return zero_like(columns.position)
+    return _acceleration_pose(poses, pose_of, number, group, k, columns)
+
+
+def _acceleration_pose(poses, pose_of, number, group, k, columns):
+    anchor = at(columns.anchor, k)
+    return affine(poses, pose_of[group], ACCELERATION, anchor) if number == RIGID else zero_like(anchor)
+
+
+@overload(_acceleration_by_pose)
+def _typed_acceleration_by_pose(poses, pose_of, number, group, k, columns):
+    if isinstance(poses, types.NoneType):
+        return lambda poses, pose_of, number, group, k, columns: zero_like(columns.position)
+    return _acceleration_pose
+
+
+def _hurry(motions, poses, rules, group, k, time, dt, columns):
+    if not motions and poses is None:
+        return 0.0, 0.0
+    return _hurry_told(motions, poses, rules, group, k, time, dt, columns)
+
+
+def _hurry_told(motions, poses, rules, group, k, time, dt, columns):
+    if rules.motion_of[group] <= FIXED:
+        return 0.0, 0.0
+    v, a = at(columns.velocity, k), prescribed_acceleration(rules, group, k, time, dt, columns)
+    return dot(v, v), dot(a, a)
+
+
+@overload(_hurry)
+def _typed_hurry(motions, poses, rules, group, k, time, dt, columns):
+    if not len(motions) and isinstance(poses, types.NoneType):
+        return lambda motions, poses, rules, group, k, time, dt, columns: (0.0, 0.0)
+    return _hurry_told
+
+
+def _feel(apparent, rules, group, k, time, dt, columns):
+    if apparent is not None:
+        _feel_it(apparent, rules, group, k, time, dt, columns)
+
+
+def _feel_it(apparent, rules, group, k, time, dt, columns):
+    a = prescribed_acceleration(rules, group, k, time, dt, columns)
+    x, v = at(columns.position, k), at(columns.predicted_velocity, k)
+    put(apparent, k, subtract(inertial(rules.frame, x, v), a))
+
+
+@overload(_feel)
+def _typed_feel(apparent, rules, group, k, time, dt, columns):
+    if isinstance(apparent, types.NoneType):
+        return lambda apparent, rules, group, k, time, dt, columns: None
+    return _feel_it
+
+
+def inertial(frame, x, v):
+    """What a moving frame adds to gravity at ``x`` for a velocity ``v``, m/s²; zeros without one."""
+    return zero_like(x) if frame is None else _inertial(frame, x, v)
+
+
+def _inertial(frame, x, v):
+    return add(mapped(frame, 0, x), mapped(frame, 1, v))
+
+
+@overload(inertial)
+def _typed_inertial(frame, x, v):
+    return (lambda frame, x, v: zero_like(x)) if isinstance(frame, types.NoneType) else _inertial
+
+
+def _give(work, rules, i, group, k, dt, columns):
+    if work is not None:
+        _give_it(work, rules, i, group, k, dt, columns)
+
+
+def _give_it(work, rules, i, group, k, dt, columns):
+    v = at(columns.velocity, k)
+    if group < rules.free:
+        work[k] += dt * i.mass * dot(felt(columns.apparent, v, k), v)
+    elif rules.motion_of[group] > FIXED:
+        push = subtract(at(columns.acceleration, k), body(rules.effects, i))
+        work[k] -= dt * i.mass * dot(push, v)
+
+
+@overload(_give)
+def _typed_give(work, rules, i, group, k, dt, columns):
+    if isinstance(work, types.NoneType):
+        return lambda work, rules, i, group, k, dt, columns: None
+    return _give_it
+
+
+def felt(apparent, v, k):
+    """What is stored of it for a particle, m/s²; zeros where nothing is."""
+    return zero_like(v) if apparent is None else at(apparent, k)
+
+
+@overload(felt)
+def _typed_felt(apparent, v, k):
+    if isinstance(apparent, types.NoneType):
+        return lambda apparent, v, k: zero_like(v)
+    return lambda apparent, v, k: at(apparent, k)
