@@ -28,7 +28,9 @@ APPARENT = Field(
 
 WORK = Field("work", "J", "energy that a moving wall, or the force of an accelerated frame, has given")
 
-OF_MOTION = (ANCHOR, APPARENT, WORK)
+PRESSED = Field("pressed", "m/s2", "acceleration by the fluid around alone, of walls that move", VECTOR)
+
+OF_MOTION = (ANCHOR, APPARENT, PRESSED, WORK)
 """What particles carry only where something moves as it is told."""
 
 

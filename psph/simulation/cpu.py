@@ -17,6 +17,7 @@ from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.particles.wetting import mark_wet, rest_dry
+from psph.physics.motion import PRESSED
 from psph.simulation.integrator import (
     kick,
     kick_drift_predict,
@@ -226,6 +227,7 @@ class Engine:
             return
         s, plan, records = self.store, self.plan, self.records[one.place]
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
+        pressed = s[PRESSED.name] if one.gives_rates and PRESSED.name in s else None
         in_threads(
             self._sums[one.place],
             first,
@@ -234,7 +236,7 @@ class Engine:
             Metric(plan.kernel, plan.space, self.softening),
             s.view(),
             Around(records.view(), records.table, s.low, self._lists, self._mirrors),
-            Sums(*rates, tuple(name and s[name] for name in one.stores)),
+            Sums(*rates, pressed, tuple(name and s[name] for name in one.stores)),
         )
 
     def _columns(self) -> Columns:

@@ -10,6 +10,7 @@ from psph.physics.motion import (
     FIXED,
     FREE,
     PRESCRIBED,
+    PRESSED,
     RIGID,
     WORK,
     Fixed,
@@ -46,7 +47,7 @@ def carried_fields(movement: Movement, frame) -> tuple[str, ...]:
     moves = bool(movement.motions or movement.rigid)
     if not moves and frame is None:
         return ()
-    return (*([ANCHOR.name] if moves else ()), WORK.name, APPARENT.name)
+    return (*((ANCHOR.name, PRESSED.name) if moves else ()), WORK.name, APPARENT.name)
 
 
 def _distinct(species, one_of) -> tuple:

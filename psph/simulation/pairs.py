@@ -3,15 +3,16 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba.core import types
 
 from psph.composition import terms
 from psph.composition.mirrors import at_look, ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
 from psph.composition.terms import added, pushed, store
-from psph.engine.jit import compiled
+from psph.engine.jit import compiled, overload
 from psph.engine.simd import spread, total, width_of
-from psph.vectors import add, zero_like
+from psph.vectors import add, scale, subtract, zero_like
 
 
 class Summed(NamedTuple):
@@ -44,11 +45,29 @@ class Around(NamedTuple):
 
 class Sums(NamedTuple):
     """Where sums go: the array, or None, that each reduction fills; ``acceleration`` and
-    ``density_rate`` are None in a pass that gathers sums alone."""
+    ``density_rate`` are None in a pass that gathers sums alone; ``pressed`` takes the part of the
+    acceleration that is by fluid neighbours, or is None where nobody asks for it."""
 
     acceleration: Any
     density_rate: Any
+    pressed: Any
     written: tuple
+
+
+def gained(pressed, by_fluid, before, now, j):
+    """What fluid neighbours j have added from ``before`` to ``now``; nothing where nobody asks for it."""
+    return by_fluid if pressed is None else _gained(pressed, by_fluid, before, now, j)
+
+
+def _gained(pressed, by_fluid, before, now, j):
+    return add(by_fluid, scale(subtract(now, before), j.is_fluid))
+
+
+@overload(gained)
+def _typed_gained(pressed, by_fluid, before, now, j):
+    if isinstance(pressed, types.NoneType):
+        return lambda pressed, by_fluid, before, now, j: by_fluid
+    return _gained
 
 
 @compiled
@@ -67,6 +86,7 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
             continue
         rate = spread(0.0, records)
         a = spread(zero_like(i.position), records)
+        by_fluid = spread(zero_like(i.position), records)
         totals = spread(terms.start(reductions, i), records)
         for look in range(looks(mirrors, i)):
             begin = lists.begin[row]
@@ -77,13 +97,16 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
                 j = image(reflection, i, fetch(around.shown, records, lists.lists, n))
                 x_ij = difference(metric.space, i, j, records, k)
                 pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
+                before = a
                 rate = rate + terms.density_rate(effects, i, j, pair)
                 a = pushed(a, pair.x_ij, terms.radial(effects, i, j, pair))
                 a = pushed(a, pair.u_ij, terms.shear(effects, i, j, pair))
                 a = added(a, terms.push(effects, i, j, pair))
+                by_fluid = gained(sums.pressed, by_fluid, before, a, j)
                 totals = terms.gather_each(reductions, totals, i, j, pair)
         folded = terms.fold_each(reductions, totals)
         force = add(total(a), terms.finish_acceleration(reductions, folded, i))
         store(sums.acceleration, k, add(force, terms.body(effects, i)))
         store(sums.density_rate, k, total(rate))
+        store(sums.pressed, k, total(by_fluid))
         terms.finish_value(reductions, folded, i, metric.kernel, k, sums.written)

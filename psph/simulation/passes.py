@@ -1,5 +1,6 @@
 """Passes over the neighbours: which sums are taken in which order, and what travels between them."""
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from psph.fields import PRESSURE, SPECIFIC_VOLUME
@@ -47,14 +48,17 @@ class Pass(NamedTuple):
         return steps % self.every == 0
 
 
-def make_passes(called, stored: tuple[str, ...], seen_as, gather_every: int = 1) -> tuple[Pass, ...]:
+def make_passes(
+    called, stored: tuple[str, ...], seen_as, gather_every: int = 1, told: Iterable[str] = ()
+) -> tuple[Pass, ...]:
     """The passes of the effects that were called for, in order; the last gives the rates.
 
     An effect whose sum others read in the same step comes in a pass before theirs; one that is
     ``lagged`` is content with the sum of the step before, and needs none of its own.  What is ``slow``
     also serves for some steps more: if ``gather_every`` is above 1, it comes in a pass that runs as
     seldom.  ``stored`` are
-    the names of all arrays, ``seen_as`` tells the array that formulas see under a name.
+    the names of all arrays, ``seen_as`` tells the array that formulas see under a name; ``told`` are what the
+    last pass itself reads of a neighbour, beside its effects.
     """
     early = [(call, level, _every(call)) for call, level in _levels(called)]
     if gather_every > 1:
@@ -74,13 +78,13 @@ def make_passes(called, stored: tuple[str, ...], seen_as, gather_every: int = 1)
         and (id(call) not in done or hasattr(call.effect, "finish_acceleration"))
     ]
     effects = tuple(call.effect for call in called)
-    return (*passes, _pass(len(passes), effects, reductions, called, before, stored, seen_as, 1))
+    return (*passes, _pass(len(passes), effects, reductions, called, before, stored, seen_as, 1, told))
 
 
-def _pass(place, effects, reductions, called, before, stored, seen_as, every) -> Pass:
+def _pass(place, effects, reductions, called, before, stored, seen_as, every, told=()) -> Pass:
     # The geometry of a pair needs these, whatever the effects; the velocity also tells how far
     # neighbours drift apart.
-    names = {"position", "velocity", "mass"}.union(*(call.reads.neighbour for call in called))
+    names = {"position", "velocity", "mass", *told}.union(*(call.reads.neighbour for call in called))
     names = {seen_as(name) for name in names}
     neighbour = tuple(name for name in stored if name in names)
     return Pass(

@@ -16,7 +16,7 @@ from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, OF_MOTION, WORK, Free
+from psph.physics.motion import APPARENT, OF_MOTION, PRESSED, WORK, Free
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
@@ -39,6 +39,9 @@ ALWAYS_READ = (
     "smoothing_length",
 )
 """What the loops themselves read of a particle, whatever the effects."""
+
+IS_FLUID = "is_fluid"
+"""What tells a neighbour that is fluid from one that is not."""
 
 OF_SCENE = ("sound_speed", "smoothing_length", "kernel", "spacing", "dimensions")
 
@@ -158,11 +161,7 @@ class Plan:
     @cached_property
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
-        return tuple(call.effect for call in self._carrying)
-
-    @property
-    def _carrying(self) -> list[Called]:
-        return [c for c in self.called if _carries(c) or self.books_work and hasattr(c.effect, "body")]
+        return tuple(call.effect for call in self.called if _carries(call))
 
     @property
     def books_work(self) -> bool:
@@ -172,7 +171,7 @@ class Plan:
     @cached_property
     def uncarried(self) -> dict[str, None]:
         """What neither the equation of state nor the carriers read of a particle."""
-        read = set(OF_STATE).union(*(call.reads.own for call in self._carrying))
+        read = set(OF_STATE).union(*(call.reads.own for call in self.called if _carries(call)))
         read |= {"mass"} if self.books_work else set()
         return dict.fromkeys(field.name for field in self.seen if field.name not in read)
 
@@ -216,15 +215,16 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     laws = _laws(scene, catalogue.states)
+    told = carried_fields(movement, scene.frame)
     own = set(ALWAYS_READ).union(*(c.reads.own | c.reads.neighbour for c in called))
     told_by = {e.told_by for e in marking}
-    shared, varying = _split(scene, own | told_by)
+    pressing = {IS_FLUID} if PRESSED.name in told else set()
+    shared, varying = _split(scene, own | told_by | pressing)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
-    told = carried_fields(movement, scene.frame)
     refuse_unwritten(scene, called, (*computed, *told))
     told = {name for name in told if name in own or name != APPARENT.name}
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
-    passes = make_passes(called, stored, lambda name: _array_of(name, stored), case.time.gather_every)
+    passes = make_passes(called, stored, lambda n: _array_of(n, stored), case.time.gather_every, pressing)
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in passes for name in one.neighbour_fields}
@@ -251,7 +251,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         smoothing_length=scene.smoothing_length,
         constants=shared | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
         fields=fields,
-        seen=tuple(field for name, field in fields.items() if name in own),
+        seen=tuple(field for name, field in fields.items() if name in own | pressing),
         arrays=stored,
         passes=passes,
         refreshed=tuple(n for n in stored if n in fresh and n in computed),
