@@ -89,7 +89,7 @@ class Acceleration(Parameters):
         return Accelerated((*in_space(self.acceleration), 0.0))
 
 
-CENTER = key("the point that it turns about, where the parts before have left the wall", None, unit="m")
+CENTER = key("the point that it turns about, fixed in space but for parts that come after", None, unit="m")
 AXIS = key("the axis that it turns about, by the right-hand rule (3D)", None, otherwise="z in 2D")
 
 

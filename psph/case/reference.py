@@ -24,7 +24,7 @@ number per dimension. Numbers other than 0 have sizes between 1e-30 and 1e30.
 No key holds a formula or a command, but `use` names Python files, and `run`, `resume`, `check`, `explain`
 and `study` execute them with all your rights: **read the files of a stranger before you even check their
 case**. A case without `use` is data, and nothing in it is executed. The only other files that a case can
-name are those of `[experiments]`, which `psph study` reads as numbers. All of them must be in the case's
+name, those of `[experiments]` and of motions, are read as numbers. All of them must be in the case's
 folder or below, after links are resolved; `study --files DIR` allows another folder for the experiments.
 
 A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a
@@ -63,6 +63,7 @@ def _document() -> Iterator[str]:
         yield from _section(f"`{heading}`", _sentence(meaning), _rows(whole, heading, table))
         yield from _choices(whole, heading, table)
     yield from _shapes(whole)
+    yield from _motions(whole)
 
 
 def _table(whole: Node, name: str, node: Node) -> tuple[str, Node | None]:
@@ -96,6 +97,23 @@ def _shapes(whole: Node) -> Iterator[str]:
         for branch in alternatives(whole, node):
             if "properties" in branch:
                 yield from _section(f"`{name}`", "", _rows(whole, name, branch), level=3)
+
+
+def _motions(whole: Node) -> Iterator[str]:
+    """The keys of a part of a motion, those of its ways as ``way.key``; one line for what several share."""
+    rows: dict[tuple[str, str], tuple[list[str], Node, bool]] = {}
+    for name, node in whole["$defs"]["Motion"]["properties"].items():
+        inner = next((b for b in alternatives(whole, node) if "properties" in b), None)
+        for key, below in inner["properties"].items() if inner else [(name, node)]:
+            named = f"{name}.{key}" if inner else key
+            required = inner is not None and key in inner.get("required", ())
+            rows.setdefault((key, below["description"]), ([], below, required))[0].append(named)
+    lines = [_row(whole, "motion", "`, `".join(names), *rest) for names, *rest in rows.values()]
+    meaning = (
+        "A motion is a part, or a list of parts: a table with one way to move, and when it acts "
+        "([motion.md](motion.md))"
+    )
+    yield from _section("Motions", _sentence(meaning), lines)
 
 
 def _section(
@@ -136,6 +154,8 @@ def _kind(whole: Node, node: Node) -> str:
         return ", ".join(f'`"{choice}"`' for choice in node["enum"])
     if "const" in node:
         return f'`"{node["const"]}"`'
+    if node.get("title") == "Motion":
+        return "[motion](#motions)"
     if node["type"] == "array":
         entries = [node["items"]] if "items" in node else node["prefixItems"]
         kinds = dict.fromkeys(_plural(_type(whole, entry)) for entry in entries)

@@ -28,8 +28,10 @@ APPARENT = Field(
 
 WORK = Field("work", "J", "energy that a moving wall, or the force of an accelerated frame, has given")
 
-OF_MOTION = (ANCHOR, APPARENT, WORK)
-"""What particles carry only where something moves as it is told."""
+LOAD = Field("load", "m/s2", "acceleration by the fluid alone, of particles whose load is asked for", VECTOR)
+
+OF_MOTION = (ANCHOR, APPARENT, LOAD, WORK)
+"""What particles carry only where something moves as it is told, or its load is asked for."""
 
 
 class Free(NamedTuple):

@@ -41,7 +41,10 @@ class Guards:
         self.scene, self.simulation, self.record = scene, simulation, record
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
         moving = [one for one in scene.species if is_prescribed(one.motion)]
-        self._books = not simulation.plan.regions and all(one.bearing for one in moving)
+        whole = any(hasattr(effect, "finish_acceleration") for effect in simulation.plan.effects)
+        # What walls give is booked by pairs, of walls that bear a pressure.
+        unbooked = moving and (whole or not all(one.bearing for one in moving))
+        self._books = not simulation.plan.regions and not unbooked
         self.solids = [(Solid(scene), None)]
         self.solids += [(Solid(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
         self.seen: Counter[str] = Counter()

@@ -6,7 +6,6 @@ Each part is there twice, for motions by a formula (psph.physics.motion) and for
 
 from numba.core import types
 
-from psph.composition.terms import body
 from psph.engine.jit import call_by_number, overload, register_jitable, tuple_of, unrolled
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
@@ -42,8 +41,8 @@ def feel(rules, group, k, time, dt, columns):
 def give(rules, i, group, k, dt, columns):
     """Book what particle ``k``, seen as ``i``, gives in a step of ``dt`` s, J.
 
-    A wall that moves pushes back with −m_i a_i, a_i by its neighbours alone: with all of them, for then the
-    work in its own compression is in the sum too.  To fluid the force of a moving frame gives it.
+    A wall that moves pushes the fluid with −m_i a_i, a_i by the fluid around it; to fluid the force of a
+    moving frame gives.
     """
     _give(columns.work, rules, i, group, k, dt, columns)
 
@@ -223,10 +222,9 @@ def _give(work, rules, i, group, k, dt, columns):
 def _give_it(work, rules, i, group, k, dt, columns):
     v = at(columns.velocity, k)
     if group < rules.free:
-        work[k] += dt * i.mass * dot(felt(columns.apparent, v, k), v)
+        work[k] += dt * i.mass * dot(stored(columns.apparent, v, k), v)
     elif rules.motion_of[group] > FIXED:
-        push = subtract(at(columns.acceleration, k), body(rules.effects, i))
-        work[k] -= dt * i.mass * dot(push, v)
+        work[k] -= dt * i.mass * dot(stored(columns.load, v, k), v)
 
 
 @overload(_give)
@@ -236,13 +234,13 @@ def _typed_give(work, rules, i, group, k, dt, columns):
     return _give_it
 
 
-def felt(apparent, v, k):
-    """What is stored of it for a particle, m/s²; zeros where nothing is."""
-    return zero_like(v) if apparent is None else at(apparent, k)
+def stored(arrays, v, k):
+    """The vector of particle ``k``, as many numbers as ``v``; zeros where there are no arrays."""
+    return zero_like(v) if arrays is None else at(arrays, k)
 
 
-@overload(felt)
-def _typed_felt(apparent, v, k):
-    if isinstance(apparent, types.NoneType):
-        return lambda apparent, v, k: zero_like(v)
-    return lambda apparent, v, k: at(apparent, k)
+@overload(stored)
+def _typed_stored(arrays, v, k):
+    if isinstance(arrays, types.NoneType):
+        return lambda arrays, v, k: zero_like(v)
+    return lambda arrays, v, k: at(arrays, k)

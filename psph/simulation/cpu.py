@@ -18,6 +18,7 @@ from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.particles.wetting import mark_wet, rest_dry
+from psph.physics.motion import LOAD
 from psph.simulation.floating import Floating
 from psph.simulation.integrator import (
     kick,
@@ -29,7 +30,7 @@ from psph.simulation.integrator import (
 )
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
-from psph.simulation.plan import LOAD, Plan
+from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.rules import Columns, Rules
 

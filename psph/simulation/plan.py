@@ -12,20 +12,10 @@ from psph.composition.count import flops_per_pair
 from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
-from psph.fields import (
-    IDENTITY,
-    OF_EVERY_SCENE,
-    OF_MATERIAL,
-    OF_SITE,
-    VECTOR,
-    Field,
-    by_name,
-    companions,
-    view_of,
-)
+from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, OF_MOTION, WORK, Free
+from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, Free, is_prescribed
 from psph.physics.rigid.contact import contact_of
 from psph.scene.bodies import body_step
 from psph.simulation.calling import called_for, in_scene, why_dropped
@@ -52,8 +42,6 @@ ALWAYS_READ = (
     "smoothing_length",
 )
 """What the loops themselves read of a particle, whatever the effects."""
-
-LOAD = Field("load", "m/s2", "acceleration by the fluid alone, of particles whose load is asked for", VECTOR)
 
 LOADED_READ = ("is_fluid",)
 """What a pass of loads reads of a neighbour, beside what its effects read."""
@@ -192,11 +180,7 @@ class Plan:
     @cached_property
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
-        return tuple(call.effect for call in self._carrying)
-
-    @property
-    def _carrying(self) -> list[Called]:
-        return [c for c in self.called if _carries(c) or self.books_work and hasattr(c.effect, "body")]
+        return tuple(call.effect for call in self.called if _carries(call))
 
     @property
     def books_work(self) -> bool:
@@ -206,7 +190,7 @@ class Plan:
     @cached_property
     def uncarried(self) -> dict[str, None]:
         """What neither the equation of state nor the carriers read of a particle."""
-        read = set(OF_STATE).union(*(call.reads.own for call in self._carrying))
+        read = set(OF_STATE).union(*(call.reads.own for call in self.called if _carries(call)))
         read |= {"mass"} if self.books_work else set()
         return dict.fromkeys(field.name for field in self.seen if field.name not in read)
 
@@ -248,18 +232,18 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
     movement = movement_of(scene.species)
-    fields = by_name(catalogue.fields.values(), written, further, (*OF_MOTION, LOAD))
+    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION)
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     own_laws = laws(scene, catalogue.states)
-    loaded = np.array([one.loaded for one in scene.species], bool)
+    loaded = np.array([one.loaded or is_prescribed(one.motion) for one in scene.species], bool)
     contacts = (contact_of(scene),) if scene.case.bodies else ()
     for_loads = (*LOADED_READ * bool(loaded.any()), *CONTACTS_READ * bool(contacts))
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
+    told = carried_fields(movement, scene.frame)
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
-    told = carried_fields(movement, scene.frame)
     refuse_unwritten(scene, called, (*computed, *told))
     told = {name for name in told if name in own or name != APPARENT.name}
     told |= {LOAD.name} if loaded.any() else set()

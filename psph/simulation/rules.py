@@ -51,6 +51,7 @@ class Columns(NamedTuple):
     specific_volume: Any
     pressure: Any
     apparent: Any = None
+    load: Any = None
     work: Any = None
 
 

@@ -1,0 +1,98 @@
+"""The guards beside walls that move: their work is booked, and what is behind them is seen."""
+
+import numpy as np
+import pytest
+from drafts import draft
+from guests.test_guests import begin
+from long import LONG
+
+from psph.case import load
+from psph.run.guards import Guards
+from psph.scene import Scene
+
+POOL = """
+space = { dimensions = 2, spacing = 0.05 }
+time.end = 2.0
+parallel.axis = "x"
+physics.gravity = [0.0, -9.81]
+physics.sound_speed = 30.0
+fluids.water = { shape.box = { lower = [0.3, 0.0], upper = [2.0, 0.5] }, pressure = "hydrostatic" }
+[walls.pool]
+shape.difference.from.box = { lower = [-0.15, -0.15], upper = [2.15, 1.5] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [2.0, 1.5] } }]
+[walls.paddle]
+shape.box = { lower = [0.1, 0.0], upper = [0.3, 1.4] }
+motion = { sinusoid = { amplitude = [0.1, 0.0], period = 0.5, phase = -1.5708 } }
+"""
+
+
+def watched(tmp_path, text=POOL, *sets):
+    """A simulation and its guards, which say nothing."""
+    draft(tmp_path, text, *sets)
+    simulation = begin(tmp_path / "case.toml")
+    scene = Scene(load(tmp_path / "case.toml", sets))
+    return simulation, Guards(scene, simulation, None, tmp_path, lambda line: None)
+
+
+@pytest.mark.parametrize("scheme", ["sph", pytest.param("stable", marks=LONG)])
+def test_a_paddle_may_give_energy_and_the_balance_is_kept(scheme, tmp_path):
+    """Without the booking the gain would be all that the paddle gives: the control."""
+    simulation, guards = watched(tmp_path, f'scheme = "{scheme}"\n{POOL}')
+    gains, given = [], []
+    while simulation.time < 0.5:
+        simulation.step()
+        if simulation.steps % 20 == 0:
+            gains.append(guards._gain())
+            given.append(simulation.store.shown("work").sum() / guards._unit)
+    assert max(given) > 0.05
+    assert max(gains) < 0.02 * max(given)
+
+
+def test_the_work_of_a_wall_is_force_times_way(tmp_path):
+    """Water between two lids that a piston presses together: E grows by what the piston gives."""
+    simulation, guards = watched(
+        tmp_path,
+        """
+scheme = "sph"
+space = { dimensions = 2, spacing = 0.05, periodic = ["y"], lower = [-0.5, 0.0], upper = [1.5, 0.5] }
+time.end = 1.0
+parallel.axis = "x"
+physics.sound_speed = 30.0
+fluids.water.shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
+walls.end.shape.box = { lower = [1.0, 0.0], upper = [1.2, 0.5] }
+[walls.piston]
+shape.box = { lower = [-0.2, 0.0], upper = [0.0, 0.5] }
+motion = { translation = [0.02, 0.0], ramp = 0.2 }
+""",
+    )
+    while simulation.time < 0.9:
+        simulation.step()
+    squeezed = 0.02 * (simulation.time - 0.1)
+    work = simulation.store.shown("work").sum()
+    assert work == pytest.approx(0.5 * 1000.0 * 30.0**2 * 0.5 * squeezed**2, rel=0.1)  # ½ K V (ΔV/V)²
+    assert abs(guards._gain()) * guards._unit < 0.01 * work
+
+
+def test_what_is_behind_a_wall_that_has_moved_is_seen(tmp_path):
+    tank = POOL.partition("[walls.paddle]")[0]
+    simulation, guards = watched(tmp_path, tank + "motion = { translation = [40.0, 0.0] }", "time.end=0.1")
+    assert not guards._hidden().any()
+    for _ in range(3):
+        simulation.step()
+    way = 40.0 * simulation.time
+    assert way > 0.05
+    store = simulation.store
+    fluid = np.flatnonzero(store.shown("kind") == 0)[0]
+    for x, deep in ((-0.1 + way, True), (0.1 + way, False)):
+        store["position"][0][store.low + fluid], store["position"][1][store.low + fluid] = x, 0.7
+        assert guards._hidden()[fluid] == deep
+    # The control: where the wall stood at the start this would be in front of it.
+    assert not guards.solids[0][0].deep(np.array([[-0.1 + way, 0.7]]), 1.0).any()
+
+
+def test_walls_that_bear_nothing_have_no_books(tmp_path):
+    loose = POOL.replace("[walls.paddle]", '[walls.paddle]\ncondition = "penalty"')
+    assert watched(tmp_path)[1]._books and not watched(tmp_path, loose)[1]._books
+    still = POOL.partition("motion")[0]
+    simulation, guards = watched(tmp_path, still)
+    assert guards._books and "work" not in simulation.store
