@@ -92,8 +92,8 @@ def motion_faults(scene) -> Iterator[str]:
         far = max(np.abs(found.lower).max(), np.abs(found.upper).max())
         if not far <= FARTHEST * scene.spacing:
             yield (
-                f"walls.{name}.motion: goes {far:.3g} m from 0, {far / scene.spacing:.2g} spacings, too far for "
-                "double precision; correct its numbers, or give it an end"
+                f"walls.{name}.motion: goes {far:.3g} m from 0, {far / scene.spacing:.2g} spacings, too far "
+                "for double precision; correct its numbers, or give it an end"
             )
 
 

@@ -18,7 +18,7 @@ class Rules(NamedTuple):
     ``law_of`` has the number of each group's.  The first ``free`` groups move freely; ``motion_of`` has
     the number of each group's motion (psph.physics.motion), from PRESCRIBED on one of ``motions``;
     ``poses`` are the maps of what is rigid (psph.simulation.poses), or None, ``pose_of`` the row of each
-    group; ``frame`` is what a moving frame of reference adds to gravity, or None.  ``periods`` m, None for
+    group, or None; ``frame`` is what a moving frame of reference adds to gravity, or None.  ``periods`` m, None for
     an open axis.  ``told`` are the groups to which a pass gives their pressure.
     """
 
