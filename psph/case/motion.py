@@ -7,7 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeAlias
 
 import numpy as np
-from pydantic import BeforeValidator, PrivateAttr, Strict, ValidationInfo, create_model, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PrivateAttr,
+    Strict,
+    ValidationInfo,
+    create_model,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from psph.case.files import Found, Unfit, beside
@@ -20,6 +28,9 @@ from psph.physics.rigid.schedule import Schedule
 
 BUILT_IN = ("translation", "rotation", "sinusoid", "acceleration", "series")
 """Keys of the parts that psph itself has."""
+
+MOST_PARTS = 100
+"""Of a motion: each is evaluated in every step."""
 
 MOST_ROWS = 1_000_000
 """Of a series: a day at 10 per second."""
@@ -201,7 +212,12 @@ class Series(Turning):
         ways[:, :places] = rows[:, 1 : 1 + places]
         if self.angle:
             ways[:, 3] = rows[:, -1]
-        return Tabulated(rows[:, 0] - rows[0, 0], ways - ways[0])
+        law = Tabulated(rows[:, 0] - rows[0, 0], ways - ways[0])
+        if not np.isfinite(law.pieces).all():
+            raise Unfit(
+                f"{self._found.path}: its numbers are too large, or its times too close; correct them"
+            )
+        return law
 
 
 def read_columns(path: Path, names: list[str]) -> np.ndarray:
@@ -314,7 +330,8 @@ def motions_type(entries: tuple = ()) -> Any:
         fields: dict[str, Any] = {name: (field.annotation, field) for name, field in brought.items()}
         kind = create_model("Motion", __base__=Motion, __doc__=Motion.__doc__, **fields)
         kind.entries = entries
-    several = Annotated[tuple[kind, ...], Strict(False)]  # type: ignore[valid-type]
+    bounds = Field(min_length=1, max_length=MOST_PARTS)
+    several = Annotated[tuple[kind, ...], Strict(False), bounds]  # type: ignore[valid-type]
     return Annotated[several, BeforeValidator(_as_list, json_schema_input_type=kind | several)]
 
 

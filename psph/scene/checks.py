@@ -13,7 +13,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.gauging import misplaced, shown
 from psph.scene.lattice import TOLERANCE
-from psph.scene.moving import motion_warnings
+from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
 from psph.scene.multiples import misfits
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
@@ -31,9 +31,6 @@ MOST_SITES = 10**11
 MOST_IN_PLANE = 10**8
 """Sites of a plane, which are visited together: some gigabytes.  An axis that is not the longest
 can have more."""
-
-FARTHEST = 2e9
-"""Spacings from 0 at most: farther out a coordinate does not hold ``TOLERANCE`` of one."""
 
 TOO_FAST = 0.2
 """Mach number that a flow should stay below: its density then varies by some per cent."""
@@ -61,6 +58,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *misplaced(scene),
         *_exact_faults(scene),
     ]
+    places = places or list(motion_faults(scene))
     for line in places or _state_faults(scene):  # an empty shape has no pressure
         yield f"{scene.case.file}: {line}"
 

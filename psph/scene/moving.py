@@ -1,5 +1,6 @@
 """Walls and frames that move: how far and how fast, in words, and what they run into."""
 
+import math
 from collections.abc import Iterator
 from functools import cache
 from itertools import product
@@ -11,6 +12,9 @@ from psph.case.keys import AXES
 from psph.case.motion import BUILT_IN
 from psph.physics.motion import is_rigid
 from psph.physics.rigid.pose import PLACE, maps
+
+FARTHEST = 2e9
+"""Spacings from 0 at most: farther out a coordinate does not tell a small part of one."""
 
 MOMENTS = 1000
 """Times of a run at which a motion is looked at."""
@@ -72,10 +76,25 @@ def frame_sweep(scene) -> Sweep | None:
 
 
 def largest_speed(scene) -> float:
-    """Of walls that move rigidly, or of the frame, m/s."""
-    speeds = [found.speed for _, _, found in moving_walls(scene)]
+    """Of walls that move rigidly, m/s."""
+    return max((found.speed for _, _, found in moving_walls(scene)), default=0.0)
+
+
+def largest_pull(scene) -> float:
+    """Of gravity and the acceleration of a moving frame together, m/s², at the most."""
     framed = frame_sweep(scene)
-    return max([*speeds, *([framed.speed] if framed else [])], default=0.0)
+    return math.hypot(*scene.gravity) + (framed.acceleration if framed else 0.0)
+
+
+def motion_faults(scene) -> Iterator[str]:
+    """Motions that leave what numbers can tell."""
+    for _, name, found in moving_walls(scene):
+        far = max(np.abs(found.lower).max(), np.abs(found.upper).max())
+        if not far <= FARTHEST * scene.spacing:
+            yield (
+                f"walls.{name}.motion: goes {far:.3g} m from 0, {far / scene.spacing:.2g} spacings, too far "
+                "for double precision; correct its numbers, or give it an end"
+            )
 
 
 def motion_lines(scene) -> Iterator[str]:

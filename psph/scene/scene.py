@@ -21,7 +21,7 @@ from psph.scene.bodies import rigid_bodies
 from psph.scene.kicked import nearest_fluid_site
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.mirrors import around, clipped, planes_of
-from psph.scene.moving import largest_speed
+from psph.scene.moving import largest_pull, largest_speed
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
@@ -116,11 +116,11 @@ class Scene:
 
     @cached_property
     def expected_speed(self) -> float:
-        """The largest of √(2gH), free fall over the fluids' height, and any speed of the start or of walls
-        and frames that move, m/s."""
+        """The largest of √(2gH), free fall over the fluids' height (with the frame's acceleration beside g),
+        and any speed of the start or of a wall that moves, m/s."""
         fluids = slice(len(self.case.fluids))
         height = self.census.top[fluids].max() - self.census.bottom[fluids].min() + self.spacing
-        falling = math.sqrt(2.0 * math.hypot(*self.gravity) * max(height, 0.0))
+        falling = math.sqrt(2.0 * largest_pull(self) * max(height, 0.0))
         return max(falling, self.starting_speed, largest_speed(self))
 
     @cached_property

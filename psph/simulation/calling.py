@@ -65,8 +65,8 @@ def _values(node, keys: list[str], path: str = "", given: bool = True):
 
 def _plain(value) -> str:
     if hasattr(type(value), "model_fields"):
-        inner = ", ".join(f"{k} = {_plain(v)}" for k, v in dict(value).items())
+        inner = ", ".join(f"{k} = {_plain(v)}" for k, v in dict(value).items() if v is not None)
         return "{ " + inner + " }"
     if isinstance(value, bool):
         return str(value).lower()
-    return str(list(value)) if isinstance(value, (list, tuple)) else f"{value}"
+    return f"[{', '.join(map(_plain, value))}]" if isinstance(value, (list, tuple)) else f"{value}"

@@ -6,10 +6,10 @@ Each part is there twice, for motions by a formula (psph.physics.motion) and for
 
 from numba.core import types
 
-from psph.engine.jit import call_by_number, overload, register_jitable, tuple_of, unrolled
+from psph.engine.jit import call_by_number, overload, register_jitable
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
-from psph.vectors import add, at, dot, nearest_to, put, scale, subtract, zero_like
+from psph.vectors import add, affine, at, dot, nearest_to, put, scale, subtract, zero_like
 
 place = call_by_number("place")
 """(motions, number, anchor, time) → x, m."""
@@ -47,27 +47,6 @@ def give(rules, i, group, k, dt, columns):
     _give(columns.work, rules, i, group, k, dt, columns)
 
 
-@register_jitable
-def affine(maps, row, which, a):
-    """The vector ``a`` by one of the affine maps of a row (psph.physics.rigid.pose.maps)."""
-    return mapped(maps[row], which, a)
-
-
-def mapped(maps, which, a):
-    """The vector ``a`` by one of some affine maps."""
-    return tuple(m[0] + dot(tuple(m[1:]), a) for m in maps[which])
-
-
-@overload(mapped)
-def _typed_mapped(maps, which, a):
-    n = len(a)
-    sums = (
-        " + ".join([f"maps[which, {d}, 0]", *(f"maps[which, {d}, {1 + e}] * a[{e}]" for e in range(n))])
-        for d in range(n)
-    )
-    return unrolled("maps, which, a", f"return {tuple_of(sums)}")
-
-
 def _carry_by_formula(motions, number, k, time, periods, columns):
     if motions:
         _carry_formula(motions, number, k, time, periods, columns)
@@ -94,7 +73,7 @@ def _carry_by_pose(poses, pose_of, number, group, k, periods, columns):
 def _carry_pose(poses, pose_of, number, group, k, periods, columns):
     if number == RIGID:
         anchor, row = at(columns.anchor, k), pose_of[group]
-        x, v = affine(poses, row, PLACE, anchor), affine(poses, row, VELOCITY, anchor)
+        x, v = affine(poses[row], PLACE, anchor), affine(poses[row], VELOCITY, anchor)
         settle(columns, k, x, v, periods)
 
 
@@ -152,7 +131,7 @@ def _acceleration_by_pose(poses, pose_of, number, group, k, columns):
 
 def _acceleration_pose(poses, pose_of, number, group, k, columns):
     anchor = at(columns.anchor, k)
-    return affine(poses, pose_of[group], ACCELERATION, anchor) if number == RIGID else zero_like(anchor)
+    return affine(poses[pose_of[group]], ACCELERATION, anchor) if number == RIGID else zero_like(anchor)
 
 
 @overload(_acceleration_by_pose)
@@ -206,7 +185,7 @@ def inertial(frame, x, v):
 
 
 def _inertial(frame, x, v):
-    return add(mapped(frame, 0, x), mapped(frame, 1, v))
+    return add(affine(frame, 0, x), affine(frame, 1, v))
 
 
 @overload(inertial)

@@ -64,7 +64,7 @@ class Engine:
             plan.motions,
             plan.motion_of,
             self.poses.maps,
-            plan.pose_of,
+            plan.pose_of if plan.rigid else None,
             self.poses.frame,
             scene.periods,
         )

@@ -17,8 +17,8 @@ class Rules(NamedTuple):
     ``effects`` are those with a part in them.  ``laws`` are the scene's equations of state and
     ``law_of`` has the number of each group's.  The first ``free`` groups move freely; ``motion_of`` has
     the number of each group's motion (psph.physics.motion), from PRESCRIBED on one of ``motions``;
-    ``poses`` are the maps of what is rigid (psph.simulation.poses), or None, ``pose_of`` the row of each
-    group; ``frame`` is what a moving frame of reference adds to gravity, or None.  ``periods`` m, None for
+    ``poses`` are the maps of what is rigid (psph.simulation.poses) and ``pose_of`` the row of each group, or
+    None; ``frame`` is what a moving frame of reference adds to gravity, or None.  ``periods`` m, None for
     an open axis.  ``told`` are the groups to which a pass gives their pressure.
     """
 

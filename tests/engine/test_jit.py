@@ -29,7 +29,7 @@ view = View((np.zeros(3),), 1.0, 1.0)
 for state in (Linear(), Foreign()) if "foreign" in sys.argv else (Linear(),):
     pressure = np.zeros(3)
     first = np.zeros(3, np.uint8)
-    rules = Rules((), (state,), first, first > 0, np.uint8(1), (), first, None, first, None, (None,))
+    rules = Rules((), (state,), first, first > 0, np.uint8(1), (), first, None, None, None, (None,))
     columns = dict.fromkeys(Columns._fields) | {
         "group": first, "density": np.full(3, 2.0), "specific_volume": np.zeros(3), "pressure": pressure
     }

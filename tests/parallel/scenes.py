@@ -132,17 +132,17 @@ FAMILIES = {
             **GRAVITY,
         },
     ),
-    "rolled": Family(2, walls=True, fluids=2, viscous=True, moves=True, physics=GRAVITY),
-    "rolled in 3D": Family(3, along="z", walls=True, condition="extrapolated", moves=True, physics=GRAVITY),
-    "framed": Family(
-        2, walls=True, viscous=True, condition="extrapolated", moves=True, framed=True, physics=GRAVITY
-    ),
     "repelled": Family(2, walls=True, condition="repulsive", physics=GRAVITY),
     "pushed back": Family(2, walls=True, viscous=True, condition="penalty", physics=GRAVITY),
     "mirrored": Family(
         2, walls=True, viscous=True, fluids=2, condition="mirror", gather_every=3, physics=GRAVITY
     ),
     "half": Family(3, along="z", symmetry=("x.lower", "z.lower"), gather_every=3),
+    "rolled": Family(2, walls=True, fluids=2, viscous=True, moves=True, physics=GRAVITY),
+    "rolled in 3D": Family(3, along="z", walls=True, condition="extrapolated", moves=True, physics=GRAVITY),
+    "framed": Family(
+        2, walls=True, viscous=True, condition="extrapolated", moves=True, framed=True, physics=GRAVITY
+    ),
 }
 
 

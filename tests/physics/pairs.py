@@ -49,6 +49,7 @@ def view(n=2, dim=2, seed=3):
         compression=rng.normal(size=n) * 1000,
         transport=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
         rest_density=rng.uniform(800, 1000, n),
+        apparent=tuple(rng.normal(size=n) for _ in range(dim)),
     )
 
 

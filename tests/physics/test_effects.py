@@ -35,10 +35,12 @@ from psph.physics.fluid.viscosity import (
     LaminarViscosity,
     PairDamping,
 )
+from psph.physics.motion import Fixed
 from psph.physics.order.potential import neutral_potential
 from psph.physics.order.shifting import LatticeShift, ParticleShifting, lattice_shift
 from psph.physics.order.stress import NeighbourStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
+from psph.physics.rigid.motion import Rigid
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
@@ -177,10 +179,14 @@ def test_a_wall_without_slip_mirrors_the_mean_of_the_fluid_around_it(dim):
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
-def test_an_extrapolated_wall_has_the_pressure_of_the_fluid_and_its_weight(dim):
+@pytest.mark.parametrize("moves", (False, True))
+def test_an_extrapolated_wall_has_the_pressure_of_the_fluid_and_its_weight(dim, moves):
+    """Of a wall that moves g − a_w is the weight."""
     gravity = (2.0, -9.8, 0.5)[:dim]
-    effect = ExtrapolatedWall().in_scene(SimpleNamespace(gravity=gravity))
+    wall = SimpleNamespace(extrapolated=True, motion=Rigid(()) if moves else Fixed())
+    effect = ExtrapolatedWall().in_scene(SimpleNamespace(gravity=gravity, frame=None, species=(wall,)))
     p = view(n=5, dim=dim)
+    gravity = np.add(gravity, [x[1] for x in p.apparent]) if moves else gravity
     p = p._replace(is_fluid=np.array([1, 0, 1, 1, 0.0]), extrapolated=np.array([0, 1, 0, 0, 0.0]))
     fluid = (0, 2, 3)
     w = np.array([written_out(p, 1, b)[3] for b in fluid])

@@ -45,7 +45,8 @@ def test_a_paddle_may_give_energy_and_the_balance_is_kept(scheme, tmp_path):
             gains.append(guards._gain())
             given.append(simulation.store.shown("work").sum() / guards._unit)
     assert max(given) > 0.05
-    assert max(gains) < 0.02 * max(given)
+    # The paddle slides over the ground: what these two walls do to each other is not booked.
+    assert max(gains) < 0.04 * max(given)
 
 
 def test_the_work_of_a_wall_is_force_times_way(tmp_path):
@@ -65,11 +66,15 @@ shape.box = { lower = [-0.2, 0.0], upper = [0.0, 0.5] }
 motion = { translation = [0.02, 0.0], ramp = 0.2 }
 """,
     )
+    pushed = 0.0
     while simulation.time < 0.9:
         simulation.step()
-    squeezed = 0.02 * (simulation.time - 0.1)
+        simulation.settle_pressure()
+        fluid = simulation.store.shown("kind") == 0
+        speed = simulation.store.shown("velocity")[simulation.store.shown("group") == 2, 0].max()
+        pushed += simulation.store.shown("pressure")[fluid].mean() * 0.5 * speed * simulation.dt
     work = simulation.store.shown("work").sum()
-    assert work == pytest.approx(0.5 * 1000.0 * 30.0**2 * 0.5 * squeezed**2, rel=0.1)  # ½ K V (ΔV/V)²
+    assert pushed > 10.0 and work == pytest.approx(pushed, rel=0.03)
     assert abs(guards._gain()) * guards._unit < 0.01 * work
 
 

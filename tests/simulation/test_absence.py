@@ -129,6 +129,8 @@ def calling_for(entry) -> list[str]:
 def not_calling_for(entry) -> list[str]:
     """Overrides of a scene that lacks the effect of an entry; none do where it is a choice."""
     key, _, choice = entry.key.partition("=")
+    if "*" in key:
+        return []
     others = [e.key for e in without(entry) if choice and e.key.startswith(f"{key}=")]
     return others[:1]
 

@@ -12,7 +12,7 @@ from psph.simulation.rules import Columns, Rules
 MOTIONS = np.array([motion.FREE, motion.FIXED], np.uint8)
 NUMBERS = np.zeros(2, np.uint8)
 RULES = Rules(
-    (), (Linear(),), NUMBERS, np.zeros(2, bool), np.uint8(1), (), MOTIONS, None, NUMBERS, None, (None,)
+    (), (Linear(),), NUMBERS, np.zeros(2, bool), np.uint8(1), (), MOTIONS, None, None, None, (None,)
 )
 
 
