@@ -12,7 +12,7 @@ from psph.case.extensions import files_of
 from psph.errors import LONGEST_QUOTE, one_line, shortened
 from psph.output.checkpoint import COPY, Saved, checkpoints, half_written, remove_checkpoints
 from psph.output.errors import OutputError, together
-from psph.output.pictures import remove_pictures
+from psph.output.pictures.names import remove_pictures
 from psph.output.tables import ERRORS, LOG, PROBES
 from psph.run.post_mortem import PICTURE, REPORT, remove_post_mortem
 

@@ -4,10 +4,10 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from psph.output import charts, style
 from psph.output.errors import OutputError
 from psph.output.frames import FrameFile
-from psph.output.plot import Show, overview, plot
+from psph.output.pictures import charts, style
+from psph.output.pictures.plot import Show, overview, plot
 from psph.output.reader import Run
 from psph.output.tables import CsvTable
 
