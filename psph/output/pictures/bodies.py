@@ -5,6 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from psph.case.shapes import Shape
+from psph.fields import FLUID
+from psph.output.pictures.view import box_around
 from psph.output.pictures.walls import Triangles, encloses, inwards, surface
 from psph.output.pictures.water import fluid_surface
 
@@ -33,8 +35,7 @@ class Body:
             turn, shift = rigid(self._rest, places)
             if np.abs(self._rest @ turn.T + shift - places).max() < BENT * self.spacing:
                 return self.faces @ turn.T + shift
-        around = fluid_surface(places, self.spacing)
-        return np.empty((0, 3, 3)) if around is None else around.points[around.regular_faces].astype(float)
+        return hull(places, self.spacing)
 
     def _particles(self, frame: dict) -> tuple[np.ndarray, np.ndarray]:
         mine = frame["group"] == self.group
@@ -54,18 +55,29 @@ def rigid(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return turn, to_there - turn @ from_here
 
 
+def hull(places: np.ndarray, spacing: float) -> Triangles:
+    """A surface (n, 3, 3) around particles at ``places`` (n, 3), m."""
+    around = fluid_surface(places, spacing)
+    return np.empty((0, 3, 3)) if around is None else around.points[around.regular_faces].astype(float)
+
+
 def bodies_of(case: dict, start: dict, spacing: float) -> Iterator[Body]:
-    """All walls of ``case`` (3D), whose first frame is ``start``."""
+    """All that is not fluid in ``case`` (3D), whose first frame is ``start``.
+
+    What has no shape in the case gets a surface around its particles.
+    """
     space = case["space"]
     lower, upper = (
         np.array(space.get(end, [far] * 3)) for end, far in (("lower", -np.inf), ("upper", np.inf))
     )
-    fluids = len(case["fluids"])
-    wet = start["position"][start["group"] < fluids]
-    inner = wet.min(axis=0, initial=np.inf), wet.max(axis=0, initial=-np.inf)
-    solids = [one for table in SOLIDS for one in case.get(table, {}).values()]
-    for group, solid in enumerate(solids, fluids):
-        shape = Shape.model_validate(solid["shape"])
-        faces = surface(shape, spacing, lower, upper)
-        around = encloses(shape, *inner)
-        yield Body(group, inwards(faces, shape) if around else faces, around, start, spacing)
+    wet = start["kind"] == FLUID
+    inner = box_around(start["position"][wet])
+    shapes = [one["shape"] for table in SOLIDS for one in case.get(table, {}).values()]
+    known = dict(enumerate(map(Shape.model_validate, shapes), len(case["fluids"])))
+    for group in sorted(known.keys() | set(start["group"][~wet].tolist())):
+        if shape := known.get(group):
+            faces, around = surface(shape, spacing, lower, upper), encloses(shape, *inner)
+            faces = inwards(faces, shape) if around else faces
+        else:
+            faces, around = hull(start["position"][start["group"] == group], spacing), False
+        yield Body(group, faces, around, start, spacing)

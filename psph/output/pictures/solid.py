@@ -54,12 +54,16 @@ def scene(
     What stands still is seen whole, but for the thickness of walls around the fluid.
     """
     bodies = list(bodies_of(case, start, room.spacing))
-    still = {
-        body.group: body for body in bodies if np.ptp([one[body.group] for one in boxes], axis=0).max() == 0
-    }
-    visible = [body.faces.reshape(-1, 3) for body in still.values()]
-    visible += [box for one in boxes for group, box in one.items() if group not in still]
+    still = [body for body in bodies if _stands([one[body.group] for one in boxes if body.group in one])]
+    seen = {body.group for body in still}
+    visible = [body.faces.reshape(-1, 3) for body in still]
+    visible += [box for one in boxes for group, box in one.items() if group not in seen]
     return Solid(room, bodies, np.concatenate(visible), smooth)
+
+
+def _stands(boxes: Sequence[np.ndarray]) -> bool:
+    """Whether the box (2, 3) around a wall, which may have no particles, is always the same."""
+    return all(np.array_equal(boxes[0], box) for box in boxes)
 
 
 class Solid:

@@ -9,8 +9,9 @@ from psph.case.keys import AXES
 from psph.case.shapes import Ball, Box, Cylinder, Difference, Shape
 from psph.scene.shapes import bounds, inside
 
-SIDE = 1e-3
-"""Spacings by which a point on either side of a triangle is off it."""
+SIDE, ROUND = 1e-3, 0.05
+"""Spacings by which a point on either side of a triangle is off it; the middle of one that stands for a part
+of something round is itself up to 0.02 off."""
 EDGE = 1e-6
 """Spacings that settle points on an edge."""
 ARC = 48
@@ -31,10 +32,9 @@ def surface(shape: Shape, spacing: float, lower: np.ndarray, upper: np.ndarray) 
     kept = []
     for part in parts:
         faces = _faces(part.form, lines, spacing)
-        middle, normal = faces.mean(axis=1), _normals(faces)
-        before, behind = (
-            inside(shape, (middle + side * SIDE * spacing * normal).T, EDGE * spacing) for side in (1, -1)
-        )
+        middle = faces.mean(axis=1)
+        off = (SIDE if isinstance(part.form, Box) else ROUND) * spacing * _normals(faces)
+        before, behind = (inside(shape, (middle + way * off).T, EDGE * spacing) for way in (1, -1))
         here = ((middle > lower) & (middle < upper)).all(axis=1)
         kept += [faces[here & behind & ~before], faces[here & before & ~behind][:, ::-1]]
     return np.concatenate(kept)
