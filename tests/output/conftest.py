@@ -24,7 +24,7 @@ end = 1.0
 acceleration = [0.0, 0.0, -9.8]
 [fluids.water]
 density = 1000.0
-[fluids.oil]
+[fluids.a_light_crude_oil]
 density = 800.0
 [walls.tank.shape.difference.from.box]
 lower = [-0.1, -0.1, -0.1]

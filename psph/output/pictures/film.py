@@ -98,7 +98,7 @@ def _palette(show: Show, chosen: Sequence[int]) -> Image.Image:
     """Colours for the whole film, from its first picture, its last, and one half-way."""
     some = sorted({chosen[0], chosen[len(chosen) // 2], chosen[-1]})
     whole = np.concatenate([_pixels(show, k, SMALL) for k in some])
-    return Image.fromarray(whole).quantize(COLOURS, Image.Quantize.MAXCOVERAGE)
+    return Image.fromarray(whole).quantize(COLOURS, Image.Quantize.MEDIANCUT, kmeans=4)
 
 
 def _write_mp4(path: Path, show: Show, chosen: Sequence[int], rate: float) -> None:

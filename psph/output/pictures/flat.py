@@ -45,7 +45,6 @@ class Flat:
     Raises NotThere if the room does not reach there.
     """
 
-    keyed = True
     reads = ()
 
     def __init__(self, room: Room, cut: Slice | None = None):
@@ -65,7 +64,7 @@ class Flat:
         self.up, self.across = (0, 0) if room.dimensions == 1 else (up, level[0])
         axes = [self.across, self.up]
         self.lower, self.upper = room.lower[axes], room.upper[axes]
-        self.right = style.RIGHT if room.dimensions > 1 else 0.3
+        self.keyed = room.dimensions > 1  # in 1D the height carries the values
 
     @property
     def aspect(self) -> float:

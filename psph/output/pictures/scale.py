@@ -21,6 +21,9 @@ NEAR_ZERO = 0.1
 OUTLIER = 0.25
 """Share of the range by which outliers may extend the colours."""
 
+LETTER = 0.085
+"""Width of one in the key, inches."""
+
 
 class Scale(NamedTuple):
     """What colours mean; numbers are multiplied by ``factor``.  With ``names`` they count those."""
@@ -37,6 +40,11 @@ class Scale(NamedTuple):
     def label(self) -> str:
         """The quantity and its unit."""
         return f"{self.title} ({self.unit})" if self.unit else self.title
+
+    @property
+    def width(self) -> float:
+        """Of the key with what it says, inches."""
+        return max(style.RIGHT, 0.6 + LETTER * max(map(len, self.names), default=0))
 
     def rgb(self, values: np.ndarray) -> np.ndarray:
         """Colours (n, 3), whole numbers to 255, of values (n,) in the quantity's own unit."""

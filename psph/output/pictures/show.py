@@ -17,12 +17,15 @@ from psph.output.pictures.flat import Flat, Slice
 from psph.output.pictures.quantities import quantity
 from psph.output.pictures.scale import Scale, scale_of
 from psph.output.pictures.view import Panel, box_around, room_of, spread
+from psph.output.progress import told
 from psph.output.reader import Run
 
 LARGEST = (7.6, 5.6)
 """Width and height that all panels together may take, inches."""
 GAP, HEADING = 0.3, 0.3
 """Between two panels, and above each of several for its time, inches."""
+EDGE = 0.3
+"""To the right of panels without a key, inches."""
 CHART = charts.HEIGHT + 0.8
 """Of a chart with its title and what stands between it and the panels, inches."""
 VALUES = 100_000
@@ -78,7 +81,8 @@ class Show:
             from psph.output.pictures import solid
 
             solid.pyvista()  # missing, it is missed before any work
-        glances = [self._glance(k) for k in spread(len(self.times), self.quantity.samples)]
+        sample = spread(len(self.times), self.quantity.samples)
+        glances = [self._glance(k) for k in told(sample, "looking at the run", "frames")]
         scale = scale_of(self.quantity, [glance.values for glance in glances])
         room = room_of(self.case, [glance.box for glance in glances])
         if not self._solid:
@@ -124,7 +128,8 @@ class Show:
         top = style.TOP - heading / 2
         full = columns * (width + GAP) - GAP
         bottom = top + -(-len(chosen) // columns) * pitch - GAP
-        page = style.LEFT + full + panel.right, bottom + style.BOTTOM + len(below) * CHART
+        right = self.scale.width if panel.keyed else EDGE
+        page = style.LEFT + full + right, bottom + style.BOTTOM + len(below) * CHART
         with style.look():
             figure = style.sheet(*page, self.title, self._subtitle(chosen), dpi)
             for n, k in enumerate(chosen):

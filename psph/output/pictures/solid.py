@@ -74,7 +74,6 @@ class Solid:
     """
 
     keyed = True
-    right = style.RIGHT
     reads = ("group", "id")
 
     def __init__(self, room: Room, bodies: Iterable[Body], visible: np.ndarray, smooth: bool):

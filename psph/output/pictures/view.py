@@ -21,8 +21,6 @@ class Panel(Protocol):
     """Whether colours carry the values."""
     remark: str
     """What the subtitle says of it, or nothing."""
-    right: float
-    """Margin to the right of the panels, inches."""
     reads: tuple[str, ...]
     """Fields that it needs besides positions and kinds."""
 

@@ -123,7 +123,9 @@ def _barrel(center, along: int, radius: float, height: float, lines, spacing: fl
 
 def _turn(radius: float, spacing: float) -> np.ndarray:
     """Angles of a full turn in an even number of steps of about a spacing."""
-    return np.linspace(0.0, 2 * math.pi, 2 * max(ARC // 2, round(math.pi * radius / spacing)) + 1)
+    turn = np.linspace(0.0, 2 * math.pi, 2 * max(ARC // 2, round(math.pi * radius / spacing)) + 1)
+    turn[-1] = 0.0  # to the last bit where it began: no seam
+    return turn
 
 
 def _triangles(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> Triangles:

@@ -72,9 +72,11 @@ def test_fluids_have_their_names_for_a_key(tank3d):
     show = Show(tank3d, [0.0], "group")
     figure = show.picture([0])
     [legend] = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
-    assert [text.get_text() for text in legend.get_texts()] == ["water", "oil"]
+    assert [text.get_text() for text in legend.get_texts()] == ["water", "a_light_crude_oil"]
+    renderer = figure.canvas.get_renderer()
+    assert legend.get_window_extent(renderer).x1 < figure.bbox.x1  # names have room on the page
     image, _ = image_of(show, 0)
-    for name, colour in zip(("water", "oil"), style.LINES):
+    for name, colour in zip(("water", "a_light_crude_oil"), style.LINES):
         hue = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)], float)
         alike = (image @ hue) / (np.linalg.norm(image, axis=-1) * np.linalg.norm(hue) + 1e-9)
         assert ((alike > 0.99) & (saturation(image / 255) > 0.2)).mean() > 0.005, name

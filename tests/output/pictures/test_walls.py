@@ -56,6 +56,15 @@ def test_surface_encloses_the_volume_of_the_shape(shape, volume, accuracy):
     assert volume_of(faces) == pytest.approx(volume, rel=accuracy)
 
 
+def test_what_is_round_has_no_seam():
+    import pyvista
+
+    for shape in (BALL, TUBE):
+        faces = surface(Shape.model_validate(shape), 0.02, *FAR).reshape(-1, 3)
+        hull = pyvista.PolyData.from_regular_faces(faces, np.arange(len(faces)).reshape(-1, 3)).clean()
+        assert hull.n_open_edges == 0
+
+
 def test_surface_ends_where_the_domain_does():
     faces = surface(
         Shape.model_validate(box([0, 0, 0], [1, 2, 3])), 0.1, np.array([0.5, -9, -9]), np.full(3, 9.0)
