@@ -30,18 +30,21 @@ COLOURS = 255
 def kind_of(path: Path | None) -> str:
     """The ending of a film's name: without one MP4 where there is an encoder, else GIF.
 
-    Raises Refused for another ending, and for an MP4 without an encoder.
+    Raises Refused for another ending, for a folder that is not there, and for an MP4 without an encoder.
     """
     if path is None:
         return MP4 if encoder() else GIF
-    if path.suffix not in (GIF, MP4):
+    kind = path.suffix.lower()
+    if kind not in (GIF, MP4):
         raise Refused(f"plot --film {path}: not a kind of film; let the name end with {GIF} or {MP4}")
-    if path.suffix == MP4 and not encoder():
+    if not path.parent.is_dir():
+        raise Refused(f"plot --film {path}: there is no folder {path.parent}; make it first")
+    if kind == MP4 and not encoder():
         raise Refused(
             f"plot --film {path}: an {MP4} needs ffmpeg, and there is none; `pip install imageio-ffmpeg`, or "
             f"let the name end with {GIF}"
         )
-    return path.suffix
+    return kind
 
 
 def film_of(show: Show, path: Path | None, whole: bool) -> str:

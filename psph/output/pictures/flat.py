@@ -45,8 +45,6 @@ class Flat:
     Raises NotThere if the room does not reach there.
     """
 
-    reads = ()
-
     def __init__(self, room: Room, cut: Slice | None = None):
         self.room, self.cut = room, cut
         self.variant, self.remark = "", ""

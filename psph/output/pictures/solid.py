@@ -74,7 +74,6 @@ class Solid:
     """
 
     keyed = True
-    reads = ("group", "id")
 
     def __init__(self, room: Room, bodies: Iterable[Body], visible: np.ndarray, smooth: bool):
         self.room, self.bodies, self.smooth = room, list(bodies), smooth
@@ -106,7 +105,7 @@ class Solid:
         try:
             _refuse_without_opengl(plotter.render_window)
             plotter.set_background("white")
-            fluid = frame["kind"] == FLUID
+            fluid = (frame["kind"] == FLUID) & self.room.holds(frame["position"])
             self._add_fluid(plotter, frame["position"][fluid], frame["values"][fluid], scale)
             for body in self.bodies:
                 self._add_body(plotter, body.at(frame), AROUND if body.around else WITHIN)
@@ -122,6 +121,8 @@ class Solid:
             plotter.close()
 
     def _add_fluid(self, plotter, places: np.ndarray, values: np.ndarray, scale: Scale) -> None:
+        if not len(places):
+            return
         shine = {"ambient": 0.5, "diffuse": 0.75, "specular": 0.15, "specular_power": 15.0}
         if self.smooth:
             water = fluid_surface(places, self.room.spacing, values)

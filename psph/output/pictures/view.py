@@ -21,8 +21,6 @@ class Panel(Protocol):
     """Whether colours carry the values."""
     remark: str
     """What the subtitle says of it, or nothing."""
-    reads: tuple[str, ...]
-    """Fields that it needs besides positions and kinds."""
 
     def of(self, frame: dict) -> dict:
         """The visible particles of a frame."""
@@ -49,6 +47,11 @@ class Room(NamedTuple):
     def dimensions(self) -> int:
         """Number of axes."""
         return len(self.lower)
+
+    def holds(self, places: np.ndarray) -> np.ndarray:
+        """True (n,) for places (n, dim) in it; not for those that are not finite."""
+        edge = 1e-6 * self.spacing
+        return ((places >= self.lower - edge) & (places <= self.upper + edge)).all(axis=1)
 
 
 def room_of(case: dict, boxes: Sequence[np.ndarray]) -> Room:

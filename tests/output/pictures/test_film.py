@@ -103,8 +103,12 @@ def test_without_an_encoder_it_is_a_gif(crossing, tmp_path, monkeypatch):
 
 
 def test_what_cannot_be_written_is_one_line_and_leaves_nothing(crossing, tmp_path, monkeypatch):
-    with pytest.raises(OutputError, match="drop.gif: cannot be written: No such file"):
-        film(crossing.folder, tmp_path / "none" / "drop.gif", [0.0])
+    with pytest.raises(Refused, match="there is no folder .*none; make it first"):
+        film(tmp_path / "nowhere", tmp_path / "none" / "drop.gif")
+    (tmp_path / "taken.gif").mkdir()
+    with pytest.raises(OutputError, match="taken.gif: cannot be written: Is a directory; check"):
+        film(crossing.folder, tmp_path / "taken.gif", [0.0])
+    assert list(tmp_path.glob(".*")) == []
     broken = tmp_path / "ffmpeg"
     broken.write_text("#!/bin/sh\necho no encoder >&2\necho at all >&2\nexit 3\n")
     broken.chmod(0o755)

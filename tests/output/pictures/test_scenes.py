@@ -10,6 +10,7 @@ from matplotlib.image import imread
 
 from psph.errors import Refused
 from psph.output.errors import NotThere
+from psph.output.frames import FrameFile
 from psph.output.pictures import style
 from psph.output.pictures.camera import before, corners_of, directions
 from psph.output.pictures.flat import Slice, slice_of
@@ -88,6 +89,22 @@ def test_vorticity_of_a_frame_is_that_of_its_fluid(tank3d):
     assert np.isnan(frame["values"][frame["kind"] == 1]).all()
     assert frame["values"][frame["kind"] == 0] == pytest.approx(3.0)  # its velocity is 3 x, along y
     assert (show.scale.title, show.scale.unit) == ("vorticity", "1/s")
+
+
+@pytest.mark.parametrize("smooth", [False, True])
+def test_a_scene_that_blew_up_can_still_be_seen(tank3d, alone, smooth):
+    case, sound = tank3d.case_text, tank3d.frame(0)
+    frames = FrameFile(tank3d.path, alone, {"case": case})
+    fluid = np.flatnonzero(sound["kind"] == 0)
+    thrown, lost = sound["position"].copy(), sound["position"].copy()
+    thrown[fluid[:3]] = [[1e9, 0, 1e9], [np.nan, 0, 0], [np.inf, 1, 1]]
+    lost[fluid] = np.nan
+    for k, position in enumerate((sound["position"], thrown, lost)):
+        frames.write(k, 0.5 * k, k, sound | {"position": position})
+    show = Show(Run(tank3d.folder), None, "pressure", smooth=smooth)
+    assert np.ptp([show.panel.lower, show.panel.upper], axis=0).max() < 4.0
+    wet = [(saturation(image_of(show, k)[0] / 255) > 0.15).mean() for k in range(3)]
+    assert wet[1] == pytest.approx(wet[0], rel=0.2) and wet[0] > 0.005 and wet[2] == 0.0
 
 
 def test_a_camera_sees_all_of_a_box_and_no_more():
