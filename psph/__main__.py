@@ -108,11 +108,18 @@ def _schema(options, comm) -> None:
 
 
 def _plot(options, comm) -> None:
-    from psph.output.plot import plot
+    from psph.output.pictures.flat import slice_of
+    from psph.output.pictures.plot import film, plot
 
-    if comm.rank == 0:
-        for path in plot(options.folder, times=options.times, field=options.field):
-            print(path)
+    if comm.rank != 0:
+        return
+    cut = slice_of(options.cut) if options.cut else None
+    shown = (options.times, options.field, cut, options.surface)
+    if options.film is not None:
+        print(film(options.folder, options.film if options.film.name else None, *shown))
+        return
+    for path in plot(options.folder, *shown):
+        print(path)
 
 
 def _bench(options, comm) -> None:

@@ -70,13 +70,33 @@ def parser(verbs) -> argparse.ArgumentParser:
     verb["explain"].add_argument(
         "--study", type=Path, metavar="DIR", help="predict error and run time from a study"
     )
-    verb["plot"].add_argument("folder", action=_Folder, help="the folder of a run")
-    verb["plot"].add_argument("--times", type=float, nargs="+", help="times to show, s")
-    verb["plot"].add_argument("--field", default="pressure", help="field to show (default: pressure)")
+    _add_plot_options(verb["plot"])
     _add_study_options(verb["study"])
     _add_stability_options(verb["stability"])
     _add_bench_options(verb["bench"])
     return made
+
+
+def _add_plot_options(plot: argparse.ArgumentParser) -> None:
+    plot.add_argument("folder", action=_Folder, help="the folder of a run")
+    plot.add_argument(
+        "--field",
+        default="pressure",
+        help="a field of the frames, speed, vorticity, or group for the fluids by name (default: pressure)",
+    )
+    plot.add_argument("--times", type=float, nargs="+", help="times to show, s; of a film its first and last")
+    plot.add_argument(
+        "--slice", dest="cut", metavar="AXIS=PLACE", help="in 3D, the particles at a plane, such as y=0.5 (m)"
+    )
+    plot.add_argument("--surface", action="store_true", help="in 3D, the surface of the fluid, not particles")
+    plot.add_argument(
+        "--film",
+        type=Path,
+        nargs="?",
+        const=Path(),
+        metavar="FILE",
+        help="a film instead: FILE ends with .gif or .mp4 (default: in FOLDER, an MP4 where ffmpeg is there)",
+    )
 
 
 def _add_study_options(study: argparse.ArgumentParser) -> None:

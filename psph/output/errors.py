@@ -4,11 +4,15 @@ import re
 from contextlib import contextmanager
 from pathlib import Path
 
-from psph.errors import Failed
+from psph.errors import Failed, Refused
 
 
 class OutputError(Failed):
     """A file of the run cannot be written or read; the message is one line that says what to do."""
+
+
+class NotThere(Refused):
+    """What a command asks of the files of a run is not in them; the message is one line that says what is."""
 
 
 def cause(error: Exception) -> str:

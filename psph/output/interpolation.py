@@ -21,7 +21,7 @@ def interpolated(
     from scipy.spatial import cKDTree
 
     lengths = np.array([period or 0.0 for period in periods])  # 0: the axis does not repeat
-    tree = cKDTree(_folded(position, lengths), boxsize=lengths)
+    tree = cKDTree(folded(position, lengths), boxsize=lengths)
     distance, who = tree.query(at, k=4 ** position.shape[1], distance_upper_bound=2.0 * spacing)
     share = np.maximum(1.0 - distance / (2.0 * spacing), 0.0) ** 2
     near = share.sum(axis=1) > 0.0
@@ -32,7 +32,7 @@ def interpolated(
     return found
 
 
-def _folded(position: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+def folded(position: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     """Positions from 0 to below the length along each axis that has one."""
     folded = position.copy()
     for x, length in zip(folded.T, lengths):

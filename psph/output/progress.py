@@ -4,8 +4,11 @@ import math
 import os
 import sys
 from collections import deque
+from collections.abc import Collection, Iterator
 from time import perf_counter
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
+
+T = TypeVar("T")
 
 TICK = 0.2
 """Seconds of wall-clock time between two looks at the rate (and two pictures of the bar)."""
@@ -134,6 +137,27 @@ def terminal_width() -> int | None:
         if columns:
             return columns
     return None
+
+
+def told(items: Collection[T], doing: str, what: str) -> Iterator[T]:
+    """The items one by one; how many are done and the time left go to the standard error.
+
+    On a terminal in place, else in a line every ``PATIENCE`` seconds.  The first one is not taken as typical.
+    """
+    live = sys.stderr.isatty()
+    begun = said = perf_counter()
+    for done, item in enumerate(items):
+        yield item
+        now = perf_counter()
+        if done == 0:
+            begun = now
+        elif now - said > (TICK if live else PATIENCE):
+            said = now
+            left = (now - begun) / done * (len(items) - done - 1)
+            line = f"{doing}: {done + 1} of {len(items)} {what}, {duration(left)} left"
+            print(f"\r{line}\x1b[K" if live else line, end="" if live else "\n", file=sys.stderr, flush=True)
+    if live:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
 
 
 def short(number: float) -> str:

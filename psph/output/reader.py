@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from psph.errors import one_line
-from psph.output.errors import OutputError, cause
+from psph.output.errors import NotThere, cause
 from psph.output.tables import ERRORS, GAUGE, LOG, PROBES
 
 T = TypeVar("T")
@@ -18,7 +18,7 @@ T = TypeVar("T")
 class Run:
     """What a run has left in ``folder`` so far; every call reads again.
 
-    Raises OutputError with one line when there is nothing to read.
+    Raises NotThere with one line when there is nothing to read.
     """
 
     def __init__(self, folder: Path):
@@ -27,7 +27,7 @@ class Run:
         found = [path for path in found if path.with_suffix(".xmf").exists()] or found
         if len(found) != 1:
             names = ", ".join(path.name for path in found) or "none"
-            raise OutputError(
+            raise NotThere(
                 f"{self.folder}: the folder of a run holds one file of frames (.h5), "
                 f"here: {names}; give the folder that psph wrote to"
             )
@@ -48,6 +48,11 @@ class Run:
         """Times of the complete frames, s."""
         return _read(self.path, lambda file: np.array([_time(file, name) for name in _whole(file)]))
 
+    @property
+    def fields(self) -> list[str]:
+        """Names of what the last whole frame holds of each particle."""
+        return _read(self.path, lambda file: _saved(file["frames"][_whole(file)[-1]]))
+
     def frame(self, k: int, *names: str) -> dict[str, np.ndarray]:
         """Fields of the k-th whole frame, ``-1`` the last: ``(n,)`` or ``(n, dim)`` each.
 
@@ -57,13 +62,11 @@ class Run:
         def read(file: h5py.File) -> dict[str, np.ndarray]:
             frames = _whole(file)
             if not -len(frames) <= k < len(frames):
-                raise OutputError(f"{self.path}: frame: {k} is not one of the {len(frames)} frames so far")
+                raise NotThere(f"{self.path}: frame: {k} is not one of the {len(frames)} frames so far")
             frame = file["frames"][frames[k]]
-            saved = [name for name in frame if name != "points"]
+            saved = _saved(frame)
             for name in set(names) - set(saved):
-                raise OutputError(
-                    f"{self.path}: field: {name} is not saved; choose one of {', '.join(saved)}"
-                )
+                raise NotThere(f"{self.path}: field: {name} is not saved; choose one of {', '.join(saved)}")
             return {name: frame[name][...] for name in names or saved}
 
         return _read(self.path, read)
@@ -102,12 +105,12 @@ def _read(path: Path, what: Callable[[h5py.File], T]) -> T:
         try:
             with h5py.File(path, "r", locking=False) as file:
                 return what(file)
-        except OutputError:
+        except NotThere:
             raise
         except (OSError, RuntimeError, KeyError) as error:  # all that h5py makes of it
             failure = error
             time.sleep(0.02 * attempt)
-    raise OutputError(f"{path}: cannot be read: {cause(failure)}; is it a file of psph?")
+    raise NotThere(f"{path}: cannot be read: {cause(failure)}; is it a file of psph?")
 
 
 def _whole(file: h5py.File) -> list[str]:
@@ -116,11 +119,15 @@ def _whole(file: h5py.File) -> list[str]:
     Only the last one can lack it, so that not all have to be opened.
     """
     if "frames" not in file:
-        raise OutputError(f"{file.filename}: holds no frames; is it a file of psph?")
+        raise NotThere(f"{file.filename}: holds no frames; is it a file of psph?")
     names = sorted(file["frames"], key=int)
     while names and not np.isfinite(_time(file, names[-1])):
         names.pop()
     return names
+
+
+def _saved(frame: h5py.Group) -> list[str]:
+    return [name for name in frame if name != "points"]
 
 
 def _time(file: h5py.File, name: str) -> float:
@@ -137,4 +144,4 @@ def _columns(path: Path) -> dict[str, np.ndarray]:
         table = np.loadtxt(rows, delimiter=",", ndmin=2) if rows else np.empty((0, len(names)))
         return dict(zip(names, table.T, strict=True))
     except (OSError, ValueError) as error:
-        raise OutputError(f"{path}: {one_line(str(error))}; is it a table of psph?") from None
+        raise NotThere(f"{path}: {one_line(str(error))}; is it a table of psph?") from None

@@ -13,7 +13,7 @@ from psph.errors import LONGEST_QUOTE, one_line, shortened
 from psph.output.checkpoint import COPY, Saved, checkpoints, half_written, remove_checkpoints
 from psph.output.errors import OutputError, together
 from psph.output.gauges import gauges_of
-from psph.output.pictures import remove_pictures
+from psph.output.pictures.names import remove_pictures
 from psph.output.tables import ERRORS, LOG, PROBES
 from psph.run.post_mortem import PICTURE, REPORT, remove_post_mortem
 

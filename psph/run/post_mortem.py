@@ -32,7 +32,7 @@ def write_post_mortem(
     path = Path(folder) / REPORT
     with together(simulation.comm, path):
         if simulation.comm.rank == 0:
-            from psph.output import closeup  # late: what draws takes a while, and most runs are well
+            from psph.output.pictures import closeup  # late: what draws takes a while, and most runs are well
 
             closeup.draw(
                 path.with_name(PICTURE),

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from psph.output.errors import OutputError
+from psph.output.errors import NotThere
 from psph.output.frames import FrameFile
 from psph.output.reader import Run
 
@@ -18,7 +18,7 @@ def one_frame(folder, alone, name="tank.h5"):
 def test_frames_count_from_both_ends(tmp_path, alone):
     run = one_frame(tmp_path, alone)
     assert run.frame(0)["id"].tolist() == run.frame(-1)["id"].tolist() == [0, 1, 2]
-    with pytest.raises(OutputError, match="frame: 7 is not one of the 1 frames so far"):
+    with pytest.raises(NotThere, match="frame: 7 is not one of the 1 frames so far"):
         run.frame(7)
 
 
@@ -55,11 +55,11 @@ def test_other_hdf5_files_beside_the_frames_do_not_matter(tmp_path, alone):
 def test_folder_of_no_run_is_one_line(tmp_path, files, message):
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
-    with pytest.raises(OutputError, match=message):
+    with pytest.raises(NotThere, match=message):
         Run(tmp_path)
 
 
 def test_file_that_is_no_hdf5_is_one_line(tmp_path):
     (tmp_path / "a.h5").write_bytes(b"nothing")
-    with pytest.raises(OutputError, match="a.h5: cannot be read: .*; is it a file of psph"):
+    with pytest.raises(NotThere, match="a.h5: cannot be read: .*; is it a file of psph"):
         Run(tmp_path).times  # noqa: B018

@@ -14,7 +14,7 @@ from run.resuming import steps
 
 from psph.case import load
 from psph.output.checkpoint import checkpoints
-from psph.output.closeup import _slice
+from psph.output.pictures.closeup import _slice
 from psph.output.reader import Run
 from psph.run.advice import _friction
 from psph.run.guards import EVERY

@@ -13,7 +13,7 @@ from psph.lab.battery.verdicts import Row, judged
 from psph.lab.errors import BatteryError
 from psph.lab.maps.tables import write
 from psph.lab.study.runs import perform
-from psph.output.errors import OutputError
+from psph.output.errors import NotThere
 from psph.output.reader import Run
 
 CASES = Path(psph.__file__).parents[1] / "run" / "cases" / "hard"
@@ -93,7 +93,7 @@ def _run(comm, trial: Trial, column: str, folder: Path) -> Row | None:
 def _has_frames(place: Path) -> bool:
     try:
         return len(Run(place).times) > 0
-    except OutputError:
+    except NotThere:
         return False
 
 

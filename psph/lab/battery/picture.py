@@ -11,7 +11,7 @@ from psph.fields import FLUID
 from psph.lab.battery.tables import cell, columns_of
 from psph.lab.battery.trials import Trial
 from psph.lab.battery.verdicts import BLEW_UP, FAILS, GOOD, HOLDS, REFUSED, VERDICTS, Row
-from psph.output import style
+from psph.output.pictures import style
 
 PICTURE = "battery.png"
 

@@ -12,7 +12,7 @@ from matplotlib.ticker import NullLocator
 
 from psph.lab.maps.survey import Row
 from psph.lab.maps.tables import UNIT
-from psph.output import style
+from psph.output.pictures import style
 from psph.theory.stability import STATES
 from psph.theory.stability.windows import SMOOTHINGS, STEP
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from matplotlib.ticker import LogLocator, NullLocator
 
 from psph.lab.study.ladder import SPACING, toml
-from psph.output import style
+from psph.output.pictures import style
 
 WIDTH, HEIGHT = 6.4, 4.0
 """Of the diagram, inches."""

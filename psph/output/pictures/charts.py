@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from psph.output import style
+from psph.output.pictures import style
 from psph.output.probes import FRONT, MEASURED
 from psph.output.reader import Run
 

@@ -9,11 +9,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from psph.output.errors import OutputError, cause
+
 INK, PALE, WALLS = "#22262b", "#6b7280", "#c3c8cf"
 LINES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Okabe and Ito (2008): colours that colour-blind readers can distinguish."""
 LEFT, RIGHT, TOP, BOTTOM = 0.8, 1.1, 0.8, 0.6
 """Margins, inches."""
+DPI = 160
+"""Pixels of a picture per inch."""
 _LOOK = {
     "font.size": 9,
     "text.color": INK,
@@ -43,10 +47,10 @@ def look():
     return matplotlib.rc_context(_LOOK)
 
 
-def sheet(width: float, height: float, title: str, subtitle: str) -> Figure:
+def sheet(width: float, height: float, title: str, subtitle: str, dpi: int = DPI) -> Figure:
     """An empty page, inches, with its title at the top left; wide enough for that."""
     width = max(width, LEFT + 0.105 * len(title) + 0.3)
-    figure = Figure(figsize=(width, height), facecolor="white")
+    figure = Figure(figsize=(width, height), facecolor="white", dpi=dpi)
     FigureCanvasAgg(figure)
     place = {"x": LEFT / width, "ha": "left", "va": "baseline"}
     figure.text(y=1 - 0.36 / height, s=title, fontsize=12, fontweight="bold", **place)
@@ -70,12 +74,20 @@ def ticks(axis, count: int) -> None:
     if axis.axis_name == "x":
         count = max(1, min(count, int(width(axis.axes) / 0.5)))
     axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]))
-    axis.set_major_formatter(lambda number, _: f"{number:.6g}".replace("-", "−"))
+    axis.set_major_formatter(lambda value, _: number(value))
+
+
+def number(value: float) -> str:
+    """A number of a scale, written short."""
+    return f"{value:.6g}".replace("-", "−")
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Write the PNG file and return its path."""
-    figure.savefig(path, dpi=160)
+    """Write the PNG file and return its path.  OutputError where that fails."""
+    try:
+        figure.savefig(path)
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {cause(error)}; check the folder") from None
     return path
 
 

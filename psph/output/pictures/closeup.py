@@ -8,8 +8,9 @@ from matplotlib.colors import Normalize
 from matplotlib.patches import Circle
 
 from psph.fields import FLUID
-from psph.output import style
-from psph.output.plot import circles
+from psph.output.pictures import style
+from psph.output.pictures.flat import circles
+from psph.output.pictures.scale import SIGNS
 
 SIZE = 4.6
 """Of the panel, inches."""
@@ -44,13 +45,13 @@ def draw(path: Path, title: str, time: float, scene, around, offset, column: int
             axes.set_ylim(place[up] - reach, place[up] + reach)
             spots = place[[across, up]] + offset[:, [across, up]]
             circles(axes, spots[seen & ~fluid], scene.spacing, facecolors=style.WALLS)
-            drawn = circles(axes, spots[seen & fluid], scene.spacing, norm=norm, cmap="coolwarm")
+            drawn = circles(axes, spots[seen & fluid], scene.spacing, norm=norm, cmap=SIGNS)
             drawn.set_array(pressure[seen & fluid] * factor)
             velocity = around.shown("velocity")[:, [across, up]]
             _arrows(axes, spots, velocity, seen & fluid, scene.spacing)
             _mark(axes, spots[column], scene)
             bar = style.panel(figure, style.LEFT + SIZE + 0.15, style.TOP, 0.13, SIZE)
-            colours = figure.colorbar(ScalarMappable(norm, "coolwarm"), cax=bar, extend="both")
+            colours = figure.colorbar(ScalarMappable(norm, SIGNS), cax=bar, extend="both")
             colours.outline.set_visible(False)
             colours.set_label(f"pressure ({unit})")
             axes.set_ylabel(f"{'xyz'[up]} (m)")

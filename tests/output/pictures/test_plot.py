@@ -4,10 +4,12 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from psph.output import charts, style
-from psph.output.errors import OutputError
+from psph.output.errors import NotThere
 from psph.output.frames import FrameFile
-from psph.output.plot import Show, overview, plot
+from psph.output.pictures import charts, style
+from psph.output.pictures.flat import Slice
+from psph.output.pictures.plot import overview, plot
+from psph.output.pictures.show import Show
 from psph.output.reader import Run
 from psph.output.tables import CsvTable
 
@@ -21,6 +23,8 @@ spacing = 0.1
 end = 1.0
 [physics.gravity]
 acceleration = {gravity}
+[fluids.water]
+density = 1000.0
 [probes.P1]
 position = [0.5, 0.1]
 theory = {{ pressure = 3920.0, velocity = [0.0, 1.0] }}
@@ -32,7 +36,8 @@ def box(*cells):
     places = [np.arange(count) * 0.1 + 0.05 for count in cells]
     position = np.stack([grid.ravel() for grid in np.meshgrid(*places, indexing="ij")], axis=-1)
     wall = (position[:, 0] < 0.1) | (position[:, 0] > 0.1 * cells[0] - 0.1)
-    return {"position": position, "kind": wall.astype(np.uint8)}
+    kind = wall.astype(np.uint8)
+    return {"position": position, "kind": kind, "group": kind, "id": np.arange(len(kind))}
 
 
 @pytest.fixture
@@ -96,17 +101,20 @@ def test_particle_has_its_colour_at_its_place(tank):
     figure = show.picture([0])
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())
-    frame = show.frames[0]
+    frame = show.frame(0)
     across, down = figure.axes[0].transData.transform(frame["position"]).T
     seen = pixels[np.round(len(pixels) - 1 - down).astype(int), np.round(across).astype(int)]
-    colours = matplotlib.colormaps["viridis"](show.scale.norm(frame["pressure"]))
+    colours = matplotlib.colormaps["viridis"](show.scale.norm(frame["values"]))
     colours[frame["kind"] == 1] = matplotlib.colors.to_rgba(style.WALLS)
     assert np.abs(seen / 255 - colours).max() < 0.01
 
 
 def test_speed_is_the_size_of_the_velocity(tank):
     fast, same = (Show(tank, [0.0], field) for field in ("speed", "velocity"))
-    assert fast.field == same.field == "velocity" and fast.scale.norm.vmax == same.scale.norm.vmax
+    assert (
+        fast.quantity.name == same.quantity.name == "velocity"
+        and fast.scale.norm.vmax == same.scale.norm.vmax
+    )
     names = {path.name for path in plot(tank.folder, [0.0], "speed")}
     assert "velocity_00000.png" in names and not any("speed" in name for name in names)
 
@@ -122,7 +130,7 @@ def test_title_tells_case_field_and_time(tank):
         (lambda x: 5000 * x, "viridis", 0.0, 5000.0),  # near zero: from zero
         (lambda x: 1000 + x, "viridis", 1000.0, 1001.0),
         (lambda x: -1000 - x, "viridis", -1001.0, -1000.0),
-        (lambda x: 30 * x - 10, "coolwarm", -20.0, 20.0),  # both signs: around zero
+        (lambda x: 30 * x - 10, "viridis", -10.0, 20.0),  # the same colours whatever the signs
         (lambda x: 100 * x - 2, "viridis", 0.0, 98.0),  # hardly below zero
         (lambda x: 0 * x - 2500, "viridis", -2525.0, -2475.0),  # uniform
     ],
@@ -147,35 +155,43 @@ def test_run_that_blew_up_can_still_be_seen(run_with, alone):
     for k, thrown in enumerate([box(20, 10), arrays]):
         frames.write(k, 0.1 * k, k, thrown | {"pressure": pressure})
     show = Show(run, None, "pressure")
-    assert show.view.upper == pytest.approx([4.0, 2.0], abs=0.06)
+    assert show.panel.upper == pytest.approx([4.0, 2.0], abs=0.06)
     assert show.scale.norm.vmax < 1e4
     assert show.scale.extend == "max"
     lost = {name: np.full_like(rows, np.nan) for name, rows in broken.items()}
     frames.write(2, 0.2, 2, lost | {"kind": arrays["kind"]})
-    assert Show(run, [0.2], "pressure").view.upper == pytest.approx([2.0, 1.0])
+    assert Show(run, [0.2], "pressure").panel.upper == pytest.approx([4.0, 2.0], abs=0.06)
     plot(run.folder)
 
 
-def test_slice_is_the_middle_layer_seen_against_gravity(run_with):
+def test_slice_is_the_layer_at_its_place_seen_against_gravity(run_with):
     arrays = box(10, 4, 3)
-    show = Show(run_with(arrays, arrays["position"][:, 0]), None, "pressure")
-    view = show.view
-    assert (view.across, view.up, view.cut) == (0, 2, 1)
-    assert view.place == pytest.approx(0.15)
-    assert len(show.frames[0]["position"]) == 30
-    assert view.upper == pytest.approx([1.0, 0.3])
-    show = Show(run_with(arrays, arrays["kind"], gravity=[0, -9.8, 0]), None, "pressure")
-    assert (show.view.across, show.view.up, show.view.cut) == (0, 1, 2)
-    assert show._subtitle([0]) == "pressure, slice at z = 0.15 m, t = 0.00 s"
+    run = run_with(arrays, arrays["position"][:, 0])
+    show = Show(run, None, "pressure", Slice(1, 0.15))
+    assert (show.panel.across, show.panel.up) == (0, 2)
+    assert show.frame(0)["position"][:, 1] == pytest.approx(np.full(30, 0.15))
+    assert show.panel.upper == pytest.approx([1.0, 0.3])
+    assert show._subtitle([0]) == "pressure, slice at y = 0.15 m, t = 0.00 s"
+    seen = Show(run, None, "pressure", Slice(0, 0.83)).frame(0)["position"]
+    assert seen[:, 0] == pytest.approx(np.full(12, 0.85))
+    between = Show(run, None, "pressure", Slice(2, 0.1))  # half-way between two layers: one of them
+    assert between.frame(0)["position"][:, 2] == pytest.approx(np.full(40, 0.15))
+    assert (between.panel.across, between.panel.up) == (0, 1)  # seen from above
+    show = Show(run_with(arrays, arrays["kind"], gravity=[0, -9.8, 0]), None, "pressure", Slice(2, 0.15))
+    assert (show.panel.across, show.panel.up) == (0, 1)
+    names = [path.name for path in plot(run.folder, [0.0], cut=Slice(1, 0.15))]
+    assert names == ["pressure_slice_00000.png", "overview.png"]
 
 
 def test_what_cannot_be_drawn_is_one_line(tank, tmp_path, alone):
-    with pytest.raises(OutputError, match="field: colour is not saved; choose one of kind, position"):
+    with pytest.raises(
+        NotThere, match="field: colour is not saved; choose one of .*kind, position.*, vorticity"
+    ):
         plot(tank.folder, field="colour")
-    with pytest.raises(OutputError, match="--times 9: there are frames from 0 to 1 s; give times between"):
+    with pytest.raises(NotThere, match="--times 9: there are frames from 0 to 1 s; give times between"):
         plot(tank.folder, times=[0.5, 9.0])
     FrameFile(tank.path, alone, {"case": ""})
-    with pytest.raises(OutputError, match="tank.h5: no frame yet"):
+    with pytest.raises(NotThere, match="tank.h5: no frame yet"):
         plot(tank.folder)
 
 

@@ -1,0 +1,124 @@
+"""Particles as circles in a plane: a flow in 2D, a slice of one in 3D; in 1D a curve."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
+
+from psph.case.keys import AXES
+from psph.errors import Refused, one_line
+from psph.fields import FLUID
+from psph.output.errors import NotThere
+from psph.output.pictures import style
+from psph.output.pictures.scale import Scale
+from psph.output.pictures.view import Room, on_page
+
+TELLING = 4.0
+"""Size in points (1/72 inch) above which single particles are visible."""
+
+
+class Slice(NamedTuple):
+    """The plane across ``axis`` at ``place`` m."""
+
+    axis: int
+    place: float
+
+
+def slice_of(text: str) -> Slice:
+    """What ``y=0.5`` asks for.  Refused if it is not an axis and a number."""
+    name, _, place = text.partition("=")
+    try:
+        if name in AXES and math.isfinite(float(place)):
+            return Slice(AXES.index(name), float(place))
+    except ValueError:
+        pass
+    raise Refused(
+        one_line(f"plot --slice {text}: not a plane; write an axis and a place in m, such as y=0.5")
+    )
+
+
+class Flat:
+    """The particles of a room in a plane; of a room in 3D those within half a spacing of ``cut``.
+
+    Raises NotThere if the room does not reach there.
+    """
+
+    def __init__(self, room: Room, cut: Slice | None = None):
+        self.room, self.cut = room, cut
+        self.variant, self.remark = "", ""
+        level = room.level
+        if cut is not None:
+            if not room.lower[cut.axis] <= cut.place <= room.upper[cut.axis]:
+                low, high = room.lower[cut.axis], room.upper[cut.axis]
+                raise NotThere(
+                    f"plot --slice {AXES[cut.axis]}={cut.place:g}: there are particles from {low:.4g} to "
+                    f"{high:.4g} m; give a place between these"
+                )
+            self.variant, self.remark = "slice", f"slice at {AXES[cut.axis]} = {cut.place:.3g} m"
+            level = tuple(axis for axis in level if axis != cut.axis)
+        up = room.up if cut is None or room.up != cut.axis else level[-1]
+        self.up, self.across = (0, 0) if room.dimensions == 1 else (up, level[0])
+        axes = [self.across, self.up]
+        self.lower, self.upper = room.lower[axes], room.upper[axes]
+        self.keyed = room.dimensions > 1  # in 1D the height carries the values
+
+    @property
+    def aspect(self) -> float:
+        """Width over height."""
+        width, height = self.upper - self.lower
+        return 2.0 if self.room.dimensions == 1 else width / height
+
+    def of(self, frame: dict) -> dict:
+        """The visible particles of ``frame``."""
+        if self.cut is None:
+            return frame
+        half = self.room.spacing / 2
+        # Of a lattice with a plane half-way between two of its layers, the upper one alone is seen.
+        off = (frame["position"][:, self.cut.axis] - self.cut.place) / half
+        seen = (off > -1 + 1e-6) & (off <= 1 + 1e-6)
+        return {name: rows[seen] for name, rows in frame.items()}
+
+    def draw(self, axes: Axes, frame: dict, scale: Scale, first: bool, last: bool) -> None:
+        """One frame; the ``first`` panel of a row and the ``last`` of a column have labels."""
+        spacing, values = self.room.spacing, frame["values"] * scale.factor
+        fluid = frame["kind"] == FLUID
+        axes.set_xlim(self.lower[0], self.upper[0])
+        if self.room.dimensions == 1:
+            _dots(axes, frame["position"][:, 0], values, fluid)
+            axes.set_ylim(*_padded(scale.norm.vmin, scale.norm.vmax))
+        else:
+            places = frame["position"][:, [self.across, self.up]]
+            circles(axes, places[~fluid], spacing, facecolors=style.WALLS)
+            drawn = circles(axes, places[fluid], spacing, norm=scale.norm, cmap=scale.colours)
+            drawn.set_array(values[fluid])
+            axes.set_ylim(self.lower[1], self.upper[1])
+        style.ticks(axes.xaxis, 5)
+        style.ticks(axes.yaxis, 5)
+        axes.spines[["bottom", "left"]].set_position(("outward", 4))
+        axes.tick_params(labelleft=first, labelbottom=last)
+        if first:
+            axes.set_ylabel(scale.label if self.room.dimensions == 1 else on_page(self.up))
+        if last:
+            axes.set_xlabel(on_page(self.across))
+
+
+def circles(axes: Axes, places: np.ndarray, spacing: float, **colours) -> EllipseCollection:
+    """Particles as circles that touch, or that leave no gap where they are too small to tell."""
+    lower, upper = axes.get_xlim()
+    points = 72 * style.width(axes) / (upper - lower) * spacing
+    size = np.full(len(places), spacing * (1.05 if points > TELLING else 1.42))
+    shape = {"units": "xy", "offsets": places, "offset_transform": axes.transData, "lw": 0}
+    smooth = points > 1.0  # circles of about a pixel would make a pattern of their own
+    drawn = EllipseCollection(size, size, 0 * size, antialiaseds=smooth, **shape, **colours)
+    return axes.add_collection(drawn, autolim=False)
+
+
+def _dots(axes: Axes, places: np.ndarray, values: np.ndarray, fluid: np.ndarray) -> None:
+    for chosen, colour in ((~fluid, style.WALLS), (fluid, style.LINES[0])):
+        axes.plot(places[chosen], values[chosen], ".", ms=4, mew=0, color=colour)
+
+
+def _padded(low: float, high: float) -> tuple[float, float]:
+    return low - 0.06 * (high - low), high + 0.06 * (high - low)

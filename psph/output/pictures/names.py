@@ -1,0 +1,33 @@
+"""Names of the pictures that ``plot`` draws into the folder of a run."""
+
+import re
+from pathlib import Path
+
+from psph.fields import SAVED
+
+OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
+
+DERIVED = ("vorticity",)
+"""Fields that frames do not hold, and pictures show."""
+VARIANTS = ("surface", "slice")
+"""Other ways to show a field than the usual one."""
+
+_FIELDS = "|".join([*(field.name for field in SAVED), *DERIVED])
+_DRAWN = re.compile(rf"(?:{_FIELDS})(?:_(?:{'|'.join(VARIANTS)}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")
+
+
+def name_of(field: str, variant: str, frame: int) -> str:
+    """The picture of a field in a frame: ``pressure_00012.png``, ``pressure_slice_00012.png``."""
+    return f"{stem_of(field, variant)}_{frame:05d}.png"
+
+
+def stem_of(field: str, variant: str) -> str:
+    """The name of a film of a field, without its ending."""
+    return f"{field}_{variant}" if variant else field
+
+
+def remove_pictures(folder: Path) -> None:
+    """Remove what ``plot`` has drawn of an earlier run; other pictures belong to somebody else."""
+    for path in folder.iterdir():
+        if path.name in (OVERVIEW, PROBES, LOG) or _DRAWN.fullmatch(path.name):
+            path.unlink()

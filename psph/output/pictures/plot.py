@@ -1,0 +1,59 @@
+"""What ``plot`` draws of a run: a field at chosen times, the probes, the log, an overview; or a film."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from psph.output.pictures import charts, names, style
+from psph.output.pictures.flat import Slice
+from psph.output.pictures.show import Show
+from psph.output.progress import told
+from psph.output.reader import Run
+
+
+def plot(
+    folder: Path,
+    times: Sequence[float] | None = None,
+    field: str = "pressure",
+    cut: Slice | None = None,
+    smooth: bool = False,
+) -> list[Path]:
+    """Draw ``field`` at ``times`` (s; four over the run), probes, log and overview as PNG files.
+
+    They stand in ``folder``; their paths are returned.  ``cut`` and ``smooth``: see :class:`Show`.  Raises
+    Refused if there is nothing to draw, no such field, or no means to draw it.
+    """
+    show = Show(Run(folder), times, field, cut, smooth)
+    name, variant = show.quantity.name, show.panel.variant
+    made = {
+        names.name_of(name, variant, k): show.picture([k]) for k in told(show.chosen, "drawing", "pictures")
+    }
+    if column := charts.probe_charts(show.run, show.case):
+        made[names.PROBES] = charts.picture(column, show.title, "probes")
+    if column := charts.log_charts(show.run, show.case["space"]["dimensions"]):
+        made[names.LOG] = charts.picture(column, show.title, "log")
+    made[names.OVERVIEW] = show.overview()
+    return [style.save(figure, show.run.folder / name) for name, figure in made.items()]
+
+
+def overview(folder: Path, times: Sequence[float] | None = None, field: str = "pressure") -> Path:
+    """Draw ``overview.png``: ``field`` at ``times`` side by side, below what probes read of it."""
+    show = Show(Run(folder), times, field)
+    return style.save(show.overview(), show.run.folder / names.OVERVIEW)
+
+
+def film(
+    folder: Path,
+    path: Path | None,
+    times: Sequence[float] | None = None,
+    field: str = "pressure",
+    cut: Slice | None = None,
+    smooth: bool = False,
+) -> str:
+    """Film ``field`` from the least to the greatest of ``times`` s, or all frames; what was made, in words.
+
+    ``path`` ends with .gif or .mp4; without it the film stands in ``folder``.
+    """
+    from psph.output.pictures.film import film_of, kind_of
+
+    kind_of(path)
+    return film_of(Show(Run(folder), times, field, cut, smooth), path, times is None)

@@ -1,0 +1,91 @@
+"""What is shown of a frame: a saved field, or one that follows from several."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.fields import FLUID
+from psph.output.errors import NotThere
+from psph.output.pictures.vorticity import vorticity
+from psph.output.reader import Run
+
+VELOCITY, SPEED, VORTICITY, GROUP = "velocity", "speed", "vorticity", "group"
+"""The field, its size under the name that people use, its curl, and the number of a fluid or wall."""
+SAMPLES, FEW_SAMPLES = 24, 4
+"""Frames over a run that the limits of the colours are taken from; those of a field that takes long."""
+MATERIALS = ("fluids", "walls")
+"""Tables of a case whose names ``group`` counts, in this order."""
+
+
+class Quantity(NamedTuple):
+    """Something to colour by: ``values`` (n,) in ``unit`` of a frame that holds the fields ``reads``.
+
+    ``name`` stands in the names of files.  ``signed``: its sign matters as much as its size: zero is in the
+    middle of its colours.  ``names`` has those of the fluids where it counts them.
+    """
+
+    name: str
+    title: str
+    unit: str
+    reads: tuple[str, ...]
+    values: Callable[[dict], np.ndarray]
+    signed: bool = False
+    names: tuple[str, ...] = ()
+    samples: int = SAMPLES
+
+
+def quantity(run: Run, case: dict, field: str) -> Quantity:
+    """What ``field`` asks for.  NotThere if the frames do not have it."""
+    match field:
+        case "velocity" | "speed":
+            return Quantity(VELOCITY, SPEED, run.unit(VELOCITY), (VELOCITY,), _size_of(VELOCITY))
+        case "vorticity":
+            return _vorticity(case)
+        case "group":
+            return Quantity(GROUP, "fluid", "", (GROUP,), _size_of(GROUP), names=tuple(case["fluids"]))
+    saved = run.fields
+    if field not in saved:
+        known = ", ".join([*saved, SPEED, VORTICITY])
+        raise NotThere(f"{run.path}: field: {field} is not saved; choose one of {known}")
+    return Quantity(field, field.replace("_", " "), run.unit(field), (field,), _size_of(field))
+
+
+def _size_of(field: str) -> Callable[[dict], np.ndarray]:
+    """The field as one number per particle; the length of a vector."""
+
+    def values(frame: dict) -> np.ndarray:
+        rows = frame[field].astype(float)
+        return np.linalg.norm(rows, axis=1) if rows.ndim == 2 else rows
+
+    return values
+
+
+def _vorticity(case: dict) -> Quantity:
+    """ω of the fluid: its component out of the plane in 2D, its size in 3D.  NotThere in 1D."""
+    space = case["space"]
+    dimensions = space["dimensions"]
+    if dimensions == 1:
+        raise NotThere("plot --field vorticity: a flow along one axis has none; choose another field")
+    periods = periods_of(case)
+    rest = np.array([material["density"] for material in case["fluids"].values()])
+
+    def values(frame: dict) -> np.ndarray:
+        fluid = frame["kind"] == FLUID
+        volume = rest[frame["group"][fluid]] / frame["density"][fluid] * space["spacing"] ** dimensions
+        reach = 2.0 * space["smoothing"] * space["spacing"]
+        omega = vorticity(frame["position"][fluid], frame["velocity"][fluid], volume, reach, periods)
+        found = np.full(len(fluid), np.nan)
+        found[fluid] = omega if omega.ndim == 1 else np.linalg.norm(omega, axis=1)
+        return found
+
+    reads = (VELOCITY, "density", "group")
+    plane = dimensions == 2
+    return Quantity(VORTICITY, VORTICITY, "1/s", reads, values, signed=plane, samples=FEW_SAMPLES)
+
+
+def periods_of(case: dict) -> list[float]:
+    """The period of each axis, m; 0 where it does not repeat."""
+    space = case["space"]
+    repeats = ["xyz"[d] in space.get("periodic", ()) for d in range(space["dimensions"])]
+    return [space["upper"][d] - space["lower"][d] if again else 0.0 for d, again in enumerate(repeats)]

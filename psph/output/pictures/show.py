@@ -1,0 +1,183 @@
+"""A quantity of a run on pages: one scale and one view for all of its frames."""
+
+import tomllib
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from psph.case.keys import AXES
+from psph.errors import Refused
+from psph.fields import FLUID
+from psph.output.errors import NotThere
+from psph.output.pictures import charts, style
+from psph.output.pictures.flat import Flat, Slice
+from psph.output.pictures.quantities import quantity
+from psph.output.pictures.scale import Scale, scale_of
+from psph.output.pictures.view import Panel, box_around, room_of, spread
+from psph.output.progress import told
+from psph.output.reader import Run
+
+LARGEST = (7.6, 5.6)
+"""Width and height that all panels together may take, inches."""
+GAP, HEADING = 0.3, 0.3
+"""Between two panels, and above each of several for its time, inches."""
+EDGE = 0.3
+"""To the right of panels without a key, inches."""
+CHART = charts.HEIGHT + 0.8
+"""Of a chart with its title and what stands between it and the panels, inches."""
+VALUES = 100_000
+"""Of a frame, at most, that the limits of the colours are taken from."""
+
+
+class Glance(NamedTuple):
+    """What a sample of a run's frames says: the ``box`` (2, dim) around its particles, m, those around each
+    group in 3D, and ``values`` of the fluid."""
+
+    box: np.ndarray
+    groups: dict[int, np.ndarray]
+    values: np.ndarray
+
+
+class Show:
+    """A field of a run, in the frames nearest to ``times`` in s, or in four over the run.
+
+    ``cut``: in 3D, a slice; else the whole scene, ``smooth`` with the surface of its fluid.  Raises NotThere
+    where a frame, the field or the place is not there.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        times: Sequence[float] | None,
+        field: str,
+        cut: Slice | None = None,
+        smooth: bool = False,
+    ):
+        self.run, self.times = run, run.times
+        if not len(self.times):
+            raise NotThere(f"{run.path}: no frame yet; wait for the first one")
+        self.case = tomllib.loads(run.case_text)
+        self.title = self.case.get("title") or run.path.stem
+        self._solid = _refuse_in_a_plane(self.case["space"]["dimensions"], cut, smooth)
+        self.quantity = quantity(run, self.case, field)
+        self.chosen = self._chosen(times)
+        self.frame = lru_cache(maxsize=1)(self._frame)
+        self.panel, self.scale = self._panel_and_scale(cut, smooth)
+
+    def _frame(self, k: int) -> dict:
+        """The visible particles of a frame, with their ``values``."""
+        return self.panel.of(self._whole(k))
+
+    def _whole(self, k: int) -> dict:
+        reads = {"position", "kind", *self.quantity.reads, *(("group", "id") if self._solid else ())}
+        frame = self.run.frame(k, *reads)
+        return frame | {"values": self.quantity.values(frame)}
+
+    def _panel_and_scale(self, cut: Slice | None, smooth: bool) -> tuple[Panel, Scale]:
+        if self._solid:
+            from psph.output.pictures import solid
+
+            solid.pyvista()  # missing, it is missed before any work
+        sample = spread(len(self.times), self.quantity.samples)
+        glances = [self._glance(k) for k in told(sample, "looking at the run", "frames")]
+        scale = scale_of(self.quantity, [glance.values for glance in glances])
+        room = room_of(self.case, [glance.box for glance in glances])
+        if not self._solid:
+            return Flat(room, cut), scale
+        return solid.scene(
+            self.case, self._whole(0), room, [glance.groups for glance in glances], smooth
+        ), scale
+
+    def _glance(self, k: int) -> Glance:
+        frame = self._whole(k)
+        places, values = frame["position"], frame["values"][frame["kind"] == FLUID]
+        groups = np.unique(frame["group"]).tolist() if self._solid else []
+        boxes = {group: box_around(places[frame["group"] == group]) for group in groups}
+        return Glance(box_around(places), boxes, values[:: len(values) // VALUES + 1])
+
+    def _chosen(self, times: Sequence[float] | None) -> list[int]:
+        """The frames nearest to ``times`` s, each once.  NotThere before the first or beyond the last."""
+        first, last = float(self.times[0]), float(self.times[-1])
+        if times is None:
+            times = np.linspace(first, last, 4).tolist()
+        half = 0.5 * (last - first) / max(len(self.times) - 1, 1)
+        for time in times:
+            if not first - half <= time <= last + half:
+                raise NotThere(
+                    f"{self.run.path}: --times {time:g}: there are frames from {first:g} to {last:g} s; "
+                    "give times between these"
+                )
+        return sorted({int(np.abs(self.times - time).argmin()) for time in times})
+
+    def overview(self) -> Figure:
+        """All chosen frames and the chart of the probes that read the field."""
+        below = charts.probe_charts(self.run, self.case)
+        return self.picture(self.chosen, [chart for chart in below if chart.title == self.quantity.name])
+
+    def picture(
+        self, chosen: Sequence[int], below: Sequence[charts.Chart] = (), dpi: int = style.DPI
+    ) -> Figure:
+        """The frames ``chosen`` in panels of one size, and charts over the full width below."""
+        panel = self.panel
+        columns, width, height = _grid(len(chosen), panel.aspect)
+        heading = HEADING if len(chosen) > 1 else 0.0
+        pitch = heading + height + GAP
+        top = style.TOP - heading / 2
+        full = columns * (width + GAP) - GAP
+        bottom = top + -(-len(chosen) // columns) * pitch - GAP
+        right = self.scale.width if panel.keyed else EDGE
+        page = style.LEFT + full + right, bottom + style.BOTTOM + len(below) * CHART
+        with style.look():
+            figure = style.sheet(*page, self.title, self._subtitle(chosen), dpi)
+            for n, k in enumerate(chosen):
+                row, column = divmod(n, columns)
+                place = style.LEFT + column * (width + GAP), top + row * pitch + heading
+                axes = style.panel(figure, *place, width, height)
+                last = n + columns >= len(chosen)
+                panel.draw(axes, self.frame(k), self.scale, column == 0, last)
+                if heading:
+                    axes.set_title(self._moment(k), loc="left", size=9)
+            if panel.keyed:
+                place = style.LEFT + full + 0.15, top + heading
+                self.scale.draw_key(figure, style.panel(figure, *place, 0.13, bottom - top - heading))
+            for n, chart in enumerate(below, 1):
+                place = style.LEFT, bottom + n * CHART - charts.HEIGHT
+                charts.draw(style.panel(figure, *place, full, charts.HEIGHT), chart)
+        return figure
+
+    def _moment(self, k: int) -> str:
+        return style.moment(self.times[k], self.case["time"]["end"])
+
+    def _subtitle(self, chosen: Sequence[int]) -> str:
+        parts = [self.quantity.title]
+        if self.panel.remark:
+            parts.append(self.panel.remark)
+        if len(chosen) == 1:
+            parts.append(self._moment(chosen[0]))
+        return ", ".join(parts)
+
+
+def _refuse_in_a_plane(dimensions: int, cut: Slice | None, smooth: bool) -> bool:
+    """Whether it is a scene in 3D.  Refused: what only that has, of another."""
+    if dimensions < 3 and (cut is not None or smooth):
+        asked = "--surface" if smooth else f"--slice {AXES[cut.axis]}={cut.place:g}"
+        raise Refused(f"plot {asked}: the run has {dimensions} dimensions; leave it out")
+    if cut is not None and smooth:
+        raise Refused("plot --surface: a slice has none; leave --slice or --surface out")
+    return dimensions == 3 and cut is None
+
+
+def _grid(count: int, aspect: float) -> tuple[int, float, float]:
+    """Columns, and width and height of a panel, so that ``count`` panels are as large as can be."""
+    best = (0, 0.0, 0.0)
+    for columns in range(1, count + 1):
+        rows = -(-count // columns)
+        width = (LARGEST[0] - (columns - 1) * GAP) / columns
+        height = (LARGEST[1] - (rows - 1) * (GAP + HEADING)) / rows
+        width = min(width, height * aspect)
+        if width > best[1] * 1.02:
+            best = (columns, width, width / aspect)
+    return best
