@@ -1,6 +1,5 @@
 """Files beside a case that bring effects, motions or regions of their own: the key ``use``."""
 
-import hashlib
 import importlib.util
 import sys
 from collections.abc import Iterator, Sequence
@@ -8,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from psph.case.errors import CaseError, advise
+from psph.case.files import Unfit, beside
 from psph.case.parameters import last_part
 from psph.smoothing import KERNELS
 
@@ -107,11 +107,6 @@ def _register(file: str, name: str, kernel: str, kind: type) -> None:
     KERNELS[kernel] = kind
 
 
-def files_of(file: str, names: Sequence[str]) -> list[Path]:
-    """Where these files are."""
-    return [Path(file).parent / name for name in names]
-
-
 def versions(catalogue: "Catalogue") -> list[str]:
     """Names of the modules that files of a case brought, each with a digest of what stood in it."""
     brought = {entry.effect.__module__ for entries in catalogue for entry in entries}
@@ -119,23 +114,10 @@ def versions(catalogue: "Catalogue") -> list[str]:
 
 
 def _module(file: str, name: str):
-    path = Path(file).parent / name
-    if Path(name).is_absolute() or ".." in Path(name).parts or path.suffix != ".py":
-        raise CaseError(
-            [f"{file}: use: {name} is not a Python file in the case's folder or below; put it there"]
-        )
     try:
-        inside = path.resolve().is_relative_to(Path(file).parent.resolve())
-        if inside and path.exists() and not path.is_file():  # a pipe or a device might never end
-            raise CaseError([f"{file}: use: {path} is not a regular file; give a Python file"])
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()[:16] if inside else ""
-    except (OSError, RuntimeError) as error:  # not there, or links in a circle
-        why = getattr(error, "strerror", None) or error
-        raise CaseError([f"{file}: use: {path}: {why}; give a file that is there"]) from None
-    if not inside:
-        raise CaseError(
-            [f"{file}: use: {path} is a link to a file outside the case's folder; put the file itself there"]
-        )
+        path, digest = beside(Path(file).parent, name, "a Python file", (".py",))
+    except Unfit as says:
+        raise CaseError([f"{file}: use: {says}"]) from None
     named = f"{PREFIX}{path.stem}_{digest}"
     if named not in sys.modules:
         spec = importlib.util.spec_from_file_location(named, path)

@@ -96,7 +96,7 @@ def checked(file: str, data: dict[str, Any], overrides: Sequence[str] = (), opti
     catalogue = catalogue_of(file, names)
     model = case_model(catalogue)
     try:
-        return model.model_validate(data)
+        return model.model_validate(data, context=Path(file).parent)
     except ValidationError as error:
         raise CaseError(messages(error, data, model.model_json_schema(), source)) from None
 

@@ -11,8 +11,11 @@ import tomli_w
 from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
 from pydantic_core import PydanticCustomError
 
-from psph.case.consistency import contradictions
+from psph.case.consistency import contradictions, walk
+from psph.case.errors import dotted
+from psph.case.extensions import versions
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
+from psph.case.mesh import Mesh
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
 from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
@@ -239,6 +242,16 @@ class Case(Table):
     def name(self) -> str:
         """The file's name without folder and ending."""
         return Path(self._file).stem
+
+    @cached_property
+    def meshes(self) -> dict[str, Mesh]:
+        """The shapes that geometry files draw, by their dotted keys."""
+        return {dotted(loc): value for loc, value in walk(self) if isinstance(value, Mesh)}
+
+    @property
+    def versions(self) -> list[str]:
+        """A word for each file that the case uses: another content gives another word."""
+        return [*versions(self.catalogue), *(mesh.found.digest for mesh in self.meshes.values())]
 
     @cached_property
     def presets(self) -> dict[str, tuple[str, Any]]:

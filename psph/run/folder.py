@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from psph.case.extensions import files_of
+from psph.case.files import files_of
 from psph.errors import LONGEST_QUOTE, one_line, shortened
 from psph.output.checkpoint import COPY, Saved, checkpoints, half_written, remove_checkpoints
 from psph.output.errors import OutputError, together
@@ -141,8 +141,7 @@ def _clear(case, folder: Path) -> None:
 
 def _used(case, folder: Path) -> list[tuple[Path, bytes]]:
     """Where copies of the files that a case uses come to, and what stands in them."""
-    files = zip(case.use, files_of(case.file, case.use))
-    return [(folder / name, file.read_bytes()) for name, file in files]
+    return [(folder / name, path.read_bytes()) for name, path in files_of(case)]
 
 
 def _in_the_way(scene, folder: Path) -> str | None:

@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 
 from psph.case import CaseError, load
-from psph.case.extensions import versions
 from psph.errors import LONGEST_QUOTE, shortened
 from psph.output import checkpoint
 from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path, checkpoints
@@ -28,7 +27,7 @@ MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": Tru
 def case_digest(case) -> str:
     """Fingerprint of all of a case that its steps and the rows of its files rest on."""
     text = case.model_dump_json(by_alias=True, exclude=MAY_CHANGE)
-    text += "".join(versions(case.catalogue))  # what a file that it uses now says counts too
+    text += "".join(case.versions)  # what a file that it uses now says counts too
     return hashlib.sha256(text.encode()).hexdigest()
 
 

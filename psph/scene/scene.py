@@ -16,6 +16,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import Fixed, Free
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.lattice import TOLERANCE, lattice_around
+from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.shapes import bounds
@@ -32,12 +33,13 @@ class Scene:
     The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the
     domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
     hold a particle, ``planes`` its planes across ``axis``, ``mirror_planes`` its
-    mirrors; ``walls`` are those with particles, by name.
+    mirrors; ``walls`` are those with particles, by name; ``meshes`` the geometry files that draw shapes.
     """
 
     def __init__(self, case: Case):
         space = case.space
         self.case = case
+        self.meshes: tuple[Drawn, ...] = drawn(case)
         self.dimensions, self.spacing = space.dimensions, space.spacing
         self.smoothing_length = space.smoothing * space.spacing
         self.kernel = kernel(space.kernel, self.smoothing_length, space.dimensions)
@@ -106,6 +108,11 @@ class Scene:
     def census(self) -> Census:
         """Counts, extents and overlaps, from one visit of every site."""
         return take_census(self.layout, self.up)
+
+    @cached_property
+    def mesh_sites(self) -> tuple[int, ...]:
+        """How many sites each mesh holds."""
+        return tuple(sites_in(self, one) for one in self.meshes)
 
     @cached_property
     def expected_speed(self) -> float:

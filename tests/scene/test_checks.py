@@ -96,7 +96,7 @@ def test_overlapping_fluids_are_refused(tmp_path):
     [line] = refused(tmp_path, WATER + OIL.format(low=0.4))
     assert line == (
         "case.toml: fluids.oil.shape: overlaps fluids.water at [0.05, 0.45]; subtract "
-        "one from the other with difference"
+        "one from the other: shape = { difference = { from = ..., minus = [...] } }"
     )
     assert checked(tmp_path, WATER + OIL.format(low=0.5)) == []
 
