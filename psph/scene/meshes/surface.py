@@ -65,6 +65,8 @@ class Surface:
         """
         grid = self._off_the_faces(grid, tolerance)
         shape = np.broadcast_shapes(*(x.shape for x in grid))
+        if 0 in shape:
+            return np.zeros(shape, bool)
         across = [k for k in range(len(shape)) if grid[0].shape[k] > 1 or grid[1].shape[k] > 1]
         order = across + [k for k in range(len(shape)) if k not in across]
         lines, found = tuple(shape[k] for k in across), np.empty([shape[k] for k in order], np.int64)
