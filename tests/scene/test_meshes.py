@@ -250,7 +250,7 @@ def test_a_sheet_has_its_shell_behind_it_and_ends_where_it_ends(tmp_path):
 
 def test_a_sheet_encloses_nothing(tmp_path):
     body = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
-    with pytest.raises(MeshError, match="encloses nothing: 4 open edges around 1 holes.* give shell"):
+    with pytest.raises(MeshError, match="encloses nothing: 4 open edges around 1 hole as.* give shell"):
         held(shape_of(tmp_path, body), GRID)
 
 

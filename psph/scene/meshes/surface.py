@@ -132,7 +132,7 @@ def surface_of(mesh: Mesh) -> Surface:
     if not mesh.shell and surface.body.open:
         raise MeshError(
             f"encloses nothing: {surface.body.open_edges:,} open edges around {surface.body.holes:,} "
-            "holes as large as itself; give shell = a thickness in m, or close the surface"
+            f"hole{'s' * (surface.body.holes != 1)} as large as itself; give shell = a thickness in m, or close the surface"
         )
     return surface
 
@@ -164,7 +164,7 @@ def _body(found: Found) -> Body:
     """The surface of a file, made fit; each once in a process."""
     surface = weld(read(found.path))
     if not len(surface.faces):
-        raise MeshError("holds triangles without an area alone; export it again")
+        raise MeshError("holds triangles without an area alone; export it again, at its origin")
     about = turned(surface)
     sheet = _about(surface, about)
     rings = holes(sheet)
