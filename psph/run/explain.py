@@ -16,6 +16,7 @@ from psph.run.forecast import forecast, forecast_lines, pull, sites_within
 from psph.run.hints import hints
 from psph.run.outlay import output_lines
 from psph.run.outlook import outlook
+from psph.scene.meshes.report import described
 from psph.simulation.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
@@ -115,6 +116,8 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     for plane in scene.mirror_planes:
         sticks = "; the fluid sticks to it" if plane.sticks else ""
         yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
+    for line in described(scene):
+        yield f"  mesh        {line}"
     for region, _ in scene.regions:
         yield f"  region      {type(region).__name__}: {_first_line(region)}"
     for name, table in scene.tables.items():

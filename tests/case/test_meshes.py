@@ -25,7 +25,7 @@ def test_what_a_mesh_says(tmp_path):
     keys = (
         "move = [1.0, 2.0, 3.0], rotate = [{ axis = [0, 0, 1], degrees = 90 }], shell = 0.3, side = 'outside'"
     )
-    mesh = draft(tmp_path, with_keys(keys.replace("[0, 0, 1]", "[0.0, 0.0, 1.0]"))).walls["post"].shape.form
+    mesh = draft(tmp_path, with_keys(keys)).walls["post"].shape.form
     assert (mesh.file, mesh.scale, mesh.move) == ("parts/post.stl", 0.001, (1.0, 2.0, 3.0))
     assert (mesh.shell, mesh.side, mesh.fill) == (0.3, "outside", None)
     [turn] = mesh.rotate

@@ -105,7 +105,7 @@ def test_a_wall_in_a_fluid_is_refused(tmp_path):
     text = WATER + "[walls.post]\nshape.box = { lower = [0.4, 0.0], upper = [0.7, 0.5] }"
     [line] = refused(tmp_path, text)
     assert line.startswith("case.toml: walls.post.shape: overlaps fluids.water at [0.45, 0.05]; ")
-    assert "subtract the fluid with shape = { difference = { from = ..., minus = [...] } }" in line
+    assert "subtract one from the other: shape = { difference = { from = ..., minus = [...] } }" in line
 
 
 def test_walls_may_overlap(tmp_path):

@@ -1,16 +1,21 @@
 """What ``check`` says of geometry files, and what it refuses."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 import trimesh
 from drafts import POOL, draft
-from jobs import mpirun
+from jobs import clean_environment, mpirun
 from scene.solids import cube
 from scene.test_checks import checked, refused
 
 from psph.scene import Scene
 from psph.scene.meshes.report import described
 
+ROOT = Path(__file__).parents[2]
 POST = trimesh.creation.box(bounds=[[0, 0, 0], [400, 400, 600]])
 SHEET = trimesh.Trimesh([[0, 0, 0], [400, 0, 0], [400, 400, 9], [0, 400, 9]], [[0, 1, 2], [0, 2, 3]])
 NOT = ("fluids.water.shape.difference.minus[0].mesh", "walls.post.shape.mesh")
@@ -175,3 +180,21 @@ def test_many_ranks_end_with_one_line(tmp_path):
     job = mpirun(3, ["-m", "psph", tmp_path / "case.toml", "--out", tmp_path / "run"])
     assert job.returncode == 2 and job.stderr.count("parts/post.stl") == 1
     assert not (tmp_path / "run").exists() and "Traceback" not in job.stderr
+
+
+def test_a_scene_without_a_mesh_loads_nothing_for_it():
+    """Neither the reader nor the loops: what a scene does not need costs nothing."""
+    script = (
+        "import sys; from psph.case import load; from psph.scene import Scene, check; "
+        "check(Scene(load('run/cases/minimal.toml'))); "
+        "print([name for name in sys.modules if name.startswith(('trimesh', 'psph.scene.meshes.', 'scipy.spatial'))])"
+    )
+    job = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=ROOT,
+        env=clean_environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert job.stdout.strip() == "['psph.scene.meshes.report']", job.stderr

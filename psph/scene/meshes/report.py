@@ -197,7 +197,7 @@ def _rest(scene: "Scene") -> float:
 
 
 def _is_within(scene: "Scene", one: Drawn) -> bool:
-    """Whether a mesh lies in the lattice, but for a spacing: not half behind a mirror, not a cut through more."""
+    """Whether a mesh lies in the lattice, but for a spacing: not half behind a mirror, for one."""
     (low, high), slack = bounds(one.shape), scene.spacing
     return all(
         a >= b - slack and c <= d + slack

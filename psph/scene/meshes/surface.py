@@ -130,9 +130,10 @@ def surface_of(mesh: Mesh) -> Surface:
     """The surface that a shape of a case asks for, read and prepared once.  Raises MeshError."""
     surface = _surface(mesh.found, mesh.scale, mesh.rotate, mesh.move or (0.0, 0.0, 0.0))
     if not mesh.shell and surface.body.open:
+        holes = f"{surface.body.holes:,} hole{'s' * (surface.body.holes != 1)}"
         raise MeshError(
-            f"encloses nothing: {surface.body.open_edges:,} open edges around {surface.body.holes:,} "
-            f"hole{'s' * (surface.body.holes != 1)} as large as itself; give shell = a thickness in m, or close the surface"
+            f"encloses nothing: {surface.body.open_edges:,} open edges around {holes} as large as itself; give "
+            "shell = a thickness in m, or close the surface"
         )
     return surface
 
