@@ -59,6 +59,19 @@ def test_points_on_slanted_faces_belong_to_one_of_two_bodies(tmp_path):
     assert np.array_equal(total == 1, held(shape_of(tmp_path, cube()), grid))
 
 
+def test_sites_on_a_face_that_was_turned_belong_to_one_side_of_it(tmp_path):
+    """A box turned by 45° lies on the long side of a prism: rounding puts no site of that face in both or none."""
+    x = 0.1 * np.arange(1, 10)
+    diagonal = [x.reshape(-1, 1) + 0.3, x.reshape(-1, 1) + 0.3, 0.1 * np.arange(1, 10)]
+    prism = trimesh.creation.extrude_triangulation([[0, 0], [1, 0], [1, 1]], [[0, 1, 2]], 1.0)
+    box = trimesh.creation.box(bounds=[[0, 0, 0], [2.0, 0.5, 1.0]])
+    turn = [{"axis": [0.0, 0.0, 1.0], "degrees": 45.0}]
+    (tmp_path / "box").mkdir()
+    one = held(shape_of(tmp_path, prism, move=[0.3, 0.3, 0.0]), diagonal)
+    other = held(shape_of(tmp_path / "box", box, rotate=turn, move=[0.3, 0.3, 0.0]), diagonal)
+    assert (one ^ other).all() and (one == one[0, 0]).all()
+
+
 def test_a_turned_and_moved_box_is_the_half_spaces_of_its_faces(tmp_path):
     """Scaled, then turned about z and x, then moved; against six exact inequalities."""
     half, move = np.array([0.9, 0.5, 0.3]), np.array([0.11, -0.23, 0.07])
@@ -131,6 +144,14 @@ def test_a_body_turned_inside_out_is_the_same(tmp_path):
     assert surface_of(shape.form).volume > 0.0
 
 
+def test_a_part_turned_inside_out_beside_another_is_filled(tmp_path):
+    one, other = ball(2, 0.7), turned_face(ball(2, 0.4), slice(None))
+    grid, apart = points_of(GRID).T, [1.1, 0.0, 0.0]
+    other.apply_translation(apart)
+    meant = held(shape_of(tmp_path, one), grid) | held(shape_of(tmp_path, ball(2, 0.4), move=apart), grid)
+    assert np.array_equal(held(shape_of(tmp_path, trimesh.util.concatenate([one, other])), grid), meant)
+
+
 def test_parts_that_overlap_are_joined_and_an_inner_surface_is_a_room(tmp_path):
     one, other = ball(2), ball(2)
     other.apply_translation([0.5, 0.0, 0.0])
@@ -186,6 +207,15 @@ def test_the_order_of_triangles_and_corners_does_not_matter(tmp_path, keys):
     assert np.array_equal(held(shape_of(tmp_path / "other", corners, **keys), GRID), first)
 
 
+def test_of_two_faces_that_disagree_the_same_one_counts_in_any_order(tmp_path):
+    sheet = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [0, 1, 0], [1, 1, 0]]], float)
+    found = []
+    for k, corners in enumerate((sheet, sheet[::-1])):
+        (tmp_path / str(k)).mkdir()
+        found.append(held(shape_of(tmp_path / str(k), corners, shell=0.2), GRID))
+    assert found[0].any() and np.array_equal(*found)
+
+
 def test_a_file_is_read_once(tmp_path, monkeypatch):
     shape = shape_of(tmp_path, ball(2))
     first = held(shape, GRID)
@@ -223,6 +253,23 @@ def test_a_shell_of_a_sphere(tmp_path):
         found = held(shape_of(tmp_path, body, shell=0.2, side=side), grid).ravel()
         assert found[(away > low) & (away < high)].all()
         assert not found[(away < low - 0.003) | (away > high + 0.003)].any()
+
+
+def test_the_shell_of_a_spike_with_many_narrow_faces_on_one_side(tmp_path):
+    """Beyond its tip a normal that is not weighted by angles would point to that side alone."""
+    base = [[-0.2, -0.2, 0], [-0.2, 0.2, 0], *([0.2, y, 0] for y in np.linspace(0.2, -0.2, 41))]
+    corners, n = np.array([*base, [0, 0, 1], [0, 0, 0]]), len(base)
+    rim = [(k, (k + 1) % n) for k in range(n)]
+    faces = [(b, a, n) for a, b in rim] + [(a, b, n + 1) for a, b in rim]
+    body = trimesh.Trimesh(corners, faces, process=False)
+    assert body.volume > 0.0
+    grid = lattice(-0.3, 0.3, 30)
+    grid[2] = grid[2] + 1.0
+    full = held(shape_of(tmp_path, body), grid)
+    inner, outer = (held(shape_of(tmp_path, body, shell=0.25, side=s), grid) for s in ("inside", "outside"))
+    away = np.linalg.norm(points_of(grid) - [0.0, 0.0, 1.0], axis=1).reshape(full.shape)
+    assert full.any() and np.array_equal(inner, full)
+    assert outer[(away < 0.25) & ~full].all() and not (outer & full).any()
 
 
 def test_the_shell_of_a_cube_follows_the_rule_of_boxes(tmp_path):

@@ -132,8 +132,8 @@ def surface_of(mesh: Mesh) -> Surface:
     if not mesh.shell and surface.body.open:
         holes = f"{surface.body.holes:,} hole{'s' * (surface.body.holes != 1)}"
         raise MeshError(
-            f"encloses nothing: {surface.body.open_edges:,} open edges around {holes} as large as itself; give "
-            "shell = a thickness in m, or close the surface"
+            f"encloses nothing: {surface.body.open_edges:,} open edges around {holes} as large as itself; "
+            "give shell = a thickness in m, or close the surface"
         )
     return surface
 
