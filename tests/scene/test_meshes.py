@@ -60,12 +60,12 @@ def test_points_on_slanted_faces_belong_to_one_of_two_bodies(tmp_path):
 
 
 def test_sites_on_a_face_that_was_turned_belong_to_one_side_of_it(tmp_path):
-    """A box turned by 45° lies on the long side of a prism: rounding puts no site of that face in both or none."""
+    """A box turned by 20° and 25° lies on the long side of a prism: rounding puts no site of that face in both or none."""
     x = 0.1 * np.arange(1, 10)
     diagonal = [x.reshape(-1, 1) + 0.3, x.reshape(-1, 1) + 0.3, 0.1 * np.arange(1, 10)]
     prism = trimesh.creation.extrude_triangulation([[0, 0], [1, 0], [1, 1]], [[0, 1, 2]], 1.0)
     box = trimesh.creation.box(bounds=[[0, 0, 0], [2.0, 0.5, 1.0]])
-    turn = [{"axis": [0.0, 0.0, 1.0], "degrees": 45.0}]
+    turn = [{"axis": [0.0, 0.0, 1.0], "degrees": angle} for angle in (20.0, 25.0)]
     (tmp_path / "box").mkdir()
     one = held(shape_of(tmp_path, prism, move=[0.3, 0.3, 0.0]), diagonal)
     other = held(shape_of(tmp_path / "box", box, rotate=turn, move=[0.3, 0.3, 0.0]), diagonal)

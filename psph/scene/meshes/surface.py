@@ -74,18 +74,11 @@ class Surface:
         x, y = (np.broadcast_to(a, lines + (1,) * (x.ndim - len(lines))).ravel() for a in (x, y))
         tree, corners, turns = self._sorted
         flat = found.reshape(len(x), -1)
-        windings(
-            x,
-            y,
-            np.array(np.broadcast_to(z, found.shape)).reshape(flat.shape),
-            corners,
-            turns,
-            tree.boxes,
-            flat,
-        )
+        z = np.array(np.broadcast_to(z, found.shape)).reshape(flat.shape)
+        windings(x, y, z, corners, turns, tree.boxes, flat)
         return (found != 0).transpose(np.argsort(order))
 
-    def lines(
+    def shell(
         self, grid: Sequence[np.ndarray], thickness: float, outside: bool, tolerance: float
     ) -> np.ndarray:
         """True where a point of a grid is nearer to the surface than ``thickness``, m, on one side of it.
@@ -95,9 +88,9 @@ class Surface:
         points = self._off_the_faces(grid, tolerance)
         shape = np.broadcast_shapes(*(x.shape for x in points))
         flat = np.stack([np.broadcast_to(x, shape).ravel() for x in points], axis=1)
-        tree, normals = self._lined
+        tree, corners, normals = self._lined
         found = np.empty(len(flat))
-        sides(flat, thickness, self.sheet.corners[tree.order], normals, tree.boxes, found)
+        sides(flat, thickness, corners, normals, tree.boxes, found)
         return ((found > 0.0) if outside else (found < 0.0)).reshape(shape)
 
     def _off_the_faces(self, grid: Sequence[np.ndarray], tolerance: float) -> list[np.ndarray]:
@@ -120,19 +113,19 @@ class Surface:
         return tree, corners[tree.order], np.where(even, 1, -1)[tree.order]
 
     @cached_property
-    def _lined(self) -> tuple[Tree, np.ndarray]:
-        """The tree of the surface as it is, and the normals of its parts in the order of the tree."""
+    def _lined(self) -> tuple[Tree, np.ndarray, np.ndarray]:
+        """The tree of the surface as it is, its triangles, and the normals of their parts."""
         tree = tree_of(self.sheet.corners)
-        return tree, _normals(self.sheet)[tree.order]
+        return tree, self.sheet.corners[tree.order], _normals(self.sheet)[tree.order]
 
 
 def surface_of(mesh: Mesh) -> Surface:
     """The surface that a shape of a case asks for, read and prepared once.  Raises MeshError."""
     surface = _surface(mesh.found, mesh.scale, mesh.rotate, mesh.move or (0.0, 0.0, 0.0))
     if not mesh.shell and surface.body.open:
-        holes = f"{surface.body.holes:,} hole{'s' * (surface.body.holes != 1)}"
+        gaps = f"{surface.body.holes:,} hole{'s' * (surface.body.holes != 1)}"
         raise MeshError(
-            f"encloses nothing: {surface.body.open_edges:,} open edges around {holes} as large as itself; "
+            f"encloses nothing: {surface.body.open_edges:,} open edges around {gaps} as large as itself; "
             "give shell = a thickness in m, or close the surface"
         )
     return surface
@@ -142,7 +135,7 @@ def holds(mesh: Mesh, grid: Sequence[np.ndarray], tolerance: float) -> np.ndarra
     """True where a point of a grid (psph.scene.shapes.Grid) lies in the shape; broadcasts like the grid."""
     surface = surface_of(mesh)
     if mesh.shell:
-        return surface.lines(grid, mesh.shell, mesh.side == "outside", tolerance)
+        return surface.shell(grid, mesh.shell, mesh.side == "outside", tolerance)
     return surface.encloses(grid, tolerance)
 
 
