@@ -89,10 +89,13 @@ def _explain(options, comm) -> None:
 def _check(options, comm) -> None:
     from psph.run.explain import slab_planes
     from psph.scene import Scene
+    from psph.scene.meshes.report import described
 
     scene = Scene(_load(options))
     _warn(scene, comm)
     if comm.rank == 0:
+        for line in described(scene):
+            print(one_line(f"{options.case}: {line}"))
         count = int(scene.counts().sum())
         good = f"{options.case}: good: {count:,} particles, at most {slab_planes(scene)} ranks"
         print(one_line(good))

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from psph.case import Case, CaseError, load
+from psph.case.files import files_of
 
 WATER = """
 scheme = "sph"
@@ -54,6 +55,13 @@ no_slip = true
 """Its flow comes to g H²/(8ν) = 1.25 m/s; by the height that it could fall c is 4.47 m/s."""
 
 
+def with_its_files(case: Case, folder: Path) -> None:
+    """Copy the files that a case uses to a folder, as a run does."""
+    for name, path in files_of(case):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(path.read_bytes())
+
+
 def draft(folder: Path, text: str = WATER, *overrides: str) -> Case:
     """The case of a text, written to ``case.toml`` in a folder."""
     path = folder / "case.toml"
@@ -68,6 +76,22 @@ def refusal(folder: Path, text: str = WATER, *overrides: str) -> list[str]:
     except CaseError as error:
         return [line.replace(f"{folder}/", "") for line in error.lines]
     raise AssertionError("the case was accepted")
+
+
+POOL = """
+scheme = "sph"
+space = { dimensions = 3, spacing = 0.1 }
+time.end = 0.02
+physics.gravity = [0.0, 0.0, -9.8]
+[fluids.water.shape.difference]
+from.box = { lower = [0.0, 0.0, 0.0], upper = [1.5, 1.0, 0.5] }
+minus = [{ mesh = { file = "parts/post.stl", scale = 0.001, move = [0.5, 0.3, 0.0] } }]
+[walls.floor]
+shape.box = { lower = [0.0, 0.0, -0.3], upper = [1.5, 1.0, 0.0] }
+[walls.post]
+shape.mesh = { file = "parts/post.stl", scale = 0.001, move = [0.5, 0.3, 0.0] }
+"""
+"""Water around a post of 4 by 4 by 6 sites from a geometry file in mm, which a test writes, over a floor."""
 
 
 SQUARE = """

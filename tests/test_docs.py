@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 import types
 from pathlib import Path
 
@@ -240,6 +241,29 @@ def test_every_option_is_in_the_table_of_commands():
 def test_the_case_of_the_readme_raises_no_warning(drop):
     scene = Scene(load(drop))
     assert check(scene) == [] and scene.counts().sum() > 1000
+
+
+# The hull of docs/geometry.md
+
+
+def test_the_hull_of_the_page_is_that_of_the_case():
+    [block] = fences("docs/geometry.md", "toml")
+    told, case = tomllib.loads(block), tomllib.loads(text("run/cases/hull.toml"))
+    assert told["walls"]["hull"] == case["walls"]["hull"]
+    assert told["fluids"]["water"]["shape"] == case["fluids"]["water"]["shape"]
+
+
+def test_the_python_of_geometry_runs():
+    [block] = fences("docs/geometry.md", "python")
+    job = subprocess.run(
+        [sys.executable, "-c", block],
+        cwd=ROOT,
+        env=clean_environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert job.returncode == 0 and float(job.stdout.split()[0]) == pytest.approx(0.1017, abs=1e-4)
 
 
 # The tables of the theory

@@ -107,7 +107,7 @@ def _dimensions(case) -> Iterator[Finding]:
                 value,
                 (
                     f"a {loc[-1]} needs space.dimensions = {only_in}, here it is {dimensions}; "
-                    "use another shape"
+                    f"use {getattr(value, 'instead', 'another shape')}"
                 ),
             )
         elif _is_vector(value) and len(value) != dimensions and loc[: len(foreign)] != foreign:

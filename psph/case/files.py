@@ -40,7 +40,8 @@ def beside(folder: Path, name: str, kind: str, endings: Sequence[str]) -> Found:
 
 def files_of(case) -> list[tuple[str, Path]]:
     """The files that a case needs besides itself: their names in it, and where they are."""
-    names = dict.fromkeys([*case.use, *(series.file for series in case.series)])
+    drawn = (mesh.file for mesh in case.meshes.values())
+    names = dict.fromkeys([*case.use, *(series.file for series in case.series), *drawn])
     return [(name, Path(case.file).parent / name) for name in names]
 
 

@@ -12,10 +12,12 @@ from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_
 from pydantic_core import PydanticCustomError
 
 from psph.case.bodies import Body
-from psph.case.consistency import contradictions
+from psph.case.consistency import contradictions, walk
+from psph.case.errors import dotted
 from psph.case.extensions import versions
 from psph.case.gauges import Gauge
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
+from psph.case.mesh import Mesh
 from psph.case.motion import Motions, series_in
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
@@ -287,10 +289,16 @@ class Case(Table):
         moving = [*(solid.motion for solid in self.solids.values()), self.frame.motion]
         return [series for parts in moving for series in series_in(parts or ())]
 
+    @cached_property
+    def meshes(self) -> dict[str, Mesh]:
+        """The shapes that geometry files draw, by their dotted keys."""
+        return {dotted(loc): value for loc, value in walk(self) if isinstance(value, Mesh)}
+
     @property
     def versions(self) -> list[str]:
         """A word for each file that the case uses: another content gives another word."""
-        return [*versions(self.catalogue), *(series.found.digest for series in self.series)]
+        named = (*self.series, *self.meshes.values())
+        return [*versions(self.catalogue), *(one.found.digest for one in named)]
 
     @cached_property
     def presets(self) -> dict[str, tuple[str, Any]]:

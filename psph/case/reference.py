@@ -24,8 +24,9 @@ number per dimension. Numbers other than 0 have sizes between 1e-30 and 1e30.
 No key holds a formula or a command, but `use` names Python files, and `run`, `resume`, `check`, `explain`
 and `study` execute them with all your rights: **read the files of a stranger before you even check their
 case**. A case without `use` is data, and nothing in it is executed. The only other files that a case can
-name, those of `[experiments]` and of motions, are read as numbers. All of them must be in the case's
-folder or below, after links are resolved; `study --files DIR` allows another folder for the experiments.
+name, those of `[experiments]` and of motions and geometry files ([geometry.md](geometry.md)), are read as
+numbers. All of them must be in the case's folder or below, after links are resolved; `study --files DIR`
+allows another folder for the experiments.
 
 A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a
 case without running it; `run/cases/` holds examples.

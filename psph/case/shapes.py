@@ -6,6 +6,7 @@ from pydantic import Strict, model_validator
 from pydantic_core import PydanticCustomError
 
 from psph.case.keys import Axis, Table, Vector, key
+from psph.case.mesh import Mesh
 
 
 class Box(Table):
@@ -73,13 +74,14 @@ class Shape(Table):
     ball: Ball | None = key("a ball (3D)", None)
     cylinder: Cylinder | None = key("a cylinder along an axis (3D)", None)
     polygon: Polygon | None = key("a polygon (2D)", None)
+    mesh: Mesh | None = key("a body, or the shell of one, from a geometry file (3D)", None)
     union: Annotated[tuple["Shape", ...], Strict(False)] | None = key(
         "all that lies in any of these shapes", None, min_length=1
     )
     difference: Difference | None = key("one shape without others", None)
 
     @property
-    def form(self) -> Box | Disc | Ball | Cylinder | Polygon | Difference | tuple["Shape", ...]:
+    def form(self) -> Box | Disc | Ball | Cylinder | Polygon | Mesh | Difference | tuple["Shape", ...]:
         """The one form that this shape has; a tuple of shapes is their union."""
         [form] = (value for _, value in self if value is not None)
         return form

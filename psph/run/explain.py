@@ -18,6 +18,7 @@ from psph.run.hints import hints
 from psph.run.outlay import output_lines
 from psph.run.outlook import outlook
 from psph.scene.bodies import in_words
+from psph.scene.meshes.report import described
 from psph.scene.moving import motion_lines
 from psph.simulation.plan import Plan, make_plan
 
@@ -121,6 +122,8 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     for plane in scene.mirror_planes:
         sticks = "; the fluid sticks to it" if plane.sticks else ""
         yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
+    for line in described(scene):
+        yield f"  mesh        {line}"
     for region, _ in scene.regions:
         yield f"  region      {type(region).__name__}: {_first_line(region)}"
     for name, table in scene.tables.items():

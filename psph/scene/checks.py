@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.gauging import misplaced, shown
 from psph.scene.lattice import TOLERANCE
+from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
 from psph.scene.multiples import misfits
 from psph.scene.scene import Scene
@@ -48,10 +49,11 @@ def check(scene: Scene) -> list[str]:
 
 def faults(scene: Scene) -> Iterator[str]:
     """Every error for which the scene cannot be run."""
-    for line in _size_faults(scene):
+    for line in chain(meshes.size_faults(scene), _size_faults(scene)):
         yield f"{scene.case.file}: {line}"
         return  # the others would only follow from it
-    places = list(_spacing_faults(scene)) or [
+    empty = list(meshes.site_faults(scene)) or list(_spacing_faults(scene))
+    places = empty or [
         *_domain_faults(scene),
         *_mirror_faults(scene),
         *_site_faults(scene),
@@ -118,6 +120,7 @@ def warnings(scene: Scene) -> Iterator[str]:
         _driven_flow,
         _jitter,
         several_fluids,
+        meshes.remarks,
         misfits,
         slips,
     ):
@@ -184,15 +187,10 @@ def _site_faults(scene: Scene) -> Iterator[str]:
             )
     walls = len(scene.case.fluids)
     for (one, other), site in sorted(census.clashes.items()):
-        if one < walls <= other:
+        if one < walls:
             yield (
                 f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
-                "the fluid with shape = { difference = { from = ..., minus = [...] } }"
-            )
-        elif other < walls:
-            yield (
-                f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
-                "one from the other with difference"
+                "one from the other: shape = { difference = { from = ..., minus = [...] } }"
             )
     yield from _particles_outside(scene)
 

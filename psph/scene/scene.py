@@ -20,9 +20,11 @@ from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.bodies import rigid_bodies
 from psph.scene.kicked import nearest_fluid_site
 from psph.scene.lattice import TOLERANCE, lattice_around
+from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.moving import largest_pull, largest_speed
 from psph.scene.particles import ParticleSet, fill
+from psph.scene.pressures import range_of_pressure
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.walls import has_free_surface
@@ -38,12 +40,14 @@ class Scene:
     domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
     hold a particle, ``planes`` its planes across ``axis``, ``mirror_planes`` its
     mirrors; ``walls`` are those with particles, by name, ``solids`` these and the rigid bodies;
-    ``parts`` has the tables of the case that hold particles: fluids, walls, bodies.
+    ``parts`` has the tables of the case that hold particles: fluids, walls, bodies; ``meshes`` the geometry
+    files that draw shapes.
     """
 
     def __init__(self, case: Case):
         space = case.space
         self.case = case
+        self.meshes: tuple[Drawn, ...] = drawn(case)
         self.dimensions, self.spacing = space.dimensions, space.spacing
         self.smoothing_length = space.smoothing * space.spacing
         self.kernel = kernel(space.kernel, self.smoothing_length, space.dimensions)
@@ -113,6 +117,11 @@ class Scene:
     def census(self) -> Census:
         """Counts, extents and overlaps, from one visit of every site."""
         return take_census(self.layout, self.up)
+
+    @cached_property
+    def mesh_sites(self) -> tuple[int, ...]:
+        """How many sites each mesh holds."""
+        return tuple(sites_in(self, one) for one in self.meshes)
 
     @cached_property
     def expected_speed(self) -> float:
@@ -380,16 +389,4 @@ class Scene:
     @cached_property
     def _pressures(self) -> tuple[tuple[float, float], ...]:
         """The lowest and the highest pressure of each fluid at the start, Pa."""
-        return tuple(map(self._range_of_pressure, range(self.layout.fluids)))
-
-    def _range_of_pressure(self, fluid: int) -> tuple[float, float]:
-        start = self.starts[fluid]
-        if not start.exact:
-            return start.pressure, start.pressure
-        found = []
-        for first, last in self.lattice.chunks():
-            held = self.layout.materials(first, last) == fluid
-            grid = self.lattice.grid(first, last)
-            found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
-        pressure = start.exact(np.concatenate(found))
-        return float(pressure.min()), float(pressure.max())
+        return tuple(range_of_pressure(self, fluid) for fluid in range(self.layout.fluids))

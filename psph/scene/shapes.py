@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.case.mesh import Mesh
 from psph.case.shapes import Ball, Box, Cylinder, Difference, Disc, Polygon, Shape
 
 Corner = tuple[float, ...]
@@ -32,6 +33,10 @@ def inside(shape: Shape, grid: Grid, tolerance: float) -> np.ndarray:
             return _in_cylinder(cylinder, grid, tolerance)
         case Polygon(points=points):
             return _in_polygon(points, grid, tolerance)
+        case Mesh() as mesh:
+            from psph.scene.meshes.surface import holds
+
+            return holds(mesh, grid, tolerance)
 
 
 def bounds(shape: Shape) -> tuple[Corner, Corner]:
@@ -50,6 +55,10 @@ def bounds(shape: Shape) -> tuple[Corner, Corner]:
             return _around(center, [0.5 * height if name == axis else radius for name in AXES])
         case Polygon(points=points):
             return tuple(map(min, zip(*points))), tuple(map(max, zip(*points)))
+        case Mesh() as mesh:
+            from psph.scene.meshes.surface import box_around
+
+            return box_around(mesh)
 
 
 def _around(center: Corner, reach: Sequence[float]) -> tuple[Corner, Corner]:

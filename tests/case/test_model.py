@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from drafts import TANK, WATER, draft
+from drafts import TANK, WATER, draft, with_its_files
 from pydantic import ValidationError
 
 from psph.case import Case, load, schema
@@ -97,6 +97,7 @@ def test_shipped_cases_load_and_read_back(path, tmp_path):
     case = load(path)
     copy = tmp_path / path.name
     copy.write_text(case.to_toml(), encoding="utf-8")
+    with_its_files(case, tmp_path)
     assert load(copy).model_dump() == case.model_dump()
 
 

@@ -16,7 +16,7 @@ def with_shape(shape: str) -> str:
 @pytest.mark.parametrize(
     ("shape", "where", "says"),
     [
-        ("", "", "says no shape; give one of box, disc, ball, cylinder, polygon, union, diff"),
+        ("", "", "says no shape; give one of box, disc, ball, cylinder, polygon, mesh, union, diff"),
         (
             f"{BOX}, {DISC}",
             "",

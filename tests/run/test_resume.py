@@ -5,6 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from drafts import with_its_files
 from mpi4py import MPI
 from run.resuming import (
     BOX,
@@ -239,6 +240,7 @@ def test_an_end_that_is_past_is_refused(whole):
 def test_the_case_that_a_run_leaves_is_the_same_case(path, tmp_path):
     case = load(path)
     (tmp_path / "case.toml").write_text(case.to_toml(), encoding="utf-8")
+    with_its_files(case, tmp_path)
     again = load(tmp_path / "case.toml", ["time.end=123.0", "output.log=0.5", "checkpoint.every=3"])
     assert case_digest(again) == case_digest(case)
     assert case_digest(load(path, ["space.smoothing=1.41"])) != case_digest(case)

@@ -96,7 +96,7 @@ def test_overlapping_fluids_are_refused(tmp_path):
     [line] = refused(tmp_path, WATER + OIL.format(low=0.4))
     assert line == (
         "case.toml: fluids.oil.shape: overlaps fluids.water at [0.05, 0.45]; subtract "
-        "one from the other with difference"
+        "one from the other: shape = { difference = { from = ..., minus = [...] } }"
     )
     assert checked(tmp_path, WATER + OIL.format(low=0.5)) == []
 
@@ -105,7 +105,7 @@ def test_a_wall_in_a_fluid_is_refused(tmp_path):
     text = WATER + "[walls.post]\nshape.box = { lower = [0.4, 0.0], upper = [0.7, 0.5] }"
     [line] = refused(tmp_path, text)
     assert line.startswith("case.toml: walls.post.shape: overlaps fluids.water at [0.45, 0.05]; ")
-    assert "subtract the fluid with shape = { difference = { from = ..., minus = [...] } }" in line
+    assert "subtract one from the other: shape = { difference = { from = ..., minus = [...] } }" in line
 
 
 def test_walls_may_overlap(tmp_path):

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from psph.case import Case, CaseError, load
-from psph.case.extensions import versions
 from psph.engine.jit import SOURCES, processor
 from psph.engine.threads import threads
 from psph.lab.study.ladder import SPACING, Settings, overrides
@@ -143,7 +142,7 @@ def _key(case, comm) -> dict:
     return {
         "case": text,
         "sources": SOURCES,
-        "used": versions(case.catalogue),
+        "used": case.versions,
         "processor": processor(),
         "ranks": comm.size,
         "threads": threads(),

@@ -1,0 +1,1 @@
+"""Geometry files: from triangles to the points that lie within them."""

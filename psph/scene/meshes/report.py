@@ -1,0 +1,215 @@
+"""What is said of the geometry files of a scene: what cannot be simulated, what is odd, what they are."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from psph.case import Case, CaseError
+from psph.case.consistency import walk
+from psph.case.mesh import Mesh
+from psph.case.shapes import Difference, Shape
+from psph.scene.lattice import TOLERANCE, lattice_around
+from psph.scene.shapes import bounds, inside
+from psph.scene.walls import layers_needed, thinnest_walls
+
+if TYPE_CHECKING:
+    from psph.scene.meshes.surface import Surface
+    from psph.scene.scene import Scene
+
+FAR_LARGER, LARGER = 300.0, 30.0
+"""Times the rest of a scene: a mesh so large is refused, and asked about.  Millimetres taken for metres make
+it a thousand times too large."""
+
+MISFIT = 0.05
+"""Part of a mesh's volume by which that of its sites may differ without a warning."""
+
+COARSE = 0.1
+"""Spacings: how far the corners of a file may be rounded without a warning."""
+
+
+class Drawn(NamedTuple):
+    """A shape that a geometry file draws: its keys in the case, most often one, and its surface."""
+
+    keys: tuple[str, ...]
+    shape: Shape
+    surface: "Surface"
+
+    @property
+    def mesh(self) -> Mesh:
+        """What the case says of it."""
+        return self.shape.form
+
+    @property
+    def key(self) -> str:
+        """The first place where it stands."""
+        return self.keys[0]
+
+    @property
+    def size(self) -> str:
+        """Its extent in words."""
+        return " x ".join(f"{length:.4g}" for length in self.surface.size) + " m"
+
+
+def drawn(case: Case) -> tuple[Drawn, ...]:
+    """The meshes of a case, read.  Raises CaseError with a line for each that no shape can be made of."""
+    if not case.meshes:
+        return ()
+    from psph.scene.meshes.surface import MeshError, surface_of
+
+    keys: dict[Mesh, list[str]] = {}
+    for key, mesh in case.meshes.items():
+        keys.setdefault(mesh, []).append(key)
+    found, faults = [], []
+    for mesh, where in keys.items():
+        try:
+            found.append(Drawn(tuple(where), Shape(mesh=mesh), surface_of(mesh)))
+        except MeshError as trouble:
+            faults.append(f"{case.file}: {where[0]}.file: {mesh.found.path} {trouble}")
+    if faults:
+        raise CaseError(faults)
+    return tuple(found)
+
+
+def sites_in(scene: "Scene", one: Drawn) -> int:
+    """Sites of the lattice of a scene in the shape that a mesh draws."""
+    lattice = scene.lattice
+    (low, high), total = bounds(one.shape), 0
+    box = tuple(map(max, low, lattice.lower)), tuple(map(min, high, lattice.upper))
+    part = lattice_around([box], lattice.origin, lattice.spacing, None)
+    for first, last in part.chunks():
+        held = inside(one.shape, part.grid(first, last), TOLERANCE * scene.spacing)
+        total += int(np.count_nonzero(held))
+    return total
+
+
+def size_faults(scene: "Scene") -> Iterator[str]:
+    """Meshes in another unit than that of the scene, before its sites are visited."""
+    rest = _rest(scene)
+    for one in scene.meshes:
+        times = max(one.surface.size) / rest if rest else 0.0
+        if times > FAR_LARGER:
+            yield (
+                f"{one.key}: {one.mesh.file} is {one.size} in size, {times:.3g} times the rest of the scene; "
+                f"lengths are in m: was the file in mm? Then give scale = {one.mesh.scale / 1000:g}"
+            )
+
+
+def site_faults(scene: "Scene") -> Iterator[str]:
+    """Meshes that hold no site."""
+    for one, sites in zip(scene.meshes, scene.mesh_sites):
+        if not sites:
+            yield (
+                f"{one.key}: no lattice site lies in {one.mesh.file}, {one.size} in size from "
+                f"{_point(one.surface.lower)}, at a spacing of {scene.spacing:g} m; check scale (metres per "
+                "unit of the file) and move, or make space.spacing smaller"
+            )
+
+
+def remarks(scene: "Scene") -> Iterator[str]:
+    """What will run with these meshes, but probably not as intended."""
+    for one, sites in zip(scene.meshes, scene.mesh_sites):
+        for says in (*_faces(one), *_sizes(scene, one), *_volumes(scene, one, sites), *_thin(scene, one)):
+            yield f"{one.key}: {says}"
+
+
+def described(scene: "Scene") -> Iterator[str]:
+    """What each mesh is, a line each."""
+    for one, sites in zip(scene.meshes, scene.mesh_sites):
+        body, surface = one.surface.body, one.surface
+        edges = f"{body.open_edges:,} open edges" if body.open_edges else "closed"
+        also = f" (also {', '.join(one.keys[1:])})" if len(one.keys) > 1 else ""
+        if one.mesh.shell:
+            what = f"a shell {one.mesh.shell:g} m thick"
+        else:
+            what = f"{surface.volume:.4g} m3"
+            what += f", {_excess(scene, one, sites):+.1%} on the lattice" if _is_within(scene, one) else ""
+        yield (
+            f"{one.key}: {one.mesh.file}: {one.size} from {_point(surface.lower)} to "
+            f"{_point(surface.upper)}, {len(surface.sheet.faces):,} triangles, {edges}, {what}: {sites:,} "
+            f"sites{also}"
+        )
+
+
+def _faces(one: Drawn) -> Iterator[str]:
+    body = one.surface.body
+    if body.open_edges and not one.mesh.shell:
+        yield (
+            f"{body.open_edges:,} open edges around {body.holes:,} hole{'s' * (body.holes != 1)}: psph "
+            "closes each towards its middle; repair the surface if that is not its form, or give shell = a "
+            "thickness in m"
+        )
+    if body.turned:
+        yield (
+            f"{body.turned:,} of {len(one.surface.sheet.faces):,} faces lie the other way than those beside "
+            "them: psph turns them round; check the result, or repair the surface"
+        )
+
+
+def _sizes(scene: "Scene", one: Drawn) -> Iterator[str]:
+    rest, longest = _rest(scene), max(one.surface.size)
+    if rest and (longest > LARGER * rest or FAR_LARGER * longest < rest):
+        yield (
+            f"{one.size} in size beside a scene of {rest:.4g} m; lengths are in m: scale = 0.001 is right "
+            f"for a file in mm, 1 for one in m, and here it is {one.mesh.scale:g}"
+        )
+    if one.surface.rounding > COARSE * scene.spacing:
+        yield (
+            f"its corners lie so far from the origin of the file that they are taken as equal within "
+            f"{one.surface.rounding:.2g} m; move the body to the origin before its export"
+        )
+
+
+def _volumes(scene: "Scene", one: Drawn, sites: int) -> Iterator[str]:
+    excess = _excess(scene, one, sites)
+    if not one.mesh.shell and _is_within(scene, one) and abs(excess) > MISFIT:
+        yield (
+            f"the surface encloses {one.surface.volume:.4g} m3, its sites {sites * scene.spacing**3:.4g} "
+            f"({excess:+.0%}): at {scene.spacing:g} m thin parts are lost or grow, or its parts overlap; "
+            "make space.spacing smaller"
+        )
+
+
+def _thin(scene: "Scene", one: Drawn) -> Iterator[str]:
+    """A shell of a wall that the kernel sees through; where fluid touches it, its layers are counted."""
+    need = layers_needed(scene) * scene.spacing
+    table, name = one.key.split(".")[:2]
+    if table != "walls" or name not in scene.walls or not one.mesh.shell:
+        return
+    material = len(scene.case.fluids) + list(scene.walls).index(name)
+    if one.mesh.shell < need * (1.0 - TOLERANCE) and material not in thinnest_walls(scene):
+        yield f"shell = {one.mesh.shell:g} m is thinner than the kernel reaches; give {need:.4g}"
+
+
+def _rest(scene: "Scene") -> float:
+    """The largest extent, m, of the domain where it is given and of all shapes but meshes; 0 without any."""
+    space, boxes = scene.case.space, []
+    if space.lower and space.upper:
+        boxes.append((space.lower, space.upper))
+    for _, value in walk(scene.case):
+        if isinstance(value, Shape) and not isinstance(value.form, (Mesh, Difference, tuple)):
+            boxes.append(bounds(value))
+    if not boxes:
+        return 0.0
+    lower, upper = (np.array(ends) for ends in zip(*boxes))
+    return float((upper.max(axis=0) - lower.min(axis=0)).max())
+
+
+def _is_within(scene: "Scene", one: Drawn) -> bool:
+    """Whether a mesh lies in the lattice, but for a spacing: not half behind a mirror, for one."""
+    (low, high), slack = bounds(one.shape), scene.spacing
+    return all(
+        a >= b - slack and c <= d + slack
+        for a, b, c, d in zip(low, scene.lattice.lower, high, scene.lattice.upper)
+    )
+
+
+def _excess(scene: "Scene", one: Drawn, sites: int) -> float:
+    """How much more than a mesh encloses its sites hold, over that."""
+    volume = one.surface.volume
+    return sites * scene.spacing**3 / volume - 1.0 if volume > 0.0 else math.inf
+
+
+def _point(x) -> str:
+    return f"[{', '.join(f'{value:.4g}' for value in x)}]"

@@ -1,0 +1,213 @@
+"""A geometry file at its place in a scene, and which points lie in the shape that it draws."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+
+from psph.case.files import Found
+from psph.case.mesh import Mesh, Turn
+from psph.scene.meshes.loops import sides, windings
+from psph.scene.meshes.reading import LARGEST, MeshError, read
+from psph.scene.meshes.topology import Welded, areas, closed, edges_of, holes, turned, volume, weld
+from psph.scene.meshes.tree import Tree, tree_of
+
+ASKEW = np.array([1.0, 0.5 * np.sqrt(2.0), np.sqrt(3.0) / 3.0])
+"""Towards where points are moved by the tolerance: along no face that a person would draw."""
+
+ALL_OPEN = 0.8
+"""Area of the triangles that close a surface, over its own: above, it encloses nothing."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """A surface as a file has it, welded, turned to one side, and closed.
+
+    ``sheet`` is the surface itself, ``whole`` the same with its holes closed; lengths in the unit of the
+    file. ``open_edges``: with a face on one side alone, around so many ``holes``; ``turned``: faces that lay
+    the other way than those beside them; ``open``: whether it encloses nothing.
+    """
+
+    sheet: Welded
+    whole: Welded
+    open_edges: int
+    holes: int
+    turned: int
+    open: bool
+
+
+class Surface:
+    """The surface of a body in a scene: ``sheet`` and ``whole`` as in :class:`Body`, in m, ``volume`` in m³.
+
+    ``rounding`` (m): how exact the file is; ``lower``, ``upper``: corners of the box around it.
+    """
+
+    def __init__(self, body: Body, scale: float, turns: Sequence[Turn], move: Sequence[float]):
+        self.body = body
+        self.sheet, self.whole = (_placed(one, scale, turns, move) for one in (body.sheet, body.whole))
+        self.rounding = self.sheet.rounding
+        used = self.sheet.corners.reshape(-1, 3)
+        if not np.abs(used).max() <= LARGEST:
+            raise MeshError(f"reaches beyond {LARGEST:g} m; make scale or move smaller")
+        self.lower, self.upper = tuple(used.min(axis=0).tolist()), tuple(used.max(axis=0).tolist())
+        self.volume = volume(self.whole.corners)
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Its extent along each axis, m."""
+        return tuple(up - low for low, up in zip(self.lower, self.upper))
+
+    def encloses(self, grid: Sequence[np.ndarray], tolerance: float) -> np.ndarray:
+        """True where a point of a grid (psph.scene.shapes.Grid) lies within the closed surface.
+
+        Points that it winds around any number of times but 0, either way: parts may overlap.
+        """
+        grid = self._off_the_faces(grid, tolerance)
+        shape = np.broadcast_shapes(*(x.shape for x in grid))
+        if 0 in shape:
+            return np.zeros(shape, bool)
+        across = [k for k in range(len(shape)) if grid[0].shape[k] > 1 or grid[1].shape[k] > 1]
+        order = across + [k for k in range(len(shape)) if k not in across]
+        lines, found = tuple(shape[k] for k in across), np.empty([shape[k] for k in order], np.int64)
+        x, y, z = (a.transpose(order) for a in grid)
+        x, y = (np.broadcast_to(a, lines + (1,) * (x.ndim - len(lines))).ravel() for a in (x, y))
+        tree, corners, turns = self._sorted
+        flat = found.reshape(len(x), -1)
+        z = np.array(np.broadcast_to(z, found.shape)).reshape(flat.shape)
+        windings(x, y, z, corners, turns, tree.boxes, flat)
+        return (found != 0).transpose(np.argsort(order))
+
+    def shell(
+        self, grid: Sequence[np.ndarray], thickness: float, outside: bool, tolerance: float
+    ) -> np.ndarray:
+        """True where a point of a grid is nearer to the surface than ``thickness``, m, on one side of it.
+
+        Where a surface ends, at a rim, its shell ends: nothing lies beyond.
+        """
+        points = self._off_the_faces(grid, tolerance)
+        shape = np.broadcast_shapes(*(x.shape for x in points))
+        flat = np.stack([np.broadcast_to(x, shape).ravel() for x in points], axis=1)
+        tree, corners, normals = self._lined
+        found = np.empty(len(flat))
+        sides(flat, thickness, corners, normals, tree.boxes, found)
+        return ((found > 0.0) if outside else (found < 0.0)).reshape(shape)
+
+    def _off_the_faces(self, grid: Sequence[np.ndarray], tolerance: float) -> list[np.ndarray]:
+        """The coordinates moved by a trifle, so that the low side of a face is inside and no point on it.
+
+        Arrays with as many axes each as the points have.
+        """
+        axes = max(1, *(np.ndim(x) for x in grid))
+        by = max(tolerance, self.rounding) * ASKEW
+        return [np.array(x + d, ndmin=axes) for x, d in zip(grid, by)]
+
+    @cached_property
+    def _sorted(self) -> tuple[Tree, np.ndarray, np.ndarray]:
+        """The tree of the closed surface, its triangles with sorted corners, and which way they turn."""
+        corners = self.whole.corners
+        order = np.lexsort(np.moveaxis(corners, 2, 0)[::-1], axis=1)
+        even = (np.diff(np.concatenate([order, order[:, :1]], axis=1), axis=1) % 3 == 1).all(axis=1)
+        corners = np.take_along_axis(corners, order[:, :, None], axis=1)
+        tree = tree_of(corners, axes=2)  # for lines along z
+        return tree, corners[tree.order], np.where(even, 1, -1)[tree.order]
+
+    @cached_property
+    def _lined(self) -> tuple[Tree, np.ndarray, np.ndarray]:
+        """The tree of the surface as it is, its triangles, and the normals of their parts."""
+        tree = tree_of(self.sheet.corners)
+        return tree, self.sheet.corners[tree.order], _normals(self.sheet)[tree.order]
+
+
+def surface_of(mesh: Mesh) -> Surface:
+    """The surface that a shape of a case asks for, read and prepared once.  Raises MeshError."""
+    surface = _surface(mesh.found, mesh.scale, mesh.rotate, mesh.move or (0.0, 0.0, 0.0))
+    if not mesh.shell and surface.body.open:
+        gaps = f"{surface.body.holes:,} hole{'s' * (surface.body.holes != 1)}"
+        raise MeshError(
+            f"encloses nothing: {surface.body.open_edges:,} open edges around {gaps} as large as itself; "
+            "give shell = a thickness in m, or close the surface"
+        )
+    return surface
+
+
+def holds(mesh: Mesh, grid: Sequence[np.ndarray], tolerance: float) -> np.ndarray:
+    """True where a point of a grid (psph.scene.shapes.Grid) lies in the shape; broadcasts like the grid."""
+    surface = surface_of(mesh)
+    if mesh.shell:
+        return surface.shell(grid, mesh.shell, mesh.side == "outside", tolerance)
+    return surface.encloses(grid, tolerance)
+
+
+def box_around(mesh: Mesh) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Lowest and highest corner of a box around the shape, m; as exact as the file is."""
+    surface = surface_of(mesh)
+    beyond = surface.rounding
+    if mesh.shell and (mesh.side == "outside" or surface.body.open_edges):
+        beyond += mesh.shell
+    return tuple(x - beyond for x in surface.lower), tuple(x + beyond for x in surface.upper)
+
+
+@cache
+def _surface(found: Found, scale: float, turns: tuple[Turn, ...], move: tuple[float, ...]) -> Surface:
+    return Surface(_body(found), scale, turns, move)
+
+
+@cache
+def _body(found: Found) -> Body:
+    """The surface of a file, made fit; each once in a process."""
+    surface = weld(read(found.path))
+    if not len(surface.faces):
+        raise MeshError("holds triangles without an area alone; export it again, at its origin")
+    about = turned(surface)
+    sheet = _about(surface, about)
+    rings = holes(sheet)
+    whole = closed(sheet, rings)
+    own, all_ = (float(np.linalg.norm(areas(one.corners), axis=1).sum()) for one in (sheet, whole))
+    encloses = all_ - own <= ALL_OPEN * own
+    if encloses and volume(whole.corners) < 0.0:  # all faces lie inwards
+        sheet, whole = (_about(one, slice(None)) for one in (sheet, whole))
+    open_edges = int(np.count_nonzero(edges_of(sheet.faces).unbalanced))
+    return Body(sheet, whole, open_edges, len(rings), int(about.sum()), not encloses)
+
+
+def _about(surface: Welded, which) -> Welded:
+    """With some of its faces turned round."""
+    faces = surface.faces.copy()
+    faces[which] = faces[which][:, ::-1]
+    return surface._replace(faces=faces)
+
+
+def _placed(surface: Welded, scale: float, turns: Sequence[Turn], move: Sequence[float]) -> Welded:
+    """In m, scaled, turned and moved."""
+    from scipy.spatial.transform import Rotation
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        vertices, rounding = surface.vertices * scale, surface.rounding * scale
+    for turn in turns:
+        axis = np.array(turn.axis) / np.linalg.norm(turn.axis)
+        vertices = Rotation.from_rotvec(turn.degrees * axis, degrees=True).apply(vertices)
+    return Welded(vertices + np.array(move), surface.faces, rounding)
+
+
+def _normals(surface: Welded) -> np.ndarray:
+    """Normals (n, 7, 3) of faces, their corners and their edges, for :func:`psph.scene.meshes.loops.sides`.
+
+    That of an edge is the sum over its faces, of a corner the same weighted by their angles there.  Zeros at
+    the rim of an open surface.
+    """
+    faces, corners, edges = surface.faces, surface.corners, edges_of(surface.faces)
+    along = areas(corners)
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    face = along / np.where(length > 0.0, length, 1.0)
+    at_edge = np.zeros((len(edges.ends), 3))
+    at_corner = np.zeros((len(surface.vertices), 3))
+    for k in range(3):
+        ahead, back = corners[:, (k + 1) % 3] - corners[:, k], corners[:, k - 1] - corners[:, k]
+        angle = np.arctan2(np.linalg.norm(np.cross(ahead, back), axis=1), (ahead * back).sum(axis=1))
+        np.add.at(at_corner, faces[:, k], angle[:, None] * face)
+        np.add.at(at_edge, edges.of[:, k], face)
+    rim = edges.faces == 1
+    at_edge[rim] = 0.0
+    at_corner[edges.ends[rim].ravel()] = 0.0
+    return np.concatenate([face[:, None], at_corner[faces], at_edge[edges.of]], axis=1)
