@@ -71,7 +71,7 @@ class Flow(Table):
         return self
 
 
-class Motion(Table):
+class MotionOf(Table):
     """Place, turn, speed of a rigid body, and what acts on it."""
 
     of: Name = key("the name of the body")
@@ -88,7 +88,7 @@ class Gauge(Table):
     point: Point | None = key("fields at a point", None, otherwise="another kind")
     sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise="another kind")
     flow: Flow | None = key("flow through a section", None, otherwise="another kind")
-    motion: Motion | None = key("motion of a rigid body", None, otherwise="another kind")
+    motion: MotionOf | None = key("motion of a rigid body", None, otherwise="another kind")
     every: float | None = key("time between rows", None, unit="s", otherwise="output.probes", gt=0)
 
     @property

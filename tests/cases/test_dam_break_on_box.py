@@ -36,3 +36,20 @@ def test_arrival_impulse_and_plateau_of_the_pressure_on_the_box(tmp_path):
     assert pressure[late].mean() == pytest.approx(plateau, rel=0.2)
     peak = max(pressure[(time >= t) & (time < t + 0.02)].mean() for t in np.arange(BEGIN, END, 0.002))
     assert 1.5 < peak / measured.max() < 4.0
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1500)
+def test_heights_of_the_water_follow_the_measured_ones(tmp_path):
+    """rms of the difference over that of the signal, to 6 s: bounded by 0.35, as a peer's code allows itself."""
+    path = Path(CASES) / "dam_break_on_box.toml"
+    job = mpirun(2, ["-m", "psph", path, "--out", tmp_path / "run", "--set", "time.end=6.0"], timeout=1400)
+    assert job.returncode == 0, job.stderr
+    run, case = Run(tmp_path / "run"), load(path)
+    for name in ("kleefsman_h2", "kleefsman_h4"):
+        column = case.experiments[name].probe
+        table = run.measured(column)
+        time, height = read_experiment(case, name)
+        time, height = time[time < 6.0], height[time < 6.0]
+        apart = np.interp(time, table["time"], table[column]) - height
+        assert np.sqrt((apart**2).mean() / (height**2).mean()) < 0.35

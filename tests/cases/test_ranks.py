@@ -25,6 +25,7 @@ END = {
     "dam_break_3d": 0.01,
     "dam_break_on_box": 0.01,
     "impact_pressure": 0.01,
+    "floating_box": 0.05,
     "hull": 0.01,
     "minimal": 0.05,
     "taylor_green": 0.05,

@@ -65,7 +65,7 @@ def test_a_wall_that_touches_two_fluids_is_warned_of(tmp_path):
     side = "walls.side={shape={box={lower=[0.5,-0.06],upper=[0.56,0.6]}}}"
     lines = check(Scene(draft(tmp_path, LAYERS, side)))
     assert [x.partition(": ")[2] for x in lines if "continues" in x] == [
-        'walls.side.continues: "water", but the wall touches fluids.oil of 800 kg/m3 too, and currents '
+        'walls.side.continues: "water", but it touches fluids.oil of 800 kg/m3 too, and currents '
         'arise along it; make the part there a wall of its own with continues = "oil"'
     ]
     assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS))))

@@ -1,16 +1,19 @@
-"""Walls in 3D: the surface that each has at the start, carried to where its particles are."""
+"""Walls and bodies in 3D: the surface that each has at the start, carried to where its particles are."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
+from pydantic import ValidationError
 
 from psph.case.shapes import Shape
 from psph.fields import FLUID
 from psph.output.pictures.view import box_around
 from psph.output.pictures.walls import Triangles, encloses, inwards, surface
 from psph.output.pictures.water import fluid_surface
+from psph.physics.walls.conditions import MIRROR
 
-SOLIDS = ("walls",)
+SOLIDS = ("walls", "bodies")
 """Tables of a case whose shapes are drawn as surfaces, in the order in which ``group`` counts them."""
 BENT = 0.2
 """Spacings by which particles may miss a motion without deformation."""
@@ -61,10 +64,10 @@ def hull(places: np.ndarray, spacing: float) -> Triangles:
     return np.empty((0, 3, 3)) if around is None else around.points[around.regular_faces].astype(float)
 
 
-def bodies_of(case: dict, start: dict, spacing: float) -> Iterator[Body]:
-    """All that is not fluid in ``case`` (3D), whose first frame is ``start``.
+def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator[Body]:
+    """All that is not fluid in ``case`` (3D), whose first frame is ``start``; its files are in ``folder``.
 
-    What has no shape in the case gets a surface around its particles.
+    What has no shape in the case, or one whose file is gone, gets a surface around its particles.
     """
     space = case["space"]
     lower, upper = (
@@ -72,8 +75,9 @@ def bodies_of(case: dict, start: dict, spacing: float) -> Iterator[Body]:
     )
     wet = start["kind"] == FLUID
     inner = box_around(start["position"][wet])
-    shapes = [one["shape"] for table in SOLIDS for one in case.get(table, {}).values()]
-    known = dict(enumerate(map(Shape.model_validate, shapes), len(case["fluids"])))
+    solids = [one for table in SOLIDS for one in case.get(table, {}).values()]
+    held = [_shape(one["shape"], folder) for one in solids if one.get("condition") != MIRROR]
+    known = {group: shape for group, shape in enumerate(held, len(case["fluids"])) if shape}
     for group in sorted(known.keys() | set(start["group"][~wet].tolist())):
         if shape := known.get(group):
             faces, around = surface(shape, spacing, lower, upper), encloses(shape, *inner)
@@ -81,3 +85,11 @@ def bodies_of(case: dict, start: dict, spacing: float) -> Iterator[Body]:
         else:
             faces, around = hull(start["position"][start["group"] == group], spacing), False
         yield Body(group, faces, around, start, spacing)
+
+
+def _shape(table: dict, folder: Path) -> Shape | None:
+    """A shape of the case; None where the file that draws it is no longer there."""
+    try:
+        return Shape.model_validate(table, context=folder)
+    except ValidationError:
+        return None

@@ -88,7 +88,7 @@ class Show:
         if not self._solid:
             return Flat(room, cut), scale
         return solid.scene(
-            self.case, self._whole(0), room, [glance.groups for glance in glances], smooth
+            self.case, self.run.folder, self._whole(0), room, [glance.groups for glance in glances], smooth
         ), scale
 
     def _glance(self, k: int) -> Glance:

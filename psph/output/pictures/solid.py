@@ -2,6 +2,7 @@
 
 import ctypes
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -47,13 +48,15 @@ def pyvista():
 
 
 def scene(
-    case: dict, start: dict, room: Room, boxes: Sequence[dict[int, np.ndarray]], smooth: bool
+    case: dict, folder: Path, start: dict, room: Room, boxes: Sequence[dict[int, np.ndarray]], smooth: bool
 ) -> "Solid":
-    """The scene of ``case``, whose first frame is ``start``; ``boxes`` (2, 3), m, around each group in time.
+    """The scene of ``case``, whose first frame is ``start``; its files are in ``folder``.
+
+    ``boxes`` (2, 3), m, are those around each group in time.
 
     What stands still is seen whole, but for the thickness of walls around the fluid.
     """
-    bodies = list(bodies_of(case, start, room.spacing))
+    bodies = list(bodies_of(case, start, room.spacing, folder))
     still = [body for body in bodies if _stands([one[body.group] for one in boxes if body.group in one])]
     seen = {body.group for body in still}
     visible = [body.faces.reshape(-1, 3) for body in still]

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.case.mesh import Mesh
 from psph.case.shapes import Ball, Box, Cylinder, Difference, Shape
+from psph.scene.meshes.surface import surface_of
 from psph.scene.shapes import bounds, inside
 
 SIDE, ROUND = 1e-3, 0.05
@@ -79,7 +81,7 @@ def _lines(parts: list[Shape], spacing: float, lower: np.ndarray, upper: np.ndar
     return [np.union1d(x, np.arange(x[0], x[-1], spacing)) for x in found]
 
 
-def _faces(form: Box | Ball | Cylinder, lines: list[np.ndarray], spacing: float) -> Triangles:
+def _faces(form: Box | Ball | Cylinder | Mesh, lines: list[np.ndarray], spacing: float) -> Triangles:
     """The surface of a form by itself, cut along ``lines`` where it is flat."""
     match form:
         case Box(lower=lower, upper=upper):
@@ -90,6 +92,8 @@ def _faces(form: Box | Ball | Cylinder, lines: list[np.ndarray], spacing: float)
             ring = np.sin(polar)
             grid = [ring * np.cos(turn), ring * np.sin(turn), np.cos(polar) + 0 * turn]
             return _triangles(*(c + radius * x for c, x in zip(center, grid)))
+        case Mesh():
+            return surface_of(form).sheet.corners
         case Cylinder(center=center, axis=axis, radius=radius, height=height):
             return np.concatenate(list(_barrel(center, AXES.index(axis), radius, height, lines, spacing)))
 
