@@ -59,9 +59,9 @@ def sweep(motion, lower: tuple[float, ...], upper: tuple[float, ...], end: float
 
 
 def moving_walls(scene) -> Iterator[tuple[int, str, Sweep]]:
-    """Each wall that moves rigidly: its number among the species, its name and what it does."""
+    """Each wall that moves rigidly as it is told: its number among the species, its name and what it does."""
     half, end = 0.5 * scene.spacing, scene.case.time.end
-    for number, one in enumerate(scene.species_in_motion):
+    for number, one in enumerate(scene.species_in_motion[: scene.layout.first_body]):
         if is_rigid(one):
             low = tuple((scene.census.lowest[number] - half).tolist())
             high = tuple((scene.census.highest[number] + half).tolist())
