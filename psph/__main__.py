@@ -111,6 +111,7 @@ def _schema(options, comm) -> None:
 
 
 def _plot(options, comm) -> None:
+    from psph.lab.study.beside import beside
     from psph.output.pictures.flat import slice_of
     from psph.output.pictures.plot import film, plot
 
@@ -121,8 +122,11 @@ def _plot(options, comm) -> None:
     if options.film is not None:
         print(film(options.folder, options.film if options.film.name else None, *shown))
         return
-    for path in plot(options.folder, *shown):
+    measured = beside(options.folder)
+    for path in plot(options.folder, *shown, experiments=measured):
         print(path)
+    for one in measured:
+        print(one.in_words())
 
 
 def _bench(options, comm) -> None:

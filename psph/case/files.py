@@ -39,10 +39,21 @@ def beside(folder: Path, name: str, kind: str, endings: Sequence[str]) -> Found:
 
 
 def files_of(case) -> list[tuple[str, Path]]:
-    """The files that a case needs besides itself: their names in it, and where they are."""
-    drawn = (mesh.file for mesh in case.meshes.values())
-    names = dict.fromkeys([*case.use, *(series.file for series in case.series), *drawn])
-    return [(name, Path(case.file).parent / name) for name in names]
+    """The files that a case needs besides itself, and the experiments that lie beside it: their names in the
+    case, and where they are."""
+    folder, drawn = Path(case.file).parent, (mesh.file for mesh in case.meshes.values())
+    measured = (one.file for one in case.experiments.values() if _lies_in(folder, one.file))
+    names = dict.fromkeys([*case.use, *(series.file for series in case.series), *drawn, *measured])
+    return [(name, folder / name) for name in names]
+
+
+def _lies_in(folder: Path, name: str) -> bool:
+    """Whether a file is there, in the folder or below."""
+    try:
+        path = (folder / name).resolve()
+        return path.is_file() and path.is_relative_to(folder.resolve()) and ".." not in Path(name).parts
+    except (OSError, RuntimeError):  # links in a circle
+        return False
 
 
 def _digest(path: Path) -> str:

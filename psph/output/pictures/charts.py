@@ -1,5 +1,6 @@
 """Curves over time: probes and log."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from psph.output.gauges.units import quantity_of, unit_of
 from psph.output.pictures import style
 from psph.output.probes import FRONT, MEASURED
 from psph.output.reader import Run
@@ -20,13 +22,15 @@ _THEORY = {"color": style.INK, "lw": 0.9, "ls": (0, (5, 3))}
 
 
 class Chart(NamedTuple):
-    """Curves that share an axis; ``theory`` holds a constant for some of them."""
+    """Curves that share an axis; ``theory`` holds a constant for some of them, ``measured`` times and values
+    of experiments by their names."""
 
     title: str
     unit: str
     time: np.ndarray
     curves: dict[str, np.ndarray]
     theory: dict[str, float] = {}
+    measured: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 
 
 def probe_charts(run: Run, case: dict) -> list[Chart]:
@@ -48,6 +52,37 @@ def probe_charts(run: Run, case: dict) -> list[Chart]:
         if theory is not None:
             chart.theory[name] = theory
     return [chart for chart in charts.values() if len(chart.time)]
+
+
+def gauge_charts(run: Run, dimensions: int) -> dict[str, list[Chart]]:
+    """For each gauge one chart for each quantity that it measures."""
+    found = {}
+    for gauge, table in run.gauges().items():
+        charts: dict[str, Chart] = {}
+        for column, values in table.items():
+            if column == "time" or not len(values):
+                continue
+            field, part = quantity_of(column)
+            unit = unit_of(field, dimensions)
+            charts.setdefault(field, Chart(field, unit, table["time"], {}, {})).curves[part or field] = values
+        found[gauge] = list(charts.values())
+    return {gauge: charts for gauge, charts in found.items() if charts}
+
+
+def with_measured(charts: list[Chart], of: str, experiments: Iterable) -> list[Chart]:
+    """The charts of what is named ``of``, with the experiments (name, column, time, value) of its columns."""
+    return [
+        chart._replace(
+            measured={
+                one.name: (one.time, one.value)
+                for one in experiments
+                if len(one.time)
+                and one.column.startswith(f"{of}.")
+                and quantity_of(one.column)[0] == chart.title
+            }
+        )
+        for chart in charts
+    ]
 
 
 def log_charts(run: Run, dimensions: int) -> list[Chart]:
@@ -83,7 +118,8 @@ def picture(charts: list[Chart], title: str, subtitle: str) -> Figure:
 
 def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
     """Draw ``chart``; the ``last`` one of a column has the time axis."""
-    values = np.abs([*chart.theory.values(), *np.concatenate([*chart.curves.values()])])
+    measured = [value for _, value in chart.measured.values()]
+    values = np.abs([*chart.theory.values(), *np.concatenate([*chart.curves.values(), *measured])])
     values = values[np.isfinite(values)]
     largest = values.max(initial=0.0)
     steep = len(chart.curves) == 1 and 0 < values.min(initial=np.inf) * STEEP < largest
@@ -94,6 +130,8 @@ def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
         axes.plot(chart.time * seconds, curve * factor, color=colour, label=name)
         if name in chart.theory:
             axes.axhline(chart.theory[name] * factor, **_THEORY)
+    for name, (time, value) in chart.measured.items():
+        axes.plot(time * seconds, value * factor, ".", ms=3, color=style.INK, label=name)
     if steep:
         axes.set_yscale("log")
     else:

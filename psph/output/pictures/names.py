@@ -6,6 +6,7 @@ from pathlib import Path
 from psph.fields import SAVED
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
+GAUGE = "gauge-{}.png"
 
 DERIVED = ("vorticity",)
 """Fields that frames do not hold, and pictures show."""
@@ -14,6 +15,8 @@ VARIANTS = ("surface", "slice")
 
 _FIELDS = "|".join([*(field.name for field in SAVED), *DERIVED])
 _DRAWN = re.compile(rf"(?:{_FIELDS})(?:_(?:{'|'.join(VARIANTS)}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")
+
+_GAUGED = re.compile(r"gauge-[A-Za-z0-9_-]+\.png")
 
 
 def name_of(field: str, variant: str, frame: int) -> str:
@@ -29,5 +32,9 @@ def stem_of(field: str, variant: str) -> str:
 def remove_pictures(folder: Path) -> None:
     """Remove what ``plot`` has drawn of an earlier run; other pictures belong to somebody else."""
     for path in folder.iterdir():
-        if path.name in (OVERVIEW, PROBES, LOG) or _DRAWN.fullmatch(path.name):
+        if (
+            path.name in (OVERVIEW, PROBES, LOG)
+            or _DRAWN.fullmatch(path.name)
+            or _GAUGED.fullmatch(path.name)
+        ):
             path.unlink()

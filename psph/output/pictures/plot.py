@@ -16,11 +16,13 @@ def plot(
     field: str = "pressure",
     cut: Slice | None = None,
     smooth: bool = False,
+    experiments: Sequence = (),
 ) -> list[Path]:
-    """Draw ``field`` at ``times`` (s; four over the run), probes, log and overview as PNG files.
+    """Draw ``field`` at ``times`` (s; four over the run), probes, gauges, log and overview as PNG files.
 
-    They stand in ``folder``; their paths are returned.  ``cut`` and ``smooth``: see :class:`Show`.  Raises
-    Refused if there is nothing to draw, no such field, or no means to draw it.
+    They stand in ``folder``; their paths are returned.  ``cut`` and ``smooth``: see :class:`Show`;
+    ``experiments`` (psph.lab.study.beside) are drawn beside gauges.  Raises Refused if there is nothing
+    to draw, no such field, or no means to draw it.
     """
     show = Show(Run(folder), times, field, cut, smooth)
     name, variant = show.quantity.name, show.panel.variant
@@ -29,6 +31,9 @@ def plot(
     }
     if column := charts.probe_charts(show.run, show.case):
         made[names.PROBES] = charts.picture(column, show.title, "probes")
+    for gauge, column in charts.gauge_charts(show.run, show.case["space"]["dimensions"]).items():
+        beside = charts.with_measured(column, gauge, experiments)
+        made[names.GAUGE.format(gauge)] = charts.picture(beside, show.title, f"gauge {gauge}")
     if column := charts.log_charts(show.run, show.case["space"]["dimensions"]):
         made[names.LOG] = charts.picture(column, show.title, "log")
     made[names.OVERVIEW] = show.overview()

@@ -1,0 +1,52 @@
+"""A run beside the experiments that its case names."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.case import CaseError, load
+from psph.lab.errors import StudyError
+from psph.lab.study.experiment import read_experiment
+from psph.lab.study.judge import known_values, series_errors
+from psph.output.checkpoint import COPY
+from psph.output.reader import Run
+
+
+class Beside(NamedTuple):
+    """An experiment of a ``name`` beside the ``column`` of a run: ``time`` s and ``value`` as measured,
+    and the relative ``error`` of the run over the times that both have, NaN where there are none."""
+
+    name: str
+    column: str
+    time: np.ndarray
+    value: np.ndarray
+    error: float
+
+    def in_words(self) -> str:
+        """One line: how far apart they are."""
+        return f"{self.column} beside {self.name}: {100.0 * self.error:.3g} % apart (L2)"
+
+
+def beside(folder: Path) -> list[Beside]:
+    """The experiments of the run in ``folder`` whose file and column are there."""
+    run, found = Run(folder), []
+    try:
+        case = load(Path(folder) / COPY)
+    except CaseError:  # of another version; the frames can be drawn all the same
+        return []
+    for name, experiment in case.experiments.items():
+        table = run.measured(experiment.probe)
+        if not table or not (Path(folder) / experiment.file).is_file():
+            continue
+        try:
+            time, value = read_experiment(case, name)
+        except StudyError:  # what a study refuses, a picture does without
+            continue
+        ours = known_values(table, experiment.probe)
+        both = (time >= table["time"][0]) & (time <= table["time"][-1]) if len(table["time"]) else time < time
+        error = float("nan")
+        if both.any() and len(ours[0]):
+            error = series_errors(np.interp(time[both], *ours), value[both]).l2
+        found.append(Beside(name, experiment.probe, time[both], value[both], error))
+    return found
