@@ -11,6 +11,7 @@ from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
+from psph.scene.body_checks import body_faults, body_warnings
 from psph.scene.gauging import misplaced, shown
 from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
@@ -58,6 +59,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *_mirror_faults(scene),
         *_site_faults(scene),
         *misplaced(scene),
+        *body_faults(scene),
         *_exact_faults(scene),
     ]
     places = places or list(motion_faults(scene))
@@ -123,6 +125,7 @@ def warnings(scene: Scene) -> Iterator[str]:
         meshes.remarks,
         misfits,
         slips,
+        body_warnings,
     ):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
@@ -187,7 +190,7 @@ def _site_faults(scene: Scene) -> Iterator[str]:
             )
     walls = len(scene.case.fluids)
     for (one, other), site in sorted(census.clashes.items()):
-        if one < walls:
+        if one < walls or other >= scene.layout.first_body:
             yield (
                 f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
                 "one from the other: shape = { difference = { from = ..., minus = [...] } }"

@@ -7,12 +7,13 @@ import pytest
 from drafts import draft, refusal
 from mpi4py import MPI
 
+from psph.case import CaseError
 from psph.fields import FLUID
 from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
 from psph.physics.rigid.pose import rotation
 from psph.run.setup import create_particles
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 
@@ -242,6 +243,13 @@ def test_scenes_without_bodies_have_nothing_of_them(tmp_path):
     assert asked.floats and {"load", "anchor", "solid"} <= set(asked.arrays)
 
 
+SYMMETRIC = (
+    "walls.tank.shape={box={lower=[0.0,-0.15],upper=[1.15,0.0]}}",
+    "space.symmetry=['x.lower']",
+    "space.lower=[0.0,-0.15]",
+    "space.upper=[1.15,0.8]",
+)
+
 BRICK = "bodies.brick.shape.box={lower=[0.2,0.5],upper=[0.4,0.7]}"
 
 
@@ -296,3 +304,37 @@ mass = 1.0
         told = bodies.turned(0)
         told = told if told @ np.array(axis) > 0.0 else -told  # half a turn has no sign
         assert told == pytest.approx(angle * np.array(axis), rel=1e-6, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "says"),
+    [
+        (("bodies.brick.mass=1.0", "bodies.brick.shape.box.lower=[0.2,-0.1]"), "overlaps walls.tank at"),
+        (
+            ("bodies.brick.mass=1.0", "bodies.b={shape={disc={center=[0.4,0.6],radius=0.1}},mass=1.0}"),
+            "bodies.b.shape: overlaps bodies.brick at",
+        ),
+        (
+            ("bodies.brick.mass=1.0", "bodies.brick.shape.box.upper=[0.201,0.501]"),
+            "no lattice site lies in it",
+        ),
+        (
+            ("bodies.brick.mass=1.0", "bodies.brick.shape.box.lower=[0.0,0.5]", *SYMMETRIC),
+            "bodies.brick.free: x, turn_z would take it off the mirror at x = 0 m",
+        ),
+        (("bodies.brick.density=1e6",), "1e+03 times the density of its fluid; give mass in kg per metre"),
+        (
+            (
+                "bodies.brick.density=500.0",
+                "bodies.brick.lines.a={at=[0.2,0.5],anchor=[0.0,0.0],stiffness=1e12}",
+            ),
+            "times shorter than sound does; make lines softer",
+        ),
+    ],
+)
+def test_check_tells_of_bodies_that_fit_nowhere(tmp_path, overrides, says):
+    try:
+        lines = check(Scene(draft(tmp_path, POOL.format(dx=0.05), BRICK, *overrides)))
+    except CaseError as error:
+        lines = error.lines
+    assert len([line for line in lines if says in line]) == 1, lines
