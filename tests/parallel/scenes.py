@@ -18,7 +18,8 @@ class Family(NamedTuple):
     ``along`` is the long axis, ``periodic`` the axes that repeat; ``physics`` holds keys with fixed
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
     a floor, and ``condition`` of what kind; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
-    are taken; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference.
+    are taken; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference;
+    ``floats`` whether there are bodies.
     """
 
     dimensions: int
@@ -34,6 +35,7 @@ class Family(NamedTuple):
     gather_every: int = 1
     symmetry: tuple[str, ...] = ()
     moves: bool = False
+    floats: bool = False
     framed: bool = False
     physics: dict = {}
 
@@ -140,6 +142,10 @@ FAMILIES = {
     "half": Family(3, along="z", symmetry=("x.lower", "z.lower"), gather_every=3),
     "rolled": Family(2, walls=True, fluids=2, viscous=True, moves=True, physics=GRAVITY),
     "rolled in 3D": Family(3, along="z", walls=True, condition="extrapolated", moves=True, physics=GRAVITY),
+    "afloat": Family(2, walls=True, fluids=2, viscous=True, floats=True, gather_every=3, physics=GRAVITY),
+    "afloat in 3D": Family(
+        3, along="y", periodic="y", floats=True, condition="extrapolated", physics=GRAVITY
+    ),
     "framed": Family(
         2, walls=True, viscous=True, condition="extrapolated", moves=True, framed=True, physics=GRAVITY
     ),
@@ -166,6 +172,8 @@ def scene(family: Family, seed: int) -> str:
         case["walls"] = {"wall": _wall_of(family, sizes)}
     if family.moves:
         case["walls"]["wall"]["motion"] = _motion(family, rng, sizes)
+    if family.floats:
+        case["bodies"] = _bodies(family, rng, sizes)
     if family.framed:
         case["frame"] = {"motion": _motion(family, rng, sizes)}
     return tomli_w.dumps(case)
@@ -188,6 +196,33 @@ def _motion(family: Family, rng, sizes) -> list[dict]:
     way = {"velocity": _vector(rng, family.dimensions, 1.0)}
     start, ramp = _drawn(rng, 0.0, 0.05), _drawn(rng, 0.0, 0.1)
     return [{"sinusoid": swing}, {"translation": way, "start": start, "ramp": ramp}]
+
+
+def _bodies(family: Family, rng, sizes) -> dict:
+    """Two bodies a third and two thirds along the first axis, tied to each other; the second cannot slide."""
+    found = {}
+    for number, name in enumerate(("first", "second")):
+        middle = [(number + 1) * sizes[0] / 3.0, *(0.5 * n for n in sizes[1:])]
+        half = rng.uniform(0.1, 0.18, len(sizes))
+        found[name] = {
+            "shape": {"box": {"lower": (middle - half).tolist(), "upper": (middle + half).tolist()}},
+            "density": _drawn(rng, 100.0, 5000.0),
+            "velocity": _vector(rng, len(sizes), 1.0),
+            "spin": _drawn(rng, -5.0, 5.0) if len(sizes) == 2 else _vector(rng, 3, 5.0),
+            "no_slip": family.viscous,
+            "condition": family.condition,
+        }
+    found["second"]["pivot"] = middle
+    found["first"]["lines"] = {
+        "rope": {
+            "at": [sizes[0] / 3.0, *(0.5 * n for n in sizes[1:])],
+            "anchor": middle,
+            "to": "second",
+            "stiffness": _drawn(rng, 0.0, 1e4),
+            "pulls_only": bool(rng.integers(0, 2)),
+        }
+    }
+    return found
 
 
 def axes(family: Family) -> str:
