@@ -82,17 +82,18 @@ def test_a_moving_tank_and_an_accelerated_frame_are_one_flow(motion, condition, 
 def test_the_surface_of_a_tank_that_is_accelerated_tilts_by_a_over_g(way, ran):
     """Under a surface that tilts by tan θ = a/g, the middle of the water lies L² tan θ/12h to the side.
 
-    On the average over two periods of the sloshing, 0.99 s each, that has not died down.
+    On the average over two periods of the sloshing, 0.99 s each, that has not died down.  A quarter of a
+    spacing in the depth of ten would be 2.5 %.  Plain SPH, which does not know how fast the tank goes by.
     """
     text = tank("dynamic", 4.0, way, "{ acceleration = [1.962, 0.0], ramp = 1.0 }")
-    found = ran(text.replace("artificial_viscosity = 0.1", "artificial_viscosity = 1.0"))
+    found = ran('scheme = "sph"\n' + text.replace("artificial_viscosity = 0.1", "artificial_viscosity = 0.5"))
     asides = []
     for n in np.flatnonzero(np.asarray(found.times) > 2.01):
         frame = by_id(found.frame(int(n)))
         x, water = frame["position"][:, 0], frame["kind"] == 0
         asides.append(x[water].mean() - 0.5 * (x[~water].min() + x[~water].max()))
     tilt = -12.0 * 0.2 * np.mean(asides) / 0.6**2
-    assert tilt == pytest.approx(1.962 / 9.81, rel=0.03)
+    assert tilt == pytest.approx(1.962 / 9.81, rel=0.05)
 
 
 def test_what_moves_with_its_walls_is_at_rest_with_them(ran):
