@@ -24,7 +24,7 @@ from psph.lab.study.ladder import overrides, rows, wanted
 from psph.lab.study.prediction import predicted
 from psph.lab.study.runs import conditions
 from psph.lab.study.study import Study
-from psph.output.errors import OutputError
+from psph.output.errors import NotThere
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
 
@@ -218,7 +218,7 @@ def test_spoilt_tables_of_a_run_and_of_a_study(examples, tmp_path):
         _written(tmp_path, study, table)
         for what, kind in (
             (lambda: list(predicted(tmp_path, case)), StudyError),
-            (lambda: Run(tmp_path).probes(), OutputError),
+            (lambda: Run(tmp_path).probes(), NotThere),
         ):
             try:
                 tally["read" if what() else "empty"] += 1
