@@ -34,12 +34,13 @@ FIRST_BODY = 2
 
 
 @compiled
-def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, solid_of, free):
+def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, solid, free):
     """Rows of dry walls without any fluid in their lists become empty: nothing has to be summed for them.
 
-    Nor for those of a rigid body, unless it may touch another solid: ``solid_of`` has the number of each
-    group's. Of the columns ``first`` to ``last``, those of groups from number ``free`` on, which forces
-    do not move.  One that is not ``bearing`` needs no sum even with fluid around.
+    Nor for those of a rigid body, unless it may touch another solid: ``solid`` has the number of each
+    column's, ghosts among them. Of the columns ``first`` to ``last``, those of groups from number
+    ``free`` on, which forces do not move.  One that is not ``bearing`` needs no sum even with fluid
+    around.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
@@ -47,8 +48,7 @@ def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, solid_of, f
         idle = wet[k] == 0.0 and group[k] >= free
         while idle and bearing[group[k]] and n < end:
             j = np.uint64(lists.lists[n])
-            own, other = solid_of[group[k]], solid_of[group[j]]
-            idle = is_fluid[j] == 0.0 and (own < FIRST_BODY or own == other)
+            idle = is_fluid[j] == 0.0 and (solid[k] < FIRST_BODY or solid[k] == solid[j])
             n += np.uint64(1)
         if idle:
             lists.lengths[row] = 0

@@ -194,8 +194,8 @@ class Engine:
         s = self.store
         told_by, wet = s[effect.told_by], s[effect.marks.name]
         plan, lists = self.plan, self.domain.lists
-        rests = (s.group, plan.bearing, plan.solid_of, plan.free)
-        self._each(rest_dry, s.low, lists, told_by, wet, *rests)
+        solid = s["solid"] if plan.contacts else told_by  # without bodies: of numbers below those of bodies
+        self._each(rest_dry, s.low, lists, told_by, wet, s.group, plan.bearing, solid, plan.free)
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""

@@ -111,8 +111,6 @@ class Plan:
     """Whether the push of the fluid alone is summed on the particles of a group: (groups,); None: on none."""
     contacts: tuple[Any, ...]
     """How solids push each other: one effect where there are bodies, else none."""
-    solid_of: np.ndarray
-    """The number of the solid that each group is: 0 none, 1 a wall, from 2 on a rigid body."""
     body_step: float | None
     """The longest step that rigid bodies stand, s; None without bodies."""
     regions: tuple[Any, ...]
@@ -290,7 +288,6 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         **movement._asdict(),
         loaded=loaded if loaded.any() else None,
         contacts=contacts,
-        solid_of=np.array([one.solid for one in scene.species], np.uint8),
         body_step=body_step(scene) if scene.case.bodies else None,
         regions=scene.regions,
         cfl=case.time.cfl,

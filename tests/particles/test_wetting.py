@@ -36,8 +36,8 @@ def test_fluid_does_not_wet_a_wall_that_bears_nothing():
 def lengths_after(wet, is_fluid, group, bearing=True, solid_of=(0, 1)):
     """The lengths of the rows of three particles, each beside the next one, once dry walls rest."""
     lists = Neighbours(np.arange(3, dtype=np.uint64), np.ones(3, np.uint32), np.array([1, 2, 0], np.uint32))
-    bears, solids = np.array([True] + [bearing] * (len(solid_of) - 1)), np.array(solid_of, np.uint8)
-    groups = np.array(group, np.uint8)
+    bears, groups = np.array([True] + [bearing] * (len(solid_of) - 1)), np.array(group, np.uint8)
+    solids = np.array(solid_of, float)[groups]
     rest_dry(0, 3, 0, lists, np.array(is_fluid), np.array(wet), groups, bears, solids, np.uint8(1))
     return lists.lengths.tolist()
 
