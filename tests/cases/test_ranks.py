@@ -23,6 +23,7 @@ END = {
     "negative_pressure_traditional": 0.02,  # past the explosion: particles change ranks
     "dam_break": 0.02,
     "dam_break_3d": 0.01,
+    "beltrami": 0.01,
     "dam_break_on_box": 0.01,
     "impact_pressure": 0.01,
     "floating_box": 0.05,

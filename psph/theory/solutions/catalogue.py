@@ -9,11 +9,12 @@ what sound has to be faster than, ``up_to_a_constant`` which fields a case may r
 from psph.theory.solutions.channel import Couette, Poiseuille
 from psph.theory.solutions.drop import EllipticDrop
 from psph.theory.solutions.still import Hydrostatic
-from psph.theory.solutions.vortices import Gresho, TaylorGreen
+from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
 from psph.theory.solutions.waves import SoundWave, StandingWave
 
 SOLUTIONS = {
     "taylor_green": TaylorGreen,
+    "beltrami": Beltrami,
     "gresho": Gresho,
     "poiseuille": Poiseuille,
     "couette": Couette,

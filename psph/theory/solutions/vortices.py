@@ -1,4 +1,4 @@
-"""Vortices in two dimensions."""
+"""Vortices in two and three dimensions."""
 
 import math
 from typing import Annotated, NamedTuple
@@ -49,6 +49,44 @@ class TaylorGreen(NamedTuple):
         a = self.speed * math.exp(-2.0 * setting.viscosity * k * k * t)
         kx, ky = k * x.T
         return -0.25 * setting.density * a * a * (np.cos(2.0 * kx) + np.cos(2.0 * ky))
+
+
+class Beltrami(NamedTuple):
+    """A flow in 3D whose vorticity is parallel to its velocity everywhere; it decays by viscosity alone.
+
+    u = a e^(−νk²t) (sin kz + cos ky, sin kx + cos kz, sin ky + cos kx), a = U/√6, p = −ρ u²/2, k = 2π/L: the
+    flow of Arnold, Beltrami and Childress with equal parts; an exact solution since u × ∇×u = 0.  Dombre and
+    others (1986), J. Fluid Mech. 167, 353.
+    """
+
+    speed: Annotated[
+        float,
+        Field(gt=0, description="largest speed U at the start", json_schema_extra={"unit": "m/s"}),
+    ]
+    length: Annotated[float, Field(gt=0, description="length L of a period", json_schema_extra={"unit": "m"})]
+
+    up_to_a_constant = ("pressure",)
+
+    def unfit(self, setting: Setting) -> str | None:
+        """What is wrong with the case for this solution, or None."""
+        if setting.dimensions != 3:
+            return "is a flow in 3D; give space.dimensions = 3"
+        return whole_waves(setting, (0, 1, 2), self.length)
+
+    def top_speed(self, setting: Setting) -> float:
+        """The largest speed, m/s."""
+        return self.speed
+
+    def velocity(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
+        """u (n, 3) in m/s at ``x`` (n, 3) m and ``t`` s."""
+        k = 2.0 * math.pi / self.length
+        a = self.speed / math.sqrt(6.0) * math.exp(-setting.viscosity * k * k * t)
+        s, c = np.sin(k * x.T), np.cos(k * x.T)
+        return a * np.column_stack([s[2] + c[1], s[0] + c[2], s[1] + c[0]])
+
+    def pressure(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
+        """p (n,) in Pa, zero where the flow rests."""
+        return -0.5 * setting.density * (self.velocity(x, t, setting) ** 2).sum(axis=1)
 
 
 class Gresho(NamedTuple):

@@ -10,7 +10,7 @@ from psph.theory.solutions.channel import Couette, Poiseuille
 from psph.theory.solutions.drop import EllipticDrop
 from psph.theory.solutions.setting import Setting
 from psph.theory.solutions.still import Hydrostatic
-from psph.theory.solutions.vortices import Gresho, TaylorGreen
+from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
 from psph.theory.solutions.waves import SoundWave, StandingWave
 
 FREE = Setting(
@@ -24,6 +24,9 @@ FREE = Setting(
     periods=(1.0, 1.0),
 )
 STICKY = FREE._replace(viscosity=0.03)
+IN_3D = STICKY._replace(
+    dimensions=3, gravity=(0.0,) * 3, lower=(0.0,) * 3, upper=(1.0,) * 3, periods=(1.0,) * 3
+)
 CHANNEL = STICKY._replace(periods=(1.0, None))
 DRIVEN = CHANNEL._replace(gravity=(0.4, 0.0))
 HEAVY = FREE._replace(gravity=(0.0, -9.81), periods=(None, None))
@@ -31,6 +34,7 @@ STEP = 1e-4
 
 FLOWS = {
     "taylor_green": (TaylorGreen(1.5, 0.5), STICKY),
+    "beltrami": (Beltrami(1.5, 0.5), IN_3D),
     "gresho": (Gresho(1.5, 0.2, (0.5, 0.5)), FREE),
     "poiseuille": (Poiseuille(0.1, 0.9), DRIVEN),
     "couette": (Couette(0.1, 0.9, 0.7), CHANNEL),
@@ -42,19 +46,19 @@ FLOWS = {
 MOVING = [name for name, (flow, _) in FLOWS.items() if hasattr(flow, "velocity")]
 
 
-def places(n: int = 40) -> np.ndarray:
+def places(setting: Setting = FREE, n: int = 40) -> np.ndarray:
     """Points off every axis of symmetry, and inside all domains."""
-    return np.random.default_rng(3).uniform(0.31, 0.69, (n, 2))
+    return np.random.default_rng(3).uniform(0.31, 0.69, (n, setting.dimensions))
 
 
 def gradient(field, x):
-    """∂f/∂x_d by central differences, (n, ..., 2)."""
-    steps = STEP * np.eye(2)
+    """∂f/∂x_d by central differences, (n, ..., dim)."""
+    steps = STEP * np.eye(x.shape[1])
     return np.stack([(field(x + s) - field(x - s)) / (2 * STEP) for s in steps], axis=-1)
 
 
 def laplacian(field, x):
-    steps = STEP * np.eye(2)
+    steps = STEP * np.eye(x.shape[1])
     return sum((field(x + s) - 2 * field(x) + field(x - s)) / STEP**2 for s in steps)
 
 
@@ -68,16 +72,18 @@ def test_the_catalogue_is_covered():
 @pytest.mark.parametrize("name", [n for n in MOVING if n != "sound_wave"])
 def test_no_volume_appears(name):
     flow, setting = FLOWS[name]
-    slope = gradient(lambda x: flow.velocity(x, 0.02, setting), places())
+    slope = gradient(lambda x: flow.velocity(x, 0.02, setting), places(setting))
     size = np.abs(slope).max()
     assert np.abs(np.trace(slope, axis1=1, axis2=2)).max() < 1e-6 * size
 
 
-@pytest.mark.parametrize("name", ["taylor_green", "gresho", "poiseuille", "couette", "elliptic_drop"])
+@pytest.mark.parametrize(
+    "name", ["taylor_green", "beltrami", "gresho", "poiseuille", "couette", "elliptic_drop"]
+)
 def test_momentum_balances(name):
     """Du/Dt = −∇p/ρ + ν∇²u + g."""
     flow, setting = FLOWS[name]
-    x, t = places(), 0.3
+    x, t = places(setting), 0.3
     u = flow.velocity(x, t, setting)
     rate = (flow.velocity(x, t + STEP, setting) - flow.velocity(x, t - STEP, setting)) / (2 * STEP)
     rate += np.einsum("nd,nkd->nk", u, gradient(lambda y: flow.velocity(y, t, setting), x))
@@ -136,6 +142,7 @@ def test_still_water_and_a_wave_know_gravity():
     ("flow", "setting", "says"),
     [
         (TaylorGreen(1.0, 0.5), FREE._replace(dimensions=3), "2D"),
+        (Beltrami(1.0, 0.5), FREE, "3D"),
         (TaylorGreen(1.0, 0.5), FREE._replace(periods=(1.0, None)), "space.periodic"),
         (TaylorGreen(1.0, 0.3), FREE, "whole multiple"),
         (Gresho(1.0, 0.2), STICKY, "viscosity"),
