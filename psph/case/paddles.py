@@ -65,8 +65,6 @@ class Wavemaker(Table):
             return f"waves need gravity down the last axis; give physics.gravity = {down}"
         if self.direction is None:
             return None
-        if len(self.direction) != dimensions:
-            return f"direction has {len(self.direction)} numbers; give one per dimension, {dimensions}"
         if self.direction[-1] or not any(self.direction):
             return "direction is no horizontal vector; give for example -1 along x and 0 else"
         return None
@@ -75,7 +73,7 @@ class Wavemaker(Table):
 class OnHinge(Wavemaker):
     """A paddle that may turn about a hinge."""
 
-    center: Vector | None = key("a point of the hinge that the paddle turns about", unit="m")
+    center: Vector | None = None
     hinge: float = key(
         "height of the hinge above the bed, where the paddle ends; below 0 it is under the bed", 0.0, unit="m"
     )
@@ -95,8 +93,6 @@ class OnHinge(Wavemaker):
 
     def misfits(self, dimensions: int, gravity: tuple[float, ...]) -> str | None:
         """What does not fit a case of so many dimensions and this gravity, in words."""
-        if self.center is not None and len(self.center) != dimensions:
-            return f"center has {len(self.center)} numbers; give one per dimension, {dimensions}"
         if self.center is None and self.hinge:
             return "hinge is of a flap, and nothing turns here; give center too, or remove hinge"
         if not self.hinge < self.depth:
@@ -123,8 +119,8 @@ class Piston(Wavemaker):
 
     height: float = HEIGHT
     period: float = PERIOD
-    order: Literal[1, 2] = key(
-        "1: a sinusoid; 2: with the second harmonic that lets the waves keep their form", 1
+    order: int = key(
+        "1: a sinusoid; 2: with the second harmonic that lets the waves keep their form", 1, ge=1, le=2
     )
     phase: float = PHASE
 
@@ -162,7 +158,7 @@ class Irregular(OnHinge):
     components: int = key("number of waves", 64, ge=1, le=MOST_WAVES)
     seed: int = key("of their random phases and frequencies; the same seed gives the same waves", 1, ge=0)
     center: Vector | None = key(
-        "a point of the hinge that the paddle turns about", None, unit="m", otherwise="a piston"
+        "a point of the hinge of a flap that makes them", None, unit="m", otherwise="a piston"
     )
 
     def law(self, gravity: float) -> Swings:
@@ -176,12 +172,10 @@ class SolitaryWave(Wavemaker):
 
     height: float = key("height of the wave above the surface at rest", unit="m", gt=0)
     theory: Literal["rayleigh", "boussinesq"] = key(
-        "rayleigh: the stroke of Guizien and Barthelemy, with the smaller waves behind; boussinesq: Goring's",
-        "rayleigh",
+        "whose profile the wave has; rayleigh's is longer than boussinesq's", "rayleigh"
     )
 
     def law(self, gravity: float) -> SolitaryStroke:
         """How it moves."""
-        by_rayleigh = self.theory == "rayleigh"
-        wave = (rayleigh if by_rayleigh else boussinesq)(self.height, self.depth, gravity)
-        return SolitaryStroke(self.forwards, wave, by_rayleigh)
+        wave = {"rayleigh": rayleigh, "boussinesq": boussinesq}[self.theory]
+        return SolitaryStroke(self.forwards, wave(self.height, self.depth, gravity))

@@ -8,7 +8,7 @@ from psph.scene.waving import wave_lines, wave_warnings
 
 FLUME = """
 space = { dimensions = 2, spacing = 0.02 }
-time.end = 2.0
+time.end = 30.0
 physics.gravity = [0.0, -9.81]
 fluids.water.shape.box = { lower = [0.0, 0.0], upper = [3.0, 0.3] }
 [walls.floor]
@@ -29,10 +29,10 @@ REFUSED = {
         told(f"{{ piston = {{ {PISTON} }} }}", FLUME.replace("physics.gravity = [0.0, -9.81]", "")),
         "walls.paddle.motion.piston: waves need gravity down the last axis; give physics.gravity = [0.0, -9.81]",
     ),
-    "no depth": (told("{ piston = { height = 0.1, period = 1.2 } }"), "walls.paddle.motion.piston.depth: "),
+    "no depth": (told("{ piston = { height = 0.1, period = 1.2 } }"), "piston.depth: missing; add depth"),
     "a third order": (
         told(f"{{ piston = {{ {PISTON}, order = 3 }} }}"),
-        "walls.paddle.motion.piston.order: ",
+        "piston.order: ",
     ),
     "upwards": (
         told(f"{{ piston = {{ {PISTON}, direction = [0.0, 1.0] }} }}"),
@@ -40,13 +40,13 @@ REFUSED = {
     ),
     "three numbers": (
         told(f"{{ piston = {{ {PISTON}, direction = [0.0, 1.0, 0.0] }} }}"),
-        "motion.piston: direction has 3 numbers; give one per dimension, 2",
+        "motion.piston.direction: [0.0, 1.0, 0.0]: 3 numbers in a case with space.dimensions = 2",
     ),
     "a hinge in the air": (
         told(f"{{ flap = {{ {FLAP}, hinge = 0.3 }} }}"),
         "motion.flap: hinge, 0.3 m, is not below the surface at 0.3 m",
     ),
-    "no hinge": (told(f"{{ flap = {{ {PISTON} }} }}"), "walls.paddle.motion.flap.center: "),
+    "no hinge": (told(f"{{ flap = {{ {PISTON} }} }}"), "flap.center: missing; add center"),
     "a hinge of a piston": (
         told(f"{{ irregular = {{ {PISTON}, hinge = 0.1 }} }}"),
         "motion.irregular: hinge is of a flap, and nothing turns here",
@@ -65,7 +65,7 @@ REFUSED = {
     ),
     "a zone along z": (
         'physics.damping_zone = { begin = 2.0, end = 3.0, axis = "z" }\n' + FLUME,
-        "physics.damping_zone.axis: no axis in 2D; give one of x, y",
+        'physics.damping_zone.axis: "z": no axis in 2D; give one of x, y',
     ),
 }
 
@@ -73,7 +73,7 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_refusals(name, tmp_path):
     text, says = REFUSED[name]
-    assert says in refusal(tmp_path, text)
+    assert says in "; ".join(refusal(tmp_path, text))
 
 
 def scene_of(motion, tmp_path):
@@ -94,7 +94,7 @@ def test_explain_says_what_the_paddle_makes(tmp_path):
 WARNED = {
     "steep": (
         "{ piston = { height = 0.2, period = 0.8, depth = 0.3 } }",
-        "is above 0.142 tanh kh = 0.135 (Miche)",
+        "is above 0.142 tanh kh = 0.137 (Miche)",
     ),
     "high": ("{ solitary = { height = 0.24, depth = 0.3 } }", "H/h = 0.8 is above 0.78 (McCowan)"),
     "long": (

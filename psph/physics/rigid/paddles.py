@@ -37,15 +37,14 @@ class Swings(NamedTuple):
 class SolitaryStroke(NamedTuple):
     """The stroke of a piston before which a solitary wave rises, from where the piston stands, forwards.
 
-    The piston goes with the water: with θ = K(ct − x), Boussinesq's wave has x = H/(Kh) tanh θ, which is
-    dx/dt = cη/(h + η), Goring (1978), Caltech report KH-R-38; that of ``rayleigh`` has
-    x = H tanh θ/(K(h + H sech²θ)), Guizien & Barthélemy (2002), J. Hydraul. Res. 40, 321.  It begins at
-    θ = −3.8 and ends at 3.8, where it is within a thousandth of its way from rest.
+    The piston goes with the water beside it, dx/dt = cη/(h + η), whose solution is x = H/(Kh) tanh θ,
+    θ = K(ct − x), for every profile η = H sech²θ: Goring (1978), Caltech report KH-R-38, for Boussinesq's K;
+    Rayleigh's is taken in the same way.  It begins at θ = −3.8 and ends at 3.8, within a thousandth of its
+    way from rest.
     """
 
     direction: Vector
     wave: Solitary
-    rayleigh: bool
 
     @property
     def duration(self) -> float:
@@ -73,16 +72,10 @@ class SolitaryStroke(NamedTuple):
 
     def _curve(self, theta: float) -> tuple[float, float, float]:
         """x, m, with its first and second derivative by θ."""
-        h, H, K = self.wave.depth, self.wave.height, self.wave.outskirts  # noqa: N806
+        size = self.wave.height / (self.wave.outskirts * self.wave.depth)
         t = math.tanh(theta)
         s = 1.0 - t * t
-        m = H if self.rayleigh else 0.0
-        n = h + m * s  # n′ = −2 m s t
-        top = h + m * (2.0 - s)  # s n − t n′ = s top, top′ = 2 m s t
-        size = H / K
-        slope = s * top / (n * n)
-        bend = (-2.0 * s * t * top + 2.0 * m * s * s * t) / (n * n) + 4.0 * m * s * s * t * top / n**3
-        return size * t / n, size * slope, size * bend
+        return size * t, size * s, -2.0 * size * s * t
 
     def _moment(self, theta: float) -> float:
         """t = (θ/K + x(θ))/c, s: it rises with θ."""
