@@ -21,6 +21,9 @@ from psph.theory.water_waves import (
 MOST_WAVES = 10_000
 """Of a spectrum: each is evaluated in every step."""
 
+NEXT_TO_SURFACE = 0.99
+"""Height of a hinge over the depth, above which a flap moves no water."""
+
 HEIGHT = key("height of the waves, from trough to crest", unit="m", gt=0)
 PERIOD = key("period of the waves", unit="s", gt=0)
 PHASE = key("phase of the stroke at the start", 0.0, unit="rad")
@@ -95,7 +98,7 @@ class OnHinge(Wavemaker):
         """What does not fit a case of so many dimensions and this gravity, in words."""
         if self.center is None and self.hinge:
             return "hinge is of a flap, and nothing turns here; give center too, or remove hinge"
-        if not self.hinge < self.depth:
+        if not self.hinge < NEXT_TO_SURFACE * self.depth:
             return f"hinge, {self.hinge:g} m, is not below the surface at {self.depth:g} m; give a lower one"
         return super().misfits(dimensions, gravity)
 

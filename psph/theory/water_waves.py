@@ -54,8 +54,9 @@ def flap_gain(kh: float, hinge: float = 0.0) -> float:
     below the bed 1 takes the place of cosh kd.  Dean & Dalrymple (1991), sec. 6.3, integrated from d on.
     """
     x = min(kh, DEEP)
-    s, c = math.sinh(x), math.cosh(x)
-    lever = (math.cosh(x * max(hinge, 0.0)) - c) / (kh * (1.0 - hinge))
+    s, d = math.sinh(x), x * max(hinge, 0.0)
+    fall = 2.0 * math.sinh(0.5 * (d + x)) * math.sinh(0.5 * (d - x))  # cosh kd − cosh kh, exact in long waves
+    lever = fall / (kh * (1.0 - hinge))
     return 4.0 * s * (s + lever) / (math.sinh(2.0 * x) + 2.0 * x)
 
 

@@ -38,6 +38,7 @@ def test_heights_over_strokes():
     for kh in DEPTHS:
         assert flap_gain(kh, -1e7) == pytest.approx(piston_gain(kh), rel=1e-6)  # a hinge far below
         assert flap_gain(kh, 0.5) < flap_gain(kh) < flap_gain(kh, -0.5)
+    assert flap_gain(1e-9) == pytest.approx(0.5e-9) and piston_gain(1e-9) == pytest.approx(1e-9)
     assert piston_gain(1e4) == pytest.approx(2.0) and flap_gain(1e4) == pytest.approx(2.0, rel=2e-4)
 
 
