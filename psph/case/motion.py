@@ -1,6 +1,5 @@
 """Motions in a case: the parts that ``walls.NAME.motion`` and ``frame.motion`` are made of."""
 
-import csv
 import math
 from functools import cache
 from pathlib import Path
@@ -18,22 +17,24 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from psph.case.columns import read_columns
 from psph.case.files import Found, Unfit, beside
 from psph.case.keys import Table, Text, Vector, key
+from psph.case.paddles import Flap, Irregular, Piston, SolitaryWave, Wavemaker
 from psph.case.parameters import Parameters, chosen, last_part, table_of
 from psph.physics.rigid.laws import Accelerated, Harmonic, Steady, Tabulated
 from psph.physics.rigid.motion import UPWARDS, Part, Rigid
 from psph.physics.rigid.pose import ZERO, in_space
 from psph.physics.rigid.schedule import Schedule
 
-BUILT_IN = ("translation", "rotation", "sinusoid", "acceleration", "series")
+PADDLES = ("piston", "flap", "irregular", "solitary")
+"""Those of the keys of parts that make waves."""
+
+BUILT_IN = ("translation", "rotation", "sinusoid", "acceleration", "series", *PADDLES)
 """Keys of the parts that psph itself has."""
 
 MOST_PARTS = 100
 """Of a motion: each is evaluated in every step."""
-
-MOST_ROWS = 1_000_000
-"""Of a series: a day at 10 per second."""
 
 
 def _fault(says: str) -> PydanticCustomError:
@@ -220,54 +221,6 @@ class Series(Turning):
         return law
 
 
-def read_columns(path: Path, names: list[str]) -> np.ndarray:
-    """The columns ``names`` of a CSV file of numbers (n, len(names)), the first of them times that rise.
-
-    Raises Unfit.
-    """
-    try:
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            lines = ((n, line) for n, line in enumerate(file, 1) if line.strip() and line[0] != "#")
-            (first, head), *body = lines
-            found = [part.strip() for part in next(csv.reader([head], strict=True))]
-            cells = [(n, next(csv.reader([line], strict=True))) for n, line in body[: MOST_ROWS + 1]]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise Unfit(f"{path}: {error}; give a CSV file of numbers") from None
-    except ValueError:
-        raise Unfit(f"{path} is empty; give a line of names, and rows of numbers") from None
-    for name in names:
-        if found.count(name) != 1:
-            how = "no column" if name not in found else "more than one column"
-            raise Unfit(f"{path} has {how} '{name}', only {', '.join(found)}; name one of its columns")
-    if len(cells) < 2:
-        raise Unfit(f"{path} has {len(cells)} row{'s' * (len(cells) != 1)}; give two at least")
-    if len(cells) > MOST_ROWS:
-        raise Unfit(f"{path} has more than {MOST_ROWS:,} rows; give fewer: they are interpolated")
-    places = [found.index(name) for name in names]
-    rows = np.array([_numbers(path, n, row, found, places) for n, row in cells])
-    for (n, _), before, now in zip(cells[1:], rows[:-1, 0], rows[1:, 0]):
-        if not now > before:
-            raise Unfit(f"{path}: line {n}: the time {now:g} s follows {before:g} s; let times rise")
-    return rows
-
-
-def _numbers(path: Path, line: int, row: list[str], names: list[str], places: list[int]) -> list[float]:
-    if len(row) != len(names):
-        raise Unfit(f"{path}: line {line} has {len(row)} values for {len(names)} names; fill the hole")
-    values = []
-    for place in places:
-        try:
-            values.append(float(row[place]))
-        except ValueError:
-            word = row[place].strip() or "nothing"
-            raise Unfit(f"{path}: line {line}: {names[place]} is {word}; give a number") from None
-        if not abs(values[-1]) < 1e30:
-            raise Unfit(
-                f"{path}: line {line}: {names[place]} is {row[place].strip()}; give a number"
-            ) from None
-    return values
-
-
 class Motion(Table):
     """A part of a motion: one of its ways, and when it acts."""
 
@@ -276,6 +229,10 @@ class Motion(Table):
     sinusoid: Sinusoid | None = key("an oscillation of place or angle", None)
     acceleration: Acceleration | None = key("a constant acceleration from rest", None)
     series: Series | None = key("places or angles by time, from a CSV file", None)
+    piston: Piston | None = key("a paddle that slides and makes regular waves", None)
+    flap: Flap | None = key("a paddle on a hinge that makes regular waves", None)
+    irregular: Irregular | None = key("a paddle that makes the waves of a spectrum", None)
+    solitary: SolitaryWave | None = key("a paddle that makes a solitary wave", None)
     start: float = key("time from which the part acts", 0.0, unit="s", ge=0)
     end: float | None = key("time until which it acts", None, unit="s", otherwise="it never ends")
     ramp: float = key(
@@ -302,18 +259,23 @@ class Motion(Table):
         return [*BUILT_IN, *map(last_part, cls.entries)]
 
     @property
-    def part(self) -> Any:
-        """The part as the step knows it: with a pose, or by an extension with what that has."""
+    def is_rigid(self) -> bool:
+        """Whether it moves a wall without deforming it."""
+        return self.way in BUILT_IN or hasattr(chosen(self, self.entries)[self.way], "pose")
+
+    def part(self, gravity: float) -> Any:
+        """The part as the step knows it: with a pose, or by an extension with what that has.
+
+        ``gravity``: the strength g, m/s², by which waves run.
+        """
         asked: Any = getattr(self, self.way)
         if self.way not in BUILT_IN:
             return chosen(self, self.entries)[self.way]
         schedule = Schedule(self.start, math.inf if self.end is None else self.end, self.ramp)
-        law = asked.law()
-        return (
-            Part(law, schedule, asked.pivot, asked.unit_axis)
-            if isinstance(asked, Turning)
-            else Part(law, schedule)
-        )
+        law = asked.law(gravity) if self.way in PADDLES else asked.law()
+        if isinstance(asked, (Turning, Wavemaker)):
+            return Part(law, schedule, asked.pivot, asked.unit_axis)
+        return Part(law, schedule)
 
 
 def _as_list(value: Any) -> Any:
@@ -335,11 +297,14 @@ def motions_type(entries: tuple = ()) -> Any:
     return Annotated[several, BeforeValidator(_as_list, json_schema_input_type=kind | several)]
 
 
-def motion_of(parts: tuple[Motion, ...] | None) -> Any:
-    """The motion that is made of these parts (psph.physics.motion), or None where there are none."""
+def motion_of(parts: tuple[Motion, ...] | None, gravity: tuple[float, ...] = ()) -> Any:
+    """The motion that is made of these parts (psph.physics.motion), or None where there are none.
+
+    ``gravity`` in m/s², by which waves run.
+    """
     if not parts:
         return None
-    made = tuple(one.part for one in parts)
+    made = tuple(one.part(math.hypot(*gravity)) for one in parts)
     if len(made) == 1 and parts[0].way not in BUILT_IN:
         return made[0]
     return Rigid(made)
@@ -350,8 +315,11 @@ def series_in(parts: tuple[Motion, ...]) -> list[Series]:
     return [one.series for one in parts if one.series is not None]
 
 
-def misfits(parts: tuple[Motion, ...], dimensions: int):
-    """What is wrong with a motion in a case of so many dimensions: (place, key or None, words)."""
+def misfits(parts: tuple[Motion, ...], dimensions: int, gravity: tuple[float, ...]):
+    """What is wrong with a motion in a case of so many dimensions: (place, key or None, words).
+
+    ``gravity`` in m/s², empty where there is none.
+    """
     for place, one in enumerate(parts):
         names = one.ways
         if len(names) != 1:
@@ -361,10 +329,14 @@ def misfits(parts: tuple[Motion, ...], dimensions: int):
         asked = getattr(one, one.way)
         if isinstance(asked, Turning) and (says := asked.misfits(dimensions)):
             yield place, one.way, says
+        if isinstance(asked, Wavemaker) and (says := asked.misfits(dimensions, gravity)):
+            yield place, one.way, says
+        if one.solitary and (one.ramp or one.end is not None):
+            yield place, one.way, "begins and ends by itself; remove ramp and end"
         if one.way not in BUILT_IN:
             if one.start or one.end is not None or one.ramp:
                 yield place, one.way, "start, end and ramp are of psph's own parts; remove them"
-            if len(parts) > 1 and not hasattr(one.part, "pose"):
+            if len(parts) > 1 and not one.is_rigid:
                 yield place, one.way, "is no rigid motion, which alone add up; let it be the only part"
         elif one.end is not None and one.end - one.start < max(2.0 * one.ramp, 1e-30):
             yield place, "end", "is no later than the start and two ramps; give a later end"

@@ -4,16 +4,17 @@ from collections.abc import Iterator
 from typing import Any
 
 from psph.case.keys import AXES
-from psph.case.motion import Turning, misfits
+from psph.case.motion import PADDLES, Turning, misfits
 from psph.physics.walls.conditions import MIRROR
 
 
 def moved(case) -> Iterator[tuple[tuple, Any, str]]:
     """Motions that are none, or none here: location, value and message."""
+    gravity = case.physics.gravity.acceleration if case.physics.gravity else ()
     found = {("walls", name, "motion"): wall.motion for name, wall in case.walls.items()}
     found |= {("bodies", name, "motion"): body.motion for name, body in case.bodies.items()}
     for loc, parts in (found | {("frame", "motion"): case.frame.motion}).items():
-        for place, name, says in misfits(parts or (), case.space.dimensions):
+        for place, name, says in misfits(parts or (), case.space.dimensions, gravity):
             inner = (place,) if len(parts) > 1 else ()
             yield (*loc, *inner, *([name] if name else [])), ..., says
     yield from _walls(case)
@@ -36,8 +37,10 @@ def _frame(case) -> Iterator[tuple[tuple, Any, str]]:
     loc, parts, space = ("frame", "motion"), case.frame.motion, case.space
     if not parts:
         return
-    if any(len(one.ways) == 1 and not hasattr(one.part, "pose") for one in parts):
+    if any(len(one.ways) == 1 and not one.is_rigid for one in parts):
         yield loc, ..., "is no rigid motion; give one of psph's own"
+    if any(one.way in PADDLES for one in parts if len(one.ways) == 1):
+        yield loc, ..., "a paddle makes waves as a wall in its tank; give it to a wall"
     if space.symmetry or any(wall.condition == MIRROR for wall in case.walls.values()):
         yield loc, ..., "does not work with mirrors, which know of no frame that moves; remove one of the two"
     turns = [getattr(one, one.way) for one in parts if len(one.ways) == 1]

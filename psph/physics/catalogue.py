@@ -11,6 +11,7 @@ from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusio
 from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.reconstructed import ReconstructedDamping
 from psph.physics.damping.riemann import RiemannDissipation
+from psph.physics.fluid.absorbing import DampingZone
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.frame import MovingFrame
@@ -129,6 +130,7 @@ CATALOGUE = (
     Entry("physics.local_potential", LocalPotential),
     Entry("physics.gravity", Gravity),
     Entry("physics.central_force", CentralForce),
+    Entry("physics.damping_zone", DampingZone),
     Entry("frame.motion", MovingFrame),
     Entry("physics.free_surface", FreeSurface),
     Entry("physics.tension_floor", TensionFloor),

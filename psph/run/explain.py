@@ -20,6 +20,7 @@ from psph.run.outlook import outlook
 from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
 from psph.scene.moving import motion_lines
+from psph.scene.waving import wave_lines
 from psph.simulation.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
@@ -116,6 +117,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     for body in scene.rigid_bodies:
         yield f"  body        {body.name}: {in_words(scene, body)}"
     yield from motion_lines(scene)
+    yield from wave_lines(scene)
     for one in scene.species:
         if deforms(one.motion):
             yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"

@@ -77,7 +77,7 @@ def _body(scene: "Scene", number: int, name: str, table) -> Body:
         tuple(one in freed for one in TURNS),
         in_space(table.pivot) if table.pivot else None,
         table.held,
-        motion_of(table.motion),
+        motion_of(table.motion, scene.gravity),
     )
 
 

@@ -22,6 +22,7 @@ from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
 from psph.scene.units import slips
 from psph.scene.walls import layers_needed, thinnest_walls
+from psph.scene.waving import wave_warnings
 
 SLABS_IN_A_PERIOD = 3
 """A periodic axis must hold that many cut-off radii: then no particle meets another twice, and all
@@ -112,6 +113,7 @@ def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
     for kind in (
         motion_warnings,
+        wave_warnings,
         _thin_walls,
         _surface_threshold,
         _minimum_at_surface,

@@ -236,7 +236,7 @@ class Scene:
             return Free()
         if index >= self.layout.first_body:
             return self.rigid_bodies[index - self.layout.first_body]
-        return motion_of(self.parts[index].motion) or Fixed()
+        return motion_of(self.parts[index].motion, self.gravity) or Fixed()
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -39,6 +39,8 @@ END = {
     "sound_wave": 2.0,
     "rolling_tank": 0.02,
     "paddle_wheel": 0.03,
+    "piston_wave": 0.03,
+    "solitary_wave": 0.03,
     "still_water": 0.02,
     "hard/drop": 0.05,
     "hard/patch_3d": 0.02,

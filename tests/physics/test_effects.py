@@ -17,6 +17,7 @@ from psph.physics.catalogue import BUILT_IN, CATALOGUE
 from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.riemann import RiemannDissipation
+from psph.physics.fluid.absorbing import Absorbing, DampingZone
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import CorrectionBesideWalls, DifferenceCorrection, GradientCorrection
 from psph.physics.fluid.gravity import CentralForce, Gravity
@@ -293,6 +294,23 @@ def test_a_central_force_pulls_to_its_centre():
         u += h * at((x, -2.0))[0]
         x += h * u
     assert x == pytest.approx(1.5, abs=1e-5)
+
+
+@pytest.mark.parametrize(("begin", "end", "axis"), [(1.0, 3.0, "x"), (3.0, 1.0, "x"), (-0.5, 1.5, "y")])
+def test_a_damping_zone_takes_speed_within_it_alone(begin, end, axis):
+    """a = −β s² v, s from 0 where the zone begins to 1 where it ends."""
+    zone = DampingZone(begin, end, axis, 8.0).in_scene(SimpleNamespace(dimensions=2))
+    assert isinstance(zone, Absorbing) and zone.longest_step(None) == pytest.approx(0.2 / 8.0)
+    d, v = "xy".index(axis), (0.3, -0.7)
+
+    def at(s, velocity=v):
+        x = [5.0, 7.0]
+        x[d] = begin + s * (end - begin)
+        return zone.body(view()._replace(position=tuple(x), velocity=velocity))
+
+    assert at(0.5) == pytest.approx((-0.6, 1.4)) and at(0.999) == pytest.approx((-2.4, 5.6), rel=3e-3)
+    assert at(-0.01) == at(1.01) == at(-3.0) == at(4.0) == (0.0, 0.0)
+    assert at(0.7, (0.0, 0.0)) == (0.0, 0.0)
 
 
 def test_free_surface():

@@ -33,7 +33,8 @@ def scene(tmp_path_factory):
 @pytest.mark.parametrize("entry", CATALOGUE, ids=lambda entry: entry.effect.__name__)
 def test_an_effect_asks_for_nothing_else(entry, scene):
     hints, given = get_type_hints(entry.effect), entry.effect._field_defaults
-    values = {n: (0.5, 0.5) if get_origin(hints[n]) is tuple else 0.5 for n in hints if n not in given}
+    asked = enumerate(n for n in hints if n not in given)
+    values = {n: (0.5, 0.5) if get_origin(hints[n]) is tuple else 0.5 + 0.1 * k for k, n in asked}
     effect = entry.effect(**values)
     for name in ASKED:
         if hasattr(effect, name):

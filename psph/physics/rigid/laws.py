@@ -53,7 +53,7 @@ class Harmonic(NamedTuple):
 
     def ways(self, schedule: Schedule, time: float) -> Ways:
         """The law."""
-        moved, speed, change = _faded(schedule, time, self._sine)
+        moved, speed, change = faded(schedule, time, self._sine)
         return _scaled(self.amplitude, (moved[0], speed[0], change[0]))
 
     def _sine(self, t: float) -> Ways:
@@ -87,7 +87,7 @@ class Tabulated:
 
     def ways(self, schedule: Schedule, time: float) -> Ways:
         """The law: as a sinusoid, with the values of the table in the place of A sin."""
-        return _faded(schedule, time, self._spline)
+        return faded(schedule, time, self._spline)
 
     def _spline(self, t: float) -> Ways:
         inside = min(max(t, self.times[0]), self.times[-1])
@@ -105,7 +105,7 @@ def _scaled(vector: Vector, rates: Rates) -> Ways:
     return tuple(scale(vector, rate) for rate in rates)
 
 
-def _faded(schedule: Schedule, time: float, law) -> Ways:
+def faded(schedule: Schedule, time: float, law) -> Ways:
     """A law of the time since the start, by its share; without a ramp as far as it has come since."""
     since = time - schedule.start
     if schedule.ramp > 0.0:

@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from psph.theory.solutions.setting import Setting, whole_waves
+from psph.theory.water_waves import frequency
 
 
 class SoundWave(NamedTuple):
@@ -70,7 +71,7 @@ class StandingWave(NamedTuple):
     def frequency(self, setting: Setting) -> float:
         """ω, 1/s."""
         k = 2.0 * math.pi / self.length
-        return math.sqrt(-setting.gravity[1] * k * math.tanh(k * self.depth))
+        return frequency(k, self.depth, -setting.gravity[1])
 
     def top_speed(self, setting: Setting) -> float:
         """The largest speed, m/s."""

@@ -1,0 +1,184 @@
+"""Paddles in a case: the parts of a motion that make waves (psph.physics.rigid.paddles)."""
+
+import math
+from typing import Literal
+
+from psph.case.keys import Table, Vector, key
+from psph.physics.rigid.motion import UPWARDS
+from psph.physics.rigid.paddles import SolitaryStroke, Swings
+from psph.physics.rigid.pose import ZERO, in_space
+from psph.theory.water_waves import (
+    Component,
+    boussinesq,
+    flap_gain,
+    jonswap,
+    piston_gain,
+    rayleigh,
+    second_harmonic,
+    wave_number,
+)
+
+MOST_WAVES = 10_000
+"""Of a spectrum: each is evaluated in every step."""
+
+NEXT_TO_SURFACE = 0.99
+"""Height of a hinge over the depth, above which a flap moves no water."""
+
+HEIGHT = key("height of the waves, from trough to crest", unit="m", gt=0)
+PERIOD = key("period of the waves", unit="s", gt=0)
+PHASE = key("phase of the stroke at the start", 0.0, unit="rad")
+
+
+class Wavemaker(Table):
+    """What every paddle has: the depth that its waves run in, and where they go."""
+
+    depth: float = key("depth of the water at rest before the paddle", unit="m", gt=0)
+    direction: Vector | None = key(
+        "where the waves go, a horizontal vector of any length", None, otherwise="along x"
+    )
+
+    @property
+    def pivot(self) -> tuple[float, ...]:
+        """The point that it turns about, m."""
+        return ZERO
+
+    @property
+    def unit_axis(self) -> tuple[float, ...]:
+        """The axis that it turns about."""
+        return UPWARDS
+
+    @property
+    def heading(self) -> tuple[float, ...]:
+        """``direction`` as a unit vector (x, y, z)."""
+        given = in_space(self.direction or (1.0,))
+        length = math.hypot(*given)
+        return tuple(one / length for one in given)
+
+    @property
+    def forwards(self) -> tuple[float, ...]:
+        """A displacement of 1 m that way, without a turn."""
+        return (*self.heading, 0.0)
+
+    def misfits(self, dimensions: int, gravity: tuple[float, ...]) -> str | None:
+        """What does not fit a case of so many dimensions and this gravity, in words."""
+        if dimensions == 1:
+            return "waves on water need two or three dimensions"
+        if not gravity or any(gravity[:-1]) or not gravity[-1] < 0.0:
+            down = "[0.0, -9.81]" if dimensions == 2 else "[0.0, 0.0, -9.81]"
+            return f"waves need gravity down the last axis; give physics.gravity = {down}"
+        if self.direction is None:
+            return None
+        if self.direction[-1] or not any(self.direction):
+            return "direction is no horizontal vector; give for example -1 along x and 0 else"
+        return None
+
+
+class OnHinge(Wavemaker):
+    """A paddle that may turn about a hinge."""
+
+    center: Vector | None = None
+    hinge: float = key(
+        "height of the hinge above the bed, where the paddle ends; below 0 it is under the bed", 0.0, unit="m"
+    )
+
+    @property
+    def pivot(self) -> tuple[float, ...]:
+        """The point that it turns about, m."""
+        return in_space(self.center) if self.center else ZERO
+
+    @property
+    def unit_axis(self) -> tuple[float, ...]:
+        """The axis about which a turn carries its top where the waves go."""
+        x, y, _ = self.heading
+        if self.center is None:
+            return UPWARDS
+        return (-y, x, 0.0) if len(self.center) == 3 else (0.0, 0.0, -x)
+
+    def misfits(self, dimensions: int, gravity: tuple[float, ...]) -> str | None:
+        """What does not fit a case of so many dimensions and this gravity, in words."""
+        if self.center is None and self.hinge:
+            return "hinge is of a flap, and nothing turns here; give center too, or remove hinge"
+        if not self.hinge < NEXT_TO_SURFACE * self.depth:
+            return f"hinge, {self.hinge:g} m, is not below the surface at {self.depth:g} m; give a lower one"
+        return super().misfits(dimensions, gravity)
+
+    def gain(self, kh: float) -> float:
+        """H/S of its waves."""
+        return piston_gain(kh) if self.center is None else flap_gain(kh, self.hinge / self.depth)
+
+    def swings(self, waves: tuple[Component, ...], gravity: float) -> Swings:
+        """How it swings to make these waves: a stroke of 2A/(H/S) at the surface for an amplitude A."""
+        lever = 1.0 if self.center is None else self.depth - self.hinge
+        found = []
+        for a, omega, phase in waves:
+            k = wave_number(omega, self.depth, gravity)
+            found.append(Component(a / (lever * self.gain(k * self.depth)), omega, phase))
+        way = self.forwards if self.center is None else (*ZERO, 1.0)
+        return Swings(way, tuple(found))
+
+
+class Piston(Wavemaker):
+    """A piston that makes regular waves."""
+
+    height: float = HEIGHT
+    period: float = PERIOD
+    order: int = key(
+        "1: a sinusoid; 2: with the second harmonic that lets the waves keep their form", 1, ge=1, le=2
+    )
+    phase: float = PHASE
+
+    def law(self, gravity: float) -> Swings:
+        """How it moves."""
+        omega = 2.0 * math.pi / self.period
+        kh = wave_number(omega, self.depth, gravity) * self.depth
+        swings = [Component(0.5 * self.height / piston_gain(kh), omega, self.phase)]
+        if self.order == 2:
+            size = second_harmonic(self.height, kh, self.depth)
+            swings.append(Component(size, 2.0 * omega, 2.0 * self.phase))
+        return Swings(self.forwards, tuple(swings))
+
+
+class Flap(OnHinge):
+    """A flap that makes regular waves, to first order."""
+
+    height: float = HEIGHT
+    period: float = PERIOD
+    center: Vector = key("a point of the hinge that the paddle turns about", unit="m")
+    phase: float = PHASE
+
+    def law(self, gravity: float) -> Swings:
+        """How it turns."""
+        wave = Component(0.5 * self.height, 2.0 * math.pi / self.period, self.phase)
+        return self.swings((wave,), gravity)
+
+
+class Irregular(OnHinge):
+    """A piston, or with ``center`` a flap, that makes the waves of a spectrum, each to first order."""
+
+    height: float = key("significant height H_s = 4√m₀ of the waves", unit="m", gt=0)
+    period: float = key("period T_p of the peak of the spectrum", unit="s", gt=0)
+    gamma: float = key("peak enhancement γ of JONSWAP; 1 gives Pierson-Moskowitz", 3.3, ge=1, le=10)
+    components: int = key("number of waves", 64, ge=1, le=MOST_WAVES)
+    seed: int = key("of their random phases and frequencies; the same seed gives the same waves", 1, ge=0)
+    center: Vector | None = key(
+        "a point of the hinge of a flap that makes them", None, unit="m", otherwise="a piston"
+    )
+
+    def law(self, gravity: float) -> Swings:
+        """How it moves."""
+        waves = jonswap(self.height, self.period, self.gamma, self.components, self.seed)
+        return self.swings(waves, gravity)
+
+
+class SolitaryWave(Wavemaker):
+    """A piston that makes a solitary wave by one stroke forwards."""
+
+    height: float = key("height of the wave above the surface at rest", unit="m", gt=0)
+    theory: Literal["rayleigh", "boussinesq"] = key(
+        "whose profile the wave has; rayleigh's is longer than boussinesq's", "rayleigh"
+    )
+
+    def law(self, gravity: float) -> SolitaryStroke:
+        """How it moves."""
+        wave = {"rayleigh": rayleigh, "boussinesq": boussinesq}[self.theory]
+        return SolitaryStroke(self.forwards, wave(self.height, self.depth, gravity))

@@ -1,0 +1,72 @@
+"""Waves that fade before a wall."""
+
+from math import inf
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import Field
+
+from psph.formula import where
+from psph.physics.facts import Facts
+from psph.vectors import dot, scale
+
+STABLE = 0.2
+"""β Δt stays below: what is taken off in a step is a small part of the velocity."""
+
+
+class DampingZone(NamedTuple):
+    """Waves fade in a zone of the fluid, so that they do not come back from its end.
+
+    a_i = −β s² v_i where 0 ≤ s ≤ 1, s = (x − x₀)/(x₁ − x₀); elsewhere none.  A sponge layer as that of
+    Altomare and others (2017), Coast. Eng. 127, 37, who take a part off the velocity in place of a force.  It
+    conserves neither momentum nor energy: it takes both.
+    """
+
+    begin: Annotated[
+        float,
+        Field(
+            description="coordinate x₀ where it begins, without any damping", json_schema_extra={"unit": "m"}
+        ),
+    ]
+    end: Annotated[
+        float,
+        Field(
+            description="coordinate x₁ where it ends, with all of it; below begin it grows the other way",
+            json_schema_extra={"unit": "m"},
+        ),
+    ]
+    axis: Annotated[Literal["x", "y", "z"], Field(description="axis along which it grows")] = "x"
+    strength: Annotated[
+        float, Field(ge=0, description="damping β at its end", json_schema_extra={"unit": "1/s"})
+    ] = 10.0
+
+    @staticmethod
+    def conflicts(physics, kernel):
+        """It needs a length to grow over."""
+        if physics.damping_zone.begin == physics.damping_zone.end:
+            yield "begins where it ends; give another end"
+
+    def in_scene(self, scene: Facts):
+        """The form that knows its axis as a vector."""
+        slope = 1.0 / (self.end - self.begin)
+        growth = tuple(slope if name == self.axis else 0.0 for name in "xyz"[: scene.dimensions])
+        return Absorbing(growth, self.begin * slope, self.strength)
+
+
+class Absorbing(NamedTuple):
+    """Waves fade in a zone of the fluid, so that they do not come back from its end.
+
+    :class:`DampingZone` in a scene: s = g·x − s₀, with the ``growth`` g of s in 1/m and its ``offset`` s₀.
+    """
+
+    growth: tuple[float, ...]
+    offset: float
+    strength: float
+
+    def body(self, i):
+        """−β s² v_i, m/s²."""
+        s = dot(i.position, self.growth) - self.offset
+        return scale(i.velocity, where((s >= 0.0) & (s <= 1.0), -self.strength * s * s, 0.0))
+
+    def longest_step(self, scene: Facts):
+        """Δt ≤ 0.2/β, s: see STABLE."""
+        return STABLE / self.strength if self.strength else inf

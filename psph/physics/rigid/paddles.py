@@ -1,0 +1,95 @@
+"""How paddles that make waves move: laws of displacement and angle (psph.physics.rigid.laws)."""
+
+import math
+from typing import NamedTuple
+
+from psph.physics.rigid.laws import STILL, Ways, faded
+from psph.physics.rigid.schedule import Schedule
+from psph.theory.water_waves import Component, Solitary
+from psph.vectors import Vector, scale
+
+TAIL = 3.8
+"""θ at both ends of a solitary wave's stroke: tanh 3.80 = 0.999 (Goring 1978)."""
+
+
+class Swings(NamedTuple):
+    """Sinusoids in one ``direction``: s = r Σ A sin(ωτ + φ); the way of what has so many frequencies.
+
+    ``direction``: a unit displacement (x, y, z, 0) or a unit angle (0, 0, 0, 1).
+    """
+
+    direction: Vector
+    swings: tuple[Component, ...]
+
+    def ways(self, schedule: Schedule, time: float) -> Ways:
+        """The law, switched on and off as a sinusoid is (psph.physics.rigid.laws.Harmonic)."""
+        moved, speed, change = faded(schedule, time, self._sum)
+        return tuple(scale(self.direction, way[0]) for way in (moved, speed, change))
+
+    def _sum(self, t: float) -> Ways:
+        x = v = a = 0.0
+        for size, w, phase in self.swings:
+            s, c = size * math.sin(w * t + phase), size * math.cos(w * t + phase)
+            x, v, a = x + s, v + w * c, a - w * w * s
+        return (x,), (v,), (a,)
+
+
+class SolitaryStroke(NamedTuple):
+    """The stroke of a piston before which a solitary wave rises, from where the piston stands, forwards.
+
+    The piston goes with the water beside it, dx/dt = cη/(h + η), whose solution is x = H/(Kh) tanh θ,
+    θ = K(ct − x), for every profile η = H sech²θ: Goring (1978), Caltech report KH-R-38, for Boussinesq's K;
+    Rayleigh's is taken in the same way.  It begins at θ = −3.8 and ends at 3.8, within a thousandth of its
+    way from rest.
+    """
+
+    direction: Vector
+    wave: Solitary
+
+    @property
+    def duration(self) -> float:
+        """2 (θ + K x(θ))/(Kc), s, at θ = 3.8."""
+        return 2.0 * self._moment(TAIL)
+
+    @property
+    def stroke(self) -> float:
+        """From the beginning to the end, m."""
+        return 2.0 * self._curve(TAIL)[0]
+
+    def ways(self, schedule: Schedule, time: float) -> Ways:
+        """The law; at rest before the start, and when the stroke is done."""
+        since = time - schedule.start
+        first = -self._curve(TAIL)[0]
+        if since < 0.0:
+            return STILL, STILL, STILL
+        if since >= self.duration:
+            return scale(self.direction, -2.0 * first), STILL, STILL
+        x, dx, ddx = self._curve(self._phase(since - 0.5 * self.duration))
+        c, slow = self.wave.speed, 1.0 / self.wave.outskirts
+        speed = c * dx / (slow + dx)
+        change = c * c * ddx * slow / (slow + dx) ** 3
+        return tuple(scale(self.direction, way) for way in (x - first, speed, change))
+
+    def _curve(self, theta: float) -> tuple[float, float, float]:
+        """x, m, with its first and second derivative by θ."""
+        size = self.wave.height / (self.wave.outskirts * self.wave.depth)
+        t = math.tanh(theta)
+        s = 1.0 - t * t
+        return size * t, size * s, -2.0 * size * s * t
+
+    def _moment(self, theta: float) -> float:
+        """t = (θ/K + x(θ))/c, s: it rises with θ."""
+        return (theta / self.wave.outskirts + self._curve(theta)[0]) / self.wave.speed
+
+    def _phase(self, t: float) -> float:
+        """θ at ``t``: Newton's method, kept between bounds that close in."""
+        low, high, theta = -TAIL, TAIL, 0.0
+        for _ in range(100):
+            x, dx, _ = self._curve(theta)
+            off = theta / self.wave.outskirts + x - self.wave.speed * t
+            low, high = (low, theta) if off > 0.0 else (theta, high)
+            step = off / (1.0 / self.wave.outskirts + dx)
+            if abs(step) < 1e-15 or high - low < 1e-15:
+                break
+            theta = theta - step if low < theta - step < high else 0.5 * (low + high)
+        return theta

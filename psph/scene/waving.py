@@ -1,0 +1,145 @@
+"""Paddles of a scene: the waves that they make, in words, and which of these are none."""
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from psph.case.motion import PADDLES
+from psph.case.paddles import Irregular, OnHinge
+from psph.physics.rigid.paddles import Swings
+from psph.scene.moving import moving_walls
+from psph.theory.water_waves import HIGHEST_IN_DEPTH, MADSEN, steepest, wave_number
+
+FEWEST = 5.0
+"""Spacings in the height of a wave, below which little is left of it after some wavelengths."""
+
+
+class Waves(NamedTuple):
+    """What a paddle makes: its ``wall``, the ``way`` of the part that was ``asked`` for and its ``law``.
+
+    ``length`` L in m, and ``depths`` kh; None and infinity for a solitary wave.
+    """
+
+    wall: str
+    way: str
+    asked: Any
+    law: Any
+    length: float | None
+    depths: float
+
+    @property
+    def key(self) -> str:
+        """Of the case."""
+        return f"walls.{self.wall}.motion.{self.way}"
+
+
+def waves_of(scene) -> Iterator[Waves]:
+    """Those of each paddle of a scene."""
+    strength = math.hypot(*scene.gravity)
+    for name, wall in scene.walls.items():
+        for part in wall.motion or ():
+            if part.way in PADDLES:
+                asked = getattr(part, part.way)
+                law = asked.law(strength)
+                if part.way == "solitary":
+                    yield Waves(name, part.way, asked, law, None, math.inf)
+                else:
+                    k = wave_number(2.0 * math.pi / asked.period, asked.depth, strength)
+                    yield Waves(name, part.way, asked, law, 2.0 * math.pi / k, k * asked.depth)
+
+
+def wave_lines(scene) -> Iterator[str]:
+    """The waves in words, for `explain`."""
+    for waves in waves_of(scene):
+        _, _, asked, law, length, depths = waves
+        key, height, depth = waves.key, asked.height, asked.depth
+        if length is None:
+            yield (
+                f"  waves       {key}: speed {law.wave.speed:.4g} m/s, stroke {law.stroke:.3g} m in "
+                f"{law.duration:.3g} s"
+            )
+        else:
+            yield (
+                f"  waves       {key}: length {length:.4g} m, period {asked.period:g} s, depth {depth:g} m "
+                f"(kh {depths:.3g})"
+            )
+            yield f"              H/L {height / length:.3g}, HL²/h³ {_ursell(height, length, depth):.3g}"
+            yield f"              stroke {_stroke(law, asked):.3g} m at the surface"
+        yield f"              H/h {height / depth:.3g}, H/dx {height / scene.spacing:.3g}"
+
+
+def wave_warnings(scene) -> Iterator[str]:
+    """What of the waves may not be meant so."""
+    for waves in waves_of(scene):
+        _, _, asked, _, length, depths = waves
+        key, height, depth = waves.key, asked.height, asked.depth
+        if length is not None and height > steepest(depths) * length:
+            yield (
+                f"{key}: H/L = {height / length:.3g} is above 0.142 tanh kh = {steepest(depths):.3g} "
+                f"(Miche): such waves break; give a height below {_below(steepest(depths) * length)} m, "
+                "or a longer period"
+            )
+        if height > HIGHEST_IN_DEPTH * depth:
+            yield (
+                f"{key}: H/h = {height / depth:.3g} is above {HIGHEST_IN_DEPTH} (McCowan): such waves break; "
+                f"give a height below {_below(HIGHEST_IN_DEPTH * depth)} m"
+            )
+        second = getattr(asked, "order", 1) == 2 and length is not None
+        if second and (ursell := _ursell(height, length, depth)) >= MADSEN:
+            yield (
+                f"{key}: HL²/h³ = {ursell:.3g} is not below 8π²/3 = {MADSEN:.3g} (Madsen): to second order "
+                "such waves have a second crest; give a lower height or a shorter period"
+            )
+        if height < FEWEST * scene.spacing * (1.0 - 1e-9):
+            yield (
+                f"{key}: H/dx = {height / scene.spacing:.3g} is below {FEWEST:g}: such waves fade; give "
+                f"space.spacing = {_below(height / FEWEST)} or less"
+            )
+        yield from _depth_warnings(scene, key, depth)
+    yield from _stroke_warnings(scene)
+
+
+def _below(number: float) -> str:
+    """A number of three figures that is no larger."""
+    step = 10.0 ** (math.floor(math.log10(number)) - 2)
+    return f"{math.floor(number / step * (1.0 + 1e-12)) * step:.3g}"
+
+
+def _ursell(height: float, length: float, depth: float) -> float:
+    return height * length * length / depth**3
+
+
+def _stroke(law: Swings, asked: Any) -> float:
+    """At the surface at rest, m: twice the first amplitude; of a spectrum 4√m₀, as H_s is of its waves."""
+    sizes = [one.amplitude for one in law.swings]
+    lever = asked.depth - asked.hinge if isinstance(asked, OnHinge) and asked.center else 1.0
+    return 2.0 * lever * (math.sqrt(2.0) * math.hypot(*sizes) if isinstance(asked, Irregular) else sizes[0])
+
+
+def _water(scene) -> tuple[np.ndarray, np.ndarray]:
+    """The corners of the box around all fluids, m."""
+    fluids, half = scene.layout.fluids, 0.5 * scene.spacing
+    return (
+        scene.census.lowest[:fluids].min(axis=0) - half,
+        scene.census.highest[:fluids].max(axis=0) + half,
+    )
+
+
+def _depth_warnings(scene, key: str, depth: float) -> Iterator[str]:
+    low, high = _water(scene)
+    if depth > (deep := high[-1] - low[-1]) + scene.spacing:
+        yield f"{key}: depth = {depth:g} m, and the fluid is {deep:.3g} m deep; give the depth of the water"
+
+
+def _stroke_warnings(scene) -> Iterator[str]:
+    paddles = {waves.wall for waves in waves_of(scene)}
+    for _, name, found in moving_walls(scene) if paddles else ():
+        low, high = _water(scene)
+        length = float((high - low)[:-1].max())
+        if name in paddles and found.way > length:
+            yield (
+                f"walls.{name}.motion: the paddle goes {found.way:.3g} m, and the water is {length:.3g} m "
+                "long; give lower or shorter waves, or a longer tank"
+            )

@@ -1,0 +1,61 @@
+"""Waves from paddles, two wavelengths and ten depths away, against the theory that moves the paddle."""
+
+import math
+
+import numpy as np
+import pytest
+from cases.measures import by_id, finished, window
+from drafts import TANK, draft
+from long import LONG
+from mpi4py import MPI
+
+from psph.output.reader import Run
+from psph.run.start import run
+
+DEPTH = 0.3
+
+
+def sloshed(folder, *overrides):
+    """The last frame of water that runs to and fro in a tank 1 m long."""
+    folder.mkdir()
+    case = draft(folder, TANK, "time.end=0.3", "fluids.water.velocity=[0.2, 0.0]", *overrides)
+    run(case, folder / "run", MPI.COMM_SELF, say=lambda *_: None)
+    return by_id(Run(folder / "run").frame(-1))
+
+
+def test_a_damping_zone_calms_what_is_in_it_alone(tmp_path):
+    free = sloshed(tmp_path / "free")
+    beside = sloshed(tmp_path / "beside", "physics.damping_zone={ begin = 1.5, end = 2.5 }")
+    assert all(np.array_equal(free[name], beside[name]) for name in free)  # no water is there
+    within = sloshed(tmp_path / "within", "physics.damping_zone={ begin = -0.5, end = 1.2 }")
+    energy, left = ((one["velocity"] ** 2).sum() for one in (free, within))
+    assert left < 0.5 * energy
+
+
+@LONG
+def test_a_piston_makes_waves_of_the_height_that_was_asked_for(tmp_path):
+    found = finished("piston_wave", tmp_path / "run")
+    for name in ("near", "far"):  # one and two wavelengths from the paddle
+        table = found.gauges()[name]
+        level, time = (window(table, c, 8.4, 12.0 - 1e-9) for c in (f"{name}.level", "time"))
+        first = 2.0 * abs(np.mean((level - DEPTH) * np.exp(-2j * math.pi * time / 1.2)))
+        assert 2.0 * first == pytest.approx(0.08, rel=0.05)
+
+
+@LONG
+def test_a_solitary_wave_keeps_its_height_and_speed(tmp_path):
+    found = finished("solitary_wave", tmp_path / "run")
+    (begin, low), (end, high) = (crest(found, name) for name in ("first", "second"))
+    assert 3.0 / (end - begin) == pytest.approx(1.879, rel=0.01)
+    assert (low, high) == pytest.approx((0.06, 0.06), rel=0.05)
+
+
+def crest(found, name):
+    """When the crest passes a gauge, and how high it is, by a parabola through its top."""
+    table = found.gauges()[name]
+    time, level = table["time"], table[f"{name}.level"] - DEPTH
+    early = time < (3.2 if name == "first" else 4.6)  # before the wall sends it back
+    top = int(np.argmax(level[early]))
+    near = slice(top - 15, top + 16)
+    a, b, c = np.polyfit(time[near] - time[top], level[near], 2)
+    return time[top] - b / (2.0 * a), c - b * b / (4.0 * a)
