@@ -103,6 +103,7 @@ def drop(tmp_path):
 def test_pages_are_short(page):
     longest = {
         "README.md": 120,
+        "docs/accuracy.md": 330,
         "docs/case.md": 800,
         "docs/contributing.md": 450,
     }  # a reference is looked up, not read

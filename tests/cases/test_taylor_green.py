@@ -36,3 +36,11 @@ def test_the_error_falls_with_more_than_the_square_of_the_spacing(error):
 def test_without_its_effects_the_flow_is_gone(error):
     """The control, 34 %: where the pressure is negative, the symmetric form tears the lattice."""
     assert error(0.04, *BOUGHT) > 0.3
+
+
+def test_a_flow_in_3d_keeps_to_its_exact_solution_under_the_default_scheme(tmp_path):
+    """Measured: 0.88 % of the velocity (L2) at 0.04, 0.33 % at 0.02; the energy within 0.5 %."""
+    run = finished("beltrami", tmp_path / "out")
+    errors, energy = run.errors(), run.log()["kinetic_energy"]
+    assert 0.004 < errors["velocity_l2"][-1] < 0.011
+    assert energy[-1] / energy[0] == pytest.approx(np.exp(-8.0 * np.pi**2 * 0.01), rel=0.02)
