@@ -51,4 +51,4 @@ def test_exact_solutions_are_the_same_in_however_many_rows(name):
     flow, setting = FLOWS[name]
     for field in ("velocity", "pressure"):
         if hasattr(flow, field):
-            assert same_in_parts(lambda x: getattr(flow, field)(x, 0.02, setting), places(N))
+            assert same_in_parts(lambda x: getattr(flow, field)(x, 0.02, setting), places(setting, N))

@@ -136,7 +136,7 @@ def test_a_wall_moves_in_one_way(mine, tmp_path):
     says = line_of(mine(f"motions=({STILL},)", more=more, used=("swinging.py", "mine.py")))
     assert says.endswith(
         "walls.floor.motion: a part moves in one way, not in 2; give one of: translation, rotation, "
-        "sinusoid, acceleration, series, swinging, still"
+        "sinusoid, acceleration, series, piston, flap, irregular, solitary, swinging, still"
     )
 
 
