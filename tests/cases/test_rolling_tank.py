@@ -32,7 +32,7 @@ def test_the_tank_rolls_as_told_and_the_water_comes_once_a_period(tmp_path):
     arrivals, dry = [], False
     for t, p in zip(time, pressure):
         dry = dry or (t > PERIOD and p < 0.25 * RESTING)
-        late = not arrivals or t > arrivals[-1] + 0.5 * PERIOD  # the same bore splashes
+        late = not arrivals or t > arrivals[-1] + 0.75 * PERIOD  # the same bore splashes
         if dry and late and p > RESTING:
             arrivals, dry = [*arrivals, t], False
     assert len(arrivals) == 3
