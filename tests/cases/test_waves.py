@@ -40,6 +40,7 @@ def test_a_piston_makes_waves_of_the_height_that_was_asked_for(tmp_path):
 
 @LONG
 def test_a_solitary_wave_keeps_its_height_and_speed(tmp_path):
+    """Measured: 1.874 m/s, 0.0586 and 0.0584 m."""
     found = finished("solitary_wave", tmp_path / "run")
     (begin, low), (end, high) = (crest(found, name) for name in ("first", "second"))
     assert 3.0 / (end - begin) == pytest.approx(1.879, rel=0.01)
