@@ -13,6 +13,9 @@ from psph.case.motion import Motions
 from psph.case.shapes import Shape
 from psph.physics.walls.conditions import BEARING, DYNAMIC
 
+MOST_PARTS = 250
+"""Fluids, walls and bodies together: particles know theirs by one byte."""
+
 SLIDES = AXES
 """Names of the free directions."""
 
@@ -137,6 +140,10 @@ def held_together(case) -> Iterator[Finding]:
                 others = [other for other in case.bodies if other != name]
                 says = f"no other body has this name; {advise(table.to, others)}"
                 yield (*here, "lines", line, "to"), table.to, says
+    parts = len(case.fluids) + len(case.walls) + len(case.bodies)
+    if parts > MOST_PARTS:
+        says = f"{parts} fluids, walls and bodies; a case holds {MOST_PARTS} at most, so join some by union"
+        yield ("bodies",), ..., says
     if case.bodies:
         for key in one_sided(case):
             says = f"{key} does not push back what pushes, so that no force on a body is known; take another"

@@ -81,11 +81,16 @@ def _body(scene: "Scene", number: int, name: str, table) -> Body:
     )
 
 
-def in_words(scene: "Scene", body: Body) -> str:
-    """Mass, density over that of its fluid, centre and freedom of a body."""
+def density_ratio(scene: "Scene", body: Body) -> float:
+    """The density of a body over that of its fluid."""
     number = [one.name for one in scene.species].index(body.name)
     volume = float(scene.census.sizes[number]) * scene.spacing**scene.dimensions
-    ratio = body.mass / volume / scene.species[number].density
+    return body.mass / volume / scene.species[number].density
+
+
+def in_words(scene: "Scene", body: Body) -> str:
+    """Mass, density over that of its fluid, centre and freedom of a body."""
+    ratio = density_ratio(scene, body)
     freed = ", ".join(scene.case.bodies[body.name].freed(scene.dimensions)) or "nothing"
     where = ", ".join(f"{x:.4g}" for x in body.centre[: scene.dimensions])
     until = f"; held until {body.held:g} s" if body.held else ""

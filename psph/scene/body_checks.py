@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
-from psph.scene.bodies import body_step
+from psph.scene.bodies import body_step, density_ratio
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -36,9 +36,8 @@ def body_faults(scene: "Scene") -> Iterator[str]:
 
 def body_warnings(scene: "Scene") -> Iterator[str]:
     """A line for each body whose density is likely a slip, and for steps that bodies make short."""
-    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
-        volume = float(scene.census.sizes[number]) * scene.spacing**scene.dimensions
-        ratio = one.mass / volume / scene.species[number].density
+    for one in scene.rigid_bodies:
+        ratio = density_ratio(scene, one)
         if not LIGHTEST <= ratio <= HEAVIEST:
             depth = " per metre of depth" if scene.dimensions == 2 else ""
             yield (

@@ -180,9 +180,13 @@ density = 2000.0
 [bodies.high]
 shape.box = { lower = [1.6, 0.4], upper = [2.1, 0.6] }
 density = 800.0
+[gauges.table.force]
+on = ["table"]
+[gauges.low.force]
+on = ["low"]
 """
     )
-    simulation, bodies, _ = started(draft(tmp_path, text))
+    simulation, bodies, scene = started(draft(tmp_path, text))
     while simulation.time < 1.2:
         simulation.step()
     low, high = ([one.name for one in bodies.bodies].index(name) for name in ("low", "high"))
@@ -191,6 +195,9 @@ density = 800.0
     assert np.abs(bodies.velocity).max() < 0.02 and np.abs(bodies.angle).max() < 1e-3
     # Newton's third law: what the floor bears is the weight of both, and the upper rests on the lower.
     assert bodies.force[high, 1] == pytest.approx(0.0, abs=0.05 * 80.0 * 9.81)
+    # A gauge tells the fluid's push on a wall, which is dry here, and of a body its contacts too.
+    table, own = (gauge.row(simulation) for gauge in gauges_of(scene).values())
+    assert not table.any() and own[1] == pytest.approx(120.0 * 9.81, rel=0.05)
 
 
 def test_a_gate_on_a_hinge_turns_about_its_hinge(tmp_path):
@@ -286,6 +293,17 @@ BRICK = "bodies.brick.shape.box={lower=[0.2,0.5],upper=[0.4,0.7]}"
 def test_bodies_that_cannot_be_are_refused(tmp_path, overrides, says):
     lines = refusal(tmp_path, POOL.format(dx=0.05), BRICK, *overrides)
     assert len(lines) == 1 and says in lines[0]
+
+
+def test_a_byte_counts_all_parts(tmp_path):
+    few = "bodies.brick.mass=1.0"
+    walls = (f"walls.w{n}.shape.box={{lower=[{n}.0,-1.0],upper=[{n}.5,-0.5]}}" for n in range(98))
+    fluids = (f"fluids.f{n}.shape.box={{lower=[{n}.0,5.0],upper=[{n}.5,5.5]}}" for n in range(98))
+    bodies = (
+        f"bodies.b{n}={{shape={{box={{lower=[{n}.0,9.0],upper=[{n}.5,9.5]}}}},mass=1.0}}" for n in range(60)
+    )
+    lines = refusal(tmp_path, POOL.format(dx=0.05), BRICK, few, *walls, *fluids, *bodies)
+    assert len(lines) == 1 and "259 fluids, walls and bodies; a case holds 250 at most" in lines[0]
 
 
 def test_a_turn_is_told_as_axis_times_angle(tmp_path):

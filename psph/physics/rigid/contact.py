@@ -4,12 +4,15 @@ from typing import NamedTuple
 
 from psph.formula import where
 
+WALL_SOLID = 1.0
+"""The number of a wall among solids; those of bodies are above."""
+
 LOSS = 0.3
 """Damping of a contact over that at which one particle would not swing back."""
 
 
 class Contact(NamedTuple):
-    """Particles of different solids repel each other where they are nearer than a spacing.
+    """A body's particles are repelled by those of other solids where they are nearer than a spacing.
 
     f_ij = max(k (dx − r) − ζ u_ij·x_ij/r, 0) along x_ij/r where r < dx, with k = ρ₀c² dx^(d−2), so that
     a face pressed in by a spacing bears ρ₀c² as the fluid does, and ζ = 0.6 ρ₀c dx^(d−1).  It has no
@@ -23,10 +26,10 @@ class Contact(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        other = j.solid - i.solid
+        other, is_body = j.solid - i.solid, max(i.solid - WALL_SOLID, 0.0)
         depth = max(self.distance - pair.r, 0.0) * (1.0 - j.is_fluid)
         push = max(self.stiffness * depth - self.damping * pair.u_dot_x * pair.inverse_r, 0.0)
-        return where(depth * other * other > 0.0, push * pair.inverse_r / i.mass, 0.0)
+        return where(is_body * depth * other * other > 0.0, push * pair.inverse_r / i.mass, 0.0)
 
 
 def contact_of(scene) -> Contact:

@@ -10,6 +10,7 @@ from psph.case import Case, CaseError
 from psph.case.consistency import walk
 from psph.case.mesh import Mesh
 from psph.case.shapes import Difference, Shape
+from psph.scene.gauging import shown
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.shapes import bounds, inside
 from psph.scene.walls import layers_needed, thinnest_walls
@@ -102,7 +103,7 @@ def site_faults(scene: "Scene") -> Iterator[str]:
         if not sites:
             yield (
                 f"{one.key}: no lattice site lies in {one.mesh.file}, {one.size} in size from "
-                f"{_point(one.surface.lower)}, at a spacing of {scene.spacing:g} m; check scale (metres per "
+                f"{shown(one.surface.lower)}, at a spacing of {scene.spacing:g} m; check scale (metres per "
                 "unit of the file) and move, or make space.spacing smaller"
             )
 
@@ -126,8 +127,8 @@ def described(scene: "Scene") -> Iterator[str]:
             what = f"{surface.volume:.4g} m3"
             what += f", {_excess(scene, one, sites):+.1%} on the lattice" if _is_within(scene, one) else ""
         yield (
-            f"{one.key}: {one.mesh.file}: {one.size} from {_point(surface.lower)} to "
-            f"{_point(surface.upper)}, {len(surface.sheet.faces):,} triangles, {edges}, {what}: {sites:,} "
+            f"{one.key}: {one.mesh.file}: {one.size} from {shown(surface.lower)} to "
+            f"{shown(surface.upper)}, {len(surface.sheet.faces):,} triangles, {edges}, {what}: {sites:,} "
             f"sites{also}"
         )
 
@@ -209,7 +210,3 @@ def _excess(scene: "Scene", one: Drawn, sites: int) -> float:
     """How much more than a mesh encloses its sites hold, over that."""
     volume = one.surface.volume
     return sites * scene.spacing**3 / volume - 1.0 if volume > 0.0 else math.inf
-
-
-def _point(x) -> str:
-    return f"[{', '.join(f'{value:.4g}' for value in x)}]"
