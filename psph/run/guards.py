@@ -18,15 +18,15 @@ from psph.run.record import Record
 from psph.run.resume import newest_checkpoint, write_checkpoint
 from psph.run.suspect import Suspect, find
 from psph.scene.behind import Solid
-from psph.simulation.step import BlowUp, Simulation, TimeLost
+from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
 
 EVERY = 100
 """Steps from one look behind the walls and at the energy to the next."""
 
-STOP, CLOCK = "stop", "clock"
+STOP, CLOCK, DEPTH = "stop", "clock", "depth"
 
 
-VERBS = {"depth": "lost a particle", CLOCK: "stands still"}
+VERBS = {DEPTH: "lost a particle", CLOCK: "stands still"}
 """What the run did, by guard, where it is not that it blew up."""
 
 
@@ -113,7 +113,7 @@ class Guards:
         if simulation.steps % EVERY == 0:
             with simulation.ledger("guards"):
                 slow = [
-                    ("depth", largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
+                    (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
                     ("energy", self._books and self._gain() > bounds.energy),
                 ]
             yield from (name for name, passed in slow if passed)
@@ -176,7 +176,8 @@ class Guards:
             told = f"{path} tells more"
         except OutputError as trouble:
             told = str(trouble)
-        raise BlowUp(f"{what}; {tries[0]}; {told}")
+        kind = ParticleLost if guard == DEPTH else BlowUp
+        raise kind(f"{what}; {tries[0]}; {told}")
 
     def _keep_state(self, guard: str) -> str:
         """A checkpoint and a frame of the state, where it is finite; words of what there is."""
@@ -256,7 +257,7 @@ class Guards:
             case "density":
                 part = suspect.value("density") / suspect.value("rest_density")
                 return f"{who} has {part:.3g} of its rest density{bound}"
-            case "depth":
+            case _ if guard == DEPTH:
                 if (side := self._side_passed(suspect)) is not None:
                     return f"{who} has left the walls {side}{bound}"
                 return f"{who} is behind the face of a wall{bound}"

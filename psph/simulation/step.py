@@ -35,6 +35,10 @@ class BlowUp(Failed):
     """A run in trouble, on whatever rank; raised on all."""
 
 
+class ParticleLost(BlowUp):
+    """A run that a guard ended because fluid is behind a wall or has left all walls; raised on all."""
+
+
 class TimeLost(BlowUp):
     """A time step so short that the time cannot tell it; raised on all ranks before the step."""
 

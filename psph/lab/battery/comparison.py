@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from psph.lab.battery import tables
 from psph.lab.battery.trials import ALWAYS, Bound, Trial
-from psph.lab.battery.verdicts import BLEW_UP, REFUSED, Row
+from psph.lab.battery.verdicts import Row
 
 
 class Comparison(NamedTuple):
@@ -18,6 +18,8 @@ class Comparison(NamedTuple):
     kind: str
     trials: tuple[Trial, ...]
     shown: Mapping[str, Sequence[str]]
+    measures_down: bool = False
+    """Whether each measure is a row of the table and each choice a column."""
 
     @property
     def csv(self) -> str:
@@ -48,13 +50,14 @@ def judging(trial: Trial, name: str, changes: Mapping[str, tuple[str, ...]], **m
 
 def matrix(of: Comparison, rows: Sequence[Row]) -> Iterator[str]:
     """Choices × measures of each trial, for a terminal."""
-    yield from tables.columned([["", *_heads(of, "{}")], *_body(of, rows, "{}")])
+    yield from tables.columned(_table(of, rows, "{}"))
 
 
 def markdown(of: Comparison, rows: Sequence[Row]) -> Iterator[str]:
     """The same for a page, with the meaning of its numbers and the bounds."""
     trials = of.trials
-    yield from tables.table([of.kind, *_heads(of, "`{}`")], _body(of, rows, "`{}`"))
+    head, *body = _table(of, rows, "`{}`")
+    yield from tables.table(head, body)
     yield ""
     bounds = [bound for trial in trials for bound in (*ALWAYS, *trial.holds, *trial.goals)]
     shown = [name for trial in trials for name in of.shown[trial.name]]
@@ -67,6 +70,11 @@ def markdown(of: Comparison, rows: Sequence[Row]) -> Iterator[str]:
 
 def _limits(bounds: Sequence[Bound]) -> str:
     return ", ".join(f"`{bound.measure}` {bound.limits}" for bound in bounds)
+
+
+def _table(of: Comparison, rows: Sequence[Row], code: str) -> list[Sequence[str]]:
+    table: list[Sequence[str]] = [[of.kind, *_heads(of, code)], *_body(of, rows, code)]
+    return list(zip(*table)) if of.measures_down else table
 
 
 def _heads(of: Comparison, code: str) -> Iterator[str]:
@@ -87,4 +95,4 @@ def _cells(of: Comparison, row: Row) -> Iterator[str]:
     yield tables.cell(row)
     for name in of.shown[row.trial][1:]:
         value = row.seconds if name == tables.SECONDS else row.found.get(name)
-        yield "–" if row.verdict in (BLEW_UP, REFUSED) else tables.number(value)
+        yield "–" if not row.complete else tables.number(value)

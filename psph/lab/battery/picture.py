@@ -41,7 +41,7 @@ def draw(path: Path, trials: Sequence[Trial], rows: Sequence[Row], ends: Iterabl
             left + wide + 0.3,
             top + tall + GAP + deep + 0.25,
             "What holds, and what does not",
-            "each cell with what the trial is judged by; × and the time at which it blew up",
+            "each cell with what the trial is judged by; × or a loss with the time at which it ended a run",
         )
         _matrix(style.panel(figure, left, top, wide, tall), trials, columns, rows)
         for k, (name, frame) in enumerate(ends):

@@ -42,8 +42,12 @@ def cell(row: Row | None) -> str:
     """The value of a trial's measure with the mark of the verdict."""
     if row is None:
         return ""
-    if row.verdict in (BLEW_UP, REFUSED):
-        return f"{MARKS[BLEW_UP]} {row.reached:.2g} s" if row.verdict == BLEW_UP else MARKS[REFUSED]
+    if row.verdict == REFUSED:
+        return MARKS[REFUSED]
+    if row.verdict == BLEW_UP:
+        return f"{MARKS[BLEW_UP]} {row.reached:.2g} s"
+    if not row.complete:
+        return f"{MARKS[FAILS]} lost at {row.reached:.2g} s"
     return f"{MARKS[row.verdict]} {number(row.found.get(row.shown))}"
 
 
@@ -114,7 +118,7 @@ def markdown(trials: Sequence[Trial], rows: Sequence[Row]) -> Iterator[str]:
 def legend(shown: Iterable[str]) -> Iterator[str]:
     """The meaning of the marks of a page, and of the measures."""
     marks = "; ".join(f"{mark} {verdict}" for verdict, mark in MARKS.items())
-    yield f"{marks}; after ×: the simulated time until then."
+    yield f"{marks}; after ×: the simulated time until then; lost: fluid left the walls, which ended the run."
     yield _in_words(shown)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from psph.lab.battery.trials import ALWAYS, OURS, Bound, Trial
-from psph.lab.study.runs import DONE
+from psph.lab.study.runs import DONE, LOST
 
 GOOD, HOLDS, FAILS, BLEW_UP, REFUSED = "good", "holds", "fails", "blew up", "refused"
 VERDICTS = (GOOD, HOLDS, FAILS, BLEW_UP, REFUSED)
@@ -42,6 +42,11 @@ class Row(NamedTuple):
     """Simulated time in s."""
     seconds: float | None
 
+    @property
+    def complete(self) -> bool:
+        """Whether the run came to its end."""
+        return self.status == DONE
+
 
 def judged(trial: Trial, column: str, result: dict, found: dict[str, float], reached: float) -> Row:
     """The row of a run that ended as ``result`` says."""
@@ -62,7 +67,9 @@ def judged(trial: Trial, column: str, result: dict, found: dict[str, float], rea
 
     if result["status"].startswith(REFUSED):
         return row(REFUSED)
-    if result["status"] != DONE:
+    if result.get(LOST):
+        found[LOST] = max(found.get(LOST, 0.0), 1.0)
+    elif result["status"] != DONE:
         return row(BLEW_UP, tuple(_broken(trial.holds, found)))
     fatal = tuple(_broken((*ALWAYS, *trial.holds), found))
     missed = tuple(_broken(trial.goals, found, goal=True))

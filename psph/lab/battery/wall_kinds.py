@@ -7,9 +7,9 @@ from psph.physics.walls.conditions import CONDITIONS
 
 SHOWN = {
     "tank": ("probe_error", "probe_spread", "noise", "energy", SECONDS),
-    "dam break": ("front_error", "speed", "energy", "lost", SECONDS),
+    "dam break": ("front_begun_later", "front_error", "speed", "lost", "energy", SECONDS),
     "sloshing": ("noise", "speed", "energy", SECONDS),
-    "cavity": ("ghia_error", "near_5", SECONDS),
+    "cavity": ("ghia_error", "near_5", "voids", "speed", SECONDS),
 }
 """Trials and the measures shown of each, the main one first."""
 
@@ -35,4 +35,4 @@ TRIALS = (
     _judging("cavity", "cavity", 20.0, "basin", "lid"),
 )
 
-WALLS = Comparison("walls", "condition", TRIALS, SHOWN)
+WALLS = Comparison("walls", "condition", TRIALS, SHOWN, measures_down=True)

@@ -14,14 +14,14 @@ from psph.parallel.slabs import TooManyRanks
 from psph.run.room import TooLittleMemory
 from psph.run.start import Finished, run
 from psph.run.watch import Stopped
-from psph.simulation.step import BlowUp
+from psph.simulation.step import BlowUp, ParticleLost
 
 ENOUGH = 10.0
 """Seconds: a run that has taken so long is not timed again."""
 
 KEPT = "result.json"
 
-DONE = "done"
+DONE, LOST = "done", "lost"
 
 TIMED = ("set_up", "stepping", "output")
 """The parts of a run whose seconds count."""
@@ -92,7 +92,7 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
         while len(found) < repeats and sum(map(_seconds, found)) < ENOUGH:
             found.append(run(case, folder, comm, overwrite=True, say=_silent))
     except BlowUp as trouble:
-        result = {"status": str(trouble)}
+        result = {"status": str(trouble), LOST: isinstance(trouble, ParticleLost)}
     except TooLittleMemory as trouble:
         return {"status": f"not possible here: {trouble}"}  # not kept: more may be free next time
     except Stopped as stopped:

@@ -16,7 +16,7 @@ from psph.lab.study.runs import DONE, cases, conditions, perform
 from psph.output.reader import Run as Folder
 from psph.run.room import check_size
 from psph.scene import Scene, check
-from psph.scene.multiples import misfits
+from psph.scene.checks import warnings
 
 CSV, PAGE, PICTURE, KEPT = "study.csv", "study.md", "study.png", "study.json"
 
@@ -72,7 +72,7 @@ class Study:
     def run(self, say: Callable[[str], None]) -> list[dict]:
         """Every run, then a row for each: on all ranks, errors on rank 0."""
         results = []
-        for line in self._misfits():
+        for line in self._warnings():
             say(f"warning: {line}")
         for k, (settings, case) in enumerate(zip(self.every, self.cases)):
             title = f"run {k + 1} of {len(self.every)}: {name_of(settings)}"
@@ -82,11 +82,11 @@ class Study:
             say(f"{title}: {_outcome(result)}")
         return self._rows(results) if self.comm.rank == 0 else []
 
-    def _misfits(self) -> Iterator[str]:
-        """Widths of the case that a spacing of the study changes: its error holds that change too."""
+    def _warnings(self) -> Iterator[str]:
+        """What `check` says at each spacing: walls may be too thin at one of them, or widths no multiple."""
         loaded = [case for case in self.cases if not isinstance(case, CaseError)]
-        for case in {case.space.spacing: case for case in loaded}.values():
-            yield from misfits(Scene(case))
+        for dx, case in {case.space.spacing: case for case in loaded}.items():
+            yield from (f"spacing {dx:g} m: {line}" for line in warnings(Scene(case)))
 
     def _left(self, results: list[dict], k: int) -> str:
         """How long the rest may take, from the particle-steps of the runs so far."""

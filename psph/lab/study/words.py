@@ -35,7 +35,7 @@ def ladder_words(ladder: Ladder, name: str) -> Iterator[str]:
     if ladder.floor:
         yield (
             f"{beginning}extrapolated from the last {LAST} runs, {percent(ladder.floor)} remains at zero "
-            "spacing; a larger space.smoothing may lower that."
+            "spacing."
         )
     if ladder.prediction:
         _, error, took = ladder.prediction

@@ -136,6 +136,10 @@ def test_a_control_that_misses_what_the_scheme_misses_too_shows_nothing():
 def test_a_run_that_ended_early():
     blown = judged(PATCH, OURS, {"status": "the run blew up at step 3"}, {}, 0.25)
     assert blown.verdict == BLEW_UP and tables.cell(blown) == "× 0.25 s"
+    # What a guard saw leave the walls is a loss, wherever it is when the run ends.
+    spilt = judged(PATCH, OURS, {"status": "the run lost a particle", "lost": True}, {"lost": 0.0}, 0.25)
+    assert spilt.verdict == FAILS and tables.cell(spilt) == "− lost at 0.25 s"
+    assert str(spilt.broken[0]) == "lost 1 (≤ 0)"
     refused = judged(PATCH, OURS, {"status": "refused: 9 ranks for 3 planes"}, {}, 0.0)
     assert refused.verdict == REFUSED and "9 ranks" in tables.line(refused)
     idle = judged(PATCH, "no shift", {"status": "done"}, {"kinetic": 1.0, "lost": 0.0}, 1.0)
