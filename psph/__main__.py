@@ -198,11 +198,14 @@ def _load(options):
 
 
 def _warn(scene, comm) -> None:
+    from psph.run.experiments import refuse_unfit_experiments
     from psph.run.forecast import long_run
     from psph.scene import check
     from psph.simulation.plan import make_plan
 
-    for warning in (*check(scene), *long_run(scene, make_plan(scene), comm.size)):
+    found = check(scene)
+    refuse_unfit_experiments(scene)
+    for warning in (*found, *long_run(scene, make_plan(scene), comm.size)):
         if comm.rank == 0:
             print(f"warning: {warning}", file=sys.stderr)
 

@@ -15,7 +15,7 @@ from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
-from psph.physics.walls.conditions import MIRROR
+from psph.physics.walls.conditions import MIRROR, STICKING
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 
@@ -116,9 +116,20 @@ def _dimensions(case) -> Iterator[Finding]:
                 value,
                 (
                     f"{len(value)} number{'s' * (len(value) > 1)} in a case with "
-                    f"space.dimensions = {dimensions}; give {dimensions}"
+                    f"space.dimensions = {dimensions}; give {dimensions}{_with_points(value, dimensions)}"
                 ),
             )
+
+
+def _with_points(value: tuple[float, ...], dimensions: int) -> str:
+    """The guess that decimal commas have made too many numbers of a list; empty where they can not have."""
+    words, spare = [f"{x:g}" for x in value], len(value) - dimensions
+    for place in range(len(words) - 2, -1, -1):
+        whole, part = words[place : place + 2]
+        if spare > 0 and whole.lstrip("-").isdigit() and part.isdigit():
+            words[place : place + 2] = [f"{whole}.{part}"]
+            spare -= 1
+    return f"; a decimal comma? [{', '.join(words)}]" if spare == 0 < len(value) - dimensions else ""
 
 
 def _is_vector(value: Any) -> bool:
@@ -203,15 +214,16 @@ def _mirrored(case) -> Iterator[Finding]:
 
 
 def _hydrostatic(case) -> Iterator[Finding]:
-    if case.physics.gravity is not None and any(case.physics.gravity.acceleration):
+    gravity = case.physics.gravity
+    pulls = zip(AXES, gravity.acceleration) if gravity is not None else ()
+    if any(g for axis, g in pulls if axis not in case.space.periodic):
         return
+    says = "there is no gravity; give physics.gravity, or a pressure in Pa"
+    if gravity is not None and any(gravity.acceleration):
+        says = "gravity pulls along periodic axes alone, where nothing has a height; give a pressure in Pa"
     for name, fluid in case.fluids.items():
         if fluid.pressure == "hydrostatic":
-            yield (
-                ("fluids", name, "pressure"),
-                fluid.pressure,
-                ("there is no gravity; give physics.gravity, or a pressure in Pa"),
-            )
+            yield ("fluids", name, "pressure"), fluid.pressure, says
 
 
 def _exact(case) -> Iterator[Finding]:
@@ -276,6 +288,13 @@ def _friction(case) -> Iterator[Finding]:
                 (case.table_of(name), name, "no_slip"),
                 True,
                 ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip"),
+            )
+        elif wall.no_slip and wall.condition not in STICKING:
+            known = " or ".join(f'"{one}"' for one in STICKING)
+            yield (
+                (case.table_of(name), name, "no_slip"),
+                True,
+                f'does nothing where condition = "{wall.condition}"; take {known}, or remove no_slip',
             )
         elif wall.no_slip and central:
             yield (

@@ -29,10 +29,16 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 
 
 def advise(word: str, known: Iterable[str]) -> str:
-    """Name the nearest known word, or all of them where none is near."""
+    """Name the nearest known word, those that are as near, or all of them where none is near."""
     known = list(known)
-    near = nearest(word, known)
-    return f"did you mean '{near}'?" if near else f"known here: {', '.join(known)}"
+    if (near := nearest(word, known)) is None:
+        return f"known here: {', '.join(known)}"
+    as_near = [one for one in known if _alike(word, one) == _alike(word, near)]
+    return f"did you mean {' or '.join(repr(one) for one in as_near)}?"
+
+
+def _alike(word: str, other: str) -> float:
+    return difflib.SequenceMatcher(None, other.lower(), word.lower()).ratio()
 
 
 def refuse_if_neither(word: str, commands: Iterable[str]) -> None:

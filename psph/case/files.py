@@ -42,12 +42,12 @@ def files_of(case) -> list[tuple[str, Path]]:
     """The files that a case needs besides itself, and the experiments that lie beside it: their names in the
     case, and where they are."""
     folder, drawn = Path(case.file).parent, (mesh.file for mesh in case.meshes.values())
-    measured = (one.file for one in case.experiments.values() if _lies_in(folder, one.file))
+    measured = (one.file for one in case.experiments.values() if lies_in(folder, one.file))
     names = dict.fromkeys([*case.use, *(series.file for series in case.series), *drawn, *measured])
     return [(name, folder / name) for name in names]
 
 
-def _lies_in(folder: Path, name: str) -> bool:
+def lies_in(folder: Path, name: str) -> bool:
     """Whether a file is there, in the folder or below."""
     try:
         path = (folder / name).resolve()

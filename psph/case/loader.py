@@ -24,6 +24,9 @@ CALLED_A_CHECKPOINT = re.compile(r"checkpoint-\d+")
 COMMA = re.compile(r"(?:^|=)\s*([-+]?\d+),(\d+)\s*$")
 """A number such as 0,5 where a value ends."""
 
+COMMA_IN_LIST = re.compile(r"(?<![\w.])([-+]?\d+),(0\d+)(?![\w.])")
+"""A number such as 0,05 in a list: no number begins with a 0 like its second part."""
+
 PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 MOST_BYTES = 1 << 20
@@ -98,7 +101,7 @@ def checked(file: str, data: dict[str, Any], overrides: Sequence[str] = (), opti
     try:
         return model.model_validate(data, context=Path(file).parent)
     except ValidationError as error:
-        raise CaseError(messages(error, data, model.model_json_schema(), source)) from None
+        raise CaseError(messages(error, data, model.model_json_schema(), source, filled)) from None
 
 
 def _with(file: str, option: str, text: str) -> str:
@@ -227,6 +230,6 @@ def _value(where: str, text: str) -> Any:
 
 
 def _with_a_point(text: str) -> str:
-    """What to do about a number with a decimal comma at the end of a text; empty where there is none."""
-    found = COMMA.search(text)
+    """What to do about a number with a decimal comma in a text; empty where none is seen."""
+    found = COMMA.search(text) or COMMA_IN_LIST.search(text)
     return f"a decimal point, not a comma: {found[1]}.{found[2]}" if found else ""

@@ -1,6 +1,7 @@
 """Pydantic's errors as one-line messages."""
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from pydantic import ValidationError
@@ -34,14 +35,30 @@ MOST_FINDINGS = 1000
 
 
 def messages(
-    error: ValidationError, data: dict[str, Any], schema: Details, source: Callable[[Location], str]
+    error: ValidationError,
+    data: dict[str, Any],
+    schema: Details,
+    source: Callable[[Location], str],
+    filled: Mapping[Location, str],
 ) -> Iterator[str]:
-    """One line for each finding; ``source`` names what set the key at a location."""
+    """One line for each finding; ``source`` names what set the key at a location, and ``filled`` the profile
+    or the scheme by which another key has the value that a finding speaks of."""
     found = error.errors(include_url=False)[:MOST_FINDINGS]
     for details in found:
         if not _follows_from_another(details, found):
             loc = _as_written(details, data)
-            yield f"{source(loc)}: {dotted(loc)}: {_sentence(details, loc, schema)}"
+            says = _sentence(details, loc, schema)
+            yield f"{source(loc)}: {dotted(loc)}: {says}{_set_elsewhere(says, loc, filled)}"
+
+
+def _set_elsewhere(says: str, loc: Location, filled: Mapping[Location, str]) -> str:
+    """Which keys that a message quotes with their values a profile or a scheme has set."""
+    told = (
+        f"; {dotted(key)} is set by {by}"
+        for key, by in filled.items()
+        if key != loc[: len(key)] and re.search(rf"(?<![\w.]){re.escape(dotted(key))} = ", says)
+    )
+    return "".join(told)
 
 
 def plain(value: Any) -> str:
@@ -93,15 +110,14 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
     if kind == "missing":
         return f"missing; {_how_to_add(loc, schema)}"
     if kind == "extra_forbidden":
-        return f"unknown key; {_where_it_is_known(loc, schema)}"
+        return f"unknown key; {_where_it_is_known(loc, schema, value)}"
     if details["loc"][-1] == "[key]":
         return _unknown_name(loc, schema)
     if kind == "psph":
         shown = f"{plain(value)}: " if isinstance(value, (str, int, float, list, tuple)) else ""
         return shown + details["msg"]
     if kind == "literal_error":
-        known = [x for b in alternatives(schema, node or {}) for x in b.get("enum", ())]
-        return f"{plain(value)} is not known; {advise(str(value), known)}"
+        return f"{plain(value)} is not known; {advise(str(value), _words(schema, node))}"
     if kind in WANTED:
         return f"{plain(value)} is not {WANTED[kind]}; {_how_to_give(details, loc, schema)}"
     if kind in ("too_short", "too_long"):
@@ -111,14 +127,23 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
     return f"{plain(value)}: {details['msg']}"
 
 
-def _where_it_is_known(loc: Location, schema: Details) -> str:
+def _where_it_is_known(loc: Location, schema: Details, value: Any) -> str:
     """The tables that have such a key, or keys of this table that it may be meant for."""
     name, here = str(loc[-1]), keys_of(schema, loc[:-1])
     close = nearest(name, here)
     if places := places_of(schema, name):
         also = f", or '{close}'" if close else ""
-        return f"did you mean {' or '.join(places)}{also}? A key below a [table] belongs to that table"
+        told = f"did you mean {' or '.join(places)}{also}? A key below a [table] belongs to that table"
+        words = _words(schema, find(schema, tuple(places[0].split("."))))
+        if len(places) == 1 and isinstance(value, str) and words and value not in words:
+            told += f"; and {plain(value)} is not known there: {advise(value, words)}"
+        return told
     return advise(name, here)
+
+
+def _words(schema: Details, node: Details | None) -> list[str]:
+    """The words that may stand at a node."""
+    return [x for branch in alternatives(schema, node or {}) for x in branch.get("enum", ())]
 
 
 def _how_to_add(loc: Location, schema: Details) -> str:

@@ -26,8 +26,8 @@ def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -
                 "numerical speed of sound, at least ten times the largest speed",
                 None,
                 unit="m/s",
-                otherwise="ten times the expected speed: free fall over the fluid's height, or "
-                "the largest initial speed",
+                otherwise="ten times the expected speed: free fall over the fluid's height, what gravity "
+                "drives along a periodic axis, or the largest initial speed",
                 gt=0,
             ),
         )

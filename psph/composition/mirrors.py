@@ -239,7 +239,13 @@ def _seen(view, widths: tuple[int, ...]):
     """The function (reflection, i, j) → the image of a ``view`` j whose entries have so many components."""
     dimensions = widths[view._fields.index("position")]
     parts = (_text(name, width, dimensions) for name, width in zip(view._fields, widths))
-    return unrolled("reflection, i, j", f"return View{tuple_of(parts)}", View=view, weight=weight_behind)
+    return unrolled(
+        "reflection, i, j",
+        f"return View{tuple_of(parts)}",
+        View=view,
+        weight=weight_behind,
+        slope=slope_behind,
+    )
 
 
 def _text(name: str, width: int, dimensions: int) -> str:
@@ -260,6 +266,10 @@ def _text(name: str, width: int, dimensions: int) -> str:
         return f"j.specific_volume / (1.0 + j.specific_volume * (weight(reflection, i, j) / {squared}))"
     if name == "density":
         return "j.density + weight(reflection, i, j) / (i.sound_speed * i.sound_speed)"
+    if name == "density_gradient":
+        return tuple_of(
+            f"reflection.turn[{d}] * j.density_gradient[{d}] + slope(reflection, i)[{d}]" for d in axes
+        )
     if name == "strain":
         return tuple_of(f"reflection.turn_strain[{place}] * j.strain[{place}]" for place in range(width))
     if name == "slip":
@@ -279,6 +289,29 @@ def _text(name: str, width: int, dimensions: int) -> str:
 def weight_behind(reflection, i, j):
     """By how much the pressure of a still column is higher at the image than at j itself, Pa."""
     return i.rest_density * along(_way(reflection, j), reflection.gravity)
+
+
+def slope_behind(reflection, i):
+    """The gradient of what the weight of a still column adds to the density of an image, kg/m^(d+1).
+
+    ρ′(x′) = ρ(x) + ρ₀ g·(x′ − x)/c² with x = turn x′ + shift, so that ∂ρ′/∂x′ = turn ∂ρ/∂x +
+    (1 − turn) ρ₀ g/c² along each axis.
+    """
+    steep = i.rest_density / (i.sound_speed * i.sound_speed)
+    return tuple((1.0 - turn) * (g or 0.0) * steep for turn, g in zip(reflection.turn, reflection.gravity))
+
+
+@overload(slope_behind)
+def _typed_slope_behind(reflection, i):
+    kinds = dict(zip(reflection.instance_class._fields, reflection.types))
+    steep = "(i.rest_density / (i.sound_speed * i.sound_speed))"
+    parts = (
+        "0.0"
+        if isinstance(kind, types.NoneType)
+        else f"(1.0 - reflection.turn[{d}]) * reflection.gravity[{d}] * {steep}"
+        for d, kind in enumerate(kinds["gravity"])
+    )
+    return unrolled("reflection, i", f"return {tuple_of(parts)}")
 
 
 def _way(reflection, j):

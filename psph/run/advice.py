@@ -6,6 +6,8 @@ from psph.case.running import Guards
 from psph.case.schemes import STABLE
 from psph.fields import FLUID
 from psph.physics.facts import SOUND_OVER_SPEED
+from psph.physics.walls.conditions import DYNAMIC
+from psph.scene.unbearing import unbearing_walls
 from psph.scene.walls import layers_needed, thinnest_walls
 
 FASTER = 2.0
@@ -78,7 +80,7 @@ def _friction(scene) -> Iterator[str]:
 
 def _sound(scene, guard: str) -> Iterator[str]:
     c = scene.sound_speed
-    expected = scene.expected_speed
+    expected = scene.undriven_speed
     if expected > FASTER * c / SOUND_OVER_SPEED:
         yield (
             f"raise physics.sound_speed to {SOUND_OVER_SPEED * expected:.3g} m/s, ten times the "
@@ -93,6 +95,11 @@ def _walls(scene, guard: str, suspect) -> Iterator[str]:
     if guard != "depth" and not near_wall:
         return
     need, names = layers_needed(scene), [material.name for material in scene.species]
+    for name in unbearing_walls(scene):
+        yield (
+            f'give walls.{name}.condition = "{DYNAMIC}": with "{scene.walls[name].condition}" it bears no '
+            "pressure, and lets through what comes fast"
+        )
     for material, (layers, _) in thinnest_walls(scene).items():
         yield f"make walls.{names[material]} thicker: {need} spacings instead of {layers}"
     if guard == "depth":

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from psph.composition.mirrors import BELOW
 from psph.fields import FLUID
 from psph.output.diagnostics import fluid_mass, total_energy, work_done
 from psph.output.errors import OutputError
@@ -96,12 +97,17 @@ class Guards:
 
     @property
     def _around(self) -> tuple[np.ndarray, np.ndarray]:
-        """The corners of a box around the particles at the start, and walls where they stand now, m."""
-        lower, upper = np.array(self.scene.lattice.lower), np.array(self.scene.lattice.upper)
-        if not self.simulation.plan.rigid:
-            return lower, upper
-        now = self.simulation.engine.poses.around
-        return np.minimum(lower, now[0]), np.maximum(upper, now[1])
+        """The corners of a box around the particles at the start, walls where they stand now, and mirrors,
+        m; without an end along an axis that repeats."""
+        scene = self.scene
+        lower, upper = np.array(scene.lattice.lower), np.array(scene.lattice.upper)
+        if self.simulation.plan.rigid:
+            now = self.simulation.engine.poses.around
+            lower, upper = np.minimum(lower, now[0]), np.maximum(upper, now[1])
+        for plane in scene.mirror_planes:
+            (lower if plane.side == BELOW else upper)[plane.axis] = plane.at
+        repeats = [period is not None for period in scene.periods]
+        return np.where(repeats, -np.inf, lower), np.where(repeats, np.inf, upper)
 
     def _tripped(self) -> Iterator[str]:
         """The keys of the guards whose bounds the last step has passed."""

@@ -45,6 +45,12 @@ def probes_of(case, mirrors=None) -> list[Probe | Front]:
     ]
 
 
+def columns_of(scene) -> list[str]:
+    """The columns of probes.csv and of the gauges that a scene makes, without their times."""
+    probes = [c for probe in probes_of(scene.case) for c in probe.columns(scene.dimensions)]
+    return [*probes, *(c for gauge in gauges_of(scene).values() for c in gauge.columns(scene))]
+
+
 def _points(probe, space) -> np.ndarray:
     """Where a probe looks (n, dim), m."""
     extent = probe.extent or (0.0,) * space.dimensions

@@ -17,6 +17,7 @@ from psph.output import checkpoint
 from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path, checkpoints
 from psph.particles.store import Store
 from psph.run.record import Record
+from psph.run.watch import SOONEST
 from psph.simulation.plan import Plan
 from psph.simulation.step import Simulation
 
@@ -74,7 +75,10 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
     case = load(folder / COPY, _allowed(extend), "--extend")
     found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
     if not found:
-        raise CheckpointError(f"{folder}: holds no checkpoint: run the case again with --overwrite")
+        raise CheckpointError(
+            f"{folder}: holds no checkpoint: a run of less than {SOONEST:g} s leaves none by itself; run the "
+            "case again with --overwrite, and with --set checkpoint.minutes=10 to have one at its end"
+        )
     saved = _open(folder / chosen if chosen else found[0], found, comm, case_digest(case))
     now = saved.state["time"]
     if extend and case.time.end <= now:

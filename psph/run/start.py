@@ -16,6 +16,7 @@ from psph.output.progress import Progress
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
 from psph.run.cost import cost_lines
+from psph.run.experiments import refuse_unfit_experiments
 from psph.run.explain import slab_planes
 from psph.run.folder import alone_in, make_folder, prepare_folder, reopen_folder
 from psph.run.forecast import long_run
@@ -58,7 +59,9 @@ def run(case, folder: Path, comm, overwrite: bool = False, say: Say | None = Non
     with ExitStack() as held, Watch(case.checkpoint) as watch:
         scene = Scene(case)
         check_size(scene, comm)
-        for warning in check(scene):
+        warnings = check(scene)
+        refuse_unfit_experiments(scene)
+        for warning in warnings:
             (say or _speaker(comm))(f"warning: {warning}", sys.stderr)
 
         def prepare() -> None:

@@ -12,7 +12,8 @@ from psph.case.keys import AXES
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.body_checks import body_faults, body_warnings
-from psph.scene.gauging import misplaced, shown
+from psph.scene.driven import driven_flow
+from psph.scene.gauging import buried, misplaced, shown
 from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
@@ -20,7 +21,8 @@ from psph.scene.multiples import misfits
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
-from psph.scene.units import slips
+from psph.scene.unbearing import unbearing_warnings
+from psph.scene.units import in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
 from psph.scene.waving import wave_warnings
 
@@ -34,9 +36,6 @@ MOST_SITES = 10**11
 MOST_IN_PLANE = 10**8
 """Sites of a plane, which are visited together: some gigabytes.  An axis that is not the longest
 can have more."""
-
-TOO_FAST = 0.2
-"""Mach number that a flow should stay below: its density then varies by some per cent."""
 
 LARGEST_QUIET_JITTER = 0.5
 """In spacings; beyond it neighbours may change places."""
@@ -72,15 +71,16 @@ def _size_faults(scene: Scene) -> Iterator[str]:
     """Checks before the sites are visited, which could take hours and too much memory."""
     dx, lattice = scene.spacing, scene.lattice
     sites, in_plane = math.prod(lattice.counts), lattice.sites_in_plane
+    in_mm = in_millimetres(scene, *range(len(scene.parts)))
     if sites > MOST_SITES:
         yield (
             f"space.spacing: {dx:g} m makes a lattice of {sites:.2g} sites, more than "
-            f"{MOST_SITES:.0e}; make it larger, or the shapes smaller"
+            f"{MOST_SITES:.0e}; make it larger, or the shapes smaller{in_mm}"
         )
     elif in_plane > MOST_IN_PLANE:
         yield (
             f"parallel.axis: {in_plane:.2g} sites in a plane across {AXES[scene.axis]}, more than "
-            f"{MOST_IN_PLANE:.0e}; leave it out, or name a longer axis"
+            f"{MOST_IN_PLANE:.0e}; leave it out, or name a longer axis{in_mm}"
         )
     room = math.prod((up - low) / dx for low, up in zip(scene.lower, scene.upper))
     if max(room, 0.0) > max(MOST_SITES, sites):
@@ -121,7 +121,9 @@ def warnings(scene: Scene) -> Iterator[str]:
         _background_at_surface,
         _transport_at_surface,
         _slow_sound,
-        _driven_flow,
+        driven_flow,
+        unbearing_warnings,
+        buried,
         _jitter,
         several_fluids,
         meshes.remarks,
@@ -196,6 +198,7 @@ def _site_faults(scene: Scene) -> Iterator[str]:
             yield (
                 f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
                 "one from the other: shape = { difference = { from = ..., minus = [...] } }"
+                f"{in_millimetres(scene, one, other)}"
             )
     yield from _particles_outside(scene)
 
@@ -211,7 +214,7 @@ def _particles_outside(scene: Scene) -> Iterator[str]:
                 yield (
                     f"{scene.key_of(material)}.shape: a particle at {name} = {far:.6g} m outside "
                     f"the domain from {scene.lower[d]:.6g} to {scene.upper[d]:.6g}; make the "
-                    "shape smaller, or change space.lower and space.upper"
+                    f"shape smaller, or change space.lower and space.upper{in_millimetres(scene, material)}"
                 )
 
 
@@ -327,34 +330,12 @@ def _transport_at_surface(scene: Scene) -> Iterator[str]:
 
 
 def _slow_sound(scene: Scene) -> Iterator[str]:
-    least = SOUND_OVER_SPEED * scene.expected_speed
+    least = SOUND_OVER_SPEED * scene.undriven_speed
     if scene.sound_speed < least * (1.0 - TOLERANCE):
         yield (
             f"physics.sound_speed: {scene.sound_speed:g} is below ten times the expected speed, "
-            f"{scene.expected_speed:.3g} m/s, so density will vary by more than 1 %; "
+            f"{scene.undriven_speed:.3g} m/s, so density will vary by more than 1 %; "
             f"raise it to {least:.3g}"
-        )
-
-
-def _driven_flow(scene: Scene) -> Iterator[str]:
-    """Gravity along a periodic axis: a free fall, held back between walls at g H²/(8ν)."""
-    if not scene.driven or scene.case.physics.sound_speed is None and scene.exact:
-        return
-    open_axes = [d for d, period in enumerate(scene.periods) if period is None]
-    along = math.hypot(*(g for d, g in enumerate(scene.gravity) if d not in open_axes))
-    fluids = slice(len(scene.case.fluids))
-    top, bottom = scene.census.highest[fluids].max(axis=0), scene.census.lowest[fluids].min(axis=0)
-    across = min((top[d] - bottom[d] + scene.spacing for d in open_axes), default=math.inf)
-    viscosity = max(fluid.viscosity for fluid in scene.case.fluids.values())
-    speed = along * scene.case.time.end
-    if viscosity and across < math.inf:
-        speed = min(speed, along * across**2 / (8.0 * viscosity))
-    if speed > TOO_FAST * scene.sound_speed:
-        yield (
-            f"physics.sound_speed: {scene.sound_speed:.3g} m/s is less than ten times the {speed:.3g} m/s "
-            "that gravity along a periodic axis can drive this flow to by time.end (g t, at most "
-            "g H²/(8ν) between walls); "
-            f"give {SOUND_OVER_SPEED * speed:.3g}, unless something else holds the flow back"
         )
 
 

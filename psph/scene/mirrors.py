@@ -1,6 +1,6 @@
 """Plane mirrors of a scene: its planes of symmetry, and walls that are one."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
@@ -63,7 +63,7 @@ def _of_domain(case: Case):
 
 def _of_wall(case: Case, name: str, wall, held: tuple[Corner, Corner]):
     """The faces of a wall that the fluids, which ``held`` encloses, are before."""
-    faces = list(_faces(wall.shape, held, TOLERANCE * case.space.spacing))
+    faces = list(faces_before(wall.shape, held, TOLERANCE * case.space.spacing))
     if not faces:
         raise CaseError(
             [
@@ -91,7 +91,10 @@ def _of_wall(case: Case, name: str, wall, held: tuple[Corner, Corner]):
         yield Plane(axis, side, at, wall.no_slip, wall.velocity or still)
 
 
-def _faces(shape: Shape, held: tuple[Corner, Corner], tolerance: float):
+def faces_before(
+    shape: Shape, held: tuple[Corner, Corner], tolerance: float
+) -> Iterator[tuple[int, int, float]]:
+    """Axis, side (BELOW, ABOVE) and place, m, of each face of a mirror that what is ``held`` is before."""
     low, high = held
     match shape.form:
         case Box(lower=lower, upper=upper):

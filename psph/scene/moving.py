@@ -80,10 +80,13 @@ def largest_speed(scene) -> float:
     return max((found.speed for _, _, found in moving_walls(scene)), default=0.0)
 
 
-def largest_pull(scene) -> float:
-    """Of gravity and the acceleration of a moving frame together, m/s², at the most."""
-    framed = frame_sweep(scene)
-    return math.hypot(*scene.gravity) + (framed.acceleration if framed else 0.0)
+def falling_speed(scene) -> float:
+    """√(2gH), free fall over the fluids' height H, m/s: g without what pulls along a periodic axis, and with
+    the largest acceleration of a moving frame."""
+    framed, fluids = frame_sweep(scene), slice(len(scene.case.fluids))
+    pull = math.hypot(*scene.height_gravity) + (framed.acceleration if framed else 0.0)
+    height = scene.census.top[fluids].max() - scene.census.bottom[fluids].min() + scene.spacing
+    return math.sqrt(2.0 * pull * max(height, 0.0))
 
 
 def motion_faults(scene) -> Iterator[str]:

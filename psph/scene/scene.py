@@ -18,11 +18,12 @@ from psph.physics.motion import Fixed, Free
 from psph.physics.rigid.bodies import Body
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.bodies import rigid_bodies
+from psph.scene.driven import creeping_speed, driven_speed
 from psph.scene.kicked import nearest_fluid_site
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
-from psph.scene.moving import largest_pull, largest_speed
+from psph.scene.moving import falling_speed, largest_speed
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.pressures import range_of_pressure
 from psph.scene.shapes import bounds
@@ -109,9 +110,9 @@ class Scene:
 
     @cached_property
     def up(self) -> tuple[float, ...]:
-        """The unit vector against gravity; zeros without."""
-        pull = math.hypot(*self.gravity)
-        return tuple(-g / pull if pull else 0.0 for g in self.gravity)
+        """The unit vector against gravity, but for what pulls along a periodic axis; zeros without."""
+        pull = math.hypot(*self.height_gravity)
+        return tuple(-g / pull if pull else 0.0 for g in self.height_gravity)
 
     @cached_property
     def census(self) -> Census:
@@ -125,12 +126,16 @@ class Scene:
 
     @cached_property
     def expected_speed(self) -> float:
+        """The largest speed to come as far as it can be told, m/s: the undriven one, and what gravity along
+        a periodic axis drives, where no exact solution says how fast that is."""
+        driven = 0.0 if self.exact else driven_speed(self)
+        return max(self.undriven_speed, driven)
+
+    @cached_property
+    def undriven_speed(self) -> float:
         """The largest of √(2gH), free fall over the fluids' height (with the frame's acceleration beside g),
         and any speed of the start or of a wall that moves, m/s."""
-        fluids = slice(len(self.case.fluids))
-        height = self.census.top[fluids].max() - self.census.bottom[fluids].min() + self.spacing
-        falling = math.sqrt(2.0 * largest_pull(self) * max(height, 0.0))
-        return max(falling, self.starting_speed, largest_speed(self))
+        return max(falling_speed(self), self.starting_speed, largest_speed(self))
 
     @cached_property
     def starting_speed(self) -> float:
@@ -141,7 +146,7 @@ class Scene:
 
     @cached_property
     def sound_speed(self) -> float:
-        """c in m/s: as given, else ten times the expected speed.
+        """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow.
 
         Raises CaseError where nothing moves and nothing falls.
         """
@@ -154,7 +159,7 @@ class Scene:
                     "speed that you expect"
                 ]
             )
-        return given or SOUND_OVER_SPEED * self.expected_speed
+        return given or SOUND_OVER_SPEED * max(self.expected_speed, creeping_speed(self))
 
     @cached_property
     def has_free_surface(self) -> bool:
@@ -349,7 +354,7 @@ class Scene:
             rest_density=fluid.density,
             sound_speed=self.sound_speed,
             pressure=0.0 if hydrostatic or exact else fluid.pressure,
-            weight=fluid.density * math.hypot(*self.gravity) if hydrostatic else 0.0,
+            weight=fluid.density * math.hypot(*self.height_gravity) if hydrostatic else 0.0,
             up=self.up,
             surface=self._surface(index),
             above=self._weight_above(index) if hydrostatic else 0.0,
@@ -373,7 +378,7 @@ class Scene:
             resting = bottom > self._surface(fluid) - TOLERANCE * self.spacing and not apart[level].any()
             if resting and self.parts[other].pressure == "hydrostatic":
                 thickness = self._surface(other) - bottom
-                total += self.parts[other].density * math.hypot(*self.gravity) * thickness
+                total += self.parts[other].density * math.hypot(*self.height_gravity) * thickness
         return total
 
     def _fastest_corner(self, fluid: int) -> float:

@@ -8,7 +8,8 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.physics.fluid.viscosity import FRICTION_STEP
-from psph.scene.species import NONE
+from psph.scene.shapes import bounds
+from psph.scene.walls import unheld
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -24,6 +25,9 @@ MOST_SHORTER = 200.0
 """How many times friction may shorten the time steps that sound allows, without a warning: the slow flow
 between plates of run/cases/poiseuille.toml has 15."""
 
+THOUSANDFOLD = 300.0
+"""How many times as long as the domain, or the smallest shape, a shape is whose numbers are likely in mm."""
+
 MOST_UNHELD = 0.5
 """Part of a fluid's columns that may fall past all walls without a warning."""
 
@@ -32,6 +36,17 @@ def slips(scene: "Scene") -> Iterator[str]:
     """A line for each number that is likely not meant."""
     for kind in (_densities, _viscosities, _long_tank, _falls_out):
         yield from kind(scene)
+
+
+def in_millimetres(scene: "Scene", *parts: int) -> str:
+    """The guess, to end a message with, that some of ``parts`` are in mm and others in m; or nothing."""
+    sizes = [max(up - low for low, up in zip(*bounds(part.shape))) for part in scene.parts]
+    space = scene.case.space
+    rest = min(sizes)
+    if space.lower is not None and space.upper is not None:
+        rest = max(up - low for low, up in zip(space.lower, space.upper))
+    found = [scene.key_of(part) for part in sorted(parts) if sizes[part] > THOUSANDFOLD * rest]
+    return f"; is {' and '.join(found)} given in mm? Lengths are in m" if found else ""
 
 
 def _densities(scene: "Scene") -> Iterator[str]:
@@ -71,42 +86,18 @@ def _long_tank(scene: "Scene") -> Iterator[str]:
 
 
 def _falls_out(scene: "Scene") -> Iterator[str]:
-    """Fluid in a scene with walls, none of which lies where gravity pulls it."""
-    axis = int(np.abs(scene.gravity).argmax())
-    pull = scene.gravity[axis]
-    if not pull or not scene.walls or scene.periods[axis] is not None:
+    """Fluid below which there is no wall, no plane of symmetry and no period: it falls for ever."""
+    axis = int(np.abs(scene.height_gravity).argmax())
+    pull = scene.height_gravity[axis]
+    if not pull:
         return
     sign = int(math.copysign(1, pull))
     if (axis, sign) in ((plane.axis, plane.side) for plane in scene.mirror_planes):
         return
-    unheld = _unheld(scene, axis, sign)
-    if unheld > MOST_UNHELD:
+    free = unheld(scene, axis, sign)
+    if free > MOST_UNHELD:
         towards = f"{'+' if pull > 0.0 else '−'}{AXES[axis]}"
         yield (
             f"physics.gravity: {[*scene.gravity]} m/s² pulls towards {towards}, where no wall holds "
-            f"{unheld:.0%} of the fluid: it leaves the scene; turn gravity round, or give a wall there"
+            f"{free:.0%} of the fluid: it falls for ever; turn gravity round, or give a wall there"
         )
-
-
-def _unheld(scene: "Scene", axis: int, sign: int) -> float:
-    """Part of the lines of sites along ``axis`` with fluid that have no wall beyond it."""
-    lattice, fluids = scene.lattice, scene.layout.fluids
-    place, nowhere = lattice.axes.index(axis), -lattice.counts[axis] - 1
-    held = with_fluid = 0
-    ends = None  # of the lines so far, where they go on from chunk to chunk
-    for first, last in lattice.chunks():
-        found = scene.layout.materials(first, last)
-        sites = sign * (np.arange(found.shape[place]) + (0 if place else first))
-        along = sites.reshape((-1,) + (1,) * (found.ndim - place - 1))
-        far = np.array(
-            [
-                np.where(mask, along, nowhere).max(axis=place)
-                for mask in (found < fluids, (found >= fluids) & (found < NONE))
-            ]
-        )
-        ends = far if place or ends is None else np.maximum(ends, far)
-        if place or last == lattice.planes:
-            fluid, wall = ends
-            with_fluid += np.count_nonzero(fluid > nowhere)
-            held += np.count_nonzero((fluid > nowhere) & (wall > fluid))
-    return 1.0 - held / with_fluid if with_fluid else 0.0

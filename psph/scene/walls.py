@@ -33,34 +33,61 @@ def has_free_surface(scene) -> bool:
     return False
 
 
+def unheld(scene, axis: int, sign: int) -> float:
+    """Part of the lines of sites along ``axis`` with fluid that have no wall beyond it."""
+    lattice, fluids = scene.lattice, scene.layout.fluids
+    place, nowhere = lattice.axes.index(axis), -lattice.counts[axis] - 1
+    held = with_fluid = 0
+    ends = None  # of the lines so far, where they go on from chunk to chunk
+    for first, last in lattice.chunks():
+        found = scene.layout.materials(first, last)
+        sites = sign * (np.arange(found.shape[place]) + (0 if place else first))
+        along = sites.reshape((-1,) + (1,) * (found.ndim - place - 1))
+        far = np.array(
+            [
+                np.where(mask, along, nowhere).max(axis=place)
+                for mask in (found < fluids, (found >= fluids) & (found < NONE))
+            ]
+        )
+        ends = far if place or ends is None else np.maximum(ends, far)
+        if place or last == lattice.planes:
+            fluid, wall = ends
+            with_fluid += np.count_nonzero(fluid > nowhere)
+            held += np.count_nonzero((fluid > nowhere) & (wall > fluid))
+    return 1.0 - held / with_fluid if with_fluid else 0.0
+
+
 def thinnest_walls(scene) -> Thin:
     """The walls with fewer layers than needed, by material.
 
     From each wall site that touches a fluid site the wall sites are counted along the axis, away
     from the fluid; a site that touches in several directions has the largest count, so that the
-    tip of a round body is not thin.
+    tip of a round body is not thin.  Of walls that are thick enough there, the sites that touch an empty one
+    count in the same way: fluid may come to them.
     """
-    need, thin = layers_needed(scene), Thin()
+    need, wet, dry = layers_needed(scene), Thin(), Thin()
     if not scene.walls:
-        return thin
+        return wet
+    fluids = scene.layout.fluids
     for first, last in scene.lattice.chunks():
         held = with_surroundings(scene, first, last, need)
-        layers = _layers(held, scene.layout.fluids, need)
+        is_wall = (held >= fluids) & (held < NONE)
         inner = held[(slice(need, -need),) * held.ndim]
-        for material in np.unique(inner[layers < need]).tolist():
-            its_layers = np.where(inner == material, layers, need)
-            _keep_thinnest(thin, scene, first, last, material, its_layers)
-    return thin
+        for thin, faced in ((wet, held < fluids), (dry, held == NONE)):
+            layers = _layers(is_wall, faced, need)
+            for material in np.unique(inner[layers < need]).tolist():
+                its_layers = np.where(inner == material, layers, need)
+                _keep_thinnest(thin, scene, first, last, material, its_layers)
+    return dry | wet
 
 
-def _layers(held: np.ndarray, fluids: int, need: int) -> np.ndarray:
-    """Wall sites behind each wall site that touches a fluid, at most ``need``; else ``need``."""
-    is_fluid, is_wall = held < fluids, (held >= fluids) & (held < NONE)
-    best = np.zeros([n - 2 * need for n in held.shape], np.uint8)
+def _layers(is_wall: np.ndarray, faced: np.ndarray, need: int) -> np.ndarray:
+    """Wall sites behind each wall site that touches a ``faced`` one, at most ``need``; else ``need``."""
+    best = np.zeros([n - 2 * need for n in is_wall.shape], np.uint8)
     touching = np.zeros(best.shape, bool)
-    for axis in range(held.ndim):
+    for axis in range(is_wall.ndim):
         for away in (-1, 1):
-            unbroken = _moved(is_wall, axis, 0, need) & _moved(is_fluid, axis, -away, need)
+            unbroken = _moved(is_wall, axis, 0, need) & _moved(faced, axis, -away, need)
             touching |= unbroken
             count = unbroken.astype(np.uint8)
             for step in range(1, need):

@@ -110,6 +110,24 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             "walls.floor.no_slip: true: does not work with physics.central_friction; remove one of the two",
         ),
         (
+            WATER + "viscosity = 1e-3" + WALL + 'no_slip = true\ncondition = "penalty"',
+            'walls.floor.no_slip: true: does nothing where condition = "penalty"; take "dynamic" or',
+        ),
+        (
+            WATER + "viscosity = 1e-3" + WALL + 'no_slip = true\ncondition = "repulsive"',
+            'walls.floor.no_slip: true: does nothing where condition = "repulsive"; take "dynamic" or',
+        ),
+        (
+            WATER.replace("-9.8]", "-9,81]"),
+            "physics.gravity: [0.0, -9.0, 81.0]: 3 numbers in a case with space.dimensions = 2; give 2; "
+            "a decimal comma? [0, -9.81]",
+        ),
+        (
+            WATER + "velocity = [0,5, 1,25]",
+            "fluids.water.velocity: [0.0, 5.0, 1.0, 25.0]: 4 numbers in a case with space.dimensions = 2; "
+            "give 2; a decimal comma? [0.5, 1.25]",
+        ),
+        (
             WATER + WALL.replace("floor", "water"),
             "walls.water: a fluid has this name too; give the wall another",
         ),
@@ -141,6 +159,12 @@ def test_the_proposals_are_accepted(tmp_path):
     for key in ("probes", "log"):
         [line] = refusal(tmp_path, WATER + f"[output]\n{key} = 1e-300")
         assert f"output.{key}" in line
+
+
+@pytest.mark.parametrize("velocity", ["[1.5, 0.5, 2.0]", "[0.0, 5.0, -1.0, 0.0, 2.5]", "[1.0]"])
+def test_numbers_that_no_comma_has_made_are_not_asked_about(tmp_path, velocity):
+    [line] = refusal(tmp_path, WATER + f"velocity = {velocity}")
+    assert "numbers in a case" in line.replace("number ", "numbers ") and "comma" not in line
 
 
 def test_what_agrees_is_accepted(tmp_path):

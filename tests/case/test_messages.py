@@ -40,6 +40,15 @@ FAULTS = {
         WATER + "[fluids.water.physics]\n",
         "fluids.water.physics: unknown key; did you mean physics? A key below a [table]",
     ),
+    "a kernel elsewhere, and none of that name": (
+        WATER.replace("[physics]", '[physics]\nkernel = "wendland"'),
+        "physics.kernel: unknown key; did you mean space.kernel? A key below a [table] belongs to that table; "
+        "and \"wendland\" is not known there: did you mean 'wendland-c2' or 'wendland-c4' or 'wendland-c6'?",
+    ),
+    "a kernel elsewhere": (
+        WATER.replace("[physics]", '[physics]\nkernel = "cubic"'),
+        "physics.kernel: unknown key; did you mean space.kernel? A key below a [table] belongs to that table",
+    ),
     "an unknown table": (WATER + "[fluid.oil]\n", "fluid: unknown key; did you mean 'fluids'?"),
     "an unknown effect": (
         replaced("[physics]", "[physics]\nfreesurface = 0.9"),

@@ -99,3 +99,20 @@ def test_no_profile_is_no_difference(tmp_path):
 )
 def test_what_is_wrong_with_a_profile_or_under_it_is_said(tmp_path, text, says):
     assert any(says in line for line in refusal(tmp_path, text))
+
+
+MIRRORED = """
+space = { dimensions = 2, spacing = 0.1, lower = [0.0, 0.0], upper = [2.0, 2.0], symmetry = ["x.lower"] }
+time.end = 1.0
+physics.sound_speed = 10.0
+fluids.water.shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+"""
+
+
+def test_a_profile_that_sets_what_another_key_cannot_have_is_named(tmp_path):
+    says = 'case.toml: space.symmetry: mirrors do not work with precision = "mixed"; use "double"'
+    assert refusal(tmp_path, 'profile = "quick"\n' + MIRRORED) == [
+        f"{says}; precision is set by profile quick"
+    ]
+    assert refusal(tmp_path, 'precision = "mixed"\n' + MIRRORED) == [says]
+    assert draft(tmp_path, 'profile = "quick"\nprecision = "double"\n' + MIRRORED).precision == "double"

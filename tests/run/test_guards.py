@@ -16,7 +16,7 @@ from psph.case import load
 from psph.output.checkpoint import checkpoints
 from psph.output.pictures.closeup import _slice
 from psph.output.reader import Run
-from psph.run.advice import _friction
+from psph.run.advice import _friction, advice
 from psph.run.guards import EVERY
 from psph.run.post_mortem import PICTURE, REPORT
 from psph.run.resume import take_up
@@ -287,6 +287,18 @@ def test_what_falls_out_of_a_scene_is_counted_at_its_end(tmp_path):
     assert int(line.split()[0]) == pytest.approx(gone.sum(), abs=1) and gone.sum() > 5
 
 
+def test_what_flows_to_a_mirror_has_not_left(tmp_path):
+    """It stands farther out than any particle at the start, as a side of a flume may; a period has no side."""
+    far = ("space.lower=[-0.15, -0.15]", "space.upper=[1.5, 1.5]")
+    for sides in ('space.symmetry=["x.lower", "x.upper"]', 'space.periodic=["x"]'):
+        narrow = ("walls.floor.shape.box.upper=[0.4, 0.0]", "time.end=0.25")
+        lines = leaving(tmp_path, *far, sides, *narrow)
+        frame = Run(tmp_path / "run").frame(-1)
+        x = frame["position"][frame["kind"] == 0, 0]
+        assert (x > 0.4 + 0.05).any() and lines == []
+    assert leaving(tmp_path, *narrow) != []  # the control: there the water is beside the floor
+
+
 def test_what_jumps_up_or_has_no_walls_has_not_left(tmp_path):
     assert leaving(tmp_path, "time.end=0.1", "fluids.water.velocity=[0.0, 9.0]") == []
     assert leaving(tmp_path, "walls=off", "time.end=0.3") == []
@@ -294,7 +306,9 @@ def test_what_jumps_up_or_has_no_walls_has_not_left(tmp_path):
 
 def test_a_channel_that_gravity_drives_is_told_to_raise_the_speed_of_sound(tmp_path):
     text = CHANNEL.replace("viscosity = 0.01", "viscosity = 0.002")
-    trouble, _ = started(draft(tmp_path, text, "time.end=60"), tmp_path / "run", COMM)
+    trouble, _ = started(
+        draft(tmp_path, text, "time.end=60", "physics.sound_speed=4.47"), tmp_path / "run", COMM
+    )
     assert re.search(
         r"guards\.\w+ = .*; raise physics.sound_speed to [\d.]+ m/s or more: gravity along a periodic axis "
         r"drives this flow, it has reached c/\d\.\d, and c is meant for c/10; ",
@@ -307,6 +321,19 @@ def test_a_channel_lies_level_in_the_picture_of_its_post_mortem(tmp_path):
     assert _slice(scene, np.zeros((1, 2)))[:2] == (0, 1)
     upright = Scene(draft(tmp_path, CHANNEL, "space.periodic=off", "space.lower=off", "space.upper=off"))
     assert _slice(upright, np.zeros((1, 2)))[:2] == (1, 0)  # there x is a height
+
+
+@pytest.mark.parametrize("condition", ["dynamic", "extrapolated", "repulsive", "penalty"])
+def test_a_wall_that_bears_no_pressure_is_advised_against_where_a_particle_is_in_it(tmp_path, condition):
+    case = boxed(tmp_path, COMM, f"walls.frame.condition={condition}")
+    simulation = steps(case, COMM, 1)
+    store, scene = simulation.store, Scene(case)
+    corner = np.linalg.norm(store.shown("position") - 0.05, axis=1) < 0.01
+    suspect = find(simulation, scene, corner.astype(float))
+    advised = f'give walls.frame.condition = "dynamic": with "{condition}" it bears no pressure'
+    for guard in ("depth", "speed"):
+        told = [line for line in advice(scene, guard, suspect) if advised in line]
+        assert len(told) == (condition in ("repulsive", "penalty"))
 
 
 @pytest.mark.parametrize(("scheme", "undamped"), [("sph", True), ("stable", False)])

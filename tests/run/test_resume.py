@@ -196,7 +196,9 @@ def test_a_folder_without_any_says_so(whole, tmp_path):
     folder = copy(whole, tmp_path / "run")
     for path in checkpoints(folder):
         path.unlink()
-    with pytest.raises(CheckpointError, match="holds no checkpoint: run the case again"):
+    with pytest.raises(
+        CheckpointError, match="holds no checkpoint: a run of less than 5 s .* --set checkpoint.minutes=10"
+    ):
         resume(folder, COMM, **QUIET)
     with pytest.raises(CheckpointError, match="nowhere: there is no such folder: give the folder that"):
         resume(tmp_path / "nowhere", COMM, **QUIET)

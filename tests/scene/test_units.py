@@ -3,6 +3,7 @@
 import pytest
 from drafts import TANK, WATER, draft
 
+from psph.case import CaseError
 from psph.scene import Scene, check
 
 
@@ -55,7 +56,7 @@ def test_gravity_that_pulls_the_fluid_out_is_warned_of(tmp_path, axis):
     [line] = checked(tmp_path, still, slab, "physics.gravity=[0.0, 9.8]")
     assert line == (
         "physics.gravity: [0.0, 9.8] m/s² pulls towards +y, where no wall holds 100% of the fluid: it "
-        "leaves the scene; turn gravity round, or give a wall there"
+        "falls for ever; turn gravity round, or give a wall there"
     )
     for gravity in ("[0.0, -9.8]", "[9.8, 0.0]", "[-9.8, 0.0]"):
         assert checked(tmp_path, still, slab, f"physics.gravity={gravity}") == []
@@ -66,8 +67,39 @@ def test_gravity_that_pulls_the_fluid_out_is_warned_of(tmp_path, axis):
     assert "no wall holds 60% of the fluid" in line
 
 
-def test_free_fall_without_walls_is_silent(tmp_path):
-    assert checked(tmp_path, WATER, "physics.gravity=[0.0, 9.8]") == []
+def test_gravity_without_anything_below_is_warned_of(tmp_path):
+    """A wall, a plane of symmetry or a period below end the fall."""
+    [line] = checked(tmp_path, WATER, "physics.gravity=[0.0, 9.8]")
+    assert "pulls towards +y, where no wall holds 100% of the fluid: it falls for ever; turn" in line
+    corners = ("space.lower=[0.0, 0.0]", "space.upper=[1.0, 1.0]")
+    assert len(checked(tmp_path, WATER, *corners, 'space.periodic=["x"]')) == 1
+    assert checked(tmp_path, WATER, *corners, 'space.periodic=["y"]', "time.end=0.01") == []
+    floor = "\n[walls.floor]\ncondition = 'mirror'\nshape.box = { lower = [0.0, -0.3], upper = [1.0, 0.0] }"
+    assert checked(tmp_path, WATER + floor) == []
+
+
+@pytest.mark.parametrize(
+    ("wall", "sets", "says"),
+    [
+        (
+            "lower = [-200.0, -200.0], upper = [1200.0, 0.0]",
+            ("space.lower=[-0.2, -0.2]", "space.upper=[1.2, 1.0]"),
+            "outside the domain",
+        ),
+        ("lower = [-200.0, -200.0], upper = [1200.0, 500.0]", (), "overlaps fluids.water"),
+        ("lower = [-200.0, -200.0], upper = [1200.0, 500.0]", ("space.spacing=1e-4",), "sites"),
+    ],
+)
+def test_a_shape_in_millimetres_beside_others_in_metres_is_asked_about(tmp_path, wall, sets, says):
+    text = WATER + f"\n[walls.w]\nshape.box = {{ {wall} }}"
+    with pytest.raises(CaseError) as caught:
+        checked(tmp_path, text, *sets)
+    assert all(says in line for line in caught.value.lines)
+    assert all(line.endswith("; is walls.w given in mm? Lengths are in m") for line in caught.value.lines)
+    near = text.replace("1200.0", "1.0").replace("-200.0", "-2.0").replace("500.0", "0.3")
+    with pytest.raises(CaseError) as caught:
+        checked(tmp_path, near, *(sets or ("space.spacing=0.1",)))
+    assert not any("mm?" in line for line in caught.value.lines)
 
 
 def test_a_viscosity_that_shortens_the_time_steps_far_below_those_of_sound_is_warned_of(tmp_path):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from drafts import draft, refusal
 from mpi4py import MPI
+from numba import njit
 
 from psph.case import CaseError
 from psph.composition.mirrors import ABOVE, BELOW, Plane, at_look, image, images, mirrors_of
@@ -66,6 +67,19 @@ def sorted_state(simulation, quarter=False):
     rows = np.column_stack([store.shown(name) for name in ("position", "velocity", "pressure")])
     rows = rows[(rows[:, :2] > 0.0).all(axis=1)] if quarter else rows
     return rows[np.lexsort(rows[:, :2].round(6).T)]
+
+
+@pytest.mark.parametrize("pull", [(0.0, -9.8), (2.0, -9.8), (3.0, 0.0)])
+def test_a_still_column_goes_on_behind_a_mirror_with_the_slope_of_its_density(pull):
+    """The image of ρ₀g/c² is ρ₀g/c² again, and compiled it is what it is in plain Python."""
+    i = view_of(("rest_density", "sound_speed"))(900.0, 15.0)
+    still = tuple(900.0 / 15.0**2 * g for g in pull)
+    j = view_of(("position", "density_gradient"))((0.3, 0.1), still)
+    for reflection in mirrors_of((Plane(0, BELOW, 0.2), Plane(1, BELOW, 0.0)), pull, 0.3).reflections:
+        assert image(reflection, i, j).density_gradient == pytest.approx(still, abs=1e-12)
+        other = j._replace(density_gradient=(40.0, -70.0))
+        compiled = njit(lambda *seen: image(*seen))(reflection, i, other).density_gradient
+        assert compiled == image(reflection, i, other).density_gradient
 
 
 SIDES = (-1.0, 1.0)
@@ -140,6 +154,7 @@ def test_images_are_reflections(dim, sticks):
         "matrix",
         "mass",
         "wet",
+        "density_gradient",
     )
     x, v, vector, full = (
         rng.normal(size=dim),
@@ -150,7 +165,7 @@ def test_images_are_reflections(dim, sticks):
     gradient = full.copy()  # of the velocity; what does not slip has none along a wall across it
     gradient[1, np.arange(dim) != 1] = 0.0
     symmetric = gradient + gradient.T
-    upper = np.triu_indices(dim)
+    upper, uphill = np.triu_indices(dim), rng.normal(size=dim) * 300.0
     j = view_of((*names, "crowding"))(
         tuple(x),
         tuple(v),
@@ -161,6 +176,7 @@ def test_images_are_reflections(dim, sticks):
         tuple(full.ravel()),
         2.0,
         None,
+        tuple(uphill),
         tuple(vector),
     )
     i = SimpleNamespace(rest_density=rho, sound_speed=c)
@@ -181,6 +197,8 @@ def test_images_are_reflections(dim, sticks):
         assert 1.0 / seen.specific_volume == pytest.approx(1000.0 + weight / c**2)
         assert seen.density == pytest.approx(1000.0 + weight / c**2)
         assert seen.mass == 2.0 and seen.wet is None
+        steeper = (np.eye(dim) - turn) @ g * rho / c**2
+        assert np.array(seen.density_gradient) == pytest.approx(turn @ uphill + steeper)
     first, second = np.ones(dim), np.ones(dim)
     first[0], second[1] = -1.0, -1.0
     across = np.array([0.4, *[0.0] * (dim - 1)]), np.array([0.0, 3.0, 0.0][:dim])

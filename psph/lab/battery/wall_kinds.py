@@ -3,7 +3,7 @@
 from psph.lab.battery.comparison import Comparison, judging
 from psph.lab.battery.tables import SECONDS
 from psph.lab.battery.trials import BATTERY, Bound, Trial
-from psph.physics.walls.conditions import CONDITIONS
+from psph.physics.walls.conditions import CONDITIONS, STICKING
 
 SHOWN = {
     "tank": ("probe_error", "probe_spread", "noise", "energy", SECONDS),
@@ -19,8 +19,12 @@ def _of_case(case: str) -> Trial:
 
 
 def _walls(*names: str) -> dict[str, tuple[str, ...]]:
-    """The keys that give all walls of a case one condition, by the condition."""
-    return {kind: tuple(f"walls.{name}.condition={kind}" for name in names) for kind in CONDITIONS}
+    """The keys that give all walls of a case one condition, by the condition; no_slip where it works."""
+    found = {}
+    for kind in CONDITIONS:
+        keys = [f"condition={kind}", *([] if kind in STICKING else ["no_slip=false"])]
+        found[kind] = tuple(f"walls.{name}.{key}" for name in names for key in keys)
+    return found
 
 
 def _judging(name: str, case: str, end: float, *walls: str, holds=()) -> Trial:

@@ -1,11 +1,11 @@
-"""Measured curves that a case names: CSV files in its folder, checked when read."""
+"""Measured curves for a study: files in the folder of a case, or in one that a person allows."""
 
-import csv
-import math
 from pathlib import Path
 
 import numpy as np
 
+from psph.case.curves import read_curve
+from psph.case.files import Unfit
 from psph.lab.errors import StudyError
 
 
@@ -15,24 +15,13 @@ def read_experiment(case, name: str, files: Path | None = None) -> tuple[np.ndar
     ``files`` is the folder that the file must lie in or below, links followed; None: the case's
     own.  Raises StudyError.
     """
-    experiment = case.experiments[name]
-    path = Path(case.file).parent / experiment.file
-    where = f"{case.file}: experiments.{name}"
+    experiment, where = case.experiments[name], f"{case.file}: experiments.{name}"
+    path = path_of(case) / experiment.file
     _refuse_outside(path, files or path_of(case), f"{where}.file")
-    lines = [line for line in _lines(path, f"{where}.file") if line.strip() and line[0] != "#"]
-    where = f"{where}: {path}"
-    names, *rows = _cells(lines, where) or [[]]
-    columns = [_column(names, wanted, where) for wanted in (experiment.time, experiment.value)]
-    for row in rows:
-        if len(row) != len(names):
-            raise StudyError(
-                f"{where}: {len(row)} values in '{','.join(row)}', {len(names)} names above; give "
-                "each line a value for each name, with a point in its numbers"
-            )
-    if not rows:
-        raise StudyError(f"{where} holds no rows; give a CSV file with a line of names")
-    time, value = np.array(sorted([_number(row[k], where) for k in columns] for row in rows)).T
-    return time * experiment.time_unit, value * experiment.value_unit
+    try:
+        return read_curve(experiment, path, where)
+    except Unfit as error:
+        raise StudyError(str(error)) from None
 
 
 def path_of(case) -> Path:
@@ -50,37 +39,3 @@ def _refuse_outside(path: Path, files: Path, where: str) -> None:
             f"{where}: {path} lies outside {files}; move it into that folder, or allow another one "
             "with --files DIR"
         )
-
-
-def _lines(path: Path, where: str) -> list[str]:
-    """The lines of a plain file: a pipe or a device might never end."""
-    try:
-        if path.exists() and not path.is_file():
-            raise StudyError(f"{where}: {path} is not a regular file; give a CSV file in the case's folder")
-        return path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(f"{where}: {path}: {error}; give a CSV file in the case's folder") from None
-
-
-def _cells(lines: list[str], where: str) -> list[list[str]]:
-    try:
-        return list(csv.reader(lines, strict=True))
-    except csv.Error as error:
-        raise StudyError(f"{where}: {error}; give numbers with commas between them") from None
-
-
-def _column(names: list[str], wanted: str, where: str) -> int:
-    if names.count(wanted) != 1:
-        found = "no column" if wanted not in names else "more than one column"
-        raise StudyError(f"{where} has {found} '{wanted}'; give one of {', '.join(names)}")
-    return names.index(wanted)
-
-
-def _number(word: str, where: str) -> float:
-    try:
-        number = float(word)
-    except ValueError as error:
-        raise StudyError(f"{where}: {error}; let each line hold numbers") from None
-    if not math.isfinite(number):
-        raise StudyError(f"{where}: '{word}' is not finite; let each line hold numbers")
-    return number

@@ -13,10 +13,9 @@ from psph.fields import FLUID
 from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
 from psph.output.accuracy import NORMS
-from psph.output.gauges import gauges_of
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
-from psph.run.record import probes_of
+from psph.run.record import columns_of
 from psph.scene import Scene
 from psph.theory.solutions.catalogue import known
 
@@ -44,7 +43,7 @@ class Judge:
 
     def __init__(self, case, files: Path | None = None):
         self.case, self.files, study = case, files, case.study
-        self.columns = _columns(case)
+        self.columns = columns_of(Scene(case))
         self.against = study.against or self._first_reference()
         self.what = study.error or self._first_known()
         self._agree()
@@ -178,13 +177,6 @@ class Judge:
         if probe and quantity in probe.theory:
             found.append(THEORY)
         return [*found, FINEST]
-
-
-def _columns(case) -> list[str]:
-    """The columns of probes.csv and of gauges that a case makes."""
-    scene = Scene(case)
-    probes = [c for probe in probes_of(case) for c in probe.columns(case.space.dimensions)]
-    return [*probes, *(c for gauge in gauges_of(scene).values() for c in gauge.columns(scene))]
 
 
 def window(study, time: np.ndarray) -> np.ndarray:

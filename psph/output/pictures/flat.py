@@ -1,6 +1,7 @@
 """Particles as circles in a plane: a flow in 2D, a slice of one in 3D; in 1D a curve."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -42,11 +43,11 @@ def slice_of(text: str) -> Slice:
 class Flat:
     """The particles of a room in a plane; of a room in 3D those within half a spacing of ``cut``.
 
-    Raises NotThere if the room does not reach there.
+    ``mirrors`` (axis and place, m) are lines.  Raises NotThere if the room does not reach there.
     """
 
-    def __init__(self, room: Room, cut: Slice | None = None):
-        self.room, self.cut = room, cut
+    def __init__(self, room: Room, cut: Slice | None = None, mirrors: Sequence[tuple[int, float]] = ()):
+        self.room, self.cut, self.mirrors = room, cut, mirrors
         self.variant, self.remark = "", ""
         level = room.level
         if cut is not None:
@@ -94,6 +95,9 @@ class Flat:
             drawn = circles(axes, places[fluid], spacing, norm=scale.norm, cmap=scale.colours)
             drawn.set_array(values[fluid])
             axes.set_ylim(self.lower[1], self.upper[1])
+            for axis, at in self.mirrors:
+                line = axes.axvline if axis == self.across else axes.axhline
+                line(at, color=style.INK, lw=0.8)
         style.ticks(axes.xaxis, 5)
         style.ticks(axes.yaxis, 5)
         axes.spines[["bottom", "left"]].set_position(("outward", 4))

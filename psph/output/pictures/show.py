@@ -14,6 +14,7 @@ from psph.fields import FLUID
 from psph.output.errors import NotThere
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
+from psph.output.pictures.mirrors import mirrors_of, with_mirrors
 from psph.output.pictures.quantities import quantity
 from psph.output.pictures.scale import Scale, scale_of
 from psph.output.pictures.view import Panel, box_around, room_of, spread
@@ -84,9 +85,10 @@ class Show:
         sample = spread(len(self.times), self.quantity.samples)
         glances = [self._glance(k) for k in told(sample, "looking at the run", "frames")]
         scale = scale_of(self.quantity, [glance.values for glance in glances])
-        room = room_of(self.case, [glance.box for glance in glances])
+        mirrors = mirrors_of(self.case)
+        room = room_of(self.case, [with_mirrors(glance.box, mirrors) for glance in glances])
         if not self._solid:
-            return Flat(room, cut), scale
+            return Flat(room, cut, mirrors), scale
         return solid.scene(
             self.case, self.run.folder, self._whole(0), room, [glance.groups for glance in glances], smooth
         ), scale

@@ -20,3 +20,6 @@ CONDITIONS = (DYNAMIC, EXTRAPOLATED, REPULSIVE, PENALTY, MIRROR)
 BEARING = (DYNAMIC, EXTRAPOLATED)
 """Their particles bear a pressure.  Those of other walls fill the support of the fluid at rest density: they
 stay dry (psph.physics.walls.dry), and no sum is made for them."""
+
+STICKING = (DYNAMIC, EXTRAPOLATED, MIRROR)
+"""A fluid sticks to them where the case says no_slip: of others no sum says how it flows before them."""

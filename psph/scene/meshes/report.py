@@ -13,7 +13,6 @@ from psph.case.shapes import Difference, Shape
 from psph.scene.gauging import shown
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.shapes import bounds, inside
-from psph.scene.walls import layers_needed, thinnest_walls
 
 if TYPE_CHECKING:
     from psph.scene.meshes.surface import Surface
@@ -111,7 +110,7 @@ def site_faults(scene: "Scene") -> Iterator[str]:
 def remarks(scene: "Scene") -> Iterator[str]:
     """What will run with these meshes, but probably not as intended."""
     for one, sites in zip(scene.meshes, scene.mesh_sites):
-        for says in (*_faces(one), *_sizes(scene, one), *_volumes(scene, one, sites), *_thin(scene, one)):
+        for says in (*_faces(one), *_sizes(scene, one), *_volumes(scene, one, sites)):
             yield f"{one.key}: {says}"
 
 
@@ -170,17 +169,6 @@ def _volumes(scene: "Scene", one: Drawn, sites: int) -> Iterator[str]:
             f"({excess:+.0%}): at {scene.spacing:g} m thin parts are lost or grow, or its parts overlap; "
             "make space.spacing smaller"
         )
-
-
-def _thin(scene: "Scene", one: Drawn) -> Iterator[str]:
-    """A shell of a wall that the kernel sees through; where fluid touches it, its layers are counted."""
-    need = layers_needed(scene) * scene.spacing
-    table, name = one.key.split(".")[:2]
-    if table != "walls" or name not in scene.walls or not one.mesh.shell:
-        return
-    material = len(scene.case.fluids) + list(scene.walls).index(name)
-    if one.mesh.shell < need * (1.0 - TOLERANCE) and material not in thinnest_walls(scene):
-        yield f"shell = {one.mesh.shell:g} m is thinner than the kernel reaches; give {need:.4g}"
 
 
 def _rest(scene: "Scene") -> float:

@@ -164,6 +164,34 @@ def test_run_that_blew_up_can_still_be_seen(run_with, alone):
     plot(run.folder)
 
 
+MIRRORED = """
+[walls.floor]
+condition = "mirror"
+shape.box = { lower = [-1.0, -0.3], upper = [3.0, 0.0] }
+"""
+
+
+def test_planes_of_symmetry_and_mirrors_are_lines(run_with, alone):
+    """In the picture even where no particle is near: a line in ink from side to side."""
+    run = run_with(box(10, 5))
+    text = run.case_text.replace(
+        "spacing = 0.1", 'spacing = 0.1\nlower = [0.0, 0.0]\nupper = [1.4, 0.5]\nsymmetry = ["x.upper"]'
+    ).replace("density = 1000.0", "shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }")
+    for case, lines in ((text + MIRRORED, {(0, 1.4), (1, 0.0)}), (text, {(0, 1.4)}), (run.case_text, set())):
+        frames = FrameFile(run.path, alone, {"case": case})
+        frames.write(0, 0.0, 0, box(10, 5) | {"pressure": np.zeros(50)})
+        show = Show(run, None, "pressure")
+        [axes, _] = show.picture([0]).axes
+        drawn = {
+            (axis, float(ends[0]))
+            for line in axes.lines
+            for axis, ends in enumerate((line.get_xdata(), line.get_ydata()))
+            if ends[0] == ends[1] and line.get_color() == style.INK
+        }
+        assert drawn == lines
+        assert show.panel.upper[0] == pytest.approx(1.45 if lines else 1.0)
+
+
 def test_slice_is_the_layer_at_its_place_seen_against_gravity(run_with):
     arrays = box(10, 4, 3)
     run = run_with(arrays, arrays["position"][:, 0])

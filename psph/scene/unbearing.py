@@ -1,0 +1,59 @@
+"""Walls without a pressure of their own, and what should not be asked of them."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from psph.fields import PRESSURE
+from psph.physics.walls.conditions import BEARING, MIRROR
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+TAKE = " or ".join(f'"{condition}"' for condition in (*BEARING, MIRROR))
+
+
+def unbearing_walls(scene: "Scene") -> list[str]:
+    """The names of the walls whose particles bear no pressure."""
+    return [name for name, wall in scene.walls.items() if wall.condition not in BEARING]
+
+
+def unbearing_warnings(scene: "Scene") -> Iterator[str]:
+    """A line for each such wall of a box that is full, and for each pressure that is read beside one."""
+    names = unbearing_walls(scene)
+    if names and not scene.has_free_surface:
+        for name in names:
+            yield (
+                f'walls.{name}.condition: "{scene.walls[name].condition}" bears no pressure, and the fluid '
+                f"has no surface at which it could give way; take {TAKE}"
+            )
+    for key, point in _pressure_points(scene) if names else ():
+        for name in _within_reach(scene, names, point):
+            yield (
+                f'{key}: walls.{name} beside it has condition = "{scene.walls[name].condition}" and bears no '
+                f"pressure: what is read there is wrong by half; give that wall {TAKE}, or read farther away"
+            )
+
+
+def _pressure_points(scene: "Scene") -> Iterator[tuple[str, tuple[float, ...]]]:
+    """The keys of probes and gauges that read a pressure, and where, m."""
+    for name, probe in scene.case.probes.items():
+        if probe.position is not None and PRESSURE.name in probe.fields:
+            yield f"probes.{name}", probe.position
+    for name, gauge in scene.case.gauges.items():
+        if gauge.sensor or gauge.point and PRESSURE.name in gauge.point.fields:
+            yield f"gauges.{name}", (gauge.sensor or gauge.point).position
+
+
+def _within_reach(scene: "Scene", names: list[str], point: tuple[float, ...]) -> Iterator[str]:
+    """Those of the walls ``names`` that the kernel around a point reaches."""
+    around = np.arange(1 - scene.wall_reach, scene.wall_reach) * scene.spacing
+    places = np.meshgrid(*(x + around for x in point), indexing="ij")
+    distance = np.sqrt(sum((place - x) ** 2 for place, x in zip(places, point)))
+    grid = [scene.folded(d, place) for d, place in enumerate(places)]
+    held = scene.layout.held(grid, distance.shape)
+    near = set(held[distance < scene.kernel.support * scene.smoothing_length].tolist())
+    for number, name in enumerate(scene.names):
+        if number in near and name in names:
+            yield name
