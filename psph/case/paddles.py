@@ -100,7 +100,11 @@ class Absorb(Table):
 class Absorber(Wavemaker):
     """A paddle that may take up waves that come back."""
 
-    absorb: Absorb | None = key("takes up waves that come back, by the level at its face", None)
+    absorb: Absorb | None = key(
+        "the paddle takes up waves that come back, by the level at its face; {} takes all defaults",
+        None,
+        otherwise="it sends them back",
+    )
 
     def beat(self, gravity: float) -> float:
         """How long a wave lasts, s."""
@@ -127,7 +131,16 @@ class Absorber(Wavemaker):
         asked = self.absorb or Absorb()
         memory = asked.memory or FORGETS * self.beat(gravity)
         reach = asked.reach or FARTHEST * self.stroke(gravity)
-        return Absorption(self.crests(gravity), math.sqrt(gravity / self.depth), memory, reach)
+        return Absorption(self.crests(gravity), self.answer(gravity), memory, reach)
+
+    def answer(self, gravity: float) -> float:
+        """The speed by which a piston takes up a wave, over its elevation, 1/s: √(g/h) for long ones."""
+        return math.sqrt(gravity / self.depth)
+
+    def answer_to(self, period: float, gravity: float) -> float:
+        """The same for waves of a ``period``, s: ω/(H/S)."""
+        omega = 2.0 * math.pi / period
+        return omega / piston_gain(wave_number(omega, self.depth, gravity) * self.depth)
 
     def running(self, wave: Component, gravity: float) -> Running:
         """A wave of such a surface at the paddle, as it runs."""
@@ -203,6 +216,10 @@ class Piston(Absorber):
         """Its period, s."""
         return self.period
 
+    def answer(self, gravity: float) -> float:
+        """The speed by which it takes up a wave of its period, over the elevation, 1/s."""
+        return self.answer_to(self.period, gravity)
+
     def stroke(self, gravity: float) -> float:
         """From one end to the other, m."""
         return 2.0 * self.law(gravity).swings[0].amplitude
@@ -256,6 +273,10 @@ class Irregular(OnHinge, Absorber):
     def beat(self, gravity: float) -> float:
         """The period of the peak, s."""
         return self.period
+
+    def answer(self, gravity: float) -> float:
+        """The speed by which it takes up a wave of the peak, over the elevation, 1/s."""
+        return self.answer_to(self.period, gravity)
 
     def stroke(self, gravity: float) -> float:
         """4√m₀ of its displacement, m, as H_s is of its waves."""

@@ -12,12 +12,12 @@ from psph.vectors import Vector, scale
 class Absorption(NamedTuple):
     """How a paddle answers to waves that it does not make.
 
-    Where the water at its face is higher than its own waves have it, by e, a wave comes back.  Of waves much
-    longer than the depth it takes up all by going with the water, at the speed −√(g/h) e beside that of its
-    stroke (Schäffer & Klopman 2000, J. Waterw. Port Coast. Ocean Eng. 126, 88); α = √(g/h) (H/S)/ω is 1
-    for these, and of others the part |1 − α|/(1 + α) goes back once more.  ``wanted`` has the elevation η of
-    its own waves, ``gain`` is √(g/h), 1/s.  Over the ``memory``, s, it forgets a level that stays, and comes
-    back to its stroke, from which it is never farther than ``reach``, m.
+    Where the water at its face is higher than its own waves have it, by e, a wave comes back.  The paddle
+    takes it up by going with the water, at the speed −γe beside that of its stroke (Schäffer & Klopman
+    2000, J. Waterw. Port Coast. Ocean Eng. 126, 88), with γ = ω/(H/S) for waves of frequency ω, which is √(g/h) for
+    long ones.  Of others the part |1 − α|/(1 + α) goes back once more, α = γ (H/S)/ω.  ``wanted`` has the
+    elevation η of its own waves, ``gain`` is γ, 1/s.  Over the ``memory``, s, it forgets a level that stays,
+    and comes back to its stroke, from which it is never farther than ``reach``, m.
     """
 
     wanted: Any
@@ -58,7 +58,7 @@ class Absorbing(NamedTuple):
 class Correction:
     """What a paddle does beside its stroke: its ``shift``, m, ``speed``, m/s, and ``change`` of that, m/s².
 
-    x ← x + Δt v with v = −√(g/h) (e − ē) − x/τ from the surplus e of the level at the end of the step before,
+    x ← x + Δt v with v = −γ (e − ē) − x/τ from the surplus e of the level at the end of the step before,
     and dē/dt = (e − ē)/τ: ``due`` is v of the next step, ``lasting`` ē, m.
     """
 
