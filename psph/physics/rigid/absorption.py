@@ -14,10 +14,10 @@ class Absorption(NamedTuple):
 
     Where the water at its face is higher than its own waves have it, by e, a wave comes back.  The paddle
     takes it up by going with the water, at the speed −γe beside that of its stroke (Schäffer & Klopman
-    2000, J. Waterw. Port Coast. Ocean Eng. 126, 88), with γ = ω/(H/S) for waves of frequency ω, which is √(g/h) for
-    long ones.  Of others the part |1 − α|/(1 + α) goes back once more, α = γ (H/S)/ω.  ``wanted`` has the
-    elevation η of its own waves, ``gain`` is γ, 1/s.  Over the ``memory``, s, it forgets a level that stays,
-    and comes back to its stroke, from which it is never farther than ``reach``, m.
+    2000, J. Waterw. Port Coast. Ocean Eng. 126, 88), with γ = ω/(H/S) for waves of frequency ω, which is
+    √(g/h) for long ones.  Of others the part |1 − α|/(1 + α) goes back once more, α = γ (H/S)/ω.
+    ``wanted`` has the elevation η of its own waves, ``gain`` is γ, 1/s.  Over the ``memory``, s, it forgets a
+    level that stays, and comes back to its stroke, from which it is never farther than ``reach``, m.
     """
 
     wanted: Any
