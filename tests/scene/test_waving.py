@@ -111,7 +111,7 @@ def test_explain_says_what_the_paddle_makes(tmp_path):
 
 def test_explain_says_how_a_paddle_absorbs(tmp_path):
     text = "\n".join(wave_lines(scene_of(f"{{ piston = {{ {PISTON}, absorb = {{}} }} }}", tmp_path)))
-    assert "waves that come back: 5.72 m/s for each m that the water at its face is too low" in text
+    assert "waves that come back: 5.03 m/s for each m that the water at its face is too low" in text
     assert "at most 0.192 m from its stroke; forgets a level in 6 s" in text
     absorb = "absorb = { memory = 4.0, reach = 0.15 }"
     text = "\n".join(
