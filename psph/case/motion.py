@@ -20,8 +20,9 @@ from pydantic_core import PydanticCustomError
 from psph.case.columns import read_columns
 from psph.case.files import Found, Unfit, beside
 from psph.case.keys import Table, Text, Vector, key
-from psph.case.paddles import Flap, Irregular, Piston, SolitaryWave, Wavemaker
+from psph.case.paddles import Absorber, Flap, Irregular, Piston, SolitaryWave, Wavemaker
 from psph.case.parameters import Parameters, chosen, last_part, table_of
+from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.laws import Accelerated, Harmonic, Steady, Tabulated
 from psph.physics.rigid.motion import UPWARDS, Part, Rigid
 from psph.physics.rigid.pose import ZERO, in_space
@@ -263,6 +264,12 @@ class Motion(Table):
         """Whether it moves a wall without deforming it."""
         return self.way in BUILT_IN or hasattr(chosen(self, self.entries)[self.way], "pose")
 
+    @property
+    def absorbs(self) -> bool:
+        """Whether it is a paddle that takes up waves that come back."""
+        asked = getattr(self, self.way)
+        return isinstance(asked, Absorber) and asked.absorb is not None
+
     def part(self, gravity: float) -> Any:
         """The part as the step knows it: with a pose, or by an extension with what that has.
 
@@ -273,6 +280,8 @@ class Motion(Table):
             return chosen(self, self.entries)[self.way]
         schedule = Schedule(self.start, math.inf if self.end is None else self.end, self.ramp)
         law = asked.law(gravity) if self.way in PADDLES else asked.law()
+        if self.absorbs:
+            return Absorbing(Part(law, schedule), asked.heading, asked.absorption(gravity))
         if isinstance(asked, (Turning, Wavemaker)):
             return Part(law, schedule, asked.pivot, asked.unit_axis)
         return Part(law, schedule)
@@ -305,7 +314,7 @@ def motion_of(parts: tuple[Motion, ...] | None, gravity: tuple[float, ...] = ())
     if not parts:
         return None
     made = tuple(one.part(math.hypot(*gravity)) for one in parts)
-    if len(made) == 1 and parts[0].way not in BUILT_IN:
+    if len(made) == 1 and (parts[0].way not in BUILT_IN or parts[0].absorbs):
         return made[0]
     return Rigid(made)
 
@@ -331,6 +340,8 @@ def misfits(parts: tuple[Motion, ...], dimensions: int, gravity: tuple[float, ..
             yield place, one.way, says
         if isinstance(asked, Wavemaker) and (says := asked.misfits(dimensions, gravity)):
             yield place, one.way, says
+        if one.absorbs and len(parts) > 1:
+            yield place, one.way, "moves by what it measures if it is to absorb; let it be the only part"
         if one.solitary and (one.ramp or one.end is not None):
             yield place, one.way, "begins and ends by itself; remove ramp and end"
         if one.way not in BUILT_IN:

@@ -18,6 +18,7 @@ def moved(case) -> Iterator[tuple[tuple, Any, str]]:
             inner = (place,) if len(parts) > 1 else ()
             yield (*loc, *inner, *([name] if name else [])), ..., says
     yield from _walls(case)
+    yield from _bodies(case)
     yield from _frame(case)
 
 
@@ -31,6 +32,13 @@ def _walls(case) -> Iterator[tuple[tuple, Any, str]]:
                 wall.velocity,
                 "is of a wall that stands; its motion gives it one; remove one of the two",
             )
+
+
+def _bodies(case) -> Iterator[tuple[tuple, Any, str]]:
+    for name, body in case.bodies.items():
+        for one in body.motion or ():
+            if len(one.ways) == 1 and one.absorbs:
+                yield ("bodies", name, "motion"), ..., "a wall may absorb waves, a body not; remove absorb"
 
 
 def _frame(case) -> Iterator[tuple[tuple, Any, str]]:

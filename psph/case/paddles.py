@@ -1,14 +1,17 @@
 """Paddles in a case: the parts of a motion that make waves (psph.physics.rigid.paddles)."""
 
 import math
-from typing import Literal
+from typing import Any, Literal
 
 from psph.case.keys import Table, Vector, key
+from psph.physics.rigid.absorption import Absorption
 from psph.physics.rigid.motion import UPWARDS
-from psph.physics.rigid.paddles import SolitaryStroke, Swings
+from psph.physics.rigid.paddles import Crests, SolitaryStroke, Swings
 from psph.physics.rigid.pose import ZERO, in_space
 from psph.theory.water_waves import (
     Component,
+    Running,
+    bound_crest,
     boussinesq,
     flap_gain,
     jonswap,
@@ -23,6 +26,12 @@ MOST_WAVES = 10_000
 
 NEXT_TO_SURFACE = 0.99
 """Height of a hinge over the depth, above which a flap moves no water."""
+
+FORGETS = 5.0
+"""Periods, or strokes of a solitary wave, over which a paddle forgets a level that stays."""
+
+FARTHEST = 2.0
+"""Strokes that a paddle is moved at most for waves that come back: of a standing wave it needs one."""
 
 HEIGHT = key("height of the waves, from trough to crest", unit="m", gt=0)
 PERIOD = key("period of the waves", unit="s", gt=0)
@@ -73,6 +82,72 @@ class Wavemaker(Table):
         return None
 
 
+class Absorb(Table):
+    """A paddle goes with waves that come back, so that they do not run through the tank again."""
+
+    memory: float | None = key(
+        "time over which it forgets a level that stays, and comes back to its stroke",
+        None,
+        unit="s",
+        otherwise="five periods, or strokes of a solitary wave",
+        gt=0,
+    )
+    reach: float | None = key(
+        "farthest that it is moved from its stroke", None, unit="m", otherwise="twice the stroke", gt=0
+    )
+
+
+class Absorber(Wavemaker):
+    """A paddle that may take up waves that come back."""
+
+    absorb: Absorb | None = key(
+        "the paddle takes up waves that come back, by the level at its face; {} takes all defaults",
+        None,
+        otherwise="it sends them back",
+    )
+
+    def beat(self, gravity: float) -> float:
+        """How long a wave lasts, s."""
+        raise NotImplementedError
+
+    def stroke(self, gravity: float) -> float:
+        """How far it goes at the surface, m."""
+        raise NotImplementedError
+
+    def crests(self, gravity: float) -> Any:
+        """The surface of its waves: with elevation(schedule, time, distance)."""
+        raise NotImplementedError
+
+    def misfits(self, dimensions: int, gravity: tuple[float, ...]) -> str | None:
+        """What does not fit a case of so many dimensions and this gravity, in words."""
+        if says := super().misfits(dimensions, gravity):
+            return says
+        if self.absorb and self.absorb.memory and self.absorb.memory < self.beat(math.hypot(*gravity)):
+            return "absorb.memory is shorter than a wave, which it would forget; give five periods"
+        return None
+
+    def absorption(self, gravity: float) -> Absorption:
+        """How it answers to waves that come back."""
+        asked = self.absorb or Absorb()
+        memory = asked.memory or FORGETS * self.beat(gravity)
+        reach = asked.reach or FARTHEST * self.stroke(gravity)
+        return Absorption(self.crests(gravity), self.answer(gravity), memory, reach)
+
+    def answer(self, gravity: float) -> float:
+        """The speed by which a piston takes up a wave, over its elevation, 1/s: √(g/h) for long ones."""
+        return math.sqrt(gravity / self.depth)
+
+    def answer_to(self, period: float, gravity: float) -> float:
+        """The same for waves of a ``period``, s: ω/(H/S)."""
+        omega = 2.0 * math.pi / period
+        return omega / piston_gain(wave_number(omega, self.depth, gravity) * self.depth)
+
+    def running(self, wave: Component, gravity: float) -> Running:
+        """A wave of such a surface at the paddle, as it runs."""
+        a, omega, phase = wave
+        return Running(a, omega, wave_number(omega, self.depth, gravity), phase)
+
+
 class OnHinge(Wavemaker):
     """A paddle that may turn about a hinge."""
 
@@ -117,7 +192,7 @@ class OnHinge(Wavemaker):
         return Swings(way, tuple(found))
 
 
-class Piston(Wavemaker):
+class Piston(Absorber):
     """A piston that makes regular waves."""
 
     height: float = HEIGHT
@@ -137,6 +212,27 @@ class Piston(Wavemaker):
             swings.append(Component(size, 2.0 * omega, 2.0 * self.phase))
         return Swings(self.forwards, tuple(swings))
 
+    def beat(self, gravity: float) -> float:
+        """Its period, s."""
+        return self.period
+
+    def answer(self, gravity: float) -> float:
+        """The speed by which it takes up a wave of its period, over the elevation, 1/s."""
+        return self.answer_to(self.period, gravity)
+
+    def stroke(self, gravity: float) -> float:
+        """From one end to the other, m."""
+        return 2.0 * self.law(gravity).swings[0].amplitude
+
+    def crests(self, gravity: float) -> Crests:
+        """The surface of its waves."""
+        wave = Component(0.5 * self.height, 2.0 * math.pi / self.period, self.phase)
+        first = self.running(wave, gravity)
+        if self.order == 1:
+            return Crests((first,))
+        size = bound_crest(self.height, first.number * self.depth, self.depth)
+        return Crests((first, Running(size, 2.0 * first.omega, 2.0 * first.number, 2.0 * self.phase)))
+
 
 class Flap(OnHinge):
     """A flap that makes regular waves, to first order."""
@@ -152,7 +248,7 @@ class Flap(OnHinge):
         return self.swings((wave,), gravity)
 
 
-class Irregular(OnHinge):
+class Irregular(OnHinge, Absorber):
     """A piston, or with ``center`` a flap, that makes the waves of a spectrum, each to first order."""
 
     height: float = key("significant height H_s = 4√m₀ of the waves", unit="m", gt=0)
@@ -164,13 +260,38 @@ class Irregular(OnHinge):
         "a point of the hinge of a flap that makes them", None, unit="m", otherwise="a piston"
     )
 
+    def misfits(self, dimensions: int, gravity: tuple[float, ...]) -> str | None:
+        """What does not fit a case of so many dimensions and this gravity, in words."""
+        if self.absorb and self.center:
+            return "a flap does not know how to absorb; remove center for a piston, or absorb"
+        return super().misfits(dimensions, gravity)
+
     def law(self, gravity: float) -> Swings:
         """How it moves."""
-        waves = jonswap(self.height, self.period, self.gamma, self.components, self.seed)
-        return self.swings(waves, gravity)
+        return self.swings(self._waves, gravity)
+
+    def beat(self, gravity: float) -> float:
+        """The period of the peak, s."""
+        return self.period
+
+    def answer(self, gravity: float) -> float:
+        """The speed by which it takes up a wave of the peak, over the elevation, 1/s."""
+        return self.answer_to(self.period, gravity)
+
+    def stroke(self, gravity: float) -> float:
+        """4√m₀ of its displacement, m, as H_s is of its waves."""
+        return math.sqrt(8.0) * math.hypot(*(one.amplitude for one in self.law(gravity).swings))
+
+    def crests(self, gravity: float) -> Crests:
+        """The surface of its waves."""
+        return Crests(tuple(self.running(wave, gravity) for wave in self._waves))
+
+    @property
+    def _waves(self) -> tuple[Component, ...]:
+        return jonswap(self.height, self.period, self.gamma, self.components, self.seed)
 
 
-class SolitaryWave(Wavemaker):
+class SolitaryWave(Absorber):
     """A piston that makes a solitary wave by one stroke forwards."""
 
     height: float = key("height of the wave above the surface at rest", unit="m", gt=0)
@@ -182,3 +303,15 @@ class SolitaryWave(Wavemaker):
         """How it moves."""
         wave = {"rayleigh": rayleigh, "boussinesq": boussinesq}[self.theory]
         return SolitaryStroke(self.forwards, wave(self.height, self.depth, gravity))
+
+    def beat(self, gravity: float) -> float:
+        """The time of its stroke, s."""
+        return self.law(gravity).duration
+
+    def stroke(self, gravity: float) -> float:
+        """From the beginning to the end, m."""
+        return self.law(gravity).stroke
+
+    def crests(self, gravity: float) -> SolitaryStroke:
+        """The surface of its wave."""
+        return self.law(gravity)

@@ -104,17 +104,27 @@ def _motions(whole: Node) -> Iterator[str]:
     """The keys of a part of a motion, those of its ways as ``way.key``; one line for what several share."""
     rows: dict[tuple[str, str], tuple[list[str], Node, bool]] = {}
     for name, node in whole["$defs"]["Motion"]["properties"].items():
-        inner = next((b for b in alternatives(whole, node) if "properties" in b), None)
-        for key, below in inner["properties"].items() if inner else [(name, node)]:
-            named = f"{name}.{key}" if inner else key
-            required = inner is not None and key in inner.get("required", ())
-            rows.setdefault((key, below["description"]), ([], below, required))[0].append(named)
+        for named, below, required in _inner(whole, name, node):
+            one = named.rpartition(".")[2], below["description"]
+            rows.setdefault(one, ([], below, required))[0].append(named)
     lines = [_row(whole, "motion", "`, `".join(names), *rest) for names, *rest in rows.values()]
     meaning = (
         "A motion is a part, or a list of parts: a table with one way to move, and when it acts "
         "([motion.md](motion.md))"
     )
     yield from _section("Motions", _sentence(meaning), lines)
+
+
+def _inner(whole: Node, name: str, node: Node, required: bool = False) -> Iterator[tuple[str, Node, bool]]:
+    """The keys of a table, and of the tables in it: with their names, whether they are required."""
+    table = next((b for b in alternatives(whole, node) if "properties" in b), None)
+    if table is None:
+        yield name, node, required
+        return
+    if "otherwise" in node:  # it may be left out, and says what follows
+        yield name, node, required
+    for key, below in table["properties"].items():
+        yield from _inner(whole, f"{name}.{key}", below, key in table.get("required", ()))
 
 
 def _section(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.case.keys import AXES
+from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN
 from psph.physics.motion import is_rigid
 from psph.physics.rigid.pose import PLACE, maps
@@ -123,6 +123,7 @@ def _part_in_words(part) -> str:
         f"{name} {_plain(value)}"
         for name, value in getattr(part, part.way)
         if value is not None and not (name == "phase" and value == 0.0)
+        if not isinstance(value, Table)  # of which other lines tell
     )
     when = [f"from {part.start:g} s"] if part.start else []
     when += [f"to {part.end:g} s"] if part.end is not None else []

@@ -68,6 +68,19 @@ def wave_lines(scene) -> Iterator[str]:
             yield f"              H/L {height / length:.3g}, HL²/h³ {_ursell(height, length, depth):.3g}"
             yield f"              stroke {_stroke(law, asked):.3g} m at the surface"
         yield f"              H/h {height / depth:.3g}, H/dx {height / scene.spacing:.3g}"
+        yield from _absorption_lines(scene, asked)
+
+
+def _absorption_lines(scene, asked: Any) -> Iterator[str]:
+    """How a paddle answers to waves that come back."""
+    if getattr(asked, "absorb", None) is None:
+        return
+    told = asked.absorption(math.hypot(*scene.gravity))
+    yield (
+        f"              goes with waves that come back: {told.gain:.3g} m/s for each m that the water at its "
+        "face is too low,"
+    )
+    yield f"              at most {told.reach:.3g} m from its stroke; forgets a level in {told.memory:.3g} s"
 
 
 def wave_warnings(scene) -> Iterator[str]:

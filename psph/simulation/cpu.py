@@ -28,6 +28,7 @@ from psph.simulation.integrator import (
     settle_told,
     state_of,
 )
+from psph.simulation.paddles import Paddles
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
@@ -54,7 +55,8 @@ class Engine:
         self.skin, self._reach = Skin(self.domain, scene.reach.skin, plan.planes), scene.reach
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         floating = Floating(scene, plan) if plan.floats else None
-        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.frame, scene.gravity, floating)
+        paddles = Paddles(scene, plan) if plan.absorbs else None
+        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.frame, scene.gravity, floating, paddles)
         self._rules = Rules(
             plan.carriers,
             plan.laws,

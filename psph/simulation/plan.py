@@ -16,6 +16,7 @@ from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, b
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, Free, is_prescribed
+from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.contact import contact_of
 from psph.scene.bodies import body_step
 from psph.simulation.calling import called_for, in_scene, why_dropped
@@ -164,6 +165,11 @@ class Plan:
     def floats(self) -> bool:
         """Whether there are rigid bodies that forces move."""
         return self.body_step is not None
+
+    @property
+    def absorbs(self) -> bool:
+        """Whether paddles answer to the water before them."""
+        return any(isinstance(one, Absorbing) for one in self.rigid)
 
     @cached_property
     def starts_twice(self) -> bool:

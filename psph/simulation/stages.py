@@ -21,6 +21,8 @@ def stages_of(plan) -> Iterator[Stage]:
     if plan.floats:
         yield push_bodies
     yield kick
+    if plan.absorbs:
+        yield measure_levels
     yield find_limits
 
 
@@ -62,6 +64,12 @@ def kick(simulation) -> None:
     simulation.pace = simulation.fluid_speed  # bounds the shifts of the next step, whose speed is not known
     with simulation.ledger("kick"):
         simulation.own_extremes = simulation.engine.kick(simulation.then, simulation.dt, simulation.pace)
+
+
+def measure_levels(simulation) -> None:
+    """How high the water stands before the paddles that answer to it."""
+    with simulation.ledger("paddles"):
+        simulation.engine.poses.paddles.answer(simulation, simulation.then, simulation.dt)
 
 
 def find_limits(simulation) -> None:

@@ -11,7 +11,7 @@ from psph.particles.store import Store
 from psph.simulation.cpu import Engine
 from psph.simulation.plan import Plan
 from psph.simulation.population import Population
-from psph.simulation.stages import find_limits, kick, push_bodies, stages_of
+from psph.simulation.stages import find_limits, kick, measure_levels, push_bodies, stages_of
 
 TOO_FAST = 100.0
 """A particle at this many speeds of sound is a run that blew up, whatever the case allows."""
@@ -126,6 +126,8 @@ class Simulation:
             self.engine.sum(0, ghosts_are_fresh=False)
         if self.plan.floats:
             push_bodies(self)
+        if self.plan.absorbs:
+            measure_levels(self)
         self.engine.begin_rates()
         self._kick_in_place()
         self._refuse_blow_up()

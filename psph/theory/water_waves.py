@@ -70,6 +70,15 @@ def second_harmonic(height: float, kh: float, depth: float) -> float:
     return height * height / (32.0 * depth) * bound
 
 
+def bound_crest(height: float, kh: float, depth: float) -> float:
+    """Amplitude, m, of cos 2(ωt − kx) in the surface beside (H/2) cos(ωt − kx), of Stokes to second order.
+
+    kH²/16 (3 coth³kh − coth kh).  Dean & Dalrymple (1991), sec. 11.2.
+    """
+    c = 1.0 / math.tanh(min(kh, DEEP))
+    return kh / depth * height * height / 16.0 * (3.0 * c**3 - c)
+
+
 class Component(NamedTuple):
     """A sinusoid among several, A sin(ωt + φ): ``amplitude`` m or rad, ``omega`` rad/s, ``phase`` rad."""
 
@@ -100,6 +109,15 @@ def _jonswap(x: float, gamma: float) -> float:
     """E at ``x`` = f/f_p, but for a factor."""
     sigma = 0.07 if x <= 1.0 else 0.09
     return x**-5 * math.exp(-1.25 * x**-4) * gamma ** math.exp(-((x - 1.0) ** 2) / (2.0 * sigma * sigma))
+
+
+class Running(NamedTuple):
+    """A wave A cos(ωt − kx + φ): ``amplitude`` m, ``omega`` rad/s, wave ``number`` k rad/m, ``phase`` rad."""
+
+    amplitude: float
+    omega: float
+    number: float
+    phase: float
 
 
 class Solitary(NamedTuple):

@@ -41,6 +41,8 @@ END = {
     "paddle_wheel": 0.03,
     "piston_wave": 0.03,
     "solitary_wave": 0.03,
+    "absorbing_paddle": 0.03,
+    "moving_square": 0.01,
     "still_water": 0.02,
     "hard/drop": 0.05,
     "hard/patch_3d": 0.02,

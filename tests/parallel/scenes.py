@@ -19,7 +19,8 @@ class Family(NamedTuple):
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
     a floor, and ``condition`` of what kind; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
     are taken; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference;
-    ``floats`` whether there are bodies.
+    ``floats`` whether there are bodies; ``absorbs`` whether its walls are those of a flume, with a paddle that
+    takes up waves.
     """
 
     dimensions: int
@@ -37,6 +38,7 @@ class Family(NamedTuple):
     moves: bool = False
     floats: bool = False
     framed: bool = False
+    absorbs: bool = False
     physics: dict = {}
 
 
@@ -149,6 +151,7 @@ FAMILIES = {
     "framed": Family(
         2, walls=True, viscous=True, condition="extrapolated", moves=True, framed=True, physics=GRAVITY
     ),
+    "flume": Family(2, fluids=2, absorbs=True, condition="extrapolated", physics={"gravity": [0.0, -9.0]}),
 }
 
 
@@ -172,6 +175,8 @@ def scene(family: Family, seed: int) -> str:
         case["walls"] = {"wall": _wall_of(family, sizes)}
     if family.moves:
         case["walls"]["wall"]["motion"] = _motion(family, rng, sizes)
+    if family.absorbs:
+        case["walls"] = _flume(family, rng, sizes)
     if family.floats:
         case["bodies"] = _bodies(family, rng, sizes)
     if family.framed:
@@ -196,6 +201,29 @@ def _motion(family: Family, rng, sizes) -> list[dict]:
     way = {"velocity": _vector(rng, family.dimensions, 1.0)}
     start, ramp = _drawn(rng, 0.0, 0.05), _drawn(rng, 0.0, 0.1)
     return [{"sinusoid": swing}, {"translation": way, "start": start, "ramp": ramp}]
+
+
+def _flume(family: Family, rng, sizes) -> dict:
+    """A floor with an end, and a piston at the other end, whose reach is short."""
+    (length, depth), thick = sizes, 4 * SPACING
+    floor = {"lower": [-thick, -thick], "upper": [length, 0.0]}
+    end = {"lower": [length, -thick], "upper": [length + thick, depth]}
+    piston = {
+        "height": _drawn(rng, 0.1, 0.5),
+        "period": _drawn(rng, 0.5, 1.5),
+        "depth": depth,
+        "order": int(rng.integers(1, 3)),
+        "phase": _drawn(rng, 0.0, 3.0),
+        "absorb": {"reach": _drawn(rng, 0.01, 0.1)},
+    }
+    return {
+        "flume": {"shape": {"union": [{"box": floor}, {"box": end}]}, "condition": family.condition},
+        "paddle": {
+            "shape": {"box": {"lower": [-thick, 0.0], "upper": [0.0, depth]}},
+            "condition": family.condition,
+            "motion": {"piston": piston, "start": _drawn(rng, 0.0, 0.05), "ramp": _drawn(rng, 0.0, 0.1)},
+        },
+    }
 
 
 def _bodies(family: Family, rng, sizes) -> dict:
@@ -265,7 +293,7 @@ def _space(family: Family, rng, sizes) -> dict:
 def _physics(family: Family, rng) -> dict:
     found = {}
     for name, value in family.physics.items():
-        if name == "gravity":
+        if value == "drawn":
             value = _vector(rng, family.dimensions, 10.0)
         elif name == "central_force":
             value = {"frequency": _drawn(rng, *value), "center": [1.0] * family.dimensions}

@@ -59,6 +59,24 @@ REFUSED = {
         told("[0.0]").replace("motion = [0.0]", f"[frame]\nmotion = {{ piston = {{ {PISTON} }} }}"),
         "frame.motion: a paddle makes waves as a wall in its tank; give it to a wall",
     ),
+    "a flap that absorbs": (
+        told(f"{{ irregular = {{ {FLAP}, absorb = {{}} }} }}"),
+        "motion.irregular: a flap does not know how to absorb; remove center for a piston, or absorb",
+    ),
+    "a memory shorter than a wave": (
+        told(f"{{ piston = {{ {PISTON}, absorb = {{ memory = 1.1 }} }} }}"),
+        "motion.piston: absorb.memory is shorter than a wave, which it would forget; give five periods",
+    ),
+    "a paddle that absorbs on something that moves": (
+        told(f"[{{ piston = {{ {PISTON}, absorb = {{}} }} }}, {{ translation = [0.1, 0.0] }}]"),
+        "walls.paddle.motion[0].piston: moves by what it measures if it is to absorb; let it be the only part",
+    ),
+    "a body that absorbs": (
+        told("0").replace("motion = 0", "")
+        + "[bodies.box]\nshape.box = { lower = [1.0, 0.1], upper = [1.2, 0.2] }\ndensity = 500.0\n"
+        + f'free = ["y"]\nmotion = {{ piston = {{ {PISTON}, absorb = {{}} }} }}\n',
+        "bodies.box.motion: a wall may absorb waves, a body not; remove absorb",
+    ),
     "a zone of no length": (
         "physics.damping_zone = { begin = 2.0, end = 2.0 }\n" + FLUME,
         "physics.damping_zone: begins where it ends; give another end",
@@ -89,6 +107,18 @@ def test_explain_says_what_the_paddle_makes(tmp_path):
     assert "stroke 0.177 m at the surface" in text  # 0.1/0.5641
     text = "\n".join(wave_lines(scene_of("{ solitary = { height = 0.06, depth = 0.3 } }", tmp_path)))
     assert "speed 1.879 m/s, stroke 0.339 m in 3.61 s" in text
+
+
+def test_explain_says_how_a_paddle_absorbs(tmp_path):
+    text = "\n".join(wave_lines(scene_of(f"{{ piston = {{ {PISTON}, absorb = {{}} }} }}", tmp_path)))
+    assert "waves that come back: 5.03 m/s for each m that the water at its face is too low" in text
+    assert "at most 0.192 m from its stroke; forgets a level in 6 s" in text
+    absorb = "absorb = { memory = 4.0, reach = 0.15 }"
+    text = "\n".join(
+        wave_lines(scene_of(f"{{ solitary = {{ height = 0.06, depth = 0.3, {absorb} }} }}", tmp_path))
+    )
+    assert "at most 0.15 m from its stroke; forgets a level in 4 s" in text
+    assert "come back" not in "\n".join(wave_lines(scene_of(f"{{ piston = {{ {PISTON} }} }}", tmp_path)))
 
 
 WARNED = {

@@ -5,11 +5,14 @@ from typing import NamedTuple
 
 from psph.physics.rigid.laws import STILL, Ways, faded
 from psph.physics.rigid.schedule import Schedule
-from psph.theory.water_waves import Component, Solitary
+from psph.theory.water_waves import Component, Running, Solitary
 from psph.vectors import Vector, scale
 
 TAIL = 3.8
 """θ at both ends of a solitary wave's stroke: tanh 3.80 = 0.999 (Goring 1978)."""
+
+FAR = 300.0
+"""θ beyond which a solitary wave has no height that a number tells."""
 
 
 class Swings(NamedTuple):
@@ -32,6 +35,20 @@ class Swings(NamedTuple):
             s, c = size * math.sin(w * t + phase), size * math.cos(w * t + phase)
             x, v, a = x + s, v + w * c, a - w * w * s
         return (x,), (v,), (a,)
+
+
+class Crests(NamedTuple):
+    """The surface before a paddle that makes some ``waves``: η = r Σ A cos(ωτ − kx + φ), by its share r.
+
+    Without the waves that stay beside the paddle (evanescent modes), a twentieth of them at kh = 1.
+    """
+
+    waves: tuple[Running, ...]
+
+    def elevation(self, schedule: Schedule, time: float, distance: float) -> float:
+        """η, m, at a ``distance`` x, m, from where the paddle stood at the start."""
+        since, share = time - schedule.start, schedule.share(time)[0]
+        return share * math.fsum(a * math.cos(w * since - k * distance + p) for a, w, k, p in self.waves)
 
 
 class SolitaryStroke(NamedTuple):
@@ -69,6 +86,12 @@ class SolitaryStroke(NamedTuple):
         speed = c * dx / (slow + dx)
         change = c * c * ddx * slow / (slow + dx) ** 3
         return tuple(scale(self.direction, way) for way in (x - first, speed, change))
+
+    def elevation(self, schedule: Schedule, time: float, distance: float) -> float:
+        """η of its wave, m, at a ``distance``, m, from where the piston stood at the start."""
+        since = time - schedule.start - 0.5 * self.duration
+        theta = self.wave.outskirts * (self.wave.speed * since - (distance - self._curve(TAIL)[0]))
+        return self.wave.height / math.cosh(min(abs(theta), FAR)) ** 2
 
     def _curve(self, theta: float) -> tuple[float, float, float]:
         """x, m, with its first and second derivative by θ."""

@@ -5,8 +5,10 @@ import math
 import pytest
 
 from psph.case.paddles import Flap, Irregular, Piston, SolitaryWave
+from psph.physics.rigid.absorption import Absorption, Correction
 from psph.physics.rigid.schedule import Schedule
 from psph.theory.water_waves import (
+    bound_crest,
     flap_gain,
     frequency,
     jonswap,
@@ -160,3 +162,76 @@ def test_a_solitary_stroke_holds_its_equation(theory):
         assert speed == pytest.approx(c * eta / (h + eta))
     assert law.ways(Schedule(start), start + 9.0)[0][0] == pytest.approx(law.stroke)
     assert law.ways(Schedule(start), start - 0.1) == ((0.0,) * 4,) * 3
+
+
+def test_the_surface_of_regular_waves_runs_away_from_the_paddle():
+    asked = Piston(height=0.08, period=1.2, depth=0.3, order=2, phase=0.4)
+    crests, schedule = asked.crests(G), Schedule(0.2, math.inf, 1.0)
+    omega, k = 2.0 * math.pi / 1.2, wave_number(2.0 * math.pi / 1.2, 0.3, G)
+    kh = 0.3 * k
+    second = 0.08**2 * k / 16.0 * math.cosh(kh) * (2.0 + math.cosh(2.0 * kh)) / math.sinh(kh) ** 3
+    assert bound_crest(0.08, kh, 0.3) == pytest.approx(second)
+    for time, x in ((1.9, 0.1), (2.7, 1.3)):
+        theta = omega * (time - 0.2) + 0.4 - k * x
+        told = 0.04 * math.cos(theta) + second * math.cos(2.0 * theta)
+        assert crests.elevation(schedule, time, x) == pytest.approx(told)
+        assert crests.elevation(schedule, time + 0.3, x + 0.3 * omega / k) == pytest.approx(told)
+    ways = asked.law(G).ways(schedule, 2.7)  # the water before it rises while it goes forwards
+    assert crests.elevation(schedule, 2.7, ways[0][0]) * ways[1][0] > 0.0
+    early = Piston(height=0.08, period=1.2, depth=0.3).crests(G)
+    assert early.elevation(schedule, 0.1, 0.0) == 0.0
+    assert early.elevation(schedule, 0.7, 0.0) == pytest.approx(0.5 * 0.04 * math.cos(0.5 * omega))
+
+
+def test_the_surface_of_a_spectrum_has_its_height():
+    crests = Irregular(height=0.06, period=1.4, depth=0.3, components=50).crests(G)
+    heights = [crests.elevation(Schedule(), 0.37 * n, 0.2) for n in range(4000)]
+    assert 4.0 * math.sqrt(sum(h * h for h in heights) / len(heights)) == pytest.approx(0.06, rel=0.05)
+
+
+def test_the_surface_of_a_solitary_wave_moves_the_paddle():
+    """dx/dt = c η/(h + η) at the paddle, from the elevation of its own."""
+    law, schedule = SolitaryWave(height=0.06, depth=0.3).law(G), Schedule(0.5)
+    for n in range(1, 10):
+        time = 0.5 + law.duration * n / 10.0
+        (x, *_), (speed, *_), _ = law.ways(schedule, time)
+        eta = law.elevation(schedule, time, x)
+        assert speed == pytest.approx(law.wave.speed * eta / (0.3 + eta))
+    assert law.elevation(schedule, 1e3, 0.0) == pytest.approx(0.0, abs=1e-100)
+
+
+def reflected(alpha, memory, gain=5.0, omega=4.0):
+    """The part of long waves that a paddle sends back which answers α times as strongly as it should: a wave
+    a that comes is sent back as r, the level is a + r, and r = a + v α/γ for a paddle of speed v, a moment
+    later."""
+    asked, own, dt, sent = Absorption(None, gain, memory, 10.0), Correction(), 1e-3, []
+    raised = 0.0
+    for n in range(60000):
+        wave = math.cos(omega * n * dt)
+        own.advance(asked, dt)
+        raised += dt / 4e-3 * (own.speed * alpha / gain - raised)
+        back = wave + raised
+        own.answer(asked, wave + back, dt)
+        sent.append(back)
+    return max(sent[-5000:])
+
+
+def test_a_paddle_takes_up_long_waves():
+    assert reflected(1.0, 1e4) == pytest.approx(0.0, abs=0.02)
+    assert reflected(1.3, 1e4) == pytest.approx(0.3 / 2.3, abs=0.02)
+    forgotten = (4.0j * 2.0 / (1.0 + 4.0j * 2.0)) ** 2  # of v, by a memory of 2 s
+    assert reflected(1.0, 2.0) == pytest.approx(abs((1.0 - forgotten) / (1.0 + forgotten)), abs=0.02)
+
+
+def test_a_paddle_comes_back_from_a_level_that_stays_and_stays_in_reach():
+    asked, own = Absorption(None, 5.0, 2.0, 0.1), Correction()
+    farthest = 0.0
+    for _ in range(20000):
+        place = own.shift
+        own.advance(asked, 2e-3)
+        assert own.shift == pytest.approx(place + 2e-3 * own.speed)
+        own.answer(asked, 0.05, 2e-3)
+        farthest = max(farthest, abs(own.shift))
+    assert farthest == 0.1 and abs(own.shift) < 1e-3
+    own.answer(asked, 0.06, 2e-3)
+    assert own.due < 0.0  # away from water that is too high

@@ -1,0 +1,42 @@
+"""A square set off in a box at Re 100 against the finite differences of SPHERIC test 6."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cases.measures import CASES, finished
+from jobs import mpirun
+from long import LONG
+
+from psph.case import load
+from psph.lab.study.beside import beside
+from psph.lab.study.experiment import read_experiment
+
+CASE = Path(CASES) / "moving_square.toml"
+
+
+def drag(run):
+    """Times, s, and drag coefficients 2F/(ρU²L) of a run."""
+    table = run.gauges()["square"]
+    return table["time"], -2.0 * table["square.force_x"]
+
+
+def test_a_square_that_is_set_off_feels_the_water_that_goes_with_it(tmp_path):
+    """15 particles a side and half the speed of sound."""
+    coarse = ("space.spacing=0.0666666666666667", "physics.sound_speed=25.0", "time.end=0.72")
+    time, found = drag(finished("moving_square", tmp_path / "run", *coarse))
+    told_at, force = read_experiment(load(CASE), "start")
+    told = np.interp(time, told_at, -2.0 * force)
+    assert found.max() == pytest.approx(told.max(), rel=0.2)
+    assert time[np.argmax(found)] == pytest.approx(told_at[np.argmax(-force)], abs=0.06)
+    assert np.sqrt(((found - told) ** 2).mean() / (told**2).mean()) < 0.25
+
+
+@LONG
+@pytest.mark.timeout(1800)
+def test_the_drag_under_way_is_that_of_finite_differences(tmp_path):
+    """30 particles a side, from t = 1 to 3: XXX % apart, rms over that of the signal; XXX % in the mean."""
+    job = mpirun(2, ["-m", "psph", CASE, "--out", tmp_path / "run", "--set", "time.end=3.0"], timeout=1700)
+    assert job.returncode == 0, job.stderr
+    errors = {one.name: one.error for one in beside(tmp_path / "run")}
+    assert errors["drag"] < 0.1 and errors["start"] < 0.1
