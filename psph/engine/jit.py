@@ -173,14 +173,29 @@ OPTIONS = {"error_model": "numpy", "nogil": True, **INNER}
 """Of every loop: division by zero gives infinity, and threads run side by side."""
 
 
-def overload(function, **options):
+INSIDE = {**INNER, "forceinline": True}
+"""Functions that LLVM writes into their caller, however long they are: a call that hands on a hundred arrays
+counts the holders of each, and takes a hundred times as long as the rest of a loop over columns."""
+
+
+def overload(function, jit_options=INNER, **options):
     """Decorator: what compiled code has in the place of ``function`` (numba.extending.overload)."""
-    return extending.overload(function, jit_options=INNER, **options)
+    return extending.overload(function, jit_options=jit_options, **options)
 
 
 def register_jitable(function):
     """Let compiled code call a plain function (numba.extending.register_jitable)."""
     return extending.register_jitable(**INNER)(function)
+
+
+def inside(function):
+    """The same, for a part of a loop that takes all of the loop's arrays: see INSIDE."""
+    return extending.register_jitable(**INSIDE)(function)
+
+
+def overload_inside(function):
+    """As :func:`overload`, for such a part of a loop."""
+    return overload(function, jit_options=INSIDE)
 
 
 def call_by_type(name: str):

@@ -1,6 +1,7 @@
 """Loops over columns: a particle's bits do not depend on where a slab, or a vector, begins."""
 
 import re
+import time
 
 import numba
 import pytest
@@ -64,3 +65,26 @@ def test_no_operation_is_contracted(calls):
         fresh.compile(tuple(map(numba.typeof, call)))
         [code] = fresh.inspect_asm().values()
         assert "vmov" in code and not re.search(r"vfn?m(add|sub)", code), loop.__name__
+
+
+BODY = "bodies.log={ shape = { box = { lower = [0.4, 0.9], upper = [0.7, 1.1] } }, mass = 20.0 }"
+
+
+def test_a_body_does_not_slow_down_the_loops_over_columns(tmp_path):
+    """A call inside them that hands all arrays on would take a hundred times as long as all the rest."""
+
+    def seconds(*overrides):
+        scene = Scene(draft(tmp_path, TANK, *overrides))
+        plan = make_plan(scene)
+        store = create_particles(scene, plan, MPI.COMM_SELF)
+        one = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+        one.step()
+        parts = []
+        for _ in range(20):
+            begun = time.perf_counter()
+            for _ in range(20):
+                one.engine.kick(one.then, 0.0, one.pace)
+            parts.append(time.perf_counter() - begun)
+        return min(parts) / store.owned
+
+    assert seconds(BODY) < 5.0 * seconds()
