@@ -3,7 +3,7 @@
 import numpy as np
 
 from psph.parallel.reductions import whole_sums
-from psph.physics.rigid.bodies import Bodies, Body
+from psph.physics.rigid.bodies import Bodies, Body, crossing
 from psph.physics.rigid.lines import pulls
 from psph.scene.bodies import lines_of
 
@@ -39,7 +39,7 @@ class Floating:
     def maps(self) -> np.ndarray:
         """The affine maps of each body, as psph.physics.rigid.pose.maps: (n, 3, dim, 1 + dim)."""
         b, d = self.bodies, self._dimensions
-        whirl, bend = _crossing(b.spin_ahead), _crossing(b.angular_acceleration)
+        whirl, bend = crossing(b.spin_ahead), crossing(b.angular_acceleration)
         linear = np.stack([b.turn, whirl @ b.turn, (bend + whirl @ whirl) @ b.turn], axis=1)
         starts = np.stack([b.place, b.ahead, b.acceleration], axis=1)
         found = np.empty((len(b.place), 3, d, 1 + d))
@@ -53,11 +53,3 @@ class Floating:
         total = whole_sums(comm, pushes).astype(np.float64)
         pull, twist, self.tensions = pulls(self.lines, self.bodies)
         self.bodies.load(total[:, :3] * self.units[0] + pull, total[:, 3:] * self.units[1] + twist)
-
-
-def _crossing(a: np.ndarray) -> np.ndarray:
-    """The matrices [a] with [a] r = a × r, of vectors (n, 3)."""
-    found = np.zeros((len(a), 3, 3))
-    for d, (e, f) in enumerate(((1, 2), (2, 0), (0, 1))):
-        found[:, e, f], found[:, f, e] = -a[:, d], a[:, d]
-    return found
