@@ -117,6 +117,11 @@ def _plot(options, comm) -> None:
 
     if comm.rank != 0:
         return
+    if options.solids:
+        from psph.output.pictures.solids import solids
+
+        print(solids(options.folder))
+        return
     cut = slice_of(options.cut) if options.cut else None
     shown = (options.times, options.field, cut, options.surface)
     if options.film is not None:

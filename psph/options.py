@@ -90,6 +90,11 @@ def _add_plot_options(plot: argparse.ArgumentParser) -> None:
     )
     plot.add_argument("--surface", action="store_true", help="in 3D, the surface of the fluid, not particles")
     plot.add_argument(
+        "--solids",
+        action="store_true",
+        help="in 3D, no pictures but walls and bodies as triangles for viewers, in FOLDER/solids",
+    )
+    plot.add_argument(
         "--film",
         type=Path,
         nargs="?",

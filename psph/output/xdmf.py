@@ -17,12 +17,12 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-_HEAD = """<?xml version="1.0"?>
+HEAD = """<?xml version="1.0"?>
 <Xdmf Version="3.0">
   <Domain>
-    <Grid Name="particles" GridType="Collection" CollectionType="Temporal">
+    <Grid Name="{name}" GridType="Collection" CollectionType="Temporal">
 """
-_TAIL = """    </Grid>
+TAIL = """    </Grid>
   </Domain>
 </Xdmf>
 """
@@ -45,8 +45,22 @@ _ITEM = (
     "{file}:/{name}</DataItem>"
 )
 
+PARTICLES = "particles"
+
 Kind = tuple[tuple[int, ...], np.dtype]
 """Shape and type of a dataset."""
+
+
+def item(file: Path, name: str, kind: Kind) -> str:
+    """The element that stands for the dataset ``name`` of an HDF5 file beside the index."""
+    shape, dtype = kind
+    return _ITEM.format(
+        shape=" ".join(map(str, shape)),
+        number="UChar" if dtype == np.uint8 else {"f": "Float", "i": "Int"}[dtype.kind],
+        bytes=dtype.itemsize,
+        file=escape(file.name),
+        name=name,
+    )
 
 
 class _Frame(NamedTuple):
@@ -94,7 +108,7 @@ class XdmfIndex:
     def _forget(self) -> None:
         self._listed: list[_Frame] = []
         self._behind = False
-        self._size = len(_HEAD) + len(_TAIL)
+        self._size = len(HEAD.format(name=PARTICLES)) + len(TAIL)
         self._seen = 0  # bytes of the frames when the index was last written
 
     def _list(self, frame: str, time: float, kinds: dict[str, Kind]) -> None:
@@ -117,10 +131,10 @@ class XdmfIndex:
         self._seen, self._behind = self._frames.stat().st_size, False
 
     def _lines(self) -> Iterator[str]:
-        yield _HEAD
+        yield HEAD.format(name=PARTICLES)
         for frame in self._listed:
             yield self._grid(*frame)
-        yield _TAIL
+        yield TAIL
 
     def _grid(self, frame: str, time: float, fields: dict[str, Kind]) -> str:
         (count, dimensions), _ = fields["position"]
@@ -144,11 +158,4 @@ class XdmfIndex:
         )
 
     def _item(self, name: str, kind: Kind) -> str:
-        shape, dtype = kind
-        return _ITEM.format(
-            shape=" ".join(map(str, shape)),
-            number="UChar" if dtype == np.uint8 else {"f": "Float", "i": "Int"}[dtype.kind],
-            bytes=dtype.itemsize,
-            file=escape(self._frames.name),
-            name=name,
-        )
+        return item(self._frames, name, kind)

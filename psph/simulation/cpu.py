@@ -33,6 +33,7 @@ from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbo
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
+from psph.simulation.pushes import add_pushes
 from psph.simulation.rules import Columns, Rules
 
 
@@ -72,7 +73,7 @@ class Engine:
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
-        self._load = settled(sum_over_neighbours)
+        self._load, self._push = settled(sum_over_neighbours), settled(add_pushes)
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
 
     def predict(self, time: float, dt: float, pace: float) -> None:
@@ -124,7 +125,9 @@ class Engine:
         """The second kick of rigid bodies at ``time``, by the pushes that the last pass has summed; without a
         step ``dt`` these alone."""
         floating = self.poses.floating
-        floating.load(self.store, self.domain)
+        of_each = floating.body_of, floating.bodies.place, floating.units, self.domain.periods
+        parts = self._each(self._push, *of_each, self._view(0.0), self._columns())
+        floating.load(sum(parts), self.domain.comm)
         if dt > 0.0:
             floating.bodies.kick(time, dt)
         self.poses.turn_to(time)

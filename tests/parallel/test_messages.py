@@ -199,3 +199,20 @@ def test_measuring_the_drift_is_one_reduction_more(watched):
     simulation, events = watched(CASES["plain"][0])
     found = events_of_a_step(simulation, events, MEASURING)
     assert [e for e in found if e[0] == "Allreduce"] == [("Allreduce", n * 8) for n in (3, 4)]
+
+
+def with_body(case):
+    """The same with a disc in the middle of the fluid, which floats there."""
+    disc = {"shape": {"disc": {"center": [1.0, 0.7], "radius": 0.3}}, "density": 1000.0}
+    return type(case).model_validate(case.model_dump(exclude_unset=True) | {"bodies": {"disc": disc}})
+
+
+def test_bodies_are_one_reduction_more_and_one_number_of_another(watched):
+    """Six whole numbers a body, and the largest speed of walls; the halo stays as it is."""
+    case, fields = CASES["plain"]
+    simulation, events = watched(with_body(case))
+    found = events_of_a_step(simulation, events, PLAINLY)
+    sends = [event[1:] for event in found if event[0] == "Send_init"]
+    assert sorted(sends) == sorted(expected_sends(simulation, fields))
+    rest = [e for e in found if e[0] not in ("Send_init", "Recv_init", "wait", "pairs")]
+    assert rest == [("Allreduce", 6 * 8), ("Allreduce", (5 + simulation.plan.displaces) * 8)]

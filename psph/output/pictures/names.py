@@ -1,12 +1,15 @@
-"""Names of the pictures that ``plot`` draws into the folder of a run."""
+"""Names of what ``plot`` makes in the folder of a run."""
 
 import re
 from pathlib import Path
+from shutil import rmtree
 
 from psph.fields import SAVED
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
+SOLIDS = "solids"
+"""The folder of walls and bodies as triangles."""
 
 DERIVED = ("vorticity",)
 """Fields that frames do not hold, and pictures show."""
@@ -38,3 +41,5 @@ def remove_pictures(folder: Path) -> None:
             or _GAUGED.fullmatch(path.name)
         ):
             path.unlink()
+        elif path.name == SOLIDS and path.is_dir():
+            rmtree(path)

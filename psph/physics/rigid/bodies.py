@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.fields import WALL
-from psph.physics.rigid.pose import Pose, in_space, rotation
+from psph.physics.rigid.pose import Pose, in_space
 from psph.vectors import Vector
 
 FIRST_TO_LAST = ((2, 0.5), (1, 0.5), (0, 1.0), (1, 0.5), (2, 0.5))
@@ -110,7 +110,8 @@ class Bodies:
         self.angular_momentum = np.zeros((n, 3))
         self.force, self.torque = np.zeros((n, 3)), np.zeros((n, 3))
         self.ahead, self.spin_ahead = np.zeros((n, 3)), np.zeros((n, 3))
-        self._follow(0.0)
+        self._led = [row for row, one in enumerate(bodies) if one.motion]
+        self._lead(range(n), 0.0)
         self._begin()
 
     def drift(self, then: float, dt: float) -> None:
@@ -237,16 +238,18 @@ class Bodies:
 
     def _follow(self, time: float) -> None:
         """What is prescribed, and where the hinges have their bodies."""
-        for row, one in enumerate(self.bodies):
-            pose = one.pose(time)
-            fixed = ~self.slides[row]
+        self._lead(self._led, time)
+        self.turn[self.hinged] = _rotations(self.axis[self.hinged], self.angle)
+
+    def _lead(self, rows: Sequence[int], time: float) -> None:
+        """Bodies that are not free in all, where their motion has them; those without one stay there."""
+        for row in rows:
+            one, pose, fixed = self.bodies[row], self.bodies[row].pose(time), ~self.slides[row]
             self.place[row, fixed] = np.array(pose.place(one.reference))[fixed]
             self.velocity[row, fixed] = np.array(pose.speed(one.reference))[fixed]
             if not any(one.turns):
                 self.turn[row] = np.reshape(pose.rotation, (3, 3))
                 self.spin_ahead[row] = pose.angular_velocity
-        for row, angle in zip(self.hinged, self.angle.tolist()):
-            self.turn[row] = np.reshape(rotation(tuple(self.axis[row]), angle), (3, 3))
 
     def _spin_of_hinged(self, momentum: np.ndarray) -> np.ndarray:
         return np.einsum("nd,nd->n", self.axis[self.hinged], momentum[self.hinged]) / self.about
@@ -257,6 +260,21 @@ class Bodies:
         if len(self.tumbling):
             own = np.einsum("nde,nd->ne", self.frame, momentum[self.tumbling]) / self.moments
             self.spin_ahead[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
+
+
+def crossing(a: np.ndarray) -> np.ndarray:
+    """The matrices [a] with [a] r = a × r, of vectors (n, 3)."""
+    found = np.zeros((len(a), 3, 3))
+    for d, (e, f) in enumerate(((1, 2), (2, 0), (0, 1))):
+        found[:, e, f], found[:, f, e] = -a[:, d], a[:, d]
+    return found
+
+
+def _rotations(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """The matrices (n, 3, 3) that turn by ``angle`` (n,) rad about unit ``axis`` (n, 3): Rodrigues."""
+    s, t = np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2  # 1 − c without cancellation
+    across = crossing(axis)
+    return np.eye(3) + s[:, None, None] * across + t[:, None, None] * (across @ across)
 
 
 def _outer(a: np.ndarray) -> np.ndarray:

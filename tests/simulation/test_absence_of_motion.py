@@ -1,0 +1,88 @@
+"""What moves, floats or is measured costs a scene without such things nothing: instructions, arrays, passes."""
+
+import inspect
+import re
+from collections import Counter
+
+import numba
+import pytest
+from drafts import TANK, draft
+from mpi4py import MPI
+
+from psph.output.ledger import Ledger
+from psph.run.setup import create_particles
+from psph.scene import Scene
+from psph.simulation import integrator
+from psph.simulation.integrator import kick, kick_drift_predict
+from psph.simulation.plan import make_plan
+from psph.simulation.stages import push_bodies
+from psph.simulation.step import Simulation
+
+LOG = "bodies.log={shape={box={lower=[0.4,0.9],upper=[0.7,1.1]}},mass=20.0}"
+PADDLE = "walls.paddle={shape={box={lower=[0.4,0.9],upper=[0.7,1.1]}},motion={translation=[0.1,0.0]}}"
+GAUGES = ("gauges.level.level={foot=[0.5,0.0],top=[0.5,0.6]}", "gauges.push.force.on=['tank']")
+"""Overrides of still water in a tank."""
+
+WITHOUT = {
+    kick: (
+        ("        give(rules, i, group, k, dt, c)\n", ""),
+        ("hurry(rules, group, k, time, dt, c)", "0.0, 0.0"),
+    ),
+    kick_drift_predict: (
+        ("            carry(rules, group, k, time, c)\n", "            pass\n"),
+        ("        feel(rules, group, k, time, dt, c)\n", ""),
+    ),
+}
+"""What motion has brought into the loops over columns, and what stands there without it."""
+
+
+@pytest.fixture
+def begun(tmp_path):
+    """A function: overrides → the simulation of a tank with them."""
+
+    def make(*overrides):
+        scene = Scene(draft(tmp_path, TANK, *overrides))
+        plan = make_plan(scene)
+        store = create_particles(scene, plan, MPI.COMM_SELF)
+        return Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+
+    return make
+
+
+def instructions(loop, simulation) -> Counter:
+    """How many of each a loop over the columns of a simulation has, compiled afresh; but for moves between
+    registers and jumps, which the order of names may change."""
+    engine = simulation.engine
+    fresh = numba.njit(error_model="numpy", nogil=True)(loop)
+    call = (0, 1, 0.0, 0.0, engine._rules, engine._view(0.0), engine._columns())
+    fresh.compile(tuple(map(numba.typeof, call)))
+    [code] = fresh.inspect_asm().values()
+    found = re.findall(r"^\s+([a-z][a-z0-9]+)\s", code, re.MULTILINE)
+    return Counter(one for one in found if not one.startswith(("mov", "lea", "j", "push", "pop")))
+
+
+@pytest.mark.parametrize("loop", WITHOUT, ids=lambda loop: loop.__name__)
+def test_where_nothing_moves_the_loops_over_columns_know_nothing_of_it(loop, begun):
+    source = inspect.getsource(loop.py_func).replace("@elementwise\n", "")
+    for now, then in WITHOUT[loop]:
+        assert source.count(now) == 1
+        source = source.replace(now, then)
+    names = dict(vars(integrator))
+    exec(source, names)
+    still = begun()
+    plain = instructions(names[loop.__name__], still)
+    assert instructions(loop.py_func, still) == plain
+    assert instructions(loop.py_func, begun(LOG)).total() > 1.1 * plain.total()
+
+
+def test_arrays_and_stages_come_with_what_needs_them(begun):
+    plain, gauged, paddled, floating = (begun(*more) for more in ((), GAUGES, (PADDLE,), (LOG,)))
+    brought = {"anchor", "work", "load", "apparent", "solid"}
+    assert not brought & set(plain.plan.arrays)
+    assert brought & set(gauged.plan.arrays) == {"load"}
+    assert brought & set(paddled.plan.arrays) == {"anchor", "work", "load"}
+    assert brought & set(floating.plan.arrays) == {"anchor", "work", "load", "solid"}
+    assert [push_bodies in one.stages for one in (plain, gauged, paddled, floating)] == [False] * 3 + [True]
+    assert plain.plan.loaded is None and plain.engine.poses.maps is None
+    halos = [one.plan.refreshed + one.plan.ghost_fields for one in (plain, gauged, paddled, floating)]
+    assert halos[1:3] == halos[:1] * 2 and set(halos[3]) - set(halos[0]) == {"solid"}
