@@ -298,7 +298,7 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
         physics.artificial_viscosity
         or physics.pair_damping
         or physics.reconstructed_damping
-        or any(fluid.viscosity for fluid in scene.case.fluids.values())
+        or any(fluid.rubs for fluid in scene.case.fluids.values())
     )
     disordered = any(fluid.jitter for fluid in scene.case.fluids.values())
     if physics.pressure_gradient == "minimum" and disordered and not rubs:

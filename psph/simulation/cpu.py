@@ -246,8 +246,14 @@ class Engine:
             loads = Summed(one.effects, (), Loads(plan.loaded, s.group, plan.contacts))
             in_threads(self._load, first, last, loads, *seen, Sums(s[LOAD.name], None, ()))
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
-        sums = Sums(*rates, tuple(name and s[name] for name in one.stores))
+        sums = Sums(*rates, tuple(map(self._arrays_of, one.stores)))
         in_threads(self._sums[one.place], first, last, Summed(one.effects, one.reductions), *seen, sums)
+
+    def _arrays_of(self, stored: str | tuple[str, ...] | None):
+        """What takes a sum: the array or arrays of a field, those of several numbers, or None."""
+        if isinstance(stored, tuple):
+            return tuple(self.store[name] for name in stored)
+        return stored and self.store[stored]
 
     def _columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""

@@ -1,10 +1,11 @@
 """What friction at a wall does to the fluid beside it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from psph.fields import VECTOR, Field
 from psph.physics.facts import Facts
-from psph.physics.fluid.viscosity import corrected_friction, friction
+from psph.physics.fluid.apparent import rub, rub_of
+from psph.physics.fluid.viscosity import corrected_friction, friction, newtonian
 from psph.vectors import add, scale, subtract, zero_like
 
 MIRRORED = Field("slip", "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", VECTOR)
@@ -44,10 +45,13 @@ class NoSlip(NamedTuple):
     lagged = True
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form whose friction has them too; nothing where the fluid sticks to
-        mirrors alone, which show it a velocity themselves."""
+        """With corrected gradients, the form whose friction has them too, and where the viscosity depends on the
+        rate of strain that with this friction; nothing where the fluid sticks to mirrors alone, which show it
+        a velocity themselves."""
         if not any(one.no_slip for one in scene.species):
             return None
+        if scene.rheologies:
+            return ApparentNoSlip(rub_of(scene))
         return self if scene.physics.gradient_correction is None else CorrectedNoSlip()
 
     def why_absent(self, scene: Facts):
@@ -56,7 +60,7 @@ class NoSlip(NamedTuple):
 
     def push(self, i, j, pair):
         """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
-        return scale(subtract(i.slip, j.slip), friction(i, j, pair))
+        return scale(subtract(i.slip, j.slip), friction(newtonian(i, j), i, j, pair, pair.r2))
 
     start, gather, finish_value = _start, _gather, _finish_value
 
@@ -73,6 +77,25 @@ class CorrectedNoSlip(NamedTuple):
 
     def push(self, i, j, pair):
         """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
-        return scale(subtract(i.slip, j.slip), corrected_friction(i, j, pair))
+        return scale(subtract(i.slip, j.slip), corrected_friction(newtonian(i, j), i, j, pair))
+
+    start, gather, finish_value = _start, _gather, _finish_value
+
+
+class ApparentNoSlip(NamedTuple):
+    """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
+
+    As :class:`NoSlip` beside :class:`psph.physics.fluid.apparent.ApparentViscosity`, with the coefficient F_ij
+    of its form ``friction``.
+    """
+
+    friction: Any
+
+    writes = MIRRORED
+    lagged = True
+
+    def push(self, i, j, pair):
+        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
+        return scale(subtract(i.slip, j.slip), rub(self.friction, i, j, pair))
 
     start, gather, finish_value = _start, _gather, _finish_value
