@@ -250,10 +250,11 @@ class Engine:
         in_threads(self._sums[one.place], first, last, Summed(one.effects, one.reductions), *seen, sums)
 
     def _arrays_of(self, stored: str | tuple[str, ...] | None):
-        """What takes a sum: the array or arrays of a field, those of several numbers, or None."""
-        if isinstance(stored, tuple):
-            return tuple(self.store[name] for name in stored)
-        return stored and self.store[stored]
+        """What takes a sum: the array of a number, those of several numbers in a row, or None."""
+        if not isinstance(stored, tuple):
+            return stored and self.store[stored]
+        found = (self.store[name] for name in stored)
+        return tuple(array for one in found for array in (one if isinstance(one, tuple) else (one,)))
 
     def _columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""

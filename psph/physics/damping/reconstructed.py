@@ -80,7 +80,7 @@ class BesideLinearFlow(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take the velocity of a fluid neighbour, and the place of any."""
         weight = rate_weight(j, pair)
-        return take_rate(total, pair, weight * j.is_fluid, weight)
+        return take_rate(total, pair, pair.u_ij, weight * j.is_fluid, weight)
 
     def finish_value(self, total, i, kernel):
         """E_i, 1/s."""

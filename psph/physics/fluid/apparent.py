@@ -11,7 +11,7 @@ from psph.physics.facts import Facts
 from psph.physics.fluid.rheology import STILL, Newtonian, apparent_viscosity
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
 from psph.physics.fluid.viscosity import corrected_friction, friction, friction_step
-from psph.vectors import norm_squared
+from psph.vectors import norm_squared, subtract
 
 STRAIN_RATE = Field("strain_rate", "1/s", "rate of strain, the root of 2 D:D; 0 in a wall", saved=True)
 APPARENT_VISCOSITY = Field(
@@ -57,14 +57,44 @@ def rub_of(scene: Facts):
     return Rub() if scene.physics.gradient_correction is None else CorrectedRub()
 
 
+class FluidAlone(NamedTuple):
+    """A rate of strain knows of no wall."""
+
+    def part(self, j):
+        """How much a neighbour counts."""
+        return j.is_fluid
+
+    def difference(self, j, pair):
+        """Of the velocities, m/s."""
+        return pair.u_ij
+
+
+class StickingWalls(NamedTuple):
+    """A rate of strain knows what the walls mirror that the fluid sticks to (psph.physics.walls.slip)."""
+
+    def part(self, j):
+        """How much a neighbour counts."""
+        return j.is_fluid + j.grip
+
+    def difference(self, j, pair):
+        """Of the velocities, m/s: a wall shows v + s."""
+        return subtract(pair.u_ij, j.slip)
+
+
+part = call_by_type("part")
+"""(what stands beside the fluid, j) → how much a neighbour counts in a rate of strain."""
+difference = call_by_type("difference")
+"""(what stands beside the fluid, j, pair) → difference of the velocities, m/s."""
+
+
 class ApparentViscosity(NamedTuple):
     """Friction of fluids whose viscosity depends on their rate of strain: mud, paste, grains.
 
     a_i as by :class:`psph.physics.fluid.viscosity.LaminarViscosity`, with 2η_iη_j/(η_i + η_j) for the viscosity
     of each of a pair: what flows beside what stands is not held by it.  η_i = η(γ̇_i, p_i) by the law of its
     fluid (psph.physics.fluid.rheology), γ̇ = √(2D:D), D = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹) and
-    M = −Σ_j V_j x_ij ∇W_ijᵀ over the fluid neighbours, so that it is exact for a linear flow up to a free
-    surface or a wall.  η is that of the step before.  The harmonic mean: Cleary & Monaghan (1999), J. Comput.
+    M = −Σ_j V_j x_ij ∇W_ijᵀ over the fluid neighbours and, by their grip, what walls without slip mirror: exact
+    for a linear flow up to a free surface, nearly so up to a wall.  η is that of the step before.  The harmonic mean: Cleary & Monaghan (1999), J. Comput.
     Phys. 148, 227.  Beside ``physics.central_friction`` it acts along the line of each pair.
     """
 
@@ -78,8 +108,9 @@ class ApparentViscosity(NamedTuple):
             for one in scene.species
         )
         if scene.physics.central_friction is not None:
-            return CentralApparentFriction(laws, largest)
-        return ApparentFriction(laws, largest, rub_of(scene))
+            return CentralApparentFriction(laws, largest, FluidAlone())
+        beside = StickingWalls() if any(one.no_slip for one in scene.species) else FluidAlone()
+        return ApparentFriction(laws, largest, beside, rub_of(scene))
 
 
 def _start(self, i):
@@ -88,9 +119,9 @@ def _start(self, i):
 
 
 def _gather(self, total, i, j, pair):
-    """Take a fluid neighbour."""
-    weight = rate_weight(j, pair) * j.is_fluid
-    return take_rate(total, pair, weight, weight)
+    """Take a neighbour that counts."""
+    weight = rate_weight(j, pair) * part(self.beside, j)
+    return take_rate(total, pair, difference(self.beside, j, pair), weight, weight)
 
 
 def _finish_value(self, total, i, kernel):
@@ -110,13 +141,15 @@ class ApparentFriction(NamedTuple):
     """Friction of fluids whose viscosity depends on their rate of strain: mud, paste, grains.
 
     The form of :class:`ApparentViscosity` in a scene: its ``laws``, that of a constant viscosity first, the
-    ``largest`` kinematic viscosity of them in m²/s, and the form of the ``friction``.
+    ``largest`` kinematic viscosity of them in m²/s, what stands ``beside`` the fluid, and the form of the
+    ``friction``.
     """
 
     conserves = ("momentum",)
 
     laws: tuple
     largest: float
+    beside: Any
     friction: Any
 
     writes = (STRAIN_RATE, APPARENT_VISCOSITY)
@@ -140,6 +173,7 @@ class CentralApparentFriction(NamedTuple):
 
     laws: tuple
     largest: float
+    beside: Any
 
     writes = (STRAIN_RATE, APPARENT_VISCOSITY)
     lagged = True

@@ -30,9 +30,9 @@ def rate_weight(j, pair):
 
 
 @helper
-def take_rate(total, pair, moving, lying):
+def take_rate(total, pair, u_ij, moving, lying):
     """Add −V_j u_ij ∇W_ijᵀ and −V_j x_ij ∇W_ijᵀ of a neighbour with these weights."""
-    change = scale(dyad(pair.u_ij, pair.x_ij), moving)
+    change = scale(dyad(u_ij, pair.x_ij), moving)
     return add(total[0], change), add(total[1], scale(outer(pair.x_ij), lying))
 
 
