@@ -125,7 +125,6 @@ SAVED = tuple(field for field in (*IDENTITY, *OF_EVERY_SCENE) if field.saved)
 """What stands in the frames of every scene."""
 
 
-
 def filled(effect) -> tuple[Field, ...]:
     """The fields that the sum of an effect fills: its ``writes``, one or several."""
     written = getattr(effect, "writes", ())

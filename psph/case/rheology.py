@@ -9,8 +9,8 @@ from psph.case.keys import Table, key
 from psph.physics.fluid.rheology import Cross, Granular, HerschelBulkley
 
 STIFFER = 300.0
-"""The largest viscosity of a fluid with a yield stress over that where half of its stress is the yield, unless
-the case gives it."""
+"""The largest viscosity of a fluid with a yield stress over that at twice this stress, unless the case gives
+it."""
 
 AUTO = "300 times the viscosity at twice the yield stress; with 'regularisation' that at rest"
 

@@ -17,6 +17,7 @@ from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
 from psph.scene.multiples import misfits
+from psph.scene.rheologies import between_plates, rheology_warnings
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
@@ -127,6 +128,7 @@ def warnings(scene: Scene) -> Iterator[str]:
         meshes.remarks,
         misfits,
         slips,
+        rheology_warnings,
         body_warnings,
     ):
         for line in kind(scene):
@@ -337,7 +339,7 @@ def _slow_sound(scene: Scene) -> Iterator[str]:
 
 
 def _driven_flow(scene: Scene) -> Iterator[str]:
-    """Gravity along a periodic axis: a free fall, held back between walls at g H²/(8ν)."""
+    """Gravity along a periodic axis: a free fall, held back between walls by friction."""
     if not scene.driven or scene.case.physics.sound_speed is None and scene.exact:
         return
     open_axes = [d for d, period in enumerate(scene.periods) if period is None]
@@ -345,15 +347,14 @@ def _driven_flow(scene: Scene) -> Iterator[str]:
     fluids = slice(len(scene.case.fluids))
     top, bottom = scene.census.highest[fluids].max(axis=0), scene.census.lowest[fluids].min(axis=0)
     across = min((top[d] - bottom[d] + scene.spacing for d in open_axes), default=math.inf)
-    viscosity = max(fluid.viscosity for fluid in scene.case.fluids.values())
     speed = along * scene.case.time.end
-    if viscosity and across < math.inf:
-        speed = min(speed, along * across**2 / (8.0 * viscosity))
+    if across < math.inf:
+        speed = min([speed, *between_plates(scene, along, across)])
     if speed > TOO_FAST * scene.sound_speed:
         yield (
             f"physics.sound_speed: {scene.sound_speed:.3g} m/s is less than ten times the {speed:.3g} m/s "
             "that gravity along a periodic axis can drive this flow to by time.end (g t, at most "
-            "g H²/(8ν) between walls); "
+            "g H²/(8ν), or what its rheology allows, between walls); "
             f"give {SOUND_OVER_SPEED * speed:.3g}, unless something else holds the flow back"
         )
 

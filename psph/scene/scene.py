@@ -25,6 +25,7 @@ from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.moving import largest_pull, largest_speed
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.pressures import range_of_pressure
+from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.walls import has_free_surface
@@ -226,20 +227,15 @@ class Scene:
                 getattr(self.parts[index], "condition", DYNAMIC),
                 name in self.case.loaded,
                 self.layout.solid_of(index),
-                self._rheology(self.parts[source]),
+                number_of(self.parts[source], self.rheologies),
             )
             for index, (name, source, start) in enumerate(zip(self.names, self._sources, self.starts))
         )
 
     @cached_property
     def rheologies(self) -> tuple[Any, ...]:
-        """The different laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
-        laws = (fluid.rheology.law for fluid in self.case.fluids.values() if fluid.rheology)
-        return tuple(dict.fromkeys(laws))
-
-    def _rheology(self, fluid) -> int:
-        """The number of the law of a fluid's viscosity from 1 on, 0 where that is constant."""
-        return 1 + self.rheologies.index(fluid.rheology.law) if fluid.rheology else 0
+        """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
+        return laws_of(self.case)
 
     def _motion(self, index: int):
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""

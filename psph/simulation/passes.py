@@ -14,9 +14,10 @@ class Pass(NamedTuple):
 
     ``place`` is its place among the passes of a plan.  ``effects`` give rates and are empty in a pass
     that gathers sums alone; ``reductions`` have sums of their own; ``stores`` names the field, or the
-    several fields, that each of these fills, or None.  ``neighbour_fields`` are what it reads of a neighbour, ``brought`` those
-    among them that an earlier pass writes: ghosts need them again whenever that one has run.  It runs in
-    every ``every``-th step.  A pass that fills the pressure of some particles ``settles`` their density too.
+    several fields, that each of these fills, or None.  ``neighbour_fields`` are what it reads of a
+    neighbour, ``brought`` those among them that an earlier pass writes: ghosts need them again whenever that
+    one has run.  It runs in every ``every``-th step.  A pass that fills the pressure of some particles
+    ``settles`` their density too.
     """
 
     place: int

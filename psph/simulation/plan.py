@@ -12,7 +12,17 @@ from psph.composition.count import flops_per_pair
 from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
-from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, filled, view_of
+from psph.fields import (
+    IDENTITY,
+    OF_EVERY_SCENE,
+    OF_MATERIAL,
+    OF_SITE,
+    Field,
+    by_name,
+    companions,
+    filled,
+    view_of,
+)
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, Free, is_prescribed

@@ -41,7 +41,7 @@ class Rub(NamedTuple):
 
 
 class CorrectedRub(NamedTuple):
-    """The friction of :class:`psph.physics.fluid.viscosity.CorrectedViscosity` between apparent viscosities."""
+    """That of :class:`psph.physics.fluid.viscosity.CorrectedViscosity` between apparent viscosities."""
 
     def rub(self, i, j, pair):
         """Coefficient of a difference of velocities in the acceleration, 1/s."""
@@ -90,12 +90,13 @@ difference = call_by_type("difference")
 class ApparentViscosity(NamedTuple):
     """Friction of fluids whose viscosity depends on their rate of strain: mud, paste, grains.
 
-    a_i as by :class:`psph.physics.fluid.viscosity.LaminarViscosity`, with 2η_iη_j/(η_i + η_j) for the viscosity
-    of each of a pair: what flows beside what stands is not held by it.  η_i = η(γ̇_i, p_i) by the law of its
-    fluid (psph.physics.fluid.rheology), γ̇ = √(2D:D), D = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹) and
-    M = −Σ_j V_j x_ij ∇W_ijᵀ over the fluid neighbours and, by their grip, what walls without slip mirror: exact
-    for a linear flow up to a free surface, nearly so up to a wall.  η is that of the step before.  The harmonic mean: Cleary & Monaghan (1999), J. Comput.
-    Phys. 148, 227.  Beside ``physics.central_friction`` it acts along the line of each pair.
+    a_i as by :class:`psph.physics.fluid.viscosity.LaminarViscosity`, with 2η_iη_j/(η_i + η_j) for the
+    viscosity of each of a pair: what flows beside what stands is not held by it.  η_i = η(γ̇_i, p_i) by the
+    law of its fluid (psph.physics.fluid.rheology), γ̇ = √(2D:D), D = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹) and
+    M = −Σ_j V_j x_ij ∇W_ijᵀ over the fluid neighbours and, by their grip, what walls without slip mirror:
+    exact for a linear flow up to a free surface, nearly so up to a wall.  η is that of the step before.  The
+    harmonic mean: Cleary & Monaghan (1999), J. Comput. Phys. 148, 227.  Beside ``physics.central_friction``
+    it acts along the line of each pair.
     """
 
     conserves = ("momentum",)

@@ -52,6 +52,12 @@ class HerschelBulkley(NamedTuple):
         yield."""
         return (max(stress - self.yield_stress, 0.0) / self.consistency) ** (1.0 / self.exponent)
 
+    def speed_between(self, pull: float, half: float) -> float:
+        """The speed in the middle between plates 2 ``half`` m apart under ``pull`` Pa/m along them, m/s: with
+        the rate γ̇ at the plates, γ̇ (half − τ_y/pull) n/(n + 1), and 0 without a flow."""
+        flowing = max(half - self.yield_stress / pull, 0.0)
+        return self.rate_under(pull * half) * flowing * self.exponent / (self.exponent + 1.0)
+
 
 class Cross(NamedTuple):
     """A viscosity that passes from one value at rest to another in fast shear.

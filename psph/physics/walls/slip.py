@@ -51,9 +51,9 @@ class NoSlip(NamedTuple):
     lagged = True
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form whose friction has them too, and where the viscosity depends on the
-        rate of strain that with this friction; nothing where the fluid sticks to mirrors alone, which show it
-        a velocity themselves."""
+        """With corrected gradients, the form whose friction has them too, and the form whose viscosity depends
+        on the rate of strain; nothing where the fluid sticks to mirrors alone, which show it a velocity
+        themselves."""
         if not any(one.no_slip for one in scene.species):
             return None
         if scene.rheologies:
@@ -91,9 +91,9 @@ class CorrectedNoSlip(NamedTuple):
 class ApparentNoSlip(NamedTuple):
     """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
 
-    As :class:`NoSlip` beside :class:`psph.physics.fluid.apparent.ApparentViscosity`, with the coefficient F_ij
-    of its form ``friction``.  The grip of a wall particle, min(4 Σ_f V W_wf, 1), says how much of its mirrored
-    flow counts in a rate of strain: behind the first layer ṽ is the flow beside the face, however deep.
+    As :class:`NoSlip` beside :class:`psph.physics.fluid.apparent.ApparentViscosity`, with the coefficient
+    F_ij of its form ``friction``.  The grip of a wall particle, min(4 Σ_f V W_wf, 1), says how much of its
+    mirrored flow counts in a rate of strain: from the second layer on ṽ is still the flow beside the face.
     """
 
     friction: Any
