@@ -17,7 +17,7 @@ from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
 from psph.scene.multiples import misfits
-from psph.scene.rheologies import between_plates, rheology_warnings
+from psph.scene.rheologies import driven_speeds, rheology_warnings
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
@@ -349,12 +349,12 @@ def _driven_flow(scene: Scene) -> Iterator[str]:
     across = min((top[d] - bottom[d] + scene.spacing for d in open_axes), default=math.inf)
     speed = along * scene.case.time.end
     if across < math.inf:
-        speed = min([speed, *between_plates(scene, along, across)])
+        speed = min([speed, *driven_speeds(scene, along, across)])
     if speed > TOO_FAST * scene.sound_speed:
         yield (
             f"physics.sound_speed: {scene.sound_speed:.3g} m/s is less than ten times the {speed:.3g} m/s "
             "that gravity along a periodic axis can drive this flow to by time.end (g t, at most "
-            "g H²/(8ν), or what its rheology allows, between walls); "
+            "g H²/(8ν) between walls, or what a rheology allows); "
             f"give {SOUND_OVER_SPEED * speed:.3g}, unless something else holds the flow back"
         )
 

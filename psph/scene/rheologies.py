@@ -1,9 +1,10 @@
 """The laws of viscosities of a scene, and what they mean for it: where mud stands, creeps, what it costs."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from psph.physics.fluid.rheology import HerschelBulkley
+from psph.physics.fluid.rheology import Granular, HerschelBulkley
 from psph.physics.fluid.viscosity import friction_step
 
 if TYPE_CHECKING:
@@ -57,13 +58,17 @@ def pastes(scene: "Scene") -> Iterator[Paste]:
         yield Paste(f"fluids.{name}.rheology", law, thickness, pull, stress, law.rate_under(stress))
 
 
-def between_plates(scene: "Scene", pull: float, gap: float) -> Iterator[float]:
-    """The speeds in m/s that fluids reach between plates a ``gap`` m apart under ``pull`` m/s² along them."""
+def driven_speeds(scene: "Scene", pull: float, gap: float) -> Iterator[float]:
+    """The speeds in m/s that fluids reach under ``pull`` m/s² along a layer of ``gap`` m: between plates, and
+    grains on a slope."""
+    down = math.hypot(*(g for g, period in zip(scene.gravity, scene.periods) if period is None))
     for fluid in scene.case.fluids.values():
         if fluid.viscosity:
             yield pull * gap**2 / (8.0 * fluid.viscosity)
         elif fluid.rheology and isinstance(fluid.rheology.law, HerschelBulkley):
             yield fluid.rheology.law.speed_between(fluid.density * pull, 0.5 * gap)
+        elif fluid.rheology and isinstance(fluid.rheology.law, Granular) and down:
+            yield fluid.rheology.law.speed_on_slope(pull / down, fluid.density * down, gap)
 
 
 def _thickness(scene: "Scene", place: int) -> float:
@@ -109,6 +114,6 @@ def rheology_warnings(scene: "Scene") -> Iterator[str]:
             least = paste.law.yield_stress / (MOST_CREEP * paste.rate)
             yield (
                 f"{paste.key}: the largest viscosity, {paste.law.largest:.3g} Pa s, hides the yield: below it "
-                f"the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of the rate at "
-                f"which it flows; give largest_viscosity = {least:.2g} or more"
+                f"the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of the rate of "
+                f"its flow; give largest_viscosity = {least:.2g} or more"
             )

@@ -4,6 +4,7 @@ Each gives the apparent viscosity η in Pa s of a rate γ̇ = √(2D:D) in 1/s, 
 the highest that it gives, which the time step has to stand.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -97,6 +98,14 @@ class Granular(NamedTuple):
     grain_density: float
     least_rate: float
     largest: float
+
+    def speed_on_slope(self, slope: float, weight: float, depth: float) -> float:
+        """The speed on top of a layer ``depth`` m thick on a ``slope`` tan θ, m/s; ``weight`` ρg cos θ in
+        Pa/m across it.  u = (2I/3d)√(weight/ρ_s) depth^(3/2), Bagnold's profile; without end from μ₂ on."""
+        if slope >= self.fast_friction:
+            return math.inf
+        inertial = self.inertial_number * max(slope - self.friction, 0.0) / (self.fast_friction - slope)
+        return 2.0 / 3.0 * inertial / self.diameter * math.sqrt(weight / self.grain_density) * depth**1.5
 
     def viscosity(self, rate, pressure, own):
         """η, Pa s."""

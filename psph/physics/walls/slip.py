@@ -51,8 +51,8 @@ class NoSlip(NamedTuple):
     lagged = True
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form whose friction has them too, and the form whose viscosity depends
-        on the rate of strain; nothing where the fluid sticks to mirrors alone, which show it a velocity
+        """With corrected gradients, the form whose friction has them too, and that whose viscosity depends on
+        the rate of strain; nothing where the fluid sticks to mirrors alone, which show it a velocity
         themselves."""
         if not any(one.no_slip for one in scene.species):
             return None
