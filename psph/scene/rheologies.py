@@ -113,7 +113,7 @@ def rheology_warnings(scene: "Scene") -> Iterator[str]:
         if paste.rate and paste.creep > MOST_CREEP * paste.rate:
             least = paste.law.yield_stress / (MOST_CREEP * paste.rate)
             yield (
-                f"{paste.key}: the largest viscosity, {paste.law.largest:.3g} Pa s, hides the yield: below it "
-                f"the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of the rate of "
-                f"its flow; give largest_viscosity = {least:.2g} or more"
+                f"{paste.key}: the largest viscosity, {paste.law.largest:.3g} Pa s, hides the yield: below "
+                f"that the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of the rate "
+                f"of its flow; give largest_viscosity = {least:.2g} or more"
             )
