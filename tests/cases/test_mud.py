@@ -135,3 +135,37 @@ def test_grains_stand_on_a_slope_below_their_friction(tmp_path):
     creep = 1500.0 * 9.81 * math.sin(math.radians(18.0)) * 0.0106**2 / (2 * 7.5)
     assert speeds[0] == pytest.approx(creep, rel=0.15)
     assert speeds[1] > 3 * speeds[0]
+
+
+VOLUME, WIDTH = 0.02, 0.02
+"""Of the heap, m², and of the columns that its height is taken over, m."""
+
+
+def heap(run, frame, spacing=0.005):
+    """Middles of columns, m, the height of the mud in them, m, and where h² as a line in x comes to nothing."""
+    x = fluid(run, frame)["position"][:, 0]
+    edges = np.arange(0.0, 1.2 + WIDTH, WIDTH)
+    height = np.histogram(x, edges)[0] * spacing**2 / WIDTH
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    deep = height > 1.5 * spacing
+    slope, square = np.polyfit(middle[deep], height[deep] ** 2, 1)
+    return middle, height, -square / slope
+
+
+@pytest.mark.long
+def test_a_heap_of_mud_stops_where_its_yield_stress_bears_it_and_a_newtonian_one_runs_on(tmp_path):
+    run = finished("mud/bingham_slump", tmp_path / "mud", "output.frames=2.0")
+    fall = 2 * 10.0 / (1000.0 * 9.81)
+    reach = (1.5 * VOLUME / math.sqrt(fall)) ** (2 / 3)
+    x, height, front = heap(run, -1)
+    assert front == pytest.approx(reach, rel=0.1)
+    exact = np.sqrt(fall * np.maximum(reach - x, 0.0))
+    assert np.sqrt(np.mean((height - exact)[x < reach] ** 2)) < 0.1 * exact.max()
+    before, after = (fluid(run, k)["position"][:, 0].max() for k in (-2, -1))
+    assert 0.0 <= after - before < 0.03 * reach
+    thin = (
+        "fluids.mud.rheology.bingham.yield_stress=1e-6",
+        "fluids.mud.rheology.bingham.largest_viscosity=1.0",
+    )
+    newton = finished("mud/bingham_slump", tmp_path / "newton", *thin, "output.frames=2.0")
+    assert fluid(newton)["position"][:, 0].max() > 1.15 * reach
