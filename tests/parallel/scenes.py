@@ -64,13 +64,6 @@ FAMILIES = {
         scheme="sph",
         physics={"free_surface": (0.8, 0.95), "artificial_viscosity": (0.0, 0.2), **GRAVITY},
     ),
-    "mud": Family(2, walls=True, fluids=2, viscous=True, muddy=True, gather_every=3, physics=GRAVITY),
-    "mud in 3D": Family(
-        3, along="z", periodic="z", walls=True, viscous=True, muddy=True, condition="mirror", physics=GRAVITY
-    ),
-    "mixed mud": Family(
-        2, along="y", periodic="xy", fluids=2, muddy=True, precision="mixed", scheme="sph", physics=GRAVITY
-    ),
     "shifted": Family(
         2,
         periodic="xy",
@@ -157,6 +150,13 @@ FAMILIES = {
     ),
     "framed": Family(
         2, walls=True, viscous=True, condition="extrapolated", moves=True, framed=True, physics=GRAVITY
+    ),
+    "mud": Family(2, walls=True, fluids=2, viscous=True, muddy=True, gather_every=3, physics=GRAVITY),
+    "mud in 3D": Family(
+        3, along="z", periodic="z", walls=True, viscous=True, muddy=True, condition="mirror", physics=GRAVITY
+    ),
+    "mixed mud": Family(
+        2, along="y", periodic="xy", fluids=2, muddy=True, precision="mixed", scheme="sph", physics=GRAVITY
     ),
 }
 
