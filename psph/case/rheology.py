@@ -6,7 +6,7 @@ from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
 from psph.case.keys import Table, key
-from psph.physics.fluid.rheology import Cross, Granular, HerschelBulkley
+from psph.physics.fluid import rheology as laws
 
 STIFFER = 300.0
 """The largest viscosity of a fluid with a yield stress over that at twice this stress, unless the case gives
@@ -15,57 +15,56 @@ it."""
 AUTO = "300 times the viscosity at twice the yield stress; with 'regularisation' that at rest"
 
 
-class Bingham(Table):
+class Paste(Table):
+    """What has a yield stress."""
+
+    yield_stress: float = key("shear stress from which on it flows", unit="Pa", gt=0)
+    largest_viscosity: float | None = key(
+        "cap of the viscosity: it sets the time step, and the creep below the yield",
+        None,
+        unit="Pa s",
+        otherwise=AUTO,
+        gt=0,
+    )
+    regularisation: float | None = key(
+        "time m of Papanastasiou's law",
+        None,
+        unit="s",
+        otherwise="the largest viscosity over the yield stress",
+        gt=0,
+    )
+
+    def paste(self, consistency: float, exponent: float) -> laws.HerschelBulkley:
+        """The law with the cap and the regularisation that were given, or that follow from each other."""
+        tau, m, cap = self.yield_stress, self.regularisation, self.largest_viscosity
+        if cap is None and m is None:
+            cap = STIFFER * 2.0 * tau / (tau / consistency) ** (1.0 / exponent)
+        elif cap is None:
+            cap = m * tau + consistency * m ** (1.0 - exponent)
+        return laws.HerschelBulkley(tau, consistency, exponent, cap / tau if m is None else m, cap)
+
+
+class Bingham(Paste):
     """A paste: at rest below its yield stress, of constant viscosity in what exceeds it."""
 
-    yield_stress: float = key("shear stress from which on it flows", unit="Pa", gt=0)
     plastic_viscosity: float = key("slope of the stress over the rate of strain", unit="Pa s", gt=0)
-    largest_viscosity: float | None = key(
-        "cap of the viscosity: it sets the time step, and the creep below the yield",
-        None,
-        unit="Pa s",
-        otherwise=AUTO,
-        gt=0,
-    )
-    regularisation: float | None = key(
-        "time m of Papanastasiou's law",
-        None,
-        unit="s",
-        otherwise="the largest viscosity over the yield stress",
-        gt=0,
-    )
 
     @property
-    def law(self) -> HerschelBulkley:
+    def law(self) -> laws.HerschelBulkley:
         """Bingham's law: that of Herschel and Bulkley with the exponent 1."""
-        return _paste(self, self.plastic_viscosity, 1.0)
+        return self.paste(self.plastic_viscosity, 1.0)
 
 
-class HerschelBulkleyTable(Table):
+class HerschelBulkley(Paste):
     """A paste whose stress above the yield grows by a power of the rate of strain."""
 
-    yield_stress: float = key("shear stress from which on it flows", unit="Pa", gt=0)
     consistency: float = key("K, stress above the yield at a rate of 1/s", unit="Pa s^n", gt=0)
     exponent: float = key("n; below 1 it thins in shear", unit="1", gt=0, le=3)
-    largest_viscosity: float | None = key(
-        "cap of the viscosity: it sets the time step, and the creep below the yield",
-        None,
-        unit="Pa s",
-        otherwise=AUTO,
-        gt=0,
-    )
-    regularisation: float | None = key(
-        "time m of Papanastasiou's law",
-        None,
-        unit="s",
-        otherwise="the largest viscosity over the yield stress",
-        gt=0,
-    )
 
     @property
-    def law(self) -> HerschelBulkley:
+    def law(self) -> laws.HerschelBulkley:
         """The law."""
-        return _paste(self, self.consistency, self.exponent)
+        return self.paste(self.consistency, self.exponent)
 
 
 class PowerLaw(Table):
@@ -76,12 +75,12 @@ class PowerLaw(Table):
     largest_viscosity: float = key("cap of the viscosity: it sets the time step", unit="Pa s", gt=0)
 
     @property
-    def law(self) -> HerschelBulkley:
+    def law(self) -> laws.HerschelBulkley:
         """The law of Herschel and Bulkley without a yield stress."""
-        return HerschelBulkley(0.0, self.consistency, self.exponent, 0.0, self.largest_viscosity)
+        return laws.HerschelBulkley(0.0, self.consistency, self.exponent, 0.0, self.largest_viscosity)
 
 
-class CrossTable(Table):
+class Cross(Table):
     """A fluid whose viscosity passes from one value at rest to another in fast shear."""
 
     viscosity_at_rest: float = key("viscosity in slow shear", unit="Pa s", gt=0)
@@ -90,12 +89,12 @@ class CrossTable(Table):
     exponent: float = key("how steeply it passes", 1.0, unit="1", gt=0, le=3)
 
     @property
-    def law(self) -> Cross:
+    def law(self) -> laws.Cross:
         """The law."""
-        return Cross(self.viscosity_at_rest, self.viscosity_in_shear, self.time, self.exponent)
+        return laws.Cross(self.viscosity_at_rest, self.viscosity_in_shear, self.time, self.exponent)
 
 
-class Grains(Table):
+class Granular(Table):
     """Dry grains: friction that grows with the inertial number, the law mu(I)."""
 
     friction: float = key("mu_s, coefficient of friction at rest", unit="1", gt=0)
@@ -115,9 +114,9 @@ class Grains(Table):
         return self
 
     @property
-    def law(self) -> Granular:
+    def law(self) -> laws.Granular:
         """The law."""
-        return Granular(
+        return laws.Granular(
             self.friction,
             self.fast_friction,
             self.inertial_number,
@@ -134,12 +133,12 @@ class Rheology(Table):
     LAWS: ClassVar = ("bingham", "herschel_bulkley", "power_law", "cross", "granular")
 
     bingham: Bingham | None = key("a paste with a yield stress", None, otherwise="another law")
-    herschel_bulkley: HerschelBulkleyTable | None = key(
+    herschel_bulkley: HerschelBulkley | None = key(
         "a paste that thins or thickens in shear", None, otherwise="another law"
     )
     power_law: PowerLaw | None = key("a power of the rate of strain", None, otherwise="another law")
-    cross: CrossTable | None = key("between two viscosities", None, otherwise="another law")
-    granular: Grains | None = key("dry grains, the law mu(I)", None, otherwise="another law")
+    cross: Cross | None = key("between two viscosities", None, otherwise="another law")
+    granular: Granular | None = key("dry grains, the law mu(I)", None, otherwise="another law")
 
     @property
     def name(self) -> str:
@@ -159,13 +158,3 @@ class Rheology(Table):
             said = f"{' and '.join(given)} in one fluid" if given else "does not say its law"
             raise PydanticCustomError("psph", f"{said}; give one of {', '.join(self.LAWS)}")
         return self
-
-
-def _paste(table: Bingham | HerschelBulkleyTable, consistency: float, exponent: float) -> HerschelBulkley:
-    """The law with the cap and the regularisation that were given, or that follow from each other."""
-    tau, m, cap = table.yield_stress, table.regularisation, table.largest_viscosity
-    if cap is None:
-        cap = STIFFER * 2.0 * tau / (tau / consistency) ** (1.0 / exponent)
-        if m is not None:
-            cap = m * tau + consistency * m ** (1.0 - exponent)
-    return HerschelBulkley(tau, consistency, exponent, cap / tau if m is None else m, cap)

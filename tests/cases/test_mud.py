@@ -55,6 +55,7 @@ POWER = (50.0, 0.5)
 @pytest.mark.parametrize(("spacing", "profile", "middle"), [(COARSE_CHANNEL, 0.06, 0.05), ((), 0.03, 0.03)])
 def test_a_bingham_channel_has_its_plug(spacing, profile, middle, tmp_path):
     run = finished("mud/bingham_channel", tmp_path, *spacing)
+    assert run.unit("apparent_viscosity") == "Pa s" and run.unit("strain_rate") == "1/s"
     errors = channel_errors(run, *BINGHAM)
     assert errors[0] < profile and abs(errors[1]) < middle
     mud = fluid(run)
