@@ -1,5 +1,6 @@
 """Rheologies of a case: laws by which the viscosity of a fluid depends on its rate of strain."""
 
+import math
 from typing import Any, ClassVar, Self
 
 from pydantic import model_validator
@@ -34,13 +35,32 @@ class Paste(Table):
         gt=0,
     )
 
+    @model_validator(mode="after")
+    def _has_numbers(self) -> Self:
+        if not all(0.0 < number < math.inf for number in (self.law.largest, self.law.regularisation)):
+            raise PydanticCustomError(
+                "psph", "its viscosity at rest is no number that can be computed; give largest_viscosity"
+            )
+        return self
+
+    @property
+    def law(self) -> laws.HerschelBulkley:
+        """The law, as formulas take it."""
+        raise NotImplementedError
+
     def paste(self, consistency: float, exponent: float) -> laws.HerschelBulkley:
         """The law with the cap and the regularisation that were given, or that follow from each other."""
         tau, m, cap = self.yield_stress, self.regularisation, self.largest_viscosity
         if cap is None and m is None:
-            cap = STIFFER * 2.0 * tau / (tau / consistency) ** (1.0 / exponent)
+            # 2 tau/(tau/K)^(1/n)
+            cap = (
+                STIFFER
+                * 2.0
+                * laws.power(consistency, 1.0 / exponent)
+                * laws.power(tau, 1.0 - 1.0 / exponent)
+            )
         elif cap is None:
-            cap = m * tau + consistency * m ** (1.0 - exponent)
+            cap = m * tau + consistency * laws.power(m, 1.0 - exponent)
         return laws.HerschelBulkley(tau, consistency, exponent, cap / tau if m is None else m, cap)
 
 

@@ -102,3 +102,17 @@ def test_no_slip_is_content_with_a_rheology(tmp_path):
     draft(tmp_path, TANK, BINGHAM, "walls.tank.no_slip=true")
     [line] = refused(tmp_path, "walls.tank.no_slip=true")
     assert "set fluids.NAME.viscosity or .rheology, or remove no_slip" in line
+
+
+@pytest.mark.parametrize("exponent", (1e-3, 0.1, 3.0))
+@pytest.mark.parametrize("consistency", (1e-30, 1e30))
+def test_sizes_without_a_viscosity_are_refused_or_taken_in_one_line(tmp_path, consistency, exponent):
+    paste = f"{{yield_stress=1.0, consistency={consistency}, exponent={exponent}}}"
+    key = f"fluids.water.rheology.herschel_bulkley={paste}"
+    try:
+        found = law(tmp_path, key)
+    except CaseError as error:
+        [line] = error.lines
+        assert line.endswith("no number that can be computed; give largest_viscosity")
+    else:
+        assert 0.0 < found.largest < float("inf")

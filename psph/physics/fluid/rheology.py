@@ -18,6 +18,14 @@ apparent_viscosity = call_by_number("viscosity")
 """(laws, number, rate, pressure, own) → η, Pa s; ``own`` is ρν of a fluid without such a law."""
 
 
+def power(base: float, exponent: float) -> float:
+    """base^exponent of a base that is not negative; infinite where it is too large for a number."""
+    try:
+        return base**exponent
+    except (OverflowError, ZeroDivisionError):
+        return math.inf
+
+
 class Newtonian(NamedTuple):
     """The viscosity of a fluid without such a law, beside others that have one."""
 
@@ -51,7 +59,7 @@ class HerschelBulkley(NamedTuple):
     def rate_under(self, stress: float) -> float:
         """The rate at which it flows under a shear stress in Pa, 1/s, without cap and creep; 0 below its
         yield."""
-        return (max(stress - self.yield_stress, 0.0) / self.consistency) ** (1.0 / self.exponent)
+        return power(max(stress - self.yield_stress, 0.0) / self.consistency, 1.0 / self.exponent)
 
     def speed_between(self, pull: float, half: float) -> float:
         """The speed in the middle between plates 2 ``half`` m apart under ``pull`` Pa/m along them, m/s: with
