@@ -95,6 +95,7 @@ OF_MATERIAL = (
     Field("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
     Field("extrapolated", "1", "1 in a wall whose pressure is that of the fluid before it, else 0"),
     Field("repulsive", "1", "1 in a wall whose particles repel the fluid, else 0"),
+    Field("rheology", "1", "number of the law of a fluid's viscosity, 0 where that is constant"),
     Field("solid", "1", "number of a rigid body from 2 on, 1 in a wall, 0 in a fluid"),
     Field("penalty", "1", "1 in a wall that pushes back what comes too near, else 0"),
 )
@@ -122,6 +123,13 @@ def by_name(*groups: Iterable[Field]) -> dict[str, Field]:
 
 SAVED = tuple(field for field in (*IDENTITY, *OF_EVERY_SCENE) if field.saved)
 """What stands in the frames of every scene."""
+
+
+def filled(effect) -> tuple[Field, ...]:
+    """The fields that the sum of an effect fills: its ``writes``, one or several."""
+    written = getattr(effect, "writes", ())
+    return (written,) if isinstance(written, Field) else written
+
 
 PREFIX = "View_of__"
 

@@ -35,6 +35,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         moved,
         _regions,
         _friction,
+        _rheologies,
         probed,
         gauged,
         _names,
@@ -274,20 +275,20 @@ def _regions(case) -> Iterator[Finding]:
 
 
 def _friction(case) -> Iterator[Finding]:
-    rubs = any(fluid.viscosity for fluid in case.fluids.values())
+    rubs = any(fluid.rubs for fluid in case.fluids.values())
     central = case.physics.central_friction is not None
     if central and not rubs:
         yield (
             ("physics", "central_friction"),
             ...,
-            ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key"),
+            ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove this key"),
         )
     for name, wall in case.solids.items():
         if wall.no_slip and not rubs:
             yield (
                 (case.table_of(name), name, "no_slip"),
                 True,
-                ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip"),
+                ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove no_slip"),
             )
         elif wall.no_slip and wall.condition not in STICKING:
             known = " or ".join(f'"{one}"' for one in STICKING)
@@ -301,6 +302,26 @@ def _friction(case) -> Iterator[Finding]:
                 (case.table_of(name), name, "no_slip"),
                 True,
                 ("does not work with physics.central_friction; remove one of the two"),
+            )
+
+
+def _rheologies(case) -> Iterator[Finding]:
+    for name, fluid in case.fluids.items():
+        if fluid.rheology is None:
+            continue
+        if fluid.viscosity:
+            yield (
+                ("fluids", name, "viscosity"),
+                fluid.viscosity,
+                "the fluid also has a rheology, which gives its viscosity; remove one of the two",
+            )
+        grains = fluid.rheology.granular
+        if grains is not None and grains.grain_density < fluid.density:
+            yield (
+                ("fluids", name, "rheology", "granular", "grain_density"),
+                grains.grain_density,
+                f"grains with room between them weigh {fluid.density:g} kg/m³ (fluids.{name}.density), and a "
+                "grain itself less; give a larger grain_density",
             )
 
 

@@ -21,6 +21,7 @@ from psph.case.mesh import Mesh
 from psph.case.motion import Motions, series_in
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
+from psph.case.rheology import Rheology
 from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
@@ -118,6 +119,11 @@ class Fluid(Table):
     shape: Shape = key("where the fluid is at the start")
     density: float = key("density at zero pressure", 1000.0, unit="kg/m3", gt=0)
     viscosity: float = key("kinematic viscosity; 0: inviscid", 0.0, unit="m2/s", ge=0)
+    rheology: Rheology | None = key(
+        "a viscosity that depends on the rate of strain, as that of mud or grains",
+        None,
+        otherwise="the constant `viscosity`",
+    )
     equation_of_state: Law = LAW
     velocity: Annotated[Literal[EXACT] | Vector | None, WrapValidator(_velocity)] = key(
         'velocity at the start: numbers, or "exact" (needs [exact])',
@@ -146,6 +152,11 @@ class Fluid(Table):
         "largest random shift of a particle along each axis, in spacings", 0.0, unit="1", ge=0
     )
     seed: int = key("seed of the random shifts", 0, ge=0)
+
+    @property
+    def rubs(self) -> bool:
+        """Whether it has a friction of its own."""
+        return bool(self.viscosity) or self.rheology is not None
 
     def sheared(self, x: np.ndarray) -> np.ndarray:
         """What ``velocity_gradient`` adds to the velocity at ``x`` (n, dim), m/s (n, dim)."""

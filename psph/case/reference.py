@@ -64,7 +64,8 @@ def _document() -> Iterator[str]:
         yield from _section(f"`{heading}`", _sentence(meaning), _rows(whole, heading, table))
         yield from _choices(whole, heading, table)
     yield from _shapes(whole)
-    yield from _motions(whole)
+    yield from _ways(whole, "Motions", "Motion", MOTIONS)
+    yield from _ways(whole, "Rheologies", "Rheology", RHEOLOGIES)
 
 
 def _table(whole: Node, name: str, node: Node) -> tuple[str, Node | None]:
@@ -100,19 +101,22 @@ def _shapes(whole: Node) -> Iterator[str]:
                 yield from _section(f"`{name}`", "", _rows(whole, name, branch), level=3)
 
 
-def _motions(whole: Node) -> Iterator[str]:
-    """The keys of a part of a motion, those of its ways as ``way.key``; one line for what several share."""
+MOTIONS = (
+    "A motion is a part, or a list of parts: a table with one way to move, and when it acts "
+    "([motion.md](motion.md))"
+)
+RHEOLOGIES = "A rheology is a table with exactly one law ([mud.md](mud.md))"
+
+
+def _ways(whole: Node, title: str, kind: str, meaning: str) -> Iterator[str]:
+    """The keys of a table with one of several ways, as ``way.key``; one line for what several share."""
     rows: dict[tuple[str, str], tuple[list[str], Node, bool]] = {}
-    for name, node in whole["$defs"]["Motion"]["properties"].items():
+    for name, node in whole["$defs"][kind]["properties"].items():
         for named, below, required in _inner(whole, name, node):
             one = named.rpartition(".")[2], below["description"]
             rows.setdefault(one, ([], below, required))[0].append(named)
-    lines = [_row(whole, "motion", "`, `".join(names), *rest) for names, *rest in rows.values()]
-    meaning = (
-        "A motion is a part, or a list of parts: a table with one way to move, and when it acts "
-        "([motion.md](motion.md))"
-    )
-    yield from _section("Motions", _sentence(meaning), lines)
+    lines = [_row(whole, kind.lower(), "`, `".join(names), *rest) for names, *rest in rows.values()]
+    yield from _section(title, _sentence(meaning), lines)
 
 
 def _inner(whole: Node, name: str, node: Node, required: bool = False) -> Iterator[tuple[str, Node, bool]]:

@@ -222,7 +222,7 @@ def call_by_number(name: str):
     """
 
     def call(values, number, *args):
-        return getattr(values[number], name)(*args)
+        return getattr(values[int(number)], name)(*args)
 
     @overload(call)
     def typed(values, number, *args):

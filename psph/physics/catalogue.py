@@ -5,13 +5,14 @@ from functools import cache
 from types import FunctionType
 from typing import NamedTuple
 
-from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name
+from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name, filled
 from psph.physics.damping.acoustic import AcousticDamper
 from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusion
 from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.reconstructed import ReconstructedDamping
 from psph.physics.damping.riemann import RiemannDissipation
 from psph.physics.fluid.absorbing import DampingZone
+from psph.physics.fluid.apparent import ApparentViscosity
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.frame import MovingFrame
@@ -98,10 +99,9 @@ def methods(kind: type) -> list[str]:
 
 @cache
 def _fields(effects: tuple[type, ...]) -> dict[str, Field]:
-    declared = [
-        getattr(effect, name) for effect in effects for name in ("writes", "marks") if hasattr(effect, name)
-    ]
-    return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, OF_SCENE, declared)
+    written = [field for effect in effects for field in filled(effect)]
+    marked = [effect.marks for effect in effects if hasattr(effect, "marks")]
+    return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, OF_SCENE, written, marked)
 
 
 CATALOGUE = (
@@ -114,6 +114,7 @@ CATALOGUE = (
     Entry("physics.artificial_stress", ArtificialStress),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.central_friction", CentralFriction),
+    Entry("fluids.*.rheology", ApparentViscosity),
     Entry("walls.*.no_slip", NoSlip),
     Entry("walls.*.continues", DryWall),
     Entry(f"walls.*.condition={EXTRAPOLATED}", ExtrapolatedWall),

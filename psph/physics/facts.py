@@ -34,6 +34,8 @@ class Facts(Protocol):
     """How the frame of reference moves (psph.physics.rigid.motion.Rigid); None where it rests."""
     species: Sequence[Any]
     """Fluids and walls (psph.scene.species.Species)."""
+    rheologies: Sequence[Any]
+    """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
     has_free_surface: bool
     lowest_pressure: float
     """Of a fluid at the start, Pa."""

@@ -72,7 +72,7 @@ def _pressure(scene, suspect) -> Iterator[str]:
 
 def _friction(scene) -> Iterator[str]:
     physics = scene.case.physics
-    viscous = any(material.viscosity for material in scene.species)
+    viscous = any(fluid.rubs for fluid in scene.case.fluids.values())
     damped = physics.artificial_viscosity or physics.pair_damping or physics.reconstructed_damping
     if not damped and not viscous:
         yield "give physics.artificial_viscosity = 0.05: this fluid has no damping"

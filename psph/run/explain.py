@@ -20,6 +20,7 @@ from psph.run.outlook import outlook
 from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
 from psph.scene.moving import motion_lines
+from psph.scene.rheologies import rheology_lines
 from psph.scene.waving import wave_lines
 from psph.simulation.plan import Plan, make_plan
 
@@ -37,6 +38,10 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
+    for place, line in enumerate(rheology_lines(scene)):
+        if not place:
+            yield "Viscosities that depend on the rate of strain"
+        yield f"  {line}"
     yield from _friction_lines(scene, plan)
     found = forecast(scene, plan, ranks)
     yield from forecast_lines(found, ranks, scene.case.time.end)
@@ -245,7 +250,8 @@ def _friction_lines(scene, plan: Plan) -> Iterator[str]:
     ]
     if not any(viscosity for _, viscosity in found):
         return
-    own = [(f"fluids.{name}", fluid.viscosity) for name, fluid in scene.case.fluids.items()]
+    fluids = scene.case.fluids.items()
+    own = [(f"fluids.{name}", fluid.viscosity) for name, fluid in fluids if not fluid.rheology]
     yield "Kinematic viscosity, and what numerical friction acts as in a shear flow"
     width = _column(name for name, _ in (*own, *found))
     for name, viscosity in own:

@@ -63,6 +63,17 @@ def long_run(scene, plan: Plan, ranks: int) -> Iterator[str]:
 
 
 def _what_to_do(scene, limit: str) -> str:
+    caps = {
+        fluid.rheology.law.largest / fluid.density: (name, fluid.rheology)
+        for name, fluid in scene.case.fluids.items()
+        if fluid.rheology
+    }
+    if limit == "apparent viscosity" and caps:
+        name, rheology = caps[max(caps)]
+        return (
+            f"fluids.{name}.rheology.{rheology.name} sets the step by its largest viscosity, "
+            f"{rheology.law.largest:.3g} Pa s; give less"
+        )
     viscosity = max(fluid.viscosity for fluid in scene.case.fluids.values())
     if limit.endswith(("viscosity", "friction")) and viscosity:
         [name] = [n for n, f in scene.case.fluids.items() if f.viscosity == viscosity][:1]

@@ -18,6 +18,7 @@ from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
 from psph.scene.multiples import misfits
+from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
@@ -129,6 +130,7 @@ def warnings(scene: Scene) -> Iterator[str]:
         meshes.remarks,
         misfits,
         slips,
+        rheology_warnings,
         body_warnings,
     ):
         for line in kind(scene):
@@ -301,7 +303,7 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
         physics.artificial_viscosity
         or physics.pair_damping
         or physics.reconstructed_damping
-        or any(fluid.viscosity for fluid in scene.case.fluids.values())
+        or any(fluid.rubs for fluid in scene.case.fluids.values())
     )
     disordered = any(fluid.jitter for fluid in scene.case.fluids.values())
     if physics.pressure_gradient == "minimum" and disordered and not rubs:

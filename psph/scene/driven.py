@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from psph.composition.mirrors import ABOVE, BELOW
 from psph.physics.facts import SOUND_OVER_SPEED
+from psph.scene.rheologies import held_speeds
 from psph.scene.walls import unheld
 
 if TYPE_CHECKING:
@@ -23,16 +24,15 @@ def driven_speed(scene: "Scene") -> float:
 
     g t of a free fall; for a viscosity ν at most g H²/(8ν) across a width H with a wall on both sides, and
     g (2H)²/(8ν) with a wall on one: half of a flow whose other half is behind a plane of symmetry, or
-    would be above a free surface.  A mirror that the fluid slides along holds nothing back.
+    would be above a free surface; for pastes and grains what their rheology allows.  A mirror that the
+    fluid slides along holds nothing back.
     """
     along = _pull(scene)
-    viscosity = max(fluid.viscosity for fluid in scene.case.fluids.values())
     speed = along * scene.case.time.end
-    if along and viscosity:
-        for d, width in _widths(scene):
-            sides = sum(_holds(scene, d, side) for side in (BELOW, ABOVE))
-            if sides:
-                speed = min(speed, along * (width * 2.0 / sides) ** 2 / (8.0 * viscosity))
+    for d, width in _widths(scene) if along else ():
+        sides = sum(_holds(scene, d, side) for side in (BELOW, ABOVE))
+        if sides:
+            speed = min([speed, *held_speeds(scene, along, width * 2.0 / sides, width)])
     return speed
 
 
@@ -76,6 +76,7 @@ def driven_flow(scene: "Scene") -> Iterator[str]:
         yield (
             f"physics.sound_speed: {given:.3g} m/s is less than ten times the {speed:.3g} m/s "
             "that gravity along a periodic axis can drive this flow to by time.end (g t, at most "
-            "g H²/(8ν) between walls, H twice the width where one side is free or a plane of symmetry); "
+            "g H²/(8ν) between walls, H twice the width where one side is free or a plane of symmetry, or "
+            "what a rheology allows); "
             f"give {SOUND_OVER_SPEED * speed:.3g}, unless something else holds the flow back"
         )

@@ -2,7 +2,6 @@
 
 import math
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -23,9 +22,10 @@ from psph.scene.kicked import nearest_fluid_site
 from psph.scene.lattice import TOLERANCE, lattice_around
 from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
-from psph.scene.moving import falling_speed, largest_speed
+from psph.scene.moving import falling_speed, fastest_corner, largest_speed
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.pressures import range_of_pressure
+from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.walls import has_free_surface
@@ -142,7 +142,7 @@ class Scene:
         """The largest speed of a fluid, a wall or the exact solution at the start, m/s."""
         known = self.exact.top_speed(self.unheard_setting) if self.exact else 0.0
         moving = (math.hypot(*v) for v in (*self.velocities, *self._kicked))
-        return max(known, *moving, *map(self._fastest_corner, range(len(self.case.fluids))))
+        return max(known, *moving, *(fastest_corner(self, n) for n in range(len(self.case.fluids))))
 
     @cached_property
     def sound_speed(self) -> float:
@@ -231,9 +231,15 @@ class Scene:
                 getattr(self.parts[index], "condition", DYNAMIC),
                 name in self.case.loaded,
                 self.layout.solid_of(index),
+                number_of(self.parts[source], self.rheologies),
             )
             for index, (name, source, start) in enumerate(zip(self.names, self._sources, self.starts))
         )
+
+    @cached_property
+    def rheologies(self) -> tuple[Any, ...]:
+        """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
+        return laws_of(self.case)
 
     def _motion(self, index: int):
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""
@@ -380,16 +386,6 @@ class Scene:
                 thickness = self._surface(other) - bottom
                 total += self.parts[other].density * math.hypot(*self.height_gravity) * thickness
         return total
-
-    def _fastest_corner(self, fluid: int) -> float:
-        """Largest speed at a corner of the box around a fluid whose velocity has a gradient."""
-        body = self.parts[fluid]
-        if not body.velocity_gradient:
-            return 0.0
-        ends = np.array([self.census.lowest[fluid], self.census.highest[fluid]])
-        corners = np.array(list(product(*ends.T)))
-        velocity = body.sheared(corners) + np.array(self.velocities[fluid])
-        return float(np.sqrt((velocity**2).sum(axis=1)).max())
 
     @cached_property
     def _pressures(self) -> tuple[tuple[float, float], ...]:

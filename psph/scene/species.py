@@ -28,7 +28,8 @@ class Species(NamedTuple):
     1D); ``law`` is the equation of state (psph.physics.fluid.state).  A wall takes these from the fluid
     it continues; ``no_slip`` if that fluid sticks to it; ``condition`` is what it sets to the fluid before it
     (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for;
-    ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body from 2 on.
+    ``rheology`` is the number of the law of its viscosity among those of the scene from 1 on, 0 where that is
+    constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body from 2 on.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Species(NamedTuple):
     condition: str = DYNAMIC
     loaded: bool = False
     solid: int = 0
+    rheology: int = 0
 
     @property
     def kind(self) -> int:

@@ -251,8 +251,15 @@ class Engine:
             loads = Summed(one.effects, (), Loads(plan.loaded, s.group, plan.contacts))
             in_threads(self._load, first, last, loads, *seen, Sums(s[LOAD.name], None, ()))
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
-        sums = Sums(*rates, tuple(name and s[name] for name in one.stores))
+        sums = Sums(*rates, tuple(map(self._arrays_of, one.stores)))
         in_threads(self._sums[one.place], first, last, Summed(one.effects, one.reductions), *seen, sums)
+
+    def _arrays_of(self, stored: str | tuple[str, ...] | None):
+        """What takes a sum: the array of a number, those of several numbers in a row, or None."""
+        if not isinstance(stored, tuple):
+            return stored and self.store[stored]
+        found = (self.store[name] for name in stored)
+        return tuple(array for one in found for array in (one if isinstance(one, tuple) else (one,)))
 
     def _columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""

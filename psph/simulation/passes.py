@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from psph.fields import PRESSURE, SPECIFIC_VOLUME
+from psph.fields import PRESSURE, SPECIFIC_VOLUME, filled
 
 
 class SumsInACircle(TypeError):
@@ -13,16 +13,17 @@ class Pass(NamedTuple):
     """One pass of the pair loop over all particles of a rank.
 
     ``place`` is its place among the passes of a plan.  ``effects`` give rates and are empty in a pass
-    that gathers sums alone; ``reductions`` have sums of their own; ``stores`` names the field, or None,
-    that each of these fills.  ``neighbour_fields`` are what it reads of a neighbour, ``brought`` those
-    among them that an earlier pass writes: ghosts need them again whenever that one has run.  It runs in
-    every ``every``-th step.  A pass that fills the pressure of some particles ``settles`` their density too.
+    that gathers sums alone; ``reductions`` have sums of their own; ``stores`` names the field, or the
+    several fields, that each of these fills, or None.  ``neighbour_fields`` are what it reads of a
+    neighbour, ``brought`` those among them that an earlier pass writes: ghosts need them again whenever that
+    one has run.  It runs in every ``every``-th step.  A pass that fills the pressure of some particles
+    ``settles`` their density too.
     """
 
     place: int
     effects: tuple[Any, ...]
     reductions: tuple[Any, ...]
-    stores: tuple[str | None, ...]
+    stores: tuple[str | tuple[str, ...] | None, ...]
     neighbour_fields: tuple[str, ...]
     brought: tuple[str, ...]
     every: int
@@ -35,7 +36,8 @@ class Pass(NamedTuple):
     @property
     def written(self) -> set[str]:
         """The fields that it fills."""
-        return {name for stored in self.stores if stored for name in _with_it(stored)}
+        names = (name for stored in self.stores for name in _each(stored))
+        return {all_of for name in names for all_of in _with_it(name)}
 
     @property
     def gives_rates(self) -> bool:
@@ -102,22 +104,26 @@ def _with_it(name: str) -> tuple[str, ...]:
     return (name, SPECIFIC_VOLUME.name) if name == PRESSURE.name else (name,)
 
 
-def _filled(effect, before) -> str | None:
-    """The array that takes the effect's sum, unless an earlier pass has filled it."""
-    field = getattr(effect, "writes", None)
-    if field is None or field.name in before:
+def _each(stored: str | tuple[str, ...] | None) -> tuple[str, ...]:
+    """The fields that a reduction fills, by name."""
+    return (stored,) if isinstance(stored, str) else stored or ()
+
+
+def _filled(effect, before) -> str | tuple[str, ...] | None:
+    """The array that takes the effect's sum, or the several, unless an earlier pass has filled them."""
+    names = tuple(field.rate if field.evolves else field.name for field in filled(effect))
+    if before.issuperset(names):
         return None
-    return field.rate if field.evolves else field.name
+    return names if len(names) > 1 else names[0]
 
 
 def _levels(called) -> list[tuple[Any, int]]:
     """The effects that come in a pass of their own, each with how many passes come before it."""
     writers = {
-        call.effect.writes.name: call
+        field.name: call
         for call in called
-        if hasattr(call.effect, "start")
-        and _fills_a_field(call.effect)
-        and not getattr(call.effect, "lagged", False)
+        for field in filled(call.effect)
+        if hasattr(call.effect, "start") and not field.evolves and not getattr(call.effect, "lagged", False)
     }
     read = set().union(*(call.reads.of_pairs for call in called))
     early = {name: call for name, call in writers.items() if name in read}
@@ -136,11 +142,8 @@ def _levels(called) -> list[tuple[Any, int]]:
         for name, call in ready.items():
             below = [levels[other] for other in call.reads.in_sum & levels.keys()]
             levels[name] = 1 + max(below, default=-1)
-    return [(call, levels[name]) for name, call in early.items()]
-
-
-def _fills_a_field(effect) -> bool:
-    return hasattr(effect, "writes") and not effect.writes.evolves
+    # One that fills several fields is met under each of their names.
+    return list({id(call): (call, levels[name]) for name, call in early.items()}.values())
 
 
 def _every(call) -> int:

@@ -12,7 +12,17 @@ from psph.composition.count import flops_per_pair
 from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
-from psph.fields import IDENTITY, OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, Field, by_name, companions, view_of
+from psph.fields import (
+    IDENTITY,
+    OF_EVERY_SCENE,
+    OF_MATERIAL,
+    OF_SITE,
+    Field,
+    by_name,
+    companions,
+    filled,
+    view_of,
+)
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, Free, is_prescribed
@@ -231,7 +241,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     fits = [(entry, in_scene(effect, scene), reason) for entry, effect, reason in calls]
     fitted = [fit for fit in fits if fit[1] is not None]
     marking = [effect for _, effect, _ in fitted if hasattr(effect, "marks")]
-    written = tuple(effect.writes for _, effect, _ in fitted if hasattr(effect, "writes"))
+    written = tuple(field for _, effect, _ in fitted for field in filled(effect))
     written += tuple(effect.marks for effect in marking)
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))

@@ -49,6 +49,10 @@ END = {
     "absorbing_paddle": 0.03,
     "moving_square": 0.01,
     "still_water": 0.02,
+    "mud/bingham_channel": 2e-3,
+    "mud/power_law_channel": 5e-3,
+    "mud/grains_on_slope": 5e-3,
+    "mud/bingham_slump": 5e-3,
     "hard/drop": 0.05,
     "hard/patch_3d": 0.02,
     "hard/twins": 2e-3,
@@ -59,6 +63,7 @@ effects that no other has."""
 
 def test_every_shipped_case_is_here():
     shipped = {path.stem for path in Path(CASES).glob("*.toml")}
+    shipped |= {f"mud/{path.stem}" for path in Path(CASES, "mud").glob("*.toml")}
     assert shipped == {name for name in END if not name.startswith("hard/")}
 
 

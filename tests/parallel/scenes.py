@@ -17,7 +17,8 @@ class Family(NamedTuple):
 
     ``along`` is the long axis, ``periodic`` the axes that repeat; ``physics`` holds keys with fixed
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
-    a floor, and ``condition`` of what kind; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
+    a floor, and ``condition`` of what kind; ``muddy`` whether the first fluid has a
+    rheology; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
     are taken; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference;
     ``floats`` whether there are bodies; ``absorbs`` whether its walls are those of a flume, with a paddle that
     takes up waves.
@@ -31,6 +32,7 @@ class Family(NamedTuple):
     walls: bool = False
     fluids: int = 1
     viscous: bool = False
+    muddy: bool = False
     condition: str = "dynamic"
     kernel: str = ""
     gather_every: int = 1
@@ -152,6 +154,13 @@ FAMILIES = {
         2, walls=True, viscous=True, condition="extrapolated", moves=True, framed=True, physics=GRAVITY
     ),
     "flume": Family(2, fluids=2, absorbs=True, condition="extrapolated", physics={"gravity": [0.0, -9.0]}),
+    "mud": Family(2, walls=True, fluids=2, viscous=True, muddy=True, gather_every=3, physics=GRAVITY),
+    "mud in 3D": Family(
+        3, along="z", periodic="z", walls=True, viscous=True, muddy=True, condition="mirror", physics=GRAVITY
+    ),
+    "mixed mud": Family(
+        2, along="y", periodic="xy", fluids=2, muddy=True, precision="mixed", scheme="sph", physics=GRAVITY
+    ),
 }
 
 
@@ -316,9 +325,19 @@ def _fluids(family: Family, rng, sizes):
             "seed": int(rng.integers(0, 1000)),
             "velocity": _vector(rng, family.dimensions, float(rng.choice([0.0, 3.0]))),
         }
-        if family.viscous:
+        if family.muddy and k == 0:
+            fluid["rheology"] = _rheology(rng)
+        elif family.viscous:
             fluid["viscosity"] = _drawn(rng, 1e-6, 1e-2)
         yield f"fluid_{k}", fluid
+
+
+def _rheology(rng) -> dict:
+    """A paste that thins or thickens: laws of other kinds would be other loops."""
+    tau, stiff = _drawn(rng, 1.0, 50.0), _drawn(rng, 5.0, 50.0)
+    exponent = _drawn(rng, 0.4, 1.5)
+    paste = {"yield_stress": tau, "consistency": _drawn(rng, 0.5, 5.0), "exponent": exponent}
+    return {"herschel_bulkley": {**paste, "largest_viscosity": stiff}}
 
 
 def _hole(rng, dimensions: int, lower, upper) -> dict:

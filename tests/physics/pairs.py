@@ -50,6 +50,10 @@ def view(n=2, dim=2, seed=3):
         transport=tuple(rng.normal(size=n) * 0.1 for _ in range(dim)),
         rest_density=rng.uniform(800, 1000, n),
         apparent=tuple(rng.normal(size=n) for _ in range(dim)),
+        apparent_viscosity=rng.uniform(1.0, 9.0, n),
+        strain_rate=rng.uniform(0.0, 30.0, n),
+        grip=np.resize((0.0, 0.6, 1.0), n),
+        rheology=np.resize((1.0, 0.0, 2.0), n),
     )
 
 

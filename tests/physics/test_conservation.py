@@ -16,15 +16,25 @@ from physics.test_effects import made
 from simulation.test_absence import calling_for
 
 from psph.composition.terms import displacement, push, radial, shear
+from psph.fields import filled
 from psph.physics.catalogue import CATALOGUE
 from psph.physics.damping.acoustic import CorrectedDamper
 from psph.physics.damping.reconstructed import BesideLinearFlow
+from psph.physics.fluid.apparent import ApparentFriction, CentralApparentFriction, FluidAlone, Rub
+from psph.physics.fluid.rheology import Granular, HerschelBulkley, Newtonian
 from psph.physics.fluid.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
 from psph.physics.order.potential import InDisorder, PairPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
 
 MOMENTUM, ANGULAR = "momentum", "angular momentum"
+LAWS = (
+    Newtonian(),
+    HerschelBulkley(5.0, 0.3, 0.7, 0.1, 200.0),
+    Granular(0.38, 0.64, 0.28, 1e-3, 2500.0, 1e-3, 50.0),
+)
+"""Of viscosities that differ between the particles of a crowd."""
+
 DRIFT = 1e-13
 """Largest change of a momentum in a box, relative to that of one of its fluids."""
 
@@ -37,8 +47,10 @@ def claiming(what):
 def in_a_scene(effect, dim):
     """The form that acts in a scene: some effects of the catalogue are but their parameters."""
     forms = {
+        "ApparentViscosity": lambda: ApparentFriction(LAWS, 1.0, FluidAlone(), Rub()),
         "PairPotential": lambda: neutral_potential(0.5, 50.0, 0.01, dim, alike=False),
         "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
+        "CentralApparentFriction": lambda: CentralApparentFriction(LAWS, 1.0, FluidAlone()),
         "PositionShift": lambda: LatticeShift(0.1, -1e-4, 1e-6),
         "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4, 0.2),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
@@ -64,10 +76,12 @@ def crowd(dim):
 def rates(effect, p):
     """Forces (n, dim) N on particles that all are neighbours, and where the effect moves them, m/s."""
     n, dim = len(p.mass), len(p.position)
-    if hasattr(effect, "writes"):
-        stored = [sums_of(effect, p, k) for k in range(n)]
-        values = np.array(stored).T
-        p = p._replace(**{effect.writes.name: tuple(values) if values.ndim > 1 else values})
+    if fields := filled(effect):
+        values = np.array([sums_of(effect, p, k) for k in range(n)]).T
+        if len(fields) > 1:
+            p = p._replace(**{field.name: each for field, each in zip(fields, values, strict=True)})
+        else:
+            p = p._replace(**{fields[0].name: tuple(values) if values.ndim > 1 else values})
     forces, moves = np.zeros((n, dim)), np.zeros((n, dim))
     for a in range(n):
         for b in set(range(n)) - {a}:
@@ -89,7 +103,7 @@ def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
 
 
 @pytest.mark.parametrize("dim", (2, 3))
-@pytest.mark.parametrize("effect", claiming(ANGULAR))
+@pytest.mark.parametrize("effect", [*claiming(ANGULAR), CentralApparentFriction])
 def test_torques_between_different_particles_sum_up_to_nothing(effect, dim):
     p = crowd(dim)
     forces, moves = rates(in_a_scene(effect, dim), p)

@@ -116,6 +116,8 @@ def calling_for(entry) -> list[str]:
         return [*STICKY, *([f"walls.side.condition={choice}"] if choice else [])]
     if choice:
         return [f"{key}={choice}"]
+    if key == "fluids.*.rheology":
+        return ["fluids.water.rheology.bingham={yield_stress=1.0, plastic_viscosity=0.1}"]
     if "*" in key:
         return [f"{key.replace('*', 'water')}=0.001"]
     if key == "frame.motion":

@@ -46,6 +46,15 @@ def test_a_sum_that_pairs_read_comes_before_and_travels():
     assert first.stores == ("a",) and last.stores == () and last.brought == ("a",)
 
 
+def test_an_effect_may_fill_several_fields_with_one_sum():
+    both = effect((A, B), in_rates="ab", neighbour="ab")
+    first, last = passes_of(both)
+    assert first.stores == (("a", "b"),) and len(first.reductions) == 1
+    assert first.written == {"a", "b"} and last.stores == () and last.brought == ("a", "b")
+    [only] = passes_of(effect((A, B), in_rates="ab", neighbour="ab", lagged=True))
+    assert only.stores == (("a", "b"),) and only.brought == ()
+
+
 def test_a_pressure_that_a_pass_tells_settles_the_density_and_travels_twice():
     """What it reads of a neighbour is that of the step; what it writes goes to the ghosts once more."""
     tells = effect(PRESSURE, in_sum=("pressure",), in_rates=("pressure",), neighbour=("pressure",))

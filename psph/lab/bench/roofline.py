@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.engine.jit import compiled
+from psph.fields import filled
 
 COPIED = 1 << 24
 """Numbers of an array that is copied, 128 MiB: more than caches hold."""
@@ -83,7 +84,7 @@ def shares(simulation, ceiling: Ceiling, pairs: int, entries: int, seconds: floa
     flops = plan.flops_per_pair(simulation.domain.periods)
     view = [x for entry in store.view() for x in (entry if isinstance(entry, tuple) else (entry,))]
     read = sum(isinstance(x, np.ndarray) for x in view)
-    written = store.dimensions + 1 + sum(hasattr(e, "writes") for e in plan.reductions)
+    written = store.dimensions + 1 + sum(len(filled(e)) for e in plan.reductions)
     begin_and_lengths = 2
     particles = simulation.comm.allreduce(store.owned)
     moved = 4 * entries + 8 * (read + written + begin_and_lengths) * particles

@@ -5,6 +5,7 @@ from pathlib import Path
 from shutil import rmtree
 
 from psph.fields import SAVED
+from psph.physics.catalogue import BUILT_IN
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
@@ -16,7 +17,8 @@ DERIVED = ("vorticity",)
 VARIANTS = ("surface", "slice")
 """Other ways to show a field than the usual one."""
 
-_FIELDS = "|".join([*(field.name for field in SAVED), *DERIVED])
+_WRITTEN = (field.name for field in BUILT_IN.fields.values() if field.saved and field not in SAVED)
+_FIELDS = "|".join([*(field.name for field in SAVED), *_WRITTEN, *DERIVED])
 _DRAWN = re.compile(rf"(?:{_FIELDS})(?:_(?:{'|'.join(VARIANTS)}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")
 
 _GAUGED = re.compile(r"gauge-[A-Za-z0-9_-]+\.png")

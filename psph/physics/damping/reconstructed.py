@@ -9,30 +9,15 @@ from psph.fields import Field as Declared
 from psph.formula import where
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
+from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
 from psph.physics.fluid.viscosity import inverse_square, lighter
-from psph.vectors import (
-    add,
-    adjugate,
-    determinant,
-    dot,
-    dyad,
-    matrix_product,
-    outer,
-    scale,
-    symmetric_part,
-    times,
-    zero_like,
-)
+from psph.vectors import add, dot, times
 
 NEAR = 0.7
 """Distance in spacings below which two particles are in disorder, and all of their motion is damped."""
 
 AT_WALLS = 0.02
 """Speed of approach over the speed of sound that a wall does not damp."""
-
-
-FEWEST = 0.1
-"""Determinant of M, about 1 on a lattice, below which the rate of strain fades."""
 
 
 class ReconstructedDamping(NamedTuple):
@@ -89,21 +74,17 @@ class BesideLinearFlow(NamedTuple):
     slow = True
 
     def start(self, i):
-        """No neighbour yet: velocity differences, and how they lie."""
-        return dyad(zero_like(i.position), zero_like(i.position)), outer(zero_like(i.position))
+        """No neighbour yet."""
+        return no_rate(i)
 
     def gather(self, total, i, j, pair):
-        """Add −V_j u_ij ∇W_ijᵀ of a fluid neighbour, and −V_j x_ij ∇W_ijᵀ."""
-        weight = -j.specific_volume * pair.m_dw_r
-        change = scale(dyad(pair.u_ij, pair.x_ij), weight * j.is_fluid)
-        return add(total[0], change), add(total[1], scale(outer(pair.x_ij), weight))
+        """Take the velocity of a fluid neighbour, and the place of any."""
+        weight = rate_weight(j, pair)
+        return take_rate(total, pair, pair.u_ij, weight * j.is_fluid, weight)
 
     def finish_value(self, total, i, kernel):
         """E_i, 1/s."""
-        changes, place = total
-        size = max(determinant(place, i.position), FEWEST)
-        inverse = scale(adjugate(place, i.position), 1.0 / size)
-        return symmetric_part(matrix_product(changes, inverse, i.position), i.position)
+        return linear_rate(total, i)
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""

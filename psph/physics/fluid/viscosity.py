@@ -15,6 +15,9 @@ SINGULARITY = 0.01
 NEGLIGIBLE = 0.01
 """A fluid's viscosity below this part of the numerical one is negligible."""
 
+TAKEN_OVER = "the friction of fluids with a rheology takes its place"
+"""Why a friction with constant viscosities is absent beside one that depends on the rate of strain."""
+
 ONSET = 0.2
 """Speed of approach over c above which impact damping sets in."""
 
@@ -36,29 +39,31 @@ def lighter(i, j):
 
 
 @helper
-def friction(i, j, pair):
-    """Coefficient of a difference of velocities in the acceleration by the fluid's viscosity, 1/s."""
-    return _friction(i, j, pair, pair.r2)
+def newtonian(i, j):
+    """(μ_i + μ_j)/(ρ_i ρ_j)² of the fluids' own viscosities μ = ρν; in specific volumes, one division in
+    :func:`friction` in place of three."""
+    v_i, v_j = i.specific_volume, j.specific_volume
+    return (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
 
 
 @helper
-def corrected_friction(i, j, pair):
+def friction(both, i, j, pair, numerator):
+    """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``numerator``/(r² + 0.01 h²), ``both`` as in :func:`newtonian`.
+
+    With r² for the ``numerator`` the coefficient of a difference of velocities in the acceleration, 1/s.
+    """
+    v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
+    under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
+    return 4.0 * pair.m_dw_r * (both * numerator) / under
+
+
+@helper
+def corrected_friction(both, i, j, pair):
     """The same with corrected gradients, 1/s."""
     v_i, v_j = i.specific_volume, j.specific_volume
-    both = add(i.gradient_correction, j.gradient_correction)
-    stretch = 1.0 + 0.5 * dot(times(both, pair.x_ij), pair.x_ij) / pair.r2
-    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
-    return 4.0 * pair.m_dw_r * over * stretch / ((v_i + v_j) * (v_i + v_j))
-
-
-@helper
-def _friction(i, j, pair, numerator):
-    """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``numerator``/(r² + 0.01 h²)."""
-    v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
-    # (μ_i + μ_j)/(ρ_i + ρ_j)² in specific volumes: one division in place of three.
-    over = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j * numerator
-    under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
-    return 4.0 * pair.m_dw_r * over / under
+    stretch = add(i.gradient_correction, j.gradient_correction)
+    stretch = 1.0 + 0.5 * dot(times(stretch, pair.x_ij), pair.x_ij) / pair.r2
+    return 4.0 * pair.m_dw_r * both * stretch / ((v_i + v_j) * (v_i + v_j))
 
 
 class LaminarViscosity(NamedTuple):
@@ -71,19 +76,20 @@ class LaminarViscosity(NamedTuple):
     conserves = ("momentum",)
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form that takes them; beside central friction, nothing."""
+        """With corrected gradients, the form that takes them; beside central friction, or where the viscosity
+        depends on the rate of strain, nothing."""
         physics = scene.physics
-        if physics.central_friction is not None:
+        if physics.central_friction is not None or scene.rheologies:
             return None
         return self if physics.gradient_correction is None else CorrectedViscosity()
 
     def why_absent(self, scene: Facts):
         """What takes its place."""
-        return "physics.central_friction takes its place"
+        return TAKEN_OVER if scene.rheologies else "physics.central_friction takes its place"
 
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
-        return friction(i, j, pair)
+        return friction(newtonian(i, j), i, j, pair, pair.r2)
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
@@ -117,7 +123,7 @@ class CorrectedViscosity(NamedTuple):
 
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
-        return corrected_friction(i, j, pair)
+        return corrected_friction(newtonian(i, j), i, j, pair)
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
@@ -136,9 +142,17 @@ class CentralFriction(NamedTuple):
 
     conserves = ("momentum", "angular momentum")
 
+    def in_scene(self, scene: Facts):
+        """Nothing where the viscosity depends on the rate of strain."""
+        return None if scene.rheologies else self
+
+    def why_absent(self, scene: Facts):
+        """What takes its place."""
+        return TAKEN_OVER
+
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        return (2.0 + len(pair.x_ij)) * _friction(i, j, pair, pair.u_dot_x)
+        return (2.0 + len(pair.x_ij)) * friction(newtonian(i, j), i, j, pair, pair.u_dot_x)
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
@@ -149,8 +163,13 @@ FRICTION_STEP = 0.125
 """Largest ν Δt/h² (Morris, Fox & Zhu 1997)."""
 
 
+def friction_step(smoothing_length: float, viscosity: float) -> float:
+    """Δt ≤ 0.125 h²/ν, s, of the largest kinematic ``viscosity`` (Morris, Fox & Zhu 1997, eq. 22)."""
+    return FRICTION_STEP * smoothing_length**2 / viscosity
+
+
 def _longest_step(scene) -> float:
-    return FRICTION_STEP * scene.smoothing_length**2 / scene.viscosity
+    return friction_step(scene.smoothing_length, scene.viscosity)
 
 
 def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:

@@ -1,13 +1,19 @@
 """What friction at a wall does to the fluid beside it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from psph.fields import VECTOR, Field
+from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.physics.fluid.viscosity import corrected_friction, friction
+from psph.physics.fluid.apparent import rub, rub_of
+from psph.physics.fluid.viscosity import corrected_friction, friction, newtonian
 from psph.vectors import add, scale, subtract, zero_like
 
 MIRRORED = Field("slip", "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", VECTOR)
+GRIP = Field("grip", "1", "how much of what a wall mirrors counts in a rate of strain; 0 in the fluid")
+
+FULL_GRIP = 4.0
+"""One over the part of a kernel that fluid fills around the first layer of a wall."""
 
 NO_FLUID = 1e-300
 """Keeps a kernel sum without any fluid from dividing by zero, 1/m^d."""
@@ -24,6 +30,7 @@ def _gather(self, total, i, j, pair):
     return total[0] + w, add(total[1], scale(j.velocity, w))
 
 
+@helper
 def _finish_value(self, total, i, kernel):
     """v_wall − ṽ in a wall without slip, 0 elsewhere and out of reach of the fluid, m/s."""
     share = i.no_slip / max(total[0], NO_FLUID)
@@ -44,10 +51,13 @@ class NoSlip(NamedTuple):
     lagged = True
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form whose friction has them too; nothing where the fluid sticks to
-        mirrors alone, which show it a velocity themselves."""
+        """With corrected gradients, the form whose friction has them too, and that whose viscosity depends on
+        the rate of strain; nothing where the fluid sticks to mirrors alone, which show it a velocity
+        themselves."""
         if not any(one.no_slip for one in scene.species):
             return None
+        if scene.rheologies:
+            return ApparentNoSlip(rub_of(scene))
         return self if scene.physics.gradient_correction is None else CorrectedNoSlip()
 
     def why_absent(self, scene: Facts):
@@ -56,7 +66,7 @@ class NoSlip(NamedTuple):
 
     def push(self, i, j, pair):
         """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
-        return scale(subtract(i.slip, j.slip), friction(i, j, pair))
+        return scale(subtract(i.slip, j.slip), friction(newtonian(i, j), i, j, pair, pair.r2))
 
     start, gather, finish_value = _start, _gather, _finish_value
 
@@ -73,6 +83,31 @@ class CorrectedNoSlip(NamedTuple):
 
     def push(self, i, j, pair):
         """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
-        return scale(subtract(i.slip, j.slip), corrected_friction(i, j, pair))
+        return scale(subtract(i.slip, j.slip), corrected_friction(newtonian(i, j), i, j, pair))
 
     start, gather, finish_value = _start, _gather, _finish_value
+
+
+class ApparentNoSlip(NamedTuple):
+    """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
+
+    As :class:`NoSlip` beside :class:`psph.physics.fluid.apparent.ApparentViscosity`, with the coefficient
+    F_ij of its form ``friction``.  The grip of a wall particle, min(4 Σ_f V W_wf, 1), says how much of its
+    mirrored flow counts in a rate of strain: from the second layer on ṽ is still the flow beside the face.
+    """
+
+    friction: Any
+
+    writes = (MIRRORED, GRIP)
+    lagged = True
+
+    def push(self, i, j, pair):
+        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
+        return scale(subtract(i.slip, j.slip), rub(self.friction, i, j, pair))
+
+    def finish_value(self, total, i, kernel):
+        """The components of v_wall − ṽ, m/s, and the grip."""
+        grip = i.no_slip * min(FULL_GRIP * total[0] * i.mass * i.specific_volume, 1.0)
+        return _finish_value(self, total, i, kernel) + (grip,)
+
+    start, gather = _start, _gather

@@ -1,0 +1,119 @@
+"""The laws of viscosities of a scene, and what they mean for it: where mud stands, creeps, what it costs."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from psph.physics.fluid.rheology import Granular, HerschelBulkley
+from psph.physics.fluid.viscosity import friction_step
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+MOST_CREEP = 0.05
+"""Rate of the creep below the yield, over that of the flow, above which the cap hides the yield."""
+
+
+def laws_of(case) -> tuple[Any, ...]:
+    """The different laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
+    laws = (fluid.rheology.law for fluid in case.fluids.values() if fluid.rheology)
+    return tuple(dict.fromkeys(laws))
+
+
+def number_of(fluid, laws: tuple[Any, ...]) -> int:
+    """The number of the law of a fluid's viscosity among ``laws`` from 1 on, 0 where that is constant."""
+    return 1 + laws.index(fluid.rheology.law) if fluid.rheology else 0
+
+
+class Paste(NamedTuple):
+    """A fluid with a yield stress in its scene.
+
+    Its ``law``, its ``thickness`` in m, the ``pull`` of its weight in Pa/m, the largest ``stress`` in Pa that
+    weight or speed bring about over this thickness, and the ``rate`` of strain under that, 1/s.
+    """
+
+    key: str
+    law: HerschelBulkley
+    thickness: float
+    pull: float
+    stress: float
+    rate: float
+
+    @property
+    def creep(self) -> float:
+        """The largest rate of strain below its yield, 1/s."""
+        return self.law.yield_stress / self.law.largest
+
+
+def pastes(scene: "Scene") -> Iterator[Paste]:
+    """The fluids with a yield stress."""
+    for place, (name, fluid) in enumerate(scene.case.fluids.items()):
+        law = fluid.rheology and fluid.rheology.law
+        if not isinstance(law, HerschelBulkley) or not law.yield_stress:
+            continue
+        thickness = _thickness(scene, place)
+        pull = fluid.density * sum(g * g for g in scene.gravity) ** 0.5
+        rate = scene.starting_speed / thickness
+        stress = max(pull * thickness, law.viscosity(rate, 0.0, 0.0) * rate)
+        yield Paste(f"fluids.{name}.rheology", law, thickness, pull, stress, law.rate_under(stress))
+
+
+def held_speeds(scene: "Scene", pull: float, gap: float, depth: float) -> Iterator[float]:
+    """The speeds in m/s that fluids reach under ``pull`` m/s² between plates ``gap`` m apart, and grains of
+    this ``depth``, m, on a slope."""
+    down = math.hypot(*(g for g, period in zip(scene.gravity, scene.periods) if period is None))
+    for fluid in scene.case.fluids.values():
+        if fluid.viscosity:
+            yield pull * gap**2 / (8.0 * fluid.viscosity)
+        elif fluid.rheology and isinstance(fluid.rheology.law, HerschelBulkley):
+            yield fluid.rheology.law.speed_between(fluid.density * pull, 0.5 * gap)
+        elif fluid.rheology and isinstance(fluid.rheology.law, Granular) and down:
+            yield fluid.rheology.law.speed_on_slope(pull / down, fluid.density * down, depth)
+
+
+def _thickness(scene: "Scene", place: int) -> float:
+    """The smallest extent of a fluid along the axes that do not repeat, or along all, m."""
+    sizes = scene.census.highest[place] - scene.census.lowest[place] + scene.spacing
+    open_axes = [d for d, period in enumerate(scene.periods) if period is None]
+    return float(min(sizes[d] for d in open_axes or range(scene.dimensions)))
+
+
+def rheology_lines(scene: "Scene") -> Iterator[str]:
+    """What ``explain`` says of the laws: yield, plug, Bingham number, creep, and the cost of the cap."""
+    sound = scene.case.time.cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
+    for name, fluid in scene.case.fluids.items():
+        if fluid.rheology:
+            cap = fluid.rheology.law.largest
+            times = sound / friction_step(scene.smoothing_length, cap / fluid.density)
+            longer = (
+                f"steps {times:.2g} times shorter than sound allows" if times > 1.0 else "no shorter steps"
+            )
+            yield f"fluids.{name}: {fluid.rheology.name}, at most {cap:.3g} Pa s: {longer}"
+    for paste in pastes(scene):
+        yield from _paste_lines(paste)
+
+
+def _paste_lines(paste: Paste) -> Iterator[str]:
+    law, says = paste.law, f"yield stress {paste.law.yield_stress:.3g} Pa"
+    if paste.pull:
+        plug = law.yield_stress / paste.pull
+        says += f": a layer under {plug:.3g} m stands, even upright; between plates the plug is twice that"
+    yield says
+    if not paste.rate:
+        yield f"does not flow: weight over {paste.thickness:.3g} m brings about {paste.stress:.3g} Pa at most"
+        return
+    flowing = law.consistency * paste.rate**law.exponent
+    yield f"Bingham number {law.yield_stress / flowing:.2g} at {paste.rate:.3g} 1/s, the most that moves it"
+    yield f"creeps below the yield at up to {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of that"
+
+
+def rheology_warnings(scene: "Scene") -> Iterator[str]:
+    """Lines for laws whose cap hides what they are for."""
+    for paste in pastes(scene):
+        if paste.rate and paste.creep > MOST_CREEP * paste.rate:
+            least = paste.law.yield_stress / (MOST_CREEP * paste.rate)
+            yield (
+                f"{paste.key}: the largest viscosity, {paste.law.largest:.3g} Pa s, hides the yield: below "
+                f"that the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of the rate "
+                f"of its flow; give largest_viscosity = {least:.2g} or more"
+            )

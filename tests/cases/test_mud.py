@@ -1,0 +1,172 @@
+"""Mud and grains against what theory says of them, at two spacings, and the controls."""
+
+import math
+
+import numpy as np
+import pytest
+from cases.measures import finished
+
+pytestmark = pytest.mark.timeout(900)
+
+HALF, PULL = 0.1, 1000.0
+"""Half the distance of the plates, m, and the force between them, Pa/m."""
+
+COARSE_CHANNEL = (
+    "space.spacing=0.01",
+    "space.lower=[0.0,-0.14]",
+    "space.upper=[0.1,0.14]",
+    "fluids.mud.shape.box.upper=[0.1,0.1]",
+    "walls.plates.shape.difference.from.box={lower=[0.0,-0.14],upper=[0.1,0.14]}",
+    "walls.plates.shape.difference.minus=[{box={lower=[0.0,-0.1],upper=[0.1,0.1]}}]",
+)
+"""Ten particles to half the gap, and a period that is wide enough for them."""
+
+
+def fluid(run, frame=-1):
+    """The fluid of a frame: its arrays by name."""
+    found = run.frame(frame)
+    return {name: values[found["kind"] == 0] for name, values in found.items()}
+
+
+def between_plates(y, consistency, exponent=1.0, tau=0.0):
+    """u of a paste at y from the middle, m/s: the rate ((ρf|y| − τ_y)/K)^(1/n) above the yield, integrated."""
+    power = 1.0 + 1.0 / exponent
+    plug = min(tau / PULL, HALF)
+    beside = np.maximum(np.abs(y) - plug, 0.0)
+    return (PULL / consistency) ** (1.0 / exponent) / power * ((HALF - plug) ** power - beside**power)
+
+
+def channel_errors(run, *law):
+    """Largest error of the profile over the largest speed, and error of the speed in the middle."""
+    mud = fluid(run)
+    y, u = mud["position"][:, 1], mud["velocity"][:, 0]
+    exact = between_plates(y, *law)
+    top = between_plates(0.0, *law)
+    return np.abs(u - exact).max() / top, u[np.abs(y) < 0.02].mean() / between_plates(
+        y[np.abs(y) < 0.02], *law
+    ).mean() - 1
+
+
+BINGHAM = (20.0, 1.0, 50.0)
+POWER = (50.0, 0.5)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("spacing", "profile", "middle"), [(COARSE_CHANNEL, 0.06, 0.05), ((), 0.03, 0.03)])
+def test_a_bingham_channel_has_its_plug(spacing, profile, middle, tmp_path):
+    run = finished("mud/bingham_channel", tmp_path, *spacing)
+    assert run.unit("apparent_viscosity") == "Pa s" and run.unit("strain_rate") == "1/s"
+    errors = channel_errors(run, *BINGHAM)
+    assert errors[0] < profile and abs(errors[1]) < middle
+    mud = fluid(run)
+    y, rate, eta = mud["position"][:, 1], mud["strain_rate"], mud["apparent_viscosity"]
+    assert rate[np.abs(y) < 0.02].max() < 0.01 * rate[np.abs(y) > 0.08].min()  # it moves as one
+    stress = (rate * eta)[np.abs(y) > 0.06] / (PULL * np.abs(y)[np.abs(y) > 0.06])
+    assert stress == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("spacing", "most"), [(COARSE_CHANNEL, 0.03), ((), 0.03)])
+def test_a_channel_of_a_fluid_that_thins_in_shear(spacing, most, tmp_path):
+    run = finished("mud/power_law_channel", tmp_path, *spacing)
+    profile, middle = channel_errors(run, *POWER)
+    assert profile < most and abs(middle) < most
+    newton = between_plates(0.0, *POWER) * (1.0 - (fluid(run)["position"][:, 1] / HALF) ** 2)
+    assert np.abs(fluid(run)["velocity"][:, 0] - newton).max() > 3 * most * between_plates(0.0, *POWER)
+
+
+def test_mud_below_its_yield_only_creeps_and_flows_with_a_lower_one(tmp_path):
+    """y_p = 0.15 m is more than the half gap of 0.1: a creep of ρf H²/(2η) with the cap; the control flows."""
+    short = (*COARSE_CHANNEL, "time.end=0.05", "output.frames=0.05")
+    stands, flows = (
+        fluid(
+            finished(
+                "mud/bingham_channel",
+                tmp_path / str(tau),
+                *short,
+                f"fluids.mud.rheology.bingham.yield_stress={tau}",
+                "fluids.mud.rheology.bingham.largest_viscosity=2000.0",
+            )
+        )["velocity"][:, 0].max()
+        for tau in (150.0, 50.0)
+    )
+    creep = PULL * HALF**2 / (2 * 2000.0)
+    assert stands == pytest.approx(creep, rel=0.2)
+    assert flows > 6 * creep
+
+
+COARSE_SLOPE = (
+    "space.spacing=1.06e-3",
+    "space.upper=[0.0106,0.02]",
+    "space.lower=[0.0,-0.00318]",
+    "fluids.grains.shape.box.upper=[0.0106,0.0106]",
+    "walls.floor.shape.box={lower=[0.0,-0.00318],upper=[0.0106,0.0]}",
+)
+
+
+def bagnold(z, degrees, depth=0.0106, d=5.3e-4, packing=0.6):
+    """u of grains at z over the floor of a slope, m/s."""
+    slope, down = math.tan(math.radians(degrees)), 9.81 * math.cos(math.radians(degrees))
+    inertial = 0.279 * (slope - 0.382) / (0.643 - slope)
+    rise = depth**1.5 - np.maximum(depth - z, 0.0) ** 1.5
+    return 2 * inertial / (3 * d) * math.sqrt(packing * down) * rise
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("spacing", "most"), [(COARSE_SLOPE, 0.06), ((), 0.03)])
+@pytest.mark.parametrize("degrees", (24, 26))
+def test_grains_on_a_slope_have_the_profile_of_bagnold(spacing, most, degrees, tmp_path):
+    angle = math.radians(degrees)
+    gravity = f"physics.gravity=[{9.81 * math.sin(angle)!r},{-9.81 * math.cos(angle)!r}]"
+    grains = fluid(finished("mud/grains_on_slope", tmp_path, gravity, *spacing))
+    z, u = grains["position"][:, 1], grains["velocity"][:, 0]
+    top = bagnold(0.0106, degrees)
+    assert np.abs(u - bagnold(z, degrees)).max() / top < most
+
+
+def test_grains_stand_on_a_slope_below_their_friction(tmp_path):
+    """tan 18° = 0.325 < 0.382: they creep by the cap alone; at 30°, below the largest, they go."""
+    short = (*COARSE_SLOPE, "time.end=0.1", "output.frames=0.1")
+    speeds = []
+    for degrees in (18.0, 30.0):
+        angle = math.radians(degrees)
+        gravity = f"physics.gravity=[{9.81 * math.sin(angle)!r},{-9.81 * math.cos(angle)!r}]"
+        run = finished("mud/grains_on_slope", tmp_path / str(degrees), gravity, *short)
+        speeds.append(fluid(run)["velocity"][:, 0].max())
+    creep = 1500.0 * 9.81 * math.sin(math.radians(18.0)) * 0.0106**2 / (2 * 7.5)
+    assert speeds[0] == pytest.approx(creep, rel=0.15)
+    assert speeds[1] > 3 * speeds[0]
+
+
+VOLUME, WIDTH = 0.02, 0.02
+"""Of the heap, m², and of the columns that its height is taken over, m."""
+
+
+def heap(run, frame, spacing=0.005):
+    """Middles of columns, m, the height of the mud in them, m, and where h² as a line in x comes to nothing."""
+    x = fluid(run, frame)["position"][:, 0]
+    edges = np.arange(0.0, 1.2 + WIDTH, WIDTH)
+    height = np.histogram(x, edges)[0] * spacing**2 / WIDTH
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    deep = height > 1.5 * spacing
+    slope, square = np.polyfit(middle[deep], height[deep] ** 2, 1)
+    return middle, height, -square / slope
+
+
+@pytest.mark.long
+def test_a_heap_of_mud_stops_where_its_yield_stress_bears_it_and_a_newtonian_one_runs_on(tmp_path):
+    run = finished("mud/bingham_slump", tmp_path / "mud", "output.frames=2.0")
+    fall = 2 * 10.0 / (1000.0 * 9.81)
+    reach = (1.5 * VOLUME / math.sqrt(fall)) ** (2 / 3)
+    x, height, front = heap(run, -1)
+    assert front == pytest.approx(reach, rel=0.1)
+    exact = np.sqrt(fall * np.maximum(reach - x, 0.0))
+    assert np.sqrt(np.mean((height - exact)[x < reach] ** 2)) < 0.1 * exact.max()
+    before, after = (fluid(run, k)["position"][:, 0].max() for k in (-2, -1))
+    assert 0.0 <= after - before < 0.03 * reach
+    thin = (
+        "fluids.mud.rheology.bingham.yield_stress=1e-6",
+        "fluids.mud.rheology.bingham.largest_viscosity=1.0",
+    )
+    newton = finished("mud/bingham_slump", tmp_path / "newton", *thin, "output.frames=2.0")
+    assert fluid(newton)["position"][:, 0].max() > 1.15 * reach

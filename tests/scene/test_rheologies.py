@@ -1,0 +1,74 @@
+"""What `explain` and `check` say of rheologies."""
+
+import pytest
+from drafts import CHANNEL, TANK, draft
+from scene.test_units import checked
+
+from psph.run.explain import explain
+from psph.scene import Scene
+
+MUD = "fluids.water.rheology.bingham={yield_stress=%r, plastic_viscosity=1.0, largest_viscosity=%r}"
+CONSTANT = "fluids.water.viscosity=0.0"
+
+
+def said(folder, text, *overrides):
+    """The lines of `explain` on the rheologies."""
+    lines = list(explain(Scene(draft(folder, text, *overrides)), 1))
+    heads = [n for n, line in enumerate(lines) if line == "Viscosities that depend on the rate of strain"]
+    if not heads:
+        return []
+    found = []
+    for line in lines[heads[0] + 1 :]:
+        if not line.startswith("  ") or line.startswith("  expected"):
+            break
+        found.append(line.strip())
+    return found
+
+
+def test_explain_tells_yield_plug_bingham_number_creep_and_cost(tmp_path):
+    """A tank of 0.5 m of mud that weighs 9800 Pa/m: 4900 Pa, of which 4890 Pa shear 1 Pa s."""
+    head, *rest = said(tmp_path, TANK, MUD % (10.0, 2e5))
+    assert head.startswith("fluids.water: bingham, at most 2e+05 Pa s: steps ")
+    assert head.endswith(" times shorter than sound allows")
+    assert rest == [
+        "yield stress 10 Pa: a layer under 0.00102 m stands, even upright; between plates the plug is twice "
+        "that",
+        "Bingham number 0.002 at 4.89e+03 1/s, the most that moves it",
+        "creeps below the yield at up to 5e-05 1/s, 1e-08 of that",
+    ]
+    assert said(tmp_path, TANK, MUD % (10.0, 100.0))[0].endswith("no shorter steps")
+    assert said(tmp_path, TANK) == []
+
+
+def test_explain_says_where_nothing_flows(tmp_path):
+    lines = said(tmp_path, TANK, MUD % (5000.0, 2e4))
+    assert lines[-1] == "does not flow: weight over 0.5 m brings about 4.9e+03 Pa at most"
+
+
+def test_a_cap_that_hides_the_yield_is_warned_of(tmp_path):
+    """1/20 of the 4400 1/s that 4900 Pa shear above 500 Pa: 500 Pa over 220 1/s is 2.3 Pa s."""
+    [line] = checked(tmp_path, TANK, MUD % (500.0, 2.0))
+    assert line == (
+        "fluids.water.rheology: the largest viscosity, 2 Pa s, hides the yield: below that the fluid creeps "
+        "at 2.5e+02 1/s, 0.057 of the rate of its flow; give largest_viscosity = 2.3 or more"
+    )
+    assert checked(tmp_path, TANK, MUD % (500.0, 2.3)) == []
+
+
+@pytest.mark.parametrize(("tau", "warned"), [(10.0, True), (49.0, False)])
+def test_a_flow_between_plates_is_expected_at_what_its_paste_allows(tmp_path, tau, warned):
+    """100 Pa/m along 1 m: 50 Pa at the plates, against the yield; 4.5 m/s are too fast for sound."""
+    lines = checked(tmp_path, CHANNEL, CONSTANT, MUD % (tau, 1000.0))
+    assert (
+        any(line.startswith("physics.sound_speed") and "a rheology allows" in line for line in lines)
+        == warned
+    )
+
+
+def test_a_long_run_names_the_cap(tmp_path):
+    from psph.run.forecast import long_run
+    from psph.simulation.plan import make_plan
+
+    scene = Scene(draft(tmp_path, TANK, MUD % (10.0, 1e9)))
+    [line] = long_run(scene, make_plan(scene), 1)
+    assert "fluids.water.rheology.bingham sets the step by its largest viscosity, 1e+09 Pa s" in line
