@@ -1,12 +1,15 @@
 """Waves from paddles, two wavelengths and ten depths away, against the theory that moves the paddle."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from cases.measures import by_id, finished, window
+from cases.measures import CASES, by_id, finished, window
 from drafts import TANK, draft
 from long import LONG
 from mpi4py import MPI
 
+from psph.case import load
 from psph.output.reader import Run
 from psph.run.start import run
 
@@ -45,6 +48,21 @@ def test_a_solitary_wave_keeps_its_height_and_speed(tmp_path):
     (begin, low), (end, high) = (crest(found, name) for name in ("first", "second"))
     assert 3.0 / (end - begin) == pytest.approx(1.879, rel=0.01)
     assert (low, high) == pytest.approx((0.06, 0.06), rel=0.05)
+
+
+@LONG
+def test_a_paddle_that_absorbs_keeps_waves_before_a_wall_from_growing(tmp_path):
+    """Twice the height of the waves that come, 0.12 m: measured 0.113 m; 0.26 m without."""
+    text = (Path(CASES) / "absorbing_paddle.toml").read_text(encoding="utf-8")
+    (tmp_path / "plain.toml").write_text(text.replace(", absorb = {}", ""), encoding="utf-8")
+    found = []
+    for name in (Path(CASES) / "absorbing_paddle.toml", tmp_path / "plain.toml"):
+        run(load(name), tmp_path / name.stem, MPI.COMM_SELF, say=lambda *_: None)
+        table = Run(tmp_path / name.stem).gauges()["wall"]
+        periods = [window(table, "wall.wetted", begin, begin + 1.2) for begin in (9.6, 10.8, 12.0, 13.2)]
+        found.append(np.mean([np.ptp(levels) for levels in periods]))
+    assert found[0] == pytest.approx(0.12, rel=0.08)
+    assert found[1] > 2.0 * found[0]
 
 
 def crest(found, name):
