@@ -6,14 +6,14 @@ from numba.core import types
 
 from psph.composition import terms
 from psph.engine.jit import overload
-from psph.vectors import scale, zero_like
+from psph.vectors import add, scale
 
 
 class Loads(NamedTuple):
-    """A pass that sums the push of the fluid alone, on the groups that are ``loaded`` (groups,).
+    """A pass over the groups that are ``loaded`` (groups,): what it sums as acceleration is the fluid's push.
 
     ``group`` has the group of each column; ``contacts`` are effects by which solids push each other, which
-    count whatever the neighbour.  None in its place: a pass over all particles and neighbours.
+    count whatever the neighbour.  All other sums of these particles are those of every pass.
     """
 
     loaded: Any
@@ -21,26 +21,40 @@ class Loads(NamedTuple):
     contacts: tuple = ()
 
 
-def is_loaded(loads, k):
-    """Whether a pass has a sum for the particle in column ``k``."""
-    return loads is None or loads.loaded[loads.group[k]]
+class Unloaded(NamedTuple):
+    """The pass over all other groups.  None in its place: one over all groups."""
+
+    loaded: Any
+    group: Any
 
 
-@overload(is_loaded)
-def _typed_is_loaded(loads, k):
-    if isinstance(loads, types.NoneType):
-        return lambda loads, k: True
-    return lambda loads, k: loads.loaded[loads.group[k]]
+def _is(kind, loads) -> bool:
+    """Whether the type of ``loads`` is that of one of these passes."""
+    return getattr(loads, "instance_class", None) is kind
+
+
+def is_due(loads, k):
+    """Whether a pass has sums for the particle in column ``k``."""
+    return loads is None or bool(loads.loaded[loads.group[k]]) == isinstance(loads, Loads)
+
+
+@overload(is_due)
+def _typed_is_due(loads, k):
+    if _is(Loads, loads):
+        return lambda loads, k: loads.loaded[loads.group[k]]
+    if _is(Unloaded, loads):
+        return lambda loads, k: not loads.loaded[loads.group[k]]
+    return lambda loads, k: True
 
 
 def by_fluid(loads, j, coefficient):
     """A neighbour's share of a sum, 0 in a pass of loads unless j is fluid; None stays None."""
-    return coefficient if loads is None or coefficient is None else j.is_fluid * coefficient
+    return j.is_fluid * coefficient if isinstance(loads, Loads) and coefficient is not None else coefficient
 
 
 @overload(by_fluid)
 def _typed_by_fluid(loads, j, coefficient):
-    if isinstance(loads, types.NoneType) or isinstance(coefficient, types.NoneType):
+    if not _is(Loads, loads) or isinstance(coefficient, types.NoneType):
         return lambda loads, j, coefficient: coefficient
     if isinstance(coefficient, types.BaseTuple):
         return lambda loads, j, coefficient: scale(coefficient, j.is_fluid)
@@ -49,23 +63,27 @@ def _typed_by_fluid(loads, j, coefficient):
 
 def by_contact(loads, i, j, pair):
     """Coefficient of x_ij in the acceleration by contacts, 1/s², or None."""
-    return None if loads is None else terms.radial(loads.contacts, i, j, pair)
+    return terms.radial(loads.contacts, i, j, pair) if isinstance(loads, Loads) else None
 
 
 @overload(by_contact)
 def _typed_by_contact(loads, i, j, pair):
-    if isinstance(loads, types.NoneType):
+    if not _is(Loads, loads):
         return lambda loads, i, j, pair: None
     return lambda loads, i, j, pair: terms.radial(loads.contacts, i, j, pair)
 
 
-def from_outside(loads, effects, i):
-    """Acceleration from outside, m/s²; a load has none of it."""
-    return terms.body(effects, i) if loads is None else zero_like(i.position)
+def completed(loads, effects, reductions, folded, i, force):
+    """The acceleration with that by finished sums and from outside, m/s²; a load has none of these."""
+    if isinstance(loads, Loads):
+        return force
+    return add(add(force, terms.finish_acceleration(reductions, folded, i)), terms.body(effects, i))
 
 
-@overload(from_outside)
-def _typed_from_outside(loads, effects, i):
-    if isinstance(loads, types.NoneType):
-        return lambda loads, effects, i: terms.body(effects, i)
-    return lambda loads, effects, i: zero_like(i.position)
+@overload(completed)
+def _typed_completed(loads, effects, reductions, folded, i, force):
+    if _is(Loads, loads):
+        return lambda loads, effects, reductions, folded, i, force: force
+    return lambda loads, effects, reductions, folded, i, force: add(
+        add(force, terms.finish_acceleration(reductions, folded, i)), terms.body(effects, i)
+    )

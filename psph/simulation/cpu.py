@@ -5,7 +5,7 @@ All that depends on how sums are computed on a processor lies behind these few m
 
 import numpy as np
 
-from psph.composition.loads import Loads
+from psph.composition.loads import Loads, Unloaded
 from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
 from psph.engine.settled import settled
@@ -247,12 +247,16 @@ class Engine:
         s, plan, records = self.store, self.plan, self.records[one.place]
         around = Around(records.view(), records.table, s.low, self._lists, self._mirrors)
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
-        if one.gives_rates and plan.loaded is not None:  # first: the pass renews what is lagged
-            loads = Summed(one.effects, (), Loads(plan.loaded, s.group, plan.contacts))
-            in_threads(self._load, first, last, loads, *seen, Sums(s[LOAD.name], None, ()))
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         sums = Sums(*rates, tuple(map(self._arrays_of, one.stores)))
-        in_threads(self._sums[one.place], first, last, Summed(one.effects, one.reductions), *seen, sums)
+        rest = None
+        if one.gives_rates and plan.loaded is not None:
+            rest = Unloaded(plan.loaded, s.group)
+            loads = Loads(plan.loaded, s.group, plan.contacts)
+            summed = Summed(one.effects, one.reductions, loads)
+            in_threads(self._load, first, last, summed, *seen, sums._replace(acceleration=s[LOAD.name]))
+        summed = Summed(one.effects, one.reductions, rest)
+        in_threads(self._sums[one.place], first, last, summed, *seen, sums)
 
     def _arrays_of(self, stored: str | tuple[str, ...] | None):
         """What takes a sum: the array of a number, those of several numbers in a row, or None."""

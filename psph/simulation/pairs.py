@@ -5,19 +5,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.composition import terms
-from psph.composition.loads import by_contact, by_fluid, from_outside, is_loaded
+from psph.composition.loads import by_contact, by_fluid, completed, is_due
 from psph.composition.mirrors import at_look, ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
 from psph.composition.terms import added, pushed, store
 from psph.engine.jit import compiled
 from psph.engine.simd import spread, total, width_of
-from psph.vectors import add, zero_like
+from psph.vectors import zero_like
 
 
 class Summed(NamedTuple):
-    """What a pass sums: its ``effects``, and the ``reductions``, those with a sum of their own; in a pass of
-    ``loads`` (psph.composition.loads) what the fluid alone does to some groups."""
+    """What a pass sums: its ``effects``, and the ``reductions``, those with a sum of their own; ``loads``
+    says for which groups, if not for all (psph.composition.loads)."""
 
     effects: tuple
     reductions: tuple
@@ -64,7 +64,7 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
     effects, reductions, loads = summed.effects, summed.reductions, summed.loads
     records, lists, mirrors = around.records, around.lists, around.mirrors
     for k in range(np.uint64(first), np.uint64(last)):
-        if not is_loaded(loads, k):
+        if not is_due(loads, k):
             continue
         row = k - np.uint64(around.low)
         i = take(view, k)
@@ -89,7 +89,6 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
                 a = added(a, by_fluid(loads, j, terms.push(effects, i, j, pair)))
                 totals = terms.gather_each(reductions, totals, i, j, pair)
         folded = terms.fold_each(reductions, totals)
-        force = add(total(a), terms.finish_acceleration(reductions, folded, i))
-        store(sums.acceleration, k, add(force, from_outside(loads, effects, i)))
+        store(sums.acceleration, k, completed(loads, effects, reductions, folded, i, total(a)))
         store(sums.density_rate, k, total(rate))
         terms.finish_value(reductions, folded, i, metric.kernel, k, sums.written)
