@@ -8,7 +8,7 @@ from psph.engine.jit import call_by_type
 from psph.fields import Field
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.physics.fluid.rheology import STILL, Newtonian, apparent_viscosity
+from psph.physics.fluid.rheology import STILL, Granular, Newtonian, apparent_viscosity
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
 from psph.physics.fluid.viscosity import corrected_friction, friction, friction_step
 from psph.vectors import norm_squared, subtract
@@ -19,9 +19,35 @@ APPARENT_VISCOSITY = Field(
 )
 
 
+class Harmonic(NamedTuple):
+    """Twice the harmonic mean: what flows beside what stands is not held by it."""
+
+    def twice(self, one, two):
+        """4ab/(a + b)."""
+        return 4.0 * one * two / (one + two + STILL)
+
+
+class Arithmetic(NamedTuple):
+    """Twice the arithmetic mean, the better one where a viscosity varies smoothly: for grains alone."""
+
+    def twice(self, one, two):
+        """a + b."""
+        return one + two
+
+
+twice = call_by_type("twice")
+"""(mean, a, b) → twice the mean of a and b."""
+
+
+def mean_of(scene: Facts):
+    """The mean of viscosities that a scene needs."""
+    smooth = all(isinstance(law, Granular) for law in scene.rheologies)
+    return Arithmetic() if smooth and all(one.rheology for one in scene.species) else Harmonic()
+
+
 @helper
-def apparent(i, j):
-    """(μ_i + μ_j)/(ρ_i ρ_j)² with the harmonic mean of the two apparent viscosities for each.
+def apparent(mean, i, j):
+    """(μ_i + μ_j)/(ρ_i ρ_j)² with the ``mean`` of the two apparent viscosities for each.
 
     A wall has none of its own and takes that of the fluid before it.
     """
@@ -29,23 +55,27 @@ def apparent(i, j):
     one = own + (1.0 - i.is_fluid) * other
     two = other + (1.0 - j.is_fluid) * own
     volumes = i.specific_volume * j.specific_volume
-    return 4.0 * one * two / (one + two + STILL) * (volumes * volumes)
+    return twice(mean, one, two) * (volumes * volumes)
 
 
 class Rub(NamedTuple):
     """The friction of :class:`psph.physics.fluid.viscosity.LaminarViscosity` between apparent viscosities."""
 
+    mean: Any = Harmonic()
+
     def rub(self, i, j, pair):
         """Coefficient of a difference of velocities in the acceleration, 1/s."""
-        return friction(apparent(i, j), i, j, pair, pair.r2)
+        return friction(apparent(self.mean, i, j), i, j, pair, pair.r2)
 
 
 class CorrectedRub(NamedTuple):
     """That of :class:`psph.physics.fluid.viscosity.CorrectedViscosity` between apparent viscosities."""
 
+    mean: Any = Harmonic()
+
     def rub(self, i, j, pair):
         """Coefficient of a difference of velocities in the acceleration, 1/s."""
-        return corrected_friction(apparent(i, j), i, j, pair)
+        return corrected_friction(apparent(self.mean, i, j), i, j, pair)
 
 
 rub = call_by_type("rub")
@@ -54,7 +84,8 @@ rub = call_by_type("rub")
 
 def rub_of(scene: Facts):
     """The form of the friction that a scene needs: with corrected gradients where it has them."""
-    return Rub() if scene.physics.gradient_correction is None else CorrectedRub()
+    form = Rub if scene.physics.gradient_correction is None else CorrectedRub
+    return form(mean_of(scene))
 
 
 class FluidAlone(NamedTuple):
@@ -91,7 +122,7 @@ class ApparentViscosity(NamedTuple):
     """Friction of fluids whose viscosity depends on their rate of strain: mud, paste, grains.
 
     a_i as by :class:`psph.physics.fluid.viscosity.LaminarViscosity`, with 2η_iη_j/(η_i + η_j) for the
-    viscosity of each of a pair: what flows beside what stands is not held by it.  η_i = η(γ̇_i, p_i) by the
+    viscosity of each of a pair, or with (η_i + η_j)/2 where all fluids are grains.  η_i = η(γ̇_i, p_i) by the
     law of its fluid (psph.physics.fluid.rheology), γ̇ = √(2D:D), D = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹) and
     M = −Σ_j V_j x_ij ∇W_ijᵀ over the fluid neighbours and, by their grip, what walls without slip mirror:
     exact for a linear flow up to a free surface, nearly so up to a wall.  η is that of the step before.  The
@@ -109,7 +140,7 @@ class ApparentViscosity(NamedTuple):
             for one in scene.species
         )
         if scene.physics.central_friction is not None:
-            return CentralApparentFriction(laws, largest, FluidAlone())
+            return CentralApparentFriction(laws, largest, FluidAlone(), mean_of(scene))
         beside = StickingWalls() if any(one.no_slip for one in scene.species) else FluidAlone()
         return ApparentFriction(laws, largest, beside, rub_of(scene))
 
@@ -175,12 +206,13 @@ class CentralApparentFriction(NamedTuple):
     laws: tuple
     largest: float
     beside: Any
+    mean: Any = Harmonic()
 
     writes = (STRAIN_RATE, APPARENT_VISCOSITY)
     lagged = True
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        return (2.0 + len(pair.x_ij)) * friction(apparent(i, j), i, j, pair, pair.u_dot_x)
+        return (2.0 + len(pair.x_ij)) * friction(apparent(self.mean, i, j), i, j, pair, pair.u_dot_x)
 
     start, gather, finish_value, longest_step = _start, _gather, _finish_value, _longest_step
