@@ -13,6 +13,7 @@ from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
 from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
+from psph.case.solids import elastic
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
 from psph.physics.walls.conditions import MIRROR
@@ -39,6 +40,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         gauged,
         _names,
         held_together,
+        elastic,
         _single,
         _stepped,
         due,
@@ -238,7 +240,7 @@ def _exact(case) -> Iterator[Finding]:
 
 
 def _continued(case) -> Iterator[Finding]:
-    for name, wall in case.solids.items():
+    for name, wall in case.boundaries.items():
         if wall.continues is not None and wall.continues not in case.fluids:
             yield (
                 (case.table_of(name), name, "continues"),
@@ -270,7 +272,7 @@ def _friction(case) -> Iterator[Finding]:
             ...,
             ("no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key"),
         )
-    for name, wall in case.solids.items():
+    for name, wall in case.boundaries.items():
         if wall.no_slip and not rubs:
             yield (
                 (case.table_of(name), name, "no_slip"),

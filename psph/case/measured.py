@@ -36,14 +36,14 @@ def gauged(case) -> Iterator[Finding]:
             yield ("gauges", name, "force"), ..., says
         for place, wall in enumerate(gauge.force.on if gauge.force else ()):
             loc = ("gauges", name, "force", "on", place)
-            if wall not in case.solids:
-                yield loc, wall, f"no wall or body has this name; {advise(wall, case.solids)}"
-            elif case.solids[wall].condition not in BEARING:
+            if wall not in case.boundaries:
+                yield loc, wall, f"no wall or body has this name; {advise(wall, case.boundaries)}"
+            elif case.boundaries[wall].condition not in BEARING:
                 known = " or ".join(f'"{one}"' for one in BEARING)
                 yield (
                     loc,
                     wall,
-                    f'a wall with condition = "{case.solids[wall].condition}" bears no force; take {known}',
+                    f'a wall with condition = "{case.boundaries[wall].condition}" bears no force; take {known}',
                 )
 
 

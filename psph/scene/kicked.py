@@ -6,7 +6,7 @@ import numpy as np
 
 
 def nearest_fluid_site(scene, point: tuple[float, ...]) -> tuple[int, int]:
-    """(plane, place in the plane) of the fluid site nearest to ``point``; ties: the first."""
+    """(plane, place in the plane) of the site of fluid or solid nearest to ``point``; ties: the first."""
     grid = scene.lattice.grid(0, scene.planes)
     squares = [_squares(scene, d, x, point[d]) for d, x in enumerate(grid)]
     along = squares[scene.axis].ravel()
@@ -15,7 +15,7 @@ def nearest_fluid_site(scene, point: tuple[float, ...]) -> tuple[int, int]:
         if along[plane] > best[0]:
             break
         squares[scene.axis] = along[plane : plane + 1].reshape(grid[scene.axis][:1].shape)
-        fluid = scene.layout.materials(plane, plane + 1) < scene.layout.fluids
+        fluid = scene.layout.materials(plane, plane + 1) < scene.layout.movers
         distance = np.where(fluid, sum(squares), math.inf).ravel()
         place = int(distance.argmin())
         best = min(best, (float(distance[place]), plane, place))

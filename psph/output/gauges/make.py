@@ -28,7 +28,7 @@ def gauge_of(scene, name: str, table, mirrors=None):
     asked, every = getattr(table, table.kind), table.every
     match table.kind:
         case "force":
-            names = (*scene.case.fluids, *scene.solids)
+            names = (*scene.case.fluids, *scene.boundaries)
             groups = tuple(k for k, one in enumerate(names) if one in asked.on)
             return ForceGauge(name, every, groups, asked.about)
         case "level":
