@@ -16,6 +16,9 @@ FLUID, WALL, SOLID = 0, 1, 2
 """Values of ``kind``: a fluid particle moves freely, a wall particle does not, a solid one is held by its
 neighbours of the start."""
 
+KINDS = ("fluid", "wall", "solid")
+"""Their names, in this order."""
+
 
 class Field(NamedTuple):
     """A quantity that each particle carries.

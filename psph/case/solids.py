@@ -72,5 +72,7 @@ def elastic(case) -> Iterator[Finding]:
     for name, solid in case.solids.items():
         rows = solid.velocity_gradient
         if rows and len(rows) != case.space.dimensions:
-            says = f"{len(rows)} rows in {case.space.dimensions}D; give one for each component of the velocity"
+            says = (
+                f"{len(rows)} rows in {case.space.dimensions}D; give one for each component of the velocity"
+            )
             yield (*here, name, "velocity_gradient"), rows, says

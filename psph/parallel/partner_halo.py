@@ -89,12 +89,14 @@ class PartnerHalo:
         self.ids, self._counts = wanted[order], np.bincount(ranks, minlength=comm.size)
         asked, asked_by, _ = sent_rows(comm, self.ids[:, None], ranks[order])
         place = np.argsort(owned, kind="stable")
-        self._sent = place[np.searchsorted(owned[place], asked[:, 0])] if len(asked) else np.zeros(0, np.int64)
+        self._sent = (
+            place[np.searchsorted(owned[place], asked[:, 0])] if len(asked) else np.zeros(0, np.int64)
+        )
         self._asked = np.bincount(asked_by, minlength=comm.size)
         self._owned, self._requests = len(owned), []
 
     def channel(self, table: np.ndarray, first: int, last: int) -> list[MPI.Prequest]:
-        """Persistent requests that bring the places ``first`` to ``last`` of the partners' rows of ``table``."""
+        """Persistent requests for the places ``first`` to ``last`` of the partners' rows of ``table``."""
         row = table.strides[0]
         one = MPI.DOUBLE.Create_contiguous(last - first).Create_resized(0, row)
         requests = []

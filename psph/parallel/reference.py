@@ -9,7 +9,7 @@ from psph.particles.partners import ReferenceRows
 from psph.particles.store import Store
 
 CLOSED = 1.0 - 1e-9
-"""Neighbours at the end of the support weigh nothing: rounding is not to take some in and leave others out."""
+"""Neighbours at the end of the support weigh nothing: rounding is not to take some in and not others."""
 
 NUMBER = Field("number", "1", "id of the particle")
 BODY = Field("body", "1", "number of its solid")

@@ -20,6 +20,7 @@ from psph.run.outlook import outlook
 from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
 from psph.scene.moving import motion_lines
+from psph.scene.solid_checks import solid_lines
 from psph.scene.waving import wave_lines
 from psph.simulation.plan import Plan, make_plan
 
@@ -42,7 +43,8 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     yield from output_lines(scene, plan, neighbours, found.steps)
-    yield from outlook(scene, plan)
+    if scene.case.fluids:
+        yield from outlook(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
 
@@ -114,6 +116,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
+    yield from solid_lines(scene)
     for body in scene.rigid_bodies:
         yield f"  body        {body.name}: {in_words(scene, body)}"
     yield from motion_lines(scene)
@@ -183,9 +186,13 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
 
 
 def _pass_lines(scene, plan: Plan) -> Iterator[str]:
-    flops = plan.flops_per_pair(scene.periods)
     yield from _early_passes(plan)
-    yield f"Pass over the neighbours, one a step, {flops} flops a pair"
+    if plan.passes:
+        flops = plan.flops_per_pair(scene.periods)
+        yield f"Pass over the neighbours, one a step, {flops} flops a pair"
+    if plan.solids:
+        yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
+        yield "  partners get place, then stress: psph.physics.solid.deformation"
     laws = [type(law).__name__ for law in plan.laws]
     names = [call.name for call in plan.called]
     width = _column([*names, *laws, *(entry.effect.__name__ for entry in plan.absent)])
@@ -196,8 +203,10 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     for name, law, reason in zip(laws, plan.laws, plan.law_reasons):
         yield f"  {name:<{width}}{_first_line(law)}"
         yield f"  {'':<{width}}because: {reason}"
-    yield "Not simulated"
+    yield "Not simulated" if scene.case.fluids else "Not simulated, beside all that acts between fluids"
     for entry in plan.absent:
+        if not scene.case.fluids and not hasattr(entry.effect, "body"):
+            continue
         why = plan.dropped.get(entry.effect.__name__) or _why_absent(scene.case, entry.key)
         yield f"  {entry.effect.__name__:<{width}}{why}"
 

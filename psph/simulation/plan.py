@@ -315,7 +315,9 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         contacts=contacts,
         body_step=body_step(scene) if scene.case.bodies else None,
         solids=scene.elastic_solids,
-        solid_of=np.array([NO_SOLID if one.elastic is None else one.elastic for one in scene.species], np.uint8),
+        solid_of=np.array(
+            [NO_SOLID if one.elastic is None else one.elastic for one in scene.species], np.uint8
+        ),
         solid_smoothing_length=SMOOTHING * scene.spacing,
         regions=scene.regions,
         cfl=case.time.cfl,

@@ -252,7 +252,14 @@ class Solids:
         """Bring a field of some rows of a table up to date."""
         rows = np.array(self.store.rows[name], np.uint64)
         self._each(
-            self._fill, first, last, self.store.data, rows, self._columns, table.records, table.places[name][0]
+            self._fill,
+            first,
+            last,
+            self.store.data,
+            rows,
+            self._columns,
+            table.records,
+            table.places[name][0],
         )
 
     def _each(self, loop, first: int, last: int, *args) -> None:
