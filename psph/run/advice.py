@@ -33,8 +33,8 @@ def _solids(scene) -> Iterator[str]:
     if scene.case.time.step is not None:
         yield "remove time.step: the waves in the solids set the step then"
     yield (
-        'give law = "neo-hookean", which stands more compression, a larger hourglass, or some damping; look at '
-        "the units of young, density and loads"
+        'give law = "neo-hookean", which stands more compression, a larger hourglass, or some damping; '
+        "look at the units of young, density and loads"
     )
 
 

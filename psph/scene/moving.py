@@ -80,6 +80,17 @@ def largest_speed(scene) -> float:
     return max((found.speed for _, _, found in moving_walls(scene)), default=0.0)
 
 
+def fastest_corner(scene, part: int) -> float:
+    """Largest speed at a corner of the box around what starts with a gradient."""
+    body = scene.parts[part]
+    if not body.velocity_gradient:
+        return 0.0
+    ends = np.array([scene.census.lowest[part], scene.census.highest[part]])
+    corners = np.array(list(product(*ends.T)))
+    velocity = body.sheared(corners) + np.array(scene.velocities[part])
+    return float(np.sqrt((velocity**2).sum(axis=1)).max())
+
+
 def largest_pull(scene) -> float:
     """Of gravity and the acceleration of a moving frame together, m/s², at the most."""
     framed = frame_sweep(scene)

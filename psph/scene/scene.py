@@ -2,7 +2,6 @@
 
 import math
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,12 +19,12 @@ from psph.physics.solid.material import MADE_OF, Solid, solid_of
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.bodies import rigid_bodies
 from psph.scene.kicked import nearest_fluid_site
-from psph.scene.lattice import TOLERANCE, lattice_around
+from psph.scene.lattice import lattice_around
 from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
-from psph.scene.moving import largest_pull, largest_speed
+from psph.scene.moving import fastest_corner, largest_pull, largest_speed
 from psph.scene.particles import ParticleSet, fill
-from psph.scene.pressures import range_of_pressure
+from psph.scene.pressures import range_of_pressure, weight_above
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.walls import has_free_surface
@@ -149,7 +148,7 @@ class Scene:
         """The largest speed of a fluid, a wall or the exact solution at the start, m/s."""
         known = self.exact.top_speed(self.unheard_setting) if self.exact else 0.0
         moving = (math.hypot(*v) for v in (*self.velocities, *self._kicked))
-        return max(known, *moving, *map(self._fastest_corner, range(self.layout.movers)))
+        return max(known, *moving, *(fastest_corner(self, n) for n in range(self.layout.movers)))
 
     @cached_property
     def sound_speed(self) -> float:
@@ -384,40 +383,14 @@ class Scene:
             pressure=0.0 if hydrostatic or exact else pressure,
             weight=part.density * math.hypot(*self.gravity) if hydrostatic else 0.0,
             up=self.up,
-            surface=self._surface(index),
-            above=self._weight_above(index) if hydrostatic else 0.0,
+            surface=self.surface_of(index),
+            above=weight_above(self, index) if hydrostatic else 0.0,
             exact=(lambda x: self.exact.pressure(x, 0.0, self.setting)) if exact else None,
         )
 
-    def _surface(self, fluid: int) -> float:
+    def surface_of(self, fluid: int) -> float:
         """Height of a fluid's surface at the start, m."""
         return float(self.census.top[fluid]) + 0.5 * self.spacing
-
-    def _weight_above(self, fluid: int) -> float:
-        """Pressure of the still fluids that rest on this one, Pa: those that begin where it ends, or
-        higher, over some of its ground."""
-        census, total = self.census, 0.0
-        level = [d for d, u in enumerate(self.up) if abs(u) < 0.5]
-        for other in range(self.layout.fluids):
-            bottom = float(census.bottom[other]) - 0.5 * self.spacing
-            apart = (census.lowest[other] > census.highest[fluid]) | (
-                census.highest[other] < census.lowest[fluid]
-            )
-            resting = bottom > self._surface(fluid) - TOLERANCE * self.spacing and not apart[level].any()
-            if resting and self.parts[other].pressure == "hydrostatic":
-                thickness = self._surface(other) - bottom
-                total += self.parts[other].density * math.hypot(*self.gravity) * thickness
-        return total
-
-    def _fastest_corner(self, fluid: int) -> float:
-        """Largest speed at a corner of the box around a fluid whose velocity has a gradient."""
-        body = self.parts[fluid]
-        if not body.velocity_gradient:
-            return 0.0
-        ends = np.array([self.census.lowest[fluid], self.census.highest[fluid]])
-        corners = np.array(list(product(*ends.T)))
-        velocity = body.sheared(corners) + np.array(self.velocities[fluid])
-        return float(np.sqrt((velocity**2).sum(axis=1)).max())
 
     @cached_property
     def _pressures(self) -> tuple[tuple[float, float], ...]:

@@ -53,10 +53,10 @@ class SaintVenantKirchhoff(NamedTuple):
 
 
 class NeoHookean(NamedTuple):
-    """P = μF + (λ(J − 1) − μ) cof F, J = det F: rubber; a solution for any F, even for J < 0.
+    """P = μF + ((λ + μ)(J − 1) − μ) cof F, J = det F: rubber; it has a stress for any F, even for J < 0.
 
-    ψ = μ(tr C − d)/2 − μ(J − 1) + λ(J − 1)²/2, whose derivatives at rest are those of Hooke's law.
-    Bonet & Wood (2008), § 6.4.3, with J − 1 in the place of ln J.
+    ψ = μ(tr C − d)/2 − μ(J − 1) + (λ + μ)(J − 1)²/2: λ + μ in the place of λ gives it the derivatives of
+    Hooke's law at rest.  Smith, de Goes & Kim (2018), ACM Trans. Graph. 37 (2), 12, § 3.4.
     """
 
     lame: float
@@ -66,18 +66,18 @@ class NeoHookean(NamedTuple):
         """The first Piola–Kirchhoff stress P, Pa, by rows."""
         cof = cofactor(f, a)
         dilated = dot(first_row(f, a), first_row(cof, a)) - 1.0
-        return add(scale(f, self.shear), scale(cof, self.lame * dilated - self.shear))
+        return add(scale(f, self.shear), scale(cof, (self.lame + self.shear) * dilated - self.shear))
 
     def across(self, f, a):
         """P along z in plane strain, Pa."""
         dilated = dot(first_row(f, a), first_row(cofactor(f, a), a)) - 1.0
-        return self.shear + (self.lame * dilated - self.shear) * (1.0 + dilated)
+        return self.shear + ((self.lame + self.shear) * dilated - self.shear) * (1.0 + dilated)
 
     def energy(self, f, a):
         """ψ, J per reference volume."""
         dilated = dot(first_row(f, a), first_row(cofactor(f, a), a)) - 1.0
         stretched = trace(transposed_product(f, f, a), a) - len(a)
-        return self.shear * (0.5 * stretched - dilated) + 0.5 * self.lame * dilated * dilated
+        return self.shear * (0.5 * stretched - dilated) + 0.5 * (self.lame + self.shear) * dilated * dilated
 
 
 LAWS = {"saint-venant-kirchhoff": SaintVenantKirchhoff, "neo-hookean": NeoHookean}
