@@ -45,12 +45,22 @@ def contradictions(case) -> list[InitErrorDetails]:
         _stepped,
         due,
     )
+    if not case.fluids and not case.solids:
+        return [_without_matter(case)]
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
         for loc, value, says in found
     ]
+
+
+def _without_matter(case) -> InitErrorDetails:
+    """A case must have fluids, or solids."""
+    if "fluids" not in case.model_fields_set:
+        return {"type": "missing", "loc": ("fluids",), "input": {}}
+    lengths = {"field_type": "Dictionary", "min_length": 1, "actual_length": 0}
+    return {"type": "too_short", "loc": ("fluids",), "input": {}, "ctx": lengths}
 
 
 def _named(case) -> Iterator[Finding]:

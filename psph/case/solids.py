@@ -20,6 +20,7 @@ class SolidLoad(Table):
 class Solid(Matter):
     """An elastic solid: total Lagrangian SPH."""
 
+    velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
     density: float = key("density of the undeformed solid", unit="kg/m3", gt=0)
     young: float = key("Young's modulus E", unit="Pa", gt=0)
     poisson: float = key("Poisson's ratio ν; in 2D the solid is in plane strain", unit="1", gt=-1, lt=0.5)
@@ -47,10 +48,7 @@ ALONE = "solids are simulated by themselves so far: contact and water come later
 
 
 def elastic(case) -> Iterator[Finding]:
-    """Solids that cannot be, in a case with space.dimensions; and a case without any matter."""
-    if not case.fluids and not case.solids:
-        says = "missing; add the table [fluids.NAME] with shape, or [solids.NAME]"
-        yield ("fluids",), ..., says
+    """Solids that cannot be, in a case with space.dimensions."""
     if not case.solids:
         return
     here = ("solids",)
