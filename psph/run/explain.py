@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from psph.case.keys import AXES
 from psph.case.profiles import OFF
+from psph.composition.space import Metres
 from psph.output.tables import GAUGE
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
@@ -13,6 +14,7 @@ from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
 from psph.physics.motion import deforms
+from psph.physics.solid.deformation import KERNEL, SMOOTHING
 from psph.run.forecast import forecast, forecast_lines, pull, sites_within
 from psph.run.hints import hints
 from psph.run.outlay import output_lines
@@ -23,6 +25,7 @@ from psph.scene.moving import motion_lines
 from psph.scene.solid_checks import solid_lines
 from psph.scene.waving import wave_lines
 from psph.simulation.plan import Plan, make_plan
+from psph.simulation.solids import solid_places, solid_support
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
 """Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
@@ -34,7 +37,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     plan = make_plan(scene)
     counts = scene.counts()
     particles = int(counts.sum())
-    yield from _scene_lines(scene, particles)
+    yield from _scene_lines(scene, plan, particles)
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
@@ -60,8 +63,16 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     widths = (record_width(_rows(scene, plan, recorded(p.neighbour_fields))) for p in plan.passes)
     record = sum(widths) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
-    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
-    return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2 if plan.passes else 0.0
+    listed = (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+    return own, listed + (bytes_of_solid(scene, plan) if plan.solids else 0.0)
+
+
+def bytes_of_solid(scene, plan: Plan) -> float:
+    """Memory of the records, the reference list and the row of ids of a particle of a solid, bytes."""
+    entries = sites_within(scene, solid_support(plan)) + (Metres.lanes - 1) / 2
+    widths = map(record_width, solid_places(plan, scene.dimensions))
+    return NUMBER * sum(widths) + (ENTRY + NUMBER) * entries + ROW
 
 
 def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
@@ -108,7 +119,7 @@ def _cutoff(scene) -> float:
     return scene.reach.cutoff
 
 
-def _scene_lines(scene, particles: int) -> Iterator[str]:
+def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
     case = scene.case
     support = scene.kernel.support * scene.smoothing_length
     yield f"{case.title or case.name} ({case.file})"
@@ -136,11 +147,18 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     for name, gauge in case.gauges.items():
         measures = _first_line(getattr(gauge, gauge.kind))
         yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
-    yield (
-        f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
-        f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
-        f"about {sites_within(scene, support):.0f} neighbours"
-    )
+    if plan.solids:
+        yield (
+            f"  kernel      of solids: {KERNEL}, h = {plan.solid_smoothing_length:g} m "
+            f"(h/dx {SMOOTHING:.4g}), about {sites_within(scene, solid_support(plan)):.0f} neighbours "
+            "in the reference"
+        )
+    if plan.passes:
+        yield (
+            f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
+            f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
+            f"about {sites_within(scene, support):.0f} neighbours"
+        )
 
 
 def _preset_lines(case) -> Iterator[str]:
@@ -176,11 +194,19 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
     yield f"  arrays      {', '.join(plan.arrays)}"
     shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
     yield f"  shared      {shared}"
-    yield f"  halo        once a step: {', '.join(plan.refreshed)}"
-    yield (
-        f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
-        f"{sent:,.0f} bytes from a rank"
-    )
+    if plan.passes:
+        yield f"  halo        once a step: {', '.join(plan.refreshed)}"
+        yield (
+            f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
+            f"{sent:,.0f} bytes from a rank"
+        )
+    if plan.solids:
+        first, second = solid_places(plan, scene.dimensions)
+        d = scene.dimensions
+        yield (
+            f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "
+            f"stress, {NUMBER * (second - 2 * d)} bytes each"
+        )
     if plan.ghost_fields:
         yield f"              once a rebuild: {', '.join(plan.ghost_fields)}"
 
@@ -192,7 +218,6 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
         yield f"Pass over the neighbours, one a step, {flops} flops a pair"
     if plan.solids:
         yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
-        yield "  partners get place, then stress: psph.physics.solid.deformation"
     laws = [type(law).__name__ for law in plan.laws]
     names = [call.name for call in plan.called]
     width = _column([*names, *laws, *(entry.effect.__name__ for entry in plan.absent)])

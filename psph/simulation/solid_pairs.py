@@ -243,12 +243,12 @@ def fill_places(first, last, data, rows, columns, table, place):
 def push_solids(first, last, effects, view, columns, inverse_density, force, drawn, share, acceleration):
     """a of the rows ``first`` to ``last`` into their columns: body forces, loads, and inner forces.
 
-    ``share`` of the loads ``drawn`` (None: there are none) acts now.
+    The ``share`` (n,) of the loads ``drawn`` (None: there are none) acts now.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         column = columns[k]
         a = terms.body(effects, take(view, column))
-        a = added(a, pulled(drawn, column, share))
+        a = added(a, pulled(drawn, column, share[k]))
         put(acceleration, column, add(a, scale(at(force, k), inverse_density[k])))
 
 

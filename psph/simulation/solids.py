@@ -12,7 +12,16 @@ from psph.parallel.reductions import exact_sums, whole_sums
 from psph.parallel.reference import reference_rows
 from psph.particles.partners import ReferenceRows, padded_lists
 from psph.particles.records import record_width
-from psph.physics.solid.deformation import DRAWN, MOMENT, STORED, STRESS, VON_MISES, Gradient, GradientRate
+from psph.physics.solid.deformation import (
+    DRAWN,
+    KERNEL,
+    MOMENT,
+    STORED,
+    STRESS,
+    VON_MISES,
+    Gradient,
+    GradientRate,
+)
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import inside
 from psph.simulation.plan import NO_SOLID
@@ -27,7 +36,7 @@ from psph.simulation.solid_pairs import (
     sum_inner_forces,
     sum_moments,
 )
-from psph.smoothing import kernel
+from psph.smoothing import KERNELS, kernel
 
 PLACES, FLUX = "position", "flux"
 """What partners need before the first pass of a step, and before the second."""
@@ -45,6 +54,21 @@ class Table:
         self.view = view_of((*shown, "volume"))(*shown.values(), volume)
 
 
+def is_damped(plan) -> bool:
+    """Whether any solid has a viscosity: then velocities travel too."""
+    return any(one.viscosity for one in plan.solids)
+
+
+def solid_support(plan) -> float:
+    """How far the neighbours in the reference are, m."""
+    return KERNELS[KERNEL].support * plan.solid_smoothing_length
+
+
+def solid_places(plan, dimensions: int) -> tuple[int, int]:
+    """Numbers in a record of the first and of the second pass."""
+    return dimensions * (3 if is_damped(plan) else 2), dimensions * (2 + dimensions)
+
+
 class Solids:
     """The solids of ``scene`` among the particles of ``store``, a rank's share of them.
 
@@ -57,9 +81,8 @@ class Solids:
         self.comm, d = domain.comm, scene.dimensions
         solids, periods = plan.solids, domain.periods
         self._h = plan.solid_smoothing_length
-        own = kernel("wendland-c2", self._h, d)
-        self.support = own.support * self._h
-        damped = any(one.viscosity for one in solids)
+        own, damped = kernel(KERNEL, self._h, d), is_damped(plan)
+        self.support = solid_support(plan)
         sums = (Gradient(periods), *([GradientRate()] if damped else []))
         numbers = (np.array([getattr(s, n) for s in solids]) for n in ("stiffness", "viscosity", "density"))
         self._matter = Matter(tuple(one.law for one in solids), sums, None, *numbers)

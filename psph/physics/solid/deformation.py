@@ -31,8 +31,8 @@ DRAWN = Field("drawn", "m/s2", "acceleration by the loads of a case at their ful
 OF_SOLIDS = (REFERENCE, MOMENT, STRESS, VON_MISES, STORED)
 """What particles carry only where a scene has solids; DRAWN where these have loads."""
 
-SMOOTHING = 2.0**0.5
-"""h/dx of a solid's own kernel, Wendland C2: its lists have no part in those of fluids."""
+KERNEL, SMOOTHING = "wendland-c2", 2.0**0.5
+"""A solid's own kernel and its h/dx: its lists have no part in those of fluids."""
 
 
 class ReferencePair(NamedTuple):
