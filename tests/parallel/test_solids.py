@@ -93,7 +93,7 @@ def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
     keep(simulation, case, folder)
     COMM.Barrier()
     written = mpi_tmp_path / ("rank0" if before == 1 else "all") / "checkpoint-14.h5"
-    go_on_alike(simulation, taken_up(case, written, comms[after]), 14)
+    go_on_alike(simulation, taken_up(case, written, comms[after]), 14, rebuilds=0)
 
 
 def test_rows_follow_their_particles_to_other_ranks():

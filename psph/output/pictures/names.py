@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 from psph.fields import SAVED
+from psph.physics.solid.deformation import OF_SOLIDS
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
@@ -13,7 +14,8 @@ DERIVED = ("vorticity",)
 VARIANTS = ("surface", "slice")
 """Other ways to show a field than the usual one."""
 
-_FIELDS = "|".join([*(field.name for field in SAVED), *DERIVED])
+_SAVED = (field.name for field in (*SAVED, *OF_SOLIDS) if field.saved)
+_FIELDS = "|".join([*_SAVED, *DERIVED])
 _DRAWN = re.compile(rf"(?:{_FIELDS})(?:_(?:{'|'.join(VARIANTS)}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")
 
 _GAUGED = re.compile(r"gauge-[A-Za-z0-9_-]+\.png")
