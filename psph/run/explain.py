@@ -14,7 +14,8 @@ from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
 from psph.physics.motion import deforms
-from psph.physics.solid.deformation import KERNEL, SMOOTHING
+from psph.physics.solid.deformation import KERNEL, SMOOTHING, places_of, support_of
+from psph.physics.solid.material import is_damped
 from psph.run.forecast import forecast, forecast_lines, pull, sites_within
 from psph.run.hints import hints
 from psph.run.outlay import output_lines
@@ -25,7 +26,6 @@ from psph.scene.moving import motion_lines
 from psph.scene.solid_checks import solid_lines
 from psph.scene.waving import wave_lines
 from psph.simulation.plan import Plan, make_plan
-from psph.simulation.solids import solid_places, solid_support
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
 """Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
@@ -70,8 +70,8 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
 
 def bytes_of_solid(scene, plan: Plan) -> float:
     """Memory of the records, the reference list and the row of ids of a particle of a solid, bytes."""
-    entries = sites_within(scene, solid_support(plan)) + (Metres.lanes - 1) / 2
-    widths = map(record_width, solid_places(plan, scene.dimensions))
+    entries = sites_within(scene, support_of(plan.solid_smoothing_length)) + (Metres.lanes - 1) / 2
+    widths = map(record_width, places_of(scene.dimensions, is_damped(plan.solids)))
     return NUMBER * sum(widths) + (ENTRY + NUMBER) * entries + ROW
 
 
@@ -148,10 +148,10 @@ def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
         measures = _first_line(getattr(gauge, gauge.kind))
         yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
     if plan.solids:
+        neighbours = sites_within(scene, support_of(plan.solid_smoothing_length))
         yield (
             f"  kernel      of solids: {KERNEL}, h = {plan.solid_smoothing_length:g} m "
-            f"(h/dx {SMOOTHING:.4g}), about {sites_within(scene, solid_support(plan)):.0f} neighbours "
-            "in the reference"
+            f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
         )
     if plan.passes:
         yield (
@@ -201,7 +201,7 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
             f"{sent:,.0f} bytes from a rank"
         )
     if plan.solids:
-        first, second = solid_places(plan, scene.dimensions)
+        first, second = places_of(scene.dimensions, is_damped(plan.solids))
         d = scene.dimensions
         yield (
             f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "

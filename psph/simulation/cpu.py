@@ -33,7 +33,6 @@ from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.rules import Columns, Rules
-from psph.simulation.solids import Solids
 
 
 class Engine:
@@ -54,7 +53,7 @@ class Engine:
         )
         self.skin = Skin(self.domain, scene.reach.skin, plan.planes) if plan.passes else Unlisted()
         self._reach = scene.reach
-        self.solids = Solids(scene, plan, store, self.domain, ledger) if plan.solids else None
+        self.solids = self._solids(scene) if plan.solids else None
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         floating = Floating(scene, plan) if plan.floats else None
         self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.frame, scene.gravity, floating)
@@ -75,6 +74,12 @@ class Engine:
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._load = settled(sum_over_neighbours)
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
+
+    def _solids(self, scene):
+        """What the engine has of elastic solids."""
+        from psph.simulation.solids import Solids  # late: most scenes have none
+
+        return Solids(scene, self.plan, self.store, self.domain, self.ledger)
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""

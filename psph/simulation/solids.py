@@ -21,7 +21,9 @@ from psph.physics.solid.deformation import (
     VON_MISES,
     Gradient,
     GradientRate,
+    support_of,
 )
+from psph.physics.solid.material import is_damped
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import inside
 from psph.simulation.plan import NO_SOLID
@@ -36,7 +38,7 @@ from psph.simulation.solid_pairs import (
     sum_inner_forces,
     sum_moments,
 )
-from psph.smoothing import KERNELS, kernel
+from psph.smoothing import kernel
 
 PLACES, FLUX = "position", "flux"
 """What partners need before the first pass of a step, and before the second."""
@@ -54,21 +56,6 @@ class Table:
         self.view = view_of((*shown, "volume"))(*shown.values(), volume)
 
 
-def is_damped(plan) -> bool:
-    """Whether any solid has a viscosity: then velocities travel too."""
-    return any(one.viscosity for one in plan.solids)
-
-
-def solid_support(plan) -> float:
-    """How far the neighbours in the reference are, m."""
-    return KERNELS[KERNEL].support * plan.solid_smoothing_length
-
-
-def solid_places(plan, dimensions: int) -> tuple[int, int]:
-    """Numbers in a record of the first and of the second pass."""
-    return dimensions * (3 if is_damped(plan) else 2), dimensions * (2 + dimensions)
-
-
 class Solids:
     """The solids of ``scene`` among the particles of ``store``, a rank's share of them.
 
@@ -81,8 +68,8 @@ class Solids:
         self.comm, d = domain.comm, scene.dimensions
         solids, periods = plan.solids, domain.periods
         self._h = plan.solid_smoothing_length
-        own, damped = kernel(KERNEL, self._h, d), is_damped(plan)
-        self.support = solid_support(plan)
+        own, damped = kernel(KERNEL, self._h, d), is_damped(solids)
+        self.support = support_of(self._h)
         sums = (Gradient(periods), *([GradientRate()] if damped else []))
         numbers = (np.array([getattr(s, n) for s in solids]) for n in ("stiffness", "viscosity", "density"))
         self._matter = Matter(tuple(one.law for one in solids), sums, None, *numbers)

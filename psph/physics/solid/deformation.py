@@ -19,6 +19,7 @@ Comput. Methods Appl. Mech. Eng. 322, 42 (its form as an energy).
 from typing import Any, NamedTuple
 
 from psph.fields import SYMMETRIC, VECTOR, Field
+from psph.smoothing import KERNELS
 from psph.vectors import add, dyad, nearest_image, scale, subtract, zero_like
 
 REFERENCE = Field("reference", "m", "place in the undeformed solid", VECTOR)
@@ -68,3 +69,13 @@ class GradientRate(NamedTuple):
         """With neighbour j, by rows."""
         v_ij = subtract(i.predicted_velocity, j.predicted_velocity)
         return add(total, dyad(scale(v_ij, pair.weight), pair.apart))
+
+
+def support_of(smoothing_length: float) -> float:
+    """How far neighbours in the reference are, m."""
+    return KERNELS[KERNEL].support * smoothing_length
+
+
+def places_of(dimensions: int, damped: bool) -> tuple[int, int]:
+    """Numbers in a record of the first and of the second pass."""
+    return dimensions * (3 if damped else 2), dimensions * (2 + dimensions)

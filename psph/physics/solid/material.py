@@ -1,5 +1,6 @@
 """What an elastic solid is made of, and how fast its waves are."""
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from psph.physics.solid.laws import LAWS, moduli
@@ -44,3 +45,8 @@ def solid_of(
     lame, shear = moduli(young, poisson)
     speed = ((lame + 2.0 * shear) / density) ** 0.5
     return Solid(name, LAWS[law](lame, shear), density, speed, damping, hourglass * young)
+
+
+def is_damped(solids: Iterable[Solid]) -> bool:
+    """Whether any solid has a viscosity: then velocities are summed, and travel, too."""
+    return any(one.viscosity for one in solids)
