@@ -178,7 +178,7 @@ def _thin(scene: "Scene", one: Drawn) -> Iterator[str]:
     table, name = one.key.split(".")[:2]
     if table != "walls" or name not in scene.walls or not one.mesh.shell:
         return
-    material = len(scene.case.fluids) + list(scene.walls).index(name)
+    material = scene.layout.first_wall + list(scene.walls).index(name)
     if one.mesh.shell < need * (1.0 - TOLERANCE) and material not in thinnest_walls(scene):
         yield f"shell = {one.mesh.shell:g} m is thinner than the kernel reaches; give {need:.4g}"
 
