@@ -19,7 +19,7 @@ Comput. Methods Appl. Mech. Eng. 322, 42 (its form as an energy).
 from typing import Any, NamedTuple
 
 from psph.fields import SYMMETRIC, VECTOR, Field
-from psph.smoothing import KERNELS
+from psph.smoothing import WendlandC2
 from psph.vectors import add, dyad, nearest_image, scale, subtract, zero_like
 
 REFERENCE = Field("reference", "m", "place in the undeformed solid", VECTOR)
@@ -73,7 +73,7 @@ class GradientRate(NamedTuple):
 
 def support_of(smoothing_length: float) -> float:
     """How far neighbours in the reference are, m."""
-    return KERNELS[KERNEL].support * smoothing_length
+    return WendlandC2.support * smoothing_length
 
 
 def places_of(dimensions: int, damped: bool) -> tuple[int, int]:
