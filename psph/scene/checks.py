@@ -159,9 +159,10 @@ def _spacing_faults(scene: Scene) -> Iterator[str]:
         for n, part in enumerate(scene.parts[: scene.layout.movers])
     }
     thickest = max(thickness, key=thickness.get)
+    kind = "fluids" if scene.case.fluids else "solids"
     if scene.spacing > thickness[thickest]:
         yield (
-            f"space.spacing: {scene.spacing:g} m is larger than the fluids and solids: {thickest} is "
+            f"space.spacing: {scene.spacing:g} m is larger than the {kind}: {thickest} is "
             f"{thickness[thickest]:.3g} m thick; give at most a tenth of that, "
             f"{0.1 * thickness[thickest]:.2g}"
         )
