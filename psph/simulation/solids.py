@@ -240,7 +240,7 @@ class Solids:
             for load in table.loads.values():
                 pulled = inside(load.shape, grid, TOLERANCE * scene.spacing) & (self._matter.number == number)
                 [count] = whole_sums(self.comm, [np.count_nonzero(pulled)])
-                mass = count * self._volume * table.density
+                mass = max(count, 1) * self._volume * table.density
                 for of, force in zip(store[DRAWN.name], load.force):
                     of[self._columns[pulled]] += force / mass
 

@@ -10,7 +10,7 @@ TIP = "tip.displacement_{}"
 
 def table(case, folder, *overrides):
     """The tip's gauge of a run."""
-    return finished(f"solids/{case}", folder, *overrides).table("gauge-tip.csv")
+    return finished(f"solids/{case}", folder, *overrides).gauges()["tip"]
 
 
 def cycle(gauge, begin):
@@ -25,7 +25,7 @@ def cycle(gauge, begin):
 
 def test_a_spinning_plate_keeps_energy_and_angular_momentum(tmp_path):
     run = finished("solids/spinning_plate", tmp_path, "time.end=0.25")
-    log = run.table("log.csv")
+    log = run.log()
     energy = log["kinetic_energy"] + log["stored_energy"]
     assert log["stored_energy"].max() > 0.002 * energy[0]  # it does breathe
     assert np.abs(energy / energy[0] - 1.0).max() < 1e-3
