@@ -72,10 +72,10 @@ def _vorticity(case: dict) -> Quantity:
     """ω of the fluid: its component out of the plane in 2D, its size in 3D.  NotThere in 1D."""
     space = case["space"]
     dimensions = space["dimensions"]
-    if "fluids" not in case:
-        raise NotThere("plot --field vorticity: the run has no fluid; choose von_mises, or another field")
     if dimensions == 1:
         raise NotThere("plot --field vorticity: a flow along one axis has none; choose another field")
+    if "fluids" not in case:
+        raise NotThere("plot --field vorticity: the run has no fluid; choose von_mises, or another field")
     periods = periods_of(case)
     rest = np.array([material["density"] for material in case["fluids"].values()])
 
