@@ -12,8 +12,12 @@ SCALAR, VECTOR, SYMMETRIC, MATRIX = "scalar", "vector", "symmetric", "matrix"
 """Shapes of a field: a number, one number per axis, a symmetric matrix (its rows from the diagonal
 on), a full matrix by rows."""
 
-FLUID, WALL = 0, 1
-"""Values of ``kind``: a fluid particle moves freely, a wall particle does not."""
+FLUID, WALL, SOLID = 0, 1, 2
+"""Values of ``kind``: a fluid particle moves freely, a wall particle does not, a solid one is held by its
+neighbours of the start."""
+
+KINDS = ("fluid", "wall", "solid")
+"""Their names, in this order."""
 
 
 class Field(NamedTuple):
@@ -81,8 +85,8 @@ per the same."""
 
 IDENTITY = (
     Field("id", "1", "number of the particle, unique and constant", saved=True),
-    Field("kind", "1", "0 fluid, 1 wall", saved=True),
-    Field("group", "1", "number of its fluid or wall, in the order of the case", saved=True),
+    Field("kind", "1", "0 fluid, 1 wall, 2 elastic solid", saved=True),
+    Field("group", "1", "number of its fluid, solid or wall, in the order of the case", saved=True),
 )
 """Whole numbers that stand beside the fields."""
 

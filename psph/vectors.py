@@ -282,3 +282,81 @@ norm_squared = _by_dimension(
     lambda m, a: (m[0] * m[0] + m[3] * m[3] + m[5] * m[5]) + 2.0 * (m[1] * m[1] + m[2] * m[2] + m[4] * m[4]),
 )
 """(m, a) → the sum of the squares of all entries of m; ``a`` is any vector of the dimension."""
+
+transposed_product = _by_dimension(
+    lambda m, n, a: (m[0] * n[0],),
+    lambda m, n, a: (
+        m[0] * n[0] + m[2] * n[2],
+        0.5 * (m[0] * n[1] + m[2] * n[3] + m[1] * n[0] + m[3] * n[2]),
+        m[1] * n[1] + m[3] * n[3],
+    ),
+    lambda m, n, a: (
+        m[0] * n[0] + m[3] * n[3] + m[6] * n[6],
+        0.5 * (m[0] * n[1] + m[3] * n[4] + m[6] * n[7] + m[1] * n[0] + m[4] * n[3] + m[7] * n[6]),
+        0.5 * (m[0] * n[2] + m[3] * n[5] + m[6] * n[8] + m[2] * n[0] + m[5] * n[3] + m[8] * n[6]),
+        m[1] * n[1] + m[4] * n[4] + m[7] * n[7],
+        0.5 * (m[1] * n[2] + m[4] * n[5] + m[7] * n[8] + m[2] * n[1] + m[5] * n[4] + m[8] * n[7]),
+        m[2] * n[2] + m[5] * n[5] + m[8] * n[8],
+    ),
+)
+"""(m, n, a) → the symmetric part of mᵀ n, of two matrices by rows; ``a`` is any vector of the dimension."""
+
+product_transposed = _by_dimension(
+    lambda m, n, a: (m[0] * n[0],),
+    lambda m, n, a: (
+        m[0] * n[0] + m[1] * n[1],
+        0.5 * (m[0] * n[2] + m[1] * n[3] + m[2] * n[0] + m[3] * n[1]),
+        m[2] * n[2] + m[3] * n[3],
+    ),
+    lambda m, n, a: (
+        m[0] * n[0] + m[1] * n[1] + m[2] * n[2],
+        0.5 * (m[0] * n[3] + m[1] * n[4] + m[2] * n[5] + m[3] * n[0] + m[4] * n[1] + m[5] * n[2]),
+        0.5 * (m[0] * n[6] + m[1] * n[7] + m[2] * n[8] + m[6] * n[0] + m[7] * n[1] + m[8] * n[2]),
+        m[3] * n[3] + m[4] * n[4] + m[5] * n[5],
+        0.5 * (m[3] * n[6] + m[4] * n[7] + m[5] * n[8] + m[6] * n[3] + m[7] * n[4] + m[8] * n[5]),
+        m[6] * n[6] + m[7] * n[7] + m[8] * n[8],
+    ),
+)
+"""(m, n, a) → the symmetric part of m nᵀ, of two matrices by rows; ``a`` is any vector of the dimension."""
+
+applied = _by_dimension(
+    lambda m, a: (m[0] * a[0],),
+    lambda m, a: (m[0] * a[0] + m[1] * a[1], m[2] * a[0] + m[3] * a[1]),
+    lambda m, a: (
+        m[0] * a[0] + m[1] * a[1] + m[2] * a[2],
+        m[3] * a[0] + m[4] * a[1] + m[5] * a[2],
+        m[6] * a[0] + m[7] * a[1] + m[8] * a[2],
+    ),
+)
+"""(m, a) → the vector m a, of a matrix by rows."""
+
+cofactor = _by_dimension(
+    lambda m, a: (1.0,),
+    lambda m, a: (m[3], -m[2], -m[1], m[0]),
+    lambda m, a: (
+        m[4] * m[8] - m[5] * m[7],
+        m[5] * m[6] - m[3] * m[8],
+        m[3] * m[7] - m[4] * m[6],
+        m[2] * m[7] - m[1] * m[8],
+        m[0] * m[8] - m[2] * m[6],
+        m[1] * m[6] - m[0] * m[7],
+        m[1] * m[5] - m[2] * m[4],
+        m[2] * m[3] - m[0] * m[5],
+        m[0] * m[4] - m[1] * m[3],
+    ),
+)
+"""(m, a) → det(m) m⁻ᵀ of a matrix by rows; ``a`` is any vector of the dimension."""
+
+first_row = _by_dimension(
+    lambda m, a: (m[0],),
+    lambda m, a: (m[0], m[1]),
+    lambda m, a: (m[0], m[1], m[2]),
+)
+"""(m, a) → the first row of a matrix; ``a`` is any vector of the dimension."""
+
+trace = _by_dimension(
+    lambda m, a: m[0],
+    lambda m, a: m[0] + m[2],
+    lambda m, a: m[0] + m[3] + m[5],
+)
+"""(m, a) → the trace of a symmetric matrix; ``a`` is any vector of the dimension."""

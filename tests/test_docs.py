@@ -521,7 +521,7 @@ def test_the_table_of_datasets_is_that_of_the_fields():
 def test_the_columns_of_the_log_are_all_there():
     table = text("docs/output.md").split("`log.csv`, over")[1].split("The sums")[0]
     named = re.findall(r"`(\w+)`", table)
-    assert named == diagnostics.columns(3)
+    assert named == diagnostics.columns(3, solids=True)
 
 
 def test_profiles_are_as_the_page_has_them():

@@ -13,6 +13,7 @@ from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
 from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
+from psph.case.solids import elastic
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
 from psph.physics.walls.conditions import MIRROR, STICKING
@@ -40,16 +41,27 @@ def contradictions(case) -> list[InitErrorDetails]:
         gauged,
         _names,
         held_together,
+        elastic,
         _single,
         _stepped,
         due,
     )
+    if not case.fluids and not case.solids:
+        return [_without_matter(case)]
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
         for loc, value, says in found
     ]
+
+
+def _without_matter(case) -> InitErrorDetails:
+    """A case must have fluids, or solids."""
+    if "fluids" not in case.model_fields_set:
+        return {"type": "missing", "loc": ("fluids",), "input": {}}
+    lengths = {"field_type": "Dictionary", "min_length": 1, "actual_length": 0}
+    return {"type": "too_short", "loc": ("fluids",), "input": {}, "ctx": lengths}
 
 
 def _named(case) -> Iterator[Finding]:
@@ -251,7 +263,7 @@ def _exact(case) -> Iterator[Finding]:
 
 
 def _continued(case) -> Iterator[Finding]:
-    for name, wall in case.solids.items():
+    for name, wall in case.boundaries.items():
         if wall.continues is not None and wall.continues not in case.fluids:
             yield (
                 (case.table_of(name), name, "continues"),
@@ -283,7 +295,7 @@ def _friction(case) -> Iterator[Finding]:
             ...,
             ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove this key"),
         )
-    for name, wall in case.solids.items():
+    for name, wall in case.boundaries.items():
         if wall.no_slip and not rubs:
             yield (
                 (case.table_of(name), name, "no_slip"),

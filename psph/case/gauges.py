@@ -77,10 +77,17 @@ class MotionOf(Table):
     of: Name = key("the name of the body")
 
 
+class Displacement(Table):
+    """How far a point of a solid has moved, by the straight line fitted to the particles around it."""
+
+    of: Name = key("the name of the solid")
+    at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")
+
+
 class Gauge(Table):
     """A gauge: exactly one of these kinds, and how often it is read."""
 
-    KINDS: ClassVar = ("force", "level", "highest", "point", "sensor", "flow", "motion")
+    KINDS: ClassVar = ("force", "level", "highest", "point", "sensor", "flow", "motion", "displacement")
 
     force: Force | None = key("force and moment of the fluid", None, otherwise="another kind")
     level: Level | None = key("water level along a line", None, otherwise="another kind")
@@ -89,6 +96,9 @@ class Gauge(Table):
     sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise="another kind")
     flow: Flow | None = key("flow through a section", None, otherwise="another kind")
     motion: MotionOf | None = key("motion of a rigid body", None, otherwise="another kind")
+    displacement: Displacement | None = key(
+        "how far a point of a solid moves", None, otherwise="another kind"
+    )
     every: float | None = key("time between rows", None, unit="s", otherwise="output.probes", gt=0)
 
     @property

@@ -31,19 +31,22 @@ def gauged(case) -> Iterator[Finding]:
         if gauge.motion and gauge.motion.of not in case.bodies:
             says = f"no body has this name; {advise(gauge.motion.of, case.bodies)}"
             yield ("gauges", name, "motion", "of"), gauge.motion.of, says
+        if gauge.displacement and gauge.displacement.of not in case.solids:
+            says = f"no solid has this name; {advise(gauge.displacement.of, case.solids)}"
+            yield ("gauges", name, "displacement", "of"), gauge.displacement.of, says
         for key in one_sided(case) if gauge.force else ():
             says = f"{key} does not push back what pushes, so that no force on a wall is known; take another"
             yield ("gauges", name, "force"), ..., says
         for place, wall in enumerate(gauge.force.on if gauge.force else ()):
             loc = ("gauges", name, "force", "on", place)
-            if wall not in case.solids:
-                yield loc, wall, f"no wall or body has this name; {advise(wall, case.solids)}"
-            elif case.solids[wall].condition not in BEARING:
+            if wall not in case.boundaries:
+                yield loc, wall, f"no wall or body has this name; {advise(wall, case.boundaries)}"
+            elif (condition := case.boundaries[wall].condition) not in BEARING:
                 known = " or ".join(f'"{one}"' for one in BEARING)
                 yield (
                     loc,
                     wall,
-                    f'a wall with condition = "{case.solids[wall].condition}" bears no force; take {known}',
+                    f'a wall with condition = "{condition}" bears no force; take {known}',
                 )
 
 

@@ -6,7 +6,6 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
-import numpy as np
 import tomli_w
 from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
 from pydantic_core import PydanticCustomError
@@ -17,6 +16,7 @@ from psph.case.errors import dotted
 from psph.case.extensions import versions
 from psph.case.gauges import Gauge
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
+from psph.case.matter import Matter
 from psph.case.mesh import Mesh
 from psph.case.motion import Motions, series_in
 from psph.case.physics import own_law, physics_table
@@ -25,10 +25,10 @@ from psph.case.rheology import Rheology
 from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
+from psph.case.solids import Solid
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.physics.walls.conditions import CONDITIONS, DYNAMIC
-from psph.rows import projected
 from psph.smoothing import KERNELS
 
 if TYPE_CHECKING:  # made from the catalogues of effects and solutions
@@ -39,13 +39,6 @@ else:
 
 LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
 """How tomli_w writes a list of numbers or words, one a line."""
-
-
-def _velocity(value: Any, validate) -> Any:
-    """One message for anything that is not a velocity; a list gets the messages of its numbers."""
-    if isinstance(value, str) and value != EXACT:
-        raise PydanticCustomError("psph", 'not a velocity; give one number per dimension in m/s, or "exact"')
-    return validate(value)
 
 
 def _pressure(value: Any, validate) -> Any:
@@ -113,7 +106,7 @@ class Time(Table):
 Law, LAW = own_law()
 
 
-class Fluid(Table):
+class Fluid(Matter):
     """A fluid: where it is at the start, and what it is."""
 
     shape: Shape = key("where the fluid is at the start")
@@ -125,42 +118,16 @@ class Fluid(Table):
         otherwise="the constant `viscosity`",
     )
     equation_of_state: Law = LAW
-    velocity: Annotated[Literal[EXACT] | Vector | None, WrapValidator(_velocity)] = key(
-        'velocity at the start: numbers, or "exact" (needs [exact])',
-        None,
-        unit="m/s",
-        otherwise="zeros",
-    )
-    velocity_gradient: tuple[Vector, ...] | None = key(
-        "gradient of the velocity at the start, one row per component: u = velocity + gradient (x - "
-        "velocity_center); [[0, -1], [1, 0]] turns at 1 rad/s",
-        None,
-        unit="1/s",
-        otherwise="zeros",
-        strict=False,
-        min_length=1,
-    )
-    velocity_center: Vector | None = key(
-        "the point where velocity_gradient adds zero", None, unit="m", otherwise="zeros"
-    )
     pressure: Annotated[Literal["hydrostatic", EXACT] | float, WrapValidator(_pressure)] = key(
         'pressure at the start: a number, "hydrostatic" (needs gravity) or "exact" (needs [exact])',
         0.0,
         unit="Pa",
     )
-    jitter: float = key(
-        "largest random shift of a particle along each axis, in spacings", 0.0, unit="1", ge=0
-    )
-    seed: int = key("seed of the random shifts", 0, ge=0)
 
     @property
     def rubs(self) -> bool:
         """Whether it has a friction of its own."""
         return bool(self.viscosity) or self.rheology is not None
-
-    def sheared(self, x: np.ndarray) -> np.ndarray:
-        """What ``velocity_gradient`` adds to the velocity at ``x`` (n, dim), m/s (n, dim)."""
-        return np.column_stack([projected(x - self.velocity_center, row) for row in self.velocity_gradient])
 
 
 class Wall(Table):
@@ -235,8 +202,11 @@ class Case(Table):
     physics: Physics = key("forces and other effects on the fluids", make=Physics)
     fluids: dict[Name, Fluid] = key(
         "the fluids by name: where each is at the start, and what it is",
-        min_length=1,
+        {},
         max_length=MANY,
+    )
+    solids: dict[Name, Solid] = key(
+        "the elastic solids by name; so far a case has fluids or solids", {}, max_length=MANY
     )
     walls: dict[Name, Wall] = key(
         "the walls by name: particles that the fluid runs into", {}, max_length=MANY
@@ -286,7 +256,7 @@ class Case(Table):
         return gauged | set(self.bodies)
 
     @property
-    def solids(self) -> dict[str, Wall | Body]:
+    def boundaries(self) -> dict[str, Wall | Body]:
         """Walls and bodies by name."""
         return {**self.walls, **self.bodies}
 
@@ -297,7 +267,7 @@ class Case(Table):
     @property
     def series(self) -> list:
         """The series of motions that the case names (psph.case.motion.Series)."""
-        moving = [*(solid.motion for solid in self.solids.values()), self.frame.motion]
+        moving = [*(one.motion for one in self.boundaries.values()), self.frame.motion]
         return [series for parts in moving for series in series_in(parts or ())]
 
     @cached_property
@@ -358,15 +328,15 @@ class Case(Table):
         end, zeros = self.time.end, (0.0,) * self.space.dimensions
         _fill(self.space, origin=zeros)
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
-        for fluid in self.fluids.values():
-            _fill(fluid, velocity=zeros, velocity_center=zeros)
+        for matter in (*self.fluids.values(), *self.solids.values()):
+            _fill(matter, velocity=zeros, velocity_center=zeros)
         for gauge in self.gauges.values():
             _fill(gauge, every=self.output.probes)
             if gauge.force:
                 _fill(gauge.force, about=zeros)
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
-        for solid in (*self.walls.values(), *self.bodies.values()):
+        for solid in self.boundaries.values():
             _fill(solid, velocity=zeros, continues=next(iter(self.fluids)))
         return self
 

@@ -5,14 +5,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from mpi4py import MPI
 
-from psph.fields import FLUID
+from psph.fields import FLUID, WALL
 from psph.parallel.reductions import exact_sums, largest
 from psph.particles.store import Store
 from psph.rows import projected
 
 
-def columns(dimensions: int) -> list[str]:
-    """Columns of log.csv."""
+def columns(dimensions: int, solids: bool = False) -> list[str]:
+    """Columns of log.csv, of a scene with ``solids`` their stored energy among them."""
     momentum = [f"momentum_{axis}" for axis in "xyz"[:dimensions]]
     return [
         "time",
@@ -20,6 +20,7 @@ def columns(dimensions: int) -> list[str]:
         "dt",
         "kinetic_energy",
         "potential_energy",
+        *(["stored_energy"] if solids else []),
         *momentum,
         "largest_speed",
         "density_error",
@@ -27,21 +28,21 @@ def columns(dimensions: int) -> list[str]:
 
 
 def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ...]) -> np.ndarray:
-    """Σ m v²/2 (J), −Σ m g·x (J) and Σ m v (kg m/s) of the fluid, per metre of depth in 2D.
+    """Σ m v²/2 (J), −Σ m g·x (J) and Σ m v (kg m/s) of fluids and solids, per metre of depth in 2D.
 
     Order-independent sums, the same bits on any number of ranks; collective.
     """
-    fluid = store.owned_rows("kind") == FLUID
-    mass = store.owned_rows("mass")[fluid]
-    velocity = store.owned_rows("velocity")[fluid]
-    position = store.owned_rows("position")[fluid]
+    moved = store.owned_rows("kind") != WALL
+    mass = store.owned_rows("mass")[moved]
+    velocity = store.owned_rows("velocity")[moved]
+    position = store.owned_rows("position")[moved]
     kinetic = 0.5 * mass * (velocity**2).sum(axis=1)
     potential = -mass * projected(position, gravity)
     return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
 
 
 def total_energy(comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable) -> float:
-    """Σ m (v²/2 − g·x) of the fluid and Σ m u of all particles, J.
+    """Σ m (v²/2 − g·x) of fluids and solids and Σ m u of all particles, J.
 
     ``elastic`` takes densities and rest densities (n,) and gives u, J/kg.  NaN where a density is
     below zero.  The same bits on any number of ranks; collective.
@@ -52,7 +53,7 @@ def total_energy(comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic
     )
     with np.errstate(invalid="ignore", divide="ignore"):
         stored = elastic(store.shown("density"), store.shown("rest_density"))
-    energy = store.shown("mass") * (np.where(store.shown("kind") == FLUID, moved, 0.0) + stored)
+    energy = store.shown("mass") * (np.where(store.shown("kind") != WALL, moved, 0.0) + stored)
     return float(exact_sums(comm, energy[:, None])[0])
 
 
@@ -62,9 +63,9 @@ def work_done(comm: MPI.Comm, store: Store) -> float:
     return float(exact_sums(comm, store.shown("work")[:, None])[0])
 
 
-def fluid_mass(comm: MPI.Comm, store: Store) -> float:
-    """Mass of the fluid, kg; the same bits on any number of ranks, collective."""
-    mass = np.where(store.shown("kind") == FLUID, store.shown("mass"), 0.0)
+def moving_mass(comm: MPI.Comm, store: Store) -> float:
+    """Mass of fluids and solids, kg; the same bits on any number of ranks, collective."""
+    mass = np.where(store.shown("kind") != WALL, store.shown("mass"), 0.0)
     return float(exact_sums(comm, mass[:, None])[0])
 
 

@@ -46,7 +46,8 @@ class Domain:
     """The slab of one rank, its ghosts and its neighbour lists.
 
     ``cutoff`` is the kernel's support and the skin together, m; ``travels`` says what ghosts need;
-    ``lanes`` is how many entries of a list the pair loop takes at once.
+    ``lanes`` is how many entries of a list the pair loop takes at once, None where there is no such loop
+    and nothing to list.
     """
 
     def __init__(
@@ -56,7 +57,7 @@ class Domain:
         extent: Extent,
         cutoff: float,
         travels: Travels,
-        lanes: int = Metres.lanes,
+        lanes: int | None = Metres.lanes,
     ):
         self.comm, self.store, self.cutoff = comm, store, cutoff
         self.axis, self.periods = extent.axis, tuple(extent.periods)
@@ -101,6 +102,13 @@ class Domain:
 
     def _arrange(self, spent: float) -> None:
         self._sort(self._balance_and_migrate(spent))
+        if self.lanes is not None:
+            self._list(self.lanes)
+        for now, listed in zip(self.store["position"], self.store["listed_position"]):
+            listed[: self.store.total] = now[: self.store.total]
+
+    def _list(self, lanes: int) -> None:
+        """Ghosts, and the neighbours of every owned particle."""
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
             self._used_lists(),
@@ -110,11 +118,9 @@ class Domain:
             self.planes,
             self.cutoff,
             self.periods,
-            self.lanes,
+            lanes,
             self._fill,
         )
-        for now, listed in zip(self.store["position"], self.store["listed_position"]):
-            listed[: self.store.total] = now[: self.store.total]
 
     def interior(self) -> tuple[int, int]:
         """Columns of the owned particles that have no ghost among their neighbours."""

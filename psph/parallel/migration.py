@@ -24,7 +24,7 @@ def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
     parcel[:, :fields] = store.data[:, columns].T
     parcel[:, fields] = store.id[columns].view(np.float64)  # the bits, not the value
     parcel[:, fields + 1] = store.group[columns]
-    received = _exchange(comm, parcel, np.bincount(owner[leaving], minlength=comm.size))
+    received, _ = exchange(comm, parcel, np.bincount(owner[leaving], minlength=comm.size))
     staying = (store.low + np.flatnonzero(owner == comm.rank)).astype(np.uint32)
     store.reorder(staying, 0, 0)
     store.append(
@@ -35,8 +35,10 @@ def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
     return True
 
 
-def _exchange(comm: MPI.Comm, parcel: np.ndarray, counts: np.ndarray) -> np.ndarray:
+def exchange(comm: MPI.Comm, parcel: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """All-to-all of rows: ``counts`` (ranks,) rows of ``parcel`` for each rank, in rank order.
+
+    Returns the rows that came, in rank order, and how many came from each rank.
 
     Only ranks that have something for each other exchange messages, each of any size: MPI's own
     all-to-all of different lengths counts with 32 bits.
@@ -50,7 +52,7 @@ def _exchange(comm: MPI.Comm, parcel: np.ndarray, counts: np.ndarray) -> np.ndar
         *_each(comm.Isend, parcel, counts),
     ]
     MPI.Request.Waitall(requests)
-    return received
+    return received, incoming
 
 
 def _each(transfer, rows: np.ndarray, counts: np.ndarray):

@@ -38,6 +38,24 @@ REMEMBERED = (
 """What is known of the lists since they were made, and of the step before."""
 
 
+class Unlisted:
+    """In the place of a skin where no particle looks for neighbours in space: nothing to list."""
+
+    def renew(self) -> None:
+        """Nothing changes."""
+
+    def state(self) -> dict[str, float | None]:
+        """Nothing is known."""
+        return {}
+
+    def restore(self, state: dict[str, float | None]) -> None:
+        """Nothing was."""
+
+    def holds(self, dt: float, speed: float, acceleration: float, shift: float = 0.0) -> bool:
+        """Particles stay on their ranks."""
+        return True
+
+
 class Skin:
     """Keeps the lists of ``domain`` until two neighbours could differ by ``width`` m.
 

@@ -15,7 +15,7 @@ Neither is integrated, so that particles never drift from where they belong, how
 
 from typing import NamedTuple
 
-from psph.fields import FLUID, VECTOR, WALL, Field
+from psph.fields import FLUID, SOLID, VECTOR, WALL, Field
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
 
@@ -40,14 +40,31 @@ class Free(NamedTuple):
     kind = FLUID
 
 
+class Elastic(NamedTuple):
+    """Particles of a solid, whose forces come from their neighbours of the start."""
+
+    kind = SOLID
+
+
 class Fixed(NamedTuple):
     """Particles stay where they are."""
 
     kind = WALL
 
 
+class Clamped(NamedTuple):
+    """Particles of a solid that stay where they are."""
+
+    kind = SOLID
+
+
 FREE, FIXED, RIGID, PRESCRIBED = 0, 1, 2, 3
 """Numbers of motions in compiled loops: of those that deform, the first."""
+
+
+def is_free(motion) -> bool:
+    """Whether forces move particles."""
+    return isinstance(motion, (Free, Elastic))
 
 
 def is_prescribed(motion) -> bool:

@@ -16,6 +16,8 @@ FASTER = 2.0
 
 def advice(scene, guard: str, suspect) -> list[str]:
     """Things to try, the most promising first; at least one."""
+    if scene.elastic_solids:
+        return [*_solids(scene), *_bound(guard)]
     return [
         *_driven(scene, guard, suspect),
         *_long_step(scene),
@@ -27,6 +29,15 @@ def advice(scene, guard: str, suspect) -> list[str]:
         *_shorter_step(scene),
         *_bound(guard),
     ]
+
+
+def _solids(scene) -> Iterator[str]:
+    if scene.case.time.step is not None:
+        yield "remove time.step: the waves in the solids set the step then"
+    yield (
+        'give law = "neo-hookean", which stands more compression, a larger hourglass, or some damping; '
+        "look at the units of young, density and loads"
+    )
 
 
 def _driven(scene, guard: str, suspect) -> Iterator[str]:

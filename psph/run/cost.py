@@ -14,6 +14,8 @@ def costs(plan: Plan, periods: tuple, spent: dict[str, float]) -> Iterator[tuple
     An effect's part of the pair loop is estimated by its operations: those that the loop would do
     without if the effect were absent.  What remains is what all share, distances and the kernel.
     """
+    if not plan.passes:
+        return iter(sorted(spent.items(), key=lambda part: -part[1]))
     everything = plan.flops_per_pair(periods)
     a_flop = spent.get(PAIRS, 0.0) / everything
     parts = {name: seconds for name, seconds in spent.items() if name != PAIRS}
@@ -36,4 +38,5 @@ def cost_lines(plan: Plan, periods: tuple, spent: dict[str, float], whole: float
     width = max(len(name) for name, _ in rows)
     for name, seconds in rows:
         yield f"  {name:<{width}}  {seconds:9.3f} s  {100 * seconds / whole:5.1f} %"
-    yield f"  ({PAIRS}: measured as one; among effects by their share of its operations)"
+    if plan.passes:
+        yield f"  ({PAIRS}: measured as one; among effects by their share of its operations)"

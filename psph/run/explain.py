@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from psph.case.keys import AXES
 from psph.case.profiles import OFF
+from psph.composition.space import Metres
 from psph.output.tables import GAUGE
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
@@ -13,6 +14,8 @@ from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
 from psph.physics.motion import deforms
+from psph.physics.solid.deformation import KERNEL, SMOOTHING, places_of, support_of
+from psph.physics.solid.material import is_damped
 from psph.run.forecast import forecast, forecast_lines, pull, sites_within
 from psph.run.hints import hints
 from psph.run.outlay import output_lines
@@ -21,6 +24,7 @@ from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
 from psph.scene.moving import motion_lines
 from psph.scene.rheologies import rheology_lines
+from psph.scene.solid_checks import solid_lines
 from psph.scene.waving import wave_lines
 from psph.simulation.plan import Plan, make_plan
 
@@ -34,7 +38,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     plan = make_plan(scene)
     counts = scene.counts()
     particles = int(counts.sum())
-    yield from _scene_lines(scene, particles)
+    yield from _scene_lines(scene, plan, particles)
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from _step_lines(scene, plan)
@@ -47,7 +51,8 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     yield from output_lines(scene, plan, neighbours, found.steps)
-    yield from outlook(scene, plan)
+    if scene.case.fluids:
+        yield from outlook(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
 
@@ -63,8 +68,16 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     widths = (record_width(_rows(scene, plan, recorded(p.neighbour_fields))) for p in plan.passes)
     record = sum(widths) * plan.space.record_type.itemsize
     own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
-    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2
-    return own, (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2 if plan.passes else 0.0
+    listed = (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+    return own, listed + (bytes_of_solid(scene, plan) if plan.solids else 0.0)
+
+
+def bytes_of_solid(scene, plan: Plan) -> float:
+    """Memory of the records, the reference list and the row of ids of a particle of a solid, bytes."""
+    entries = sites_within(scene, support_of(plan.solid_smoothing_length)) + (Metres.lanes - 1) / 2
+    widths = map(record_width, places_of(scene.dimensions, is_damped(plan.solids)))
+    return NUMBER * sum(widths) + (ENTRY + NUMBER) * entries + ROW
 
 
 def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
@@ -111,7 +124,7 @@ def _cutoff(scene) -> float:
     return scene.reach.cutoff
 
 
-def _scene_lines(scene, particles: int) -> Iterator[str]:
+def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
     case = scene.case
     support = scene.kernel.support * scene.smoothing_length
     yield f"{case.title or case.name} ({case.file})"
@@ -119,6 +132,7 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
+    yield from solid_lines(scene)
     for body in scene.rigid_bodies:
         yield f"  body        {body.name}: {in_words(scene, body)}"
     yield from motion_lines(scene)
@@ -138,11 +152,18 @@ def _scene_lines(scene, particles: int) -> Iterator[str]:
     for name, gauge in case.gauges.items():
         measures = _first_line(getattr(gauge, gauge.kind))
         yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
-    yield (
-        f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
-        f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
-        f"about {sites_within(scene, support):.0f} neighbours"
-    )
+    if plan.solids:
+        neighbours = sites_within(scene, support_of(plan.solid_smoothing_length))
+        yield (
+            f"  kernel      of solids: {KERNEL}, h = {plan.solid_smoothing_length:g} m "
+            f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
+        )
+    if plan.passes:
+        yield (
+            f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
+            f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
+            f"about {sites_within(scene, support):.0f} neighbours"
+        )
 
 
 def _preset_lines(case) -> Iterator[str]:
@@ -178,19 +199,30 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
     yield f"  arrays      {', '.join(plan.arrays)}"
     shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
     yield f"  shared      {shared}"
-    yield f"  halo        once a step: {', '.join(plan.refreshed)}"
-    yield (
-        f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
-        f"{sent:,.0f} bytes from a rank"
-    )
+    if plan.passes:
+        yield f"  halo        once a step: {', '.join(plan.refreshed)}"
+        yield (
+            f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
+            f"{sent:,.0f} bytes from a rank"
+        )
+    if plan.solids:
+        first, second = places_of(scene.dimensions, is_damped(plan.solids))
+        d = scene.dimensions
+        yield (
+            f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "
+            f"stress, {NUMBER * (second - 2 * d)} bytes each"
+        )
     if plan.ghost_fields:
         yield f"              once a rebuild: {', '.join(plan.ghost_fields)}"
 
 
 def _pass_lines(scene, plan: Plan) -> Iterator[str]:
-    flops = plan.flops_per_pair(scene.periods)
     yield from _early_passes(plan)
-    yield f"Pass over the neighbours, one a step, {flops} flops a pair"
+    if plan.passes:
+        flops = plan.flops_per_pair(scene.periods)
+        yield f"Pass over the neighbours, one a step, {flops} flops a pair"
+    if plan.solids:
+        yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
     laws = [type(law).__name__ for law in plan.laws]
     names = [call.name for call in plan.called]
     width = _column([*names, *laws, *(entry.effect.__name__ for entry in plan.absent)])
@@ -201,8 +233,10 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     for name, law, reason in zip(laws, plan.laws, plan.law_reasons):
         yield f"  {name:<{width}}{_first_line(law)}"
         yield f"  {'':<{width}}because: {reason}"
-    yield "Not simulated"
+    yield "Not simulated" if scene.case.fluids else "Not simulated, beside all that acts between fluids"
     for entry in plan.absent:
+        if not scene.case.fluids and not hasattr(entry.effect, "body"):
+            continue
         why = plan.dropped.get(entry.effect.__name__) or _why_absent(scene.case, entry.key)
         yield f"  {entry.effect.__name__:<{width}}{why}"
 

@@ -15,6 +15,9 @@ STEP, PARTICLE, FLOP = 3e-5, 4e-8, 1.4e-10
 """Seconds of a step whatever the particles, of a particle in it apart from its pairs, and of an
 operation of a pair, lists and halo included: by the measured rates of docs/performance.md."""
 
+SOLID_FLOPS = 100
+"""Operations of a pair in both passes of a solid, in 2D and 3D about as many."""
+
 LONGEST = 7 * 86400.0
 """Seconds: a run that is longer is likely not meant."""
 
@@ -34,7 +37,7 @@ def forecast(scene, plan: Plan, ranks: int) -> Forecast:
     """What a run of a scene will take on so many ranks, a core each."""
     step, limit = plan.longest_step(scene.expected_speed, pull(scene))
     steps = math.ceil(scene.case.time.end / step)
-    flops = plan.flops_per_pair(scene.periods)
+    flops = plan.flops_per_pair(scene.periods) if plan.passes else SOLID_FLOPS
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     each = PARTICLE + neighbours * flops * FLOP
     return Forecast(steps, limit, steps * (STEP + each * float(scene.counts().sum()) / ranks))
@@ -74,7 +77,7 @@ def _what_to_do(scene, limit: str) -> str:
             f"fluids.{name}.rheology.{rheology.name} sets the step by its largest viscosity, "
             f"{rheology.law.largest:.3g} Pa s; give less"
         )
-    viscosity = max(fluid.viscosity for fluid in scene.case.fluids.values())
+    viscosity = max((fluid.viscosity for fluid in scene.case.fluids.values()), default=0.0)
     if limit.endswith(("viscosity", "friction")) and viscosity:
         [name] = [n for n, f in scene.case.fluids.items() if f.viscosity == viscosity][:1]
         return (

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from psph.composition.mirrors import BELOW
-from psph.fields import FLUID
-from psph.output.diagnostics import fluid_mass, total_energy, work_done
+from psph.fields import FLUID, WALL
+from psph.output.diagnostics import moving_mass, total_energy, work_done
 from psph.output.errors import OutputError
 from psph.parallel.reductions import largest, wrapped_sums
 from psph.physics.facts import SOUND_OVER_SPEED
@@ -42,14 +42,15 @@ class Guards:
         self.scene, self.simulation, self.record = scene, simulation, record
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
         moving = [one for one in scene.species if is_prescribed(one.motion)]
+        pulled = any(table.loads for table in scene.case.solids.values())
         whole = any(hasattr(effect, "finish_acceleration") for effect in simulation.plan.effects)
         # What walls give is booked by pairs, of walls that bear a pressure.
         unbooked = moving and (whole or not all(one.bearing for one in moving))
-        self._books = not simulation.plan.regions and not unbooked
+        self._books = not simulation.plan.regions and not unbooked and not pulled
         self.solids = [(Solid(scene), None)]
         self.solids += [(Solid(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
         self.seen: Counter[str] = Counter()
-        mass = fluid_mass(simulation.comm, simulation.store)
+        mass = moving_mass(simulation.comm, simulation.store)
         self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
         if simulation.energy_at_start is None:
             simulation.energy_at_start = self._energy()
@@ -141,7 +142,7 @@ class Guards:
         return (self._energy() - self.simulation.energy_at_start) / self._unit
 
     def _energy(self) -> float:
-        """Energy of motion, height and compression less what moving walls and frames have given, J."""
+        """Energy of motion, height, compression and deformation less what walls and frames have given, J."""
         sim, c = self.simulation, self.scene.sound_speed
         laws, law_of = sim.plan.laws, sim.plan.law_of[sim.store.shown("group")]
 
@@ -152,6 +153,7 @@ class Guards:
             return stored
 
         whole = total_energy(sim.comm, sim.store, self.scene.height_gravity, elastic)
+        whole += sim.engine.stored_energy()
         return whole - (work_done(sim.comm, sim.store) if sim.plan.books_work else 0.0)
 
     def _warn(self, guard: str) -> None:
@@ -215,22 +217,23 @@ class Guards:
         return 2.0 * ~before + ~after  # what the pass read comes before what it gave
 
     def _worst_by_speed(self) -> np.ndarray:
-        return np.linalg.norm(self.simulation.store.shown("velocity"), axis=1) * self._fluid()
+        return np.linalg.norm(self.simulation.store.shown("velocity"), axis=1) * self._moving()
 
     _worst_by_energy = _worst_by_speed
 
     def _worst_by_density(self) -> np.ndarray:
         store = self.simulation.store
-        return np.abs(store.shown("density") / store.shown("rest_density") - 1.0) * self._fluid()
+        strain = store.shown("density") / store.shown("rest_density") - 1.0
+        return np.abs(strain) * self._moving()
 
     def _worst_by_clock(self) -> np.ndarray:
-        return np.linalg.norm(self.simulation.store.shown("acceleration"), axis=1) * self._fluid()
+        return np.linalg.norm(self.simulation.store.shown("acceleration"), axis=1) * self._moving()
 
     def _worst_by_depth(self) -> np.ndarray:
         return self._hidden().astype(float)
 
-    def _fluid(self) -> np.ndarray:
-        return self.simulation.store.shown("kind") == FLUID
+    def _moving(self) -> np.ndarray:
+        return self.simulation.store.shown("kind") != WALL
 
     def _side_passed(self, suspect: Suspect) -> str | None:
         """Beyond which side of all walls a particle is, in words; None where it is among them."""

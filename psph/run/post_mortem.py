@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from psph.fields import FLUID
+from psph.fields import KINDS
 from psph.output.errors import together
 from psph.run.suspect import Suspect
 
@@ -65,7 +65,7 @@ def _report(scene, simulation, what, suspect, tries, left) -> Iterator[str]:
 
 def _particle(scene, simulation, suspect: Suspect) -> Iterator[str]:
     speed, ratio = suspect.speed, suspect.value("density") / suspect.value("rest_density")
-    kind = "fluid" if suspect.value("kind") == FLUID else "wall"
+    kind = KINDS[suspect.value("kind")]
     push, change = suspect.hardest(), suspect.fastest_change()
     rows = {
         "particle": f"{suspect.id}, {kind}",
@@ -116,7 +116,7 @@ def _neighbours(scene, suspect: Suspect) -> Iterator[str]:
         return
     yield "| id | kind | distance (dx) | velocity (m/s) | pressure (Pa) |\n|---|---|---|---|---|"
     for k in order[:LISTED]:
-        kind = "fluid" if around.shown("kind")[k] == FLUID else "wall"
+        kind = KINDS[around.shown("kind")[k]]
         yield (
             f"| {around.shown('id')[k]} | {kind} | {distance[k] / scene.spacing:.3g} | "
             f"{_vector(around.shown('velocity')[k])} | {around.shown('pressure')[k]:.4g} |"

@@ -89,7 +89,12 @@ class Record:
         self.probe_table = None
         if names:
             self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
-        self.log = CsvTable(folder / LOG, diagnostics.columns(scene.dimensions), comm, sizes.get(LOG))
+        self.log = CsvTable(
+            folder / LOG,
+            diagnostics.columns(scene.dimensions, bool(simulation.plan.solids)),
+            comm,
+            sizes.get(LOG),
+        )
         self.accuracy = self.errors = None
         self.latest_errors: list[float] = []
         if scene.exact:
@@ -190,7 +195,9 @@ class Record:
         sim = self.simulation
         sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.gravity)
         error = diagnostics.density_error(sim.comm, sim.store)
-        self.log.write([sim.time, sim.steps, sim.dt, *sums.tolist(), sim.fluid_speed, error])
+        energies, momentum = sums[:2].tolist(), sums[2:].tolist()
+        stored = [sim.engine.stored_energy()] if sim.plan.solids else []
+        self.log.write([sim.time, sim.steps, sim.dt, *energies, *stored, *momentum, sim.fluid_speed, error])
         if self.accuracy:
             self.latest_errors = self.accuracy.errors(sim.time)
             self.errors.write([sim.time, *self.latest_errors])

@@ -23,12 +23,12 @@ class TooLittleMemory(Refused):
 
 
 def check_size(scene, comm) -> None:
-    """Raise TooLittleMemory on every rank where the fluids by their volume alone need more than all memory.
+    """Raise TooLittleMemory on every rank where the particles by their volume alone need too much memory.
 
     Before the sites are counted, which takes hours where they are too many by far.
     """
     sites = (
-        sum(_least_volume(fluid.shape) for fluid in scene.case.fluids.values())
+        sum(_least_volume(part.shape) for part in scene.parts[: scene.layout.movers])
         / scene.spacing**scene.dimensions
     )
     free = sum(comm.allgather(free_memory() / ranks_here(comm)))

@@ -12,6 +12,7 @@ from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
 from psph.physics.motion import OF_MOTION
+from psph.physics.solid.deformation import DRAWN
 from psph.run.record import probes_of
 from psph.scene.particles import ParticleSet
 from psph.simulation.filling import block_of
@@ -66,6 +67,8 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
             bool(scene.frame) or None,
             *(f.name in plan.arrays or None for f in OF_MOTION),
         ),
+        tuple((one.law, bool(one.viscosity) or None) for one in plan.solids),
+        DRAWN.name in plan.arrays or None,
         scene.periods,
         store.view(),
     )
@@ -84,7 +87,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
 
 
 def _rehearse(scene, plan: Plan, store: Store) -> None:
-    """One step of two particles of the first fluid in ``store``: it has the types of the whole run."""
+    """One step of two particles of the first material in ``store``: it has the types of the whole run."""
     middle = np.tile([0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)], (2, 1))
     first, density = np.zeros(2, np.uint8), np.full(2, scene.species[0].density)
     block = block_of(scene, store, first, middle, np.zeros_like(middle), density)

@@ -13,6 +13,9 @@ from psph.particles.store import Store
 from psph.simulation.step import Simulation
 from psph.vectors import add, nearest_image, subtract, zero_like
 
+INNER = "stress and hourglass control"
+"""What the neighbours in the reference do to a particle of a solid."""
+
 SEEN = 6.0
 """Spacings around the particle that are looked at, or the kernel's support if that is more."""
 
@@ -55,13 +58,13 @@ class Suspect(NamedTuple):
 
     def hardest(self) -> Share | None:
         """The effect that pushes it hardest; one whose push is not finite before all others."""
-        first = max(self.shares, key=lambda share: _size(share.acceleration))
-        return first if _size(first.acceleration) else None
+        first = max(self.shares, key=lambda share: _size(share.acceleration), default=None)
+        return first if first and _size(first.acceleration) else None
 
     def fastest_change(self) -> Share | None:
         """The effect that changes its density fastest."""
-        first = max(self.shares, key=lambda share: _size([share.density_rate]))
-        return first if _size([first.density_rate]) else None
+        first = max(self.shares, key=lambda share: _size([share.density_rate]), default=None)
+        return first if first and _size([first.density_rate]) else None
 
 
 def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
@@ -82,6 +85,10 @@ def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
     offset = _away(_places(around), place, scene.periods)
     place = simulation.domain.inside(place[None])[0]
     shares = _shares(simulation, scene, around, column, offset)
+    if simulation.plan.solids:
+        others = sum((one.acceleration for one in shares), np.zeros(scene.dimensions))
+        inner = around.shown("acceleration")[column] - others
+        shares = (*shares, Share(INNER, inner, 0.0, np.zeros(scene.dimensions)))
     return Suspect(-least, place, around, offset, column, shares)
 
 
@@ -123,7 +130,7 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
     """What each effect does to a particle, by its plain formulas over its neighbours, in mirrors too."""
     view = seen_at(around.view(), simulation.pace)
     reach = scene.kernel.support * scene.smoothing_length
-    near = np.flatnonzero(np.linalg.norm(offset, axis=1) <= reach)
+    near = np.flatnonzero((np.linalg.norm(offset, axis=1) <= reach) & bool(simulation.plan.passes))
     i = take(view, column)
     mirrors = simulation.plan.mirrors
     pairs = []

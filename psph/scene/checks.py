@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from itertools import chain, product
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
+from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.unbearing import unbearing_warnings
 from psph.scene.units import in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
@@ -63,7 +65,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *body_faults(scene),
         *_exact_faults(scene),
     ]
-    places = places or list(motion_faults(scene))
+    places = places or [*solid_faults(scene), *motion_faults(scene)]
     for line in places or _state_faults(scene):  # an empty shape has no pressure
         yield f"{scene.case.file}: {line}"
 
@@ -98,7 +100,7 @@ def _far_faults(scene: Scene) -> Iterator[str]:
         "space.origin": (*scene.lattice.lower, *scene.lattice.upper, *case.space.origin),
         "space.lower": scene.lower,
         "space.upper": scene.upper,
-        **{f"fluids.{n}.jitter": (f.jitter * scene.spacing,) for n, f in case.fluids.items()},
+        **{f"{scene.key_of(n)}.jitter": (part.jitter * scene.spacing,) for n, part in _moving(scene)},
         **{f"perturbations[{k}].shift": p.shift for k, p in enumerate(case.perturbations)},
     }
     for key, numbers in lengths.items():
@@ -112,27 +114,7 @@ def _far_faults(scene: Scene) -> Iterator[str]:
 
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
-    for kind in (
-        motion_warnings,
-        wave_warnings,
-        _thin_walls,
-        _surface_threshold,
-        _minimum_at_surface,
-        _minimum_in_disorder,
-        _background_at_surface,
-        _transport_at_surface,
-        _slow_sound,
-        driven_flow,
-        unbearing_warnings,
-        buried,
-        _jitter,
-        several_fluids,
-        meshes.remarks,
-        misfits,
-        slips,
-        rheology_warnings,
-        body_warnings,
-    ):
+    for kind in (*OF_EVERY_SCENE, *(OF_FLUIDS if scene.case.fluids else ())):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
 
@@ -172,15 +154,16 @@ def _mirror_faults(scene: Scene) -> Iterator[str]:
 
 
 def _spacing_faults(scene: Scene) -> Iterator[str]:
-    """A spacing that leaves fluids without a particle, and that none of them is thick enough for."""
-    fluids = scene.case.fluids
+    """A spacing that leaves what moves without a particle, and that none of it is thick enough for."""
     thickness = {
-        name: min(up - low for low, up in zip(*bounds(fluid.shape))) for name, fluid in fluids.items()
+        scene.key_of(n): min(up - low for low, up in zip(*bounds(part.shape)))
+        for n, part in enumerate(scene.parts[: scene.layout.movers])
     }
     thickest = max(thickness, key=thickness.get)
+    kind = "fluids" if scene.case.fluids else "solids"
     if scene.spacing > thickness[thickest]:
         yield (
-            f"space.spacing: {scene.spacing:g} m is larger than the fluids: fluids.{thickest} is "
+            f"space.spacing: {scene.spacing:g} m is larger than the {kind}: {thickest} is "
             f"{thickness[thickest]:.3g} m thick; give at most a tenth of that, "
             f"{0.1 * thickness[thickest]:.2g}"
         )
@@ -189,14 +172,15 @@ def _spacing_faults(scene: Scene) -> Iterator[str]:
 def _site_faults(scene: Scene) -> Iterator[str]:
     census = scene.census
     for material, size in enumerate(census.sizes):
-        if not size:
+        if not size and scene.layout.movers <= material < scene.layout.first_wall:
+            yield f"{scene.key_of(material)}: holds no particle of the solid; let the shapes meet"
+        elif not size:
             yield (
                 f"{scene.key_of(material)}.shape: no lattice site lies in it; make it larger than "
                 "space.spacing, or move it"
             )
-    walls = len(scene.case.fluids)
     for (one, other), site in sorted(census.clashes.items()):
-        if one < walls or other >= scene.layout.first_body:
+        if one < scene.layout.first_wall or other >= scene.layout.first_body:
             yield (
                 f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
                 "one from the other: shape = { difference = { from = ..., minus = [...] } }"
@@ -342,9 +326,37 @@ def _slow_sound(scene: Scene) -> Iterator[str]:
 
 
 def _jitter(scene: Scene) -> Iterator[str]:
-    for name, fluid in scene.case.fluids.items():
-        if fluid.jitter > LARGEST_QUIET_JITTER:
+    for number, part in _moving(scene):
+        if part.jitter > LARGEST_QUIET_JITTER:
             yield (
-                f"fluids.{name}.jitter: {fluid.jitter:g} spacings let neighbours change places; "
+                f"{scene.key_of(number)}.jitter: {part.jitter:g} spacings let neighbours change places; "
                 f"give at most {LARGEST_QUIET_JITTER:g}"
             )
+
+
+def _moving(scene: Scene) -> Iterator[tuple[int, Any]]:
+    """Each fluid and solid, with its number."""
+    return enumerate(scene.parts[: scene.layout.movers])
+
+
+OF_EVERY_SCENE = (motion_warnings, solid_warnings, _jitter, meshes.remarks, misfits)
+"""What warns of the parts of any scene."""
+
+OF_FLUIDS = (
+    wave_warnings,
+    _thin_walls,
+    _surface_threshold,
+    _minimum_at_surface,
+    _minimum_in_disorder,
+    _background_at_surface,
+    _transport_at_surface,
+    _slow_sound,
+    driven_flow,
+    unbearing_warnings,
+    buried,
+    several_fluids,
+    slips,
+    rheology_warnings,
+    body_warnings,
+)
+"""What warns of fluids, and of what they meet."""

@@ -18,9 +18,9 @@ def planes_of(case: Case) -> tuple[Plane, ...]:
     or where a wall has no flat face that the fluid is before.
     """
     found = [(f"space.symmetry: {side}", plane) for side, plane in _of_domain(case)]
-    held = around([bounds(fluid.shape) for fluid in case.fluids.values()])
     for name, wall in case.walls.items():
         if wall.condition == MIRROR:
+            held = around([bounds(fluid.shape) for fluid in case.fluids.values()])
             found += [(f"walls.{name}", plane) for plane in _of_wall(case, name, wall, held)]
     seen: dict[tuple[int, int], str] = {}
     for key, plane in found:

@@ -92,11 +92,11 @@ def fastest_corner(scene, part: int) -> float:
 
 
 def falling_speed(scene) -> float:
-    """√(2gH), free fall over the fluids' height H, m/s: g without what pulls along a periodic axis, and with
-    the largest acceleration of a moving frame."""
-    framed, fluids = frame_sweep(scene), slice(len(scene.case.fluids))
+    """√(2gH), free fall over the height H of all that moves freely, m/s: g without what pulls along a
+    periodic axis, and with the largest acceleration of a moving frame."""
+    framed, moving = frame_sweep(scene), slice(scene.layout.movers)
     pull = math.hypot(*scene.height_gravity) + (framed.acceleration if framed else 0.0)
-    height = scene.census.top[fluids].max() - scene.census.bottom[fluids].min() + scene.spacing
+    height = scene.census.top[moving].max() - scene.census.bottom[moving].min() + scene.spacing
     return math.sqrt(2.0 * pull * max(height, 0.0))
 
 

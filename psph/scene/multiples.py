@@ -34,16 +34,16 @@ class Width(NamedTuple):
 
 
 def widths(scene: "Scene") -> list[Width]:
-    """Of every box of a fluid and every closed room in a wall, and the periods of the domain."""
+    """Of every box of a fluid or a solid and every closed room in a wall, and the periods of the domain."""
     case = scene.case
     found = [
         Width("space.upper", d, low, low + period)
         for d, (low, period) in enumerate(zip(scene.lower, scene.periods))
         if period is not None
     ]
-    for name, fluid in case.fluids.items():
-        boxes = _boxes(fluid.shape)
-        found += (Width(f"fluids.{name}", *side) for box in boxes for side in _sides(box))
+    for number, part in enumerate(scene.parts[: scene.layout.movers]):
+        boxes = _boxes(part.shape)
+        found += (Width(scene.key_of(number), *side) for box in boxes for side in _sides(box))
     for name, wall in case.walls.items():
         found += (Width(f"walls.{name}", *side) for side in _cavities(wall.shape))
     return found

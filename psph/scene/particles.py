@@ -104,13 +104,13 @@ def _kick(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) ->
 def _shift(chunk: ParticleSet, scene) -> None:
     """Random shifts, the same for a particle wherever it is made: its id places the draw."""
     dimensions = chunk.position.shape[1]
-    for index, fluid in enumerate(scene.case.fluids.values()):
+    for index, part in enumerate(scene.parts[: scene.layout.first_wall]):
         rows = chunk.material == index
-        if fluid.jitter and rows.any():
-            source = Philox(key=fluid.seed)
+        if part.jitter and rows.any():
+            source = Philox(key=part.seed)
             source.advance(int(chunk.id[0]))
             drawn = Generator(source).random((len(chunk.id), NUMBERS_PER_COUNT))[rows, :dimensions]
-            chunk.position[rows] += (2.0 * drawn - 1.0) * (fluid.jitter * scene.spacing)
+            chunk.position[rows] += (2.0 * drawn - 1.0) * (part.jitter * scene.spacing)
     for x, low, period in zip(chunk.position.T, scene.lower, scene.periods):
         if period is not None:
             x -= period * np.floor((x - low) / period)
@@ -118,11 +118,11 @@ def _shift(chunk: ParticleSet, scene) -> None:
 
 
 def _sheared(chunk: ParticleSet, scene) -> None:
-    """The gradient of a fluid's velocity, where each particle now is."""
-    for index, fluid in enumerate(scene.case.fluids.values()):
+    """The gradient of the velocity at the start, where each particle now is."""
+    for index, part in enumerate(scene.parts[: scene.layout.movers]):
         rows = chunk.material == index
-        if fluid.velocity_gradient and rows.any():
-            chunk.velocity[rows] += fluid.sheared(chunk.position[rows])
+        if part.velocity_gradient and rows.any():
+            chunk.velocity[rows] += part.sheared(chunk.position[rows])
 
 
 def _as_exact(chunk: ParticleSet, scene) -> None:

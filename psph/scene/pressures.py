@@ -1,6 +1,10 @@
 """Between which pressures a fluid starts."""
 
+import math
+
 import numpy as np
+
+from psph.scene.lattice import TOLERANCE
 
 
 def range_of_pressure(scene, fluid: int) -> tuple[float, float]:
@@ -15,3 +19,20 @@ def range_of_pressure(scene, fluid: int) -> tuple[float, float]:
         found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
     pressure = start.exact(np.concatenate(found))
     return float(pressure.min()), float(pressure.max())
+
+
+def weight_above(scene, fluid: int) -> float:
+    """Pressure of the still fluids that rest on this one, Pa: those that begin where it ends, or
+    higher, over some of its ground."""
+    census, total = scene.census, 0.0
+    level = [d for d, u in enumerate(scene.up) if abs(u) < 0.5]
+    for other in range(scene.layout.fluids):
+        bottom = float(census.bottom[other]) - 0.5 * scene.spacing
+        apart = (census.lowest[other] > census.highest[fluid]) | (
+            census.highest[other] < census.lowest[fluid]
+        )
+        resting = bottom > scene.surface_of(fluid) - TOLERANCE * scene.spacing and not apart[level].any()
+        if resting and scene.parts[other].pressure == "hydrostatic":
+            thickness = scene.surface_of(other) - bottom
+            total += scene.parts[other].density * math.hypot(*scene.height_gravity) * thickness
+    return total

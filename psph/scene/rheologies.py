@@ -22,7 +22,8 @@ def laws_of(case) -> tuple[Any, ...]:
 
 def number_of(fluid, laws: tuple[Any, ...]) -> int:
     """The number of the law of a fluid's viscosity among ``laws`` from 1 on, 0 where that is constant."""
-    return 1 + laws.index(fluid.rheology.law) if fluid.rheology else 0
+    rheology = getattr(fluid, "rheology", None)
+    return 1 + laws.index(rheology.law) if rheology else 0
 
 
 class Paste(NamedTuple):

@@ -13,18 +13,19 @@ from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.facts import SOUND_OVER_SPEED
-from psph.physics.motion import Fixed, Free
+from psph.physics.motion import Clamped, Elastic, Fixed, Free
 from psph.physics.rigid.bodies import Body
+from psph.physics.solid.material import MADE_OF, Solid, solid_of
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.bodies import rigid_bodies
 from psph.scene.driven import creeping_speed, driven_speed
-from psph.scene.kicked import nearest_fluid_site
-from psph.scene.lattice import TOLERANCE, lattice_around
+from psph.scene.kicked import kicked_velocities, kicks_of
+from psph.scene.lattice import lattice_around
 from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.moving import falling_speed, fastest_corner, largest_speed
 from psph.scene.particles import ParticleSet, fill
-from psph.scene.pressures import range_of_pressure
+from psph.scene.pressures import range_of_pressure, weight_above
 from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
 from psph.scene.species import Census, Layout, Species, Start, take_census
@@ -40,9 +41,10 @@ class Scene:
     The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the
     domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
     hold a particle, ``planes`` its planes across ``axis``, ``mirror_planes`` its
-    mirrors; ``walls`` are those with particles, by name, ``solids`` these and the rigid bodies;
-    ``parts`` has the tables of the case that hold particles: fluids, walls, bodies; ``meshes`` the geometry
-    files that draw shapes.
+    mirrors; ``walls`` are those with particles, by name, ``boundaries`` these and the rigid
+    bodies, ``clamped`` the elastic solids with a part that stays;
+    ``parts`` has the tables of the case that hold particles, in the order of ``layout``; ``meshes`` the
+    geometry files that draw shapes.
     """
 
     def __init__(self, case: Case):
@@ -55,14 +57,24 @@ class Scene:
         if space.normalised:
             self.kernel = normalised(self.kernel, self.spacing, space.dimensions)
         self.walls = {name: wall for name, wall in case.walls.items() if wall.condition != MIRROR}
-        self.solids: dict[str, Any] = {**self.walls, **case.bodies}
-        self.parts: tuple[Any, ...] = (*case.fluids.values(), *self.solids.values())
+        self.boundaries: dict[str, Any] = {**self.walls, **case.bodies}
+        self.clamped = {name: solid for name, solid in case.solids.items() if solid.clamped}
+        held = (solid.held for solid in self.clamped.values())
+        moving = (*case.fluids.values(), *case.solids.values())
+        self.parts: tuple[Any, ...] = (*moving, *held, *self.boundaries.values())
         shapes = tuple(part.shape for part in self.parts)
         axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
         self.mirror_planes = planes_of(case)
         boxes = (clipped(bounds(shape), self.mirror_planes) for shape in shapes)
         self.lattice = lattice_around(boxes, space.origin, self.spacing, axis)
-        self.layout = Layout(self.lattice, shapes, len(case.fluids), len(case.bodies))
+        self.layout = Layout(
+            self.lattice,
+            shapes,
+            len(case.fluids),
+            len(case.bodies),
+            len(case.solids),
+            tuple(map(list(case.solids).index, self.clamped)),
+        )
         self.axis, self.planes = self.lattice.axis, self.lattice.planes
         mirrors = (bounds(wall.shape) for wall in case.walls.values() if wall.condition == MIRROR)
         found = around([(self.lattice.lower, self.lattice.upper), *mirrors])
@@ -133,7 +145,8 @@ class Scene:
 
     @cached_property
     def undriven_speed(self) -> float:
-        """The largest of √(2gH), free fall over the fluids' height (with the frame's acceleration beside g),
+        """The largest of √(2gH), free fall over the height of all that moves freely (with the frame's
+        acceleration beside g),
         and any speed of the start or of a wall that moves, m/s."""
         return max(falling_speed(self), self.starting_speed, largest_speed(self))
 
@@ -141,15 +154,18 @@ class Scene:
     def starting_speed(self) -> float:
         """The largest speed of a fluid, a wall or the exact solution at the start, m/s."""
         known = self.exact.top_speed(self.unheard_setting) if self.exact else 0.0
-        moving = (math.hypot(*v) for v in (*self.velocities, *self._kicked))
-        return max(known, *moving, *(fastest_corner(self, n) for n in range(len(self.case.fluids))))
+        moving = (math.hypot(*v) for v in (*self.velocities, *kicked_velocities(self)))
+        return max(known, *moving, *(fastest_corner(self, n) for n in range(self.layout.movers)))
 
     @cached_property
     def sound_speed(self) -> float:
-        """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow.
+        """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow; in a scene
+        of solids alone that of the fastest wave.
 
         Raises CaseError where nothing moves and nothing falls.
         """
+        if not self.case.fluids:
+            return max(one.wave_speed for one in self.elastic_solids)
         given = self.case.physics.sound_speed
         if given is None and not self.expected_speed > 0.0:
             raise CaseError(
@@ -203,11 +219,11 @@ class Scene:
         return self._setting(math.nan)
 
     def _setting(self, sound_speed: float) -> Setting:
-        fluid = self.parts[0]
+        first = self.parts[0]
         return Setting(
             self.dimensions,
-            fluid.density,
-            fluid.viscosity,
+            first.density,
+            getattr(first, "viscosity", 0.0),
             sound_speed,
             self.gravity,
             self.lower,
@@ -217,14 +233,14 @@ class Scene:
 
     @cached_property
     def species(self) -> tuple[Species, ...]:
-        """Each fluid, then each wall."""
+        """What the particles of each material are, in the order of ``layout``."""
         volume = self.spacing**self.dimensions
         return tuple(
             Species(
                 name,
                 self.species_in_motion[index],
                 self.parts[source].density,
-                self.parts[source].viscosity,
+                getattr(self.parts[source], "viscosity", 0.0),
                 start.mass(volume),
                 start.law,
                 getattr(self.parts[index], "no_slip", False),
@@ -232,6 +248,7 @@ class Scene:
                 name in self.case.loaded,
                 self.layout.solid_of(index),
                 number_of(self.parts[source], self.rheologies),
+                self.layout.elastic_of(index),
             )
             for index, (name, source, start) in enumerate(zip(self.names, self._sources, self.starts))
         )
@@ -243,16 +260,19 @@ class Scene:
 
     def _motion(self, index: int):
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""
-        if index < self.layout.fluids:
-            return Free()
+        if index < self.layout.movers:
+            return Free() if index < self.layout.fluids else Elastic()
+        if index < self.layout.first_wall:
+            return Clamped()
         if index >= self.layout.first_body:
             return self.rigid_bodies[index - self.layout.first_body]
         return motion_of(self.parts[index].motion, self.gravity) or Fixed()
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the fluids, then of walls and bodies."""
-        return (*self.case.fluids, *self.solids)
+        """Of all materials, in the order of ``layout``."""
+        held = (f"{name} (clamped)" for name in self.clamped)
+        return (*self.case.fluids, *self.case.solids, *held, *self.boundaries)
 
     @cached_property
     def species_in_motion(self) -> tuple[Any, ...]:
@@ -276,8 +296,20 @@ class Scene:
 
     def key_of(self, part: int) -> str:
         """The key of the case that holds a part: ``fluids.water``, ``walls.tank``, ``bodies.buoy``."""
-        name = (*self.case.fluids, *self.solids)[part]
-        return f"fluids.{name}" if part < self.layout.fluids else f"{self.case.table_of(name)}.{name}"
+        name = self.names[part]
+        if part < self.layout.movers:
+            return f"fluids.{name}" if part < self.layout.fluids else f"solids.{name}"
+        if part < self.layout.first_wall:
+            return f"solids.{list(self.clamped)[part - self.layout.movers]}.clamped"
+        return f"{self.case.table_of(name)}.{name}"
+
+    @cached_property
+    def elastic_solids(self) -> tuple[Solid, ...]:
+        """What the elastic solids of the case are made of."""
+        return tuple(
+            solid_of(name, **{key: getattr(table, key) for key in MADE_OF})
+            for name, table in self.case.solids.items()
+        )
 
     @cached_property
     def tables(self) -> dict[str, Any]:
@@ -315,23 +347,12 @@ class Scene:
     def kicks(self) -> dict[tuple[int, int], np.ndarray]:
         """For the particle at (plane, place in the plane) what is added to its velocity, m/s, and
         to its position, m (2, dim)."""
-        kicks: dict[tuple[int, int], np.ndarray] = {}
-        for kick in self.case.perturbations:
-            site = nearest_fluid_site(self, kick.position)
-            kicks[site] = kicks.get(site, 0.0) + np.array([kick.velocity, kick.shift])
-        return kicks
-
-    @property
-    def _kicked(self):
-        """Velocities of the particles that got a kick."""
-        for (plane, place), (kick, _) in self.kicks.items():
-            material = self.layout.materials(plane, plane + 1).ravel()[place]
-            yield kick + np.array(self.velocities[material])
+        return kicks_of(self)
 
     @property
     def hydrostatic_walls(self) -> list[tuple[int, int]]:
         """(index of the wall, index of its fluid) where a wall continues a still column."""
-        walls = list(enumerate(self._sources))[self.layout.fluids :]
+        walls = list(enumerate(self._sources))[self.layout.first_wall :]
         return [(wall, fluid) for wall, fluid in walls if self.starts[fluid].weight]
 
     @property
@@ -341,51 +362,37 @@ class Scene:
 
     @property
     def _sources(self) -> list[int]:
-        """For each material the index of the fluid whose properties it has."""
+        """For each material the index of the one whose density and state it has."""
         fluids = list(self.case.fluids)
-        continued = [fluids.index(solid.continues) for solid in self.solids.values()]
-        return [*range(len(fluids)), *continued]
+        held = [self.layout.fluids + solid for solid in self.layout.clamps]
+        continued = [fluids.index(one.continues) for one in self.boundaries.values()]
+        return [*range(self.layout.movers), *held, *continued]
 
-    def _law(self, fluid):
-        """The equation of state of a fluid: its own, or that of all."""
-        name = fluid.equation_of_state or self.case.physics.equation_of_state
+    def _law(self, part):
+        """The equation of state of a material: its own, or that of all."""
+        name = getattr(part, "equation_of_state", None) or self.case.physics.equation_of_state
         [law] = (entry.effect for entry in self.case.catalogue.states if last_part(entry) == name)
         return law()
 
     def _start(self, index: int) -> Start:
-        fluid = self.parts[index]
-        hydrostatic, exact = (fluid.pressure == word for word in ("hydrostatic", EXACT))
+        part = self.parts[index]
+        pressure = getattr(part, "pressure", 0.0)
+        hydrostatic, exact = (pressure == word for word in ("hydrostatic", EXACT))
         return Start(
-            law=self._law(fluid),
-            rest_density=fluid.density,
+            law=self._law(part),
+            rest_density=part.density,
             sound_speed=self.sound_speed,
-            pressure=0.0 if hydrostatic or exact else fluid.pressure,
-            weight=fluid.density * math.hypot(*self.height_gravity) if hydrostatic else 0.0,
+            pressure=0.0 if hydrostatic or exact else pressure,
+            weight=part.density * math.hypot(*self.height_gravity) if hydrostatic else 0.0,
             up=self.up,
-            surface=self._surface(index),
-            above=self._weight_above(index) if hydrostatic else 0.0,
+            surface=self.surface_of(index),
+            above=weight_above(self, index) if hydrostatic else 0.0,
             exact=(lambda x: self.exact.pressure(x, 0.0, self.setting)) if exact else None,
         )
 
-    def _surface(self, fluid: int) -> float:
+    def surface_of(self, fluid: int) -> float:
         """Height of a fluid's surface at the start, m."""
         return float(self.census.top[fluid]) + 0.5 * self.spacing
-
-    def _weight_above(self, fluid: int) -> float:
-        """Pressure of the still fluids that rest on this one, Pa: those that begin where it ends, or
-        higher, over some of its ground."""
-        census, total = self.census, 0.0
-        level = [d for d, u in enumerate(self.up) if abs(u) < 0.5]
-        for other in range(self.layout.fluids):
-            bottom = float(census.bottom[other]) - 0.5 * self.spacing
-            apart = (census.lowest[other] > census.highest[fluid]) | (
-                census.highest[other] < census.lowest[fluid]
-            )
-            resting = bottom > self._surface(fluid) - TOLERANCE * self.spacing and not apart[level].any()
-            if resting and self.parts[other].pressure == "hydrostatic":
-                thickness = self._surface(other) - bottom
-                total += self.parts[other].density * math.hypot(*self.height_gravity) * thickness
-        return total
 
     @cached_property
     def _pressures(self) -> tuple[tuple[float, float], ...]:

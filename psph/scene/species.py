@@ -10,7 +10,7 @@ import numpy as np
 from psph.case.shapes import Shape
 from psph.fields import FLUID
 from psph.particles.wetting import FIRST_BODY
-from psph.physics.motion import Free
+from psph.physics.motion import is_free
 from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.rows import projected
 from psph.scene.lattice import TOLERANCE, Lattice
@@ -29,7 +29,8 @@ class Species(NamedTuple):
     it continues; ``no_slip`` if that fluid sticks to it; ``condition`` is what it sets to the fluid before it
     (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for;
     ``rheology`` is the number of the law of its viscosity among those of the scene from 1 on, 0 where that is
-    constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body from 2 on.
+    constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body from 2 on; ``elastic``
+    is the number of the elastic solid that it is of, or None.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Species(NamedTuple):
     loaded: bool = False
     solid: int = 0
     rheology: int = 0
+    elastic: int | None = None
 
     @property
     def kind(self) -> int:
@@ -77,7 +79,7 @@ class Species(NamedTuple):
     @property
     def mobile(self) -> bool:
         """Whether forces move it."""
-        return isinstance(self.motion, Free)
+        return is_free(self.motion)
 
 
 class Start(NamedTuple):
@@ -125,15 +127,35 @@ class Start(NamedTuple):
 
 @dataclass(frozen=True)
 class Layout:
-    """Which material holds which site: fluids first, then walls, then bodies, in the order of the case.
+    """Which material holds which site: fluids first, then elastic solids, their clamped parts, walls, and
+    bodies, in the order of the case.
 
-    ``bodies`` of them, the last, take the place of fluids where both are.
+    ``bodies`` of them, the last, take the place of fluids where both are.  ``clamps`` has the number of the
+    solid that each clamped part belongs to.
     """
 
     lattice: Lattice
     shapes: tuple[Shape, ...]
     fluids: int
     bodies: int = 0
+    solids: int = 0
+    clamps: tuple[int, ...] = ()
+
+    @property
+    def movers(self) -> int:
+        """How many materials move freely: these come first."""
+        return self.fluids + self.solids
+
+    @property
+    def first_wall(self) -> int:
+        """The number of the first wall."""
+        return self.movers + len(self.clamps)
+
+    def elastic_of(self, material: int) -> int | None:
+        """The number of the elastic solid that a material is of, or None."""
+        if not self.fluids <= material < self.first_wall:
+            return None
+        return material - self.fluids if material < self.movers else self.clamps[material - self.movers]
 
     @property
     def first_body(self) -> int:
@@ -150,6 +172,10 @@ class Layout:
         """For each material, True at the sites that it claims."""
         tolerance = TOLERANCE * self.lattice.spacing
         masks = [np.broadcast_to(inside(s, grid, tolerance), shape) for s in self.shapes]
+        for clamp, solid in enumerate(self.clamps, self.movers):
+            whole = masks[self.fluids + solid]
+            masks[clamp] = masks[clamp] & whole
+            masks[self.fluids + solid] = whole & ~masks[clamp]
         if not self.bodies:
             return masks
         taken = reduce(np.logical_or, masks[self.first_body :])

@@ -54,7 +54,7 @@ def _values(node, keys: list[str], path: str = "", given: bool = True):
     head, *rest = keys
     names = list(node) if head == "*" else [head]
     if isinstance(node, Case) and head == WALLS:
-        for name, solid in node.solids.items():
+        for name, solid in node.boundaries.items():
             yield from _values(solid, rest[1:], f"{node.table_of(name)}.{name}")
         return
     for name in names:

@@ -13,7 +13,7 @@ from psph.engine.threads import in_threads
 from psph.fields import companions, seen_at
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain, Extent, Travels
-from psph.parallel.skin import Skin
+from psph.parallel.skin import Skin, Unlisted
 from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
@@ -51,9 +51,11 @@ class Engine:
             Extent(scene.axis, scene.lower, scene.upper, scene.periods),
             scene.reach.cutoff,
             Travels(plan.ghost_fields, plan.refreshed),
-            plan.space.lanes,
+            plan.space.lanes if plan.passes else None,
         )
-        self.skin, self._reach = Skin(self.domain, scene.reach.skin, plan.planes), scene.reach
+        self.skin = Skin(self.domain, scene.reach.skin, plan.planes) if plan.passes else Unlisted()
+        self._reach = scene.reach
+        self.solids = self._solids(scene) if plan.solids else None
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         floating = Floating(scene, plan) if plan.floats else None
         paddles = Paddles(scene, plan) if plan.absorbs else None
@@ -75,6 +77,12 @@ class Engine:
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._load, self._push = settled(sum_over_neighbours), settled(add_pushes)
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
+
+    def _solids(self, scene):
+        """What the engine has of elastic solids."""
+        from psph.simulation.solids import Solids  # late: most scenes have none
+
+        return Solids(scene, self.plan, self.store, self.domain, self.ledger)
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
@@ -102,10 +110,17 @@ class Engine:
                 self._mark(effect)
         with self.ledger("records"):
             self._fit_records()
+        if self.solids:
+            self.solids.settle()
         self.skin.renew()
 
-    def sum(self, steps: int, ghosts_are_fresh: bool) -> None:
-        """Every pass that is due in the step after ``steps``.
+    def begin(self) -> None:
+        """What particles keep of the start, from where they stand then; lists have to be there."""
+        if self.solids:
+            self.solids.begin()
+
+    def sum(self, steps: int, time: float, ghosts_are_fresh: bool) -> None:
+        """Every pass that is due in the step after ``steps``, which ends at ``time``, s.
 
         The first of them brings ghosts up to date unless they are; each then what was written before it.
         """
@@ -120,6 +135,8 @@ class Engine:
             if one.settles:
                 self._each(settle_told, self._rules, self._view(0.0), self._columns())
             stale, written = (), written | one.written
+        if self.solids:
+            self.solids.sum(time)
 
     def push_bodies(self, time: float, dt: float) -> None:
         """The second kick of rigid bodies at ``time``, by the pushes that the last pass has summed; without a
@@ -136,6 +153,12 @@ class Engine:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store
         state_of(s.low, s.low + s.owned, self._rules, self._view(pace), self._columns())
+        if self.solids:
+            self.solids.measure()
+
+    def stored_energy(self) -> float:
+        """Energy of deformation of all solids, J; collective."""
+        return self.solids.energy() if self.solids else 0.0
 
     def begin_rates(self) -> None:
         """The rates of earlier steps, before there were any, are the first ones."""
@@ -150,12 +173,15 @@ class Engine:
         self.domain.relist(saved.state["lower"], saved.state["upper"])
         saved.fill(self.store)
         self.poses.restore(saved.state["poses"], saved.state["time"])
-        self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
+        if self.plan.passes:
+            self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
         for effect in self.plan.marking:
             self._rest(effect)  # what ghosts are counts too
         self._fit_records()
         for records in self.records:
             records.fill(0, self.store.total)
+        if self.solids:
+            self.solids.settle()
         self.skin.restore(saved.state["skin"])
 
     def bytes_held(self) -> int:
@@ -168,7 +194,8 @@ class Engine:
             *tables,
             *self.domain.lists,
         ]
-        return sum(a.nbytes for a in arrays)
+        held = self.solids.bytes_held() if self.solids else 0
+        return held + sum(a.nbytes for a in arrays)
 
     def spent_on_pairs(self) -> float:
         """Seconds of this rank's pair loop since this was last asked."""
@@ -207,6 +234,8 @@ class Engine:
         for records in self.records:
             records.make_room()
         self._mirrors, self._lists = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
+        if not self.records:
+            return
         longest = int(self.domain.lists.lengths[: self.store.owned].max(initial=0))
         self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
 

@@ -5,6 +5,7 @@ import numpy as np
 from psph.fields import OF_MATERIAL, OF_SITE
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
+from psph.physics.solid.deformation import REFERENCE
 from psph.simulation.groups import material_value
 
 
@@ -12,7 +13,7 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
     """Rows of ``store`` (rows, n) for particles of these ``species`` (n,) that begin there."""
     block = np.zeros((len(store.data), len(species)))
     starting = {"position": position, "velocity": velocity, "predicted_velocity": velocity}
-    for name, values in (starting | {ANCHOR.name: position}).items():
+    for name, values in (starting | {ANCHOR.name: position, REFERENCE.name: position}).items():
         if name in store:
             block[list(store.rows[name])] = values.T
     known = {"density": density}

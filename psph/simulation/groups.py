@@ -17,6 +17,8 @@ def laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
     for (name, fluid), one in zip(scene.case.fluids.items(), scene.species):
         own = fluid.equation_of_state and f"fluids.{name}.equation_of_state = {fluid.equation_of_state}"
         reasons.setdefault((type(one.law), one.law), {})[own or shared] = None
+    for one in scene.species[len(reasons) and len(scene.species) :]:  # of solids alone: none bears a pressure
+        reasons.setdefault((type(one.law), one.law), {})[shared] = None
     return {law: "; ".join(keys) for law, keys in reasons.items()}
 
 

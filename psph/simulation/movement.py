@@ -12,9 +12,10 @@ from psph.physics.motion import (
     PRESCRIBED,
     RIGID,
     WORK,
+    Clamped,
     Fixed,
-    Free,
     deforms,
+    is_free,
     is_rigid,
 )
 
@@ -64,6 +65,8 @@ def _row(motion, among: tuple) -> int:
 
 def _number(motion, motions: tuple) -> int:
     """The number of a motion in compiled loops."""
-    if isinstance(motion, (Free, Fixed)):
-        return FREE if isinstance(motion, Free) else FIXED
+    if is_free(motion):
+        return FREE
+    if isinstance(motion, (Fixed, Clamped)):
+        return FIXED
     return RIGID if is_rigid(motion) else PRESCRIBED + _row(motion, motions)

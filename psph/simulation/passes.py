@@ -59,8 +59,10 @@ def make_passes(
     also serves for some steps more: if ``gather_every`` is above 1, it comes in a pass that runs as
     seldom.  ``stored`` are
     the names of all arrays, ``seen_as`` tells the array that formulas see under a name; ``also`` is what
-    the last is to have of a neighbour whatever the effects.
+    the last is to have of a neighbour whatever the effects.  Without effects there are no passes.
     """
+    if not called:
+        return ()
     early = [(call, level, _every(call)) for call, level in _levels(called)]
     if gather_every > 1:
         early += [(call, 0, gather_every) for call in called if getattr(call.effect, "slow", False)]

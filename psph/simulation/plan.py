@@ -25,9 +25,11 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, Free, is_prescribed
+from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.contact import contact_of
+from psph.physics.solid.deformation import DRAWN, OF_SOLIDS, SMOOTHING
+from psph.physics.solid.material import STEP
 from psph.scene.bodies import body_step
 from psph.simulation.calling import called_for, in_scene, why_dropped
 from psph.simulation.groups import laws, material_value, tells
@@ -41,6 +43,9 @@ OF_STATE = ("position", "rest_density", "sound_speed")
 FORCE_LIMIT = 0.25
 """Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
 
+
+NO_SOLID = 255
+"""In place of the number of a solid."""
 
 ALWAYS_READ = (
     "position",
@@ -124,6 +129,12 @@ class Plan:
     """How solids push each other: one effect where there are bodies, else none."""
     body_step: float | None
     """The longest step that rigid bodies stand, s; None without bodies."""
+    solids: tuple[Any, ...]
+    """The elastic solids (psph.physics.solid.material)."""
+    solid_of: np.ndarray
+    """The number of the elastic solid of each group, NO_SOLID where it is of none: (groups,)."""
+    solid_smoothing_length: float
+    """That of the solids' own kernel, m."""
     regions: tuple[Any, ...]
     """Where particles appear or vanish, each with the number of the fluid that comes."""
     cfl: float
@@ -159,7 +170,7 @@ class Plan:
     @property
     def neighbour_fields(self) -> tuple[str, ...]:
         """What the last pass, which gives the rates, reads of a neighbour."""
-        return self.passes[-1].neighbour_fields
+        return self.passes[-1].neighbour_fields if self.passes else ()
 
     @cached_property
     def marking(self) -> tuple:
@@ -209,7 +220,10 @@ class Plan:
         return dict.fromkeys(field.name for field in self.seen if field.name not in read)
 
     def flops_per_pair(self, periods: tuple, effects: tuple | None = None) -> int:
-        """Operations of a pair in the pass that gives the rates, of all or just some ``effects``."""
+        """Operations of a pair in the pass that gives the rates, of all or just some ``effects``; 0 where
+        there is no such pass."""
+        if not self.passes:
+            return 0
         effects = self.effects if effects is None else effects
         sums = tuple(e for e in effects if any(e is one for one in self.passes[-1].reductions))
         return flops_per_pair(effects, sums, self.kernel, self.seen, self.constants, periods)
@@ -223,10 +237,15 @@ class Plan:
         if self.fixed_step is not None:
             yield self.fixed_step, "time.step"
             return
-        h = self.smoothing_length
-        yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
+        h, factor = self.smoothing_length, FORCE_LIMIT
+        if self.passes:
+            yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
+        else:
+            h, factor = self.solid_smoothing_length, STEP
+        for one in self.solids:
+            yield one.longest_step(h, speed), f"waves in solids.{one.name}"
         if acceleration > 0.0:
-            yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
+            yield factor * (h / acceleration) ** 0.5, "force"
         if self.body_step is not None and self.body_step < np.inf:
             yield self.body_step, "bodies"
         for call in self.called:
@@ -237,7 +256,8 @@ class Plan:
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     """The plan of a scene (psph.scene.Scene), with what its case or another catalogue offers."""
     case, catalogue = scene.case, catalogue or scene.case.catalogue
-    calls = [(entry, *found) for entry in catalogue.effects if (found := called_for(case, entry))]
+    entries = [one for one in catalogue.effects if case.fluids or hasattr(one.effect, "body")]
+    calls = [(entry, *found) for entry in entries if (found := called_for(case, entry))]
     fits = [(entry, in_scene(effect, scene), reason) for entry, effect, reason in calls]
     fitted = [fit for fit in fits if fit[1] is not None]
     marking = [effect for _, effect, _ in fitted if hasattr(effect, "marks")]
@@ -246,7 +266,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
     movement = movement_of(scene.species)
-    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION)
+    of_solids = solid_fields(scene)
+    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_solids)
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     own_laws = laws(scene, catalogue.states)
@@ -257,13 +278,17 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     told = carried_fields(movement, scene.frame)
     told_by = {e.told_by for e in marking}
     shared, varying = _split(scene, own | told_by)
-    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further))
+    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_solids))
     refuse_unwritten(scene, called, (*computed, *told))
     told = {name for name in told if name in own or name != APPARENT.name}
     told |= {LOAD.name} if loaded.any() else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     passes = make_passes(
-        called, stored, lambda name: _array_of(name, stored), case.time.gather_every, for_loads
+        called if case.fluids else (),
+        stored,
+        lambda name: _array_of(name, stored),
+        case.time.gather_every,
+        for_loads,
     )
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
@@ -300,11 +325,16 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         ),
         evolving=evolving,
         kinds=tuple(species.kind for species in scene.species),
-        free=np.uint8(sum(isinstance(one.motion, Free) for one in scene.species)),
+        free=np.uint8(sum(one.mobile for one in scene.species)),
         **movement._asdict(),
         loaded=loaded if loaded.any() else None,
         contacts=contacts,
         body_step=body_step(scene) if scene.case.bodies else None,
+        solids=scene.elastic_solids,
+        solid_of=np.array(
+            [NO_SOLID if one.elastic is None else one.elastic for one in scene.species], np.uint8
+        ),
+        solid_smoothing_length=SMOOTHING * scene.spacing,
         regions=scene.regions,
         cfl=case.time.cfl,
         fixed_step=case.time.step,
@@ -313,6 +343,14 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
             *(max(material_value(m, f.name) for m in scene.species) for f in OF_MATERIAL),
         ),
     )
+
+
+def solid_fields(scene) -> tuple[Field, ...]:
+    """What particles carry because the scene has solids, and these have loads."""
+    if not scene.elastic_solids:
+        return ()
+    loaded = any(table.loads for table in scene.case.solids.values())
+    return (*OF_SOLIDS, *([DRAWN] if loaded else []))
 
 
 def _carries(call: Called) -> bool:

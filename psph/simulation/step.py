@@ -119,11 +119,12 @@ class Simulation:
         """First forces, from particles at rest in time: predicted is initial."""
         self.engine.predict(0.0, 0.0, self.pace)
         self.rebuild()
-        self.engine.sum(0, ghosts_are_fresh=True)
+        self.engine.begin()
+        self.engine.sum(0, 0.0, ghosts_are_fresh=True)
         if self.plan.starts_twice:  # its first verdict comes with the first sums
             self._kick_in_place()
             self.engine.predict(0.0, 0.0, self.pace)
-            self.engine.sum(0, ghosts_are_fresh=False)
+            self.engine.sum(0, 0.0, ghosts_are_fresh=False)
         if self.plan.floats:
             push_bodies(self)
         if self.plan.absorbs:

@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from psph.case.keys import AXES
+from psph.output.gauges.displacement import REACH, DisplacementGauge
 from psph.output.gauges.flow import FlowGauge
 from psph.output.gauges.force import ForceGauge
 from psph.output.gauges.level import LevelGauge
@@ -28,7 +29,7 @@ def gauge_of(scene, name: str, table, mirrors=None):
     asked, every = getattr(table, table.kind), table.every
     match table.kind:
         case "force":
-            names = (*scene.case.fluids, *scene.solids)
+            names = (*scene.case.fluids, *scene.boundaries)
             groups = tuple(k for k, one in enumerate(names) if one in asked.on)
             return ForceGauge(name, every, groups, asked.about)
         case "level":
@@ -39,6 +40,10 @@ def gauge_of(scene, name: str, table, mirrors=None):
             return FlowGauge(name, every, axis, asked.lower, asked.upper)
         case "motion":
             return MotionGauge(name, every, asked.of)
+        case "displacement":
+            number = list(scene.case.solids).index(asked.of)
+            groups = tuple(k for k, one in enumerate(scene.species) if one.elastic == number)
+            return DisplacementGauge(name, every, groups, asked.at, REACH * scene.spacing)
         case "highest":
             return PointGauge(Front(name, AXES.index(asked.axis)), every)
         case "point":

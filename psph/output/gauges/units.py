@@ -2,7 +2,7 @@
 
 from psph.output.probes import FRONT, MEASURED
 
-LENGTHS = ("level", "wetted", FRONT, "centre")
+LENGTHS = ("level", "wetted", FRONT, "centre", "displacement")
 
 PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m"}
 """In 2D per metre of depth."""

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from psph.case.shapes import Shape
-from psph.fields import FLUID
+from psph.fields import WALL
 from psph.output.pictures.view import box_around
 from psph.output.pictures.walls import Triangles, encloses, inwards, surface
 from psph.output.pictures.water import fluid_surface
@@ -73,11 +73,11 @@ def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator
     lower, upper = (
         np.array(space.get(end, [far] * 3)) for end, far in (("lower", -np.inf), ("upper", np.inf))
     )
-    wet = start["kind"] == FLUID
+    wet = start["kind"] != WALL
     inner = box_around(start["position"][wet])
     solids = [one for table in SOLIDS for one in case.get(table, {}).values()]
     held = [_shape(one["shape"], folder) for one in solids if one.get("condition") != MIRROR]
-    known = {group: shape for group, shape in enumerate(held, len(case["fluids"])) if shape}
+    known = {group: shape for group, shape in enumerate(held, len(case.get("fluids", ()))) if shape}
     for group in sorted(known.keys() | set(start["group"][~wet].tolist())):
         if shape := known.get(group):
             faces, around = surface(shape, spacing, lower, upper), encloses(shape, *inner)

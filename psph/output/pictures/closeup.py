@@ -7,7 +7,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.patches import Circle
 
-from psph.fields import FLUID
+from psph.fields import WALL
 from psph.output.pictures import style
 from psph.output.pictures.flat import circles
 from psph.output.pictures.scale import SIGNS
@@ -27,7 +27,7 @@ def draw(path: Path, title: str, time: float, scene, around, offset, column: int
     gravity, but for a periodic axis; in 1D the pressure stands upwards.
     """
     across, up, seen = _slice(scene, offset)
-    fluid = around.shown("kind") == FLUID
+    fluid = around.shown("kind") != WALL
     subtitle = f"particle {around.shown('id')[column]} and its neighbours, t = {time:.6g} s"
     with style.look():
         figure = style.sheet(

@@ -10,7 +10,7 @@ from matplotlib.collections import EllipseCollection
 
 from psph.case.keys import AXES
 from psph.errors import Refused, one_line
-from psph.fields import FLUID
+from psph.fields import WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import style
 from psph.output.pictures.scale import Scale
@@ -84,7 +84,7 @@ class Flat:
     def draw(self, axes: Axes, frame: dict, scale: Scale, first: bool, last: bool) -> None:
         """One frame; the ``first`` panel of a row and the ``last`` of a column have labels."""
         spacing, values = self.room.spacing, frame["values"] * scale.factor
-        fluid = frame["kind"] == FLUID
+        fluid = frame["kind"] != WALL
         axes.set_xlim(self.lower[0], self.upper[0])
         if self.room.dimensions == 1:
             _dots(axes, frame["position"][:, 0], values, fluid)

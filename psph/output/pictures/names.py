@@ -6,6 +6,7 @@ from shutil import rmtree
 
 from psph.fields import SAVED
 from psph.physics.catalogue import BUILT_IN
+from psph.physics.solid.deformation import OF_SOLIDS
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
@@ -17,7 +18,8 @@ DERIVED = ("vorticity",)
 VARIANTS = ("surface", "slice")
 """Other ways to show a field than the usual one."""
 
-_WRITTEN = (field.name for field in BUILT_IN.fields.values() if field.saved and field not in SAVED)
+_FIELDS_OF_SOME = (*OF_SOLIDS, *BUILT_IN.fields.values())
+_WRITTEN = (field.name for field in _FIELDS_OF_SOME if field.saved and field not in SAVED)
 _FIELDS = "|".join([*(field.name for field in SAVED), *_WRITTEN, *DERIVED])
 _DRAWN = re.compile(rf"(?:{_FIELDS})(?:_(?:{'|'.join(VARIANTS)}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")
 

@@ -43,7 +43,14 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
         case "vorticity":
             return _vorticity(case)
         case "group":
-            return Quantity(GROUP, "fluid", "", (GROUP,), _size_of(GROUP), names=tuple(case["fluids"]))
+            return Quantity(
+                GROUP,
+                "fluid",
+                "",
+                (GROUP,),
+                _size_of(GROUP),
+                names=(*case.get("fluids", ()), *case.get("solids", ())),
+            )
     saved = run.fields
     if field not in saved:
         known = ", ".join([*saved, SPEED, VORTICITY])
@@ -67,6 +74,8 @@ def _vorticity(case: dict) -> Quantity:
     dimensions = space["dimensions"]
     if dimensions == 1:
         raise NotThere("plot --field vorticity: a flow along one axis has none; choose another field")
+    if "fluids" not in case:
+        raise NotThere("plot --field vorticity: the run has no fluid; choose von_mises, or another field")
     periods = periods_of(case)
     rest = np.array([material["density"] for material in case["fluids"].values()])
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from psph.case.keys import AXES
 from psph.errors import Refused
-from psph.fields import FLUID
+from psph.fields import WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
@@ -95,7 +95,7 @@ class Show:
 
     def _glance(self, k: int) -> Glance:
         frame = self._whole(k)
-        places, values = frame["position"], frame["values"][frame["kind"] == FLUID]
+        places, values = frame["position"], frame["values"][frame["kind"] != WALL]
         groups = np.unique(frame["group"]).tolist() if self._solid else []
         boxes = {group: box_around(places[frame["group"] == group]) for group in groups}
         return Glance(box_around(places), boxes, values[:: len(values) // VALUES + 1])

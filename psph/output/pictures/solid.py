@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from psph.errors import Refused
-from psph.fields import FLUID
+from psph.fields import WALL
 from psph.output.pictures import style
 from psph.output.pictures.bodies import Body, bodies_of
 from psph.output.pictures.camera import ANGLE, Camera, before, directions
@@ -108,7 +108,7 @@ class Solid:
         try:
             _refuse_without_opengl(plotter.render_window)
             plotter.set_background("white")
-            fluid = (frame["kind"] == FLUID) & self.room.holds(frame["position"])
+            fluid = (frame["kind"] != WALL) & self.room.holds(frame["position"])
             self._add_fluid(plotter, frame["position"][fluid], frame["values"][fluid], scale)
             for body in self.bodies:
                 self._add_body(plotter, body.at(frame), AROUND if body.around else WITHIN)

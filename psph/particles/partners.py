@@ -1,0 +1,73 @@
+"""Neighbours in the reference: rows of ids that never change, and the lists that loops read."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.engine.jit import compiled
+from psph.engine.simd import AHEAD
+from psph.particles.neighbours import Neighbours
+
+
+class ReferenceRows(NamedTuple):
+    """The partners of particle ``ids[k]`` are ``partners[begin[k] : begin[k + 1]]``, ids in rising order.
+
+    ``ids`` (n,) rise too; all are int64.
+    """
+
+    ids: np.ndarray
+    begin: np.ndarray
+    partners: np.ndarray
+
+    @classmethod
+    def of(cls, ids: np.ndarray, counts: np.ndarray, partners: np.ndarray) -> "ReferenceRows":
+        """Rows in any order, ``counts`` (n,) partners each, one after another, put into order."""
+        order = np.argsort(ids, kind="stable")
+        begin = np.concatenate([[0], np.cumsum(counts)])
+        chosen = _entries(begin[:-1][order], counts[order])
+        ends = np.concatenate([[0], np.cumsum(counts[order])])
+        return cls(ids[order], ends, partners[chosen])
+
+    @property
+    def counts(self) -> np.ndarray:
+        """Partners of each row."""
+        return np.diff(self.begin)
+
+    def places(self, ids: np.ndarray) -> np.ndarray:
+        """The rows of these ids, −1 where there is none."""
+        if not len(self.ids):
+            return np.full(len(ids), -1)
+        found = np.minimum(np.searchsorted(self.ids, ids), len(self.ids) - 1)
+        return np.where(self.ids[found] == ids, found, -1)
+
+    def chosen(self, ids: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """How many partners each of these ids has, and these one after another; every id has a row."""
+        rows = self.places(ids)
+        counts = self.counts[rows]
+        return counts, self.partners[_entries(self.begin[rows], counts)]
+
+
+def _entries(first: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """``first[k]``, ``first[k] + 1`` … so many each, one row after another."""
+    ends = np.cumsum(counts)
+    return np.arange(ends[-1] if len(ends) else 0) + np.repeat(first - (ends - counts), counts)
+
+
+def padded_lists(counts: np.ndarray, entries: np.ndarray, multiple: int) -> Neighbours:
+    """Lists of ``counts[k]`` ``entries`` each for the rows from 0 on, each filled up with the row itself."""
+    padded = -(-counts // multiple) * multiple
+    begin = np.cumsum(padded) - padded
+    room = np.zeros(int(padded.sum()) + AHEAD, np.uint32)
+    fill_padded(counts, begin, entries, room)
+    return Neighbours(begin.astype(np.uint64), counts.astype(np.uint32), room[: len(room) - AHEAD])
+
+
+@compiled
+def fill_padded(counts, begin, entries, room):
+    """Write the entries of each row from ``begin[k]`` on, and the row itself behind them."""
+    done = 0
+    for k in range(len(counts)):
+        end = begin[k + 1] if k + 1 < len(begin) else len(room)
+        for n in range(begin[k], end):
+            room[n] = entries[done + n - begin[k]] if n < begin[k] + counts[k] else k
+        done += counts[k]

@@ -1,0 +1,105 @@
+"""Elastic solids that cannot be, and numbers of solids that are likely a slip."""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from psph.case.keys import AXES
+from psph.scene.lattice import TOLERANCE
+from psph.scene.shapes import inside
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+FEWEST = 4
+"""Particles across a plate: fewer bend too softly (docs/solids.md)."""
+
+LIGHTEST, HEAVIEST = 1.0, 25_000.0
+"""kg/m³: an aerogel, and osmium's 22,600."""
+
+SLOWEST = 2.0
+"""Wave speed over the expected speed below which a solid is hardly one."""
+
+
+def solid_faults(scene: "Scene") -> Iterator[str]:
+    """A line for each solid that is too thin for any stress, and for each load that pulls nothing."""
+    for number, name in enumerate(scene.case.solids, scene.layout.fluids):
+        across, axis = _across(scene, number)
+        if across == 1:
+            yield (
+                f"solids.{name}.shape: one particle thick along {AXES[axis]}, where no strain is known; make "
+                f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
+            )
+        for load, table in scene.case.solids[name].loads.items():
+            if not _pulls(scene, number, table.shape):
+                yield f"solids.{name}.loads.{load}.shape: no particle of the solid lies in it; move it there"
+
+
+def solid_warnings(scene: "Scene") -> Iterator[str]:
+    """A line for each number of a solid that is likely not meant."""
+    for number, (name, table) in enumerate(scene.case.solids.items(), scene.layout.fluids):
+        across, axis = _across(scene, number)
+        if across < FEWEST:
+            yield (
+                f"solids.{name}.shape: {across} particles thick along {AXES[axis]}: it will bend too softly; "
+                f"give space.spacing = {across * scene.spacing / FEWEST:.3g} or less"
+            )
+        if not LIGHTEST <= table.density <= HEAVIEST:
+            yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
+        wave = scene.elastic_solids[number - scene.layout.fluids].wave_speed
+        if wave < SLOWEST * scene.expected_speed:
+            yield (
+                f"solids.{name}.young: waves of {wave:.3g} m/s, where {scene.expected_speed:.3g} m/s are "
+                "expected: it will collapse; Young's modulus is in Pa: rubber has 1e6 to 1e8, steel 2e11"
+            )
+        if not table.hourglass:
+            yield (
+                f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; give 0.01 to 0.2"
+            )
+
+
+def _across(scene: "Scene", solid: int) -> tuple[int, int]:
+    """The fewest particles that a solid has along an axis, its clamped part with it, and that axis."""
+    parts = [n for n in range(scene.layout.first_wall) if _is_of(scene, n, solid)]
+    low, high = scene.census.lowest[parts].min(axis=0), scene.census.highest[parts].max(axis=0)
+    counts = np.rint((high - low) / scene.spacing).astype(int) + 1
+    for d, period in enumerate(scene.periods):
+        if period is not None and (counts[d] + TOLERANCE) * scene.spacing > period:
+            counts[d] = np.iinfo(int).max  # it goes on
+    axis = int(counts.argmin())
+    return int(counts[axis]), axis
+
+
+def _is_of(scene: "Scene", material: int, solid: int) -> bool:
+    return scene.layout.elastic_of(material) == solid - scene.layout.fluids
+
+
+def _pulls(scene: "Scene", solid: int, shape) -> bool:
+    """Whether any site of a solid, or of its clamped part, lies in a shape."""
+    tolerance = TOLERANCE * scene.spacing
+    for first, last in scene.lattice.chunks():
+        held = scene.layout.materials(first, last)
+        own = np.isin(held, [n for n in range(scene.layout.first_wall) if _is_of(scene, n, solid)])
+        if (inside(shape, scene.lattice.grid(first, last), tolerance) & own).any():
+            return True
+    return False
+
+
+def solid_lines(scene: "Scene") -> Iterator[str]:
+    """What the solids are, in words, for `explain`."""
+    for number, (name, table) in enumerate(scene.case.solids.items(), scene.layout.fluids):
+        one = scene.elastic_solids[number - scene.layout.fluids]
+        across, axis = _across(scene, number)
+        held = [
+            n
+            for n, solid in enumerate(scene.layout.clamps, scene.layout.movers)
+            if solid == number - scene.layout.fluids
+        ]
+        clamped = sum(int(scene.census.sizes[n]) for n in held)
+        count = int(scene.census.sizes[number]) + clamped
+        yield (
+            f"  solid       {name}: {table.law}, E {table.young:g} Pa, ν {table.poisson:g}, waves of "
+            f"{one.wave_speed:.4g} m/s; {count:,} particles, {clamped:,} of them clamped, "
+            f"{across} across {AXES[axis]}"
+        )

@@ -1,0 +1,264 @@
+"""The loops over the pairs of solids, whose neighbours are those of the reference (psph.physics.solid).
+
+Two passes a step: the first gives each particle its flux B, which its neighbours read in the second.  Sums
+are in gather form and in the order of ids, so that they are the same on any number of ranks.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.core import types
+
+from psph.composition import terms
+from psph.composition.pair import fetch, take
+from psph.composition.space import softened
+from psph.composition.terms import added
+from psph.engine.jit import call_by_number, compiled, elementwise, overload, register_jitable
+from psph.engine.simd import spread, total, width_of
+from psph.physics.solid.deformation import ReferencePair
+from psph.smoothing import slope_over_r
+from psph.vectors import (
+    add,
+    adjugate,
+    applied,
+    at,
+    cofactor,
+    determinant,
+    dot,
+    first_row,
+    less_diagonal,
+    matrix_product,
+    nearest_image,
+    norm_squared,
+    outer,
+    product_transposed,
+    put,
+    scale,
+    subtract,
+    trace,
+    transposed_product,
+    zero_like,
+)
+
+stress = call_by_number("stress")
+"""(laws, number, F, a) → P, Pa."""
+across = call_by_number("across")
+"""(laws, number, F, a) → P along z in plane strain, Pa."""
+energy = call_by_number("energy")
+"""(laws, number, F, a) → ψ, J per reference volume."""
+
+LEAST_MOMENT = 1e-9
+"""Determinant of Σ V g X Xᵀ, 1 in the bulk, below which neighbours do not span space: no stress then."""
+
+
+class Matter(NamedTuple):
+    """What the rows of solids are made of.
+
+    ``laws`` are the different laws, and ``number`` has that of each row.  By the number of a solid's
+    material, that of its law: ``stiffness`` αE_Y of the hourglass control in Pa, ``viscosity`` in Pa s,
+    ``density`` in the reference in kg/m³.  ``sums`` are what the first pass gathers
+    (psph.physics.solid.deformation).
+    """
+
+    laws: tuple
+    sums: tuple
+    number: Any
+    stiffness: Any
+    viscosity: Any
+    density: Any
+
+
+class Weights(NamedTuple):
+    """How a pair is weighed: the ``kernel`` of solids, the ``periods`` in m, and the ``softening`` of lanes
+    behind the end of a row (psph.composition.space)."""
+
+    kernel: Any
+    periods: tuple
+    softening: Any
+
+
+class Rows(NamedTuple):
+    """The solids of a rank and their partners: ``records`` of what is read of them, as ``shown`` says, and
+    the ``lists`` of rows, one for each solid particle that the rank owns."""
+
+    shown: Any
+    records: Any
+    lists: Any
+
+
+@register_jitable
+def reference_pair(weights, i, j, softening):
+    """The pair of the views ``i`` and ``j`` in the reference."""
+    apart = nearest_image(subtract(i.reference, j.reference), weights.periods)
+    r = np.sqrt(dot(apart, apart) + softening)
+    return ReferencePair(apart, -j.volume * slope_over_r(weights.kernel, r, 1.0 / r))
+
+
+@compiled
+def sum_moments(first, last, weights, rows, moment):
+    """L_i of the rows ``first`` to ``last``, into ``moment``; zeros where neighbours do not span space."""
+    records, lists = rows.records, rows.lists
+    for k in range(np.uint64(first), np.uint64(last)):
+        i = take(rows.shown, k)
+        sums = spread(outer(zero_like(i.reference)), records)
+        begin = lists.begin[k]
+        end = begin + np.uint64(lists.lengths[k])
+        for n in range(begin, end, width_of(records)):
+            j = fetch(rows.shown, records, lists.lists, n)
+            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            sums = add(sums, scale(outer(pair.apart), pair.weight))
+        whole = total(sums)
+        spanned = determinant(whole, i.reference)
+        inverse = 1.0 / spanned if spanned > LEAST_MOMENT else 0.0
+        put(moment, k, scale(adjugate(whole, i.reference), inverse))
+
+
+@compiled
+def sum_gradients(first, last, matter, weights, rows, moment, flux):
+    """F_i of the rows ``first`` to ``last``, and from it B_i into ``flux``."""
+    records, lists = rows.records, rows.lists
+    for k in range(np.uint64(first), np.uint64(last)):
+        i = take(rows.shown, k)
+        totals = spread(terms.start(matter.sums, i), records)
+        begin = lists.begin[k]
+        end = begin + np.uint64(lists.lengths[k])
+        for n in range(begin, end, width_of(records)):
+            j = fetch(rows.shown, records, lists.lists, n)
+            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            totals = terms.gather_each(matter.sums, totals, i, j, pair)
+        folded = terms.fold_each(matter.sums, totals)
+        number, a = matter.number[k], i.reference
+        inverse = at(moment, k)
+        f = matrix_product(folded[0], inverse, a)
+        p = added(stress(matter.laws, number, f, a), drag(matter.viscosity[number], f, folded, inverse, a))
+        against = matrix_product(p, inverse, a)
+        put(flux, k, subtract(scale(f, 0.5 * matter.stiffness[number]), against))
+
+
+def drag(viscosity, f, folded, inverse, a):
+    """F η Ė of Kelvin and Voigt, Ė = sym(FᵀḞ), Pa; None where no rate was summed."""
+    if len(folded) == 1:
+        return None
+    rate = matrix_product(folded[1], inverse, a)
+    return matrix_product(f, scale(transposed_product(f, rate, a), viscosity), a)
+
+
+@overload(drag)
+def _typed_drag(viscosity, f, folded, inverse, a):
+    if len(folded) == 1:
+        return lambda viscosity, f, folded, inverse, a: None
+
+    def voigt(viscosity, f, folded, inverse, a):
+        rate = matrix_product(folded[1], inverse, a)
+        return matrix_product(f, scale(transposed_product(f, rate, a), viscosity), a)
+
+    return voigt
+
+
+@compiled
+def sum_inner_forces(first, last, matter, weights, rows, force):
+    """ρ₀ a_i of the rows ``first`` to ``last`` by the stress and the hourglass control, N/m³."""
+    records, lists = rows.records, rows.lists
+    for k in range(np.uint64(first), np.uint64(last)):
+        i = take(rows.shown, k)
+        stiffness = matter.stiffness[matter.number[k]]
+        sums = spread(zero_like(i.reference), records)
+        begin = lists.begin[k]
+        end = begin + np.uint64(lists.lengths[k])
+        for n in range(begin, end, width_of(records)):
+            j = fetch(rows.shown, records, lists.lists, n)
+            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            x_ij = nearest_image(subtract(i.position, j.position), weights.periods)
+            push = subtract(applied(add(i.flux, j.flux), pair.apart), scale(x_ij, stiffness))
+            sums = add(sums, scale(push, pair.weight))
+        put(force, k, total(sums))
+
+
+@compiled
+def measure(first, last, matter, weights, rows, moment, found):
+    """Energy in J and Cauchy stress in Pa of the rows ``first`` to ``last``.
+
+    ``found``: arrays of the energy, the components of the stress, and the von Mises stress.
+    """
+    records, lists = rows.records, rows.lists
+    for k in range(np.uint64(first), np.uint64(last)):
+        i = take(rows.shown, k)
+        totals = spread(terms.start(matter.sums, i), records)
+        begin = lists.begin[k]
+        end = begin + np.uint64(lists.lengths[k])
+        for n in range(begin, end, width_of(records)):
+            j = fetch(rows.shown, records, lists.lists, n)
+            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            totals = terms.gather_each(matter.sums, totals, i, j, pair)
+        folded = terms.fold_each(matter.sums, totals)
+        number, a = matter.number[k], i.reference
+        f = matrix_product(folded[0], at(moment, k), a)
+        misfit = spread(0.0, records)
+        for n in range(begin, end, width_of(records)):
+            j = fetch(rows.shown, records, lists.lists, n)
+            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            x_ij = nearest_image(subtract(i.position, j.position), weights.periods)
+            off = subtract(applied(f, pair.apart), x_ij)
+            misfit = misfit + pair.weight * dot(off, off)
+        held = 0.25 * matter.stiffness[number] * total(misfit)
+        found[0][k] = i.volume * (energy(matter.laws, number, f, a) + held)
+        dilated = dot(first_row(f, a), first_row(cofactor(f, a), a))
+        p = stress(matter.laws, number, f, a)
+        cauchy = scale(product_transposed(p, f, a), 1.0 / dilated)
+        put(found[1], k, cauchy)
+        found[2][k] = mises(cauchy, across(matter.laws, number, f, a) / dilated, a)
+
+
+def mises(cauchy, sigma_zz, a):
+    """√(3/2 s:s) of the deviator s, Pa; ``sigma_zz`` counts in 2D alone."""
+    return _mises_in_plane(cauchy, sigma_zz, a) if len(a) < 3 else _mises(cauchy, sigma_zz, a)
+
+
+def _mises(cauchy, sigma_zz, a):
+    mean = trace(cauchy, a) / 3.0
+    return np.sqrt(1.5 * norm_squared(less_diagonal(cauchy, mean, a), a))
+
+
+def _mises_in_plane(cauchy, sigma_zz, a):
+    mean = (trace(cauchy, a) + sigma_zz) / 3.0
+    inside = norm_squared(less_diagonal(cauchy, mean, a), a)
+    return np.sqrt(1.5 * (inside + (sigma_zz - mean) ** 2))
+
+
+@overload(mises)
+def _typed_mises(cauchy, sigma_zz, a):
+    assert isinstance(a, types.BaseTuple)
+    return _mises_in_plane if len(a) < 3 else _mises
+
+
+@elementwise
+def fill_places(first, last, data, rows, columns, table, place):
+    """Copy ``data[rows[f], columns[k]]`` to ``table[k, place + f]`` for the rows ``first`` to ``last``."""
+    for k in range(np.uint64(first), np.uint64(last)):
+        for f in range(np.uint64(len(rows))):
+            table[k, place + f] = data[rows[f], columns[k]]
+
+
+@elementwise
+def push_solids(first, last, effects, view, columns, inverse_density, force, drawn, share, acceleration):
+    """a of the rows ``first`` to ``last`` into their columns: body forces, loads, and inner forces.
+
+    The ``share`` (n,) of the loads ``drawn`` (None: there are none) acts now.
+    """
+    for k in range(np.uint64(first), np.uint64(last)):
+        column = columns[k]
+        a = terms.body(effects, take(view, column))
+        a = added(a, pulled(drawn, column, share[k]))
+        put(acceleration, column, add(a, scale(at(force, k), inverse_density[k])))
+
+
+def pulled(drawn, column, share):
+    """The loads on a particle, m/s²; None where there are none."""
+    return None if drawn is None else scale(at(drawn, column), share)
+
+
+@overload(pulled)
+def _typed_pulled(drawn, column, share):
+    if isinstance(drawn, types.NoneType):
+        return lambda drawn, column, share: None
+    return lambda drawn, column, share: scale(at(drawn, column), share)

@@ -1,0 +1,291 @@
+"""The elastic solids of a simulation: their rows, their partners on other ranks, and the two passes."""
+
+import numpy as np
+
+from psph.composition.space import Metres, softening
+from psph.engine.settled import settled
+from psph.engine.threads import in_threads
+from psph.fields import view_of
+from psph.parallel.domain import Extent
+from psph.parallel.partner_halo import PartnerHalo, follow
+from psph.parallel.reductions import exact_sums, whole_sums
+from psph.parallel.reference import reference_rows
+from psph.particles.partners import ReferenceRows, padded_lists
+from psph.particles.records import record_width
+from psph.physics.solid.deformation import (
+    DRAWN,
+    KERNEL,
+    MOMENT,
+    STORED,
+    STRESS,
+    VON_MISES,
+    Gradient,
+    GradientRate,
+    support_of,
+)
+from psph.physics.solid.material import is_damped
+from psph.scene.lattice import TOLERANCE
+from psph.scene.shapes import inside
+from psph.simulation.plan import NO_SOLID
+from psph.simulation.solid_pairs import (
+    Matter,
+    Rows,
+    Weights,
+    fill_places,
+    measure,
+    push_solids,
+    sum_gradients,
+    sum_inner_forces,
+    sum_moments,
+)
+from psph.smoothing import kernel
+
+PLACES, FLUX = "position", "flux"
+"""What partners need before the first pass of a step, and before the second."""
+
+
+class Table:
+    """Records of rows and partners, side by side in memory: ``names`` with the numbers that each takes."""
+
+    def __init__(self, widths: dict[str, int], capacity: int, volume: float):
+        self.width = record_width(sum(widths.values()))
+        self.records = np.zeros((capacity, self.width))
+        ends = np.cumsum([0, *widths.values()]).tolist()
+        self.places = dict(zip(widths, zip(ends, ends[1:])))
+        shown = {name: tuple(self.records.T[slice(*place)]) for name, place in self.places.items()}
+        self.view = view_of((*shown, "volume"))(*shown.values(), volume)
+
+
+class Solids:
+    """The solids of ``scene`` among the particles of ``store``, a rank's share of them.
+
+    A row is a solid particle that this rank owns: first those whose partners it owns too, then the rest, each
+    in the order of the columns.  Behind the rows of a table stand partners of other ranks.
+    """
+
+    def __init__(self, scene, plan, store, domain, ledger):
+        self.scene, self.plan, self.store, self.domain, self.ledger = scene, plan, store, domain, ledger
+        self.comm, d = domain.comm, scene.dimensions
+        solids, periods = plan.solids, domain.periods
+        self._h = plan.solid_smoothing_length
+        own, damped = kernel(KERNEL, self._h, d), is_damped(solids)
+        self.support = support_of(self._h)
+        sums = (Gradient(periods), *([GradientRate()] if damped else []))
+        numbers = (np.array([getattr(s, n) for s in solids]) for n in ("stiffness", "viscosity", "density"))
+        self._matter = Matter(tuple(one.law for one in solids), sums, None, *numbers)
+        self._weights = Weights(own, periods, softening(Metres(periods), self._h, 0))
+        self._volume = scene.spacing**d
+        moving = {PLACES: d} | ({"predicted_velocity": d} if damped else {})
+        self._widths = {"reference": d, **moving}, {"reference": d, PLACES: d, FLUX: d * d}
+        self._moving = tuple(moving)
+        self._rises = np.array([table.load_rise for table in scene.case.solids.values()])
+        self._solid_of = plan.solid_of
+        self._rows = self.halo = None
+        loops = (sum_moments, sum_gradients, sum_inner_forces, measure, push_solids, fill_places)
+        self._moments, self._gradients, self._forces, self._measure, self._push, self._fill = map(
+            settled, loops
+        )
+
+    def begin(self) -> None:
+        """The moments of the reference lists, and the loads; collective."""
+        with self.ledger("records"):
+            moment = tuple(np.zeros(self.rows) for _ in self.store.rows[MOMENT.name])
+            first, _ = self._around
+            self._each(self._moments, 0, self.rows, self._weights, first, moment)
+            for of, found in zip(self.store[MOMENT.name], moment):
+                of[self._columns] = found
+            self._moment = moment
+        self._draw_loads()
+
+    def settle(self) -> None:
+        """Rows and partners after particles have found new columns or ranks; the first time the reference
+        lists are made, from X.  Collective."""
+        store = self.store
+        if self._rows is None:
+            self._rows = self._listed()
+        group = self._solid_of[store.group[store.inner]]
+        columns = store.low + np.flatnonzero(group != NO_SOLID)
+        self._rows = follow(self.comm, self._rows, store.id[columns])
+        counts, partners = self._rows.chosen(store.id[columns])
+        owned = np.sort(store.id[columns])
+        place = np.minimum(np.searchsorted(owned, partners), max(len(owned) - 1, 0))
+        abroad = owned[place] != partners if len(owned) else np.zeros(0, bool)
+        rim = np.zeros(len(columns), bool)
+        rim[np.repeat(np.arange(len(columns)), counts)[abroad]] = True
+        order = np.argsort(rim, kind="stable")
+        self._columns = columns[order].astype(np.uint64)
+        self.rows, self._inner = len(columns), int(np.count_nonzero(~rim))
+        self._matter = self._matter._replace(number=self._solid_of[store.group[columns[order]]])
+        self._inverse_density = 1.0 / self._matter.density[self._matter.number]
+        self._make_tables(store.id[columns[order]], np.unique(partners[abroad]))
+        self._moment = tuple(of[self._columns] for of in store[MOMENT.name])
+
+    def _make_tables(self, ids: np.ndarray, wanted: np.ndarray) -> None:
+        """Lists in places of the tables, and the messages that fill the places of partners."""
+        if self.halo is not None:
+            self.halo.free()
+        self.halo = PartnerHalo(self.comm, ids, wanted)
+        everyone = np.concatenate([ids, self.halo.ids])
+        counts, partners = self._rows.chosen(ids)
+        order = np.argsort(everyone, kind="stable")
+        entries = order[np.searchsorted(everyone[order], partners)]
+        lists = padded_lists(counts, entries, Metres.lanes)
+        longest = int(counts.max(initial=0))
+        self._weights = self._weights._replace(
+            softening=softening(Metres(self.domain.periods), self._h, longest)
+        )
+        tables = [Table(widths, len(everyone), self._volume) for widths in self._widths]
+        self._tables = tables
+        self._around = tuple(Rows(one.view, one.records, lists) for one in tables)
+        begin, end = tables[0].places[PLACES][0], tables[0].places[self._moving[-1]][1]
+        self._to_first = self.halo.channel(tables[0].records, begin, end)
+        self._to_second = self.halo.channel(tables[1].records, *tables[1].places[FLUX])
+        self._force = tuple(np.zeros(self.rows) for _ in range(self.store.dimensions))
+        self._places = self.halo.channel(tables[1].records, *tables[1].places[PLACES])
+        for table in tables:
+            self._put(table, "reference", 0, self.rows)
+            self._bring(self.halo.channel(table.records, *table.places["reference"]))
+
+    def sum(self, time: float) -> None:
+        """The acceleration of all particles of solids at ``time``, s, where they stand; collective."""
+        store, rows, inner = self.store, self.rows, self._inner
+        first, second = self._tables
+        with self.ledger("records"):
+            for name in self._moving:
+                self._put(first, name, 0, rows)
+        with self.ledger("halo"):
+            self._start(self._to_first)
+        with self.ledger("records"):
+            self._put(second, PLACES, 0, rows)
+        with self.ledger("solids"):
+            self._sum_gradients(0, inner)
+        with self.ledger("halo"):
+            self._finish(self._to_first)
+        with self.ledger("records"):
+            place, end = first.places[PLACES]
+            to = second.places[PLACES][0]
+            second.records[rows:, to : to + end - place] = first.records[rows:, place:end]
+        with self.ledger("solids"):
+            self._sum_gradients(inner, rows)
+        with self.ledger("halo"):
+            self._start(self._to_second)
+        with self.ledger("solids"):
+            self._sum_forces(0, inner)
+        with self.ledger("halo"):
+            self._finish(self._to_second)
+        with self.ledger("solids"):
+            self._sum_forces(inner, rows)
+            share = self._share(time)
+            self._each(
+                self._push,
+                0,
+                rows,
+                self.plan.effects,
+                store.view(),
+                self._columns,
+                self._inverse_density,
+                self._force,
+                store[DRAWN.name] if DRAWN.name in store else None,
+                share[self._matter.number],
+                store["acceleration"],
+            )
+
+    def measure(self) -> None:
+        """Stored energy and stress of the particles where they stand; collective."""
+        store, n = self.store, self.rows
+        self._put(self._tables[1], PLACES, 0, n)
+        self._bring(self._places)
+        stress = tuple(np.zeros(n) for _ in store.rows[STRESS.name])
+        found = (np.zeros(n), stress, np.zeros(n))
+        matter = self._matter._replace(sums=self._matter.sums[:1])
+        self._each(self._measure, 0, n, matter, self._weights, self._around[1], self._moment, found)
+        store[STORED.name][self._columns] = found[0]
+        store[VON_MISES.name][self._columns] = found[2]
+        for of, values in zip(store[STRESS.name], stress):
+            of[self._columns] = values
+
+    def energy(self) -> float:
+        """Stored energy of all solids, J; the same bits on any number of ranks, collective."""
+        self.measure()
+        return float(exact_sums(self.comm, self.store.shown(STORED.name)[:, None])[0])
+
+    @property
+    def neighbours(self) -> float:
+        """Neighbours in the reference of a particle of this rank, on average."""
+        lists = self._around[0].lists
+        return float(lists.lengths.mean()) if self.rows else 0.0
+
+    def bytes_held(self) -> int:
+        """Bytes of tables, lists and rows."""
+        arrays = [*self._around[0].lists, *self._rows, *(table.records for table in self._tables)]
+        return sum(array.nbytes for array in arrays)
+
+    def _listed(self) -> ReferenceRows:
+        """The rows of reference lists, from X, of the particles that this rank owns now."""
+        store, scene = self.store, self.scene
+        body = self._solid_of[store.group[store.inner]]
+        own = body != NO_SOLID
+        extent = Extent(scene.axis, scene.lower, scene.upper, scene.periods)
+        reference = store.shown("reference")[own]
+        ids = store.id[store.inner][own]
+        return reference_rows(self.comm, extent, self.support, ids, reference, body[own])
+
+    def _draw_loads(self) -> None:
+        """What the loads of the case give each particle, at their full size; collective."""
+        store, scene = self.store, self.scene
+        if DRAWN.name not in store:
+            return
+        grid = [x[self._columns] for x in store["reference"]]
+        for number, table in enumerate(scene.case.solids.values()):
+            for load in table.loads.values():
+                pulled = inside(load.shape, grid, TOLERANCE * scene.spacing) & (self._matter.number == number)
+                [count] = whole_sums(self.comm, [np.count_nonzero(pulled)])
+                mass = max(count, 1) * self._volume * table.density
+                for of, force in zip(store[DRAWN.name], load.force):
+                    of[self._columns[pulled]] += force / mass
+
+    def _share(self, time: float) -> np.ndarray:
+        """The part of the loads of each solid that acts at ``time``."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self._rises > 0.0, np.minimum(time / self._rises, 1.0), 1.0)
+
+    def _sum_gradients(self, first: int, last: int) -> None:
+        second = self._tables[1]
+        flux = getattr(second.view, FLUX)
+        matter, weights, around = self._matter, self._weights, self._around[0]
+        self._each(self._gradients, first, last, matter, weights, around, self._moment, flux)
+
+    def _sum_forces(self, first: int, last: int) -> None:
+        self._each(self._forces, first, last, self._matter, self._weights, self._around[1], self._force)
+
+    def _put(self, table: Table, name: str, first: int, last: int) -> None:
+        """Bring a field of some rows of a table up to date."""
+        rows = np.array(self.store.rows[name], np.uint64)
+        self._each(
+            self._fill,
+            first,
+            last,
+            self.store.data,
+            rows,
+            self._columns,
+            table.records,
+            table.places[name][0],
+        )
+
+    def _each(self, loop, first: int, last: int, *args) -> None:
+        if last > first:
+            in_threads(loop, first, last, *args)
+
+    def _bring(self, channel) -> None:
+        self._start(channel)
+        self._finish(channel)
+
+    @staticmethod
+    def _start(channel) -> None:
+        for request in channel:
+            request.Start()
+
+    @staticmethod
+    def _finish(channel) -> None:
+        for request in channel:
+            request.Wait()

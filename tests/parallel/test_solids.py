@@ -1,0 +1,140 @@
+"""Solids on several ranks: the same bits, through forced sorting and migration, and resumed on other ranks."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from parallel.test_simulation import start
+from run.resuming import go_on_alike, keep, taken_up
+
+from psph.case import load
+from psph.parallel.partner_halo import LostPartner, PartnerHalo, follow, owners
+from psph.particles.partners import ReferenceRows
+
+COMM = MPI.COMM_WORLD
+pytestmark = pytest.mark.mpi(min_size=2)
+
+BEAMS = """
+time.end = 1.0
+neighbours.skin = 0.1
+physics.gravity = [0.3, -9.8]
+parallel.axis = "x"
+output = { frames = 0.02, probes = 0.01, log = 0.01 }
+[space]
+dimensions = 2
+spacing = 0.1
+[solids.beam]
+shape.box = { lower = [-0.8, 0.0], upper = [3.0, 0.4] }
+clamped.box = { lower = [-0.8, 0.0], upper = [0.0, 0.4] }
+density = 1100.0
+young = 3.0e5
+poisson = 0.35
+damping = 40.0
+jitter = 0.1
+loads.end = { shape = { box = { lower = [2.5, 0.0], upper = [3.0, 0.4] } }, force = [0.0, -900.0] }
+load_rise = 0.1
+[solids.plate]
+shape.box = { lower = [0.5, 1.0], upper = [2.0, 2.0] }
+density = 900.0
+young = 2.0e6
+poisson = 0.45
+law = "neo-hookean"
+velocity_gradient = [[0.0, -9.0], [9.0, 0.0]]
+velocity_center = [1.25, 1.5]
+[gauges.tip.displacement]
+of = "beam"
+at = [3.0, 0.2]
+"""
+"""A beam across all slabs that bends under a load, and a plate of another law that spins above it."""
+
+
+def beams(folder):
+    if COMM.rank == 0:
+        (folder / "beams.toml").write_text(BEAMS, encoding="utf-8")
+    COMM.Barrier()
+    return load(folder / "beams.toml")
+
+
+def rows(simulation):
+    """All that moves, by id, and the stored energy."""
+    energy = simulation.engine.stored_energy()
+    store = simulation.store
+    names = ("position", "velocity", "acceleration", "stress", "von_mises")
+    parts = [store.owned_rows("id")[:, None], *(store.owned_rows(n).reshape(store.owned, -1) for n in names)]
+    every = np.concatenate(simulation.comm.allgather(np.hstack(parts)))
+    return every[np.argsort(every[:, 0])], energy
+
+
+def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
+    case = beams(mpi_tmp_path)
+    single, together = start(case, MPI.COMM_SELF), start(case, COMM)
+    begun, _ = rows(single)
+    assert len(together.engine.solids.halo.ids) > 0  # the beam goes on behind the slab's end
+    for step in range(60):
+        single.step()
+        together.step()
+        if step % 10 == 9:
+            together.rebuild()
+    (one, energy), (many, energy_of_many) = rows(single), rows(together)
+    assert np.isfinite(one).all() and np.abs(one - begun).max() > 0.1
+    assert np.array_equal(one, many) and energy == energy_of_many > 0.0
+    assert together.domain.rebuilds > single.domain.rebuilds
+
+
+@pytest.mark.parametrize("before, after", [(1, 2), (2, 1), (2, 2)])
+def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
+    case = beams(mpi_tmp_path)
+    comms = {1: MPI.COMM_SELF, 2: COMM}
+    folder = mpi_tmp_path / (f"rank{COMM.rank}" if before == 1 else "all")
+    folder.mkdir(exist_ok=True)
+    COMM.Barrier()
+    simulation = start(case, comms[before])
+    for _ in range(14):
+        simulation.step()
+    keep(simulation, case, folder)
+    COMM.Barrier()
+    written = mpi_tmp_path / ("rank0" if before == 1 else "all") / "checkpoint-14.h5"
+    go_on_alike(simulation, taken_up(case, written, comms[after]), 14, rebuilds=0)
+
+
+def test_rows_follow_their_particles_to_other_ranks():
+    ids = np.arange(10) + 10 * COMM.rank
+    made = ReferenceRows.of(ids[::-1], np.arange(10) % 3, np.arange(9) + 100 * COMM.rank)
+    everyone = COMM.allgather(made)
+    wanted = np.arange(COMM.rank, 10 * COMM.size, COMM.size)
+    found = follow(COMM, made, wanted[::-1])
+    assert np.array_equal(found.ids, wanted)
+    for one in wanted:
+        was = everyone[one // 10]
+        assert np.array_equal(found.chosen(np.array([one]))[1], was.chosen(np.array([one]))[1])
+
+
+def test_partners_come_by_id_wherever_they_are():
+    ids = np.arange(COMM.rank, 40, COMM.size)[::-1].copy()
+    wanted = np.setdiff1d(np.arange(7, 23), ids)
+    halo = PartnerHalo(COMM, ids, wanted)
+    table = np.zeros((len(ids) + len(wanted), 4))
+    table[: len(ids), 1:3] = np.column_stack([ids, -ids])
+    channel = halo.channel(table, 1, 3)
+    for request in channel:
+        request.Start()
+    for request in channel:
+        request.Wait()
+    assert sorted(halo.ids) == sorted(wanted)
+    assert np.array_equal(
+        table[len(ids) :], np.column_stack([0 * halo.ids, halo.ids, -halo.ids, 0 * halo.ids])
+    )
+    halo.free()
+
+
+def test_a_lost_partner_is_an_error_on_every_rank():
+    with pytest.raises(LostPartner, match="particle 99 of a solid is lost"):
+        owners(COMM, np.arange(5) + 5 * COMM.rank, np.array([99] if COMM.rank == 0 else [0], np.int64))
+
+
+def test_a_scene_without_solids_carries_nothing_for_them():
+    from parallel.test_simulation import box
+
+    simulation = start(box(2, False, 0), COMM)
+    assert simulation.engine.solids is None and not simulation.plan.solids
+    names = set(simulation.store.fields)
+    assert names.isdisjoint({"reference", "moment", "stress", "von_mises", "stored_energy", "drawn"})

@@ -1,0 +1,95 @@
+"""What `check` says of solids: what cannot be, and what is likely a slip."""
+
+import pytest
+from drafts import draft
+
+from psph.case import CaseError
+from psph.fields import SOLID
+from psph.scene import Scene, check
+from psph.simulation.plan import make_plan
+
+BEAM = """
+[space]
+dimensions = 2
+spacing = 0.01
+[time]
+end = 0.1
+[physics]
+gravity = [0.0, -2.0]
+[solids.beam]
+shape.box = { lower = [-0.1, 0.0], upper = [0.4, 0.05] }
+clamped.box = { lower = [-0.1, 0.0], upper = [0.0, 0.05] }
+density = 1000.0
+young = 1.4e6
+poisson = 0.4
+"""
+
+WATER = "fluids.water={shape={box={lower=[1.0,0.0],upper=[2.0,1.0]}}}"
+
+
+def said(tmp_path, *overrides):
+    """The lines of warnings, or of the error."""
+    try:
+        return "\n".join(check(Scene(draft(tmp_path, BEAM, *overrides))))
+    except CaseError as error:
+        return "\n".join(error.lines)
+
+
+def test_a_sound_beam_is_good(tmp_path):
+    assert said(tmp_path) == ""
+
+
+@pytest.mark.parametrize(
+    ("overrides", "says"),
+    [
+        (["solids.beam.poisson=0.5"], "solids.beam.poisson: 0.5 is out of range; it must be"),
+        (["solids.beam.young=-1.0"], "solids.beam.young: -1.0 is out of range; it must be above 0"),
+        (["solids.beam.young=off"], "solids.beam.young: missing; add young"),
+        (["solids.beam.law=hooke"], 'solids.beam.law: "hooke" is not known'),
+        (
+            ["solids.beam.clamped.box={lower=[5.0,0.0],upper=[6.0,1.0]}"],
+            "solids.beam.clamped: holds no particle of the solid; let the shapes meet",
+        ),
+        (
+            ["solids.beam.shape.box.upper=[0.4,0.02]"],
+            "solids.beam.shape: 2 particles thick along y: it will bend too softly; give space.spacing = 0.005",
+        ),
+        (["solids.beam.shape.box.upper=[0.4,0.01]"], "solids.beam.shape: one particle thick along y"),
+        (["solids.beam.young=1.0"], "solids.beam.young: waves of 0.0463 m/s"),
+        (["solids.beam.hourglass=0.0"], "solids.beam.hourglass: 0 leaves zigzags"),
+        (
+            ["solids.beam.loads.end={shape={box={lower=[7.0,0.0],upper=[8.0,1.0]}},force=[0.0,1.0]}"],
+            "solids.beam.loads.end.shape: no particle of the solid lies in it",
+        ),
+        (
+            ["solids.beam.loads.end={shape={box={lower=[0.3,0.0],upper=[0.4,1.0]}},force=[1.0]}"],
+            "solids.beam.loads.end.force: [1.0]: 1 number in a case with space.dimensions = 2; give 2",
+        ),
+        ([WATER], "fluids: solids are simulated by themselves so far"),
+        (["precision=mixed"], 'precision: "mixed": solids are computed in double precision'),
+        (["physics.sound_speed=10.0"], "physics.sound_speed: 10.0: solids have waves of their own"),
+        (["gauges.a.displacement={of='bean',at=[0.4,0.0]}"], "gauges.a.displacement.of"),
+    ],
+)
+def test_what_is_wrong_is_said(tmp_path, overrides, says):
+    assert says in said(tmp_path, *overrides)
+
+
+def test_clamped_and_free_particles_share_the_solid(tmp_path):
+    scene = Scene(draft(tmp_path, BEAM))
+    assert scene.census.sizes.tolist() == [40 * 5, 10 * 5]
+    assert [one.name for one in scene.species] == ["beam", "beam (clamped)"]
+    assert [one.mobile for one in scene.species] == [True, False]
+    assert [one.kind for one in scene.species] == [SOLID, SOLID] and not any(
+        s.is_fluid for s in scene.species
+    )
+    plan = make_plan(scene)
+    assert not plan.passes and plan.solid_of.tolist() == [0, 0] and plan.free == 1
+    assert "drawn" not in plan.arrays
+
+
+def test_the_step_is_that_of_the_fastest_wave(tmp_path):
+    plan = make_plan(Scene(draft(tmp_path, BEAM)))
+    h = 0.01 * 2.0**0.5
+    assert plan.longest_step(1.0, 0.0)[0] == pytest.approx(0.6 * h / (54.772 + 1.0), rel=1e-4)
+    assert plan.longest_step(0.0, 1e9) == (pytest.approx(0.6 * (h / 1e9) ** 0.5), "force")
