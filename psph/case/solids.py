@@ -29,7 +29,7 @@ class Solid(Matter):
     )
     damping: float = key("viscosity η of the stress ηĖ of Kelvin and Voigt", 0.0, unit="Pa s", ge=0)
     hourglass: float = key(
-        "strength α of the control of zigzag modes, which the stress does not see", 0.1, unit="1", ge=0, le=10
+        "strength α of the control of zigzag modes, which the stress does not see", 1.5, unit="1", ge=0, le=10
     )
     clamped: Shape | None = key("the part of the solid that stays where it is", None, otherwise="none")
     loads: dict[Name, SolidLoad] = key("forces on parts of the solid, by name", {})

@@ -54,9 +54,7 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
                 "expected: it will collapse; Young's modulus is in Pa: rubber has 1e6 to 1e8, steel 2e11"
             )
         if not table.hourglass:
-            yield (
-                f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; give 0.01 to 0.2"
-            )
+            yield (f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; give 1.5")
 
 
 def _across(scene: "Scene", solid: int) -> tuple[int, int]:
