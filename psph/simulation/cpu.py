@@ -19,6 +19,7 @@ from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.particles.wetting import mark_wet, rest_dry
 from psph.physics.motion import LOAD
+from psph.physics.rigid.pushes import add_pushes
 from psph.simulation.floating import Floating
 from psph.simulation.integrator import (
     kick,
@@ -33,7 +34,6 @@ from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbo
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
-from psph.simulation.pushes import add_pushes
 from psph.simulation.rules import Columns, Rules
 
 

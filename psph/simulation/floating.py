@@ -49,7 +49,7 @@ class Floating:
 
     def load(self, pushes: np.ndarray, comm) -> None:
         """The forces at the end of the step: the fluid's on the particles of this rank, ``pushes`` in whole
-        numbers of :attr:`units` (psph.simulation.pushes), those of lines, and the weight; collective."""
+        numbers of :attr:`units` (psph.physics.rigid.pushes), those of lines, and the weight; collective."""
         total = whole_sums(comm, pushes).astype(np.float64)
         pull, twist, self.tensions = pulls(self.lines, self.bodies)
         self.bodies.load(total[:, :3] * self.units[0] + pull, total[:, 3:] * self.units[1] + twist)

@@ -99,11 +99,11 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
         ),
         (
             WATER + WALL + "no_slip = true",
-            "walls.floor.no_slip: true: no fluid has a viscosity; set fluids.NAME.viscosity, or remove no_slip",
+            "walls.floor.no_slip: true: no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove no_slip",
         ),
         (
             WATER.replace("[physics]", CENTRAL),
-            "physics.central_friction: no fluid has a viscosity; set fluids.NAME.viscosity, or remove this key",
+            "physics.central_friction: no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove this key",
         ),
         (
             WATER.replace("[physics]", CENTRAL) + "viscosity = 1e-3" + WALL + "no_slip = true",
