@@ -15,6 +15,7 @@ from psph.simulation.solid_pairs import (
     Matter,
     Rows,
     Weights,
+    drag,
     measure,
     sum_gradients,
     sum_inner_forces,
@@ -200,3 +201,19 @@ def test_von_mises_counts_the_stress_out_of_the_plane():
     lame, shear = moduli(YOUNG, POISSON)
     sigma, sigma_zz = 2.0 * (lame + shear) * strain, 2.0 * lame * strain
     assert found.mises == pytest.approx(abs(sigma - sigma_zz), rel=1e-4)
+
+
+@pytest.mark.parametrize("d", (2, 3))
+def test_kelvin_and_voigt_take_energy_from_strain_and_none_from_a_spin(d):
+    """P:Ḟ = η Ė:Ė, and a solid that spins as a whole has Ė = 0."""
+    random = np.random.default_rng(13)
+    f, a, viscosity = np.eye(d) + 0.2 * random.standard_normal((d, d)), (1.0,) * d, 3.0
+    unit = tuple(np.eye(d)[np.triu_indices(d)])  # L, so that what is summed is the gradient itself
+    spin = random.standard_normal((d, d))
+    for rate, strains in ((random.standard_normal((d, d)), True), ((spin - spin.T) @ f, False)):
+        folded = (tuple(f.ravel()), tuple(rate.ravel()))
+        p = np.reshape(drag(viscosity, tuple(f.ravel()), folded, unit, a), (d, d))
+        strain_rate = 0.5 * (f.T @ rate + rate.T @ f)
+        assert (p * rate).sum() == pytest.approx(viscosity * (strain_rate**2).sum(), abs=1e-12)
+        assert strains == (np.abs(p).max() > 1e-12)
+        assert np.abs(p @ f.T - f @ p.T).max() < 1e-12  # no torque

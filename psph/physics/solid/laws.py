@@ -29,7 +29,7 @@ class SaintVenantKirchhoff(NamedTuple):
     """S = λ tr E 1 + 2μE, E = (FᵀF − 1)/2: Hooke's law for large rotations and small strains.
 
     ψ = λ(tr E)²/2 + μ E:E; under compression it loses stiffness below a stretch of 1/√3.
-    Bonet & Wood, Nonlinear Continuum Mechanics (2008), § 6.5.
+    Bonet & Wood, Nonlinear Continuum Mechanics for Finite Element Analysis (2008).
     """
 
     lame: float
@@ -56,7 +56,7 @@ class NeoHookean(NamedTuple):
     """P = μF + ((λ + μ)(J − 1) − μ) cof F, J = det F: rubber; it has a stress for any F, even for J < 0.
 
     ψ = μ(tr C − d)/2 − μ(J − 1) + (λ + μ)(J − 1)²/2: λ + μ in the place of λ gives it the derivatives of
-    Hooke's law at rest.  Smith, de Goes & Kim (2018), ACM Trans. Graph. 37 (2), 12, § 3.4.
+    Hooke's law at rest.  Smith, de Goes & Kim (2018), ACM Trans. Graph. 37 (2), 12.
     """
 
     lame: float

@@ -6,9 +6,8 @@ from typing import Any, NamedTuple
 from psph.physics.solid.laws import LAWS, moduli
 
 STEP = 0.6
-"""Δt ≤ 0.6 min(h/(c_l + v), √(h/a)): the fastest wave of a lattice then has ωΔt = 0.7, the leapfrog holds to
-2.  Gray, Monaghan & Swift (2001), Comput. Methods Appl. Mech. Eng. 190, 6641; Zhang, Rezavand & Hu (2021),
-J. Comput. Phys. 429, 110028."""
+"""Δt ≤ 0.6 min(h/(c_l + v), √(h/a)).  Gray, Monaghan & Swift (2001), Comput. Methods Appl. Mech. Eng. 190,
+6641; Zhang, Rezavand & Hu (2021), J. Comput. Phys. 429, 110028."""
 
 FRICTION_STEP = 0.125
 """Δt ≤ 0.125 h²ρ₀/η, as of viscous fluids (Morris and others 1997)."""
