@@ -14,7 +14,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.body_checks import body_faults, body_warnings
 from psph.scene.driven import driven_flow
-from psph.scene.gauging import buried, misplaced, shown
+from psph.scene.gauging import buried, left_behind, misplaced, shown
 from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
@@ -354,6 +354,7 @@ OF_FLUIDS = (
     driven_flow,
     unbearing_warnings,
     buried,
+    left_behind,
     several_fluids,
     slips,
     rheology_warnings,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from psph.scene.behind import Solid
+from psph.scene.moving import moving_walls
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -31,6 +32,31 @@ def buried(scene: "Scene") -> Iterator[str]:
     for key, point in _points(scene, "position"):
         if solid.deep(np.array([point]), BURIED)[0]:
             yield f"{key}: {shown(point)} lies in a wall, where there is no fluid to measure; move it out"
+
+
+def within_reach(scene: "Scene", names: list[str], point: tuple[float, ...]) -> Iterator[str]:
+    """Those of the walls ``names`` that the kernel around a point reaches."""
+    around = np.arange(1 - scene.wall_reach, scene.wall_reach) * scene.spacing
+    places = np.meshgrid(*(x + around for x in point), indexing="ij")
+    distance = np.sqrt(sum((place - x) ** 2 for place, x in zip(places, point)))
+    grid = [scene.folded(d, place) for d, place in enumerate(places)]
+    held = scene.layout.held(grid, distance.shape)
+    near = set(held[distance < scene.kernel.support * scene.smoothing_length].tolist())
+    for number, name in enumerate(scene.names):
+        if number in near and name in names:
+            yield name
+
+
+def left_behind(scene: "Scene") -> Iterator[str]:
+    """A line for each sensor on a wall that moves away from it."""
+    moving = [name for _, name, _ in moving_walls(scene)]
+    sensors = [(name, gauge.sensor) for name, gauge in scene.case.gauges.items() if gauge.sensor]
+    for name, sensor in sensors if moving else ():
+        for wall in within_reach(scene, moving, sensor.position):
+            yield (
+                f"gauges.{name}.sensor: walls.{wall} moves, and a sensor stays where it is in space; let "
+                "the frame of reference move in place of the wall (frame.motion), and the sensor is on it"
+            )
 
 
 def _points(scene: "Scene", *keys: str) -> Iterator[tuple[str, tuple[float, ...]]]:

@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from psph.fields import PRESSURE
 from psph.physics.walls.conditions import BEARING, MIRROR
+from psph.scene.gauging import within_reach
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -29,7 +28,7 @@ def unbearing_warnings(scene: "Scene") -> Iterator[str]:
                 f"has no surface at which it could give way; take {TAKE}"
             )
     for key, point in _pressure_points(scene) if names else ():
-        for name in _within_reach(scene, names, point):
+        for name in within_reach(scene, names, point):
             yield (
                 f'{key}: walls.{name} beside it has condition = "{scene.walls[name].condition}" and bears no '
                 f"pressure: what is read there is wrong by half; give that wall {TAKE}, or read farther away"
@@ -44,16 +43,3 @@ def _pressure_points(scene: "Scene") -> Iterator[tuple[str, tuple[float, ...]]]:
     for name, gauge in scene.case.gauges.items():
         if gauge.sensor or gauge.point and PRESSURE.name in gauge.point.fields:
             yield f"gauges.{name}", (gauge.sensor or gauge.point).position
-
-
-def _within_reach(scene: "Scene", names: list[str], point: tuple[float, ...]) -> Iterator[str]:
-    """Those of the walls ``names`` that the kernel around a point reaches."""
-    around = np.arange(1 - scene.wall_reach, scene.wall_reach) * scene.spacing
-    places = np.meshgrid(*(x + around for x in point), indexing="ij")
-    distance = np.sqrt(sum((place - x) ** 2 for place, x in zip(places, point)))
-    grid = [scene.folded(d, place) for d, place in enumerate(places)]
-    held = scene.layout.held(grid, distance.shape)
-    near = set(held[distance < scene.kernel.support * scene.smoothing_length].tolist())
-    for number, name in enumerate(scene.names):
-        if number in near and name in names:
-            yield name

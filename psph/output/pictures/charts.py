@@ -31,6 +31,8 @@ class Chart(NamedTuple):
     curves: dict[str, np.ndarray]
     theory: dict[str, float] = {}
     measured: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+    grows: bool = False
+    """Whether its growth is of interest: then a steep curve alone gets a logarithmic axis."""
 
 
 def probe_charts(run: Run, case: dict) -> list[Chart]:
@@ -74,7 +76,7 @@ def with_measured(charts: list[Chart], of: str, experiments: Iterable) -> list[C
     return [
         chart._replace(
             measured={
-                one.name: (one.time, one.value)
+                f"{one.name}, measured": (one.time, one.value)
                 for one in experiments
                 if len(one.time)
                 and one.column.startswith(f"{of}.")
@@ -96,10 +98,10 @@ def log_charts(run: Run, dimensions: int) -> list[Chart]:
     if potential.any():
         energies["potential, change"] = potential
     return [
-        Chart("energy", ("J/m²", "J/m", "J")[dimensions - 1], time, energies),
-        Chart("largest speed", "m/s", time, {"": log["largest_speed"]}),
-        Chart("largest deviation of the density", "%", time, {"": 100 * log["density_error"]}),
-        Chart("time step", "s", time, {"": np.where(log["dt"] > 0, log["dt"], np.nan)}),
+        Chart("energy", ("J/m²", "J/m", "J")[dimensions - 1], time, energies, grows=True),
+        Chart("largest speed", "m/s", time, {"": log["largest_speed"]}, grows=True),
+        Chart("largest deviation of the density", "%", time, {"": 100 * log["density_error"]}, grows=True),
+        Chart("time step", "s", time, {"": np.where(log["dt"] > 0, log["dt"], np.nan)}, grows=True),
     ]
 
 
@@ -122,7 +124,7 @@ def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
     values = np.abs([*chart.theory.values(), *np.concatenate([*chart.curves.values(), *measured])])
     values = values[np.isfinite(values)]
     largest = values.max(initial=0.0)
-    steep = len(chart.curves) == 1 and 0 < values.min(initial=np.inf) * STEEP < largest
+    steep = chart.grows and len(chart.curves) == 1 and 0 < values.min(initial=np.inf) * STEEP < largest
     factor, unit = style.readable(chart.unit, 1.0 if steep else largest)
     seconds, second = style.clock(chart.time[-1])
     for k, (name, curve) in enumerate(chart.curves.items()):
