@@ -84,21 +84,23 @@ class Displacement(Table):
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")
 
 
+ANOTHER_KIND = "another kind"
+"""The default of a gauge's kinds, of which one is given."""
+
+
 class Gauge(Table):
     """A gauge: exactly one of these kinds, and how often it is read."""
 
     KINDS: ClassVar = ("force", "level", "highest", "point", "sensor", "flow", "motion", "displacement")
 
-    force: Force | None = key("force and moment of the fluid", None, otherwise="another kind")
-    level: Level | None = key("water level along a line", None, otherwise="another kind")
-    highest: Highest | None = key("largest coordinate of the fluid", None, otherwise="another kind")
-    point: Point | None = key("fields at a point", None, otherwise="another kind")
-    sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise="another kind")
-    flow: Flow | None = key("flow through a section", None, otherwise="another kind")
-    motion: MotionOf | None = key("motion of a rigid body", None, otherwise="another kind")
-    displacement: Displacement | None = key(
-        "how far a point of a solid moves", None, otherwise="another kind"
-    )
+    force: Force | None = key("force and moment of the fluid", None, otherwise=ANOTHER_KIND)
+    level: Level | None = key("water level along a line", None, otherwise=ANOTHER_KIND)
+    highest: Highest | None = key("largest coordinate of the fluid", None, otherwise=ANOTHER_KIND)
+    point: Point | None = key("fields at a point", None, otherwise=ANOTHER_KIND)
+    sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise=ANOTHER_KIND)
+    flow: Flow | None = key("flow through a section", None, otherwise=ANOTHER_KIND)
+    motion: MotionOf | None = key("motion of a rigid body", None, otherwise=ANOTHER_KIND)
+    displacement: Displacement | None = key("how far a point of a solid moves", None, otherwise=ANOTHER_KIND)
     every: float | None = key("time between rows", None, unit="s", otherwise="output.probes", gt=0)
 
     @property

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from psph.case import schema
+from psph.case.gauges import ANOTHER_KIND
 from psph.case.parameters import NOT_THIS
 from psph.case.physics import OFF
 from psph.case.schemes import by_default
@@ -63,6 +64,7 @@ def _document() -> Iterator[str]:
     for heading, meaning, table in tables:
         yield from _section(f"`{heading}`", _sentence(meaning), _rows(whole, heading, table))
         yield from _choices(whole, heading, table)
+        yield from _named(whole, heading, table)
     yield from _shapes(whole)
     yield from _ways(whole, "Motions", "Motion", MOTIONS)
     yield from _ways(whole, "Rheologies", "Rheology", RHEOLOGIES)
@@ -88,6 +90,17 @@ def _choices(whole: Node, heading: str, table: Node) -> Iterator[str]:
             inner = next(b for b in alternatives(whole, node) if "properties" in b)
             title, meaning = f"[{heading.strip('[]')}.{name}]", _sentence(node["description"])
             yield from _section(f"`{title}`", meaning, _rows(whole, title, inner), level=3)
+
+
+def _named(whole: Node, heading: str, table: Node) -> Iterator[str]:
+    """The keys of tables by name within a table: ``[bodies.NAME.lines.NAME]``."""
+    for name, node in table["properties"].items():
+        for branch in alternatives(whole, node):
+            for below in branch.get("patternProperties", {}).values():
+                inner = next(alternatives(whole, below))
+                if "properties" in inner:
+                    title, meaning = f"[{heading.strip('[]')}.{name}.NAME]", _sentence(node["description"])
+                    yield from _section(f"`{title}`", meaning, _rows(whole, title, inner), level=3)
 
 
 def _shapes(whole: Node) -> Iterator[str]:
@@ -146,9 +159,18 @@ def _section(
 def _rows(whole: Node, heading: str, table: Node) -> list[str]:
     required, above = table.get("required", ()), heading.strip("[]")
     return [
-        _row(whole, f"{above}.{name}", name, node, name in required)
+        _row(whole, f"{above}.{named}", named, below, needed)
         for name, node in table["properties"].items()
+        for named, below, needed in _unfolded(whole, name, node, name in required)
     ]
+
+
+def _unfolded(whole: Node, name: str, node: Node, required: bool) -> Iterator[tuple[str, Node, bool]]:
+    """A key, or, of one of several kinds of a thing, also the keys of its table."""
+    if node.get("otherwise") == ANOTHER_KIND:
+        yield from _inner(whole, name, node, required)
+    else:
+        yield name, node, required
 
 
 def _row(whole: Node, key: str, name: str, node: Node, required: bool) -> str:
