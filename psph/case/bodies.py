@@ -9,7 +9,7 @@ from pydantic import Strict
 from psph.case.errors import advise
 from psph.case.findings import Finding, one_sided
 from psph.case.keys import AXES, Name, Table, Vector, key
-from psph.case.motion import Motions
+from psph.case.motion import Motions, way_and_turn
 from psph.case.shapes import Shape
 from psph.physics.walls.conditions import BEARING, DYNAMIC
 
@@ -127,12 +127,15 @@ def held_together(case) -> Iterator[Finding]:
                 "what has a pivot moves along no axis; let free hold turns only",
             )
         yield from _sized(here, body, dimensions)
+        yield from _without_effect(here, body, freed, dimensions)
         if body.motion and set(freed) >= {*slides, *turns}:
             yield (
                 (*here, "motion"),
                 ...,
                 "the body is free to do everything; leave out of free what moves so",
             )
+        elif body.motion:
+            yield from _moved_and_free(here, body, freed)
         if case.frame.motion:
             yield here, ..., "bodies know of no frame that moves; remove one of the two, or move the tank"
         for line, table in body.lines.items():
@@ -150,6 +153,38 @@ def held_together(case) -> Iterator[Finding]:
             yield ("bodies",), ..., says
     for name in case.bodies.keys() & (case.fluids.keys() | case.walls.keys()):
         yield ("bodies", name), ..., "a fluid or a wall has this name too; give the body another"
+
+
+def _without_effect(here, body: Body, freed, dimensions: int) -> Iterator[Finding]:
+    """A velocity or a spin of the start in what the body is not free to do, and one held that moves."""
+    slides, turns = freedoms(dimensions)
+    stuck = [axis for axis, v in zip(slides, body.velocity or ()) if v and axis not in freed]
+    if stuck:
+        remedy = "give spin instead" if body.pivot else f"give 0 there, or let free hold {', '.join(stuck)}"
+        yield (*here, "velocity"), body.velocity, f"the body is not free to move along {stuck[0]}; {remedy}"
+    spin = (body.spin,) if isinstance(body.spin, float) else body.spin or ()
+    stiff = [turn for turn, w in zip(turns, spin) if w and turn not in freed]
+    if stiff and len(spin) == len(turns):
+        remedy = f"give 0 there, or let free hold {', '.join(stiff)}"
+        yield (*here, "spin"), body.spin, f"the body is not free to do {stiff[0]}; {remedy}"
+    if body.held and body.motion:
+        says = "a body that moves as told is not held; remove held, and give the parts of motion a start"
+        yield (*here, "held"), body.held, says
+
+
+def _moved_and_free(here, body: Body, freed) -> Iterator[Finding]:
+    """Parts of a motion in what the body is free to do, as far as their keys tell."""
+    for part in body.motion or ():
+        if len(part.ways) != 1:
+            continue  # which is refused elsewhere
+        way, turned = way_and_turn(part)
+        free = [axis for axis, x in zip(SLIDES, way) if x and axis in freed]
+        free += [turn for turn in TURNS if turned and turn in freed]
+        if free:
+            says = (
+                f"{part.way}: the body is free to do {free[0]}, where forces move it; leave {free[0]} out of "
+            )
+            yield (*here, "motion"), ..., f"{says}free, or out of motion"
 
 
 def _sized(here, body: Body, dimensions: int) -> Iterator[Finding]:

@@ -20,7 +20,7 @@ from pydantic_core import PydanticCustomError
 from psph.case.columns import read_columns
 from psph.case.files import Found, Unfit, beside
 from psph.case.keys import Table, Text, Vector, key
-from psph.case.paddles import Absorber, Flap, Irregular, Piston, SolitaryWave, Wavemaker
+from psph.case.paddles import Absorber, Flap, Irregular, OnHinge, Piston, SolitaryWave, Wavemaker
 from psph.case.parameters import Parameters, chosen, last_part, table_of
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.laws import Accelerated, Harmonic, Steady, Tabulated
@@ -214,7 +214,7 @@ class Series(Turning):
         ways[:, :places] = rows[:, 1 : 1 + places]
         if self.angle:
             ways[:, 3] = rows[:, -1]
-        law = Tabulated(rows[:, 0] - rows[0, 0], ways - ways[0])
+        law = Tabulated(rows[:, 0], ways - ways[0])
         if not np.isfinite(law.pieces).all():
             raise Unfit(
                 f"{self._found.path}: its numbers are too large, or its times too close; correct them"
@@ -322,6 +322,18 @@ def motion_of(parts: tuple[Motion, ...] | None, gravity: tuple[float, ...] = ())
 def series_in(parts: tuple[Motion, ...]) -> list[Series]:
     """The series among these parts."""
     return [one.series for one in parts if one.series is not None]
+
+
+def way_and_turn(part: Motion) -> tuple[tuple[float, ...], bool]:
+    """The direction of a part's displacement, empty where its keys do not tell, and whether it turns."""
+    asked = getattr(part, part.way)
+    if isinstance(asked, Turning) and asked.turns:
+        return (), True
+    if isinstance(asked, Wavemaker):
+        turns = isinstance(asked, OnHinge) and asked.center is not None
+        return ((), True) if turns else (asked.heading, False)
+    key = {"translation": "velocity", "sinusoid": "amplitude"}.get(part.way, part.way)
+    return getattr(asked, key, ()), False
 
 
 def misfits(parts: tuple[Motion, ...], dimensions: int, gravity: tuple[float, ...]):

@@ -1,16 +1,17 @@
-"""Walls and frames that move: how far and how fast, in words, and what they run into."""
+"""Walls, bodies and frames that move: how far and how fast, in words, and what they run into."""
 
 import math
 from collections.abc import Iterator
 from functools import cache
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN
-from psph.physics.motion import is_rigid
+from psph.physics.motion import is_free, is_rigid
+from psph.physics.rigid.bodies import Body
 from psph.physics.rigid.pose import PLACE, maps
 
 FARTHEST = 2e9
@@ -58,14 +59,20 @@ def sweep(motion, lower: tuple[float, ...], upper: tuple[float, ...], end: float
     return Sweep(x.min(axis=(0, 2)), x.max(axis=(0, 2)), way, speed, acceleration, jump)
 
 
-def moving_walls(scene) -> Iterator[tuple[int, str, Sweep]]:
-    """Each wall that moves rigidly as it is told: its number among the species, its name and what it does."""
-    half, end = 0.5 * scene.spacing, scene.case.time.end
-    for number, one in enumerate(scene.species_in_motion[: scene.layout.first_body]):
-        if is_rigid(one):
-            low = tuple((scene.census.lowest[number] - half).tolist())
-            high = tuple((scene.census.highest[number] + half).tolist())
-            yield number, scene.names[number], sweep(one, low, high, end)
+def moving_parts(scene) -> Iterator[tuple[int, str, Sweep]]:
+    """Each wall and body that moves rigidly as it is told: its number among the species, its key and what
+    it does."""
+    for number, one in enumerate(scene.species_in_motion):
+        told = one.motion if isinstance(one, Body) else one
+        if is_rigid(told):
+            low, high = (tuple(end.tolist()) for end in _box(scene, number))
+            yield number, scene.key_of(number), sweep(told, low, high, scene.case.time.end)
+
+
+def _box(scene, number: int) -> tuple[np.ndarray, np.ndarray]:
+    """The corners of the box around the cells of a part at the start, m."""
+    half = 0.5 * scene.spacing
+    return scene.census.lowest[number] - half, scene.census.highest[number] + half
 
 
 def frame_sweep(scene) -> Sweep | None:
@@ -76,8 +83,17 @@ def frame_sweep(scene) -> Sweep | None:
 
 
 def largest_speed(scene) -> float:
-    """Of walls that move rigidly, m/s."""
-    return max((found.speed for _, _, found in moving_walls(scene)), default=0.0)
+    """Of walls and bodies that move as they are told, and of bodies that start with a spin, m/s."""
+    told = (found.speed for _, _, found in moving_parts(scene))
+    return max((*told, *_spinning_speeds(scene)), default=0.0)
+
+
+def _spinning_speeds(scene) -> Iterator[float]:
+    """|V| + |ω| r of each body at the start, m/s, with its corner at r farthest from what it turns about."""
+    d = scene.dimensions
+    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
+        far = np.abs(np.array(_box(scene, number)) - one.reference[:d]).max(axis=0)
+        yield math.hypot(*one.velocity) + math.hypot(*one.spin) * math.hypot(*far)
 
 
 def fastest_corner(scene, part: int) -> float:
@@ -93,27 +109,39 @@ def fastest_corner(scene, part: int) -> float:
 
 def falling_speed(scene) -> float:
     """√(2gH), free fall over the height H of all that moves freely, m/s: g without what pulls along a
-    periodic axis, and with the largest acceleration of a moving frame."""
-    framed, moving = frame_sweep(scene), slice(scene.layout.movers)
+    periodic axis, and with the largest acceleration of a moving frame.
+
+    A body falls as far as its lowest particle is above the lowest of all, on a pivot as far as its highest.
+    """
+    framed, movers = frame_sweep(scene), slice(scene.layout.movers)
     pull = math.hypot(*scene.height_gravity) + (framed.acceleration if framed else 0.0)
-    height = scene.census.top[moving].max() - scene.census.bottom[moving].min() + scene.spacing
+    tops, bottoms = scene.census.top[movers].tolist(), scene.census.bottom[movers].tolist()
+    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
+        lowest, highest = float(scene.census.bottom[number]), float(scene.census.top[number])
+        if any(slides and g for slides, g in zip(one.slides, scene.height_gravity)):
+            tops.append(lowest - scene.spacing)
+            bottoms.append(lowest)
+        elif one.pivot is not None and any(one.turns):
+            tops.append(highest)
+            bottoms.append(lowest)
+    height = max(tops) - min(bottoms) + scene.spacing
     return math.sqrt(2.0 * pull * max(height, 0.0))
 
 
 def motion_faults(scene) -> Iterator[str]:
     """Motions that leave what numbers can tell."""
-    for _, name, found in moving_walls(scene):
+    for _, key, found in moving_parts(scene):
         far = max(np.abs(found.lower).max(), np.abs(found.upper).max())
         if not far <= FARTHEST * scene.spacing:
             yield (
-                f"walls.{name}.motion: goes {far:.3g} m from 0, {far / scene.spacing:.2g} spacings, too far "
+                f"{key}.motion: goes {far:.3g} m from 0, {far / scene.spacing:.2g} spacings, too far "
                 "for double precision; correct its numbers, or give it an end"
             )
 
 
 def motion_lines(scene) -> Iterator[str]:
     """What moves, in words, for `explain`."""
-    tables = {f"walls.{name}": (found, scene.walls[name]) for _, name, found in moving_walls(scene)}
+    tables: dict[str, Any] = {key: (found, scene.parts[n]) for n, key, found in moving_parts(scene)}
     if framed := frame_sweep(scene):
         tables["frame"] = (framed, scene.case.frame)
     for key, (found, table) in tables.items():
@@ -149,9 +177,9 @@ def _plain(value) -> str:
 
 
 def motion_warnings(scene) -> Iterator[str]:
-    """What of the motions of walls may not be meant so."""
-    for number, name, found in moving_walls(scene):
-        key = f"walls.{name}.motion"
+    """What of the motions of walls and bodies may not be meant so."""
+    for number, part, found in moving_parts(scene):
+        key = f"{part}.motion"
         share = found.speed / scene.sound_speed
         if share > QUICK:
             yield (
@@ -159,10 +187,10 @@ def motion_warnings(scene) -> Iterator[str]:
                 f"fluid before it; give physics.sound_speed = {10.0 * found.speed:.3g} or more"
             )
         yield from _leaving(scene, key, found)
-        if met := _first_met(scene, number):
+        if met := None if _is_free(scene.species_in_motion[number]) else _first_met(scene, number):
             time, other, place = met
             yield (
-                f"{key}: at {time:.3g} s it is in walls.{other}, near "
+                f"{key}: at {time:.3g} s it is in {other}, near "
                 f"({', '.join(f'{x:.3g}' for x in place)}): they run through each other"
             )
 
@@ -183,10 +211,12 @@ def _leaving(scene, key: str, found: Sweep) -> Iterator[str]:
 
 
 def _first_met(scene, number: int) -> tuple[float, str, np.ndarray] | None:
-    """The first time looked at when a wall is within another one, the name of that, and where."""
+    """The first time looked at when a part is within another one whose place is known, the key of that,
+    and where."""
     sites = _sites(scene, number)
     motions, dimensions = scene.species_in_motion, scene.dimensions
-    others = [n for n in range(scene.layout.fluids, len(motions)) if motions[n] != motions[number]]
+    known = (n for n in range(scene.layout.fluids, len(motions)) if not _is_free(motions[n]))
+    others = [n for n in known if motions[n] != motions[number]]
     for time in np.sort(moments(scene.case.time.end, LOOKS)):
         places = _moved(motions[number], sites, time, dimensions)
         for rest in {id(motions[n]): motions[n] for n in others}.values():
@@ -195,8 +225,15 @@ def _first_met(scene, number: int) -> tuple[float, str, np.ndarray] | None:
             held = scene.layout.held(grid, grid[0].shape)
             for n in (n for n in others if motions[n] is rest or motions[n] == rest):
                 if (within := held == n).any():
-                    return float(time), scene.names[n], places[np.argmax(within)]
+                    return float(time), scene.key_of(n), places[np.argmax(within)]
     return None
+
+
+def _is_free(motion) -> bool:
+    """Whether forces say where a part goes, at least along an axis."""
+    if isinstance(motion, Body):
+        return any((*motion.slides, *motion.turns))
+    return is_free(motion)
 
 
 def _sites(scene, number: int) -> np.ndarray:

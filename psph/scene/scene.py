@@ -147,7 +147,7 @@ class Scene:
     def undriven_speed(self) -> float:
         """The largest of √(2gH), free fall over the height of all that moves freely (with the frame's
         acceleration beside g),
-        and any speed of the start or of a wall that moves, m/s."""
+        and any speed of the start or of a wall or body that moves as it is told, m/s."""
         return max(falling_speed(self), self.starting_speed, largest_speed(self))
 
     @cached_property

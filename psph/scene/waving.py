@@ -9,7 +9,7 @@ import numpy as np
 from psph.case.motion import PADDLES
 from psph.case.paddles import Irregular, OnHinge
 from psph.physics.rigid.paddles import Swings
-from psph.scene.moving import moving_walls
+from psph.scene.moving import moving_parts
 from psph.theory.water_waves import HIGHEST_IN_DEPTH, MADSEN, steepest, wave_number
 
 FEWEST = 5.0
@@ -147,12 +147,12 @@ def _depth_warnings(scene, key: str, depth: float) -> Iterator[str]:
 
 
 def _stroke_warnings(scene) -> Iterator[str]:
-    paddles = {waves.wall for waves in waves_of(scene)}
-    for _, name, found in moving_walls(scene) if paddles else ():
+    paddles = {f"walls.{waves.wall}" for waves in waves_of(scene)}
+    for _, key, found in moving_parts(scene) if paddles else ():
         low, high = _water(scene)
         length = float((high - low)[:-1].max())
-        if name in paddles and found.way > length:
+        if key in paddles and found.way > length:
             yield (
-                f"walls.{name}.motion: the paddle goes {found.way:.3g} m, and the water is {length:.3g} m "
+                f"{key}.motion: the paddle goes {found.way:.3g} m, and the water is {length:.3g} m "
                 "long; give lower or shorter waves, or a longer tank"
             )

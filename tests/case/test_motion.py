@@ -8,6 +8,7 @@ from drafts import draft, refusal
 
 from psph.case.motion import motion_of
 from psph.scene import Scene, check
+from psph.scene.moving import motion_lines
 
 SCENE = """
 space = { dimensions = 2, spacing = 0.1 }
@@ -122,6 +123,17 @@ def test_a_series_goes_through_its_rows_from_where_the_wall_stands(tmp_path, pat
     assert case.versions and not draft(tmp_path, SCENE).versions  # another file is another case
 
 
+def test_the_times_of_a_series_count_from_the_start_of_its_part(tmp_path, path):
+    """A record whose first time is 1.0: the wall rests before, and is where the rows say at their times."""
+    path(["time,x,y,angle", "1.0,0.1,0.2,0.0", "1.5,0.2,0.1,0.1", "2.0,0.4,0.3,0.3"])
+    case = draft(tmp_path, f"{SCENE}\nmotion = {series()[:-1]}, start = 0.25 }}")
+    motion = motion_of(case.walls["floor"].motion)
+    for time, way in ((0.0, (0.0, 0.0)), (1.2, (0.0, 0.0)), (1.75, (0.1, -0.1)), (2.25, (0.3, 0.1))):
+        pose = motion.pose(time)
+        assert pose.translation == pytest.approx((*way, 0.0)), time
+    assert motion.pose(1.2).velocity == (0.0, 0.0, 0.0) != motion.pose(1.5).velocity
+
+
 def test_a_case_with_motions_reads_back_what_it_wrote(tmp_path, path):
     case = draft(
         tmp_path, f"{SCENE}\nmotion = [{TURN}, ramp = 0.1 }}, {series()}]\n[frame]\nmotion = {TURN} }}"
@@ -151,6 +163,31 @@ def test_check_warns_of_a_wall_that_runs_through_another_or_is_fast(name, tmp_pa
     assert not any(
         "motion" in line for line in check(Scene(draft(tmp_path, f"{SCENE}\nmotion = {TURN}, end = 0.01 }}")))
     )
+
+
+BRICK = """
+[bodies.brick]
+shape.box = { lower = [1.0, 0.7], upper = [1.4, 1.0] }
+density = 500.0
+"""
+
+
+def test_the_motion_of_a_body_is_told_and_warned_of(tmp_path):
+    text = f"{SCENE}\n{BRICK}free = []\nmotion = {{ translation = [0.0, -0.5] }}"
+    given = Scene(draft(tmp_path, text, "physics.sound_speed=4.0"))
+    lines = "\n".join(motion_lines(given))
+    assert "motion      bodies.brick: translation velocity [0, -0.5]" in lines
+    assert "at most 1 m from its start, 0.5 m/s (0.12 c)" in lines
+    fast, through = (line for line in check(given) if "bodies.brick.motion" in line)
+    assert "0.5 m/s is 0.12 of the speed of sound" in fast and "it is in walls.floor" in through
+
+
+def test_a_body_that_moves_freely_is_not_run_through(tmp_path):
+    """A floor that rises to where a body is at the start: the body is no longer there; a fixed one is."""
+    rising = f"{SCENE}\nmotion = {{ translation = [0.0, 0.5] }}\n{BRICK}"
+    assert not any("it is in" in line for line in check(Scene(draft(tmp_path, rising))))
+    [line] = (line for line in check(Scene(draft(tmp_path, f"{rising}free = []"))) if "it is in" in line)
+    assert "walls.floor.motion: at" in line and "it is in bodies.brick" in line
 
 
 FRAMES = {

@@ -1,5 +1,6 @@
 """The scene: domain, speeds, materials, counts."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -85,6 +86,24 @@ def test_height_is_along_gravity(tmp_path):
 )
 def test_the_expected_speed_knows_initial_speeds(tmp_path, overrides, speed):
     assert scene(tmp_path, WATER, *overrides).expected_speed == pytest.approx(speed)
+
+
+BRICK = ("bodies.brick.shape.box={lower=[0.2,1.5],upper=[0.6,1.8]}", "bodies.brick.density=700.0")
+
+
+@pytest.mark.parametrize(
+    ("overrides", "speed"),
+    [
+        ((), math.sqrt(2.0 * 9.8 * 1.5)),  # its lowest face comes to the bed
+        (("bodies.brick.free=['x']",), math.sqrt(2.0 * 9.8 * 0.5)),  # the water's fall alone
+        (("bodies.brick.pivot=[0.4,1.5]",), math.sqrt(2.0 * 9.8 * 1.8)),
+        (("bodies.brick.spin=40.0",), 40.0 * math.hypot(0.2, 0.15)),
+        (("bodies.brick.spin=40.0", "bodies.brick.velocity=[3.0,4.0]"), 40.0 * math.hypot(0.2, 0.15) + 5.0),
+        (("bodies.brick.free=['y']", "bodies.brick.motion={translation=[-12.0,0.0]}"), 12.0),
+    ],
+)
+def test_the_expected_speed_knows_what_bodies_do(tmp_path, overrides, speed):
+    assert scene(tmp_path, TANK, *BRICK, *overrides).expected_speed == pytest.approx(speed)
 
 
 def test_a_given_sound_speed_holds(tmp_path):

@@ -288,6 +288,43 @@ BRICK = "bodies.brick.shape.box={lower=[0.2,0.5],upper=[0.4,0.7]}"
             "physics.pressure_gradient = minimum does not push back what pushes",
         ),
         (("bodies.brick.mass=1.0", "gauges.g.motion.of=tank"), "no body has this name"),
+        (
+            ("bodies.brick.mass=1.0", "bodies.brick.free=['y']", "bodies.brick.velocity=[1.0,2.0]"),
+            "bodies.brick.velocity: [1.0, 2.0]: the body is not free to move along x",
+        ),
+        (
+            ("bodies.brick.mass=1.0", "bodies.brick.pivot=[0.3,0.6]", "bodies.brick.velocity=[0.0,2.0]"),
+            "not free to move along y; give spin instead",
+        ),
+        (
+            ("bodies.brick.mass=1.0", "bodies.brick.free=['x','y']", "bodies.brick.spin=2.0"),
+            "the body is not free to do turn_z; give 0 there, or let free hold turn_z",
+        ),
+        (
+            (
+                "bodies.brick.mass=1.0",
+                "bodies.brick.free=['turn_z']",
+                "bodies.brick.motion={rotation={speed=1.0,center=[0.3,0.6]}}",
+            ),
+            "bodies.brick.motion: rotation: the body is free to do turn_z, where forces move it",
+        ),
+        (
+            (
+                "bodies.brick.mass=1.0",
+                "bodies.brick.free=['y']",
+                "bodies.brick.motion=[{translation=[1.0,0.0]},{sinusoid={amplitude=[0.0,0.1],period=1.0}}]",
+            ),
+            "bodies.brick.motion: sinusoid: the body is free to do y, where forces move it",
+        ),
+        (
+            (
+                "bodies.brick.mass=1.0",
+                "bodies.brick.held=0.2",
+                "bodies.brick.free=['y']",
+                "bodies.brick.motion={translation=[1.0,0.0]}",
+            ),
+            "bodies.brick.held: 0.2: a body that moves as told is not held; remove held",
+        ),
     ],
 )
 def test_bodies_that_cannot_be_are_refused(tmp_path, overrides, says):

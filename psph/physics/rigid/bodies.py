@@ -32,6 +32,7 @@ KEPT = (
     "torque",
     "ahead",
     "spin_ahead",
+    "loose",
 )
 """The arrays of a state."""
 
@@ -43,8 +44,8 @@ class Body(NamedTuple):
     m², nine numbers by rows; ``velocity`` in m/s and ``spin`` in rad/s at the start.  It is free to move
     along the axes of ``slides`` and to turn about the axes of ``turns``: none, one or three of them.
     ``pivot``, m: a point of the body that stays where it is, about which it turns.  Until the time
-    ``held``, s, it stays. ``motion`` has the pose of what is not free, None for a body that is held
-    there.
+    ``held``, s, it stays, and then sets off with ``velocity`` and ``spin``.  ``motion`` has the pose of
+    what is not free, None for a body that is held there.
     """
 
     name: str
@@ -83,7 +84,8 @@ class Bodies:
     ``place`` X, m, ``velocity`` m/s, ``angular_momentum`` kg m²/s and ``force`` N, ``torque`` N m, all
     (n, 3), are of the reference points (:class:`Body`), ``turn`` (n, 3, 3) leads from the start to now,
     ``frame`` has the principal axes of those that turn freely.  ``ahead`` and ``spin_ahead`` are
-    velocity and angular velocity as they will be at the end of the step if the force stays.
+    velocity and angular velocity as they will be at the end of the step if the force stays; ``loose`` (n, 1)
+    is 0 for a body that is held, which shows no velocity and no acceleration, else 1.
     """
 
     def __init__(self, bodies: Sequence[Body], gravity: Sequence[float]):
@@ -117,19 +119,19 @@ class Bodies:
     def drift(self, then: float, dt: float) -> None:
         """The first half of the kick, and the way to the end of the step of ``dt`` s at ``then``."""
         self._kick(then, dt)
-        self.place = np.where(self.slides, self.place + dt * self.velocity, self.place)
-        self._tumble(dt)
-        self.angle = self.angle + dt * self._spin_of_hinged(self.angular_momentum)
+        loose = then > self.held
+        step = np.where(loose, dt, 0.0)
+        self.place = np.where(self.slides, self.place + step * self.velocity, self.place)
+        self._tumble(step[self.tumbling, 0])
+        self.angle = self.angle + step[self.hinged, 0] * self._spin_of_hinged(self.angular_momentum)
         self._follow(then)
-        half = np.where(then > self.held, 0.5 * dt, 0.0)
-        self.ahead = np.where(self.slides, self.velocity + half * self.force / self.mass, self.velocity)
-        self._spin(self.angular_momentum + half * self.torque)
+        velocity = np.where(self.slides, self.velocity + 0.5 * step * self.force / self.mass, self.velocity)
+        self._show(loose, velocity, self.angular_momentum + 0.5 * step * self.torque)
 
     def kick(self, then: float, dt: float) -> None:
         """The second half of the kick, by the forces at the end of the step."""
         self._kick(then, dt)
-        self.ahead = self.velocity.copy()
-        self._spin(self.angular_momentum)
+        self._show(then > self.held, self.velocity, self.angular_momentum)
 
     def load(self, force: np.ndarray, torque: np.ndarray) -> None:
         """Forces and torques about the reference points (n, 3) at the end of the step; weight is added."""
@@ -154,7 +156,7 @@ class Bodies:
     @property
     def acceleration(self) -> np.ndarray:
         """Of the reference points by the last forces, m/s² (n, 3)."""
-        return np.where(self.slides, self.force / self.mass, 0.0)
+        return np.where(self.slides, self.loose * self.force / self.mass, 0.0)
 
     @property
     def angular_acceleration(self) -> np.ndarray:
@@ -166,7 +168,7 @@ class Bodies:
             twist = self.torque[self.tumbling] - np.cross(spin, momentum)
             own = np.einsum("nde,nd->ne", self.frame, twist) / self.moments
             found[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
-        return found
+        return self.loose * found
 
     def state(self) -> dict:
         """What the next steps rest on, as lists of numbers."""
@@ -214,20 +216,25 @@ class Bodies:
         velocity = np.array([one.velocity for one in self.bodies]).reshape(-1, 3)
         spin = np.array([one.spin for one in self.bodies]).reshape(-1, 3)
         self.velocity = np.where(self.slides, velocity, self.velocity)
-        self.ahead = self.velocity.copy()
         for row in (*self.tumbling, *self.hinged):
             self.angular_momentum[row] = self.inertia[row] @ (
                 spin[row] if row in self.tumbling else self.axis[row] * (self.axis[row] @ spin[row])
             )
-        self._spin(self.angular_momentum)
+        self._show(self.held == 0.0, self.velocity, self.angular_momentum)
+
+    def _show(self, loose: np.ndarray, velocity: np.ndarray, momentum: np.ndarray) -> None:
+        """The velocities that others see: none of a body that is not ``loose`` (n, 1) yet."""
+        self.loose = loose.astype(float)
+        self.ahead = np.where(self.slides & ~loose, 0.0, velocity)
+        self._spin(np.where(loose, momentum, 0.0))
 
     def _kick(self, then: float, dt: float) -> None:
         half = np.where(then > self.held, 0.5 * dt, 0.0)
         self.velocity = np.where(self.slides, self.velocity + half * self.force / self.mass, self.velocity)
         self.angular_momentum = self.angular_momentum + half * self.torque
 
-    def _tumble(self, dt: float) -> None:
-        """The free turns."""
+    def _tumble(self, dt: np.ndarray) -> None:
+        """The free turns, of each body over its own ``dt``, s."""
         if not len(self.tumbling):
             return
         momentum = self.angular_momentum[self.tumbling]

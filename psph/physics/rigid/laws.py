@@ -65,8 +65,9 @@ class Harmonic(NamedTuple):
 class Tabulated:
     """A series: cubic between its times, at rest before the first and after the last.
 
-    ``times`` (n,) s, from 0 on; ``ways`` (n, 4) m and rad.  Between two times it is the cubic spline with two
-    continuous derivatives whose slope is zero at both ends.  Two of the same numbers are equal.
+    ``times`` (n,) s since the start of the part; ``ways`` (n, 4) m and rad.  Between two times it
+    is the cubic spline with two continuous derivatives whose slope is zero at both ends.  Two of the same
+    numbers are equal.
     """
 
     def __init__(self, times: np.ndarray, ways: np.ndarray):

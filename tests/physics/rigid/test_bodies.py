@@ -118,6 +118,22 @@ def test_a_held_body_stays_until_its_time():
     assert moved(Bodies([body(held=2.0)], (0.0, 0.0, -10.0)), 1e-3, 1000).place[0, 2] == 0.5
 
 
+@pytest.mark.parametrize("turns", [FREE, (False, False, True)])
+def test_a_held_body_sets_off_at_its_release(turns):
+    """Until then nobody sees its velocity; afterwards it goes as one does that was let go at the start."""
+    thrown = body(velocity=(1.0, 2.0, -0.5), spin=(0.0, 0.0, 3.0), turns=turns)
+    held = Bodies([thrown._replace(held=0.5)], (0.3, 0.0, -10.0))
+    assert not held.ahead.any() and not held.spin.any()
+    moved(held, 1 / 1024, 512)
+    assert np.array_equal(held.place, [[1.0, -2.0, 0.5]]) and not held.ahead.any() and not held.spin.any()
+    assert not held.acceleration.any() and not held.angular_acceleration.any()
+    assert held.turn[0] == pytest.approx(np.eye(3), abs=1e-15) and not held.kinetic_energy().any()
+    late, free = Bodies([thrown._replace(held=0.5)], (0.3, 0.0, -10.0)), Bodies([thrown], (0.3, 0.0, -10.0))
+    moved(late, 1 / 1024, 1024), moved(free, 1 / 1024, 512)
+    for name in ("place", "velocity", "ahead", "turn", "spin_ahead"):
+        assert getattr(late, name) == pytest.approx(getattr(free, name), abs=1e-12), name
+
+
 def test_what_is_not_free_stays():
     guided = body(slides=(False, True, False), turns=FIXED, velocity=(1.0, 1.0, 1.0), spin=(1.0, 1.0, 1.0))
     bodies = moved(Bodies([guided], (1.0, 2.0, 3.0)), 1e-2, 100)
