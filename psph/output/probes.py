@@ -31,7 +31,7 @@ class Probe:
     one side alone; beside ``mirrors`` (psph.composition.mirrors) over images too.  ``points`` (n, dim) m:
     of a sensor those of its area.  A point without fluid in reach bears no pressure: it counts as 0 Pa, and
     for nothing else.  ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry`` those
-    of them without fluid in reach of any point.
+    without fluid in reach of any point.
     """
 
     def __init__(self, name: str, points: np.ndarray, fields: tuple[str, ...], mirrors=None):
