@@ -30,8 +30,8 @@ class Probe:
     The sums are over the fluid and the walls that it wets, so that at a wall the mean is not that of
     one side alone; beside ``mirrors`` (psph.composition.mirrors) over images too.  ``points`` (n, dim) m:
     of a sensor those of its area.  A point without fluid in reach bears no pressure: it counts as 0 Pa, and
-    for nothing else.  ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry`` those
-    without fluid in reach of any point.
+    for nothing else.  ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry``
+    those without fluid in reach of any point.
     """
 
     def __init__(self, name: str, points: np.ndarray, fields: tuple[str, ...], mirrors=None):
