@@ -141,7 +141,8 @@ def held_together(case) -> Iterator[Finding]:
         for line, table in body.lines.items():
             if table.to is not None and (table.to not in case.bodies or table.to == name):
                 others = [other for other in case.bodies if other != name]
-                says = f"no other body has this name; {advise(table.to, others)}"
+                says = "no other body has this name; leave out to for a point in space"
+                says += f"; {advise(table.to, others)}" if others else ""
                 yield (*here, "lines", line, "to"), table.to, says
     parts = len(case.fluids) + len(case.walls) + len(case.bodies)
     if parts > MOST_PARTS:

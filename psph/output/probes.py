@@ -29,9 +29,9 @@ class Probe:
 
     The sums are over the fluid and the walls that it wets, so that at a wall the mean is not that of
     one side alone; beside ``mirrors`` (psph.composition.mirrors) over images too.  ``points`` (n, dim) m:
-    of a sensor those of its area, of which one without fluid in reach bears no pressure, and counts for
-    nothing else.  ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry`` those of
-    them without fluid in reach of any point.
+    of a sensor those of its area.  A point without fluid in reach bears no pressure: it counts as 0 Pa, and
+    for nothing else.  ``fields`` names of saved fields; ``rows`` counts the values taken so far, ``dry``
+    those without fluid in reach of any point.
     """
 
     def __init__(self, name: str, points: np.ndarray, fields: tuple[str, ...], mirrors=None):
@@ -48,7 +48,8 @@ class Probe:
         ]
 
     def sample(self, domain: Domain, kernel) -> np.ndarray:
-        """Values in the order of :meth:`columns` on every rank, NaN where no fluid is near.
+        """Values in the order of :meth:`columns` on every rank; where no fluid is near, 0 for a pressure and
+        NaN for all else.
 
         Every rank finds the near ones among its own particles, wherever these have drifted since
         the lists were made; the sums do not depend on how particles are spread.  Collective.
@@ -65,13 +66,13 @@ class Probe:
         wet = sums[:, 0] > 0.0
         if not wet.any():
             self.dry += 1
-            return np.full(width - 2, np.nan)
         values = sums[wet, 2:] / sums[wet, 1:2]
         # What no fluid reaches bears no pressure.
         counted = [
             len(wet) if f == PRESSURE.name else wet.sum() for f in self.fields for _ in domain.store.rows[f]
         ]
-        return values.sum(axis=0) / counted
+        with np.errstate(invalid="ignore"):
+            return values.sum(axis=0) / counted  # 0/0 where all is dry
 
     def _around(self, domain: Domain, kernel, point) -> np.ndarray:
         """Of this rank's particles around a point, and of images: W V_j in the fluid, W V_j, W V_j f_j."""

@@ -184,7 +184,7 @@ class Record:
             if probe.dry:
                 yield (
                     f"probe {probe.name}: no fluid in reach in {probe.dry:,} of {probe.rows:,} rows, "
-                    f"where {PROBES} has nan"
+                    f"where {PROBES} has 0 for a pressure, else nan"
                 )
 
     def _points(self) -> Iterator[Probe]:

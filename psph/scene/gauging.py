@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from psph.scene.behind import Solid
-from psph.scene.moving import moving_walls
+from psph.scene.moving import moving_parts
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -49,7 +49,7 @@ def within_reach(scene: "Scene", names: list[str], point: tuple[float, ...]) -> 
 
 def left_behind(scene: "Scene") -> Iterator[str]:
     """A line for each sensor on a wall that moves away from it."""
-    moving = [name for _, name, _ in moving_walls(scene)]
+    moving = [scene.names[number] for number, _, _ in moving_parts(scene)]
     sensors = [(name, gauge.sensor) for name, gauge in scene.case.gauges.items() if gauge.sensor]
     for name, sensor in sensors if moving else ():
         for wall in within_reach(scene, moving, sensor.position):

@@ -10,10 +10,18 @@ from psph.case.motion import PADDLES
 from psph.case.paddles import Irregular, OnHinge
 from psph.physics.rigid.paddles import Swings
 from psph.scene.moving import moving_parts
+from psph.scene.shapes import bounds
 from psph.theory.water_waves import HIGHEST_IN_DEPTH, MADSEN, steepest, wave_number
 
 FEWEST = 5.0
 """Spacings in the height of a wave, below which little is left of it after some wavelengths."""
+
+
+MISTAKEN = 0.1
+"""Part of the depth before a paddle by which the one that the case gives may differ without a warning."""
+
+AHEAD = 2.0
+"""Spacings from the paddle's face to the place where that depth is taken."""
 
 
 class Waves(NamedTuple):
@@ -110,7 +118,8 @@ def wave_warnings(scene) -> Iterator[str]:
                 f"{key}: H/dx = {height / scene.spacing:.3g} is below {FEWEST:g}: such waves fade; give "
                 f"space.spacing = {_below(height / FEWEST)} or less"
             )
-        yield from _depth_warnings(scene, key, depth)
+        yield from _depth_warnings(scene, waves)
+        yield from _late_warnings(scene, waves)
     yield from _stroke_warnings(scene)
 
 
@@ -140,10 +149,36 @@ def _water(scene) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def _depth_warnings(scene, key: str, depth: float) -> Iterator[str]:
+def _depth_warnings(scene, waves: Waves) -> Iterator[str]:
+    depth, deep = waves.asked.depth, _depth_before(scene, waves)
+    if abs(depth - deep) > max(MISTAKEN * deep, scene.spacing):
+        yield (
+            f"{waves.key}: depth = {depth:g} m, and the fluid is {deep:.3g} m deep before the paddle; give "
+            "the depth of the water"
+        )
+
+
+def _depth_before(scene, waves: Waves) -> float:
+    """Depth of the fluid at rest, m, ``AHEAD`` of the paddle's middle; of all fluid where none is there."""
     low, high = _water(scene)
-    if depth > (deep := high[-1] - low[-1]) + scene.spacing:
-        yield f"{key}: depth = {depth:g} m, and the fluid is {deep:.3g} m deep; give the depth of the water"
+    count = max(1, round((high[-1] - low[-1]) / scene.spacing))
+    lower, upper = map(np.array, bounds(scene.walls[waves.wall].shape))
+    heading = np.array(waves.asked.heading[: scene.dimensions])
+    away = 0.5 * (upper - lower) @ np.abs(heading) + AHEAD * scene.spacing
+    column = np.tile(0.5 * (lower + upper) + away * heading, (count, 1))
+    column[:, -1] = low[-1] + (np.arange(count) + 0.5) * scene.spacing
+    grid = [scene.folded(d, x.copy()) for d, x in enumerate(column.T)]
+    wet = np.count_nonzero(scene.layout.held(grid, (count,)) < scene.layout.fluids)
+    return float(wet * scene.spacing if wet else high[-1] - low[-1])
+
+
+def _late_warnings(scene, waves: Waves) -> Iterator[str]:
+    [part] = (one for one in scene.walls[waves.wall].motion if getattr(one, one.way) is waves.asked)
+    if part.start >= (end := scene.case.time.end):
+        yield (
+            f"{waves.key}: the paddle starts at {part.start:g} s, and the run ends at {end:g} s: no wave is "
+            "made; give an earlier start, or a later time.end"
+        )
 
 
 def _stroke_warnings(scene) -> Iterator[str]:

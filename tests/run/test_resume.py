@@ -214,17 +214,23 @@ def test_a_run_at_its_end_has_no_step_left(whole, tmp_path):
 
 
 def test_dry_rows_of_a_probe_are_counted_from_the_start_of_the_run(whole, tmp_path):
-    dry = ["probes.beside={position=[1.5,1.45]}", "output.probes=0.01", "time.end=0.1"]
+    dry = [
+        "probes.beside={position=[1.5,1.45],fields=['pressure','density']}",
+        "output.probes=0.01",
+        "time.end=0.1",
+    ]
     for side, ends in (("left", (0.0, 1.5)), ("right", (1.5, 3.0))):  # with room above
         dry.append(f"fluids.{side}.shape.box={{lower=[{ends[0]},0.0],upper=[{ends[1]},0.8]}}")
     (tmp_path / "box.toml").write_text(BOX, encoding="utf-8")
     said = []
     run(load(tmp_path / "box.toml", dry), tmp_path / "run", COMM, **QUIET)
     resume(tmp_path / "run", COMM, ["time.end=0.15"], say=lambda line, where=None: said.append(line))
-    values = np.genfromtxt(tmp_path / "run" / "probes.csv", delimiter=",", names=True)["besidepressure"]
-    none, rows = int(np.isnan(values).sum()), len(values)
-    assert 0 < none < rows
-    assert f"probe beside: no fluid in reach in {none} of {rows} rows, where probes.csv has nan" in said
+    values = np.genfromtxt(tmp_path / "run" / "probes.csv", delimiter=",", names=True)
+    unknown = np.isnan(values["besidedensity"])
+    none, rows = int(unknown.sum()), len(values)
+    assert 0 < none < rows and not values["besidepressure"][unknown].any()
+    where = "where probes.csv has 0 for a pressure, else nan"
+    assert f"probe beside: no fluid in reach in {none} of {rows} rows, {where}" in said
 
 
 @pytest.mark.parametrize("text", ["space.spacing=0.1", "time.cfl=0.1", "time", "=1", "output=1"])

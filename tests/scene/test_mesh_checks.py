@@ -119,6 +119,26 @@ def test_what_cannot_be_simulated_is_one_line(tmp_path, body, overrides, says):
     assert line.startswith(f"case.toml: {KEY}") and says in line
 
 
+def test_a_mesh_in_millimetres_is_refused_before_its_sites_are_visited(tmp_path, monkeypatch):
+    """A cube of 0.2 m that is 200 m long: 8e9 sites, which are fewer than a lattice may have."""
+    put(tmp_path, trimesh.creation.box(bounds=[[0, 0, 0], [200, 200, 200]]))
+    sets = [f"{key}.scale=1.0" for key in (KEY.replace("[0]", ".0"), NOT[1])]
+    monkeypatch.setattr("psph.scene.meshes.report.sites_in", None)  # nobody asks
+    [line] = refused(tmp_path, POOL, *sets)
+    assert "is 200 x 200 x 200 m in size, 133 times the rest of the scene; lengths are in m: was" in line
+    assert line.endswith("give scale = 0.001")
+
+
+@pytest.mark.parametrize("count", [0, 11, 13])
+def test_a_binary_file_with_a_wrong_count_is_damaged(tmp_path, count):
+    put(tmp_path, POST)
+    whole = (tmp_path / "parts/post.stl").read_bytes()
+    put(tmp_path, whole[:80] + count.to_bytes(4, "little") + whole[84:])
+    [line] = refused(tmp_path, POOL)
+    says = f"parts/post.stl is damaged: its header counts {count} triangles, and it has room for 12; export"
+    assert line.startswith(f"case.toml: {KEY}.file: ") and says in line
+
+
 def test_a_mesh_away_from_what_it_is_taken_from_is_one_line(tmp_path):
     put(tmp_path, POST)
     [line] = refused(tmp_path, POOL, "fluids.water.shape.difference.minus.0.mesh.move=[50.0, 0.0, 0.0]")

@@ -55,5 +55,7 @@ def test_a_sensor_on_a_wall_that_moves_is_warned_of(tmp_path):
     asked = 'gauges.P1={ sensor = { position = [0.5, 0.1], axis = "y", diameter = 0.1 } }'
     sway = "walls.tank.motion={ sinusoid = { amplitude = [0.01, 0.0], period = 1.0 } }"
     [line] = checked(tmp_path, TANK, asked, sway)
-    assert line.startswith("gauges.P1.sensor: walls.tank moves, and a sensor stays") and "frame.motion" in line
+    assert (
+        line.startswith("gauges.P1.sensor: walls.tank moves, and a sensor stays") and "frame.motion" in line
+    )
     assert checked(tmp_path, TANK, asked) == []

@@ -137,7 +137,15 @@ WARNED = {
     ),
     "deep": (
         "{ piston = { height = 0.1, period = 1.2, depth = 0.4 } }",
-        "depth = 0.4 m, and the fluid is 0.3 m deep",
+        "depth = 0.4 m, and the fluid is 0.3 m deep before the paddle",
+    ),
+    "shallow": (
+        "{ piston = { height = 0.1, period = 1.2, depth = 0.26 } }",
+        "depth = 0.26 m, and the fluid is 0.3 m deep before the paddle",
+    ),
+    "late": (
+        "{ solitary = { height = 0.1, depth = 0.3 }, start = 30.0 }",
+        "the paddle starts at 30 s, and the run ends at 30 s: no wave is made",
     ),
     "far": ("{ piston = { height = 0.1, period = 100.0, depth = 0.3 } }", "the paddle goes"),
 }
@@ -155,3 +163,21 @@ def test_good_waves_warn_of_nothing(tmp_path):
     scene = scene_of(motion, tmp_path)
     assert not list(wave_warnings(scene))
     assert not [line for line in check(scene) if "paddle.motion.piston" in line]
+
+
+def test_the_depth_is_that_before_the_paddle(tmp_path):
+    """A shelf below the paddle, 0.1 m high: the water over it is 0.2 m deep, farther on 0.3 m."""
+    shelf = FLUME.replace(
+        "shape.box = { lower = [0.0, 0.0], upper = [3.0, 0.3] }",
+        "shape.union = [{ box = { lower = [0.0, 0.1], upper = [3.0, 0.3] } }, "
+        "{ box = { lower = [1.0, 0.0], upper = [3.0, 0.3] } }]",
+    )
+    assert shelf != FLUME
+
+    def warned(depth):
+        motion = f"{{ piston = {{ height = 0.1, period = 1.2, depth = {depth} }} }}"
+        return list(wave_warnings(Scene(draft(tmp_path, told(motion, shelf)))))
+
+    assert warned(0.2) == []
+    [line] = warned(0.3)
+    assert "depth = 0.3 m, and the fluid is 0.2 m deep before the paddle" in line

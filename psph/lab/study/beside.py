@@ -8,7 +8,7 @@ import numpy as np
 from psph.case import CaseError, load
 from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
-from psph.lab.study.judge import known_values, series_errors
+from psph.lab.study.judge import series_errors, value_at
 from psph.output.checkpoint import COPY
 from psph.output.reader import Run
 
@@ -43,10 +43,9 @@ def beside(folder: Path) -> list[Beside]:
             time, value = read_experiment(case, name)
         except StudyError:  # what a study refuses, a picture does without
             continue
-        ours = known_values(table, experiment.probe)
-        both = (time >= table["time"][0]) & (time <= table["time"][-1]) if len(table["time"]) else time < time
-        error = float("nan")
-        if both.any() and len(ours[0]):
-            error = series_errors(np.interp(time[both], *ours), value[both]).l2
+        ours = value_at(time, table, experiment.probe)
+        known, rows = np.isfinite(ours), table["time"]
+        error = series_errors(ours[known], value[known]).l2
+        both = (time >= rows[0]) & (time <= rows[-1]) if len(rows) else known
         found.append(Beside(name, experiment.probe, time[both], value[both], error))
     return found

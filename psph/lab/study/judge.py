@@ -60,13 +60,13 @@ class Judge:
         run = Run(folder)
         if self.what in AT_THE_END:
             return self._fields(run, finest)
-        time, values = known_values(run.measured(self.what), self.what)
-        if not len(time):
-            return series_errors(time, values)
+        table = run.measured(self.what)
         theirs, of_theirs = self._curve(run, finest)
-        at = time if of_theirs is None else of_theirs  # None: known at any time
-        at = at[window(self.case.study, at) & (at >= time[0]) & (at <= time[-1])]
-        return series_errors(np.interp(at, time, values), theirs(at))
+        at = table["time"] if of_theirs is None else of_theirs  # None: known at any time
+        at = at[window(self.case.study, at)]
+        ours, of_theirs = value_at(at, table, self.what), theirs(at)
+        both = np.isfinite(ours) & np.isfinite(of_theirs)
+        return series_errors(ours[both], of_theirs[both])
 
     def _fields(self, run: Run, finest: Path) -> Judgement:
         if self.against == EXACT:
@@ -93,8 +93,8 @@ class Judge:
         if self.against == FINEST:
             if run.folder == finest:
                 return (lambda t: np.full(len(t), math.nan)), None
-            of_finest = known_values(Run(finest).measured(self.what), self.what)
-            return (lambda t: np.interp(t, *of_finest)), None
+            of_finest = Run(finest).measured(self.what)
+            return (lambda t: value_at(t, of_finest, self.what)), None
         time, value = self.measured
         return (lambda t: np.interp(t, time, value)), time
 
@@ -189,6 +189,19 @@ def known_values(table: dict[str, np.ndarray], column: str) -> tuple[np.ndarray,
     """Times in s and values of a column of a table, but for rows without fluid in reach (nan)."""
     known = np.isfinite(table[column])
     return table["time"][known], table[column][known]
+
+
+def value_at(time: np.ndarray, table: dict[str, np.ndarray], column: str) -> np.ndarray:
+    """A column of a table at some times (n,), s, on straight lines from row to row.
+
+    NaN before the first row and after the last, and on lines with a row without fluid in reach at an end.
+    """
+    rows, values = table["time"], table[column]
+    known = np.isfinite(values)
+    if not known.any():
+        return np.full(len(time), math.nan)
+    unknown = np.interp(time, rows, ~known, left=1.0, right=1.0) > 0.0
+    return np.where(unknown, math.nan, np.interp(time, rows[known], values[known]))
 
 
 def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:

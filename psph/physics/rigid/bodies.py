@@ -33,6 +33,8 @@ KEPT = (
     "ahead",
     "spin_ahead",
     "loose",
+    "prescribed",
+    "prescribed_turn",
 )
 """The arrays of a state."""
 
@@ -85,7 +87,8 @@ class Bodies:
     (n, 3), are of the reference points (:class:`Body`), ``turn`` (n, 3, 3) leads from the start to now,
     ``frame`` has the principal axes of those that turn freely.  ``ahead`` and ``spin_ahead`` are
     velocity and angular velocity as they will be at the end of the step if the force stays; ``loose`` (n, 1)
-    is 0 for a body that is held, which shows no velocity and no acceleration, else 1.
+    is 0 for a body that is held, which shows no velocity and no acceleration, else 1; ``prescribed``, m/s², and
+    ``prescribed_turn``, rad/s² (n, 3), are the accelerations of what is prescribed.
     """
 
     def __init__(self, bodies: Sequence[Body], gravity: Sequence[float]):
@@ -112,6 +115,7 @@ class Bodies:
         self.angular_momentum = np.zeros((n, 3))
         self.force, self.torque = np.zeros((n, 3)), np.zeros((n, 3))
         self.ahead, self.spin_ahead = np.zeros((n, 3)), np.zeros((n, 3))
+        self.prescribed, self.prescribed_turn = np.zeros((n, 3)), np.zeros((n, 3))
         self._led = [row for row, one in enumerate(bodies) if one.motion]
         self._lead(range(n), 0.0)
         self._begin()
@@ -155,20 +159,20 @@ class Bodies:
 
     @property
     def acceleration(self) -> np.ndarray:
-        """Of the reference points by the last forces, m/s² (n, 3)."""
-        return np.where(self.slides, self.loose * self.force / self.mass, 0.0)
+        """Of the reference points, m/s² (n, 3): by the last forces, or as their motions have it."""
+        return np.where(self.slides, self.loose * self.force / self.mass, self.prescribed)
 
     @property
     def angular_acceleration(self) -> np.ndarray:
-        """By the last torques, rad/s² (n, 3): I⁻¹ (T − ω × L)."""
-        found = np.zeros_like(self.torque)
+        """By the last torques, rad/s² (n, 3): I⁻¹ (T − ω × L); or as their motions have it."""
+        found = self.prescribed_turn.copy()
         found[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(self.torque)[:, None]
         if len(self.tumbling):
             spin, momentum = self.spin_ahead[self.tumbling], self.angular_momentum[self.tumbling]
             twist = self.torque[self.tumbling] - np.cross(spin, momentum)
             own = np.einsum("nde,nd->ne", self.frame, twist) / self.moments
             found[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
-        return self.loose * found
+        return np.where(self.loose, found, self.prescribed_turn)
 
     def state(self) -> dict:
         """What the next steps rest on, as lists of numbers."""
@@ -254,9 +258,11 @@ class Bodies:
             one, pose, fixed = self.bodies[row], self.bodies[row].pose(time), ~self.slides[row]
             self.place[row, fixed] = np.array(pose.place(one.reference))[fixed]
             self.velocity[row, fixed] = np.array(pose.speed(one.reference))[fixed]
+            self.prescribed[row, fixed] = np.array(pose.hurry(one.reference))[fixed]
             if not any(one.turns):
                 self.turn[row] = np.reshape(pose.rotation, (3, 3))
                 self.spin_ahead[row] = pose.angular_velocity
+                self.prescribed_turn[row] = pose.angular_acceleration
 
     def _spin_of_hinged(self, momentum: np.ndarray) -> np.ndarray:
         return np.einsum("nd,nd->n", self.axis[self.hinged], momentum[self.hinged]) / self.about

@@ -22,6 +22,9 @@ FAR_LARGER, LARGER = 300.0, 30.0
 """Times the rest of a scene: a mesh so large is refused, and asked about.  Millimetres taken for metres make
 it a thousand times too large."""
 
+MANY_SITES = 10**9
+"""Of a lattice, whose visit takes seconds: above that a mesh that would be asked about is refused."""
+
 MISFIT = 0.05
 """Part of a mesh's volume by which that of its sites may differ without a warning."""
 
@@ -87,9 +90,10 @@ def sites_in(scene: "Scene", one: Drawn) -> int:
 def size_faults(scene: "Scene") -> Iterator[str]:
     """Meshes in another unit than that of the scene, before its sites are visited."""
     rest = _rest(scene)
+    most = LARGER if math.prod(scene.lattice.counts) > MANY_SITES else FAR_LARGER
     for one in scene.meshes:
         times = max(one.surface.size) / rest if rest else 0.0
-        if times > FAR_LARGER:
+        if times > most:
             yield (
                 f"{one.key}: {one.mesh.file} is {one.size} in size, {times:.3g} times the rest of the scene; "
                 f"lengths are in m: was the file in mm? Then give scale = {one.mesh.scale / 1000:g}"

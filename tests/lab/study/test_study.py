@@ -17,7 +17,7 @@ from psph.lab.errors import StudyError
 from psph.lab.study import runs
 from psph.lab.study.answer import fitting
 from psph.lab.study.effects import effects_words, without_each
-from psph.lab.study.judge import Judge, known_values, series_errors
+from psph.lab.study.judge import Judge, known_values, series_errors, value_at
 from psph.lab.study.page import main as on_page
 from psph.lab.study.prediction import predicted
 from psph.lab.study.study import Study, pareto
@@ -527,3 +527,13 @@ def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
 def test_rows_of_a_probe_without_fluid_in_reach_are_left_out():
     table = {"time": np.arange(4.0), "P1.pressure": np.array([np.nan, 5.0, np.nan, 7.0])}
     assert [x.tolist() for x in known_values(table, "P1.pressure")] == [[1.0, 3.0], [5.0, 7.0]]
+
+
+def test_no_value_is_carried_from_wet_rows_to_dry_ones():
+    none = np.nan
+    table = {"time": np.arange(6.0), "V.velocity_x": np.array([none, 5.0, 7.0, none, 1.0, 3.0])}
+    at = np.array([-0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5])
+    told = [none, none, none, 5.0, 6.0, 7.0, none, none, none, 1.0, 2.0, 3.0, none]
+    assert value_at(at, table, "V.velocity_x") == pytest.approx(told, nan_ok=True)
+    table["V.velocity_x"][:] = none
+    assert np.isnan(value_at(at, table, "V.velocity_x")).all()

@@ -7,6 +7,7 @@ import pytest
 
 from psph.physics.rigid.bodies import Bodies, Body
 from psph.physics.rigid.lines import Line, longest_step, pulls
+from psph.physics.rigid.pose import Pose
 
 FREE, FIXED = (True,) * 3, (False,) * 3
 BRICK = (2.0, 0.1, -0.2, 0.1, 3.0, 0.15, -0.2, 0.15, 4.5)
@@ -139,3 +140,37 @@ def test_what_is_not_free_stays():
     bodies = moved(Bodies([guided], (1.0, 2.0, 3.0)), 1e-2, 100)
     assert bodies.place[0] == pytest.approx([1.0, -2.0 + 1.0 + 1.0, 0.5])
     assert np.array_equal(bodies.turn[0], np.eye(3)) and not bodies.spin.any()
+
+
+class Swaying:
+    """x = 0.2 sin 3t, turned by t² about z, through the reference point of the body below."""
+
+    def pose(self, time):
+        x, v, a = 0.2 * math.sin(3 * time), 0.6 * math.cos(3 * time), -1.8 * math.sin(3 * time)
+        c, s = math.cos(time**2), math.sin(time**2)
+        centre = (1.0, -2.0, 0.5)
+        return Pose(
+            centre,
+            (1.0 + x, -2.0, 0.5),
+            (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0),
+            (v, 0.0, 0.0),
+            (0.0, 0.0, 2 * time),
+            (a, 0.0, 0.0),
+            (0.0, 0.0, 2.0),
+        )
+
+
+def test_what_is_prescribed_has_the_acceleration_of_its_motion():
+    told = Bodies([body(slides=(False, True, False), turns=FIXED, motion=Swaying())], (5.0, -6.0, 7.0))
+    told = moved(told, 1e-3, 700)
+    assert told.acceleration[0] == pytest.approx([-1.8 * math.sin(2.1), -6.0, 0.0], abs=1e-12)
+    assert told.angular_acceleration[0] == pytest.approx([0.0, 0.0, 2.0], abs=1e-12)
+    resumed = Bodies(told.bodies, (5.0, -6.0, 7.0))
+    resumed.restore(told.state())
+    assert np.array_equal(resumed.acceleration, told.acceleration)
+
+
+def test_a_held_body_has_no_acceleration_until_its_release():
+    held = Bodies([body(held=0.5, spin=(0.0, 1.0, 2.0))], (1.0, -9.8, 2.0))
+    assert not moved(held, 1e-2, 40).acceleration.any() and not held.angular_acceleration.any()
+    assert moved(Bodies(held.bodies, (1.0, -9.8, 2.0)), 1e-2, 60).acceleration[0, 1] == -9.8
