@@ -132,10 +132,19 @@ class Guards:
         places = self.simulation.domain.inside(store.shown("position")[hidden])
         deep = np.zeros(len(places), bool)
         for solid, row in self.solids:
-            then = places if row is None else self.simulation.engine.poses.taken_back(row, places)
-            deep |= solid.deep(then, self.bounds.depth)
+            then, once = self._taken_back(row, places)
+            deep |= solid.deep(then, self.bounds.depth, once)
         hidden[hidden] = deep
         return hidden
+
+    def _taken_back(self, row: int | None, places: np.ndarray) -> tuple[np.ndarray, frozenset[int]]:
+        """Where points (n, dim) were before the motion ``row``, m, and the axes along which the periods of
+        the domain do not hold there."""
+        if row is None:
+            return places, frozenset()
+        poses = self.simulation.engine.poses
+        beside = poses.beside(row, places, self.simulation.domain.periods)
+        return poses.taken_back(row, beside), poses.turned(row)
 
     def _gain(self) -> float:
         """Energy won since the start, in the unit of its bound."""

@@ -1,5 +1,6 @@
 """The region without fluid: behind the face of a wall, and beyond a side that walls close."""
 
+from collections.abc import Container
 from functools import cached_property
 
 import numpy as np
@@ -26,17 +27,18 @@ class Solid:
         for number, one in enumerate(scene.species):
             self._still[number] = one.motion == motion and type(one.motion) is type(motion)
 
-    def deep(self, position: np.ndarray, depth: float) -> np.ndarray:
+    def deep(self, position: np.ndarray, depth: float, once: Container[int] = frozenset()) -> np.ndarray:
         """True where a point of ``position`` (n, dim) lies ``depth`` spacings behind every face.
 
-        A point that is inside, and so are the points so far away along each axis, both ways.
+        A point that is inside, and so are the points so far away along each axis, both ways.  Along the
+        axes ``once`` periods do not count: points there are taken where they are.
         """
         found = np.zeros(len(position), bool)
         if not self._still.any():
             return found
         for first in range(0, len(position), AT_ONCE):
             part = position[first : first + AT_ONCE]
-            found[first : first + AT_ONCE] = self._deep(part, depth * self.scene.spacing)
+            found[first : first + AT_ONCE] = self._deep(part, depth * self.scene.spacing, once)
         return found
 
     @cached_property
@@ -47,21 +49,22 @@ class Solid:
             for d, period in enumerate(self.scene.periods)
         )
 
-    def _deep(self, position: np.ndarray, depth: float) -> np.ndarray:
-        found = self._inside(position)
+    def _deep(self, position: np.ndarray, depth: float, once: Container[int]) -> np.ndarray:
+        found = self._inside(position, once)
         near = position[found]  # few: the rest is far from any wall's inside
         held = np.ones(len(near), bool)
         for d in range(self.scene.dimensions):
             for away in (-depth, depth):
                 beside = near.copy()
                 beside[:, d] += away
-                held &= self._inside(beside)
+                held &= self._inside(beside, once)
         found[found] = held
         return found
 
-    def _inside(self, position: np.ndarray) -> np.ndarray:
+    def _inside(self, position: np.ndarray, once: Container[int]) -> np.ndarray:
         """True at points (n, dim) in a wall, or beyond a side that walls close."""
-        grid = [self.scene.folded(d, x.copy()) for d, x in enumerate(position.T)]  # unit stride
+        grid = [x.copy() for x in position.T]  # unit stride
+        grid = [x if d in once else self.scene.folded(d, x) for d, x in enumerate(grid)]
         found = self._still[self.layout.held(grid, grid[0].shape)]
         low = [x < least for x, least in zip(grid, self.lattice.lower)]
         high = [x > most for x, most in zip(grid, self.lattice.upper)]

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
 from psph.scene.bodies import body_step, density_ratio
+from psph.scene.lattice import TOLERANCE
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -31,6 +32,28 @@ def body_faults(scene: "Scene") -> Iterator[str]:
                 yield (
                     f"bodies.{name}.free: {', '.join(leaving)} would take it off the mirror at "
                     f"{AXES[plane.axis]} = {plane.at:g} m, which it touches; leave them out of free"
+                )
+
+
+def period_faults(scene: "Scene") -> Iterator[str]:
+    """A line for each body that turns and reaches half a period, or more, from the point it turns about.
+
+    The arms of its torque are those of the nearest images, which are others there.  Turns about the axis
+    that repeats ask for no arm along it.
+    """
+    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
+        for d, period in enumerate(scene.periods):
+            if period is None or not any(free for axis, free in enumerate(one.turns) if axis != d):
+                continue
+            ends = scene.census.lowest[number, d], scene.census.highest[number, d]
+            far = max(abs(end - one.reference[d]) for end in ends) + 0.5 * scene.spacing
+            if far > 0.5 * period - TOLERANCE * scene.spacing:
+                point = "centre" if one.pivot is None else "pivot"
+                yield (
+                    f"bodies.{one.name}: it reaches {far:.4g} m from the {point} that it turns about along "
+                    f"{AXES[d]}, half of the period of {period:g} m or more; bodies must not cross the seam "
+                    "at the start, move space.lower and space.upper; or move the pivot, or make the domain "
+                    "longer"
                 )
 
 

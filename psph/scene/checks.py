@@ -12,7 +12,7 @@ from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
-from psph.scene.body_checks import body_faults, body_warnings
+from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.driven import driven_flow
 from psph.scene.gauging import buried, left_behind, misplaced, shown
 from psph.scene.lattice import TOLERANCE
@@ -65,7 +65,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *body_faults(scene),
         *_exact_faults(scene),
     ]
-    places = places or [*solid_faults(scene), *motion_faults(scene)]
+    places = places or [*period_faults(scene), *solid_faults(scene), *motion_faults(scene)]
     for line in places or _state_faults(scene):  # an empty shape has no pressure
         yield f"{scene.case.file}: {line}"
 

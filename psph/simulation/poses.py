@@ -8,6 +8,9 @@ import numpy as np
 from psph.physics.motion import is_rigid
 from psph.physics.rigid.pose import PLACE, VELOCITY, ZERO, in_space, inertia, maps
 
+UPRIGHT = 1e-12
+"""By how much a cosine of a turn may differ from one in what is not turned: angles of 1e-6 rad."""
+
 
 class Poses:
     """One row for each rigid motion of a scene, the same on every rank without any message.
@@ -66,6 +69,22 @@ class Poses:
         strayed, gained = x - x_0 - v_0 * dt, v - v_0
         most = max(2.0 * _longest(strayed) / dt, _longest(gained)) / dt
         return float(most)
+
+    def beside(self, row: int, position: np.ndarray, periods: Sequence[float | None]) -> np.ndarray:
+        """Of points at ``position`` (n, dim) the periodic images, m, nearest to the middle of all that moves
+        by a row, which is not taken back into the domain when it leaves it."""
+        place, middle = self.maps[row, PLACE], self._corners[row].mean(axis=0)
+        nearest = position.copy()
+        for d, period in enumerate(periods):
+            if period is not None:
+                now = place[d, 0] + sum(place[d, 1 + e] * middle[e] for e in range(self._dimensions))
+                nearest[:, d] -= period * np.rint((nearest[:, d] - now) / period)
+        return nearest
+
+    def turned(self, row: int) -> frozenset[int]:
+        """The axes that the turn of a row mixes with others: along these, what moves repeats no more."""
+        place = self.maps[row, PLACE]
+        return frozenset(d for d in range(self._dimensions) if place[d, 1 + d] < 1.0 - UPRIGHT)
 
     def taken_back(self, row: int, position: np.ndarray) -> np.ndarray:
         """Where points at ``position`` (n, dim) were at the start if they moved by a row, m."""

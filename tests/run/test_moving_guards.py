@@ -7,6 +7,7 @@ from guests.test_guests import begin
 from long import LONG
 
 from psph.case import load
+from psph.physics.rigid.pose import rotation
 from psph.run.guards import Guards
 from psph.scene import Scene
 
@@ -101,3 +102,39 @@ def test_walls_that_bear_nothing_have_no_books(tmp_path):
     still = POOL.partition("motion")[0]
     simulation, guards = watched(tmp_path, still)
     assert guards._books and "work" not in simulation.store
+
+
+SEAM = """
+space = { dimensions = 2, spacing = 0.02, periodic = ["x"], lower = [0.0, -0.06], upper = [1.0, 0.6] }
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+walls.bed.shape.box = { lower = [0.0, -0.06], upper = [1.0, 0.0] }
+fluids.water = { shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.4] }, velocity = [0.5, 0.0] }
+[bodies.box]
+shape.box = { lower = [0.7, 0.24], upper = [0.9, 0.44] }
+density = 500.0
+velocity = [0.5, 0.0]
+spin = 1.0
+"""
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.234, 1.0])
+@pytest.mark.parametrize("way", [0.0, 0.117, 0.35, 2.3])
+def test_behind_a_body_at_the_seam_is_what_it_holds_there(way, angle, tmp_path):
+    simulation, guards = watched(tmp_path, SEAM)
+    poses, store = simulation.engine.poses, simulation.store
+    turn = rotation((0.0, 0.0, 1.0), angle)
+    poses.floating.bodies.place[0, 0] += way
+    poses.floating.bodies.turn[0] = np.reshape(turn, (3, 3))
+    poses.turn_to(0.0)
+    fluid = np.flatnonzero(store.shown("kind") == 0)
+    points = np.random.default_rng(3).uniform((0.0, 0.01), (1.0, 0.6), (len(fluid), 2))
+    for d in range(2):
+        store["position"][d][store.low + fluid] = points[:, d]
+    away = points - (0.8 + way, 0.34)
+    away[:, 0] -= np.rint(away[:, 0])
+    own = np.abs(away @ np.reshape(turn, (3, 3))[:2, :2]).max(axis=1)
+    found = guards._hidden()[fluid]
+    # Beside the body nothing is behind its face; a depth inside of it, all is: within a lattice's tolerance.
+    assert np.count_nonzero(own < 0.078) > 10
+    assert not found[own > 0.082].any() and found[own < 0.078].all()

@@ -332,6 +332,55 @@ def test_bodies_that_cannot_be_are_refused(tmp_path, overrides, says):
     assert len(lines) == 1 and says in lines[0]
 
 
+ROUND = ("space.periodic=['x']", "space.lower=[0.0,-0.15]", "space.upper=[1.0,0.8]")
+PLANK = (*ROUND, "walls={bed={shape={box={lower=[0.0,-0.15],upper=[1.0,0.0]}}}}", "bodies.brick.mass=1.0")
+SEAM = "bodies.brick.shape={union=[{box={lower=[0.0,0.5],upper=[0.1,0.7]}},{box={lower=[0.9,0.5],upper=[1.0,0.7]}}]}"
+LONG_ONE = "bodies.brick.shape={box={lower=[0.2,0.5],upper=[0.75,0.7]}}"
+
+
+@pytest.mark.parametrize(
+    ("overrides", "says"),
+    [
+        ((SEAM,), "reaches 0.5 m from the centre that it turns about along x, half of the period of 1 m"),
+        ((LONG_ONE, "bodies.brick.pivot=[0.2,0.6]"), "reaches 0.55 m from the pivot that it turns about"),
+        ((LONG_ONE,), None),
+        ((LONG_ONE, "bodies.brick.pivot=[0.3,0.6]"), None),
+        ((SEAM, "bodies.brick.free=['x','y']"), None),
+    ],
+)
+def test_bodies_that_turn_reach_less_than_half_a_period(tmp_path, overrides, says):
+    case = draft(tmp_path, POOL.format(dx=0.05), *PLANK, *overrides)
+    try:
+        lines = check(Scene(case))
+    except CaseError as error:
+        lines = error.lines
+    found = [line for line in lines if "period of" in line]
+    assert len(found) == (says is not None) and all(says in line for line in found), lines
+
+
+def test_the_moment_on_a_body_has_no_jump_at_the_seam(tmp_path):
+    """A box beyond the seam by half: its moment about a point is that of the whole box."""
+    text = STIRRED + '[gauges.push.force]\non = ["other"]\nabout = [0.4, 0.1]\n'
+    simulation, bodies, scene = started(draft(tmp_path, text))
+    store, poses = simulation.store, simulation.engine.poses
+    group = list(scene.species).index(next(one for one in scene.species if one.name == "other"))
+    own = np.flatnonzero(store.shown("group") == group)
+    anchors, load = store.shown("anchor")[own], np.random.default_rng(5).normal(size=(len(own), 2))
+    row = [one.name for one in bodies.bodies].index("other")
+    for way in (0.0, 0.075, 1.3):
+        bodies.place[row, 0] = bodies.reference[row, 0] + way
+        poses.turn_to(0.0)
+        x = anchors + [way, 0.0]
+        for d in range(2):
+            store["position"][d][store.low + own] = simulation.domain.inside(x)[:, d]
+            store["load"][d][store.low + own] = load[:, d]
+        assert way == 0.0 or (store.shown("position")[own, 0] < 0.5).any()
+        force = store.shown("mass")[own, None] * load
+        wanted = ((x[:, 0] - 0.4) * force[:, 1] - (x[:, 1] - 0.1) * force[:, 0]).sum()
+        [gauge] = gauges_of(scene).values()
+        assert gauge.row(simulation)[2] == pytest.approx(wanted, rel=1e-9)
+
+
 def test_a_byte_counts_all_parts(tmp_path):
     few = "bodies.brick.mass=1.0"
     walls = (f"walls.w{n}.shape.box={{lower=[{n}.0,-1.0],upper=[{n}.5,-0.5]}}" for n in range(98))

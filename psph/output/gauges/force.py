@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.parallel.reductions import exact_sums
+from psph.physics.motion import RIGID
 
 
 class ForceGauge(NamedTuple):
@@ -13,7 +14,8 @@ class ForceGauge(NamedTuple):
 
     F = Σ_w m_w a_w and T = Σ_w (x_w − X) × m_w a_w over their particles, with the accelerations a_w by
     their neighbours in the fluid alone, without gravity: what the fluid feels of these particles,
-    turned round.  X is ``about``, m (dim,).  N and N m; per metre of depth in 2D.
+    turned round.  X is ``about``, m (dim,).  N and N m; per metre of depth in 2D.  Where a domain repeats,
+    what moves as a whole is where its way has led it, also beyond the domain: moments have no jump there.
     """
 
     name: str
@@ -31,8 +33,19 @@ class ForceGauge(NamedTuple):
         store = simulation.store
         held = np.isin(store.shown("group"), self.groups)
         force = store.shown("mass")[held, None] * store.shown("load")[held]
-        arm = simulation.domain.inside(store.shown("position")[held]) - np.array(self.about)
+        arm = self._places(simulation, held) - np.array(self.about)
         return exact_sums(simulation.comm, np.column_stack([force, *moments(arm, force)]))
+
+    def _places(self, simulation, held: np.ndarray) -> np.ndarray:
+        """Where the particles ``held`` are, m (n, dim): those that move as one beside each other."""
+        store, domain = simulation.store, simulation.domain
+        places = domain.inside(store.shown("position")[held])
+        groups, plan = store.shown("group")[held], simulation.plan
+        rigid = plan.motion_of[groups] == RIGID
+        for row in np.unique(plan.pose_of[groups[rigid]]):
+            own = rigid & (plan.pose_of[groups] == row)
+            places[own] = simulation.engine.poses.beside(row, places[own], domain.periods)
+        return places
 
 
 def turns(dimensions: int) -> str:
