@@ -13,6 +13,7 @@ from psph.output.errors import OutputError
 from psph.parallel.reductions import largest, wrapped_sums
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import is_prescribed
+from psph.physics.rigid.bodies import Body
 from psph.run.advice import advice
 from psph.run.post_mortem import write_post_mortem
 from psph.run.record import Record
@@ -72,7 +73,7 @@ class Guards:
             self._warn(guard)
 
     def summary(self) -> Iterator[str]:
-        """A line for each guard that had something to say, and how often; and of fluid that has left."""
+        """A line for each guard that had something to say, and how often; and of what has left the walls."""
         for guard, times in self.seen.items():
             yield f"guards.{guard} was exceeded in {times:,} of the steps that were checked"
         [count] = wrapped_sums(self.simulation.comm, [np.count_nonzero(self._gone())])
@@ -81,6 +82,25 @@ class Guards:
                 f"{count:,} fluid particles have left the walls, over a rim or through a gap: they are "
                 "a spacing or more below or beside them"
             )
+
+        yield from self._bodies_gone()
+
+    def _bodies_gone(self) -> Iterator[str]:
+        """A line for each body that is beyond the scene's walls in whole, but not above."""
+        scene, plan = self.scene, self.simulation.plan
+        if not plan.floats or not scene.walls:
+            return
+        lower, upper = self._around
+        poses = self.simulation.engine.poses
+        lowest, highest = poses.around
+        down, up = np.array(scene.gravity) <= 0.0, np.array(scene.gravity) >= 0.0
+        for row in poses.floating.rows:
+            below = down & (highest[row] < lower - scene.spacing)
+            if (below | up & (lowest[row] > upper + scene.spacing)).any():
+                yield (
+                    f"bodies.{plan.rigid[row].name} has left the walls, over a rim or through a gap: it is "
+                    "a spacing or more below or beside them"
+                )
 
     def _gone(self) -> np.ndarray:
         """True for each fluid particle of this rank that is beyond the scene's walls, but not above."""
@@ -103,8 +123,9 @@ class Guards:
         scene = self.scene
         lower, upper = np.array(scene.lattice.lower), np.array(scene.lattice.upper)
         if self.simulation.plan.rigid:
-            now = self.simulation.engine.poses.around
-            lower, upper = np.minimum(lower, now[0]), np.maximum(upper, now[1])
+            told = [not isinstance(one, Body) for one in self.simulation.plan.rigid]
+            for low, up in zip(*(ends[told] for ends in self.simulation.engine.poses.around)):
+                lower, upper = np.minimum(lower, low), np.maximum(upper, up)
         for plane in scene.mirror_planes:
             (lower if plane.side == BELOW else upper)[plane.axis] = plane.at
         repeats = [period is not None for period in scene.periods]

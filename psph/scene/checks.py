@@ -27,7 +27,7 @@ from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.unbearing import unbearing_warnings
 from psph.scene.units import in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
-from psph.scene.waving import wave_warnings
+from psph.scene.waving import wave_faults, wave_warnings
 
 SLABS_IN_A_PERIOD = 3
 """A periodic axis must hold that many cut-off radii: then no particle meets another twice, and all
@@ -65,7 +65,8 @@ def faults(scene: Scene) -> Iterator[str]:
         *body_faults(scene),
         *_exact_faults(scene),
     ]
-    places = places or [*period_faults(scene), *solid_faults(scene), *motion_faults(scene)]
+    told = [*period_faults(scene), *solid_faults(scene), *motion_faults(scene), *wave_faults(scene)]
+    places = places or told
     for line in places or _state_faults(scene):  # an empty shape has no pressure
         yield f"{scene.case.file}: {line}"
 

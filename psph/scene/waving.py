@@ -91,6 +91,25 @@ def _absorption_lines(scene, asked: Any) -> Iterator[str]:
     yield f"              at most {told.reach:.3g} m from its stroke; forgets a level in {told.memory:.3g} s"
 
 
+def wave_faults(scene) -> Iterator[str]:
+    """Flaps whose two places of the hinge disagree: by its height over the bed, and by its coordinates.
+
+    The bed lies at the foot of the fluids, or the depth below their surface.
+    """
+    for waves in waves_of(scene) if scene.case.fluids else ():
+        asked = waves.asked
+        if not isinstance(asked, OnHinge) or asked.center is None:
+            continue
+        low, high = _water(scene)
+        beds = (float(low[-1]), float(high[-1]) - asked.depth)
+        over = [asked.center[-1] - bed for bed in beds]
+        if min(abs(asked.hinge - one) for one in over) > scene.spacing * (1.0 + 1e-9):
+            yield (
+                f"{waves.key}: hinge = {asked.hinge:g} m over the bed, and center is {over[0]:.3g} m over "
+                f"the foot of the water; give hinge = {over[0]:.3g}, or another center"
+            )
+
+
 def wave_warnings(scene) -> Iterator[str]:
     """What of the waves may not be meant so."""
     for waves in waves_of(scene):

@@ -94,9 +94,9 @@ class Poses:
 
     @property
     def around(self) -> tuple[np.ndarray, np.ndarray]:
-        """The corners of a box around all particles of all rows as they stand now, m."""
+        """The corners of boxes around the particles of each row as they stand now, m (rows, dim)."""
         places = self._at_corners()[0]
-        return places.min(axis=(0, 1)), places.max(axis=(0, 1))
+        return places.min(axis=1), places.max(axis=1)
 
     def state(self) -> dict:
         """What the next steps rest on beside the time: of bodies and of paddles that answer to the water."""

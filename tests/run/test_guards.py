@@ -276,7 +276,7 @@ def leaving(folder, *sets):
     path = folder / "leaking.toml"
     path.write_text(LEAKING, encoding="utf-8")
     _, said = started(load(path, sets), folder / "run", COMM)
-    return [line for line in said if "have left the walls" in line]
+    return [line for line in said if "left the walls" in line]
 
 
 def test_what_falls_out_of_a_scene_is_counted_at_its_end(tmp_path):
@@ -285,6 +285,16 @@ def test_what_falls_out_of_a_scene_is_counted_at_its_end(tmp_path):
     x, y = frame["position"][frame["kind"] == 0].T
     gone = (y < -0.15 - 0.025) | (x < -0.15 - 0.025) | (x > 0.6 + 0.025)
     assert int(line.split()[0]) == pytest.approx(gone.sum(), abs=1) and gone.sum() > 5
+
+
+def test_a_body_that_falls_beside_the_walls_is_told_of_at_the_end(tmp_path):
+    heavy = ("bodies.stone.shape.box={lower=[0.8,-0.1],upper=[1.0,0.1]}", "bodies.stone.density=2000.0")
+    lines = leaving(tmp_path, *heavy, "time.end=0.3")
+    assert [line.split(":")[0] for line in lines if "bodies.stone" in line] == [
+        "bodies.stone has left the walls, over a rim or through a gap"
+    ]
+    rests = ("bodies.stone.shape.box={lower=[0.35,0.0],upper=[0.55,0.2]}", heavy[1], "time.end=0.1")
+    assert not any("bodies" in line for line in leaving(tmp_path, *rests))
 
 
 def test_what_flows_to_a_mirror_has_not_left(tmp_path):

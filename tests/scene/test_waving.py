@@ -3,6 +3,7 @@
 import pytest
 from drafts import draft, refusal
 
+from psph.case import CaseError
 from psph.scene import Scene, check
 from psph.scene.waving import wave_lines, wave_warnings
 
@@ -96,6 +97,17 @@ def test_refusals(name, tmp_path):
 
 def scene_of(motion, tmp_path):
     return Scene(draft(tmp_path, told(motion)))
+
+
+def test_a_hinge_in_two_places_is_refused(tmp_path):
+    """The water's foot is at 0: a center at 0.1 is a hinge at 0.1, which the shape of the stroke rests on."""
+    high = FLAP.replace("center = [0.0, 0.0]", "center = [0.0, 0.1]")
+    with pytest.raises(CaseError) as refused:
+        check(scene_of(f"{{ flap = {{ {high} }} }}", tmp_path))
+    [line] = refused.value.lines
+    assert "motion.flap: hinge = 0 m over the bed, and center is 0.1 m over the foot of the water" in line
+    check(scene_of(f"{{ flap = {{ {high}, hinge = 0.1 }} }}", tmp_path))
+    check(scene_of(f"{{ flap = {{ {FLAP} }} }}", tmp_path))
 
 
 def test_explain_says_what_the_paddle_makes(tmp_path):

@@ -87,8 +87,8 @@ class Bodies:
     (n, 3), are of the reference points (:class:`Body`), ``turn`` (n, 3, 3) leads from the start to now,
     ``frame`` has the principal axes of those that turn freely.  ``ahead`` and ``spin_ahead`` are
     velocity and angular velocity as they will be at the end of the step if the force stays; ``loose`` (n, 1)
-    is 0 for a body that is held, which shows no velocity and no acceleration, else 1; ``prescribed``, m/s², and
-    ``prescribed_turn``, rad/s² (n, 3), are the accelerations of what is prescribed.
+    is 0 for a body that is held, which shows no velocity and no acceleration, else 1; ``prescribed``, m/s²,
+    and ``prescribed_turn``, rad/s² (n, 3), are the accelerations of what is prescribed.
     """
 
     def __init__(self, bodies: Sequence[Body], gravity: Sequence[float]):
