@@ -8,21 +8,21 @@ from pydantic import ValidationError
 
 from psph.case.shapes import Shape
 from psph.fields import WALL
+from psph.output.pictures.groups import first_body, solids_of
 from psph.output.pictures.view import box_around
 from psph.output.pictures.walls import Triangles, encloses, inwards, surface
 from psph.output.pictures.water import fluid_surface
-from psph.physics.walls.conditions import MIRROR
 
-SOLIDS = ("walls", "bodies")
-"""Tables of a case whose shapes are drawn as surfaces, in the order in which ``group`` counts them."""
 BENT = 0.2
 """Spacings by which particles may miss a motion without deformation."""
 
 
 class Body:
-    """A wall of ``group``: its ``faces`` (n, 3, 3), m, in the frame ``start``; ``around`` the fluid?"""
+    """A wall of ``group``, or a body that is ``rigid``: its ``faces`` (n, 3, 3), m, in the frame ``start``;
+    ``around`` the fluid?"""
 
-    def __init__(self, group: int, faces: Triangles, around: bool, start: dict, spacing: float):
+    def __init__(self, group: int, faces: Triangles, around: bool, rigid: bool, start: dict, spacing: float):
+        self.rigid = rigid
         self.group, self.faces, self.around, self.spacing = group, faces, around, spacing
         self._ids, self._rest = self._particles(start)
 
@@ -75,8 +75,7 @@ def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator
     )
     wet = start["kind"] != WALL
     inner = box_around(start["position"][wet])
-    solids = [one for table in SOLIDS for one in case.get(table, {}).values()]
-    held = [_shape(one["shape"], folder) for one in solids if one.get("condition") != MIRROR]
+    held = [_shape(one["shape"], folder) for one in solids_of(case)]
     known = {group: shape for group, shape in enumerate(held, len(case.get("fluids", ()))) if shape}
     for group in sorted(known.keys() | set(start["group"][~wet].tolist())):
         if shape := known.get(group):
@@ -84,7 +83,7 @@ def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator
             faces = inwards(faces, shape) if around else faces
         else:
             faces, around = hull(start["position"][start["group"] == group], spacing), False
-        yield Body(group, faces, around, start, spacing)
+        yield Body(group, faces, around, group >= first_body(case), start, spacing)
 
 
 def _shape(table: dict, folder: Path) -> Shape | None:

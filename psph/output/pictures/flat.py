@@ -43,11 +43,18 @@ def slice_of(text: str) -> Slice:
 class Flat:
     """The particles of a room in a plane; of a room in 3D those within half a spacing of ``cut``.
 
-    ``mirrors`` (axis and place, m) are lines.  Raises NotThere if the room does not reach there.
+    ``mirrors`` (axis and place, m) are lines.  Particles of the group ``first_body`` and later are of rigid
+    bodies; None: there are none.  Raises NotThere if the room does not reach there.
     """
 
-    def __init__(self, room: Room, cut: Slice | None = None, mirrors: Sequence[tuple[int, float]] = ()):
-        self.room, self.cut, self.mirrors = room, cut, mirrors
+    def __init__(
+        self,
+        room: Room,
+        cut: Slice | None = None,
+        mirrors: Sequence[tuple[int, float]] = (),
+        first_body: int | None = None,
+    ):
+        self.room, self.cut, self.mirrors, self.first_body = room, cut, mirrors, first_body
         self.variant, self.remark = "", ""
         level = room.level
         if cut is not None:
@@ -91,7 +98,11 @@ class Flat:
             axes.set_ylim(*_padded(scale.norm.vmin, scale.norm.vmax))
         else:
             places = frame["position"][:, [self.across, self.up]]
-            circles(axes, places[~fluid], spacing, facecolors=style.WALLS)
+            rigid = np.zeros(len(fluid), bool)
+            if self.first_body is not None:
+                rigid = ~fluid & (frame["group"] >= self.first_body)
+                circles(axes, places[rigid], spacing, facecolors=style.BODIES)
+            circles(axes, places[~fluid & ~rigid], spacing, facecolors=style.WALLS)
             drawn = circles(axes, places[fluid], spacing, norm=scale.norm, cmap=scale.colours)
             drawn.set_array(values[fluid])
             axes.set_ylim(self.lower[1], self.upper[1])

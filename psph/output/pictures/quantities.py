@@ -22,7 +22,8 @@ class Quantity(NamedTuple):
     """Something to colour by: ``values`` (n,) in ``unit`` of a frame that holds the fields ``reads``.
 
     ``name`` stands in the names of files.  ``signed``: its sign matters as much as its size: zero is in the
-    middle of its colours.  ``names`` has those of the fluids where it counts them.
+    middle of its colours.  ``names`` has those of the fluids where it counts them, ``bodies``
+    those of the rigid bodies, which share a colour.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Quantity(NamedTuple):
     values: Callable[[dict], np.ndarray]
     signed: bool = False
     names: tuple[str, ...] = ()
+    bodies: tuple[str, ...] = ()
     samples: int = SAMPLES
 
 
@@ -50,6 +52,7 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
                 (GROUP,),
                 _size_of(GROUP),
                 names=(*case.get("fluids", ()), *case.get("solids", ())),
+                bodies=tuple(case.get("bodies", ())),
             )
     saved = run.fields
     if field not in saved:

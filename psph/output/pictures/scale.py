@@ -26,7 +26,8 @@ LETTER = 0.085
 
 
 class Scale(NamedTuple):
-    """What colours mean; numbers are multiplied by ``factor``.  With ``names`` they count those."""
+    """What colours mean; numbers are multiplied by ``factor``.  With ``names`` they count those; ``others``:
+    names and colours of what stands beside them."""
 
     title: str
     norm: Normalize
@@ -35,6 +36,7 @@ class Scale(NamedTuple):
     factor: float
     unit: str
     names: tuple[str, ...] = ()
+    others: tuple[tuple[str, str], ...] = ()
 
     @property
     def label(self) -> str:
@@ -44,7 +46,10 @@ class Scale(NamedTuple):
     @property
     def width(self) -> float:
         """Of the key with what it says, inches."""
-        return max(style.RIGHT, 0.6 + LETTER * max(map(len, self.names), default=0))
+        return max(
+            style.RIGHT,
+            0.6 + LETTER * max(map(len, (*self.names, *(name for name, _ in self.others))), default=0),
+        )
 
     def rgb(self, values: np.ndarray) -> np.ndarray:
         """Colours (n, 3), whole numbers to 255, of values (n,) in the quantity's own unit."""
@@ -55,6 +60,7 @@ class Scale(NamedTuple):
         if self.names:
             axes.set_axis_off()
             patches = [Patch(color=self.colours(k), label=name) for k, name in enumerate(self.names)]
+            patches += [Patch(color=colour, label=name) for name, colour in self.others]
             place = {"loc": "upper left", "bbox_to_anchor": (0, 1), "borderpad": 0}
             axes.legend(handles=patches, handlelength=1.0, handleheight=1.0, **place)
             return
@@ -99,4 +105,6 @@ def _named(quantity: Quantity) -> Scale:
     count = len(quantity.names)
     colours = ListedColormap([style.LINES[k % len(style.LINES)] for k in range(count)])
     norm = Normalize(-0.5, count - 0.5)
-    return Scale(quantity.title, norm, colours, "neither", 1.0, "", quantity.names)
+    called = "bodies" if len(quantity.bodies) > 1 else "".join(quantity.bodies)
+    others = ((called, style.BODIES),) if called else ()
+    return Scale(quantity.title, norm, colours, "neither", 1.0, "", quantity.names, others)

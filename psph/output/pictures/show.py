@@ -14,6 +14,7 @@ from psph.fields import WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
+from psph.output.pictures.groups import first_body
 from psph.output.pictures.mirrors import mirrors_of, with_mirrors
 from psph.output.pictures.quantities import quantity
 from psph.output.pictures.scale import Scale, scale_of
@@ -73,9 +74,16 @@ class Show:
         return self.panel.of(self._whole(k))
 
     def _whole(self, k: int) -> dict:
-        reads = {"position", "kind", *self.quantity.reads, *(("group", "id") if self._solid else ())}
+        reads = {"position", "kind", *self.quantity.reads, *self._told_apart}
         frame = self.run.frame(k, *reads)
         return frame | {"values": self.quantity.values(frame)}
+
+    @property
+    def _told_apart(self) -> tuple[str, ...]:
+        """Fields that tell which wall or body a particle is of, where that is drawn."""
+        if self._solid:
+            return ("group", "id")
+        return ("group",) if "bodies" in self.case else ()
 
     def _panel_and_scale(self, cut: Slice | None, smooth: bool) -> tuple[Panel, Scale]:
         if self._solid:
@@ -88,7 +96,7 @@ class Show:
         mirrors = mirrors_of(self.case)
         room = room_of(self.case, [with_mirrors(glance.box, mirrors) for glance in glances])
         if not self._solid:
-            return Flat(room, cut, mirrors), scale
+            return Flat(room, cut, mirrors, first_body(self.case) if "bodies" in self.case else None), scale
         return solid.scene(
             self.case, self.run.folder, self._whole(0), room, [glance.groups for glance in glances], smooth
         ), scale

@@ -1,4 +1,5 @@
-"""A scene in 3D as people see it: lit particles or the surface of the fluid, walls half transparent."""
+"""A scene in 3D as people see it: lit particles or the surface of the fluid, walls half transparent, bodies
+opaque."""
 
 import ctypes
 from collections.abc import Iterable, Sequence
@@ -111,7 +112,7 @@ class Solid:
             fluid = (frame["kind"] != WALL) & self.room.holds(frame["position"])
             self._add_fluid(plotter, frame["position"][fluid], frame["values"][fluid], scale)
             for body in self.bodies:
-                self._add_body(plotter, body.at(frame), AROUND if body.around else WITHIN)
+                self._add_body(plotter, body, body.at(frame))
             self._light(plotter, camera)
             plotter.enable_ssao(radius=2 * self.room.spacing, bias=0.1 * self.room.spacing, kernel_size=32)
             plotter.camera.position = camera.eye
@@ -148,12 +149,15 @@ class Solid:
             setattr(actor.prop, name, share)
         plotter.add_actor(actor)
 
-    def _add_body(self, plotter, faces: np.ndarray, opacity: float) -> None:
+    def _add_body(self, plotter, body: Body, faces: np.ndarray) -> None:
         if not len(faces):
             return
+        colour, opacity = style.WALLS, AROUND if body.around else WITHIN
+        if body.rigid:
+            colour, opacity = style.BODIES, 1.0
         corners = faces.reshape(-1, 3)
         hull = self._pv.PolyData.from_regular_faces(corners, np.arange(len(corners)).reshape(-1, 3)).clean()
-        plotter.add_mesh(hull, color=style.WALLS, opacity=opacity, culling="back", ambient=0.4, diffuse=0.7)
+        plotter.add_mesh(hull, color=colour, opacity=opacity, culling="back", ambient=0.4, diffuse=0.7)
         edges = hull.extract_feature_edges(CREASE, manifold_edges=False, non_manifold_edges=False)
         if edges.n_points:
             plotter.add_mesh(edges, color=style.PALE, opacity=EDGE, line_width=FINER, lighting=False)

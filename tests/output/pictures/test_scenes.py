@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 
+import h5py
 import numpy as np
 import pytest
 from matplotlib.image import imread
@@ -183,3 +184,33 @@ def test_a_folder_without_a_run_is_a_mistake_in_the_command(tmp_path):
     assert job.returncode == 2 and job.stderr.count("\n") == 1
     assert "holds one file of frames (.h5), here: none" in job.stderr
     assert isinstance(pytest.raises(NotThere, Run, tmp_path).value, Refused)
+
+
+def with_body(run):
+    """The same run, whose block is a rigid body."""
+    case = run.case_text.replace("walls.block", "bodies.block")
+    with h5py.File(run.path, "r+", locking=False) as file:
+        file.attrs["case"] = case
+    return Run(run.folder)
+
+
+def brown(image):
+    """Pixels (height, width) of the hue of bodies, lit or in the shade."""
+    hue = np.array([int(style.BODIES[k : k + 2], 16) for k in (1, 3, 5)], float)
+    rgb = image[..., :3].astype(float)
+    return (rgb @ hue) / (np.linalg.norm(rgb, axis=-1) * np.linalg.norm(hue) + 1e-9) > 0.998
+
+
+@pytest.mark.parametrize("cut", [None, Slice(1, 0.35)])
+def test_bodies_have_a_colour_of_their_own_and_a_name(tank3d, cut):
+    def drawn(run):
+        figure = Show(run, [0.0], "group", cut).picture([0])
+        figure.canvas.draw()
+        [legend] = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+        page = np.asarray(figure.canvas.buffer_rgba())
+        return [text.get_text() for text in legend.get_texts()], page[:, : int(0.75 * page.shape[1])]
+
+    names, page = drawn(tank3d)
+    assert names == ["water", "a_light_crude_oil"] and brown(page).mean() < 0.001
+    names, page = drawn(with_body(tank3d))
+    assert names == ["water", "a_light_crude_oil", "block"] and brown(page).mean() > 0.005

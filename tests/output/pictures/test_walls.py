@@ -124,7 +124,7 @@ def test_a_body_that_was_bent_gets_a_surface_around_its_particles(tank3d):
 def test_what_has_no_shape_gets_a_surface_around_its_particles(tank3d, monkeypatch):
     import tomllib
 
-    monkeypatch.setattr(bodies_module, "SOLIDS", ())
+    monkeypatch.setattr(bodies_module, "solids_of", lambda case: [])
     found = list(bodies_of(tomllib.loads(tank3d.case_text), tank3d.frame(0), 0.1, tank3d.folder))
     assert [body.group for body in found] == [2, 3]
     assert all(len(body.faces) > 100 for body in found)
