@@ -57,6 +57,7 @@ STEADY = (
     "physics.gravity=[0.0,0.0]",
     "fluids.water.pressure=0.0",
     "bodies.wedge.free=[]",
+    "bodies.wedge.velocity=[0.0,0.0]",
     "bodies.wedge.motion={translation=[0.0,-2.0]}",
     "time.end=0.08",
 )

@@ -250,6 +250,7 @@ def _bodies(family: Family, rng, sizes) -> dict:
             "condition": family.condition,
         }
     found["second"]["pivot"] = middle
+    del found["second"]["velocity"]
     found["first"]["lines"] = {
         "rope": {
             "at": [sizes[0] / 3.0, *(0.5 * n for n in sizes[1:])],
