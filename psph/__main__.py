@@ -1,6 +1,7 @@
 """The command line: ``python -m psph case.toml`` runs a case, the verbs do the rest."""
 
 import os
+import signal
 import sys
 import time
 import traceback
@@ -125,6 +126,7 @@ def _plot(options, comm) -> None:
     cut = slice_of(options.cut) if options.cut else None
     shown = (options.times, options.field, cut, options.surface)
     if options.film is not None:
+        signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # what is half made goes
         print(film(options.folder, options.film if options.film.name else None, *shown))
         return
     measured = beside(options.folder)

@@ -152,12 +152,12 @@ class Solid:
     def _add_body(self, plotter, body: Body, faces: np.ndarray) -> None:
         if not len(faces):
             return
-        colour, opacity = style.WALLS, AROUND if body.around else WITHIN
-        if body.rigid:
-            colour, opacity = style.BODIES, 1.0
+        seen = {"color": style.WALLS, "opacity": AROUND if body.around else WITHIN, "culling": "back"}
+        if body.rigid:  # one that a mirror or the domain's end cuts is seen from inside too
+            seen = {"color": style.BODIES, "culling": "back" if body.around else None}
         corners = faces.reshape(-1, 3)
         hull = self._pv.PolyData.from_regular_faces(corners, np.arange(len(corners)).reshape(-1, 3)).clean()
-        plotter.add_mesh(hull, color=colour, opacity=opacity, culling="back", ambient=0.4, diffuse=0.7)
+        plotter.add_mesh(hull, ambient=0.4, diffuse=0.7, **seen)
         edges = hull.extract_feature_edges(CREASE, manifold_edges=False, non_manifold_edges=False)
         if edges.n_points:
             plotter.add_mesh(edges, color=style.PALE, opacity=EDGE, line_width=FINER, lighting=False)

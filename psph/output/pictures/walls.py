@@ -34,6 +34,7 @@ def surface(shape: Shape, spacing: float, lower: np.ndarray, upper: np.ndarray) 
     kept = []
     for part in parts:
         faces = _faces(part.form, lines, spacing)
+        faces = _cut(faces, lower, upper) if isinstance(part.form, Mesh) else faces
         middle = faces.mean(axis=1)
         off = (SIDE if isinstance(part.form, Box) else ROUND) * spacing * _normals(faces)
         before, behind = (inside(shape, (middle + way * off).T, EDGE * spacing) for way in (1, -1))
@@ -96,6 +97,21 @@ def _faces(form: Box | Ball | Cylinder | Mesh, lines: list[np.ndarray], spacing:
             return surface_of(form).sheet.corners
         case Cylinder(center=center, axis=axis, radius=radius, height=height):
             return np.concatenate(list(_barrel(center, AXES.index(axis), radius, height, lines, spacing)))
+
+
+def _cut(faces: Triangles, lower: np.ndarray, upper: np.ndarray) -> Triangles:
+    """What of ``faces`` lies in the domain from ``lower`` to ``upper`` (3,), m."""
+    from trimesh.intersections import slice_faces_plane
+
+    for axis, way in ((axis, way) for axis in range(3) for way in (1.0, -1.0)):
+        end = (lower if way > 0.0 else upper)[axis]
+        if (way * faces[..., axis] < way * end).any():
+            at, across = np.zeros(3), np.zeros(3)
+            at[axis], across[axis] = end, way
+            corners = faces.reshape(-1, 3)
+            places, kept, _ = slice_faces_plane(corners, np.arange(len(corners)).reshape(-1, 3), across, at)
+            faces = places[kept]
+    return faces[np.linalg.norm(_cross(faces), axis=1) > 0]
 
 
 def _sides(lower, upper, lines) -> Iterator[Triangles]:

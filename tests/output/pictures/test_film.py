@@ -1,10 +1,14 @@
 """Films: read back, they have the frames that were asked for."""
 
 import re
+import signal
 import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
+from jobs import clean_environment
 from PIL import Image
 
 from psph.errors import Refused
@@ -129,3 +133,19 @@ def test_the_time_left_is_told(capsys, monkeypatch):
         "filming: 3 of 4 frames, 40 s left",
         "filming: 4 of 4 frames, 0 s left",
     ]
+
+
+def test_a_film_that_is_ended_leaves_nothing(tmp_path, alone):
+    frames = FrameFile(tmp_path / "crossing.h5", alone, {"case": CASE})
+    arrays = {"kind": np.zeros(2, np.uint8), "position": np.eye(2), "pressure": np.arange(2.0)}
+    for k in range(400):
+        frames.write(k, 0.0025 * k, k, arrays)
+    command = [sys.executable, "-m", "psph", "plot", str(tmp_path), "--film"]
+    with subprocess.Popen(command, env=clean_environment(), stdout=subprocess.PIPE) as filming:
+        begun, patience = None, time.monotonic() + 60.0
+        while begun is None and filming.poll() is None and time.monotonic() < patience:
+            begun = next(tmp_path.glob(".pressure.*"), None)
+            time.sleep(0.02)
+        filming.terminate()
+    assert begun is not None and filming.returncode == 128 + signal.SIGTERM
+    assert not [path.name for path in tmp_path.iterdir() if "pressure" in path.name]

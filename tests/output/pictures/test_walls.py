@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 from psph.case.shapes import Shape
 from psph.output.pictures import bodies as bodies_module
@@ -72,6 +73,16 @@ def test_surface_ends_where_the_domain_does():
     assert faces[..., 0].min() == 0.5 and faces[..., 0].max() == 1.0
     areas = np.linalg.norm(np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]), axis=1) / 2
     assert areas.sum() == pytest.approx(6 + 2 * 0.5 * 2 + 2 * 0.5 * 3)  # no lid where it was cut
+
+
+def test_triangles_of_a_file_are_cut_where_the_domain_ends(tmp_path):
+    """A bar of two triangles on each side, as long as it: what the domain holds of them has its exact area."""
+    trimesh.creation.box(bounds=[[0, 0, 0], [3, 1, 1]]).export(tmp_path / "bar.stl")
+    shape = Shape.model_validate({"mesh": {"file": "bar.stl", "scale": 1.0}}, context=tmp_path)
+    faces = surface(shape, 0.1, np.array([0.7, -9, -9]), np.array([2.0, 0.6, 9]))
+    assert [faces[..., 0].min(), faces[..., 0].max(), faces[..., 1].max()] == pytest.approx([0.7, 2.0, 0.6])
+    areas = np.linalg.norm(np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]), axis=1) / 2
+    assert areas.sum() == pytest.approx(1.3 * 1 + 2 * 1.3 * 0.6)
 
 
 def test_the_outside_of_a_tank_is_left_out():
