@@ -57,7 +57,7 @@ def test_each_gauge_has_its_chart_and_the_experiment_beside_it(gauged):
     ]
     [one] = beside(gauged)
     level, wetted = charts.with_measured(column["wire"], "wire", [one])
-    assert not wetted.measured and np.array_equal(level.measured["wire"], [[0.0, 0.01], [0.4, 0.4]])
+    assert not wetted.measured and np.array_equal(level.measured["wire, measured"], [[0.0, 0.01], [0.4, 0.4]])
     assert one.error == pytest.approx(0.25, abs=0.02)
     assert "wire.level beside wire: 2" in one.in_words() and "% apart" in one.in_words()
 
