@@ -1,0 +1,102 @@
+"""Frames as VTK files: a ``.vtp`` each, and a ``.pvd`` that lists them with their times.
+
+XML with the numbers behind it as they are in memory ("appended raw"): Kitware, VTK File Formats,
+https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
+"""
+
+import os
+import sys
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from psph.output.export.parts import PARTS, Exported, in_space
+from psph.output.progress import told
+
+_TYPES = {"f8": "Float64", "i8": "Int64", "u1": "UInt8"}
+_HEAD = (
+    '<?xml version="1.0"?>\n<VTKFile type="{type}" version="1.0" '
+    f'byte_order="{sys.byteorder.capitalize()}Endian" header_type="UInt64">\n'
+)
+_UNIT = '<InformationKey name="UNITS_LABEL" location="vtkDataArray">{}</InformationKey>'
+
+
+def write_vtk(exported: Exported, folder: Path) -> Path:
+    """Write the chosen frames into ``folder``; the path of the ``.pvd``.
+
+    Points are the particles, each with a vertex; ``part`` tells PARTS apart; the names of the groups stand in
+    the field data, as the time does.  Numbers are those of the frames, to the bit.
+    """
+    lines = []
+    for k in told(exported.chosen, "writing", "frames"):
+        path = folder / f"{exported.stem}_{k:05d}.vtp"
+        _replace(path, _cloud(exported, k))
+        time = float(exported.times[k])
+        lines.append(f'<DataSet timestep="{time!r}" part="0" file={quoteattr(path.name)}/>\n')
+    index = folder / f"{exported.stem}.pvd"
+    listed = _HEAD.format(type="Collection") + f"<Collection>\n{''.join(lines)}</Collection>\n</VTKFile>\n"
+    _replace(index, listed.encode())
+    return index
+
+
+def _cloud(exported: Exported, k: int) -> bytes:
+    """The file of frame ``k``."""
+    frame = exported.run.frame(k)
+    position = frame.pop("position")
+    count, dimensions = position.shape
+    behind = _Behind()
+    fields = [behind.array(n, in_space(rows, dimensions), exported.units[n]) for n, rows in frame.items()]
+    fields.append(behind.array("part", exported.parts(frame["group"])))
+    rows = np.arange(count, dtype=np.int64)
+    xml = [
+        _HEAD.format(type="PolyData"),
+        "<PolyData>\n<FieldData>\n",
+        behind.array("TimeValue", exported.times[k : k + 1], "s", whole=True),
+        _texts("group_names", exported.names),
+        _texts("part_names", PARTS),
+        f'</FieldData>\n<Piece NumberOfPoints="{count}" NumberOfVerts="{count}">\n<PointData>\n',
+        *fields,
+        "</PointData>\n<Points>\n",
+        behind.array("position", in_space(position, dimensions), exported.units["position"]),
+        "</Points>\n<Verts>\n",
+        behind.array("connectivity", rows),
+        behind.array("offsets", rows + 1),
+        '</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding="raw">\n_',
+    ]
+    return "".join(xml).encode() + b"".join(behind.blocks) + b"\n</AppendedData>\n</VTKFile>\n"
+
+
+class _Behind:
+    """The numbers that stand behind the XML: each array with its length in bytes before it."""
+
+    def __init__(self):
+        self.blocks: list[bytes] = []
+        self._size = 0
+
+    def array(self, name: str, rows: np.ndarray, unit: str = "", whole: bool = False) -> str:
+        """Take ``rows`` up; the element that refers to them.  ``whole``: it says how many there are."""
+        content = np.ascontiguousarray(rows).tobytes()
+        components = rows.shape[1] if rows.ndim == 2 else 1
+        shape = f'NumberOfComponents="{components}"' + f' NumberOfTuples="{len(rows)}"' * whole
+        element = (
+            f'<DataArray type="{_TYPES[rows.dtype.str[1:]]}" Name={quoteattr(name)} {shape} '
+            f'format="appended" offset="{self._size}">{_UNIT.format(unit) if unit else ""}</DataArray>\n'
+        )
+        self.blocks += [np.uint64(len(content)).tobytes(), content]
+        self._size += 8 + len(content)
+        return element
+
+
+def _texts(name: str, texts: tuple[str, ...]) -> str:
+    """Words, as VTK has them: the number of each byte, 0 at the end of a word."""
+    codes = " ".join(str(code) for text in texts for code in (*text.encode(), 0))
+    return (
+        f'<Array type="String" Name="{name}" NumberOfTuples="{len(texts)}" format="ascii">{codes}</Array>\n'
+    )
+
+
+def _replace(path: Path, content: bytes) -> None:
+    fresh = path.with_name(f"{path.name}.new")
+    fresh.write_bytes(content)
+    os.replace(fresh, path)
