@@ -1,0 +1,144 @@
+"""``report.html``: what was simulated and why, what came out, how far to trust it, what it cost."""
+
+import base64
+import io
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+import psph
+from psph.case import CaseError, load
+from psph.errors import Refused
+from psph.lab.report.turning import turning
+from psph.lab.study.beside import Beside, beside
+from psph.output.checkpoint import COPY
+from psph.output.errors import OutputError
+from psph.output.pictures import names
+from psph.output.pictures.plot import plot
+from psph.output.reader import Run
+from psph.runs.explain import explain
+from psph.runs.outlook import outlook
+from psph.runs.summary import read_summary
+from psph.scene import Scene, check
+from psph.simulation.plan import make_plan
+
+REPORT, TEMPLATE = "report.html", "page.html"
+NEEDS = ("jinja2", "plotly")
+"""What the extra ``report`` installs."""
+UNTOLD: dict = {"header": "", "said": [], "parts": [], "versions": {}}
+"""The summary of a run that has not come to its end."""
+FILMS = {".mp4": "video/mp4", ".gif": "image/gif"}
+LARGEST_FILM = 12 << 20
+"""Bytes of a film that a report takes in."""
+
+
+def report(folder: Path, field: str = "speed") -> Path:
+    """Write the report of the run in ``folder``, whose pictures show ``field``; its path.
+
+    Pictures are drawn as ``plot`` draws them; a film that ``plot --film`` has made there is taken in.
+    Raises Refused or NotThere where there is nothing to report, or nothing to make it with.
+    """
+    if missing := [name for name in NEEDS if find_spec(name) is None]:
+        raise Refused(f"report: {missing[0]} is not installed: pip install psph[report]")
+    import jinja2
+
+    run = Run(folder)
+    measured, remarks = beside(folder), []
+    try:
+        drawn = plot(folder, None, field, experiments=measured)
+    except Refused as error:
+        drawn, remarks = [], [f"no pictures: {error}"]
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("psph.lab.report"), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+    text = environment.get_template(TEMPLATE).render(
+        title=run.attributes.get("title") or run.path.stem,
+        run=run,
+        summary=UNTOLD | read_summary(run.folder),
+        pictures=[(name, _embedded(path, "image/png")) for name, path in _in_order(drawn)],
+        films=[(path.name, _embedded(path, FILMS[path.suffix])) for path in _films(run.folder)],
+        turning=turning(run),
+        key_numbers=list(_key_numbers(run)),
+        accuracy=list(_accuracy(run, measured)),
+        psph_version=run.attributes.get("psph_version", psph.__version__),
+        **_of_case(run.folder, remarks),
+    )
+    path = run.folder / REPORT
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}; check the free space") from None
+    return path
+
+
+def _of_case(folder: Path, remarks: list[str]) -> dict:
+    """What the case says, and what ``check`` and ``explain`` say of it; of a case that this psph or this
+    process cannot load, why."""
+    try:
+        scene = Scene(load(folder / COPY))
+        plan = make_plan(scene)
+        expected = list(outlook(scene, plan)) if scene.case.fluids else []
+        ranks = read_summary(folder).get("ranks", 1)
+        return {
+            "plan": "\n".join(explain(scene, ranks)),
+            "expected": expected,
+            "warnings": [*remarks, *check(scene)],
+        }
+    except CaseError as error:
+        return {"plan": "", "expected": [], "warnings": [*remarks, *error.lines]}
+
+
+def _in_order(drawn: list[Path]) -> Iterator[tuple[str, Path]]:
+    """The overview first, then what was measured, energies and limits of the run last."""
+    by_name = {path.name: path for path in drawn}
+    gauges = [name for name in by_name if name.startswith("gauge-")]
+    for name in (names.OVERVIEW, names.PROBES, *gauges, names.LOG):
+        if name in by_name:
+            yield Path(name).stem.replace("-", " "), by_name[name]
+
+
+def _films(folder: Path) -> list[Path]:
+    found = sorted(path for path in folder.iterdir() if path.suffix in FILMS)
+    return [path for path in found if path.stat().st_size <= LARGEST_FILM]
+
+
+def _embedded(path: Path, kind: str) -> str:
+    """The file as an address that holds all of it; pictures with 256 colours, a fifth of their size."""
+    content = path.read_bytes()
+    if kind == "image/png":
+        from PIL import Image
+
+        small = io.BytesIO()
+        Image.open(path).convert("RGB").quantize(256).save(small, "PNG", optimize=True)
+        content = small.getvalue()
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
+
+
+def _key_numbers(run: Run) -> Iterator[tuple[str, str]]:
+    """What one looks at first: (what, value with its unit)."""
+    log, times = run.log(), run.times
+    yield "frames", f"{len(times)}, to {times[-1]:.4g} s" if len(times) else "none"
+    if not log or not len(log["time"]):
+        return
+    per = ("/m²", "/m", "")[int(run.attributes["dimensions"]) - 1]
+    yield "largest speed over the run", f"{np.nanmax(log['largest_speed']):.3g} m/s"
+    yield "largest deviation of the density", f"{100 * np.nanmax(log['density_error']):.3g} %"
+    for name in ("kinetic", "potential"):
+        energy = log[f"{name}_energy"]
+        yield f"{name} energy, first and last", f"{energy[0]:.4g} and {energy[-1]:.4g} J{per}"
+    steps = log["dt"][log["dt"] > 0]
+    if len(steps):
+        yield "time step, least and largest", f"{steps.min():.3g} and {steps.max():.3g} s"
+
+
+def _accuracy(run: Run, measured: list[Beside]) -> Iterator[str]:
+    """Errors that are known, against an exact solution or experiments."""
+    errors = run.errors()
+    for name in errors:
+        if name != "time" and len(errors[name]):
+            last = f"{100 * errors[name][-1]:.3g} %"
+            yield f"{name.replace('_', ' ')} against the exact solution at the end: {last}"
+    for one in measured:
+        yield one.in_words()

@@ -1,0 +1,91 @@
+"""The view of a run that turns in the browser: particles of some frames, coloured by speed."""
+
+import numpy as np
+
+from psph.case.keys import AXES
+from psph.fields import WALL
+from psph.output.pictures.view import spread
+from psph.output.reader import Run
+
+FRAMES, PARTICLES, WALL_PARTICLES = 8, 8000, 4000
+"""Frames, particles of a frame, and of its walls, at most: a browser turns them without a pause."""
+
+EYE = {"x": -0.7, "y": -2.0, "z": 1.1}
+"""From the front, the left and above, as the pictures in 3D."""
+
+
+def turning(run: Run) -> str:
+    """The view with its slider over time and the library that draws it, as a part of a page."""
+    import plotly.graph_objects as go
+
+    shown = spread(len(run.times), FRAMES)
+    frames = [_particles(run, k) for k in shown]
+    fastest = max((speed.max(initial=0.0) for _, speed in frames), default=1.0) or 1.0
+    walls = _walls(run)
+    dimensions = walls.shape[1]
+    kind = go.Scatter3d if dimensions == 3 else go.Scattergl
+    size = 3 if dimensions == 3 else 5
+
+    def fluid(k: int):
+        places, speed = frames[k]
+        colours = {"color": _short(speed), "cmin": 0.0, "cmax": fastest, "colorscale": "Viridis"}
+        return _points(kind, places, size, **colours, colorbar={"title": "speed (m/s)"})
+
+    figure = go.Figure(
+        [
+            _points(kind, walls, size - 1, color="#9aa1ab", opacity=0.25 if dimensions == 3 else 1.0),
+            fluid(-1),
+        ],
+        frames=[go.Frame(data=[fluid(k)], traces=[1], name=str(k)) for k in range(len(frames))],
+    )
+    steps = [
+        {
+            "label": f"{run.times[shown[k]]:.3g} s",
+            "method": "animate",
+            "args": [[str(k)], {"mode": "immediate", "frame": {"duration": 0, "redraw": True}}],
+        }
+        for k in range(len(frames))
+    ]
+    figure.update_layout(
+        sliders=[{"steps": steps, "active": len(frames) - 1, "currentvalue": {"prefix": "time: "}}],
+        margin={"l": 10, "r": 0, "t": 40, "b": 110},
+        height=710,
+        showlegend=False,
+        template="plotly_white",
+    )
+    if dimensions == 3:
+        titles = {f"{axis}axis": {"title": {"text": f"{axis} (m)"}} for axis in AXES}
+        figure.update_scenes(aspectmode="data", camera={"eye": EYE}, **titles)
+    else:
+        figure.update_yaxes(scaleanchor="x", title="y (m)")
+        figure.update_xaxes(title="x (m)")
+    return figure.to_html(full_html=False, include_plotlyjs="inline", auto_play=False, div_id="turning")
+
+
+def _points(kind, places: np.ndarray, size: int, opacity: float = 1.0, **marker):
+    axes = {axis: _short(places[:, d]) for d, axis in enumerate(AXES[: places.shape[1]])}
+    if len(axes) == 1:
+        axes["y"] = np.zeros(len(places))
+    marker |= {"size": size, "opacity": opacity}
+    return kind(**axes, mode="markers", marker=marker, hoverinfo="skip")
+
+
+def _particles(run: Run, k: int) -> tuple[np.ndarray, np.ndarray]:
+    """Places and speeds of all but walls in a frame, no more than a browser takes."""
+    frame = run.frame(k, "position", "velocity", "kind")
+    chosen = _some(np.flatnonzero(frame["kind"] != WALL), PARTICLES)
+    return frame["position"][chosen], np.linalg.norm(frame["velocity"][chosen], axis=1)
+
+
+def _walls(run: Run) -> np.ndarray:
+    frame = run.frame(-1, "position", "kind")
+    return frame["position"][_some(np.flatnonzero(frame["kind"] == WALL), WALL_PARTICLES)]
+
+
+def _some(rows: np.ndarray, most: int) -> np.ndarray:
+    return rows[:: -(-len(rows) // most) or 1]
+
+
+def _short(values: np.ndarray) -> np.ndarray:
+    """Four digits: what a screen shows, in half the bytes."""
+    return values.astype(np.float32).round(4)
