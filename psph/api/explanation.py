@@ -1,0 +1,67 @@
+"""What a case will simulate, why, and at what cost, as data."""
+
+from typing import NamedTuple
+
+from psph.runs.explain import Acting, absent, acting, bytes_of_rank, explain, laws_of, slab_planes
+from psph.runs.forecast import forecast, pull
+from psph.runs.hints import hints
+from psph.simulation.plan import make_plan
+
+
+class Explanation(NamedTuple):
+    """The plan of a case on so many ranks.
+
+    ``effects`` and ``laws`` (equations of state) each have ``name``, ``does`` and ``because``; ``absent``
+    says of each other effect why it is not there.  ``step_limits`` (s) are the bounds of the time step by
+    their names, at the expected speed; ``steps`` and ``seconds`` a guess of what the run takes;
+    ``bytes_per_rank`` the memory of a rank.  ``lines`` are what the command line prints.
+    """
+
+    title: str
+    particles: int
+    dimensions: int
+    spacing: float
+    smoothing_length: float
+    sound_speed: float
+    ranks: int
+    most_ranks: int
+    effects: list[Acting]
+    laws: list[Acting]
+    absent: dict[str, str]
+    arrays: tuple[str, ...]
+    step_limits: dict[str, float]
+    steps: int
+    seconds: float
+    bytes_per_rank: float
+    hints: list[str]
+    lines: list[str]
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+
+def explained(scene, ranks: int) -> Explanation:
+    """The plan of a scene on so many ranks.  Raises TooManyRanks."""
+    plan, case = make_plan(scene), scene.case
+    lines = list(explain(scene, ranks))
+    expected = forecast(scene, plan, ranks)
+    return Explanation(
+        title=case.title or case.name,
+        particles=int(scene.counts().sum()),
+        dimensions=scene.dimensions,
+        spacing=scene.spacing,
+        smoothing_length=scene.smoothing_length,
+        sound_speed=scene.sound_speed,
+        ranks=ranks,
+        most_ranks=slab_planes(scene),
+        effects=acting(plan),
+        laws=laws_of(plan),
+        absent=absent(scene, plan),
+        arrays=tuple(plan.arrays),
+        step_limits={name: step for step, name in plan.step_limits(scene.expected_speed, pull(scene))},
+        steps=expected.steps,
+        seconds=expected.seconds,
+        bytes_per_rank=bytes_of_rank(scene, plan, ranks),
+        hints=list(hints(scene, plan)),
+        lines=lines,
+    )
