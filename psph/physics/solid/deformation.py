@@ -29,8 +29,11 @@ VON_MISES = Field("von_mises", "Pa", "von Mises stress of a solid", saved=True)
 STORED = Field("stored_energy", "J", "energy of deformation, with that of the hourglass control")
 DRAWN = Field("drawn", "m/s2", "acceleration by the loads of a case at their full size", VECTOR)
 
+INERTIA = Field("inertia", "kg", "true mass of a particle; of a solid in a fluid its mass is the fluid's")
+
 OF_SOLIDS = (REFERENCE, MOMENT, STRESS, VON_MISES, STORED)
-"""What particles carry only where a scene has solids; DRAWN where these have loads."""
+"""What particles carry only where a scene has solids; DRAWN where these have loads, INERTIA where
+these are in a fluid."""
 
 KERNEL, SMOOTHING = "wendland-c2", 2.0**0.5
 """A solid's own kernel and its h/dx: its lists have no part in those of fluids."""

@@ -1,0 +1,116 @@
+"""The deviatoric stress of matter that resists shear: how it evolves, and how it acts.
+
+The stress is σ = s − p1, tension positive, with p from the density as that of a fluid; in 2D the matter is in
+plane strain, and s_zz = −(s_xx + s_yy).  A fluid beside it has G = 0 and s = 0.
+"""
+
+from typing import NamedTuple
+
+from psph.fields import SYMMETRIC
+from psph.fields import Field as Declared
+from psph.formula import helper, where
+from psph.physics.facts import Facts
+from psph.physics.fluid.strain import linear_gradient, no_rate, rate_weight, take_rate
+from psph.vectors import add, less_diagonal, matrix_product, scale, skew_part, symmetric_part, times, trace
+
+DEVIATOR = Declared(
+    "deviator", "Pa", "deviatoric stress, tension positive", SYMMETRIC, saved=True, evolves=True
+)
+
+
+@helper
+def jaumann_rate(gradient, s, shear_modulus, like):
+    """ds/dt = 2G (D − ⅓ tr D 1) + Ωs + sΩᵀ, Pa/s, of the velocity gradient D + Ω by rows, 1/s.
+
+    D − ⅓ tr D in 2D too: plane strain.  ``like`` is any vector of the dimension.
+    """
+    rate = symmetric_part(gradient, like)
+    shear = less_diagonal(rate, trace(rate, like) / 3.0, like)
+    turned = symmetric_part(matrix_product(skew_part(gradient, like), s, like), like)
+    return add(scale(shear, 2.0 * shear_modulus), scale(turned, 2.0))
+
+
+@helper
+def holds(j):
+    """1 where neighbour j counts in a velocity gradient: it resists shear, or is a wall without slip."""
+    return max(where(j.shear_modulus > 0.0, 1.0, 0.0), j.no_slip)
+
+
+@helper
+def take_neighbour(total, j, pair):
+    """Take a neighbour that :func:`holds` into the sums of a velocity gradient."""
+    weight = rate_weight(j, pair) * holds(j)
+    return take_rate(total, pair, pair.u_ij, weight, weight)
+
+
+class DeviatorRate(NamedTuple):
+    """The deviatoric stress follows the flow: elastic, with the rate of Jaumann.
+
+    ds_i/dt = 2G (D − ⅓ tr D 1) + Ωs + sΩᵀ, D and Ω the symmetric and the skew part of
+    ∇v_i = −Σ_j V_j u_ij ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ, over neighbours that resist shear and walls
+    without slip: exact for a linear flow up to a surface.  Gray, Monaghan & Swift (2001), Comput. Methods
+    Appl. Mech. Eng. 190, 6641; corrected, Randles & Libersky (1996), 139, 375.
+    """
+
+    writes = DEVIATOR
+
+    def start(self, i):
+        """No neighbour yet."""
+        return no_rate(i)
+
+    def gather(self, total, i, j, pair):
+        """Take a neighbour that holds."""
+        return take_neighbour(total, j, pair)
+
+    def finish_value(self, total, i, kernel):
+        """ds/dt, Pa/s; 0 in what does not resist shear."""
+        return jaumann_rate(linear_gradient(total, i), i.deviator, i.shear_modulus, i.position)
+
+
+class DeviatoricForce(NamedTuple):
+    """The divergence of the deviatoric stress, symmetric in the pair.
+
+    a_i = Σ_j m_j (s_i/ρ_i² + s_j/ρ_j²) ∇W_ij; a wall without slip shows the particle before it s_j/ρ_j² =
+    s_i/ρ_i², others show none.  Gray, Monaghan & Swift (2001); with the pressure of
+    :class:`psph.physics.fluid.pressure.SymmetricPressure` it is the force of the whole stress.
+    """
+
+    conserves = ("momentum",)
+
+    def in_scene(self, scene: Facts):
+        """With corrected gradients, the form that has them."""
+        return self if scene.physics.gradient_correction is None else CorrectedDeviatoricForce()
+
+    def push(self, i, j, pair):
+        """Acceleration, m/s²."""
+        own, other = shown(i, j)
+        both = add(scale(i.deviator, own), scale(j.deviator, other))
+        return scale(times(both, pair.x_ij), pair.m_dw_r)
+
+
+class CorrectedDeviatoricForce(NamedTuple):
+    """The divergence of the deviatoric stress, symmetric in the pair, with corrected gradients.
+
+    a_i = Σ_j m_j (s_i L_i/ρ_i² + s_j L_j/ρ_j²) ∇W_ij, with the L that the pressure has under
+    :class:`psph.physics.fluid.correction.GradientCorrection`; walls as in :class:`DeviatoricForce`.
+    """
+
+    conserves = ("momentum",)
+
+    def push(self, i, j, pair):
+        """Acceleration, m/s²."""
+        own, other = shown(i, j)
+        x = pair.x_ij
+        at_i = times(i.deviator, add(x, times(i.gradient_correction, x)))
+        at_j = times(j.deviator, add(x, times(j.gradient_correction, x)))
+        return scale(add(scale(at_i, own), scale(at_j, other)), pair.m_dw_r)
+
+
+@helper
+def shown(i, j):
+    """1/ρ_i² and 1/ρ_j² as factors of s_i and s_j; a wall without slip doubles that of the matter before it.
+
+    What does not resist shear has s = 0.
+    """
+    own, other = i.specific_volume * i.specific_volume, j.specific_volume * j.specific_volume
+    return own * (1.0 + j.no_slip), other * (1.0 + i.no_slip)

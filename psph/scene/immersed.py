@@ -1,0 +1,21 @@
+"""Elastic solids among fluids: what they show, in the place of what they are made of."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+
+def is_immersed(scene: "Scene", material: int) -> bool:
+    """Whether a material is of an elastic solid beside fluids."""
+    return bool(scene.case.fluids) and scene.layout.elastic_of(material) is not None
+
+
+def shown_by(scene: "Scene") -> list[int]:
+    """For each material the index of the one whose density and state it has: of a wall that of the fluid that
+    it continues, of a solid among fluids the first of these."""
+    layout, fluids = scene.layout, list(scene.case.fluids)
+    if not fluids:
+        return [*range(layout.movers), *layout.clamps]
+    continued = [fluids.index(one.continues) for one in scene.boundaries.values()]
+    return [*range(layout.fluids), *[0] * (layout.first_wall - layout.fluids), *continued]

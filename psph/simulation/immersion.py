@@ -1,0 +1,130 @@
+"""Elastic solids in a fluid: steps of their own under its push, and what they show it.
+
+To the fluid a solid's particles are those of a wall that moves: they have the mass of the fluid that they
+displace, and a density that follows.  The push m_f a_f that they feel so, divided by their true mass, is held
+during a step of the fluid, in which the solid makes as many steps as it needs (kick, drift, kick); then half
+of it is taken back and half of the new one added.  So it gives in a step the mean of old and new push, as the
+fluid gets, and the momentum of both together is kept to rounding.
+O'Connor & Rogers (2021), J. Fluids Struct. 104, 103312; Zhang, Rezavand & Hu (2021), J. Comput. Phys.
+429, 110028.
+"""
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from psph.composition.pair import take
+from psph.engine.jit import elementwise
+from psph.engine.settled import settled
+from psph.engine.threads import in_threads
+from psph.physics.motion import LOAD, Immersed
+from psph.physics.solid.deformation import INERTIA
+from psph.vectors import add, at, dot, put, scale
+
+
+def substeps(solids: Iterable, smoothing_length: float, dt: float, speed: float) -> int:
+    """How many steps of ``solids`` (psph.physics.solid.material) with the ``smoothing_length`` in m a step of
+    ``dt`` s takes, at the largest ``speed`` in m/s: the same on every rank."""
+    longest = min(one.longest_step(smoothing_length, speed) for one in solids)
+    return max(1, math.ceil(dt / longest))
+
+
+class Immersion:
+    """The motion of the ``solids`` of a rank (psph.simulation.solids) in the fluid of a ``scene``."""
+
+    def __init__(self, solids, scene, plan, store):
+        self.solids, self.plan, self.store = solids, plan, store
+        self._moves = np.array([isinstance(one.motion, Immersed) for one in scene.species], bool)
+        self._drift, self._kick, self._show = map(settled, (drift, kick, show))
+
+    def begin(self) -> None:
+        """True masses, and the first inner forces; collective."""
+        self.store[INERTIA.name][:] = self.store.view().mass
+        self.solids.fill_masses(self.store[INERTIA.name])
+        self.solids.sum(0.0, 0.0)
+
+    def advance(self, time: float, dt: float, speed: float) -> None:
+        """From ``time`` − ``dt`` to ``time``, s, under the last push of the fluid; collective.
+
+        ``speed`` is the largest of the fluid, m/s.
+        """
+        if not dt > 0.0:
+            return
+        plan, solids = self.plan, self.solids
+        count = substeps(plan.solids, plan.solid_smoothing_length, dt, speed)
+        part, columns, seen = dt / count, self._columns, self._seen
+        shown = tuple(np.zeros(len(columns)) for _ in range(self.store.dimensions))
+        for n in range(1, count + 1):
+            self._each(self._drift, columns, part, 1.0 / count, *seen, shown)
+            solids.sum(time - dt + n * part, part)
+            self._each(self._kick, columns, 0.5 * part, 0.5 * part, *seen)
+        self._each(self._kick, columns, 0.0, -0.5 * dt, *seen)
+        self._each(self._show, columns, self.store["predicted_velocity"], shown)
+
+    def kick(self, dt: float) -> tuple[float, ...]:
+        """Half of the new push of the fluid; returns what psph.simulation.integrator.kick does, of solids."""
+        found = self._each(self._kick, self._columns, 0.0, 0.5 * dt, *self._seen)
+        fastest, strain = (max(of) for of in zip(*found)) if found else (0.0, 0.0)
+        return 0.0, 0.0, strain, 0.0, fastest
+
+    @property
+    def _columns(self) -> np.ndarray:
+        """Those of the particles that move."""
+        columns = self.solids.columns
+        return columns[self._moves[self.store.group[columns]]]
+
+    @property
+    def _seen(self) -> tuple:
+        s = self.store
+        names = ("position", "velocity", "predicted_velocity", "acceleration", LOAD.name, INERTIA.name)
+        return s.view(), *(s[name] for name in names)
+
+    def _each(self, loop, columns: np.ndarray, *args) -> list:
+        return in_threads(loop, 0, len(columns), columns, *args) if len(columns) else []
+
+
+@elementwise
+def drift(
+    first, last, columns, dt, share, view, position, velocity, predicted, acceleration, load, inertia, shown
+):
+    """Half a kick by all forces and a drift of ``dt`` s; a ``share`` of the velocity on the way goes to its
+    what is ``shown`` to the fluid, and the velocity at the end is predicted."""
+    for k in range(np.uint64(first), np.uint64(last)):
+        c = columns[k]
+        push = scale(at(load, c), take(view, c).mass / inertia[c])
+        gained = scale(add(at(acceleration, c), push), 0.5 * dt)
+        v = add(at(velocity, c), gained)
+        put(velocity, c, v)
+        put(position, c, add(at(position, c), scale(v, dt)))
+        put(predicted, c, add(v, gained))
+        put(shown, k, add(at(shown, k), scale(v, share)))
+
+
+@elementwise
+def kick(
+    first, last, columns, own, by_fluid, view, position, velocity, predicted, acceleration, load, inertia
+):
+    """A kick of ``own`` s by inner forces, weight and loads and of ``by_fluid`` s by the push of the fluid.
+
+    Returns the largest |v|², m²/s², and infinity where a number is not finite, else 0.
+    """
+    fastest = trouble = 0.0
+    for k in range(np.uint64(first), np.uint64(last)):
+        c = columns[k]
+        a = at(acceleration, c)
+        push = scale(at(load, c), take(view, c).mass / inertia[c])
+        v = add(at(velocity, c), add(scale(a, own), scale(push, by_fluid)))
+        put(velocity, c, v)
+        x, v2 = at(position, c), dot(v, v)
+        finite = v2 + dot(a, a) + dot(x, x) < np.inf  # false for NaN too
+        fastest = max(fastest, v2 if finite else 0.0)
+        trouble = max(trouble, 0.0 if finite else np.inf)
+    return fastest, trouble
+
+
+@elementwise
+def show(first, last, columns, predicted, shown):
+    """Let the fluid see a velocity, m/s."""
+    for k in range(np.uint64(first), np.uint64(last)):
+        put(predicted, columns[k], at(shown, k))

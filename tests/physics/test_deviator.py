@@ -1,0 +1,84 @@
+"""A deviatoric stress that evolves: its rate in a linear flow, and the force of a pair."""
+
+import numpy as np
+import pytest
+from physics.pairs import pair_of, sums_of, view
+
+from psph.physics.stress.deviator import CorrectedDeviatoricForce, DeviatoricForce, DeviatorRate, jaumann_rate
+
+UPPER = {2: ((0, 0), (0, 1), (1, 1)), 3: ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))}
+
+
+def full(packed, dim):
+    """A symmetric matrix from its rows from the diagonal on."""
+    made = np.zeros((dim, dim))
+    for value, (a, b) in zip(packed, UPPER[dim]):
+        made[a, b] = made[b, a] = value
+    return made
+
+
+def by_matrices(gradient, s, modulus):
+    """The rate of Jaumann in three dimensions: plane strain has D and Ω without a third row."""
+    dim = len(gradient)
+    d, w = 0.5 * (gradient + gradient.T), 0.5 * (gradient - gradient.T)
+    return 2 * modulus * (d - np.trace(d) / 3 * np.eye(dim)) + w @ s - s @ w
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_a_linear_flow_gives_the_rate_of_jaumann_in_disorder(dim):
+    rng = np.random.default_rng(5)
+    gradient = rng.normal(size=(dim, dim)) * 30.0
+    p = view(n=40, dim=dim)
+    x = np.array(p.position)
+    p = p._replace(velocity=tuple(gradient @ x), shear_modulus=np.full(40, 4e4), no_slip=np.zeros(40))
+    found = sums_of(DeviatorRate(), p, 0)
+    expected = by_matrices(gradient, full([s[0] for s in p.deviator], dim), 4e4)
+    assert found == pytest.approx([expected[place] for place in UPPER[dim]], rel=1e-10)
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+def test_a_turn_turns_the_stress_and_keeps_its_invariants(dim):
+    s = tuple(np.random.default_rng(1).normal(size=len(UPPER[dim])))
+    spin = np.triu(np.ones((dim, dim)), 1)
+    rate = full(jaumann_rate(tuple((spin - spin.T).ravel()), s, 4e4, (0.0,) * dim), dim)
+    assert np.trace(rate) == pytest.approx(0.0, abs=1e-14)
+    assert np.sum(rate * full(s, dim)) == pytest.approx(0.0, abs=1e-14)
+    assert np.abs(rate).max() > 0.1
+
+
+def test_water_and_smooth_walls_do_not_count_in_the_flow_of_what_resists_shear():
+    p = view(n=6)
+    keep = np.array([1.0, 1.0, 1.0, 1.0, 0.0, 0.0])  # the last two: water, and a wall
+    p = p._replace(shear_modulus=4e4 * keep, no_slip=np.zeros(6))
+    moved = tuple(v + 7.0 * (1.0 - keep) for v in p.velocity)
+    assert sums_of(DeviatorRate(), p, 0) == sums_of(DeviatorRate(), p._replace(velocity=moved), 0)
+    rough = p._replace(no_slip=1.0 - keep)
+    assert sums_of(DeviatorRate(), rough, 0) != sums_of(DeviatorRate(), p, 0)
+
+
+@pytest.mark.parametrize("force", (DeviatoricForce(), CorrectedDeviatoricForce()))
+@pytest.mark.parametrize("dim", (2, 3))
+def test_the_force_is_that_of_both_stresses_and_keeps_momentum(force, dim):
+    p = view(dim=dim)._replace(no_slip=np.zeros(2))
+    pushes = []
+    for a, b in ((0, 1), (1, 0)):
+        i, j, pair = pair_of(p, a, b)
+        x, total = np.array(pair.x_ij), 0.0
+        for one in (i, j):
+            more = full(one.gradient_correction, dim) if isinstance(force, CorrectedDeviatoricForce) else 0.0
+            total += full(one.deviator, dim) @ (np.eye(dim) + more) @ x * one.specific_volume**2
+        expected = j.mass * pair.dw_r * total
+        assert force.push(i, j, pair) == pytest.approx(expected, rel=1e-12)
+        pushes.append(i.mass * expected)
+    assert pushes[0] == pytest.approx(-pushes[1], rel=1e-12)
+
+
+def test_a_rough_wall_shows_what_stands_before_it_its_own_stress():
+    p = view()
+    s = tuple(np.array([v[0], 0.0]) for v in p.deviator)  # the wall bears none
+    rough = p._replace(deviator=s, no_slip=np.array([0.0, 1.0]))
+    smooth = rough._replace(no_slip=np.zeros(2))
+    one, two = (DeviatoricForce().push(*pair_of(q, 0, 1)) for q in (smooth, rough))
+    assert two == pytest.approx(2.0 * np.array(one), rel=1e-14) and np.abs(one).max() > 0.0
+    back = DeviatoricForce().push(*pair_of(rough, 1, 0))
+    assert rough.mass[1] * np.array(back) == pytest.approx(-rough.mass[0] * np.array(two), rel=1e-12)

@@ -1,0 +1,105 @@
+"""Elastic solids in fluids: momentum of both together, and steps of their own."""
+
+import numpy as np
+import pytest
+from drafts import draft, refusal
+from mpi4py import MPI
+
+from psph.output.diagnostics import energies_and_momentum
+from psph.output.ledger import Ledger
+from psph.runs.setup import create_particles
+from psph.scene import Scene
+from psph.simulation.immersion import substeps
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+STIRRED = """
+[space]
+dimensions = 2
+spacing = 0.05
+periodic = ["x", "y"]
+lower = [0.0, 0.0]
+upper = [1.2, 1.2]
+[time]
+end = 1.0
+[physics]
+sound_speed = 30.0
+[fluids.heavy]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.2, 0.6] }
+shape.difference.minus = [{ box = { lower = [0.3, 0.35], upper = [0.7, 0.85] } }]
+density = 1200.0
+viscosity = 0.02
+velocity = [0.5, -0.4]
+jitter = 0.2
+[fluids.light]
+shape.difference.from.box = { lower = [0.0, 0.6], upper = [1.2, 1.2] }
+shape.difference.minus = [{ box = { lower = [0.3, 0.35], upper = [0.7, 0.85] } }]
+density = 900.0
+viscosity = 0.01
+velocity = [-0.8, 0.3]
+jitter = 0.1
+[solids.block]
+shape.box = { lower = [0.3, 0.35], upper = [0.7, 0.85] }
+density = 2500.0
+young = 3.0e7
+poisson = 0.3
+law = "neo-hookean"
+velocity = [0.2, 0.1]
+jitter = 0.05
+"""
+"""A block of another density among two fluids that flow against each other and it."""
+
+
+def start(case):
+    scene = Scene(case)
+    plan = make_plan(scene)
+    return Simulation(scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger())
+
+
+def momentum(simulation):
+    """Of all, kg m/s (2,), and Σ m |v|."""
+    store = simulation.store
+    mass, velocity = store.shown("inertia"), store.shown("velocity")
+    return (mass[:, None] * velocity).sum(axis=0), (mass * np.linalg.norm(velocity, axis=1)).sum()
+
+
+def test_fluids_and_a_solid_keep_the_momentum_of_both(tmp_path):
+    simulation = start(draft(tmp_path, STIRRED))
+    plan = simulation.plan
+    before, size = momentum(simulation)
+    block = simulation.store.shown("group") == 2
+    own = (simulation.store.shown("inertia") / simulation.store.shown("mass"))[block]
+    assert own == pytest.approx(2500.0 / 1200.0)
+    for _ in range(40):
+        simulation.step()
+    count = substeps(plan.solids, plan.solid_smoothing_length, simulation.dt, simulation.pace)
+    assert count > 3
+    after, _ = momentum(simulation)
+    store, block = simulation.store, simulation.store.shown("group") == 2
+    gained = (store.shown("inertia")[block, None] * store.shown("velocity")[block]).sum(axis=0)
+    gained -= 2500.0 * 0.4 * 0.5 * np.array([0.2, 0.1])
+    assert np.abs(after - before).max() < 1e-12 * size
+    assert np.abs(gained).max() > 1e-4 * size  # they do push each other
+    logged = energies_and_momentum(MPI.COMM_SELF, store, (0.0, 0.0))[2:]
+    assert logged == pytest.approx(after, abs=1e-12 * size)
+
+
+def test_the_number_of_steps_follows_from_the_solid_and_the_step(tmp_path):
+    plan = make_plan(Scene(draft(tmp_path, STIRRED)))
+    longest = plan.solids[0].longest_step(plan.solid_smoothing_length, 1.0)
+    for dt, count in ((0.1 * longest, 1), (longest, 1), (1.01 * longest, 2), (7.5 * longest, 8)):
+        assert substeps(plan.solids, plan.solid_smoothing_length, dt, 1.0) == count
+
+
+@pytest.mark.parametrize(
+    "override, says",
+    [
+        (
+            "bodies.one={density=500.0,shape={disc={center=[1.0,1.0],radius=0.1}}}",
+            "nothing is known of contact",
+        ),
+        ("physics.pressure_gradient=minimum", "does not push back"),
+    ],
+)
+def test_what_a_solid_in_a_fluid_cannot_have_is_refused(override, says, tmp_path):
+    assert says in " ".join(refusal(tmp_path, STIRRED, override))
