@@ -6,10 +6,9 @@ import sys
 import time
 import traceback
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
-from pathlib import Path
 
 from psph.errors import Failed, Foreseen, Refused, one_line
-from psph.run.watch import listen
+from psph.runs.watch import listen
 
 PATIENCE, BEFORE_THE_START = 1.0, 10.0
 """Seconds a failed rank waits for the others to fail alike before it ends them all.  What is refused
@@ -53,47 +52,38 @@ def _with_verb(arguments: list[str]) -> list[str]:
 
 
 def _run(options, comm) -> None:
-    from psph.engine.threads import use_threads
-    from psph.run.start import run
+    from psph.api import run
 
-    use_threads(options.threads)
-    case = _load(options)
-    folder = options.out or Path(case.name)
-    run(case, folder, comm, options.overwrite)
+    run(_load(options), options.out, comm=comm, overwrite=options.overwrite, threads=options.threads)
 
 
 def _resume(options, comm) -> None:
-    from psph.engine.threads import use_threads
-    from psph.run.start import resume
+    from psph.api import resume
 
-    use_threads(options.threads)
-    resume(options.folder, comm, options.extend, options.chosen)
+    resume(options.folder, options.extend, chosen=options.chosen, comm=comm, threads=options.threads)
 
 
 def _explain(options, comm) -> None:
-    from psph.run.explain import explain
-    from psph.scene import Scene
-
     ranks = comm.size if options.ranks is None else options.ranks
     if ranks < 1:
         raise Refused(f"explain --ranks {ranks}: not a number of ranks; give 1 or more")
-    scene = Scene(_load(options))
-    _warn(scene, comm)
+    case = _load(options)
+    _warn(case, comm)
     if comm.rank == 0:
-        print("\n".join(explain(scene, ranks)))
+        print(case.explain(ranks))
         if options.study:
             from psph.lab.study.prediction import predicted
 
-            print("\n".join(predicted(options.study, scene.case)))
+            print("\n".join(predicted(options.study, case.model)))
 
 
 def _check(options, comm) -> None:
-    from psph.run.explain import slab_planes
-    from psph.scene import Scene
+    from psph.runs.explain import slab_planes
     from psph.scene.meshes.report import described
 
-    scene = Scene(_load(options))
-    _warn(scene, comm)
+    case = _load(options)
+    _warn(case, comm)
+    scene = case.scene()
     if comm.rank == 0:
         for line in described(scene):
             print(one_line(f"{options.case}: {line}"))
@@ -134,6 +124,20 @@ def _plot(options, comm) -> None:
         print(path)
     for one in measured:
         print(one.in_words())
+
+
+def _export(options, comm) -> None:
+    from psph.output.export.command import export
+
+    if comm.rank == 0:
+        print(export(options.folder, options.to, options.times, options.out))
+
+
+def _report(options, comm) -> None:
+    from psph.lab.report.page import report
+
+    if comm.rank == 0:
+        print(report(options.folder, options.field))
 
 
 def _bench(options, comm) -> None:
@@ -199,20 +203,13 @@ def _stability(options, comm) -> None:
 
 
 def _load(options):
-    from psph.case import load
+    from psph.api import load
 
-    return load(options.case, options.set)
+    return load(options.case, options.set, "--set")
 
 
-def _warn(scene, comm) -> None:
-    from psph.run.experiments import refuse_unfit_experiments
-    from psph.run.forecast import long_run
-    from psph.scene import check
-    from psph.simulation.plan import make_plan
-
-    found = check(scene)
-    refuse_unfit_experiments(scene)
-    for warning in (*found, *long_run(scene, make_plan(scene), comm.size)):
+def _warn(case, comm) -> None:
+    for warning in case.warnings(comm.size):
         if comm.rank == 0:
             print(f"warning: {warning}", file=sys.stderr)
 
@@ -224,6 +221,8 @@ VERBS = {
     "check": (_check, "validate a case without running it"),
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
+    "export": (_export, "the frames of a run as files of other programs: VTK, Gadget, ParaView"),
+    "report": (_report, "a run as one HTML file: pictures, a view that turns, curves, plan, cost"),
     "study": (_study, "error and run time of a case over spacings, kernels and other choices"),
     "stability": (_stability, "growth rates of lattice instabilities; hard cases under every scheme"),
     "bench": (_bench, "particle-steps and pairs per second of this machine"),

@@ -8,6 +8,7 @@ from typing import NoReturn
 import psph
 from psph.errors import Refused, one_line
 from psph.lab.bench import PROBLEMS
+from psph.output.export.command import PROGRAMS
 from psph.theory.stability import FORMS, STATES
 from psph.theory.stability.lattices import LATTICES
 
@@ -71,6 +72,9 @@ def parser(verbs) -> argparse.ArgumentParser:
         "--study", type=Path, metavar="DIR", help="predict error and run time from a study"
     )
     _add_plot_options(verb["plot"])
+    _add_export_options(verb["export"])
+    verb["report"].add_argument("folder", action=_Folder, help="the folder of a run")
+    verb["report"].add_argument("--field", default="speed", help="what the pictures show (default: speed)")
     _add_study_options(verb["study"])
     _add_stability_options(verb["stability"])
     _add_bench_options(verb["bench"])
@@ -102,6 +106,13 @@ def _add_plot_options(plot: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="a film instead: FILE ends with .gif or .mp4 (default: in FOLDER, an MP4 where ffmpeg is there)",
     )
+
+
+def _add_export_options(export: argparse.ArgumentParser) -> None:
+    export.add_argument("folder", action=_Folder, help="the folder of a run")
+    export.add_argument("--to", required=True, choices=PROGRAMS, help="kind of file")
+    export.add_argument("--times", type=float, nargs="+", help="frames nearest to these, s (default: all)")
+    export.add_argument("--out", action=_Folder, help="folder of the files (default: one in FOLDER)")
 
 
 def _add_study_options(study: argparse.ArgumentParser) -> None:

@@ -254,6 +254,29 @@ symmetric_part = _by_dimension(
 )
 """(m, a) → (m + mᵀ)/2 of a matrix by rows; ``a`` is any vector of the dimension."""
 
+skew_part = _by_dimension(
+    lambda m, a: (0.0,),
+    lambda m, a: (0.0, 0.5 * (m[1] - m[2]), 0.5 * (m[2] - m[1]), 0.0),
+    lambda m, a: (
+        0.0,
+        0.5 * (m[1] - m[3]),
+        0.5 * (m[2] - m[6]),
+        0.5 * (m[3] - m[1]),
+        0.0,
+        0.5 * (m[5] - m[7]),
+        0.5 * (m[6] - m[2]),
+        0.5 * (m[7] - m[5]),
+        0.0,
+    ),
+)
+"""(m, a) → (m − mᵀ)/2 of a matrix by rows, by rows; ``a`` is any vector of the dimension."""
+transposed = _by_dimension(
+    lambda m, a: (m[0],),
+    lambda m, a: (m[0], m[2], m[1], m[3]),
+    lambda m, a: (m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]),
+)
+"""(m, a) → mᵀ of a matrix by rows; ``a`` is any vector of the dimension."""
+
 matrix_product = _by_dimension(
     lambda m, s, a: (m[0] * s[0],),
     lambda m, s, a: (

@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from psph.case import load
 from psph.errors import Foreseen
-from psph.run.start import run
+from psph.runs.start import run
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 

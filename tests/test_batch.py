@@ -15,7 +15,7 @@ import pytest
 import slurm
 from jobs import clean_environment, mpirun
 from long import LONG, tell
-from run.resuming import BOX, same_files
+from runs.resuming import BOX, same_files
 
 from psph.output.checkpoint import checkpoints
 

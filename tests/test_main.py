@@ -31,7 +31,7 @@ def test_a_run_leaves_its_files(tmp_path):
     job = psph(CASE, "--out", tmp_path / "run", "--set", "time.end=1e-3")
     assert job.returncode == 0, job.stderr
     left = {path.name for path in (tmp_path / "run").iterdir()}
-    assert left == {"negative_pressure.h5", "negative_pressure.xmf", "log.csv", "case.toml"}
+    assert left == {"negative_pressure.h5", "negative_pressure.xmf", "log.csv", "summary.json", "case.toml"}
     assert "441 particles" in job.stdout and "particle-steps/s" in job.stdout
 
 
@@ -81,7 +81,7 @@ def test_check_explain_schema():
         (
             ("qqqqq",),
             "qqqqq: neither a command nor a case file; known here: run, resume, explain, check, "
-            "schema, plot, study, stability, bench",
+            "schema, plot, export, report, study, stability, bench",
         ),
         (("chek.toml",), "chek.toml: No such file or directory; give the path of a case in TOML"),
     ],
@@ -173,7 +173,7 @@ def test_a_run_that_blows_up_says_so_on_every_number_of_ranks(tmp_path):
 
 SLOWLY = """
 import sys, time
-from psph.run.guards import Guards
+from psph.runs.guards import Guards
 
 Guards.step = lambda self: time.sleep(60.0)
 

@@ -97,6 +97,11 @@ class Body(Table):
             return turns if self.pivot else (*slides, *turns)
         return self.free
 
+    def restrained(self, dimensions: int) -> bool:
+        """Whether something holds it: at first, or in what it is not free to do."""
+        slides, turns = freedoms(dimensions)
+        return self.held > 0.0 or not set(self.freed(dimensions)) >= {*slides, *turns}
+
 
 def held_together(case) -> Iterator[Finding]:
     """Bodies that cannot be, in a case with space.dimensions."""
@@ -113,6 +118,8 @@ def held_together(case) -> Iterator[Finding]:
             if one not in (*slides, *turns):
                 known = ", ".join((*slides, *turns))
                 yield (*here, "free", place), one, f"there is no such motion in {dimensions}D; give {known}"
+            elif one in body.free[:place]:
+                yield (*here, "free", place), one, "stands there twice; remove one"
         freed = body.freed(dimensions)
         if dimensions == 3 and sum(one in turns for one in freed) == 2:
             yield (

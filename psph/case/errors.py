@@ -32,7 +32,7 @@ def advise(word: str, known: Iterable[str]) -> str:
     """Name the nearest known word, those that are as near, or all of them where none is near."""
     known = list(known)
     if (near := nearest(word, known)) is None:
-        return f"known here: {', '.join(known)}"
+        return f"known here: {', '.join(known) or 'none'}"
     as_near = [one for one in known if _alike(word, one) == _alike(word, near)]
     return f"did you mean {' or '.join(repr(one) for one in as_near)}?"
 

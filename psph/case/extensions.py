@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from psph.case.errors import CaseError, advise
 from psph.case.files import Unfit, beside
+from psph.case.given import PYTHON
 from psph.case.parameters import last_part
 from psph.smoothing import KERNELS
 
@@ -24,8 +25,8 @@ OWN_KEYS = {"physics.sound_speed", "physics.equation_of_state"}
 """Keys of ``physics`` that call for no effect."""
 
 
-def catalogue_of(file: str, names: Sequence[str]) -> "Catalogue":
-    """Everything that a case can ask for: what psph has, and what the files ``names`` bring.
+def catalogue_of(file: str, names: Sequence[str], given: "Catalogue | None" = None) -> "Catalogue":
+    """Everything that a case can ask for: psph's own, what the files ``names`` bring, what is ``given``.
 
     They stand in the folder of ``file``, the case, or below; each has a ``CATALOGUE`` of
     psph.physics.catalogue.  Raises CaseError with one line.
@@ -34,9 +35,10 @@ def catalogue_of(file: str, names: Sequence[str]) -> "Catalogue":
 
     found, modules = BUILT_IN, {}
     for name in names:
-        modules.setdefault(_module(file, name), name)  # a file named twice is one file
-    for module, name in modules.items():
-        more = getattr(module, "CATALOGUE", None)
+        if not name.startswith(PYTHON):
+            modules.setdefault(_module(file, name), name)  # a file named twice is one file
+    brought = [(getattr(module, "CATALOGUE", None), name) for module, name in modules.items()]
+    for more, name in [*brought, *([(given, "a Python script")] if given else [])]:
         if not isinstance(more, Catalogue):
             raise CaseError(
                 [

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from psph.case.given import PYTHON
+
 
 class Unfit(ValueError):
     """A file that a case cannot use; the message says why and what to do."""
@@ -43,7 +45,8 @@ def files_of(case) -> list[tuple[str, Path]]:
     case, and where they are."""
     folder, drawn = Path(case.file).parent, (mesh.file for mesh in case.meshes.values())
     measured = (one.file for one in case.experiments.values() if lies_in(folder, one.file))
-    names = dict.fromkeys([*case.use, *(series.file for series in case.series), *drawn, *measured])
+    used = (name for name in case.use if not name.startswith(PYTHON))
+    names = dict.fromkeys([*used, *(series.file for series in case.series), *drawn, *measured])
     return [(name, folder / name) for name in names]
 
 

@@ -7,12 +7,18 @@ from pydantic_core import PydanticCustomError
 
 from psph.case.keys import Axis, Name, Table, Vector, key
 
+MOVES_WITH = key(
+    "the moving wall or the body that carries it along, and turns it; places are then those of the start",
+    None,
+    otherwise="it stays where it is in space",
+)
+
 
 class Force(Table):
-    """Force and moment of the fluid on walls and bodies."""
+    """Force and moment of the fluid on walls, bodies and solids."""
 
     on: Annotated[tuple[Name, ...], Strict(False)] = key(
-        "names of walls and bodies, taken together", min_length=1
+        "names of walls, bodies and solids in a fluid, taken together", min_length=1
     )
     about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
 
@@ -22,6 +28,7 @@ class Level(Table):
 
     foot: Vector = key("the lower end of the line, from which the level is counted", unit="m")
     top: Vector = key("its upper end", unit="m")
+    moves_with: Name | None = MOVES_WITH
 
     @model_validator(mode="after")
     def _has_a_length(self) -> Self:
@@ -43,6 +50,7 @@ class Point(Table):
     fields: Annotated[tuple[Literal["pressure", "density", "velocity"], ...], Strict(False)] = key(
         "what is measured", ("pressure", "velocity"), min_length=1
     )
+    moves_with: Name | None = MOVES_WITH
 
 
 class Sensor(Table):
@@ -51,6 +59,7 @@ class Sensor(Table):
     position: Vector = key("its centre, on the face of the wall", unit="m")
     axis: Axis = key("the direction that it faces, across the wall")
     diameter: float = key("its diameter", unit="m", gt=0)
+    moves_with: Name | None = MOVES_WITH
 
 
 class Flow(Table):

@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from psph.case.errors import CaseError, dotted
+from psph.case.given import names_of, not_given
 from psph.case.profiles import OFF, fill
 from psph.errors import LONGEST_QUOTE, shortened
 
 if TYPE_CHECKING:
     from psph.case.model import Case
+    from psph.physics.catalogue import Catalogue
 
 BARE_WORD = re.compile(r"[A-Za-z][\w.-]*")
 PLACE_IN_LIST = re.compile(r"[0-9]{1,9}")
@@ -51,26 +53,42 @@ class Override(NamedTuple):
     made: tuple[str | int, ...]
 
 
-def load(path: str | Path, overrides: Sequence[str] = (), option: str = "--set") -> "Case":
+def load(
+    path: str | Path,
+    overrides: Sequence[str] = (),
+    option: str = "--set",
+    given: "Catalogue | None" = None,
+) -> "Case":
     """The case in a TOML file, checked and with its defaults filled in.
 
     ``overrides`` are strings ``dotted.key=value`` with the value as in TOML; a bare word is a
-    text, and ``off`` takes the key out; ``option`` is what the person gave them with.  A profile
+    text, and ``off`` takes the key out; ``option`` is what the person gave them with.  ``given`` are
+    effects and the like that a script brings (psph.case.given).  A profile
     or scheme gives way to the keys of the file that names it; one that is an override has the file
     give way.  Raises CaseError with one line for every fault found.
     """
+    file = str(path)
+    return checked(file, tables_of(file), overrides, option, given)
+
+
+def tables_of(path: str | Path) -> dict[str, Any]:
+    """What stands in a case file, not yet checked.  Raises CaseError where that is no TOML."""
     file = str(path)
     data = _read(file)
     if CALLED_A_CHECKPOINT.fullmatch(stem := Path(file).stem):
         raise CaseError(
             [f"{file}: its frames would be called {stem}.h5, as a checkpoint is; rename the file"]
         )
-    case = checked(file, data, overrides, option)
-    case._file = file
-    return case
+    return data
 
 
-def checked(file: str, data: dict[str, Any], overrides: Sequence[str] = (), option: str = "--set") -> "Case":
+def checked(
+    file: str,
+    data: dict[str, Any],
+    overrides: Sequence[str] = (),
+    option: str = "--set",
+    given: "Catalogue | None" = None,
+) -> "Case":
     """The case that the tables ``data`` make, which are changed; as :func:`load`.
 
     ``file`` is what messages call them.
@@ -96,12 +114,19 @@ def checked(file: str, data: dict[str, Any], overrides: Sequence[str] = (), opti
 
     used = data.get("use", [])
     names = [name for name in used if isinstance(name, str)] if isinstance(used, list) else []
-    catalogue = catalogue_of(file, names)
+    here = names_of(given) if given else []
+    if missing := list(not_given(names, here)):
+        raise CaseError([f"{file}: use: {says}" for says in missing])
+    if here:
+        data["use"] = list(dict.fromkeys([*names, *here]))
+    catalogue = catalogue_of(file, names, given)
     model = case_model(catalogue)
     try:
-        return model.model_validate(data, context=Path(file).parent)
+        case = model.model_validate(data, context=Path(file).parent)
     except ValidationError as error:
         raise CaseError(messages(error, data, model.model_json_schema(), source, filled)) from None
+    case._file = file
+    return case
 
 
 def _with(file: str, option: str, text: str) -> str:

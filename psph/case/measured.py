@@ -28,6 +28,8 @@ def gauged(case) -> Iterator[Finding]:
         if getattr(asked, "axis", None) is not None and asked.axis not in axes:
             where = f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}"
             yield ("gauges", name, gauge.kind, "axis"), asked.axis, where
+        if says := _cannot_carry(case, getattr(asked, "moves_with", None)):
+            yield ("gauges", name, gauge.kind, "moves_with"), asked.moves_with, says
         if gauge.motion and gauge.motion.of not in case.bodies:
             says = f"no body has this name; {advise(gauge.motion.of, case.bodies)}"
             yield ("gauges", name, "motion", "of"), gauge.motion.of, says
@@ -39,8 +41,11 @@ def gauged(case) -> Iterator[Finding]:
             yield ("gauges", name, "force"), ..., says
         for place, wall in enumerate(gauge.force.on if gauge.force else ()):
             loc = ("gauges", name, "force", "on", place)
+            if wall in case.solids and case.fluids:
+                continue
             if wall not in case.boundaries:
-                yield loc, wall, f"no wall or body has this name; {advise(wall, case.boundaries)}"
+                known = {**case.boundaries, **(case.solids if case.fluids else {})}
+                yield loc, wall, f"no wall or body has this name; {advise(wall, known)}"
             elif (condition := case.boundaries[wall].condition) not in BEARING:
                 known = " or ".join(f'"{one}"' for one in BEARING)
                 yield (
@@ -48,6 +53,19 @@ def gauged(case) -> Iterator[Finding]:
                     wall,
                     f'a wall with condition = "{condition}" bears no force; take {known}',
                 )
+
+
+def _cannot_carry(case, name: str | None) -> str | None:
+    """Why what has a name cannot carry a gauge along, in words; None where it can, or there is no name."""
+    if name is None:
+        return None
+    if name not in case.boundaries:
+        return f"no wall or body has this name; {advise(name, case.boundaries)}"
+    if name in case.walls and not case.walls[name].motion:
+        return "this wall stands still; give it a motion, or remove moves_with"
+    if not all(part.is_rigid for part in case.boundaries[name].motion or () if len(part.ways) == 1):
+        return "this wall deforms and carries nothing along; remove moves_with"
+    return None
 
 
 def due(case) -> Iterator[Finding]:

@@ -25,7 +25,7 @@ from psph.case.rheology import Rheology
 from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
-from psph.case.solids import Solid
+from psph.case.solids import Anvil, Solid
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.physics.walls.conditions import CONDITIONS, DYNAMIC
@@ -205,9 +205,8 @@ class Case(Table):
         {},
         max_length=MANY,
     )
-    solids: dict[Name, Solid] = key(
-        "the elastic solids by name; so far a case has fluids or solids", {}, max_length=MANY
-    )
+    solids: dict[Name, Solid] = key("the elastic solids by name: alone, or in fluids", {}, max_length=MANY)
+    anvils: dict[Name, Anvil] = key("rigid planes that solids may hit, by name", {}, max_length=MANY)
     walls: dict[Name, Wall] = key(
         "the walls by name: particles that the fluid runs into", {}, max_length=MANY
     )

@@ -3,7 +3,7 @@
 import math
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
 import numpy as np
 from pydantic import (
@@ -33,6 +33,8 @@ PADDLES = ("piston", "flap", "irregular", "solitary")
 
 BUILT_IN = ("translation", "rotation", "sinusoid", "acceleration", "series", *PADDLES)
 """Keys of the parts that psph itself has."""
+
+RADIANS = "radians"
 
 MOST_PARTS = 100
 """Of a motion: each is evaluated in every step."""
@@ -162,10 +164,11 @@ class Series(Turning):
         max_length=3,
     )
     angle: Text | None = key(
-        "name of its column of angles, in rad; the first row is as the wall stands",
+        "name of its column of angles; the first row is as the wall stands",
         None,
         otherwise="it does not turn",
     )
+    angle_unit: Literal[RADIANS, "degrees"] = key("the unit of that column", RADIANS)
     center: Vector | None = CENTER
     axis: Vector | None = AXIS
 
@@ -199,6 +202,8 @@ class Series(Turning):
         """Read the file; the context of the validation is the folder of the case."""
         if self.displacement is None and self.angle is None:
             raise _fault("give displacement or angle: the names of columns")
+        if self.angle is None and self.angle_unit != RADIANS:
+            raise _fault("angle_unit is of a column of angles; give angle, or remove it")
         try:
             self._found = beside(info.context or Path(), self.file, "a CSV file", (".csv", ".txt", ".dat"))
             self._law = self._tabulated()
@@ -213,7 +218,7 @@ class Series(Turning):
         places = len(self.displacement or ())
         ways[:, :places] = rows[:, 1 : 1 + places]
         if self.angle:
-            ways[:, 3] = rows[:, -1]
+            ways[:, 3] = rows[:, -1] if self.angle_unit == RADIANS else np.radians(rows[:, -1])
         law = Tabulated(rows[:, 0], ways - ways[0])
         if not np.isfinite(law.pieces).all():
             raise Unfit(

@@ -18,9 +18,9 @@ HEAD = """\
 
 <!-- Written by `python -m psph.case.reference > docs/case.md`; change the models instead. -->
 
-A case is a TOML file with the keys that differ from the defaults. Units are SI. psph refuses unknown
-keys, texts in place of numbers, and `nan` or `inf`. Lengths, points and velocities are lists with one
-number per dimension. Numbers other than 0 have sizes between 1e-30 and 1e30.
+A case is a TOML file with the keys that differ from the defaults. Units are SI. psph refuses unknown keys,
+texts in place of numbers, and `nan` or `inf`. Lengths, points and velocities are lists with one number per
+dimension. Numbers other than 0 have sizes between 1e-30 and 1e30.
 
 No key holds a formula or a command, but `use` names Python files, and `run`, `resume`, `check`, `explain`
 and `study` execute them with all your rights: **read the files of a stranger before you even check their
@@ -29,17 +29,17 @@ name, those of `[experiments]` and of motions and geometry files ([geometry.md](
 numbers. All of them must be in the case's folder or below, after links are resolved; `study --files DIR`
 allows another folder for the experiments.
 
-A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a
-case without running it; `run/cases/` holds examples.
+A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a case
+without running it; `run/cases/` holds examples.
 
-An effect is on when its key is there; `{}` takes all its defaults. A bare value stands for the
-first key of its table: `free_surface = 0.9` means `free_surface = { threshold = 0.9 }`.
+An effect is on when its key is there; `{}` takes all its defaults. A bare value stands for the first key of
+its table: `free_surface = 0.9` means `free_surface = { threshold = 0.9 }`.
 
 A `scheme` sets the keys that the case does not give itself; without one it is `"stable"`, the default
-scheme ([scheme.md](scheme.md)). A `profile` changes a few keys of the default
-scheme, towards speed or accuracy: [accuracy.md](accuracy.md#profiles) has the keys and what they cost.
-`"off"` switches off an effect of either. Given for one run, `--set profile=reference` or `--set
-scheme=sph`, they replace the keys of the file.
+scheme ([scheme.md](scheme.md)). A `profile` changes a few keys of the default scheme, towards speed or
+accuracy: [accuracy.md](accuracy.md#profiles) has the keys and what they cost. `"off"` switches off an
+effect of either. Given for one run, `--set profile=reference` or `--set scheme=sph`, they replace the keys
+of the file.
 """
 
 COLUMNS = ("key", "value", "default", "unit", "meaning")

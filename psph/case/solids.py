@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Literal
 
-from psph.case.findings import Finding
+from psph.case.findings import Finding, one_sided
 from psph.case.keys import Name, Table, Vector, key
 from psph.case.matter import Matter
 from psph.case.shapes import Shape
@@ -17,6 +17,33 @@ class SolidLoad(Table):
     force: Vector = key("the whole force; in 2D per metre of depth", unit="N")
 
 
+class Strength(Table):
+    """The yield stress of Johnson and Cook: (A + B ε^n)(1 + C ln max(rate, 1))(1 − T*^m)."""
+
+    yield_stress: float = key("A, at no plastic strain", unit="Pa", gt=0)
+    hardening: float = key("B", 0.0, unit="Pa", ge=0)
+    exponent: float = key("n", 1.0, unit="1", gt=0)
+    rate: float = key("C, of the resistance to strain faster than 1/s", 0.0, unit="1", ge=0)
+    softening: float = key("m, of the softening by heat", 1.0, unit="1", gt=0)
+    melting: float = key(
+        "how far the melting point is above the temperature at the start", 1e9, unit="K", gt=0
+    )
+    heat_capacity: float | None = key(
+        "heat capacity by mass; plastic work then heats the solid, and no heat flows",
+        None,
+        unit="J/(kg K)",
+        otherwise="the temperature stays",
+        gt=0,
+    )
+
+
+class Anvil(Table):
+    """A rigid, frictionless plane, endless, that solids may hit."""
+
+    at: Vector = key("a point of the plane", unit="m")
+    normal: Vector = key("direction out of it, towards the solids, of any length", unit="1")
+
+
 class Solid(Matter):
     """An elastic solid: total Lagrangian SPH."""
 
@@ -26,6 +53,21 @@ class Solid(Matter):
     poisson: float = key("Poisson's ratio ν; in 2D the solid is in plane strain", unit="1", gt=-1, lt=0.5)
     law: Literal[tuple(LAWS)] = key(
         "saint-venant-kirchhoff: Hooke's law for large rotations; neo-hookean: rubber", next(iter(LAWS))
+    )
+    yield_stress: float | None = key(
+        "von Mises stress at which it yields (J2 plasticity)",
+        None,
+        unit="Pa",
+        otherwise="it is elastic",
+        gt=0,
+    )
+    hardening: float = key(
+        "growth H of the yield stress with the equivalent plastic strain", 0.0, unit="Pa", ge=0
+    )
+    johnson_cook: Strength | None = key(
+        "a yield stress that depends on strain, rate and heat, in the place of yield_stress",
+        None,
+        otherwise="it is elastic, or yields at yield_stress",
     )
     damping: float = key("viscosity η of the stress ηĖ of Kelvin and Voigt", 0.0, unit="Pa s", ge=0)
     hourglass: float = key(
@@ -44,22 +86,33 @@ class Solid(Matter):
         )
 
 
-ALONE = "solids are simulated by themselves so far: contact and water come later; remove one of the two"
+OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
+
+ALONE = "nothing is known of contact between solids and these; remove one of the two"
 
 
 def elastic(case) -> Iterator[Finding]:
     """Solids that cannot be, in a case with space.dimensions."""
     if not case.solids:
+        if case.anvils:
+            yield ("anvils",), ..., "nothing feels them but solids; remove them, or give [solids.NAME]"
         return
+    yield from _yielding(case)
+    for name, anvil in case.anvils.items():
+        if not any(anvil.normal):
+            yield ("anvils", name, "normal"), anvil.normal, "has no direction; give the way out of the plane"
     here = ("solids",)
     if case.space.dimensions == 1:
         yield here, ..., "solids need two or three dimensions"
-    for name in ("fluids", "walls", "bodies", "regions"):
+    for name in ("bodies", "regions", "anvils" if case.fluids else "walls"):
         if getattr(case, name, None):
             yield (name,), ..., ALONE
     if case.space.symmetry:
         yield ("space", "symmetry"), case.space.symmetry, "mirrors know of no solids; draw the whole solid"
-    if case.physics.sound_speed is not None:
+    for key_of in one_sided(case) if case.fluids else ():
+        says = f"{key_of} does not push back what pushes, so that no force on a solid is known; take another"
+        yield here, ..., says
+    if case.physics.sound_speed is not None and not case.fluids:
         says = "solids have waves of their own, by young and poisson; remove this key"
         yield ("physics", "sound_speed"), case.physics.sound_speed, says
     if case.frame.motion:
@@ -74,3 +127,17 @@ def elastic(case) -> Iterator[Finding]:
                 f"{len(rows)} rows in {case.space.dimensions}D; give one for each component of the velocity"
             )
             yield (*here, name, "velocity_gradient"), rows, says
+
+
+def _yielding(case) -> Iterator[Finding]:
+    """Contradictions between the keys of a solid that yields."""
+    for name, solid in case.solids.items():
+        here, table = ("solids", name), solid.johnson_cook
+        if table and solid.yield_stress is not None:
+            says = "johnson_cook has a yield_stress of its own; remove one of the two"
+            yield (*here, "yield_stress"), solid.yield_stress, says
+        if solid.hardening and solid.yield_stress is None:
+            says = "an elastic solid does not harden; give yield_stress, or put it into johnson_cook"
+            yield (*here, "hardening"), solid.hardening, says
+        if (table or solid.yield_stress is not None) and solid.law != next(iter(LAWS)):
+            yield (*here, "law"), solid.law, OF_METALS

@@ -1,7 +1,7 @@
 """A run's folder, read back: finished or still running."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -18,12 +18,13 @@ T = TypeVar("T")
 class Run:
     """What a run has left in ``folder`` so far; every call reads again.
 
-    Raises NotThere with one line when there is nothing to read.
+    ``name`` is that of the case, where the folder may hold the files of several.  Raises NotThere with one
+    line when there is nothing to read.
     """
 
-    def __init__(self, folder: Path):
+    def __init__(self, folder: Path, name: str | None = None):
         self.folder = Path(folder)
-        found = sorted(self.folder.glob("*.h5"))
+        found = sorted(self.folder.glob("*.h5" if name is None else f"{name}.h5"))
         found = [path for path in found if path.with_suffix(".xmf").exists()] or found
         if len(found) != 1:
             names = ", ".join(path.name for path in found) or "none"
@@ -47,6 +48,19 @@ class Run:
     def times(self) -> np.ndarray:
         """Times of the complete frames, s."""
         return _read(self.path, lambda file: np.array([_time(file, name) for name in _whole(file)]))
+
+    def nearest(self, times: Sequence[float]) -> list[int]:
+        """The frames nearest to ``times`` s, each once.  NotThere before the first or beyond the last."""
+        there = self.times
+        first, last = float(there[0]), float(there[-1])
+        half = 0.5 * (last - first) / max(len(there) - 1, 1)
+        for asked in times:
+            if not first - half <= asked <= last + half:
+                raise NotThere(
+                    f"{self.path}: --times {asked:g}: there are frames from {first:g} to {last:g} s; "
+                    "give times between these"
+                )
+        return sorted({int(np.abs(there - asked).argmin()) for asked in times})
 
     @property
     def fields(self) -> list[str]:
@@ -93,6 +107,10 @@ class Run:
     def log(self) -> dict[str, np.ndarray]:
         """The columns of ``log.csv`` by name."""
         return _columns(self.folder / LOG)
+
+    def table(self, name: str) -> dict[str, np.ndarray]:
+        """The columns of another table by name; empty if there is no such file."""
+        return _columns(self.folder / name)
 
     def errors(self) -> dict[str, np.ndarray]:
         """The columns of ``errors.csv`` by name; empty if the case has no exact solution."""

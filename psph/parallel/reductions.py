@@ -17,6 +17,11 @@ def alone() -> MPI.Comm:
     return MPI.COMM_SELF
 
 
+def world() -> MPI.Comm:
+    """The communicator of all ranks that mpirun started; of one where there was none."""
+    return MPI.COMM_WORLD
+
+
 def largest(comm: MPI.Comm, values) -> np.ndarray:
     """The largest of each value over all ranks; collective."""
     found = np.array(values, dtype=np.float64)

@@ -37,6 +37,7 @@ from psph.physics.order.potential import LocalPotential, PairPotential
 from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
+from psph.physics.solid.anvil import Anvils
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.physics.walls.dry import DryWall
@@ -71,7 +72,7 @@ class Catalogue(NamedTuple):
     kernels: tuple[Entry, ...] = ()
     """Smoothing kernels beside those of psph.smoothing, ``space.kernel=NAME``."""
     tables: tuple[Entry, ...] = ()
-    """Tables of numbers that a run writes as NAME.csv, ``tables.NAME``: psph.run.record."""
+    """Tables of numbers that a run writes as NAME.csv, ``tables.NAME``: psph.runs.record."""
 
     def with_more(self, other: "Catalogue") -> "Catalogue":
         """All that either of two offers."""
@@ -133,6 +134,7 @@ CATALOGUE = (
     Entry("physics.central_force", CentralForce),
     Entry("physics.damping_zone", DampingZone),
     Entry("frame.motion", MovingFrame),
+    Entry("anvils.*", Anvils),
     Entry("physics.free_surface", FreeSurface),
     Entry("physics.tension_floor", TensionFloor),
     Entry("physics.background_pressure", BackgroundPressure),

@@ -36,6 +36,8 @@ class Facts(Protocol):
     """Fluids and walls (psph.scene.species.Species)."""
     rheologies: Sequence[Any]
     """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
+    anvils: Sequence[Any]
+    """A point of each rigid plane that solids may hit in m, and the unit vector out of it."""
     has_free_surface: bool
     lowest_pressure: float
     """Of a fluid at the start, Pa."""

@@ -46,6 +46,12 @@ class Elastic(NamedTuple):
     kind = SOLID
 
 
+class Immersed(NamedTuple):
+    """Particles of a solid in a fluid, moved in steps of its own: to the fluid a wall that moves."""
+
+    kind = SOLID
+
+
 class Fixed(NamedTuple):
     """Particles stay where they are."""
 

@@ -1,7 +1,10 @@
 """Rigid bodies that cannot be in their scene, and numbers of bodies that are likely a slip."""
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
@@ -14,6 +17,9 @@ if TYPE_CHECKING:
 LIGHTEST, HEAVIEST = 0.05, 20.0
 """Densities over that of the fluid that are tried (docs/bodies.md), and beyond which little floats or is
 made."""
+
+LONGEST_ARM = 10.0
+"""Sizes of a body: a pivot farther from it is likely a slip."""
 
 MOST_SHORTER = 10.0
 """How many times bodies may shorten the time steps that sound allows without a warning."""
@@ -57,8 +63,55 @@ def period_faults(scene: "Scene") -> Iterator[str]:
                 )
 
 
+def _far_points(scene: "Scene") -> Iterator[str]:
+    """A line for each point told of a body that is far from it, over its size."""
+    half = 0.5 * scene.spacing
+    ends = {
+        name: (scene.census.lowest[number] - half, scene.census.highest[number] + half)
+        for number, name in enumerate(scene.case.bodies, scene.layout.first_body)
+    }
+    told = [
+        (f"bodies.{name}.{key}", getattr(table, key), name, sizes)
+        for name, table in scene.case.bodies.items()
+        for key, sizes in (("centre", 1.0), ("pivot", LONGEST_ARM))
+    ]
+    for name, body in scene.case.bodies.items():
+        for line, table in body.lines.items():
+            told.append((f"bodies.{name}.lines.{line}.at", table.at, name, 1.0))
+            told.append((f"bodies.{name}.lines.{line}.anchor", table.anchor, table.to, 1.0))
+    for key, point, name, sizes in told:
+        if point is None or name is None:
+            continue
+        low, high = ends[name]
+        size = math.dist(low, high)
+        away = math.hypot(*np.maximum(np.maximum(low - point, point - high), 0.0))
+        if away > sizes * size:
+            yield (
+                f"{key}: lies {away:.3g} m from bodies.{name}, which is {size:.3g} m long; correct it if it "
+                "is a point of the body"
+            )
+
+
+def _slight(scene: "Scene") -> Iterator[str]:
+    """A line for each body that is given less inertia than one of its cells would have."""
+    for one in scene.rigid_bodies:
+        if scene.case.bodies[one.name].inertia is None:
+            continue
+        moments = np.linalg.eigvalsh(np.reshape(one.inertia, (3, 3)))
+        given = one.inertia[8] if scene.dimensions == 2 else float(moments[0])
+        least = one.mass * scene.spacing**2 / 6.0
+        if given < least:
+            yield (
+                f"bodies.{one.name}.inertia: {given:.3g} kg m2 is less than its mass would have in a cube of "
+                f"one spacing, {least:.3g}; leave it out for that of its particles"
+            )
+
+
 def body_warnings(scene: "Scene") -> Iterator[str]:
-    """A line for each body whose density is likely a slip, and for steps that bodies make short."""
+    """A line for each body whose density, inertia or points are likely a slip, and for steps that bodies make
+    short."""
+    yield from _slight(scene)
+    yield from _far_points(scene)
     for one in scene.rigid_bodies:
         ratio = density_ratio(scene, one)
         if not LIGHTEST <= ratio <= HEAVIEST:

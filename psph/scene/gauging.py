@@ -18,7 +18,7 @@ BURIED = 0.5
 
 def misplaced(scene: "Scene") -> Iterator[str]:
     """A line for each point of a probe or a gauge outside the domain."""
-    for key, point in _points(scene, "position", "foot", "top"):
+    for key, point, _ in _points(scene, "position", "foot", "top"):
         if not all(low <= x <= up for low, x, up in zip(scene.lower, point, scene.upper)):
             yield (
                 f"{key}: {shown(point)} lies outside the domain {shown(scene.lower)} to "
@@ -27,9 +27,11 @@ def misplaced(scene: "Scene") -> Iterator[str]:
 
 
 def buried(scene: "Scene") -> Iterator[str]:
-    """A line for each point within a wall that stands still; a line of a gauge may begin there."""
-    solid = Solid(scene)
-    for key, point in _points(scene, "position"):
+    """A line for each point within a wall that stands still, or within what carries it; a line of a gauge
+    may begin there."""
+    still, species = Solid(scene), {one.name: one for one in scene.species}
+    for key, point, carrier in _points(scene, "position"):
+        solid = Solid(scene, species[carrier].motion) if carrier else still
         if solid.deep(np.array([point]), BURIED)[0]:
             yield f"{key}: {shown(point)} lies in a wall, where there is no fluid to measure; move it out"
 
@@ -52,22 +54,24 @@ def left_behind(scene: "Scene") -> Iterator[str]:
     moving = [scene.names[number] for number, _, _ in moving_parts(scene)]
     sensors = [(name, gauge.sensor) for name, gauge in scene.case.gauges.items() if gauge.sensor]
     for name, sensor in sensors if moving else ():
+        if sensor.moves_with:
+            continue
         for wall in within_reach(scene, moving, sensor.position):
             yield (
-                f"gauges.{name}.sensor: walls.{wall} moves, and a sensor stays where it is in space; let "
-                "the frame of reference move in place of the wall (frame.motion), and the sensor is on it"
+                f"gauges.{name}.sensor: walls.{wall} moves, and a sensor stays where it is in space; give "
+                f'moves_with = "{wall}", or let the frame of reference move in its place (frame.motion)'
             )
 
 
-def _points(scene: "Scene", *keys: str) -> Iterator[tuple[str, tuple[float, ...]]]:
-    """Keys of the case that name a point of a probe or a gauge, and the point, m."""
+def _points(scene: "Scene", *keys: str) -> Iterator[tuple[str, tuple[float, ...], str | None]]:
+    """Keys of the case that name a point of a probe or a gauge, the point, m, and what carries it along."""
     asked = [(f"probes.{name}", probe) for name, probe in scene.case.probes.items()]
     for name, gauge in scene.case.gauges.items():
         asked.append((f"gauges.{name}.{gauge.kind}", getattr(gauge, gauge.kind)))
     for table, one in asked:
         for key in keys:
             if (point := getattr(one, key, None)) is not None:
-                yield f"{table}.{key}", point
+                yield f"{table}.{key}", point, getattr(one, "moves_with", None)
 
 
 def shown(x: Sequence[float]) -> str:

@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.case.keys import AXES, Table
-from psph.case.motion import BUILT_IN
+from psph.case.motion import BUILT_IN, RADIANS
 from psph.physics.motion import is_free, is_rigid
 from psph.physics.rigid.bodies import Body
+from psph.physics.rigid.motion import Part, Rigid
 from psph.physics.rigid.pose import PLACE, maps
 
 FARTHEST = 2e9
@@ -141,18 +142,35 @@ def motion_faults(scene) -> Iterator[str]:
 
 def motion_lines(scene) -> Iterator[str]:
     """What moves, in words, for `explain`."""
-    tables: dict[str, Any] = {key: (found, scene.parts[n]) for n, key, found in moving_parts(scene)}
+    tables: dict[str, Any] = {
+        key: (found, scene.parts[n], scene.species_in_motion[n]) for n, key, found in moving_parts(scene)
+    }
     if framed := frame_sweep(scene):
-        tables["frame"] = (framed, scene.case.frame)
-    for key, (found, table) in tables.items():
+        tables["frame"] = (framed, scene.case.frame, scene.frame)
+    for key, (found, table, moved) in tables.items():
         parts = [_part_in_words(part) for part in table.motion]
         yield f"  motion      {key}: {'; then '.join(parts)}"
         yield (
             f"              at most {found.way:.3g} m from its start, {found.speed:.3g} m/s "
             f"({found.speed / scene.sound_speed:.2g} c), {found.acceleration:.3g} m/s2"
         )
+        motion = moved.motion if isinstance(moved, Body) else moved
+        yield from (f"              {line}" for line in _turns_in_words(motion, scene.case.time.end))
         if found.jump > 0.0:
             yield f"              it begins at once with {found.jump:.3g} m/s"
+
+
+def _turns_in_words(motion, end: float) -> Iterator[str]:
+    """How far and how fast each part of a motion turns that does."""
+    parts = motion.parts if isinstance(motion, Rigid) else ()
+    for part in (one for one in parts if isinstance(one, Part)):
+        told = [part.law.ways(part.schedule, t) for t in moments(end, MOMENTS)]
+        angle, rate = (max(abs(one[k][3]) for one in told) for k in (0, 1))
+        if angle or rate:
+            yield (
+                f"turns by at most {angle:.3g} rad ({math.degrees(angle):.3g} degrees), at {rate:.3g} rad/s "
+                f"({math.degrees(rate):.3g} degrees/s)"
+            )
 
 
 def _part_in_words(part) -> str:
@@ -161,7 +179,7 @@ def _part_in_words(part) -> str:
     told = (
         f"{name} {_plain(value)}"
         for name, value in getattr(part, part.way)
-        if value is not None and not (name == "phase" and value == 0.0)
+        if value is not None and (name, value) not in (("phase", 0.0), ("angle_unit", RADIANS))
         if not isinstance(value, Table)  # of which other lines tell
     )
     when = [f"from {part.start:g} s"] if part.start else []

@@ -55,7 +55,8 @@ def pastes(scene: "Scene") -> Iterator[Paste]:
         thickness = _thickness(scene, place)
         pull = fluid.density * sum(g * g for g in scene.gravity) ** 0.5
         rate = scene.starting_speed / thickness
-        stress = max(pull * thickness, law.viscosity(rate, 0.0, 0.0) * rate)
+        by_weight = fluid.density * _shearing(scene, place) * thickness
+        stress = max(by_weight, law.viscosity(rate, 0.0, 0.0) * rate)
         yield Paste(f"fluids.{name}.rheology", law, thickness, pull, stress, law.rate_under(stress))
 
 
@@ -74,9 +75,38 @@ def held_speeds(scene: "Scene", pull: float, gap: float, depth: float) -> Iterat
 
 def _thickness(scene: "Scene", place: int) -> float:
     """The smallest extent of a fluid along the axes that do not repeat, or along all, m."""
-    sizes = scene.census.highest[place] - scene.census.lowest[place] + scene.spacing
+    sizes = _sizes(scene, place)
+    return sizes[_across(scene, sizes)]
+
+
+def _shearing(scene: "Scene", place: int) -> float:
+    """The acceleration that shears a fluid over its thickness, m/s².
+
+    Of a layer that gravity pulls along its length, on a slope or in a channel, g∥ + g⊥ H/L: H is its
+    thickness and L its length, without end along an axis that repeats; between plates half of g∥, whose
+    stress is zero in the middle.  Else all of g: a heap or a column that stands upright.
+    """
+    sizes = _sizes(scene, place)
+    across = _across(scene, sizes)
+    others = [d for d in range(scene.dimensions) if d != across]
+    along = math.hypot(*(scene.gravity[d] for d in others))
+    if not along:
+        return math.hypot(*scene.gravity)
+    if scene.driven and not scene.has_free_surface:
+        return 0.5 * along
+    pulled = [sizes[d] if scene.periods[d] is None else math.inf for d in others if scene.gravity[d]]
+    return along + abs(scene.gravity[across]) * sizes[across] / max(min(pulled), sizes[across])
+
+
+def _sizes(scene: "Scene", place: int) -> list[float]:
+    """The extents of a fluid along all axes, m."""
+    return (scene.census.highest[place] - scene.census.lowest[place] + scene.spacing).tolist()
+
+
+def _across(scene: "Scene", sizes: list[float]) -> int:
+    """The axis along which ``sizes`` are smallest, of those that do not repeat, or of all."""
     open_axes = [d for d, period in enumerate(scene.periods) if period is None]
-    return float(min(sizes[d] for d in open_axes or range(scene.dimensions)))
+    return min(open_axes or range(scene.dimensions), key=sizes.__getitem__)
 
 
 def rheology_lines(scene: "Scene") -> Iterator[str]:

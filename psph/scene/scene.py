@@ -13,12 +13,13 @@ from psph.case.parameters import as_numbers, chosen, last_part
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.facts import SOUND_OVER_SPEED
-from psph.physics.motion import Clamped, Elastic, Fixed, Free
+from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed
 from psph.physics.rigid.bodies import Body
-from psph.physics.solid.material import MADE_OF, Solid, solid_of
+from psph.physics.solid.material import Solid
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.bodies import rigid_bodies
 from psph.scene.driven import creeping_speed, driven_speed
+from psph.scene.immersed import is_immersed, shown_by
 from psph.scene.kicked import kicked_velocities, kicks_of
 from psph.scene.lattice import lattice_around
 from psph.scene.meshes.report import Drawn, drawn, sites_in
@@ -28,6 +29,7 @@ from psph.scene.particles import ParticleSet, fill
 from psph.scene.pressures import range_of_pressure, weight_above
 from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
+from psph.scene.solids import anvils_of, solids_of
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.walls import has_free_surface
 from psph.smoothing import kernel, normalised
@@ -38,13 +40,12 @@ from psph.theory.solutions.setting import Setting
 class Scene:
     """A description of the initial state of a case; particles are created on request.
 
-    The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the
-    domain in m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may
-    hold a particle, ``planes`` its planes across ``axis``, ``mirror_planes`` its
-    mirrors; ``walls`` are those with particles, by name, ``boundaries`` these and the rigid
-    bodies, ``clamped`` the elastic solids with a part that stays;
-    ``parts`` has the tables of the case that hold particles, in the order of ``layout``; ``meshes`` the
-    geometry files that draw shapes.
+    The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the domain in
+    m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may hold a particle,
+    ``planes`` its planes across ``axis``, ``mirror_planes`` its mirrors; ``walls`` those with particles, by
+    name, ``boundaries`` these and the rigid bodies, ``clamped`` the elastic solids with a part that stays;
+    ``parts`` the tables of the case that hold particles, in the order of ``layout``; ``meshes`` the files
+    of shapes.
     """
 
     def __init__(self, case: Case):
@@ -58,6 +59,7 @@ class Scene:
             self.kernel = normalised(self.kernel, self.spacing, space.dimensions)
         self.walls = {name: wall for name, wall in case.walls.items() if wall.condition != MIRROR}
         self.boundaries: dict[str, Any] = {**self.walls, **case.bodies}
+        self.anvils = anvils_of(case)
         self.clamped = {name: solid for name, solid in case.solids.items() if solid.clamped}
         held = (solid.held for solid in self.clamped.values())
         moving = (*case.fluids.values(), *case.solids.values())
@@ -145,9 +147,8 @@ class Scene:
 
     @cached_property
     def undriven_speed(self) -> float:
-        """The largest of √(2gH), free fall over the height of all that moves freely (with the frame's
-        acceleration beside g),
-        and any speed of the start or of a wall or body that moves as it is told, m/s."""
+        """The largest of √(2gH), free fall over the height of all that moves freely (with the acceleration of
+        the frame beside g), and any speed of the start or of what moves as it is told, m/s."""
         return max(falling_speed(self), self.starting_speed, largest_speed(self))
 
     @cached_property
@@ -245,12 +246,12 @@ class Scene:
                 start.law,
                 getattr(self.parts[index], "no_slip", False),
                 getattr(self.parts[index], "condition", DYNAMIC),
-                name in self.case.loaded,
+                name in self.case.loaded or is_immersed(self, index),
                 self.layout.solid_of(index),
                 number_of(self.parts[source], self.rheologies),
                 self.layout.elastic_of(index),
             )
-            for index, (name, source, start) in enumerate(zip(self.names, self._sources, self.starts))
+            for index, (name, source, start) in enumerate(zip(self.names, shown_by(self), self.starts))
         )
 
     @cached_property
@@ -261,7 +262,9 @@ class Scene:
     def _motion(self, index: int):
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""
         if index < self.layout.movers:
-            return Free() if index < self.layout.fluids else Elastic()
+            if index < self.layout.fluids:
+                return Free()
+            return Immersed() if self.case.fluids else Elastic()
         if index < self.layout.first_wall:
             return Clamped()
         if index >= self.layout.first_body:
@@ -306,10 +309,7 @@ class Scene:
     @cached_property
     def elastic_solids(self) -> tuple[Solid, ...]:
         """What the elastic solids of the case are made of."""
-        return tuple(
-            solid_of(name, **{key: getattr(table, key) for key in MADE_OF})
-            for name, table in self.case.solids.items()
-        )
+        return solids_of(self.case)
 
     @cached_property
     def tables(self) -> dict[str, Any]:
@@ -335,7 +335,7 @@ class Scene:
     @cached_property
     def starts(self) -> tuple[Start, ...]:
         """The state of each material before the first step; a wall's is that of its fluid."""
-        return tuple(map(self._start, self._sources))
+        return tuple(map(self._start, shown_by(self)))
 
     @cached_property
     def velocities(self) -> tuple[tuple[float, ...], ...]:
@@ -351,22 +351,14 @@ class Scene:
 
     @property
     def hydrostatic_walls(self) -> list[tuple[int, int]]:
-        """(index of the wall, index of its fluid) where a wall continues a still column."""
-        walls = list(enumerate(self._sources))[self.layout.first_wall :]
+        """(index of the wall, index of its fluid) where a wall, or a solid, continues a still column."""
+        walls = list(enumerate(shown_by(self)))[self.layout.fluids :]
         return [(wall, fluid) for wall, fluid in walls if self.starts[fluid].weight]
 
     @property
     def wall_reach(self) -> int:
         """Depth in sites to which a wall acts on a fluid, and one more."""
         return math.ceil(self.kernel.support * self.smoothing_length / self.spacing) + 1
-
-    @property
-    def _sources(self) -> list[int]:
-        """For each material the index of the one whose density and state it has."""
-        fluids = list(self.case.fluids)
-        held = [self.layout.fluids + solid for solid in self.layout.clamps]
-        continued = [fluids.index(one.continues) for one in self.boundaries.values()]
-        return [*range(self.layout.movers), *held, *continued]
 
     def _law(self, part):
         """The equation of state of a material: its own, or that of all."""

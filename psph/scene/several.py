@@ -34,7 +34,7 @@ def _walls_of_another_fluid(scene) -> Iterator[str]:
         for fluid, name in enumerate(names):
             beside = set(held[scene.layout.touching(fluid, first, last)].tolist())
             found |= {(wall, name) for wall in beside}
-    for number, body in enumerate(scene.boundaries.values(), len(names)):
+    for number, body in enumerate(scene.boundaries.values(), scene.layout.first_wall):
         own = scene.case.fluids[body.continues]
         for name in names:
             density = scene.case.fluids[name].density

@@ -97,7 +97,16 @@ def solid_lines(scene: "Scene") -> Iterator[str]:
         clamped = sum(int(scene.census.sizes[n]) for n in held)
         count = int(scene.census.sizes[number]) + clamped
         yield (
-            f"  solid       {name}: {table.law}, E {table.young:g} Pa, ν {table.poisson:g}, waves of "
+            f"  solid       {name}: {_law(table)}, E {table.young:g} Pa, ν {table.poisson:g}, waves of "
             f"{one.wave_speed:.4g} m/s; {count:,} particles, {clamped:,} of them clamped, "
             f"{across} across {AXES[axis]}"
         )
+
+
+def _law(table) -> str:
+    """The law of a solid, in words."""
+    if table.johnson_cook:
+        return f"Johnson and Cook, {table.johnson_cook.yield_stress:g} Pa at no strain"
+    if table.yield_stress is None:
+        return table.law
+    return f"yields at {table.yield_stress:g} Pa, hardening {table.hardening:g} Pa"

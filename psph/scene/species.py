@@ -30,7 +30,8 @@ class Species(NamedTuple):
     (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for;
     ``rheology`` is the number of the law of its viscosity among those of the scene from 1 on, 0 where that is
     constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body from 2 on; ``elastic``
-    is the number of the elastic solid that it is of, or None.
+    is the number of the elastic solid that it is of, or None; ``shear_modulus`` in Pa that of matter whose
+    deviatoric stress evolves (psph.physics.stress), else 0.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Species(NamedTuple):
     solid: int = 0
     rheology: int = 0
     elastic: int | None = None
+    shear_modulus: float = 0.0
 
     @property
     def kind(self) -> int:

@@ -56,6 +56,7 @@ class Engine:
         self.skin = Skin(self.domain, scene.reach.skin, plan.planes) if plan.passes else Unlisted()
         self._reach = scene.reach
         self.solids = self._solids(scene) if plan.solids else None
+        self.immersion = self._immersion(scene) if plan.immersed else None
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         floating = Floating(scene, plan) if plan.floats else None
         paddles = Paddles(scene, plan) if plan.absorbs else None
@@ -84,9 +85,17 @@ class Engine:
 
         return Solids(scene, self.plan, self.store, self.domain, self.ledger)
 
+    def _immersion(self, scene):
+        """How solids move in a fluid."""
+        from psph.simulation.immersion import Immersion  # late, as above
+
+        return Immersion(self.solids, scene, self.plan, self.store)
+
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
         self._each(self._predict, time, dt, self._rules, self._view(pace), self._columns())
+        if self.immersion:
+            self.immersion.advance(time, dt, pace)
         if self.plan.evolving:
             self._each(predict_rows, dt, self.store.data, self._rows_that_evolve())
         for field in self.plan.evolving:
@@ -99,6 +108,8 @@ class Engine:
         if self.plan.evolving:
             self._each(kick_rows, dt, self.store.data, self._rows_that_evolve())
         parts = self._each(self._kick, time, dt, self._rules, self._view(pace), self._columns())
+        if self.immersion:
+            parts = [*parts, self.immersion.kick(dt)]
         return list(map(max, *parts)) if len(parts) > 1 else list(parts[0])
 
     def rebuild(self) -> None:
@@ -118,9 +129,11 @@ class Engine:
         """What particles keep of the start, from where they stand then; lists have to be there."""
         if self.solids:
             self.solids.begin()
+        if self.immersion:
+            self.immersion.begin()
 
-    def sum(self, steps: int, time: float, ghosts_are_fresh: bool) -> None:
-        """Every pass that is due in the step after ``steps``, which ends at ``time``, s.
+    def sum(self, steps: int, time: float, dt: float, ghosts_are_fresh: bool) -> None:
+        """Every pass that is due in the step of ``dt`` s after ``steps``, which ends at ``time``, s.
 
         The first of them brings ghosts up to date unless they are; each then what was written before it.
         """
@@ -135,8 +148,8 @@ class Engine:
             if one.settles:
                 self._each(settle_told, self._rules, self._view(0.0), self._columns())
             stale, written = (), written | one.written
-        if self.solids:
-            self.solids.sum(time)
+        if self.solids and not self.immersion:
+            self.solids.sum(time, dt)
 
     def push_bodies(self, time: float, dt: float) -> None:
         """The second kick of rigid bodies at ``time``, by the pushes that the last pass has summed; without a

@@ -14,6 +14,7 @@ from psph.physics.motion import (
     WORK,
     Clamped,
     Fixed,
+    Immersed,
     deforms,
     is_free,
     is_rigid,
@@ -67,6 +68,6 @@ def _number(motion, motions: tuple) -> int:
     """The number of a motion in compiled loops."""
     if is_free(motion):
         return FREE
-    if isinstance(motion, (Fixed, Clamped)):
+    if isinstance(motion, (Fixed, Clamped, Immersed)):
         return FIXED
     return RIGID if is_rigid(motion) else PRESCRIBED + _row(motion, motions)

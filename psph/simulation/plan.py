@@ -28,8 +28,9 @@ from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.contact import contact_of
-from psph.physics.solid.deformation import DRAWN, OF_SOLIDS, SMOOTHING
-from psph.physics.solid.material import STEP
+from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, SMOOTHING
+from psph.physics.solid.material import STEP, remembers
+from psph.physics.solid.plastic import OF_PLASTIC, Lasting
 from psph.scene.bodies import body_step
 from psph.simulation.calling import called_for, in_scene, why_dropped
 from psph.simulation.groups import laws, material_value, tells
@@ -73,7 +74,7 @@ Extremes = namedtuple("Extremes", (*OF_SCENE, *(f.name for f in OF_MATERIAL)))
 
 @dataclass(frozen=True)
 class Plan:
-    """What will be simulated.  It prints itself: see psph.run.explain."""
+    """What will be simulated.  It prints itself: see psph.runs.explain."""
 
     called: tuple[Called, ...]
     absent: tuple[Entry, ...]
@@ -179,8 +180,13 @@ class Plan:
 
     @property
     def moves_walls(self) -> bool:
-        """Whether walls move as they are told."""
-        return bool(self.motions or self.rigid)
+        """Whether walls move as they are told, or solids in a fluid."""
+        return bool(self.motions or self.rigid or self.immersed)
+
+    @property
+    def immersed(self) -> bool:
+        """Whether elastic solids stand in a fluid."""
+        return bool(self.solids and self.passes)
 
     @property
     def floats(self) -> bool:
@@ -206,6 +212,14 @@ class Plan:
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
         return tuple(call.effect for call in self.called if _carries(call))
+
+    @cached_property
+    def solid_laws(self) -> tuple:
+        """The laws of the solids; elastic ones beside one that yields have a memory too, and leave it."""
+        laws = tuple(one.law for one in self.solids)
+        if not remembers(self.solids):
+            return laws
+        return tuple(law if hasattr(law, "flow") else Lasting(law) for law in laws)
 
     @property
     def books_work(self) -> bool:
@@ -242,7 +256,7 @@ class Plan:
             yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
         else:
             h, factor = self.solid_smoothing_length, STEP
-        for one in self.solids:
+        for one in () if self.immersed else self.solids:
             yield one.longest_step(h, speed), f"waves in solids.{one.name}"
         if acceleration > 0.0:
             yield factor * (h / acceleration) ** 0.5, "force"
@@ -346,11 +360,13 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
 
 
 def solid_fields(scene) -> tuple[Field, ...]:
-    """What particles carry because the scene has solids, and these have loads."""
+    """What particles carry because the scene has solids, and these have loads or stand in a fluid."""
     if not scene.elastic_solids:
         return ()
     loaded = any(table.loads for table in scene.case.solids.values())
-    return (*OF_SOLIDS, *([DRAWN] if loaded else []))
+    lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
+    wet = [INERTIA] if scene.case.fluids else []
+    return (*OF_SOLIDS, *lasting, *([DRAWN] if loaded else []), *wet)
 
 
 def _carries(call: Called) -> bool:

@@ -81,6 +81,11 @@ class Poses:
                 nearest[:, d] -= period * np.rint((nearest[:, d] - now) / period)
         return nearest
 
+    def carried(self, row: int, points: np.ndarray) -> np.ndarray:
+        """Where ``points`` (n, dim) have come that moved by a row from the start, m."""
+        place = self.maps[row, PLACE]
+        return place[:, 0] + sum(points[:, e, None] * place[:, 1 + e] for e in range(self._dimensions))
+
     def turned(self, row: int) -> frozenset[int]:
         """The axes that the turn of a row mixes with others: along these, what moves repeats no more."""
         place = self.maps[row, PLACE]

@@ -13,9 +13,10 @@ from psph.composition import terms
 from psph.composition.pair import fetch, take
 from psph.composition.space import softened
 from psph.composition.terms import added
-from psph.engine.jit import call_by_number, compiled, elementwise, overload, register_jitable
+from psph.engine.jit import compiled, elementwise, overload, register_jitable
 from psph.engine.simd import spread, total, width_of
 from psph.physics.solid.deformation import ReferencePair
+from psph.simulation.solid_memory import across, advanced, energy, stress
 from psph.smoothing import slope_over_r
 from psph.vectors import (
     add,
@@ -39,13 +40,6 @@ from psph.vectors import (
     transposed_product,
     zero_like,
 )
-
-stress = call_by_number("stress")
-"""(laws, number, F, a) → P, Pa."""
-across = call_by_number("across")
-"""(laws, number, F, a) → P along z in plane strain, Pa."""
-energy = call_by_number("energy")
-"""(laws, number, F, a) → ψ, J per reference volume."""
 
 LEAST_MOMENT = 1e-9
 """Determinant of Σ V g X Xᵀ, 1 in the bulk, below which neighbours do not span space: no stress then."""
@@ -114,8 +108,9 @@ def sum_moments(first, last, weights, rows, moment):
 
 
 @compiled
-def sum_gradients(first, last, matter, weights, rows, moment, flux):
-    """F_i of the rows ``first`` to ``last``, and from it B_i into ``flux``."""
+def sum_gradients(first, last, matter, weights, rows, moment, memory, flux):
+    """F_i of the rows ``first`` to ``last``, and from it B_i into ``flux``; what yields is remembered in
+    ``memory`` (psph.simulation.solid_memory)."""
     records, lists = rows.records, rows.lists
     for k in range(np.uint64(first), np.uint64(last)):
         i = take(rows.shown, k)
@@ -130,7 +125,8 @@ def sum_gradients(first, last, matter, weights, rows, moment, flux):
         number, a = matter.number[k], i.reference
         inverse = at(moment, k)
         f = matrix_product(folded[0], inverse, a)
-        p = added(stress(matter.laws, number, f, a), drag(matter.viscosity[number], f, folded, inverse, a))
+        p = advanced(matter.laws, number, memory, k, f, a)
+        p = added(p, drag(matter.viscosity[number], f, folded, inverse, a))
         against = matrix_product(p, inverse, a)
         put(flux, k, subtract(scale(f, 0.5 * matter.stiffness[number]), against))
 
@@ -175,7 +171,7 @@ def sum_inner_forces(first, last, matter, weights, rows, force):
 
 
 @compiled
-def measure(first, last, matter, weights, rows, moment, found):
+def measure(first, last, matter, weights, rows, moment, memory, found):
     """Energy in J and Cauchy stress in Pa of the rows ``first`` to ``last``.
 
     ``found``: arrays of the energy, the components of the stress, and the von Mises stress.
@@ -201,12 +197,12 @@ def measure(first, last, matter, weights, rows, moment, found):
             off = subtract(applied(f, pair.apart), x_ij)
             misfit = misfit + pair.weight * dot(off, off)
         held = 0.25 * matter.stiffness[number] * total(misfit)
-        found[0][k] = i.volume * (energy(matter.laws, number, f, a) + held)
+        found[0][k] = i.volume * (energy(matter.laws, number, memory, k, f, a) + held)
         dilated = dot(first_row(f, a), first_row(cofactor(f, a), a))
-        p = stress(matter.laws, number, f, a)
+        p = stress(matter.laws, number, memory, k, f, a)
         cauchy = scale(product_transposed(p, f, a), 1.0 / dilated)
         put(found[1], k, cauchy)
-        found[2][k] = mises(cauchy, across(matter.laws, number, f, a) / dilated, a)
+        found[2][k] = mises(cauchy, across(matter.laws, number, memory, k, f, a) / dilated, a)
 
 
 def mises(cauchy, sigma_zz, a):

@@ -23,10 +23,12 @@ from psph.physics.solid.deformation import (
     GradientRate,
     support_of,
 )
-from psph.physics.solid.material import is_damped
+from psph.physics.solid.material import is_damped, remembers
+from psph.physics.solid.plastic import OF_PLASTIC
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import inside
 from psph.simulation.plan import NO_SOLID
+from psph.simulation.solid_memory import Memory
 from psph.simulation.solid_pairs import (
     Matter,
     Rows,
@@ -72,7 +74,7 @@ class Solids:
         self.support = support_of(self._h)
         sums = (Gradient(periods), *([GradientRate()] if damped else []))
         numbers = (np.array([getattr(s, n) for s in solids]) for n in ("stiffness", "viscosity", "density"))
-        self._matter = Matter(tuple(one.law for one in solids), sums, None, *numbers)
+        self._matter = Matter(plan.solid_laws, sums, None, *numbers)
         self._weights = Weights(own, periods, softening(Metres(periods), self._h, 0))
         self._volume = scene.spacing**d
         moving = {PLACES: d} | ({"predicted_velocity": d} if damped else {})
@@ -96,6 +98,15 @@ class Solids:
                 of[self._columns] = found
             self._moment = moment
         self._draw_loads()
+
+    @property
+    def columns(self) -> np.ndarray:
+        """Those of the rows."""
+        return self._columns
+
+    def fill_masses(self, mass: np.ndarray) -> None:
+        """The true masses of rows, kg, into the columns of all particles."""
+        mass[self._columns] = self._matter.density[self._matter.number] * self._volume
 
     def settle(self) -> None:
         """Rows and partners after particles have found new columns or ranks; the first time the reference
@@ -146,9 +157,11 @@ class Solids:
             self._put(table, "reference", 0, self.rows)
             self._bring(self.halo.channel(table.records, *table.places["reference"]))
 
-    def sum(self, time: float) -> None:
-        """The acceleration of all particles of solids at ``time``, s, where they stand; collective."""
+    def sum(self, time: float, dt: float) -> None:
+        """The acceleration of all particles of solids at ``time``, s, where they stand ``dt`` s after the
+        last sum; collective."""
         store, rows, inner = self.store, self.rows, self._inner
+        memory = self._memory(dt)
         first, second = self._tables
         with self.ledger("records"):
             for name in self._moving:
@@ -158,7 +171,7 @@ class Solids:
         with self.ledger("records"):
             self._put(second, PLACES, 0, rows)
         with self.ledger("solids"):
-            self._sum_gradients(0, inner)
+            self._sum_gradients(0, inner, memory)
         with self.ledger("halo"):
             self._finish(self._to_first)
         with self.ledger("records"):
@@ -166,7 +179,7 @@ class Solids:
             to = second.places[PLACES][0]
             second.records[rows:, to : to + end - place] = first.records[rows:, place:end]
         with self.ledger("solids"):
-            self._sum_gradients(inner, rows)
+            self._sum_gradients(inner, rows, memory)
         with self.ledger("halo"):
             self._start(self._to_second)
         with self.ledger("solids"):
@@ -198,7 +211,8 @@ class Solids:
         stress = tuple(np.zeros(n) for _ in store.rows[STRESS.name])
         found = (np.zeros(n), stress, np.zeros(n))
         matter = self._matter._replace(sums=self._matter.sums[:1])
-        self._each(self._measure, 0, n, matter, self._weights, self._around[1], self._moment, found)
+        seen = (matter, self._weights, self._around[1], self._moment, self._memory(0.0))
+        self._each(self._measure, 0, n, *seen, found)
         store[STORED.name][self._columns] = found[0]
         store[VON_MISES.name][self._columns] = found[2]
         for of, values in zip(store[STRESS.name], stress):
@@ -249,11 +263,17 @@ class Solids:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self._rises > 0.0, np.minimum(time / self._rises, 1.0), 1.0)
 
-    def _sum_gradients(self, first: int, last: int) -> None:
+    def _memory(self, dt: float) -> Memory | None:
+        """What particles remember, ``dt`` s after they last yielded; None where no solid does."""
+        if not remembers(self.plan.solids):
+            return None
+        return Memory(self._columns, *(self.store[field.name] for field in OF_PLASTIC), dt)
+
+    def _sum_gradients(self, first: int, last: int, memory: Memory | None) -> None:
         second = self._tables[1]
         flux = getattr(second.view, FLUX)
         matter, weights, around = self._matter, self._weights, self._around[0]
-        self._each(self._gradients, first, last, matter, weights, around, self._moment, flux)
+        self._each(self._gradients, first, last, matter, weights, around, self._moment, memory, flux)
 
     def _sum_forces(self, first: int, last: int) -> None:
         self._each(self._forces, first, last, self._matter, self._weights, self._around[1], self._force)

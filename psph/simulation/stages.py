@@ -50,7 +50,8 @@ def renew_lists(simulation) -> None:
 
 def sum_over_pairs(simulation) -> None:
     """Every pass over the neighbours that is due."""
-    simulation.engine.sum(simulation.steps, simulation.then, ghosts_are_fresh=not simulation.listed)
+    fresh = not simulation.listed
+    simulation.engine.sum(simulation.steps, simulation.then, simulation.dt, ghosts_are_fresh=fresh)
 
 
 def push_bodies(simulation) -> None:

@@ -52,7 +52,7 @@ class Simulation:
     step, infinite where a number is not finite.  ``word`` is asked at the end of each step for a number
     from 0 on that a rank wants all others to know; ``heard`` is the largest of them, the same on every
     rank.
-    With ``saved`` it goes on from a checkpoint (psph.run.resume), whose particles ``store``
+    With ``saved`` it goes on from a checkpoint (psph.runs.resume), whose particles ``store``
     holds where the lists were made.
     """
 
@@ -120,11 +120,11 @@ class Simulation:
         self.engine.predict(0.0, 0.0, self.pace)
         self.rebuild()
         self.engine.begin()
-        self.engine.sum(0, 0.0, ghosts_are_fresh=True)
+        self.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=True)
         if self.plan.starts_twice:  # its first verdict comes with the first sums
             self._kick_in_place()
             self.engine.predict(0.0, 0.0, self.pace)
-            self.engine.sum(0, 0.0, ghosts_are_fresh=False)
+            self.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=False)
         if self.plan.floats:
             push_bodies(self)
         if self.plan.absorbs:

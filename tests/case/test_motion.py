@@ -77,6 +77,7 @@ REFUSED = {
         series(displacement=["x"]),
         "displacement names 1 columns; give one per dimension, 2",
     ),
+    "a unit of no angle": (series(angle_unit="degrees"), "angle_unit is of a column of angles; give angle"),
     "no column at all": ("{ series = { file = 'path.csv' } }", "give displacement or angle"),
 }
 
@@ -121,6 +122,20 @@ def test_a_series_goes_through_its_rows_from_where_the_wall_stands(tmp_path, pat
         assert pose.translation == pytest.approx((1.0 + x - 0.1, y - 0.2, 0.0))
     assert np.arctan2(pose.rotation[3], pose.rotation[0]) == pytest.approx(0.2)
     assert case.versions and not draft(tmp_path, SCENE).versions  # another file is another case
+
+
+def test_angles_of_a_series_may_be_in_degrees(tmp_path, path):
+    motions = {}
+    for unit, times in (("radians", 1.0), ("degrees", 180.0 / np.pi)):
+        path(["time,angle", "0.0,0.0", *(f"{t},{times * angle}" for t, angle in ((0.5, -0.1), (2.0, 0.25)))])
+        told = f"{{ series = {{ file = 'path.csv', angle = 'angle', angle_unit = '{unit}', center = [1.0, 0.0] }} }}"
+        given = Scene(draft(tmp_path, f"{SCENE}\nmotion = {told}", "time.end=3.0"))
+        motions[unit] = given.case.walls["floor"].motion
+        lines = "\n".join(motion_lines(given))
+        assert "turns by at most 0.25 rad (14.3 degrees), at 0.3" in lines
+        assert ("angle_unit degrees" in lines) == (unit == "degrees")
+    poses = [motion_of(motion).pose(1.3).rotation for motion in motions.values()]
+    assert poses[0] == pytest.approx(poses[1], abs=1e-14) and abs(poses[0][1]) > 0.05
 
 
 def test_the_times_of_a_series_count_from_the_start_of_its_part(tmp_path, path):

@@ -7,7 +7,7 @@ from mpi4py import MPI
 
 from psph.case import load
 from psph.output.reader import Run
-from psph.run.start import run
+from psph.runs.start import run
 
 CASES = "run/cases"
 

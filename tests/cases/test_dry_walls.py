@@ -7,7 +7,7 @@ from mpi4py import MPI
 
 from psph.fields import WALL
 from psph.output.reader import Run
-from psph.run.start import run
+from psph.runs.start import run
 from psph.simulation import cpu as engine_module
 
 DX, DEPTH = 0.02, 0.3

@@ -12,7 +12,7 @@ from parallel.test_simulation import start, state
 
 from psph.case import load
 from psph.output.reader import Run
-from psph.run.setup import compile_ahead
+from psph.runs.setup import compile_ahead
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 
@@ -58,6 +58,10 @@ END = {
     "solids/cantilever": 0.005,
     "solids/csm1": 0.01,
     "solids/csm3": 0.01,
+    "solids/water_on_plate": 0.01,
+    "solids/gate": 0.003,
+    "solids/dam_break_on_plate": 0.01,
+    "solids/taylor_bar": 1e-6,
     "hard/drop": 0.05,
     "hard/patch_3d": 0.02,
     "hard/twins": 2e-3,

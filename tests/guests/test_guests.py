@@ -15,8 +15,8 @@ from psph.case import CaseError, load
 from psph.case.extensions import versions
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
-from psph.run.resume import case_digest
-from psph.run.setup import create_particles
+from psph.runs.resume import case_digest
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation

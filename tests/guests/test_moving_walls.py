@@ -8,7 +8,7 @@ from psph.case import load
 from psph.output.checkpoint import checkpoints
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
-from psph.run.start import resume, run
+from psph.runs.start import resume, run
 
 TURN = 2.0 * np.pi * 20.0
 SOUND = 20.0

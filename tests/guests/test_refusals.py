@@ -12,7 +12,7 @@ from psph.case.extensions import OWN_TABLES
 from psph.composition.trial import UnknownField, WrongShape
 from psph.errors import LONGEST_LINE
 from psph.output.tables import ERRORS, LOG, PROBES
-from psph.run.explain import explain
+from psph.runs.explain import explain
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from mpi4py import MPI
 from parallel.alike import begun, go
-from run.resuming import keep, state, taken_up
+from runs.resuming import keep, state, taken_up
 
 from psph.case import load
-from psph.run.setup import compile_ahead
+from psph.runs.setup import compile_ahead
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 

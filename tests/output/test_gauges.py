@@ -5,17 +5,13 @@ import math
 import numpy as np
 import pytest
 from drafts import TANK, WATER, draft, refusal
-from mpi4py import MPI
+from gauging import readings, started
 
 from psph.fields import FLUID
-from psph.output.gauges import gauges_of
 from psph.output.gauges.level import surfaces
 from psph.output.gauges.points import disc
-from psph.output.ledger import Ledger
-from psph.run.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 STIRRED = """
 [space]
@@ -60,27 +56,6 @@ on = ["floor", "sides"]
 about = [0.5, 0.2]
 """
 """Two fluids in disorder between two walls."""
-
-
-def started(case, steps=0):
-    """A simulation of a case after some steps, and its scene."""
-    scene = Scene(case)
-    plan = make_plan(scene)
-    simulation = Simulation(
-        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
-    )
-    for _ in range(steps):
-        simulation.step()
-    return simulation, scene
-
-
-def readings(simulation, scene) -> dict[str, float]:
-    """What every gauge reads, by column."""
-    simulation.settle_pressure()
-    found = {}
-    for gauge in gauges_of(scene, simulation.plan.mirrors).values():
-        found |= dict(zip(gauge.columns(scene), map(float, gauge.row(simulation)), strict=True))
-    return found
 
 
 @pytest.mark.parametrize("condition", ["dynamic", "extrapolated"])

@@ -7,8 +7,8 @@ from mpi4py import MPI
 
 from psph.output.ledger import Ledger
 from psph.output.probes import Probe, sensor
-from psph.run.record import probes_of
-from psph.run.setup import create_particles
+from psph.runs.record import probes_of
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation

@@ -13,15 +13,15 @@ from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
-from run.resuming import Counted, keep, state, taken_up
+from runs.resuming import Counted, keep, state, taken_up
 
 from psph.case import load
 from psph.engine.threads import use_threads
 from psph.output.ledger import Ledger
 from psph.parallel import domain
 from psph.parallel.slabs import partition
-from psph.run.record import Record
-from psph.run.setup import compile_ahead, create_particles
+from psph.runs.record import Record
+from psph.runs.setup import compile_ahead, create_particles
 from psph.scene import Scene
 from psph.simulation.cpu import Engine
 from psph.simulation.plan import make_plan

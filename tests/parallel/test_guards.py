@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from mpi4py import MPI
-from run.guarded import THROWN, boxed, started
+from runs.guarded import THROWN, boxed, started
 
-from psph.run.post_mortem import REPORT
-from psph.run.start import run
+from psph.runs.post_mortem import REPORT
+from psph.runs.start import run
 from psph.simulation.step import BlowUp, Simulation
 
 COMM = MPI.COMM_WORLD

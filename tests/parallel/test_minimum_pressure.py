@@ -6,7 +6,7 @@ from mpi4py import MPI
 
 from psph.case import Case
 from psph.output.ledger import Ledger
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
@@ -40,7 +40,7 @@ def accelerations(sim, low_id, ghosts=True):
     pressure[store.inner][ids == low_id] = -5000.0
     if ghosts:
         sim.domain.halo.refresh(("pressure",))
-    sim.engine.sum(0, 0.0, ghosts_are_fresh=True)
+    sim.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=True)
     mine = dict(zip(ids.tolist(), store.owned_rows("acceleration").tolist()))
     return {key: value for part in sim.comm.allgather(mine) for key, value in part.items()}
 

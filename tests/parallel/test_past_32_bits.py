@@ -11,7 +11,7 @@ from psph.parallel.halo import _slice_type
 from psph.parallel.migration import _each
 from psph.parallel.reductions import exact_sums
 from psph.parallel.slabs import Prices, partition, rebalanced
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 
 
 @pytest.mark.parametrize("n", [2**31 - 1, 2**31, 2**33 + 5])

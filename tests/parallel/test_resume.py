@@ -3,12 +3,12 @@
 import pytest
 from mpi4py import MPI
 from parallel.test_simulation import REFINED, box
-from run.resuming import BOX, go_on_alike, keep, steps, taken_up
+from runs.resuming import BOX, go_on_alike, keep, steps, taken_up
 
 from psph.case import load
 from psph.output import rows as hdf5
 from psph.output.checkpoint import CheckpointError, Saved
-from psph.run.resume import case_digest
+from psph.runs.resume import case_digest
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)

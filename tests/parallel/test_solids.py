@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 from parallel.test_simulation import start
-from run.resuming import go_on_alike, keep, taken_up
+from runs.resuming import go_on_elsewhere
 
 from psph.case import load
 from psph.parallel.partner_halo import LostPartner, PartnerHalo, follow, owners
@@ -40,11 +40,22 @@ poisson = 0.45
 law = "neo-hookean"
 velocity_gradient = [[0.0, -9.0], [9.0, 0.0]]
 velocity_center = [1.25, 1.5]
+[solids.lead]
+shape.box = { lower = [3.2, 0.2], upper = [4.0, 1.0] }
+velocity = [-1.0, -9.0]
+density = 1300.0
+young = 1.0e6
+poisson = 0.3
+johnson_cook = { yield_stress = 2e4, hardening = 3e4, exponent = 0.4, rate = 0.05, heat_capacity = 130.0 }
+[anvils.floor]
+at = [3.2, 0.0]
+normal = [-0.2, 1.0]
 [gauges.tip.displacement]
 of = "beam"
 at = [3.0, 0.2]
 """
-"""A beam across all slabs that bends under a load, and a plate of another law that spins above it."""
+"""A beam across all slabs that bends under a load, a plate of another law that spins above it, and a block
+of metal that is pressed flat on a slope."""
 
 
 def beams(folder):
@@ -58,7 +69,7 @@ def rows(simulation):
     """All that moves, by id, and the stored energy."""
     energy = simulation.engine.stored_energy()
     store = simulation.store
-    names = ("position", "velocity", "acceleration", "stress", "von_mises")
+    names = ("position", "velocity", "acceleration", "stress", "von_mises", "plastic_strain")
     parts = [store.owned_rows("id")[:, None], *(store.owned_rows(n).reshape(store.owned, -1) for n in names)]
     every = np.concatenate(simulation.comm.allgather(np.hstack(parts)))
     return every[np.argsort(every[:, 0])], energy
@@ -76,24 +87,14 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
             together.rebuild()
     (one, energy), (many, energy_of_many) = rows(single), rows(together)
     assert np.isfinite(one).all() and np.abs(one - begun).max() > 0.1
+    assert one[:, -1].max() > 0.02 and (one[:, -1] > 0.0).sum() > 5  # the metal yields
     assert np.array_equal(one, many) and energy == energy_of_many > 0.0
     assert together.domain.rebuilds > single.domain.rebuilds
 
 
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1), (2, 2)])
 def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
-    case = beams(mpi_tmp_path)
-    comms = {1: MPI.COMM_SELF, 2: COMM}
-    folder = mpi_tmp_path / (f"rank{COMM.rank}" if before == 1 else "all")
-    folder.mkdir(exist_ok=True)
-    COMM.Barrier()
-    simulation = start(case, comms[before])
-    for _ in range(14):
-        simulation.step()
-    keep(simulation, case, folder)
-    COMM.Barrier()
-    written = mpi_tmp_path / ("rank0" if before == 1 else "all") / "checkpoint-14.h5"
-    go_on_alike(simulation, taken_up(case, written, comms[after]), 14, rebuilds=0)
+    go_on_elsewhere(beams(mpi_tmp_path), before, after, mpi_tmp_path)
 
 
 def test_rows_follow_their_particles_to_other_ranks():
@@ -137,4 +138,6 @@ def test_a_scene_without_solids_carries_nothing_for_them():
     simulation = start(box(2, False, 0), COMM)
     assert simulation.engine.solids is None and not simulation.plan.solids
     names = set(simulation.store.fields)
-    assert names.isdisjoint({"reference", "moment", "stress", "von_mises", "stored_energy", "drawn"})
+    assert names.isdisjoint(
+        {"reference", "moment", "stress", "von_mises", "stored_energy", "drawn", "plastic_metric"}
+    )

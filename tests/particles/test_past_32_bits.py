@@ -13,7 +13,7 @@ from psph.parallel.halo import _slice_type
 from psph.particles import neighbours
 from psph.particles.cells import make_grid, number_cells, planes_of, sort_by_cell
 from psph.particles.store import MOST, TooManyParticles, check_room, permute
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation

@@ -164,7 +164,7 @@ def after_steps(folder, scheme, density, overrides, steps=4):
     from mpi4py import MPI
 
     from psph.output.ledger import Ledger
-    from psph.run.setup import create_particles
+    from psph.runs.setup import create_particles
     from psph.scene import Scene
     from psph.simulation.plan import make_plan
     from psph.simulation.step import Simulation

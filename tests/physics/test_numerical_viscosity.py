@@ -7,8 +7,8 @@ from drafts import draft
 from mpi4py import MPI
 
 from psph.output.reader import Run
-from psph.run.explain import explain
-from psph.run.start import run
+from psph.runs.explain import explain
+from psph.runs.start import run
 from psph.scene import Scene
 
 VORTICES = """

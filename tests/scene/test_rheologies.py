@@ -4,7 +4,7 @@ import pytest
 from drafts import CHANNEL, TANK, draft
 from scene.test_units import checked
 
-from psph.run.explain import explain
+from psph.runs.explain import explain
 from psph.scene import Scene
 
 MUD = "fluids.water.rheology.bingham={yield_stress=%r, plastic_viscosity=1.0, largest_viscosity=%r}"
@@ -55,6 +55,34 @@ def test_a_cap_that_hides_the_yield_is_warned_of(tmp_path):
     assert checked(tmp_path, TANK, MUD % (500.0, 2.3)) == []
 
 
+SLOPE = CHANNEL.replace("upper = [1.0, 1.0] } }]", "upper = [1.0, 1.2] } }]")
+"""The channel without its lid: a layer 1 m thick on a slope, 100 Pa/m along it."""
+
+
+@pytest.mark.parametrize(("text", "stress"), [(SLOPE, 100.0), (CHANNEL, 50.0)])
+@pytest.mark.parametrize("across", [0.0, -9.8])
+def test_the_cap_advised_is_that_of_the_stress_along_the_slope_or_the_channel(tmp_path, text, stress, across):
+    """With 1 Pa s, 40 Pa of yield: (stress − 40) 1/s at the plates, of which a creep of 1/20 is allowed."""
+    tilted = f"physics.gravity=[0.1, {across}]"
+    quiet, hidden = 0.05 * (stress - 40.0) / 0.999, 0.05 * (stress - 40.0) / 0.9
+    told = {}
+    for creep in (quiet * 0.99, hidden * 1.01):
+        lines = checked(
+            tmp_path, text, CONSTANT, MUD % (40.0, 40.0 / creep), tilted, "physics.sound_speed=99.0"
+        )
+        told[creep] = [line for line in lines if "hides the yield" in line]
+    assert list(map(len, told.values())) == [0, 1]
+    [line] = told[hidden * 1.01]
+    assert line.endswith(f"give largest_viscosity = {40.0 / (0.05 * (stress - 40.0)):.2g} or more")
+
+
+def test_a_layer_of_some_length_on_a_slope_is_sheared_by_its_front_too(tmp_path):
+    """1 m long, 0.5 m thick: 0.98 m/s² along it and half of 9.75 across it, 2.93 kPa over its thickness."""
+    tilted = "physics.gravity=[0.98, -9.75]"
+    lines = said(tmp_path, TANK, MUD % (5000.0, 2e4), tilted)
+    assert lines[-1] == "does not flow: weight over 0.5 m brings about 2.93e+03 Pa at most"
+
+
 @pytest.mark.parametrize(("tau", "warned"), [(10.0, True), (49.0, False)])
 def test_a_flow_between_plates_is_expected_at_what_its_paste_allows(tmp_path, tau, warned):
     """100 Pa/m along 1 m: 50 Pa at the plates, against the yield; the 2 m/s by the end are too fast for sound."""
@@ -66,7 +94,7 @@ def test_a_flow_between_plates_is_expected_at_what_its_paste_allows(tmp_path, ta
 
 
 def test_a_long_run_names_the_cap(tmp_path):
-    from psph.run.forecast import long_run
+    from psph.runs.forecast import long_run
     from psph.simulation.plan import make_plan
 
     scene = Scene(draft(tmp_path, TANK, MUD % (10.0, 1e9)))

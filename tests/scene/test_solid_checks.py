@@ -44,6 +44,19 @@ def test_a_sound_beam_is_good(tmp_path):
     [
         (["solids.beam.poisson=0.5"], "solids.beam.poisson: 0.5 is out of range; it must be"),
         (["solids.beam.young=-1.0"], "solids.beam.young: -1.0 is out of range; it must be above 0"),
+        (["solids.beam.hardening=1e6"], "solids.beam.hardening: 1000000.0: an elastic solid does not harden"),
+        (
+            ["solids.beam.yield_stress=1e4", "solids.beam.law=neo-hookean"],
+            'solids.beam.law: "neo-hookean": a solid that yields has a law of its own',
+        ),
+        (
+            ["solids.beam.yield_stress=1e4", "solids.beam.johnson_cook.yield_stress=1e4"],
+            "solids.beam.yield_stress: 10000.0: johnson_cook has a yield_stress of its own",
+        ),
+        (
+            ["anvils.wall={at=[0.0,-1.0],normal=[0.0,0.0]}"],
+            "anvils.wall.normal: [0.0, 0.0]: has no direction",
+        ),
         (["solids.beam.young=off"], "solids.beam.young: missing; add young"),
         (["solids.beam.law=hooke"], 'solids.beam.law: "hooke" is not known'),
         (
@@ -65,7 +78,10 @@ def test_a_sound_beam_is_good(tmp_path):
             ["solids.beam.loads.end={shape={box={lower=[0.3,0.0],upper=[0.4,1.0]}},force=[1.0]}"],
             "solids.beam.loads.end.force: [1.0]: 1 number in a case with space.dimensions = 2; give 2",
         ),
-        ([WATER], "fluids: solids are simulated by themselves so far"),
+        (
+            ["walls.floor={shape={box={lower=[0.0,-1.0],upper=[1.0,-0.5]}}}"],
+            "walls: nothing is known of contact",
+        ),
         (["precision=mixed"], 'precision: "mixed": solids are computed in double precision'),
         (["physics.sound_speed=10.0"], "physics.sound_speed: 10.0: solids have waves of their own"),
         (["gauges.a.displacement={of='bean',at=[0.4,0.0]}"], "gauges.a.displacement.of"),

@@ -56,6 +56,9 @@ def test_a_sensor_on_a_wall_that_moves_is_warned_of(tmp_path):
     sway = "walls.tank.motion={ sinusoid = { amplitude = [0.01, 0.0], period = 1.0 } }"
     [line] = checked(tmp_path, TANK, asked, sway)
     assert (
-        line.startswith("gauges.P1.sensor: walls.tank moves, and a sensor stays") and "frame.motion" in line
+        line.startswith("gauges.P1.sensor: walls.tank moves, and a sensor stays")
+        and 'moves_with = "tank"' in line
+        and "frame.motion" in line
     )
     assert checked(tmp_path, TANK, asked) == []
+    assert checked(tmp_path, TANK, asked, sway, "gauges.P1.sensor.moves_with=tank") == []

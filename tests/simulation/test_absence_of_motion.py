@@ -10,7 +10,7 @@ from drafts import TANK, draft
 from mpi4py import MPI
 
 from psph.output.ledger import Ledger
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation import integrator
 from psph.simulation.integrator import kick, kick_drift_predict

@@ -5,8 +5,9 @@ import re
 import numba
 import numpy as np
 import pytest
+from llvmlite.binding import get_host_cpu_name
 from mpi4py import MPI
-from run.resuming import fill_records
+from runs.resuming import fill_records
 
 from psph.composition.space import softened
 from psph.engine.jit import FAST, register_bits
@@ -174,6 +175,8 @@ COUNTED = {
 }
 """Instructions that a group of neighbours takes, as many as a register holds numbers, by its bits:
 dam breaks in 2D and 3D under plain SPH and under the default scheme."""
+ON = {"rocketlake": {(3, DEFAULT): 354}}
+"""Processors for which LLVM makes more of the same sources."""
 
 
 @pytest.mark.parametrize(("dim", "setting"), COUNTED[512])
@@ -191,4 +194,5 @@ def test_the_standard_loops_take_no_more_instructions_than_counted(dim, setting,
     kinds = tuple(map(numba.typeof, calls[len(plan.passes) - 1]))  # the pass that gives the rates
     loop.compile(kinds)
     made = in_the_loop(loop.inspect_asm(kinds))
-    assert 50 < made <= COUNTED[register_bits()][dim, setting], made
+    counted = COUNTED[register_bits()] | ON.get(get_host_cpu_name(), {})
+    assert 50 < made <= counted[dim, setting], made

@@ -6,16 +6,16 @@ import re
 import numpy as np
 import pytest
 from mpi4py import MPI
-from run.guarded import boxed, started
-from run.resuming import steps
-from run.test_guards import push_once, report_of
+from runs.guarded import boxed, started
+from runs.resuming import steps
+from runs.test_guards import push_once, report_of
 
 from psph.case.consistency import LARGEST_LOSS, MOST_STEPS
 from psph.case.measured import MOST_MOMENTS
 from psph.output.checkpoint import checkpoints
 from psph.output.reader import Run
-from psph.run.record import Schedule
-from psph.run.start import run
+from psph.runs.record import Schedule
+from psph.runs.start import run
 from psph.simulation.step import TimeLost
 
 COMM = MPI.COMM_SELF

@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from psph.output.ledger import Ledger
 from psph.particles import records
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation import cpu as engine
 from psph.simulation.plan import make_plan

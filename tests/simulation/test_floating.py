@@ -12,7 +12,7 @@ from psph.fields import FLUID
 from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
 from psph.physics.rigid.pose import rotation
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
@@ -168,6 +168,36 @@ on = ["box"]
     assert np.mean(pushes) == pytest.approx(1000.0 * ratio * side**2 * 9.81, rel=0.03)
 
 
+def test_what_holds_a_body_under_water_bears_its_weight_less_that_of_the_water(tmp_path):
+    text = (
+        POOL.format(dx=0.025)
+        + """
+[bodies.block]
+shape.box = { lower = [0.4, 0.1], upper = [0.6, 0.3] }
+density = 1700.0
+held = 9.0
+[gauges.block.motion]
+of = "block"
+"""
+    )
+    simulation, _, scene = started(draft(tmp_path, text))
+    [gauge] = gauges_of(scene).values()
+    read = []
+    while simulation.time < 0.6:
+        simulation.step()
+        if simulation.time > 0.2:
+            read.append(dict(zip(gauge.columns(scene), gauge.row(simulation), strict=True)))
+    mean = {column: np.mean([one[column] for one in read]) for column in read[0]}
+    weight, water = (density * 0.04 * 9.81 for density in (1700.0, 1000.0))
+    assert mean["block.reaction_y"] == pytest.approx(weight - water, rel=0.02)
+    assert mean["block.force_y"] == pytest.approx(-mean["block.reaction_y"])
+    assert abs(mean["block.reaction_x"]) < 0.01 * water
+    assert abs(mean["block.reaction_moment_z"]) < 0.01 * water * 0.2
+    free = Scene(draft(tmp_path, text.replace("held = 9.0", "")))
+    [gauge] = gauges_of(free).values()
+    assert not [column for column in gauge.columns(free) if "reaction" in column]
+
+
 def test_bodies_rest_on_each_other_and_on_the_floor(tmp_path):
     text = (
         POOL.format(dx=0.05)
@@ -270,6 +300,7 @@ BRICK = "bodies.brick.shape.box={lower=[0.2,0.5],upper=[0.4,0.7]}"
             ("bodies.brick.mass=1.0", "bodies.brick.free=['z']"),
             "there is no such motion in 2D; give x, y, turn_z",
         ),
+        (("bodies.brick.mass=1.0", "bodies.brick.free=['x', 'x']"), "stands there twice; remove one"),
         (("bodies.brick.mass=1.0", "bodies.brick.inertia=-2.0"), "is not above zero"),
         (("bodies.brick.mass=1.0", "bodies.brick.spin=[1.0,2.0]"), "give one number in 2D, three in 3D"),
         (

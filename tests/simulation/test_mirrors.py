@@ -14,7 +14,7 @@ from psph.composition.mirrors import ABOVE, BELOW, Plane, at_look, image, images
 from psph.fields import view_of
 from psph.output.ledger import Ledger
 from psph.output.probes import Probe
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.scene.checks import faults
 from psph.scene.walls import has_free_surface

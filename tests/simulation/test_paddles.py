@@ -7,7 +7,7 @@ from mpi4py import MPI
 
 from psph.fields import FLUID
 from psph.output.ledger import Ledger
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.stages import measure_levels, stages_of

@@ -13,8 +13,8 @@ from psph.output.ledger import Ledger
 from psph.physics.catalogue import BUILT_IN, Entry
 from psph.physics.damping.diffusion import TankDiffusion
 from psph.physics.order.shifting import LatticeShift
-from psph.run.explain import explain
-from psph.run.setup import create_particles
+from psph.runs.explain import explain
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation

@@ -11,7 +11,7 @@ from numba.core.dispatcher import Dispatcher
 from psph.case import load
 from psph.engine import settled
 from psph.output.ledger import Ledger
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation

@@ -77,12 +77,12 @@ def passes(of: Lattice, places, law="saint-venant-kirchhoff", hourglass=0.1):
     rows = Rows(view, table, padded_lists(of.counts, of.partners, Metres.lanes))
     moment = tuple(np.zeros(n) for _ in range(d * (d + 1) // 2))
     sum_moments(0, n, weights, rows, moment)
-    sum_gradients(0, n, matter, weights, rows, moment, view.flux)
+    sum_gradients(0, n, matter, weights, rows, moment, None, view.flux)
     force = tuple(np.zeros(n) for _ in range(d))
     sum_inner_forces(0, n, matter, weights, rows, force)
     stress = tuple(np.zeros(n) for _ in moment)
     found = (np.zeros(n), stress, np.zeros(n))
-    measure(0, n, matter, weights, rows, moment, found)
+    measure(0, n, matter, weights, rows, moment, None, found)
     return Found(
         gradients(of, places), of.volume[:, None] * np.array(force).T, found[0], np.array(stress).T, found[2]
     )

@@ -7,7 +7,7 @@ from psph.case import Case
 from psph.case.schemes import PLAIN
 from psph.lab.bench.resolution import KERNEL, reach, smoothing
 from psph.particles.store import Store
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.simulation.plan import Plan
 
 JITTER, SEED = 0.25, 1

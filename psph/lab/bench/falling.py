@@ -13,8 +13,8 @@ from psph.lab.bench.tank import GRAVITY, HEIGHT, Tank
 from psph.output.interpolation import interpolated
 from psph.output.ledger import Ledger
 from psph.particles.store import Store
-from psph.run.explain import slab_planes
-from psph.run.setup import create_particles, lattice_particles, store_of
+from psph.runs.explain import slab_planes
+from psph.runs.setup import create_particles, lattice_particles, store_of
 from psph.scene import Scene
 from psph.scene.particles import NUMBERS_PER_COUNT, ParticleSet
 from psph.simulation.plan import Plan, make_plan

@@ -24,7 +24,7 @@ from psph.lab.bench.roofline import Ceiling, shares
 from psph.lab.bench.tank import Tank
 from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
-from psph.run.setup import compile_ahead
+from psph.runs.setup import compile_ahead
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation

@@ -22,8 +22,9 @@ def study(
     error: float | None,
     seconds: float | None,
     files: Path | None = None,
+    quiet: bool = False,
 ) -> None:
-    """Run the study and print its results; collective.
+    """Run the study and print its results, unless it is to be ``quiet``; collective.
 
     Raises CaseError or StudyError before the first run.
     """
@@ -46,7 +47,7 @@ def study(
         asked.refuse_nonsense()
 
     def say(line: str) -> None:
-        if comm.rank == 0:
+        if comm.rank == 0 and not quiet:
             print(line, flush=True)
 
     found = asked.run(say)

@@ -15,7 +15,7 @@ from psph.lab.study.experiment import read_experiment
 from psph.output.accuracy import NORMS
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
-from psph.run.record import columns_of
+from psph.runs.record import columns_of
 from psph.scene import Scene
 from psph.theory.solutions.catalogue import known
 

@@ -11,9 +11,9 @@ from psph.engine.threads import threads
 from psph.lab.study.ladder import SPACING, Settings, overrides
 from psph.output.errors import OutputError
 from psph.parallel.slabs import TooManyRanks
-from psph.run.room import TooLittleMemory
-from psph.run.start import Finished, run
-from psph.run.watch import Stopped
+from psph.runs.room import TooLittleMemory
+from psph.runs.start import Finished, run
+from psph.runs.watch import Stopped
 from psph.simulation.step import BlowUp, ParticleLost
 
 ENOUGH = 10.0

@@ -1,6 +1,7 @@
 """Water level along a line."""
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -9,9 +10,10 @@ from psph.composition.mirrors import images
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.fields import FLUID
+from psph.output.gauges.carried import Carrier
 from psph.parallel.reductions import whole_sums
 from psph.smoothing import weight
-from psph.vectors import at, dot, nearest_image, scale, subtract
+from psph.vectors import add, at, dot, nearest_image, scale, subtract
 
 SURFACE = 0.5
 """Share of the kernel that lies in the fluid at a flat surface."""
@@ -26,7 +28,8 @@ class LevelGauge(NamedTuple):
     The fluid's share of the kernel, S(x) = Σ_j V_j W(x − x_j) over the fluid, is ½ at a flat surface.
     ``level`` is the distance from the foot to the highest point of the line where S = ½, ``wetted`` the
     length of the line with S ≥ ½, which is what a wire in the water measures; both m, 0 where all is
-    dry.  They differ where drops or a breaking wave are above the water.
+    dry.  They differ where drops or a breaking wave are above the water.  With a ``carrier`` the ends are
+    those of the start.
     """
 
     name: str
@@ -34,6 +37,7 @@ class LevelGauge(NamedTuple):
     foot: tuple[float, ...]
     top: tuple[float, ...]
     parts: int
+    carrier: Carrier | None = None
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time."""
@@ -46,18 +50,40 @@ class LevelGauge(NamedTuple):
     def _shares(self, simulation) -> np.ndarray:
         """S at the ends of the parts of the line (parts + 1,)."""
         store, plan, domain = simulation.store, simulation.plan, simulation.domain
+        ends = self._ends(simulation)
         found = np.zeros(self.parts + 1, np.int64)
         first, last = store.low, store.low + store.owned
         is_fluid = store.kinds[store.group] == FLUID
         for m in range(images(plan.mirrors)):
             # An image is as far from a point as the particle from the image of the point.
-            ends = (plan.mirrors.reflections[m].seen(x) if m else x for x in (self.foot, self.top))
-            foot, top = (tuple(map(float, end)) for end in ends)
+            seen = (plan.mirrors.reflections[m].seen(x) if m else x for x in ends)
+            foot, top = (tuple(map(float, end)) for end in seen)
             step = scale(subtract(top, foot), 1.0 / self.parts)
             radius = plan.kernel.support / plan.kernel.inverse_h
-            seen = (plan.kernel, domain.periods, store.view())
-            weigh_line(foot, step, radius, *seen, first, last, is_fluid, found)
+            around = (plan.kernel, domain.periods, store.view())
+            for begin, end in stretches(step, self.parts, radius, domain.periods):
+                start = add(foot, scale(step, float(begin))) if begin else foot
+                weigh_line(start, step, radius, *around, first, last, is_fluid, found[begin:end])
         return whole_sums(simulation.comm, found).astype(np.float64) / UNIT
+
+    def _ends(self, simulation) -> tuple[tuple[float, ...], ...]:
+        """Foot and top as they are now, m."""
+        ends = (self.foot, self.top)
+        if self.carrier is None:
+            return ends
+        return tuple(map(tuple, self.carrier.places(simulation, np.array(ends)).tolist()))
+
+
+def stretches(step, parts: int, radius: float, periods) -> Iterator[tuple[int, int]]:
+    """First point, and the one after the last, of stretches of a line with ``parts`` of ``step`` (dim,) m.
+
+    Along an axis that repeats no point of a stretch is farther from its first than half a period without
+    the ``radius`` of the kernel, m: what weighs there is then the same image for all of them.
+    """
+    rooms = ((0.5 * period - radius) / abs(s) for s, period in zip(step, periods) if period is not None and s)
+    longest = 1 + math.floor(min(rooms, default=parts))
+    for begin in range(0, parts + 1, longest):
+        yield begin, min(begin + longest, parts + 1)
 
 
 def surfaces(share: np.ndarray, step: float) -> tuple[float, float]:

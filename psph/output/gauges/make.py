@@ -1,15 +1,17 @@
 """The gauges that a case asks for."""
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 from psph.case.keys import AXES
+from psph.output.gauges.carried import Carrier
 from psph.output.gauges.displacement import REACH, DisplacementGauge
 from psph.output.gauges.flow import FlowGauge
 from psph.output.gauges.force import ForceGauge
 from psph.output.gauges.level import LevelGauge
 from psph.output.gauges.motion import MotionGauge
-from psph.output.gauges.points import PointGauge, disc
+from psph.output.gauges.points import CarriedPoints, PointGauge, disc
 from psph.output.probes import Front, Probe
 from psph.output.tables import GAUGE
 
@@ -27,27 +29,42 @@ def gauges_of(scene, mirrors=None) -> dict[str, Any]:
 def gauge_of(scene, name: str, table, mirrors=None):
     """The gauge of one table of ``[gauges]``: every, columns(scene) and row(simulation)."""
     asked, every = getattr(table, table.kind), table.every
+    names = scene.names
     match table.kind:
         case "force":
-            names = (*scene.case.fluids, *scene.boundaries)
-            groups = tuple(k for k, one in enumerate(names) if one in asked.on)
+            groups = tuple(k for on in asked.on for k in _groups(scene, on))
             return ForceGauge(name, every, groups, asked.about)
         case "level":
             parts = math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9)
-            return LevelGauge(name, every, asked.foot, asked.top, max(1, parts))
+            return LevelGauge(name, every, asked.foot, asked.top, max(1, parts), _carrier(asked, names))
         case "flow":
             [axis] = (d for d, ends in enumerate(zip(asked.lower, asked.upper)) if ends[0] == ends[1])
             return FlowGauge(name, every, axis, asked.lower, asked.upper)
         case "motion":
-            return MotionGauge(name, every, asked.of)
+            restrained = scene.case.bodies[asked.of].restrained(scene.dimensions)
+            return MotionGauge(name, every, asked.of, restrained)
         case "displacement":
-            number = list(scene.case.solids).index(asked.of)
-            groups = tuple(k for k, one in enumerate(scene.species) if one.elastic == number)
+            groups = tuple(_groups(scene, asked.of))
             return DisplacementGauge(name, every, groups, asked.at, REACH * scene.spacing)
         case "highest":
             return PointGauge(Front(name, AXES.index(asked.axis)), every)
         case "point":
-            return PointGauge(Probe(name, asked.position, asked.fields, mirrors), every)
+            probe = Probe(name, asked.position, asked.fields, mirrors)
         case _:
             points = disc(asked.position, AXES.index(asked.axis), asked.diameter, scene.spacing)
-            return PointGauge(Probe(name, points, ("pressure",), mirrors), every)
+            probe = Probe(name, points, ("pressure",), mirrors)
+    carrier = _carrier(asked, names)
+    return CarriedPoints(probe, every, carrier, probe.points) if carrier else PointGauge(probe, every)
+
+
+def _carrier(asked, names) -> Carrier | None:
+    """What carries a gauge along, among the ``names`` of all groups."""
+    return None if asked.moves_with is None else Carrier(names.index(asked.moves_with))
+
+
+def _groups(scene, name: str) -> Iterator[int]:
+    """The groups of a wall, a body or an elastic solid, its clamped part among them."""
+    solids = list(scene.case.solids)
+    for group, one in enumerate(scene.species):
+        if name in (one.name, None if one.elastic is None else solids[one.elastic]):
+            yield group

@@ -13,12 +13,15 @@ class MotionGauge(NamedTuple):
     ``x`` of its centre of mass, m, its ``velocity`` in m/s; ``turn``, the rotation since the start as
     the vector of its axis times its angle in rad (counted past a turn about one axis), ``spin`` in
     rad/s; ``force`` and ``moment`` of all that acts on it, weight and lines included, about its pivot or
-    centre of mass, N and N m; the ``tension`` of each of its lines, N.
+    centre of mass, N and N m; the ``tension`` of each of its lines, N.  Of a body that is not free in all,
+    or held at first, the ``reaction``, N, and ``reaction_moment``, N m, about the same point, of what holds
+    it: a hinge, a guide, what moves it as it is told.
     """
 
     name: str
     every: float
     body: str
+    restrained: bool
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time."""
@@ -27,6 +30,9 @@ class MotionGauge(NamedTuple):
         named += [f"turn_{axis}" for axis in round_about] + [f"spin_{axis}" for axis in round_about]
         named += [f"force_{axis}" for axis in axes] + [f"moment_{axis}" for axis in round_about]
         named += [f"tension_{line}" for line in scene.case.bodies[self.body].lines]
+        if self.restrained:
+            named += [f"reaction_{axis}" for axis in axes]
+            named += [f"reaction_moment_{axis}" for axis in round_about]
         return [f"{self.name}.{one}" for one in named]
 
     def row(self, simulation) -> list[float]:
@@ -45,5 +51,8 @@ class MotionGauge(NamedTuple):
             bodies.force[k, slid],
             bodies.torque[k, turned],
         )
-        own = (t for line, t in zip(floating.lines, floating.tensions.tolist()) if line.body == k)
+        own = [t for line, t in zip(floating.lines, floating.tensions.tolist()) if line.body == k]
+        if self.restrained:
+            force, torque = bodies.reaction
+            own += [*force[k, slid].tolist(), *torque[k, turned].tolist()]
         return [*np.concatenate(parts).tolist(), *own]

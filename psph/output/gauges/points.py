@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.output.gauges.carried import Carrier
 from psph.output.probes import Front, Probe
 
 
@@ -20,6 +21,24 @@ class PointGauge(NamedTuple):
 
     def row(self, simulation) -> np.ndarray:
         """The values, the same on every rank."""
+        return self.probe.sample(simulation.domain, simulation.plan.kernel)
+
+
+class CarriedPoints(NamedTuple):
+    """The same of a probe that a ``carrier`` takes along; ``start`` (n, dim), m, are its points at first."""
+
+    probe: Probe
+    every: float
+    carrier: Carrier
+    start: np.ndarray
+
+    def columns(self, scene) -> list[str]:
+        """Their names, without the time."""
+        return self.probe.columns(scene.dimensions)
+
+    def row(self, simulation) -> np.ndarray:
+        """The values, the same on every rank."""
+        self.probe.points = self.carrier.places(simulation, self.start)
         return self.probe.sample(simulation.domain, simulation.plan.kernel)
 
 

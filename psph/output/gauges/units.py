@@ -4,15 +4,19 @@ from psph.output.probes import FRONT, MEASURED
 
 LENGTHS = ("level", "wetted", FRONT, "centre", "displacement")
 
-PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m"}
+PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m", "reaction": "N", "reaction_moment": "N m"}
 """In 2D per metre of depth."""
+
+OF_TWO_WORDS = ("mass_flow", "reaction_moment")
+"""Quantities whose name is not the first word of their column."""
 
 
 def quantity_of(column: str) -> tuple[str, str]:
     """``box.force_x`` → ``force`` and ``x``; ``box.tension_left`` → ``tension`` and ``left``."""
     quantity = column.rpartition(".")[2]
-    if quantity == "mass_flow":
-        return quantity, ""
+    for field in OF_TWO_WORDS:
+        if quantity.startswith(field):
+            return field, quantity.removeprefix(field).removeprefix("_")
     field, _, part = quantity.partition("_")
     return field, part
 

@@ -47,13 +47,13 @@ class Body:
 
 
 def rigid(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The rotation R (3, 3) and shift s (3,) that bring points (n, 3) nearest to others: x → R x + s.
+    """The rotation R (dim, dim) and shift s (dim,) that bring points (n, dim) nearest to others: x → R x + s.
 
     Kabsch (1976), Acta Cryst. A 32, 922.
     """
     from_here, to_there = before.mean(axis=0), after.mean(axis=0)
     left, _, right = np.linalg.svd((after - to_there).T @ (before - from_here))
-    flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
+    flip = np.diag([*np.ones(len(left) - 1), np.sign(np.linalg.det(left @ right))])
     turn = left @ flip @ right
     return turn, to_there - turn @ from_here
 

@@ -1,6 +1,6 @@
 """Curves over time: probes and log."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,11 @@ WIDTH, HEIGHT, GAP = 7.0, 1.6, 0.5
 """Of a chart, and between two of them, inches."""
 STEEP = 1e3
 """Ratio of the largest to the smallest number from which on the axis is logarithmic."""
+
+PLACES = ("centre",)
+"""Quantities whose values along different axes have nothing in common but their unit."""
+SEEN = 0.2
+"""Part of a chart's height that a curve of a place must fill."""
 
 _THEORY = {"color": style.INK, "lw": 0.9, "ls": (0, (5, 3))}
 
@@ -67,8 +72,19 @@ def gauge_charts(run: Run, dimensions: int) -> dict[str, list[Chart]]:
             field, part = quantity_of(column)
             unit = unit_of(field, dimensions)
             charts.setdefault(field, Chart(field, unit, table["time"], {}, {})).curves[part or field] = values
-        found[gauge] = list(charts.values())
+        found[gauge] = [one for chart in charts.values() for one in apart(chart)]
     return {gauge: charts for gauge, charts in found.items() if charts}
+
+
+def apart(chart: Chart) -> Iterator[Chart]:
+    """A chart of places, or one for each axis where along one of them hardly anything would be seen."""
+    ranges = [np.ptp(curve) for curve in chart.curves.values()]
+    together = np.ptp(np.concatenate(list(chart.curves.values())))
+    if chart.title not in PLACES or min(ranges) >= SEEN * together:
+        yield chart
+        return
+    for axis, curve in chart.curves.items():
+        yield chart._replace(title=f"{chart.title} {axis}", curves={axis: curve})
 
 
 def with_measured(charts: list[Chart], of: str, experiments: Iterable) -> list[Chart]:
@@ -80,7 +96,7 @@ def with_measured(charts: list[Chart], of: str, experiments: Iterable) -> list[C
                 for one in experiments
                 if len(one.time)
                 and one.column.startswith(f"{of}.")
-                and quantity_of(one.column)[0] == chart.title
+                and chart.title in (quantity_of(one.column)[0], " ".join(quantity_of(one.column)))
             }
         )
         for chart in charts

@@ -13,6 +13,7 @@ from psph.errors import Refused, one_line
 from psph.fields import WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import style
+from psph.output.pictures.moorings import Moorings
 from psph.output.pictures.scale import Scale
 from psph.output.pictures.view import Room, on_page
 
@@ -44,7 +45,8 @@ class Flat:
     """The particles of a room in a plane; of a room in 3D those within half a spacing of ``cut``.
 
     ``mirrors`` (axis and place, m) are lines.  Particles of the group ``first_body`` and later are of rigid
-    bodies; None: there are none.  Raises NotThere if the room does not reach there.
+    bodies; None: there are none.  ``moorings`` are theirs, or None.  Raises NotThere if the room does not
+    reach there.
     """
 
     def __init__(
@@ -53,8 +55,10 @@ class Flat:
         cut: Slice | None = None,
         mirrors: Sequence[tuple[int, float]] = (),
         first_body: int | None = None,
+        moorings: Moorings | None = None,
     ):
         self.room, self.cut, self.mirrors, self.first_body = room, cut, mirrors, first_body
+        self.moorings = moorings
         self.variant, self.remark = "", ""
         level = room.level
         if cut is not None:
@@ -109,6 +113,9 @@ class Flat:
             for axis, at in self.mirrors:
                 line = axes.axvline if axis == self.across else axes.axhline
                 line(at, color=style.INK, lw=0.8)
+            for one in self.moorings.at(frame) if self.moorings else ():
+                across, up = one.ends[:, self.across], one.ends[:, self.up]
+                axes.plot(across, up, color=style.PALE if one.slack else style.INK, lw=0.8)
         style.ticks(axes.xaxis, 5)
         style.ticks(axes.yaxis, 5)
         axes.spines[["bottom", "left"]].set_position(("outward", 4))

@@ -1,4 +1,4 @@
-"""Names of what ``plot`` makes in the folder of a run."""
+"""Names of what ``plot`` and ``export`` make in the folder of a run."""
 
 import re
 from pathlib import Path
@@ -12,6 +12,10 @@ OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
 SOLIDS = "solids"
 """The folder of walls and bodies as triangles."""
+PARAVIEW = "paraview.py"
+"""The script with which ParaView shows a run."""
+EXPORTS = {"vtk": "export-vtk", "gadget": "export-gadget"}
+"""Folders of frames for other programs."""
 
 DERIVED = ("vorticity",)
 """Fields that frames do not hold, and pictures show."""
@@ -37,13 +41,13 @@ def stem_of(field: str, variant: str) -> str:
 
 
 def remove_pictures(folder: Path) -> None:
-    """Remove what ``plot`` has drawn of an earlier run; other pictures belong to somebody else."""
+    """Remove what ``plot`` and ``export`` have made of an earlier run; other files are not psph's."""
     for path in folder.iterdir():
         if (
-            path.name in (OVERVIEW, PROBES, LOG)
+            path.name in (OVERVIEW, PROBES, LOG, PARAVIEW)
             or _DRAWN.fullmatch(path.name)
             or _GAUGED.fullmatch(path.name)
         ):
             path.unlink()
-        elif path.name == SOLIDS and path.is_dir():
+        elif path.name in (SOLIDS, *EXPORTS.values()) and path.is_dir():
             rmtree(path)

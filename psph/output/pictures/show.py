@@ -16,6 +16,7 @@ from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
 from psph.output.pictures.groups import first_body
 from psph.output.pictures.mirrors import mirrors_of, with_mirrors
+from psph.output.pictures.moorings import has_moorings, moorings_of
 from psph.output.pictures.quantities import quantity
 from psph.output.pictures.scale import Scale, scale_of
 from psph.output.pictures.view import Panel, box_around, room_of, spread
@@ -81,7 +82,7 @@ class Show:
     @property
     def _told_apart(self) -> tuple[str, ...]:
         """Fields that tell which wall or body a particle is of, where that is drawn."""
-        if self._solid:
+        if self._solid or has_moorings(self.case):
             return ("group", "id")
         return ("group",) if "bodies" in self.case else ()
 
@@ -96,7 +97,9 @@ class Show:
         mirrors = mirrors_of(self.case)
         room = room_of(self.case, [with_mirrors(glance.box, mirrors) for glance in glances])
         if not self._solid:
-            return Flat(room, cut, mirrors, first_body(self.case) if "bodies" in self.case else None), scale
+            bodies = first_body(self.case) if "bodies" in self.case else None
+            lines = moorings_of(self.case, self._whole(0)) if room.dimensions == 2 else None
+            return Flat(room, cut, mirrors, bodies, lines), scale
         return solid.scene(
             self.case, self.run.folder, self._whole(0), room, [glance.groups for glance in glances], smooth
         ), scale
@@ -109,18 +112,10 @@ class Show:
         return Glance(box_around(places), boxes, values[:: len(values) // VALUES + 1])
 
     def _chosen(self, times: Sequence[float] | None) -> list[int]:
-        """The frames nearest to ``times`` s, each once.  NotThere before the first or beyond the last."""
-        first, last = float(self.times[0]), float(self.times[-1])
+        """The frames nearest to ``times`` s, or to four over the run."""
         if times is None:
-            times = np.linspace(first, last, 4).tolist()
-        half = 0.5 * (last - first) / max(len(self.times) - 1, 1)
-        for time in times:
-            if not first - half <= time <= last + half:
-                raise NotThere(
-                    f"{self.run.path}: --times {time:g}: there are frames from {first:g} to {last:g} s; "
-                    "give times between these"
-                )
-        return sorted({int(np.abs(self.times - time).argmin()) for time in times})
+            times = np.linspace(float(self.times[0]), float(self.times[-1]), 4).tolist()
+        return self.run.nearest(times)
 
     def overview(self) -> Figure:
         """All chosen frames and the chart of the probes that read the field."""

@@ -13,6 +13,7 @@ from psph.fields import WALL
 from psph.output.pictures import style
 from psph.output.pictures.bodies import Body, bodies_of
 from psph.output.pictures.camera import ANGLE, Camera, before, directions
+from psph.output.pictures.moorings import Moorings, moorings_of
 from psph.output.pictures.ruler import rulers
 from psph.output.pictures.scale import Scale
 from psph.output.pictures.view import Room
@@ -62,7 +63,7 @@ def scene(
     seen = {body.group for body in still}
     visible = [body.faces.reshape(-1, 3) for body in still]
     visible += [box for one in boxes for group, box in one.items() if group not in seen]
-    return Solid(room, bodies, np.concatenate(visible), smooth)
+    return Solid(room, bodies, np.concatenate(visible), smooth, moorings_of(case, start))
 
 
 def _stands(boxes: Sequence[np.ndarray]) -> bool:
@@ -74,13 +75,20 @@ class Solid:
     """The whole of a ``room`` with its ``bodies``, seen by one camera from the left, the front and above.
 
     It shows the box around all of the ``visible`` points, (n, 3) m.  ``smooth``: the fluid has a surface in
-    place of particles.  Raises Refused where 3D cannot be drawn.
+    place of particles; ``moorings``: the lines of bodies, or None.  Raises Refused where 3D cannot be drawn.
     """
 
     keyed = True
 
-    def __init__(self, room: Room, bodies: Iterable[Body], visible: np.ndarray, smooth: bool):
-        self.room, self.bodies, self.smooth = room, list(bodies), smooth
+    def __init__(
+        self,
+        room: Room,
+        bodies: Iterable[Body],
+        visible: np.ndarray,
+        smooth: bool,
+        moorings: Moorings | None = None,
+    ):
+        self.room, self.bodies, self.smooth, self.moorings = room, list(bodies), smooth, moorings
         self.variant = self.remark = "surface" if smooth else ""
         self.lower = np.maximum(room.lower, visible.min(axis=0))
         self.upper = np.minimum(room.upper, visible.max(axis=0))
@@ -113,6 +121,9 @@ class Solid:
             self._add_fluid(plotter, frame["position"][fluid], frame["values"][fluid], scale)
             for body in self.bodies:
                 self._add_body(plotter, body, body.at(frame))
+            for one in self.moorings.at(frame) if self.moorings else ():
+                colour = style.PALE if one.slack else style.INK
+                plotter.add_lines(one.ends, color=colour, width=2 * FINER)
             self._light(plotter, camera)
             plotter.enable_ssao(radius=2 * self.room.spacing, bias=0.1 * self.room.spacing, kernel_size=32)
             plotter.camera.position = camera.eye

@@ -37,9 +37,15 @@ def take_rate(total, pair, u_ij, moving, lying):
 
 
 @helper
-def linear_rate(total, i):
-    """E = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹), M = −Σ_j V_j x_ij ∇W_ijᵀ, 1/s."""
+def linear_gradient(total, i):
+    """−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ, by rows, 1/s."""
     changes, place = total
     size = max(determinant(place, i.position), FEWEST)
     inverse = scale(adjugate(place, i.position), 1.0 / size)
-    return symmetric_part(matrix_product(changes, inverse, i.position), i.position)
+    return matrix_product(changes, inverse, i.position)
+
+
+@helper
+def linear_rate(total, i):
+    """E, the symmetric part of :func:`linear_gradient`, 1/s."""
+    return symmetric_part(linear_gradient(total, i), i.position)

@@ -117,6 +117,7 @@ class Bodies:
         self.ahead, self.spin_ahead = np.zeros((n, 3)), np.zeros((n, 3))
         self.prescribed, self.prescribed_turn = np.zeros((n, 3)), np.zeros((n, 3))
         self._led = [row for row, one in enumerate(bodies) if one.motion]
+        self._swung = any(one.motion and one.pivot for one in bodies)
         self._lead(range(n), 0.0)
         self._begin()
 
@@ -130,7 +131,7 @@ class Bodies:
         self.angle = self.angle + step[self.hinged, 0] * self._spin_of_hinged(self.angular_momentum)
         self._follow(then)
         velocity = np.where(self.slides, self.velocity + 0.5 * step * self.force / self.mass, self.velocity)
-        self._show(loose, velocity, self.angular_momentum + 0.5 * step * self.torque)
+        self._show(loose, velocity, self.angular_momentum + 0.5 * step * self._driving)
 
     def kick(self, then: float, dt: float) -> None:
         """The second half of the kick, by the forces at the end of the step."""
@@ -164,15 +165,34 @@ class Bodies:
 
     @property
     def angular_acceleration(self) -> np.ndarray:
-        """By the last torques, rad/s² (n, 3): I⁻¹ (T − ω × L); or as their motions have it."""
+        """By the last torques, rad/s² (n, 3): I⁻¹ (T − r × M A − ω × L); or as their motions have it."""
         found = self.prescribed_turn.copy()
-        found[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(self.torque)[:, None]
+        found[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(self._driving)[:, None]
         if len(self.tumbling):
             spin, momentum = self.spin_ahead[self.tumbling], self.angular_momentum[self.tumbling]
-            twist = self.torque[self.tumbling] - np.cross(spin, momentum)
+            twist = self._driving[self.tumbling] - np.cross(spin, momentum)
             own = np.einsum("nde,nd->ne", self.frame, twist) / self.moments
             found[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
         return np.where(self.loose, found, self.prescribed_turn)
+
+    @property
+    def reaction(self) -> tuple[np.ndarray, np.ndarray]:
+        """Force, N, and moment about the reference points, N m, (n, 3) of what holds bodies.
+
+        What lacks in Newton's and Euler's equations: R = M a_c − F with the acceleration a_c of the centre of
+        mass, and M_R = I α + ω × I ω + r × M A − T with the acceleration A of the reference point, the arm r
+        from it to the centre of mass, and I about it.  Zero in what is free.
+        """
+        spin, change, arm = self.spin_ahead, self.angular_acceleration, self.arm
+        whirl = np.cross(change, arm) + np.cross(spin, np.cross(spin, arm))
+        force = self.mass * (self.acceleration + whirl) - self.force
+        there = self.turn @ self.inertia @ self.turn.transpose(0, 2, 1)
+        momentum = np.einsum("nde,ne->nd", there, spin)
+        driven = np.einsum("nde,ne->nd", there, change) + np.cross(spin, momentum)
+        torque = driven + self.mass * np.cross(arm, self.acceleration) - self.torque
+        loose = self.loose > 0.0
+        torque = np.where(loose & (self.axis > 0.0), 0.0, torque)
+        return np.where(loose & self.slides, 0.0, force), torque
 
     def state(self) -> dict:
         """What the next steps rest on, as lists of numbers."""
@@ -215,6 +235,14 @@ class Bodies:
         whirl = np.einsum("nd,nde,ne->n", self.spin_ahead, there, self.spin_ahead)
         return 0.5 * (self.mass[:, 0] * (own**2).sum(axis=1) + whirl)
 
+    @property
+    def _driving(self) -> np.ndarray:
+        """Torques about the reference points, N m (n, 3), less r × M A where these are told to move: the
+        acceleration A of a pivot, m/s², swings the centre of mass at the end of the arm r."""
+        if not self._swung:
+            return self.torque
+        return self.torque - self.mass * np.cross(self.arm, self.prescribed)
+
     def _begin(self) -> None:
         """Velocity and spin of the start, in what is free."""
         velocity = np.array([one.velocity for one in self.bodies]).reshape(-1, 3)
@@ -235,7 +263,7 @@ class Bodies:
     def _kick(self, then: float, dt: float) -> None:
         half = np.where(then > self.held, 0.5 * dt, 0.0)
         self.velocity = np.where(self.slides, self.velocity + half * self.force / self.mass, self.velocity)
-        self.angular_momentum = self.angular_momentum + half * self.torque
+        self.angular_momentum = self.angular_momentum + half * self._driving
 
     def _tumble(self, dt: np.ndarray) -> None:
         """The free turns, of each body over its own ``dt``, s."""

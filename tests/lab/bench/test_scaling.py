@@ -17,7 +17,7 @@ from psph.case import Case
 from psph.output.ledger import Ledger
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
-from psph.run.setup import create_particles
+from psph.runs.setup import create_particles
 from psph.simulation.step import Simulation
 
 case = Case.model_validate({

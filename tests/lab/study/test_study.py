@@ -25,9 +25,9 @@ from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
-from psph.run import room
-from psph.run.explain import bytes_of_rank
-from psph.run.start import run
+from psph.runs import room
+from psph.runs.explain import bytes_of_rank
+from psph.runs.start import run
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import BlowUp

@@ -15,7 +15,7 @@ from psph.output.gauges.units import quantity_of, unit_of
 from psph.output.pictures import charts
 from psph.output.pictures.plot import plot
 from psph.output.reader import Run
-from psph.run.start import run
+from psph.runs.start import run
 
 GAUGED = (
     TANK
@@ -94,6 +94,8 @@ def test_an_experiment_that_is_gone_is_left_out(gauged, tmp_path):
         ("sluice.flow", ("flow", ""), "m²/s"),
         ("in.pressure", ("pressure", ""), "Pa"),
         ("box.spin_z", ("spin", "z"), "rad/s"),
+        ("box.reaction_y", ("reaction", "y"), "N/m"),
+        ("box.reaction_moment_z", ("reaction_moment", "z"), "N m/m"),
     ],
 )
 def test_columns_have_quantities_and_units(column, quantity, unit):

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from psph.physics.rigid.bodies import Bodies, Body
+from psph.physics.rigid.laws import Accelerated
 from psph.physics.rigid.lines import Line, longest_step, pulls
+from psph.physics.rigid.motion import Part, Rigid
 from psph.physics.rigid.pose import Pose
+from psph.physics.rigid.schedule import Schedule
 
 FREE, FIXED = (True,) * 3, (False,) * 3
 BRICK = (2.0, 0.1, -0.2, 0.1, 3.0, 0.15, -0.2, 0.15, 4.5)
@@ -82,6 +85,71 @@ def test_a_pendulum_swings_as_long_as_it_should():
     bodies = moved(bodies, period / 4000, 3000)  # three quarters: passing the middle
     assert bodies.centre[0, 0] == pytest.approx(0.0, abs=1e-3 * length * small)
     assert np.linalg.norm(bodies.centre[0]) == pytest.approx(length, rel=1e-14)
+
+
+def test_a_hinge_bears_the_tension_of_its_pendulum():
+    # Let go at the level of its hinge. At an angle θ below it, by energy: ω² = 2Mgl sin θ/I, I = 4.5 + Ml²;
+    # along the rod R = Mg sin θ + Mlω², across it Mg cos θ (1 − Ml²/I).
+    mass, length, g = 3.0, 0.8, 9.8
+    bob = body(centre=(length, 0.0, 0.0), pivot=(0.0,) * 3, slides=FIXED, turns=(False, False, True))
+    bodies = Bodies([bob], (0.0, -g))
+    about, turned = 4.5 + mass * length**2, []
+    for n in (1, 400, 300, 200):
+        bodies = moved(bodies, 1e-3, n)
+        angle = -bodies.angle[0]
+        rate2 = 2.0 * mass * g * length * math.sin(angle) / about
+        rod = np.array([math.cos(angle), -math.sin(angle), 0.0])
+        across = np.array([math.sin(angle), math.cos(angle), 0.0])
+        expected = -rod * mass * (g * math.sin(angle) + length * rate2)
+        expected += across * mass * g * math.cos(angle) * (1.0 - mass * length**2 / about)
+        force, moment = bodies.reaction
+        assert force[0] == pytest.approx(expected, abs=2e-4 * mass * g)
+        assert moment[0, 2] == 0.0
+        turned.append(angle)
+    assert max(turned) > 1.3
+
+
+def test_a_hinge_bears_the_moments_that_would_tip_its_body():
+    # A door that spins about y off its centre: ω × I ω in its plane, and the centripetal force.
+    door = body(slides=FIXED, turns=(False, True, False), spin=(0.0, 4.0, 0.0))
+    bodies = moved(Bodies([door], (0.0, 0.0, -9.8)), 1e-2, 50)
+    force, moment = bodies.reaction
+    assert force[0] == pytest.approx([0.0, 0.0, 3.0 * 9.8])
+    there = bodies.turn[0] @ np.reshape(BRICK, (3, 3)) @ bodies.turn[0].T
+    spin = np.array([0.0, 4.0, 0.0])
+    assert moment[0] == pytest.approx(np.cross(spin, there @ spin)) and np.abs(moment[0]).max() > 1.0
+
+
+def test_what_moves_a_body_pushes_it_and_what_is_free_needs_nothing():
+    told = Rigid((Part(Accelerated((2.0, 0.0, 0.5, 0.0)), Schedule()),))
+    pushed = body(slides=(False, True, False), turns=FIXED, motion=told)
+    held = body(held=10.0)
+    bodies = moved(Bodies([pushed, body(spin=(2.0, -1.0, 5.0)), held], (0.0, -9.8, 0.0)), 1e-2, 10)
+    force, moment = bodies.reaction
+    assert force == pytest.approx(np.array([[6.0, 0.0, 1.5], [0.0] * 3, [0.0, 29.4, 0.0]]))
+    assert moment == pytest.approx(np.zeros((3, 3)), abs=1e-12)
+    assert not force[1].any() and not moment[1].any()
+
+
+def test_a_pendulum_on_a_hinge_that_speeds_up_leans_back():
+    # In the frame of the hinge the weight is turned by atan(a/g): it swings about that angle, let go from rest.
+    length, g, a = 0.8, 9.8, 2.0
+    ahead = Rigid((Part(Accelerated((a, 0.0, 0.0, 0.0)), Schedule()),))
+    bob = body(centre=(0.0, -length, 0.0), pivot=(0.0,) * 3, slides=FIXED, turns=(False, False, True))
+    angles = {}
+    for name, motion in (("ahead", ahead), ("still", None)):
+        bodies, angles[name] = Bodies([bob._replace(motion=motion)], (0.0, -g)), []
+        force, torque, _ = pulls((), bodies)
+        bodies.load(force, torque)
+        for n in range(1, 4000):
+            bodies.drift(n * 1e-3, 1e-3)
+            bodies.load(force, torque)
+            bodies.kick(n * 1e-3, 1e-3)
+            angles[name].append(float(bodies.angle[0]))
+    lean = math.atan2(a, g)
+    assert min(angles["ahead"]) == pytest.approx(-2.0 * lean, rel=1e-4)
+    assert max(angles["ahead"]) == pytest.approx(0.0, abs=1e-4)
+    assert not any(angles["still"])  # the control
 
 
 def test_a_body_on_a_spring_swings_as_long_as_it_should_and_a_damper_brakes_it():

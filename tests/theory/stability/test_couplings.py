@@ -12,7 +12,7 @@ from psph.composition.pair import Pair
 from psph.fields import FLUID
 from psph.output.ledger import Ledger
 from psph.physics.damping.filtering import ConservativeSmoothing
-from psph.run.setup import lattice_particles, store_of
+from psph.runs.setup import lattice_particles, store_of
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation

@@ -1,0 +1,18 @@
+"""Points of gauges that go with what they are fixed to."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Carrier(NamedTuple):
+    """The wall or body of a ``group``, which carries points along as it moves and turns."""
+
+    group: int
+
+    def places(self, simulation, points: np.ndarray) -> np.ndarray:
+        """Where ``points`` (n, dim) have come that were there at the start, m, the same on every rank.
+
+        Each is at X + R (x₀ − c) by the pose of what carries it (psph.physics.rigid.pose).
+        """
+        return simulation.engine.poses.carried(simulation.plan.pose_of[self.group], points)

@@ -1,0 +1,31 @@
+"""Whether the experiments of a case can be held against what a run of it measures."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from psph.case import CaseError
+from psph.case.curves import read_curve
+from psph.case.errors import advise
+from psph.case.files import Unfit, lies_in
+from psph.runs.record import columns_of
+
+
+def refuse_unfit_experiments(scene) -> None:
+    """Raise CaseError, a line each, where a file, a column of it, or the column to compare is not there."""
+    if found := list(_faults(scene)):
+        raise CaseError(found)
+
+
+def _faults(scene) -> Iterator[str]:
+    case, folder = scene.case, Path(scene.case.file).parent
+    for name, experiment in case.experiments.items():
+        where, path = f"{case.file}: experiments.{name}", folder / experiment.file
+        if experiment.probe not in (columns := columns_of(scene)):
+            known = advise(experiment.probe, columns) if columns else "add a probe or a gauge"
+            yield f'{where}.probe: "{experiment.probe}" is not measured in this case; {known}'
+        if path.is_file() and not lies_in(folder, experiment.file):
+            continue  # a study reads it, where it is told to
+        try:
+            read_curve(experiment, path, where)
+        except Unfit as error:
+            yield str(error)

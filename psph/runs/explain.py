@@ -1,0 +1,347 @@
+"""The plan in words: what will be simulated, why, and its cost."""
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from psph.case.keys import AXES
+from psph.case.profiles import OFF
+from psph.composition.space import Metres
+from psph.output.tables import GAUGE
+from psph.parallel.domain import CELLS_A_PARTICLE
+from psph.parallel.machine import free_memory
+from psph.parallel.slabs import check_ranks
+from psph.particles.cells import make_grid
+from psph.particles.records import record_width, recorded
+from psph.particles.store import SPARE
+from psph.physics.motion import deforms
+from psph.physics.solid.deformation import KERNEL, SMOOTHING, places_of, support_of
+from psph.physics.solid.material import is_damped
+from psph.runs.forecast import forecast, forecast_lines, pull, sites_within
+from psph.runs.hints import hints
+from psph.runs.outlay import output_lines
+from psph.runs.outlook import outlook
+from psph.scene.bodies import in_words
+from psph.scene.meshes.report import described
+from psph.scene.moving import motion_lines
+from psph.scene.rheologies import rheology_lines
+from psph.scene.solid_checks import solid_lines
+from psph.scene.waving import wave_lines
+from psph.simulation.immersion import substeps
+from psph.simulation.plan import Plan, make_plan
+
+NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
+"""Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
+rebuild sorts with; of a neighbour in a list; and of a cell of the grid during a rebuild."""
+
+
+def explain(scene, ranks: int) -> Iterator[str]:
+    """Lines that describe the plan of a scene on so many ranks."""
+    plan = make_plan(scene)
+    counts = scene.counts()
+    particles = int(counts.sum())
+    yield from _scene_lines(scene, plan, particles)
+    yield from _rank_lines(scene, plan, ranks)
+    yield from _pass_lines(scene, plan)
+    yield from _step_lines(scene, plan)
+    for place, line in enumerate(rheology_lines(scene)):
+        if not place:
+            yield "Viscosities that depend on the rate of strain"
+        yield f"  {line}"
+    yield from _friction_lines(scene, plan)
+    found = forecast(scene, plan, ranks)
+    yield from forecast_lines(found, ranks, scene.case.time.end)
+    neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
+    yield from output_lines(scene, plan, neighbours, found.steps)
+    if scene.case.fluids:
+        yield from outlook(scene, plan)
+    for line in hints(scene, plan):
+        yield f"Hint: {line}"
+
+
+def slab_planes(scene) -> int:
+    """Planes of cells along the slab axis: the most ranks that the scene can use."""
+    return _grid(scene).counts[0]
+
+
+def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
+    """Memory of a particle: its fields with the arrays to sort them, and its neighbour list, bytes."""
+    own = NUMBER * _rows(scene, plan, plan.arrays) + IDENTITY
+    widths = (record_width(_rows(scene, plan, recorded(p.neighbour_fields))) for p in plan.passes)
+    record = sum(widths) * plan.space.record_type.itemsize
+    own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
+    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2 if plan.passes else 0.0
+    listed = (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
+    return own, listed + (bytes_of_solid(scene, plan) if plan.solids else 0.0)
+
+
+def bytes_of_solid(scene, plan: Plan) -> float:
+    """Memory of the records, the reference list and the row of ids of a particle of a solid, bytes."""
+    entries = sites_within(scene, support_of(plan.solid_smoothing_length)) + (Metres.lanes - 1) / 2
+    widths = map(record_width, places_of(scene.dimensions, is_damped(plan.solids)))
+    return NUMBER * sum(widths) + (ENTRY + NUMBER) * entries + ROW
+
+
+def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
+    """Memory of the particles, ghosts and lists of one of so many ranks, bytes."""
+    own, listed = bytes_per_particle(scene, plan)
+    share = float(scene.counts().sum()) / ranks
+    return own * (share + _neighbours(scene, ranks) * _ghosts_a_side(scene)) + listed * share
+
+
+def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
+    """Messages of a halo refresh: bytes per ghost, and bytes that a rank sends in all."""
+    each = NUMBER * _rows(scene, plan, plan.refreshed)
+    return each, each * _neighbours(scene, ranks) * _ghosts_a_side(scene)
+
+
+def _rows(scene, plan: Plan, names: tuple[str, ...]) -> int:
+    """Numbers that these fields take."""
+    return sum(plan.fields[name].width(scene.dimensions) for name in names)
+
+
+def _neighbours(scene, ranks: int) -> int:
+    """Ranks, or sides, that a rank exchanges ghosts with."""
+    return 2 if scene.periods[scene.axis] is not None else min(ranks - 1, 2)
+
+
+def _ghosts_a_side(scene) -> float:
+    """Particles of an average plane of cells: a rank holds one plane from each side."""
+    return float(scene.counts().sum()) / slab_planes(scene)
+
+
+def _cells_per_particle(scene) -> float:
+    """The most that the grid may come to have, when particles leave an open domain."""
+    grid = _grid(scene)
+    closed = all(period is not None for period in scene.periods)
+    return max(math.prod(grid.counts) / float(scene.counts().sum()), 0.0 if closed else CELLS_A_PARTICLE)
+
+
+def _grid(scene):
+    """The grid over the scene at its start."""
+    return make_grid(scene.axis, _cutoff(scene), scene.lower, scene.upper, scene.periods)
+
+
+def _cutoff(scene) -> float:
+    return scene.reach.cutoff
+
+
+def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
+    case = scene.case
+    support = scene.kernel.support * scene.smoothing_length
+    yield f"{case.title or case.name} ({case.file})"
+    yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
+    yield from _preset_lines(case)
+    names = ", ".join(m.name for m in scene.species)
+    yield f"  materials   {names}"
+    yield from solid_lines(scene)
+    for body in scene.rigid_bodies:
+        yield f"  body        {body.name}: {in_words(scene, body)}"
+    yield from motion_lines(scene)
+    yield from wave_lines(scene)
+    for one in scene.species:
+        if deforms(one.motion):
+            yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"
+    for plane in scene.mirror_planes:
+        sticks = "; the fluid sticks to it" if plane.sticks else ""
+        yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
+    for line in described(scene):
+        yield f"  mesh        {line}"
+    for region, _ in scene.regions:
+        yield f"  region      {type(region).__name__}: {_first_line(region)}"
+    for name, table in scene.tables.items():
+        yield f"  table       {name}.csv: {_first_line(table)}"
+    for name, gauge in case.gauges.items():
+        measures = _first_line(getattr(gauge, gauge.kind))
+        yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
+    if plan.solids:
+        neighbours = sites_within(scene, support_of(plan.solid_smoothing_length))
+        yield (
+            f"  kernel      of solids: {KERNEL}, h = {plan.solid_smoothing_length:g} m "
+            f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
+        )
+    if plan.passes:
+        yield (
+            f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
+            f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
+            f"about {sites_within(scene, support):.0f} neighbours"
+        )
+
+
+def _preset_lines(case) -> Iterator[str]:
+    """The scheme and the profile: the keys that they set, and those that the case overrides."""
+    names = dict.fromkeys((f"scheme {case.scheme}", *(name for name, _ in case.presets.values())))
+    for name in names:
+        keys = {key: value for key, (of, value) in case.presets.items() if of == name}
+        own = [key for key in keys if not case.preset(key)]
+        what, _, which = name.partition(" ")
+        yield f"  {what:<11} {which}" + (f", except {', '.join(own)}" if own else "")
+        for key, value in keys.items():
+            if key not in own:
+                yield f"              {key} = {value}"
+
+
+def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
+    planes = slab_planes(scene)
+    check_ranks(ranks, planes)
+    own, listed = bytes_per_particle(scene, plan)
+    memory, free = bytes_of_rank(scene, plan, ranks), free_memory()
+    each, sent = bytes_per_refresh(scene, plan, ranks)
+    along = "xyz"[scene.axis]
+    yield f"  ranks       {ranks}, at most {planes}: that many planes of cells along {along}"
+    yield (
+        f"  memory      about {memory / 2**20:.1f} MiB a rank, {own + listed:.0f} bytes a particle, "
+        f"{listed:.0f} of them in its neighbour list"
+    )
+    if ranks * memory > free:
+        yield (
+            f"              too much for this machine: {ranks * memory / 2**30:.1f} GiB, and "
+            f"{free / 2**30:.1f} GiB are free"
+        )
+    yield f"  arrays      {', '.join(plan.arrays)}"
+    shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
+    yield f"  shared      {shared}"
+    if plan.passes:
+        yield f"  halo        once a step: {', '.join(plan.refreshed)}"
+        yield (
+            f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
+            f"{sent:,.0f} bytes from a rank"
+        )
+    if plan.solids:
+        first, second = places_of(scene.dimensions, is_damped(plan.solids))
+        d = scene.dimensions
+        yield (
+            f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "
+            f"stress, {NUMBER * (second - 2 * d)} bytes each"
+        )
+    if plan.ghost_fields:
+        yield f"              once a rebuild: {', '.join(plan.ghost_fields)}"
+
+
+def _pass_lines(scene, plan: Plan) -> Iterator[str]:
+    yield from _early_passes(plan)
+    if plan.passes:
+        flops = plan.flops_per_pair(scene.periods)
+        yield f"Pass over the neighbours, one a step, {flops} flops a pair"
+    if plan.solids:
+        yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
+    effects, laws = acting(plan), laws_of(plan)
+    width = _column([one.name for one in (*effects, *laws)] + [e.effect.__name__ for e in plan.absent])
+    for one in effects:
+        yield from _acting_lines(one, width)
+    yield "Equation of state"
+    for one in laws:
+        yield from _acting_lines(one, width)
+    yield "Not simulated" if scene.case.fluids else "Not simulated, beside all that acts between fluids"
+    for name, why in absent(scene, plan).items():
+        yield f"  {name:<{width}}{why}"
+
+
+class Acting(NamedTuple):
+    """An effect or an equation of state of a scene: what it does, and what calls for it."""
+
+    name: str
+    does: str
+    because: str
+
+
+def acting(plan: Plan) -> list[Acting]:
+    """The effects of the scene."""
+    return [Acting(call.name, _first_line(call.effect), call.reason) for call in plan.called]
+
+
+def laws_of(plan: Plan) -> list[Acting]:
+    """The equations of state of the scene."""
+    return [
+        Acting(type(law).__name__, _first_line(law), why) for law, why in zip(plan.laws, plan.law_reasons)
+    ]
+
+
+def absent(scene, plan: Plan) -> dict[str, str]:
+    """Why each effect is not simulated that the case could have asked for."""
+    return {
+        entry.effect.__name__: plan.dropped.get(entry.effect.__name__) or _why_absent(scene.case, entry.key)
+        for entry in plan.absent
+        if scene.case.fluids or hasattr(entry.effect, "body")
+    }
+
+
+def _acting_lines(one: Acting, width: int) -> Iterator[str]:
+    yield f"  {one.name:<{width}}{one.does}"
+    yield f"  {'':<{width}}because: {one.because}"
+
+
+def _column(names: Iterable[str]) -> int:
+    """Width of a column of names, with room behind the longest."""
+    return max(NARROWEST, 2 + max(map(len, names)))
+
+
+NARROWEST = 22
+"""Characters of a column of names."""
+
+
+def _early_passes(plan: Plan) -> Iterator[str]:
+    """The passes that gather sums for the one that gives the rates."""
+    for early, later in zip(plan.passes, plan.passes[1:]):
+        names = ", ".join(type(effect).__name__ for effect in early.reductions)
+        often = "one a step" if early.every == 1 else f"one in {early.every} steps"
+        sent = f"; ghosts then get {', '.join(later.brought)}" if later.brought else ""
+        yield f"Pass over the neighbours, {often}, before the next: sums of {names}{sent}"
+
+
+def _why_absent(case, key: str) -> str:
+    by, value = case.presets.get(key, (None, OFF))
+    if value != OFF:
+        return f"switched off: {by} has {key}, and the case takes it out"
+    return f"the case does not say {_asked_by(key)}"
+
+
+def _asked_by(key: str) -> str:
+    name, _, choice = key.partition("=")
+    return f'{name} = "{choice}"' if choice else name
+
+
+def _first_line(effect) -> str:
+    return type(effect).__doc__.splitlines()[0]
+
+
+def _friction_lines(scene, plan: Plan) -> Iterator[str]:
+    """What numerical friction stands for, beside the viscosity of the fluids."""
+    found = [
+        (call.title, call.effect.numerical_viscosity(scene))
+        for call in plan.called
+        if hasattr(call.effect, "numerical_viscosity")
+    ]
+    if not any(viscosity for _, viscosity in found):
+        return
+    fluids = scene.case.fluids.items()
+    own = [(f"fluids.{name}", fluid.viscosity) for name, fluid in fluids if not fluid.rheology]
+    yield "Kinematic viscosity, and what numerical friction acts as in a shear flow"
+    width = _column(name for name, _ in (*own, *found))
+    for name, viscosity in own:
+        yield f"  {name:<{width}}{viscosity:.3g} m²/s"
+    smallest = min((viscosity for _, viscosity in own if viscosity), default=0.0)
+    for name, viscosity in found:
+        times = f", {viscosity / smallest:.2g} times the fluid's" if smallest else ""
+        yield f"  {name:<{width}}{viscosity:.3g} m²/s{times}"
+
+
+def _step_lines(scene, plan: Plan) -> Iterator[str]:
+    yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
+    limits = list(plan.step_limits(scene.expected_speed, pull(scene)))
+    width = _column(name for _, name in limits)
+    for step, name in limits:
+        yield f"  {name:<{width}}{step:.3g} s"
+    if plan.immersed:
+        yield _substep_line(scene, plan, min(limits)[0])
+
+
+def _substep_line(scene, plan: Plan, dt: float) -> str:
+    """How many steps of the solids a step of the fluid takes, and why."""
+    h, speed = plan.solid_smoothing_length, scene.expected_speed
+    count = substeps(plan.solids, h, dt, speed)
+    longest, name = min((one.longest_step(h, speed), one.name) for one in plan.solids)
+    return (
+        f"  solids make {count} steps in a step of {dt:.3g} s, under one push of the fluid: solids.{name} "
+        f"stands {longest:.3g} s; each is two passes over the reference and two messages to partners"
+    )

@@ -1,0 +1,62 @@
+"""What a run will write: how often, how many bytes, and what its probes cost."""
+
+import math
+from collections.abc import Iterator
+
+from psph.fields import Field
+from psph.runs.record import probes_of
+from psph.simulation.plan import Plan
+
+STRUCTURE = 8192
+"""Bytes of a frame beside its rows: names, shapes, units, meanings."""
+
+DIGITS = 19
+"""Bytes of a number in a table, its comma included: most have all their digits."""
+
+
+def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[str]:
+    """Frames and tables of a scene whose particles have so many ``neighbours``, in ``steps``."""
+    out, particles = scene.case.output, int(scene.counts().sum())
+    yield "Output, at most once a step"
+    frames, each = _moments(scene, out.frames, steps), bytes_per_frame(scene, plan)
+    yield f"  frames              {frames:,}, {amount(each)} each, {amount(frames * each)} in all"
+    yield f"  log.csv             {_moments(scene, out.log, steps):,} rows"
+    probes = probes_of(scene.case)
+    if not probes:
+        return
+    rows = _moments(scene, out.probes, steps)
+    columns = 1 + sum(len(probe.columns(scene.dimensions)) for probe in probes)
+    yield (
+        f"  probes.csv          {rows:,} rows of {columns:,} columns, about {amount(rows * columns * DIGITS)}"
+    )
+    plural = "s look" if len(probes) > 1 else " looks"
+    yield (
+        f"                      {len(probes):,} probe{plural} at {len(probes) * particles:,} "
+        f"particles for a row, a step at {particles * neighbours:,.0f} pairs"
+    )
+
+
+def bytes_per_frame(scene, plan: Plan) -> int:
+    """Of all datasets of a frame and what describes them."""
+    rows = sum(_bytes(field, scene.dimensions) for field in plan.saved)
+    points = 24 if scene.dimensions == 1 else 0  # the dataset that XDMF needs
+    return int(scene.counts().sum()) * (rows + points) + STRUCTURE
+
+
+def amount(size: float) -> str:
+    """Bytes as people read them: ``3.4 MiB``."""
+    power = max(0, min(int(math.log(max(size, 1.0), 1024)), len(UNITS) - 1))
+    return f"{size / 1024**power:.3g} {UNITS[power]}"
+
+
+UNITS = ("bytes", "KiB", "MiB", "GiB", "TiB", "PiB")
+"""Each 1024 times the one before."""
+
+
+def _bytes(field: Field, dimensions: int) -> int:
+    return 1 if field.name in ("kind", "group") else 8 * field.width(dimensions)
+
+
+def _moments(scene, interval: float, steps: int) -> int:
+    """How often something is due: at the start too, and not between two steps."""
+    return min(math.floor(scene.case.time.end / interval), steps) + 1

@@ -1,0 +1,134 @@
+"""Checkpoints of a run: what they hold, and how a run goes on from one on any number of ranks.
+
+The rows of a checkpoint stand in the order of the lists: by the cell where each particle stood when
+the lists were made, then by id.  So the particles that a rank owns after it has made the lists
+again, from those places, are neighbours in the file.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from psph.case import CaseError, load
+from psph.errors import LONGEST_QUOTE, shortened
+from psph.output import checkpoint
+from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path, checkpoints
+from psph.particles.store import Store
+from psph.runs.record import Record
+from psph.runs.watch import SOONEST
+from psph.simulation.plan import Plan
+from psph.simulation.step import Simulation
+
+MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": True}
+"""Keys of a case that change no step: a run that goes on may have others."""
+
+
+def case_digest(case) -> str:
+    """Fingerprint of all of a case that its steps and the rows of its files rest on."""
+    text = case.model_dump_json(by_alias=True, exclude=MAY_CHANGE)
+    text += "".join(case.versions)  # what a file that it uses now says counts too
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def write_checkpoint(simulation: Simulation, record: Record, case, folder: Path) -> Path:
+    """Leave a checkpoint of the state after the last step in ``folder``; collective.
+
+    Raises OutputError on every rank, and leaves the older checkpoints as they are.
+    """
+    path = checkpoint_path(folder, simulation.steps)
+    store = simulation.store
+    with simulation.ledger("output"):
+        kept = record.state()  # first: it has the frames on the disk
+        checkpoint.write(
+            path,
+            simulation.comm,
+            {name: store.shown(name) for name in ("id", "group", *store.rows)},
+            {
+                "case": case_digest(case),
+                "name": case.name,
+                "state": simulation.state(),
+                "record": kept,
+            },
+            record.frames.structure(),
+        )
+    return path
+
+
+def newest_checkpoint(folder: Path, comm) -> str | None:
+    """The name of the newest checkpoint in ``folder``, if any; collective."""
+    found = checkpoints(folder) if comm.rank == 0 else []
+    return comm.bcast(found[0].name if found else None)
+
+
+def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None = None, given=None):
+    """The case of the run in ``folder`` and the checkpoint that it goes on from; collective.
+
+    ``extend`` are keys to change, ``chosen`` the name of a checkpoint where it is not the newest, ``given``
+    what a script brings.
+    Raises CaseError or CheckpointError on every rank.
+    """
+    folder = Path(folder)
+    if not (folder / COPY).is_file():
+        lacks = "holds no run" if folder.is_dir() else "there is no such folder"
+        raise CheckpointError(f"{folder}: {lacks}: give the folder that a run has written")
+    case = load(folder / COPY, _allowed(extend), "--extend", given)
+    found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
+    if not found:
+        raise CheckpointError(
+            f"{folder}: holds no checkpoint: a run of less than {SOONEST:g} s leaves none by itself; run the "
+            "case again with --overwrite, and with --set checkpoint.minutes=10 to have one at its end"
+        )
+    saved = _open(folder / chosen if chosen else found[0], found, comm, case_digest(case))
+    now = saved.state["time"]
+    if extend and case.time.end <= now:
+        raise CheckpointError(
+            f"{saved.path}: time.end = {case.time.end:g} s is not after it, at {now:.6g} s: give a later end"
+        )
+    return case.under(saved.header["name"]), saved
+
+
+def _allowed(extend: Sequence[str]) -> Sequence[str]:
+    for text in extend:
+        table, _, name = text.partition("=")[0].strip().partition(".")
+        keys = MAY_CHANGE.get(table, ())
+        if not name or (keys is not True and name not in keys):
+            raise CaseError(
+                [
+                    f"--extend {shortened(text, LONGEST_QUOTE)}: would make it another run; give time.end, "
+                    "a key of output, checkpoint or guards, or start the case again"
+                ]
+            )
+    return extend
+
+
+def _open(path: Path, found: list[Path], comm, case: str) -> Saved:
+    """The checkpoint, or CheckpointError with the newest other one that is whole."""
+    try:
+        return Saved(path, comm, case)
+    except CheckpointError as error:
+        for other in found:
+            if other != path and (whole := _whole(other, comm, case)):
+                raise CheckpointError(
+                    f"{error}; {other.name}, at {whole.state['time']:.6g} s, is whole: go on from "
+                    f"it with `python -m psph resume {path.parent} --from {other.name}`"
+                ) from None
+        raise CheckpointError(f"{error}; no other checkpoint there is whole") from None
+
+
+def _whole(path: Path, comm, case: str) -> Saved | None:
+    try:
+        return Saved(path, comm, case)
+    except CheckpointError:
+        return None
+
+
+def listed_particles(scene, plan: Plan, saved: Saved) -> Store:
+    """A share of the particles of a checkpoint, standing where the lists were made."""
+    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    ids, groups, listed = saved.share("id", "group", "listed_position")
+    block = np.zeros((len(store.data), len(ids)))
+    block[list(store.rows["position"])] = listed.T
+    store.append(ids, groups, block)
+    return store

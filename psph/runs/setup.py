@@ -1,0 +1,103 @@
+"""From a scene to this rank's particles, and the compiled loops made ready."""
+
+import time
+from contextlib import suppress
+
+import numpy as np
+
+from psph.engine.jit import CACHE, is_kept, many_loops, marker
+from psph.output.checkpoint import checksum
+from psph.output.gauges import gauges_of
+from psph.output.ledger import Ledger
+from psph.parallel.reductions import alone
+from psph.particles.store import Store
+from psph.physics.motion import OF_MOTION
+from psph.physics.solid.deformation import DRAWN
+from psph.runs.record import probes_of
+from psph.scene.particles import ParticleSet
+from psph.simulation.filling import block_of
+from psph.simulation.plan import Plan
+from psph.simulation.step import Simulation
+
+
+def create_particles(scene, plan: Plan, comm) -> Store:
+    """This rank's share of the scene's particles in a store.
+
+    Where they belong is for the first rebuild to say.
+    """
+    return store_of(scene, plan, lattice_particles(scene, comm))
+
+
+def lattice_particles(scene, comm) -> ParticleSet:
+    """This rank's share of the scene's particles, by lattice planes; ids in lattice order."""
+    reached = np.concatenate([[0], np.cumsum(scene.counts())])
+    goals = reached[-1] * np.arange(comm.size + 1) // comm.size
+    cuts = np.searchsorted(reached, goals)
+    cuts[-1] = scene.planes
+    first, last = int(cuts[comm.rank]), int(cuts[comm.rank + 1])
+    return scene.particles(first, last, int(reached[first]))
+
+
+def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
+    """A store of these particles of a scene, with the arrays that its plan asks for."""
+    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    block = block_of(scene, store, found.material, found.position, found.velocity, found.density)
+    store.append(found.id, found.material, block)
+    return store
+
+
+def compile_ahead(scene, plan: Plan, comm) -> float:
+    """Every loop of the plan, ready to run: compiled, or loaded from the cache.
+
+    Where the cache holds them all, the ranks load together; else rank 0 compiles while the others
+    wait, and they load when they need one.  Without a cache, and with loops of a file that the case
+    uses, all compile.  Returns the seconds it took.  Collective.
+    """
+    begun = time.perf_counter()
+    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    examples = (
+        tuple((one.effects, one.reductions) for one in plan.passes),
+        plan.kernel,
+        plan.laws,
+        plan.space,
+        plan.motions,
+        plan.loaded is not None,
+        (
+            bool(plan.rigid) or None,
+            bool(scene.frame) or None,
+            *(f.name in plan.arrays or None for f in OF_MOTION),
+        ),
+        tuple((law, bool(one.viscosity) or None) for law, one in zip(plan.solid_laws, plan.solids)),
+        DRAWN.name in plan.arrays or None,
+        scene.periods,
+        store.view(),
+    )
+    measured = "step and probes" if scene.case.probes or scene.case.gauges else "step"
+    ready = marker(measured, *examples)
+    together = comm.bcast(ready is None or not is_kept(*examples) or ready.exists())
+    if together or comm.rank == 0:
+        with many_loops():
+            _rehearse(scene, plan, store)
+    if comm.rank == 0 and not together:
+        with suppress(OSError):  # the folder is gone, or full: loops are compiled once more
+            ready.touch()
+        CACHE.prune()
+    comm.Barrier()
+    return time.perf_counter() - begun
+
+
+def _rehearse(scene, plan: Plan, store: Store) -> None:
+    """One step of two particles of the first material in ``store``: it has the types of the whole run."""
+    middle = np.tile([0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)], (2, 1))
+    first = np.array([0, scene.layout.fluids if plan.immersed else 0], np.uint8)
+    density = np.full(2, scene.species[0].density)
+    block = block_of(scene, store, first, middle, np.zeros_like(middle), density)
+    store.append(np.arange(2), first, block)
+    rehearsal = Simulation(scene, plan, store, alone(), Ledger())
+    rehearsal.step()
+    rehearsal.settle_pressure()
+    for probe in probes_of(scene.case):
+        probe.sample(rehearsal.domain, scene.kernel)
+    for gauge in gauges_of(scene, plan.mirrors).values():
+        gauge.row(rehearsal)
+    checksum(store.id, 0)  # a run that is told to end may have a second for its checkpoint

@@ -1,0 +1,60 @@
+"""summary.json: what a run cost, what its guards saw and what it was made with, for the report."""
+
+import json
+import platform
+from collections.abc import Iterable
+from contextlib import suppress
+from importlib import metadata
+from pathlib import Path
+
+import psph
+from psph.engine.jit import processor
+from psph.runs.cost import costs
+
+SUMMARY = "summary.json"
+
+PACKAGES = ("numpy", "numba", "mpi4py", "h5py")
+"""Those that results rest on."""
+
+
+def write_summary(folder: Path, scene, simulation, seconds: float, steps: int, said: Iterable[str]) -> None:
+    """Leave the summary of the last part of a run in its folder; on one rank.
+
+    ``seconds`` of ``steps`` steps; ``said``: what guards and probes told at the end.  Without it a run is
+    as good: a disk that is full now does not make it fail.
+    """
+    spent = dict(simulation.ledger.seconds)
+    parts = list(costs(simulation.plan, scene.periods, spent))
+    told = {
+        "header": header(Path(scene.case.file)),
+        "ranks": simulation.comm.size,
+        "particles": int(scene.counts().sum()),
+        "steps": steps,
+        "seconds": seconds,
+        "parts": [*parts, ("the rest", seconds - sum(spent.values()))],
+        "said": list(said),
+        "versions": {"psph": psph.__version__, "Python": platform.python_version()}
+        | {name: metadata.version(name) for name in PACKAGES},
+        "processor": processor(),
+    }
+    with suppress(OSError):
+        (folder / SUMMARY).write_text(json.dumps(told, indent=1), encoding="utf-8")
+
+
+def read_summary(folder: Path) -> dict:
+    """What stands there; empty where a run has not come to its end."""
+    try:
+        return json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+
+
+def header(path: Path) -> str:
+    """The comment at the top of a case file, without its marks; empty where there is none."""
+    lines: list[str] = []
+    with suppress(OSError, UnicodeDecodeError):
+        for line in path.read_text(encoding="utf-8").splitlines():
+            if not line.startswith("#"):
+                break
+            lines.append(line.removeprefix("#").removeprefix(" "))
+    return "\n".join(lines)

@@ -1,0 +1,151 @@
+"""What explain predicts against what a run then holds and sends."""
+
+import re
+
+import pytest
+from drafts import TANK, draft
+from mpi4py import MPI
+
+from psph.output.ledger import Ledger
+from psph.runs.explain import bytes_per_particle, bytes_per_refresh, explain
+from psph.runs.setup import create_particles
+from psph.scene import Scene
+from psph.simulation.plan import make_plan
+from psph.simulation.step import Simulation
+
+BOX = """
+scheme = "sph"
+[space]
+dimensions = 3
+spacing = 0.05
+smoothing = 1.2
+periodic = ["x", "y", "z"]
+lower = [0.0, 0.0, 0.0]
+upper = [1.2, 1.2, 1.2]
+[time]
+end = 1.0
+[physics]
+sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.2, 1.2, 1.2] }
+jitter = 0.2
+"""
+"""13,824 particles without a surface."""
+
+
+@pytest.fixture(scope="module")
+def box(tmp_path_factory):
+    """(scene, plan, simulation) of the box."""
+    scene = Scene(draft(tmp_path_factory.mktemp("box"), BOX))
+    plan = make_plan(scene)
+    store = create_particles(scene, plan, MPI.COMM_SELF)
+    return scene, plan, Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+
+
+def test_memory_is_what_a_run_holds(box):
+    scene, plan, simulation = box
+    store, lists = simulation.store, simulation.domain.lists
+    held = store.data.nbytes + store.id.nbytes + store.group.nbytes
+    held += simulation.domain.starts.nbytes + simulation.engine.records[-1].table.nbytes
+    in_lists = sum(array.nbytes for array in lists)
+    own, listed = bytes_per_particle(scene, plan)
+    assert own * store.total + listed * store.owned == pytest.approx(held + in_lists, rel=0.15)
+    assert own * store.total == pytest.approx(held, rel=0.15)
+    assert listed * store.owned == pytest.approx(in_lists, rel=0.15)
+    assert own + listed <= 600.0  # a plain fluid, 57 neighbours and more
+
+
+def test_the_halo_is_what_a_refresh_sends(box):
+    scene, plan, simulation = box
+    store = simulation.store
+    each, sent = bytes_per_refresh(scene, plan, 1)
+    assert each == 8 * (3 + 3 + 1 + 1)
+    measured = simulation.domain.halo.bytes(plan.refreshed)
+    assert measured == each * (store.low + store.high)
+    assert sent == pytest.approx(measured, rel=0.25)  # planes of cells hold one lattice plane more
+
+
+def test_it_says_so(box):
+    scene, plan, _ = box
+    text = "\n".join(explain(scene, 1))
+    own, listed = bytes_per_particle(scene, plan)
+    assert f"{own + listed:.0f} bytes a particle, {listed:.0f} of them in its neighbour list" in text
+    assert f"{bytes_per_refresh(scene, plan, 1)[1]:,.0f} bytes from a rank" in text
+    assert int(re.search(r"(\d+) flops a pair", text)[1]) > 20
+
+
+def test_one_rank_of_an_open_domain_sends_nothing_and_two_send_to_one_side(tmp_path):
+    scene = Scene(draft(tmp_path))
+    plan = make_plan(scene)
+    sent = [bytes_per_refresh(scene, plan, ranks)[1] for ranks in (1, 2, 3, 4)]
+    assert sent[0] == 0.0 < sent[1] and sent[2] == sent[3] == 2 * sent[1]
+
+
+def test_explain_says_what_comes_from_the_profile(tmp_path):
+    text = 'profile = "quick"\n' + BOX.replace("jitter", "viscosity = 1e-3\njitter").replace(
+        'scheme = "sph"\n', ""
+    )
+    lines = list(explain(Scene(draft(tmp_path, text, "space.smoothing=1.2")), 1))
+    assert "  scheme      stable, except space.smoothing" in lines
+    place = lines.index("  profile     quick")
+    assert lines[place + 1] == "              precision = mixed"
+    assert not any("space.smoothing =" in line for line in lines)
+    because = [line for line in lines if "because:" in line and "scheme stable" in line]
+    assert any("physics.position_shift = " in line for line in because)
+    assert not any("viscosity" in line for line in because)
+    assert not any("profile" in line for line in explain(Scene(draft(tmp_path, BOX)), 1))
+
+
+def not_simulated(tmp_path, text, *overrides) -> dict[str, str]:
+    """What explain says of each effect that is absent."""
+    lines = list(explain(Scene(draft(tmp_path, text, *overrides)), 1))
+    end = next(k for k, line in enumerate(lines) if line.startswith("Time step"))
+    return dict(line.split(maxsplit=1) for line in lines[lines.index("Not simulated") + 1 : end])
+
+
+def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
+    by = "left out, though physics.{} (scheme stable): "
+    tank = not_simulated(tmp_path, TANK, "scheme=stable")
+    assert tank["BackgroundPressure"] == by.format("background_pressure = { pressure = auto }") + (
+        "the fluid has a free surface, which it would blow apart"
+    )
+    closed = not_simulated(tmp_path, BOX, "scheme=stable")
+    assert closed["TensionFloor"].startswith("left out, though physics.tension_floor = ")
+    assert closed["TensionFloor"].endswith(
+        ": the fluid has no free surface, and in a closed domain it may be under tension"
+    )
+    assert "corrected gradients hold what " in closed["BackgroundPressure"]
+    still = not_simulated(tmp_path, BOX, "physics.background_pressure=auto")
+    assert still["BackgroundPressure"].endswith(": no pressure is negative at the start, and nothing moves")
+    assert closed["XSPH"] == "the case does not say physics.xsph"
+    rubbed = not_simulated(tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.central_friction={}")
+    assert rubbed["LaminarViscosity"].endswith(": physics.central_friction takes its place")
+
+
+def test_names_and_what_is_said_of_them_stand_in_two_columns(tmp_path):
+    lines = list(explain(Scene(draft(tmp_path, TANK)), 1))
+    [line] = [line for line in lines if "GeneralisedTransportVelocity" in line]
+    assert "GeneralisedTransportVelocity  the case" in line
+    begins = line.index("the case")
+    [because] = [one for one in lines if one.endswith("because: every scene")]
+    assert because.index("because") == begins
+
+
+def test_what_the_case_takes_out_of_its_scheme_is_switched_off(tmp_path):
+    said = [*explain(Scene(draft(tmp_path, TANK, "scheme=stable", "physics.impact_damping=off")), 1)]
+    [line] = [line for line in said if line.startswith("  ImpactDamping")]
+    assert "switched off: scheme stable has physics.impact_damping, and the case takes it out" in line
+
+
+def test_numerical_friction_stands_beside_the_viscosity_of_the_fluid(tmp_path):
+    keys = ("physics.pair_damping=0.02", "fluids.water.viscosity=0.01", "physics.sound_speed=40")
+    said = [*explain(Scene(draft(tmp_path, TANK, *keys)), 1)]
+    at = next(number for number, line in enumerate(said) if line.startswith("Kinematic viscosity"))
+    assert said[at + 1].split() == ["fluids.water", "0.01", "m²/s"]
+    assert said[at + 2].split() == ["pair", "damping", "0.013", "m²/s,", "1.3", "times", "the", "fluid's"]
+
+
+def test_an_effect_has_one_name(tmp_path):
+    said = "\n".join(explain(Scene(draft(tmp_path, TANK, "scheme=stable")), 1))
+    assert "fourth order diffusion  " in said and "position shift" in said
+    assert "tank diffusion" not in said and "lattice shift" not in said

@@ -1,0 +1,129 @@
+"""What explain says of the lattice that a case starts from."""
+
+import re
+import time
+
+import pytest
+from drafts import SQUARE, TANK, draft
+
+from psph.case import load
+from psph.runs.explain import explain
+from psph.runs.outlook import outlook
+from psph.scene import Scene
+from psph.simulation.plan import make_plan
+from psph.theory.stability.growth import growth
+from psph.theory.stability.uniform import Settings
+
+
+def said(case):
+    scene = Scene(case)
+    return list(outlook(scene, make_plan(scene)))
+
+
+def paper(name, *sets):
+    return load(f"run/cases/{name}.toml", list(sets))
+
+
+def test_the_paper_s_window():
+    """Stable at 1.3; at 1.2 unstable, how fast, and what would hold."""
+    head, line, _ = said(paper("hydrostatic"))
+    assert "square lattice" in head and "symmetric" in head
+    assert re.match(r"  compression +stable at h/dx 1.3, p = 4.85e\+03 Pa$", line)
+    _, line, _ = said(paper("hydrostatic", "space.smoothing=1.2"))
+    assert "unstable at h/dx 1.2, growth 0.28 √(|P|/ρ)/dx" in line
+    assert line.endswith("stable at h/dx 1.25–1.35")
+
+
+def test_tension_from_the_start():
+    _, line = said(paper("negative_pressure_traditional"))
+    assert "tension" in line and "= 2.81e+03/s at p = -2.5e+03 Pa" in line
+    assert line.endswith("no h/dx from 1 to 2 is stable")
+
+
+def test_p_minus_is_neutral():
+    _, line = said(paper("negative_pressure"))
+    assert line.split()[0] == "neutral" and "nothing restores the order" in line
+
+
+def test_tensile_control_is_neutral_under_tension_alone(tmp_path):
+    sets = ("physics.pressure_gradient=tensile_control", "space.smoothing=1.2")
+    _, pressed, drawn = said(draft(tmp_path, SQUARE, *sets))
+    assert "compression" in pressed and drawn.split()[0] == "neutral"
+    _, line = said(paper("negative_pressure_traditional", *sets))
+    assert line == drawn
+
+
+def test_of_stress_points_nothing_is_predicted():
+    """They are not neutral: at h/dx 1.2 the kick grows (tests/cases/test_remedies.py)."""
+    _, line = said(paper("negative_pressure_traditional", "physics.pressure_gradient=stress_points"))
+    assert line.startswith("  no forecast  ")
+
+
+def test_artificial_stress_counts():
+    """Case 4.2: it slows the hyperbolic kernel's growth at 1.2, and holds it at 1.1."""
+    for h, held in ((1.2, False), (1.1, True)):
+        _, line = said(
+            paper(
+                "negative_pressure_traditional",
+                "space.kernel=hyperbolic",
+                f"space.smoothing={h}",
+                "physics.artificial_stress=0.2",
+            )
+        )
+        assert ("unstable" not in line) == held
+
+
+def test_a_background_pressure_counts():
+    """It lifts −2500 Pa to +500, for either form."""
+    for form in ("symmetric", "difference"):
+        case = paper(
+            "negative_pressure_traditional",
+            "physics.background_pressure=3000",
+            f"physics.pressure_gradient={form}",
+        )
+        _, line = said(case)
+        assert "stable at h/dx 1.2" in line and "unstable" not in line
+
+
+def test_an_unknown_sign_gets_both(tmp_path):
+    """At p of ρc²/100, with what the theory leaves out."""
+    case = draft(tmp_path, SQUARE, "physics.artificial_viscosity=0.1")
+    _, pressed, drawn, left = said(case)
+    assert "compression" in pressed and "p = 1e+03 Pa" in pressed
+    assert "tension" in drawn and "p = -1e+03 Pa" in drawn
+    assert left.split(maxsplit=2)[-1] == "artificial viscosity"
+
+
+def test_the_equation_of_state_gives_the_stiffness(tmp_path):
+    """Tait's under a high pressure is stiffer and denser."""
+    sets = (
+        "physics.equation_of_state=tait",
+        "fluids.water.pressure=2e4",
+        "space.smoothing=1.2",
+        "space.kernel=wendland-c2",
+    )
+    _, line = said(draft(tmp_path, SQUARE, *sets))
+    density = 1000.0 * (7 * 2e4 / 1e5 + 1.0) ** (1 / 7)
+    c = 10.0 * (density / 1000.0) ** 3
+    found = growth(Settings("wendland-c2", 1.2, "square", 2e4, "symmetric", density, c, 0.1))
+    assert f"= {found.rate:.3g}/s" in line
+
+
+def test_explain_holds_it(tmp_path):
+    lines = list(explain(Scene(draft(tmp_path, TANK)), 1))
+    assert any(line.startswith("Stability of the square lattice at the start") for line in lines)
+
+
+def test_an_acronym_is_one_word():
+    *_, left = said(paper("negative_pressure_traditional", "physics.xsph=0.5"))
+    assert left.split() == ["not", "included", "xsph"]
+
+
+@pytest.mark.parametrize("case", ("dam_break", "dam_break_3d"))
+def test_it_takes_no_time(case):
+    """Seconds of this process: 0.1 in 2D and 0.3 in 3D when nothing else runs."""
+    scene = Scene(paper(case, "space.kernel=cubic"))
+    plan = make_plan(scene)
+    begun = time.process_time()
+    assert list(outlook(scene, plan))
+    assert time.process_time() - begun < (0.5 if scene.dimensions == 2 else 2.0)

@@ -1,0 +1,53 @@
+"""What `check` says of the numbers of bodies."""
+
+import pytest
+from drafts import TANK, draft
+
+from psph.scene import Scene, check
+
+AFLOAT = (
+    TANK
+    + """
+[bodies.raft]
+shape.box = { lower = [0.3, 0.2], upper = [0.7, 0.6] }
+density = 500.0
+[bodies.buoy]
+shape.box = { lower = [0.8, 0.8], upper = [1.1, 1.1] }
+density = 400.0
+"""
+)
+ROPE = "bodies.raft.lines.rope={{at={at}, anchor={anchor}, stiffness=10.0{to}}}"
+
+
+@pytest.mark.parametrize(
+    ("quiet", "override", "says"),
+    [
+        ("bodies.raft.inertia=0.14", "bodies.raft.inertia=0.13", "inertia: 0.13 kg m2 is less than its mass"),
+        (
+            "bodies.raft.pivot=[0.5, 5.5]",
+            "bodies.raft.pivot=[0.5, 6.5]",
+            "pivot: lies 5.9 m from bodies.raft",
+        ),
+        ("bodies.raft.centre=[0.5, 0.1]", "bodies.raft.centre=[0.5, -0.5]", "centre: lies 0.7 m from"),
+        (
+            ROPE.format(at=[0.5, 1.0], anchor=[9.0, 0.0], to=""),
+            ROPE.format(at=[9.0, 0.0], anchor=[0.5, 1.0], to=""),
+            "lines.rope.at: lies 8.3 m from bodies.raft, which is 0.566 m long",
+        ),
+        (
+            ROPE.format(at=[0.5, 0.6], anchor=[0.8, 0.8], to=", to='buoy'"),
+            ROPE.format(at=[0.5, 0.6], anchor=[0.3, 0.2], to=", to='buoy'"),
+            "lines.rope.anchor: lies 0.781 m from bodies.buoy, which is 0.424 m long; correct it if it is",
+        ),
+    ],
+)
+def test_points_and_inertia_that_a_body_hardly_has_are_warned_of(tmp_path, quiet, override, says):
+    """Below m dx²/6 = 0.133 kg m²; points farther away than the body is long, a pivot than ten times that."""
+
+    def told(key):
+        found = check(Scene(draft(tmp_path, AFLOAT, key)))
+        return [line for line in found if "bodies." in line]
+
+    assert told(quiet) == []
+    [line] = told(override)
+    assert says in line
