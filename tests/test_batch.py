@@ -1,5 +1,6 @@
 """The Slurm script: by itself with a stand-in for scontrol alone, and (long) under a real Slurm."""
 
+import contextlib
 import os
 import re
 import shlex
@@ -58,9 +59,12 @@ def until(there, seconds=150.0):
 
 
 def children_of(job):
-    """The names of a process's children."""
-    pids = Path(f"/proc/{job.pid}/task/{job.pid}/children").read_text().split()
-    return [Path(f"/proc/{pid}/comm").read_text().strip() for pid in pids]
+    """The names of a process's children; one that ends meanwhile is not among them."""
+    names = []
+    for pid in Path(f"/proc/{job.pid}/task/{job.pid}/children").read_text().split():
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            names.append(Path(f"/proc/{pid}/comm").read_text().strip())
+    return names
 
 
 # Without Slurm
