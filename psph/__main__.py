@@ -186,9 +186,13 @@ def _stability(options, comm) -> None:
         from psph.lab.battery.command import compare
         from psph.lab.battery.remedies import comparison
         from psph.lab.battery.wall_kinds import WALLS
+        from psph.lab.maps.elastic import elastic
 
         if options.battery or options.quick:
             raise Refused(f"stability --{options.compared}: stands alone; leave --battery and --quick out")
+        if options.compared == "elastic":
+            elastic(comm, options.out)
+            return
         compare(comm, comparison() if options.compared == "remedies" else WALLS, options.out)
         return
     if options.battery or options.quick:

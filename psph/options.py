@@ -197,9 +197,16 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
         help="run hard cases with walls of every condition instead",
     )
     stability.add_argument(
+        "--elastic",
+        dest="compared",
+        action="store_const",
+        const="elastic",
+        help="waves of an elastic lattice in total and updated Lagrangian SPH instead",
+    )
+    stability.add_argument(
         "--out",
         action=_Folder,
-        help="folder of the map, the battery, the remedies or the walls (default: their "
+        help="folder of the map, the battery or what else was asked for (default: their "
         "names); runs that are finished there are kept",
     )
     stability.add_argument("--json", action="store_true", help="one JSON object as the last line")

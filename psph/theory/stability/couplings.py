@@ -74,7 +74,7 @@ def couplings(uniform: Uniform) -> Couplings:
     return Couplings(
         whole,
         sites,
-        _stiffness(force, r, unit, FINE * uniform.smoothing_length),
+        slope_of(force, r, unit, FINE * uniform.smoothing_length),
         _matrices(unit, sum((a for a, _ in damped), none), sum((b for _, b in damped), none)),
         (mass * response * slope)[:, None] * unit,
         (mass * slope)[:, None] * unit,
@@ -98,7 +98,7 @@ def _with(remedies, method: str):
     return [remedy for remedy in remedies if hasattr(remedy, method)]
 
 
-def _stiffness(force, r: np.ndarray, unit: np.ndarray, step: float) -> np.ndarray:
+def slope_of(force, r: np.ndarray, unit: np.ndarray, step: float) -> np.ndarray:
     """f′ r̂r̂ᵀ + f/r (1 − r̂r̂ᵀ): how the vector f r̂ changes with its end."""
     steepness = (force(r + step) - force(r - step)) / (2.0 * step)
     across = force(r) / r

@@ -36,26 +36,38 @@ class Growth(NamedTuple):
 
 def growth(settings: Settings) -> Growth:
     """The fastest growth on an infinite lattice."""
-    zone = _Zone(Uniform(settings))
-    at, stable = zone.steepest()
-    rate = 0.0 if stable else float(zone.urge(at[None])[0])
-    return Growth(rate, zone.lattice.shortest(at @ zone.lattice.reciprocal), stable)
+    return _zone_of(settings).growth()
 
 
 def is_stable(settings: Settings) -> bool:
     """Whether nothing grows on an infinite lattice: faster than finding the largest growth."""
-    zone = _Zone(Uniform(settings))
+    zone = _zone_of(settings)
     return not zone.grows(zone.grid) and not zone.grows(zone.softest()[None])
 
 
-class _Zone:
-    """All waves of a lattice, in parts (n, d) of its reciprocal basis."""
+def _zone_of(settings: Settings) -> "Zone":
+    uniform = Uniform(settings)
+    pairs = couplings(uniform).halved
+    return Zone(uniform.lattice, pairs.sites, lambda waves: waves_of(pairs, waves))
 
-    def __init__(self, uniform: Uniform):
-        self.lattice, self.pairs = uniform.lattice, couplings(uniform).halved
+
+class Zone:
+    """All waves of a lattice, in parts (n, d) of its reciprocal basis.
+
+    ``sites`` (n, d) are those of neighbours, m; ``system`` gives the motion of many waves (n, d), rad/m.
+    """
+
+    def __init__(self, lattice: Lattice, sites: np.ndarray, system: Callable[[np.ndarray], System]):
+        self.lattice, self.sites, self.system = lattice, sites, system
         count = WAVES[self.lattice.dimensions]
         self.grid, self.step = zone_grid(self.lattice, count), 1.0 / count
         self.noise = self._system(self.grid).noise
+
+    def growth(self) -> Growth:
+        """The fastest."""
+        at, stable = self.steepest()
+        rate = 0.0 if stable else float(self.urge(at[None])[0])
+        return Growth(rate, self.lattice.shortest(at @ self.lattice.reciprocal), stable)
 
     def urge(self, parts: np.ndarray) -> np.ndarray:
         """See :meth:`System.urge`, (n,)."""
@@ -63,7 +75,7 @@ class _Zone:
 
     def urge_for_length(self, parts: np.ndarray) -> np.ndarray:
         """The same over the length of the wave vector, so that long waves are not the slowest."""
-        phase = parts @ self.lattice.reciprocal @ self.pairs.sites.T
+        phase = parts @ self.lattice.reciprocal @ self.sites.T
         stretch = (1.0 - np.cos(phase)).mean(axis=1)  # k² for small k, but periodic as waves are
         return self.urge(parts) / np.sqrt(stretch + TINY)
 
@@ -85,7 +97,7 @@ class _Zone:
         return _climb(self.urge_for_length, self.grid, self.step)
 
     def _system(self, parts: np.ndarray) -> System:
-        return waves_of(self.pairs, parts @ self.lattice.reciprocal)
+        return self.system(parts @ self.lattice.reciprocal)
 
 
 def waves_of(pairs: Couplings, waves: np.ndarray) -> System:

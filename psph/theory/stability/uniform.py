@@ -54,7 +54,7 @@ class Uniform:
 
     def weight(self, r: np.ndarray) -> np.ndarray:
         """W(r), 1/m^d, same shape as r."""
-        return _of_each(self.kernel.w, r)
+        return of_each(self.kernel.w, r)
 
     def slope(self, r: np.ndarray) -> np.ndarray:
         """W′(r), 1/m^(d+1), over the first moment where a remedy asks for it."""
@@ -73,10 +73,10 @@ class Uniform:
         return float(-(r * self._slope(r)).sum() * self.volume / self.lattice.dimensions)
 
     def _slope(self, r: np.ndarray) -> np.ndarray:
-        return _of_each(self.kernel.dw, r)
+        return of_each(self.kernel.dw, r)
 
 
-def _of_each(formula, r: np.ndarray) -> np.ndarray:
+def of_each(formula, r: np.ndarray) -> np.ndarray:
     """A formula of a single number, of each in r; few of the distances on a lattice differ."""
     values, places = np.unique(r, return_inverse=True)
     return np.array([formula(x) for x in values.tolist()])[places]

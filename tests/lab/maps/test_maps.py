@@ -4,6 +4,7 @@ import csv
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from jobs import clean_environment, mpirun
@@ -11,6 +12,7 @@ from mpi4py import MPI
 
 from psph.lab.maps import survey as survey_module
 from psph.lab.maps.command import Asked, stability
+from psph.lab.maps.elastic import PAGE, elastic
 from psph.lab.maps.page import main as on_page
 from psph.lab.maps.survey import sentences, survey
 from psph.output.errors import OutputError
@@ -199,3 +201,11 @@ def test_a_page_is_renewed(square, tmp_path, capsys):
     assert (tmp_path / "images" / "stability_square.png").exists()
     assert on_page([str(page), str(tmp_path)]) == 2 and on_page([]) == 2
     assert "give the folder of a map" in capsys.readouterr().err
+
+
+def test_the_elastic_table(tmp_path, capsys):
+    """One command writes the page of docs/lagrangian.md, the same."""
+    elastic(MPI.COMM_SELF, tmp_path)
+    page = (tmp_path / PAGE).read_text(encoding="utf-8").strip()
+    assert page in Path("docs/lagrangian.md").read_text(encoding="utf-8")
+    assert "| total, no control | (0 1), (1 0), (1 1) |" in page and str(tmp_path) in capsys.readouterr().out
