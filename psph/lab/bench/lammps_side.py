@@ -30,17 +30,19 @@ def commands(lmp, lines) -> None:
 def atoms(lmp, particles) -> int:
     """Make the atoms that belong to this rank; how many these are.
 
-    ``particles``: int32 "id" from 1 on and "type", double "x" and "v" (n, 3) and "rho", as bytes.
+    ``particles``: int32 "id" from 1 on and "type", double "x" and "v" (n, 3), and "rho" where the style has a
+    density, as bytes.
     """
     count = len(particles["id"]) // 4
     ids, types = ((ctypes.c_int * count).from_buffer_copy(particles[n]) for n in ("id", "type"))
     x, v = ((ctypes.c_double * (3 * count)).from_buffer_copy(particles[n]) for n in ("x", "v"))
-    rho = (ctypes.c_double * count).from_buffer_copy(particles["rho"])
     lmp.create_atoms(count, ids, types, x, v)
     mine = lmp.extract_setting("nlocal")
-    number, density = lmp.extract_atom("id"), lmp.extract_atom("rho")
-    for k in range(mine):
-        density[k] = rho[number[k] - 1]
+    if "rho" in particles:
+        rho = (ctypes.c_double * count).from_buffer_copy(particles["rho"])
+        number, density = lmp.extract_atom("id"), lmp.extract_atom("rho")
+        for k in range(mine):
+            density[k] = rho[number[k] - 1]
     return mine
 
 
@@ -51,15 +53,15 @@ def run(lmp, steps) -> float:
     return time.perf_counter() - begun
 
 
-def state(lmp) -> dict:
-    """This rank's atoms: int32 "id", double "x" (n, 3) and "rho", as bytes."""
+def state(lmp, names) -> dict:
+    """This rank's atoms: int32 "id", and of double "x" (n, 3) and "rho" what ``names`` has, as bytes."""
     mine = lmp.extract_setting("nlocal")
-    if not mine:
-        return {"id": b"", "x": b"", "rho": b""}
-    first = {"id": lmp.extract_atom("id"), "x": lmp.extract_atom("x")[0]}
-    first["rho"] = lmp.extract_atom("rho")
     size = {"id": 4 * mine, "x": 24 * mine, "rho": 8 * mine}
-    return {name: ctypes.string_at(first[name], size[name]) for name in size}
+    found = {}
+    for name in ("id", *names):
+        atoms = lmp.extract_atom(name) if mine else None
+        found[name] = ctypes.string_at(atoms[0] if name == "x" else atoms, size[name]) if mine else b""
+    return found
 
 
 ORDERS = {order.__name__: order for order in (version, commands, atoms, run, state)}

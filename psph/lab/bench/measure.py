@@ -16,14 +16,17 @@ from psph.case import checked
 from psph.composition.pair import take
 from psph.engine.jit import compiled, processor
 from psph.engine.threads import threads
-from psph.lab.bench import BOX, DAM, FALLING
+from psph.lab.bench import BLOCK, BOX, DAM, FALLING
+from psph.lab.bench.block import Block
 from psph.lab.bench.box import Box
 from psph.lab.bench.falling import Falling
 from psph.lab.bench.peer import Peer
-from psph.lab.bench.roofline import Ceiling, shares
+from psph.lab.bench.roofline import Ceiling, roof, shares
 from psph.lab.bench.tank import Tank
 from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
+from psph.physics.solid.deformation import support_of
+from psph.runs.forecast import sites_within
 from psph.runs.setup import compile_ahead
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -36,7 +39,7 @@ WARM_UP, REPEATS, STEPS = 20, 5, 20
 TURNS = 15
 """Blocks where two cases are compared: their difference may be small."""
 
-LAYOUTS = {BOX: Box.nearest, DAM: Tank.nearest, FALLING: Falling.nearest}
+LAYOUTS = {BOX: Box.nearest, DAM: Tank.nearest, FALLING: Falling.nearest, BLOCK: Block.nearest}
 """For each problem: (dimensions, neighbours, particles) to what lays it out."""
 
 
@@ -77,6 +80,9 @@ def measure(
     simulation, compiling = warmed_up(layout, scene, comm)
     rival = warmed_up(layout, rival_scene, comm)[0] if against else None
     count, pairs, entries = _work(simulation, scene)
+    in_bulk = asked.neighbours
+    if scene.case.solids:
+        in_bulk = sites_within(scene, support_of(simulation.plan.solid_smoothing_length))
     with Peer(peer_python, scene, simulation) if peer_python else nullcontext() as peer:
         simulation.ledger.seconds.clear()
         rebuilds = simulation.domain.rebuilds
@@ -92,13 +98,16 @@ def measure(
     ours = [turn[OURS] for turn in seconds]
     phases = _mean_over_ranks(simulation.ledger, comm)
     rates = Rates.of(ours, count)
+    shared = {}
+    if not scene.case.solids:  # one loop over pairs, whose operations the plan counts
+        shared = shares(simulation, ceiling, pairs, entries, phases["pairs"] / (blocks * STEPS))
     cores = comm.size * threads()
     result = {
         "machine": machine(),
         **asked._asdict(),
         "particles": count,
         "neighbours": round(pairs / count, 1),
-        "neighbours_in_bulk": asked.neighbours,
+        "neighbours_in_bulk": round(in_bulk),
         "ranks": comm.size,
         "threads": threads(),
         "compile_seconds": round(compiling, 2),
@@ -107,7 +116,7 @@ def measure(
         "spread": rates.spread,
         "rebuilds": simulation.domain.rebuilds - rebuilds,
         "share": {k: round(v / sum(ours), 4) for k, v in sorted(phases.items())},
-        "roofline": shares(simulation, ceiling, pairs, entries, phases["pairs"] / (blocks * STEPS)),
+        "roofline": roof(ceiling) | shared,
     }
     if peer:
         result[PEER] = {**peer.described, **_beside(seconds, PEER, count, pairs / count)}
@@ -210,6 +219,9 @@ def _mean_over_ranks(ledger: Ledger, comm) -> dict[str, float]:
 def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
     """Particles, ordered pairs inside the kernel's support and entries of the lists, in all."""
     store, lists, comm = simulation.store, simulation.domain.lists, simulation.comm
+    if solids := simulation.engine.solids:
+        pairs = round(solids.neighbours * solids.rows)
+        return tuple(comm.allreduce(n) for n in (store.owned, pairs, pairs))
     support = scene.kernel.support * scene.smoothing_length
     inside = count_inside(
         store.view(),

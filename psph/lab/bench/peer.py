@@ -3,39 +3,25 @@
 It runs in processes of its own, from an environment of its own, since it brings another MPI.
 """
 
-import math
 import os
 import secrets
 import subprocess
 import tempfile
 import threading
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing.connection import Connection, Listener, wait
 from pathlib import Path
 
-import numpy as np
-
-from psph.fields import FLUID, WALL
-from psph.lab.bench import lammps_side
+from psph.lab.bench import lammps_fluid, lammps_side, lammps_solid
 from psph.lab.bench.ranks import on_rank_0
 from psph.lab.errors import BenchError, PeerFailed
-from psph.physics.fluid.viscosity import ArtificialViscosity
 
 SKINS = (0.01, 0.03, 0.06, 0.1, 0.2)
 """Skins of its neighbour lists that are tried, over the support; the fastest is taken."""
 
 SETTLING, TRIAL = 5, 15
 """Steps before a trial of a skin, and steps of the trial."""
-
-STEP = 0.5
-"""Its time step over psph's: with psph's own a falling dam blows up in its integrator."""
-
-EVERY, UNEVEN, SHIFTS, NEARLY = 100, 1.05, 20, 1.01
-"""Its load balancing on several ranks: it looks so often, in steps, moves its cuts where the fullest rank
-has so many times the average work, in so many rounds at the most, until it has no more than that."""
-
-BROKEN = 0.2
-"""Relative error of the density above which the run counts as blown up."""
 
 PATIENCE = 5.0
 """Seconds that its processes get to end by themselves."""
@@ -52,9 +38,9 @@ class Peer:
     """
 
     def __init__(self, python: Path, scene, simulation):
-        self.comm = simulation.comm
-        self._rest_density = scene.species[0].density
-        particles, cores = gathered(simulation), _cores(self.comm)
+        self.comm, self._scene = simulation.comm, scene
+        self._words = lammps_solid if scene.case.solids else lammps_fluid
+        particles, cores = self._words.gathered(simulation), _cores(self.comm)
 
         def begin() -> dict:
             self._processes = Processes(python, self.comm.size, cores)
@@ -78,29 +64,23 @@ class Peer:
         return on_rank_0(self.comm, lambda: max(self._processes.ask("run", steps)))
 
     def check(self) -> None:
-        """Raise BenchError where its densities are no longer those of water."""
-        low, high = on_rank_0(self.comm, self._densities)
-        if not 1.0 - BROKEN < low <= high < 1.0 + BROKEN:
+        """Raise PeerFailed where what it simulates has blown up."""
+        states = partial(self._processes.ask, "state", self._words.CHECKED)
+        if wrong := on_rank_0(self.comm, lambda: self._words.blown_up(self._scene, states())):
             raise PeerFailed(
-                f"bench --peer: LAMMPS blew up: densities of {low:.3g} to {high:.3g} of the rest "
-                "density; leave --peer out, or ask for more particles"
+                f"bench --peer: LAMMPS blew up: {wrong}; leave --peer out, or ask for more particles"
             )
-
-    def _densities(self) -> tuple[float, float]:
-        """The smallest and the largest, over the density at rest."""
-        rho = np.concatenate([np.frombuffer(s["rho"]) for s in self._processes.ask("state")])
-        return float(rho.min()) / self._rest_density, float(rho.max()) / self._rest_density
 
     def _hand_over(self, scene, simulation, particles: dict) -> dict:
         ask = self._processes.ask
         version = ask("version")[0]
-        space, motion = commands(scene, simulation)
+        space, motion = self._words.commands(scene, simulation)
         ask("commands", space)
-        made, all_ = sum(ask("atoms", particles)), len(particles["rho"]) // 8
+        made, all_ = sum(ask("atoms", particles)), len(particles["id"]) // 4
         if made != all_:
             raise BenchError(f"bench --peer: LAMMPS took {made:,} of {all_:,} particles")
         ask("commands", motion)
-        support = scene.kernel.support * scene.smoothing_length
+        support = self._words.support(scene, simulation)
 
         def pace(skin: float) -> float:
             ask("commands", [f"neighbor {skin * support!r} bin", f"run {SETTLING} post no"])
@@ -111,81 +91,12 @@ class Peer:
         return {
             "name": "LAMMPS",
             "version": version,
-            "style": "sph/taitwater",
+            "style": self._words.STYLE,
             "ranks": self.comm.size,
             "skin": best,
             "skins_tried": list(SKINS),
-            "time_step_over_psph": STEP,
+            "time_step_over_psph": self._words.STEP,
         }
-
-
-def commands(scene, simulation) -> tuple[list[str], list[str]]:
-    """The scene in LAMMPS's own words: before its particles are made, and after.
-
-    A group holds the atoms that are there when it is named.
-    """
-    dx, d = scene.spacing, scene.dimensions
-    support = scene.kernel.support * scene.smoothing_length
-    thin = [(-0.5 * dx, 0.5 * dx)] * (3 - d)
-    ends = [*zip(scene.lower, scene.upper), *thin]
-    sides = ["s" if period is None else "p" for period in scene.periods] + ["p"] * len(thin)
-    [friction] = (e for e in simulation.plan.effects if isinstance(e, ArtificialViscosity))
-    alpha = friction.alpha * scene.smoothing_length / support  # its μ has the support for h
-    water, *tank = scene.species
-    pull = math.hypot(*scene.gravity)
-    down = " ".join(f"{g / pull!r}" for g in (*scene.gravity, *(0.0 for _ in thin))) if pull else ""
-    space = [
-        "units si",
-        f"dimension {d}",
-        "atom_style sph",
-        "newton on",
-        f"boundary {' '.join(sides)}",
-        "comm_modify vel yes",
-        f"region all block {' '.join(f'{float(x)!r}' for pair in ends for x in pair)} units box",
-        "create_box 2 all",
-        f"mass * {water.mass!r}",
-        "pair_style sph/taitwater",
-        f"pair_coeff * * {water.density!r} {scene.sound_speed!r} {alpha!r} {support!r}",
-        "neigh_modify every 1 delay 0 check yes",
-        "thermo 1000000",
-        f"timestep {STEP * simulation.dt!r}",
-    ]
-    motion = [
-        f"group water type {FLUID + 1}",
-        "fix move water sph",
-        *([f"group tank type {WALL + 1}", "fix stay tank sph/stationary"] if tank else []),
-        *([f"fix fall water gravity {pull!r} vector {down}"] if pull else []),
-        *(["fix flat all enforce2d"] if d == 2 else []),
-        *(_balancing(d) if simulation.comm.size > 1 else []),
-    ]
-    return space, motion
-
-
-def _balancing(dimensions: int) -> list[str]:
-    """Cuts that follow the particles, at the start and during the run, as LAMMPS's manual sets them up.
-
-    Without them each rank has an equal part of the box, however little of the water is in it.
-    """
-    how = f"shift {'xyz'[:dimensions]} {SHIFTS} {NEARLY}"
-    return [f"balance {UNEVEN} {how}", f"fix even all balance {EVERY} {UNEVEN} {how}"]
-
-
-def gathered(simulation) -> dict | None:
-    """All particles in the order of their ids, as LAMMPS wants them; None on the other ranks."""
-    names = ("id", "kind", "position", "velocity", "density")
-    parts = simulation.comm.gather([simulation.store.owned_rows(name) for name in names])
-    if parts is None:
-        return None
-    ids, kind, position, velocity, density = map(np.concatenate, zip(*parts))
-    order = np.argsort(ids)
-    flat = ((0, 0), (0, 3 - position.shape[1]))
-    return {
-        "id": np.arange(1, len(ids) + 1, dtype=np.int32).tobytes(),
-        "type": (kind[order].astype(np.int32) + 1).tobytes(),
-        "x": np.pad(position[order], flat).tobytes(),
-        "v": np.pad(velocity[order], flat).tobytes(),
-        "rho": density[order].tobytes(),
-    }
 
 
 class Processes:

@@ -65,7 +65,7 @@ def _tables(runs: list[dict]) -> Iterator[str]:
                 "multiply-adds",
                 "copy",
             ),
-            map(_shares, here),
+            map(_shares, (run for run in here if "flops_share" in run["roofline"])),
         )
         if scaled := list(_scaled(here)):
             yield ""

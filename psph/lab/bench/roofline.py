@@ -73,6 +73,14 @@ def multiply_add(line, rounds, term):
             line[n] = 0.125 * ((a + b) + (c + d) + (e + f) + (g + h))
 
 
+def roof(ceiling: Ceiling) -> dict:
+    """The ceiling by the keys of a result."""
+    return {
+        "copy_bytes_per_second": ceiling.bytes_per_second,
+        "multiply_add_flops_per_second": ceiling.flops_per_second,
+    }
+
+
 def shares(simulation, ceiling: Ceiling, pairs: int, entries: int, seconds: float) -> dict:
     """What a pass over the pairs, of ``seconds`` on average, makes of the ceiling.
 
@@ -89,8 +97,6 @@ def shares(simulation, ceiling: Ceiling, pairs: int, entries: int, seconds: floa
     particles = simulation.comm.allreduce(store.owned)
     moved = 4 * entries + 8 * (read + written + begin_and_lengths) * particles
     return {
-        "copy_bytes_per_second": ceiling.bytes_per_second,
-        "multiply_add_flops_per_second": ceiling.flops_per_second,
         "flops_per_pair": flops,
         "flops_per_second": flops * pairs / seconds,
         "flops_share": flops * pairs / seconds / ceiling.flops_per_second,

@@ -10,10 +10,13 @@ import numpy as np
 import pytest
 from jobs import clean_environment
 
+from psph.lab.bench import lammps_solid
+from psph.lab.bench.block import Block
 from psph.lab.bench.box import Box
 from psph.lab.bench.falling import Falling
+from psph.lab.bench.lammps_fluid import commands, gathered
 from psph.lab.bench.measure import Asked, measure
-from psph.lab.bench.peer import Peer, Processes, commands, gathered
+from psph.lab.bench.peer import Peer, Processes
 from psph.lab.bench.roofline import Ceiling
 from psph.lab.bench.tank import Tank
 from psph.lab.errors import BenchError
@@ -86,7 +89,7 @@ def test_its_cuts_follow_the_water(python):
         processes.ask("commands", space)
         before = processes.ask("atoms", gathered(simulation))
         processes.ask("commands", [*motion, f"neighbor {0.2 * scene.smoothing_length!r} bin", "run 0"])
-        after = [len(state["id"]) // 4 for state in processes.ask("state")]
+        after = [len(state["id"]) // 4 for state in processes.ask("state", ())]
     finally:
         processes.end()
     assert sum(after) == sum(before) and max(before) > 1.15 * min(before)
@@ -94,7 +97,8 @@ def test_its_cuts_follow_the_water(python):
 
 
 @pytest.mark.parametrize(
-    ("problem", "dim", "neighbours"), [("box", 2, 20), ("box", 3, 57), ("falling", 2, 20)]
+    ("problem", "dim", "neighbours"),
+    [("box", 2, 20), ("box", 3, 57), ("falling", 2, 20), ("block", 3, 57)],
 )
 def test_they_take_turns(python, problem, dim, neighbours):
     result = measure(Asked(problem, dim, 3000, neighbours, "double"), alone(), Ceiling(1e10, 1e10), python)
@@ -117,7 +121,7 @@ def test_it_simulates_the_same(python):
         processes.ask("commands", [*motion, f"neighbor {0.2 * scene.smoothing_length!r} bin"])
         end = simulation.time + 40 * simulation.dt
         processes.ask("commands", ["run 80 post no"])
-        [theirs] = processes.ask("state")
+        [theirs] = processes.ask("state", ("x",))
     finally:
         processes.end()
     while simulation.time < end - 1e-9:
@@ -129,6 +133,61 @@ def test_it_simulates_the_same(python):
     water = way > 0.0
     assert water.sum() > 500 and (apart[~water] == 0.0).all()
     assert np.median(apart[water]) < 0.1 * np.median(way[water])
+
+
+def test_a_block_in_its_words():
+    scene, simulation = simulation_of(Block.nearest(3, 57, 216))
+    said = sum(lammps_solid.commands(scene, simulation), [])
+    dx = 1.0 / 6.0
+    assert "atom_style smd" in said and "fix move tlsph smd/integrate_tlsph" in said
+    assert (
+        "pair_coeff 1 1 *COMMON 1100.0 17000000.0 0.45 0.06 0.0 10.0 1.0 *STRENGTH_LINEAR *EOS_LINEAR *END"
+        in said
+    )
+    given = {line.split()[3]: float(line.split()[4]) for line in said if line.startswith("set group all")}
+    assert given == pytest.approx(
+        {
+            "volume": dx**3,
+            "smd/mass/density": 1100.0,
+            "diameter": 2.0 * 2.0**0.5 * dx,
+            "smd/contact/radius": 0.5 * dx,
+        }
+    )
+
+
+def test_it_turns_the_same_block_with_the_same_neighbours(python):
+    scene, simulation = simulation_of(Block.nearest(3, 57, 512))
+    simulation.step()
+    begun = lammps_solid.gathered(simulation)
+    space, motion = lammps_solid.commands(scene, simulation)
+    processes = Processes(python, 1, set())
+    reach = lammps_solid.support(scene, simulation)
+    try:
+        processes.ask("commands", space)
+        processes.ask("atoms", begun)
+        processes.ask("commands", [*motion, f"neighbor {0.1 * reach!r} bin", "run 160 post no"])
+        [theirs] = processes.ask("state", lammps_solid.CHECKED)
+    finally:
+        processes.end()
+    end = simulation.time + 80 * simulation.dt
+    while simulation.time < end - 1e-9:
+        simulation.step()
+    ours, before = (rows(state, "x") for state in (lammps_solid.gathered(simulation), begun))
+    order = np.argsort(np.frombuffer(theirs["id"], np.int32))
+    way = np.linalg.norm(ours - before, axis=1)
+    apart = np.linalg.norm(ours - rows(theirs, "x")[order], axis=1)
+    assert np.median(apart) < 0.05 * np.median(way)
+
+
+def test_places_tell_of_a_block_that_flies_apart():
+    scene, simulation = simulation_of(Block.nearest(2, 20, 36))
+    whole = lammps_solid.gathered(simulation)
+    assert lammps_solid.blown_up(scene, [whole]) == ""
+    x = rows(whole, "x").copy()
+    x[3, 0] = 10.0
+    assert "a particle is at 14" in lammps_solid.blown_up(scene, [whole, {"x": x.tobytes()}])
+    x[3, 0] = np.nan
+    assert lammps_solid.blown_up(scene, [{"x": x.tobytes()}])
 
 
 def rows(state, name):

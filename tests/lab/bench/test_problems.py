@@ -54,6 +54,8 @@ def test_the_standard_set():
 def test_choices_that_make_no_sense():
     with pytest.raises(BenchError, match="leave the other choices out"):
         standard("box", None, None, None)
+    with pytest.raises(BenchError, match="block: solids have their own kernel; leave --neighbours"):
+        one("block", None, None, 20)
     with pytest.raises(BenchError, match="--neighbours 0: give at least 1"):
         one(None, None, None, 0)
 
