@@ -19,10 +19,10 @@ def main(arguments: list[str]) -> int:
     """Do what the command line asks; returns the exit code."""
     from mpi4py import MPI
 
-    from psph.options import parser
+    from psph.options import called, parser
 
     with _rank_0_speaks(MPI.COMM_WORLD):
-        options = parser(VERBS).parse_args(_with_verb(arguments))
+        options = parser(VERBS, called(sys.argv[0])).parse_args(_with_verb(arguments))
     return options.verb(options, MPI.COMM_WORLD) or 0
 
 
@@ -99,6 +99,13 @@ def _schema(options, comm) -> None:
 
     if comm.rank == 0:
         print(json.dumps(schema(), indent=2))
+
+
+def _completion(options, comm) -> None:
+    from psph.options import completion
+
+    if comm.rank == 0:
+        print(completion(VERBS, options.shell))
 
 
 def _plot(options, comm) -> None:
@@ -229,6 +236,7 @@ VERBS = {
     "report": (_report, "a run as one HTML file: pictures, a view that turns, curves, plan, cost"),
     "study": (_study, "error and run time of a case over spacings, kernels and other choices"),
     "stability": (_stability, "growth rates of lattice instabilities; hard cases under every scheme"),
+    "completion": (_completion, "what teaches a shell to complete psph's verbs, options and files"),
     "bench": (_bench, "particle-steps and pairs per second of this machine"),
 }
 
@@ -307,5 +315,10 @@ def guarded(arguments: list[str]) -> None:
     sys.exit(code)
 
 
-if __name__ == "__main__":
+def command() -> None:
+    """The command ``psph``: what ``python -m psph`` does."""
     guarded(sys.argv[1:])
+
+
+if __name__ == "__main__":
+    command()

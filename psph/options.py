@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -11,6 +12,11 @@ from psph.lab.bench import PROBLEMS
 from psph.output.export.command import PROGRAMS
 from psph.theory.stability import FORMS, STATES
 from psph.theory.stability.lattices import LATTICES
+
+
+MODULE, COMMAND = "python -m psph", "psph"
+"""What a person types to call psph: the module, or the command that its installation makes."""
+SHELLS = ("bash", "zsh", "tcsh")
 
 
 class _Folder(argparse.Action):
@@ -31,12 +37,40 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, one_line(f"{self.prog}: {message}; `{self.prog} --help` lists what there is") + "\n")
 
 
-def parser(verbs) -> argparse.ArgumentParser:
+def called(script: str) -> str:
+    """What a person typed to call psph, by the script that Python runs."""
+    return COMMAND if Path(script).stem == COMMAND else MODULE
+
+
+def completion(verbs, shell: str) -> str:
+    """The lines that teach a shell to complete verbs, options, choices, files and folders of ``psph``."""
+    import shtab
+
+    made = parser(verbs, COMMAND)
+    for action in _actions(made):
+        if isinstance(action, _Folder):
+            action.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+        elif action.type is Path:
+            action.complete = shtab.FILE  # type: ignore[attr-defined]
+    text = shtab.complete(made, shell)
+    # The first word is a verb or a case file, of which shtab knows the verbs alone: bash adds files.
+    return text.replace(" -F _shtab_psph psph", " -o default -o filenames -F _shtab_psph psph")
+
+
+def _actions(made: argparse.ArgumentParser) -> Iterator[argparse.Action]:
+    """Every option of the parser and of its verbs."""
+    for action in made._actions:
+        yield action
+        for verb in action.choices.values() if isinstance(action, argparse._SubParsersAction) else ():
+            yield from _actions(verb)
+
+
+def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
     """The parser of the command line; ``verbs`` has of each verb what it does and its help."""
     made = _Parser(
-        prog="python -m psph",
+        prog=program,
         description="Smoothed-particle hydrodynamics on any number of ranks.",
-        epilog="mpirun -n 2 python -m psph case.toml",
+        epilog=f"mpirun -n 2 {program} case.toml",
     )
     made.add_argument("--version", action="version", version=f"psph {psph.__version__}")
     group = made.add_subparsers(title="verbs", metavar="case.toml | verb", required=True)
@@ -75,6 +109,7 @@ def parser(verbs) -> argparse.ArgumentParser:
     _add_export_options(verb["export"])
     verb["report"].add_argument("folder", action=_Folder, help="the folder of a run")
     verb["report"].add_argument("--field", default="speed", help="what the pictures show (default: speed)")
+    verb["completion"].add_argument("shell", choices=SHELLS, help="the shell that is to complete")
     _add_study_options(verb["study"])
     _add_stability_options(verb["stability"])
     _add_bench_options(verb["bench"])

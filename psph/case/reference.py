@@ -16,30 +16,47 @@ from psph.case.structure import Node, alternatives
 HEAD = """\
 # The case file
 
+*For whoever writes a case file: every key, with its unit, its default and its bounds.*
+
 <!-- Written by `python -m psph.case.reference > docs/case.md`; change the models instead. -->
 
-A case is a TOML file with the keys that differ from the defaults. Units are SI. psph refuses unknown keys,
-texts in place of numbers, and `nan` or `inf`. Lengths, points and velocities are lists with one number per
-dimension. Numbers other than 0 have sizes between 1e-30 and 1e30.
+A case is a TOML file. It holds the keys that differ from the defaults. `run/cases/` has examples. Units are SI. A length, a
+point or a velocity is a list with one number per dimension. psph refuses unknown keys, texts in place of numbers, `nan` and
+`inf`, and numbers other than 0 whose size is not between 1e-30 and 1e30.
 
-No key holds a formula or a command, but `use` names Python files, and `run`, `resume`, `check`, `explain`
-and `study` execute them with all your rights: **read the files of a stranger before you even check their
-case**. A case without `use` is data, and nothing in it is executed. The only other files that a case can
-name, those of `[experiments]` and of motions and geometry files ([geometry.md](geometry.md)), are read as
-numbers. All of them must be in the case's folder or below, after links are resolved; `study --files DIR`
-allows another folder for the experiments.
+`python -m psph check case.toml` checks a case without running it. `--set time.end=0.5` changes a key for one run.
 
-A key can be overridden for one run: `--set time.end=0.5`. `python -m psph check case.toml` checks a case
-without running it; `run/cases/` holds examples.
+An effect is on when its key is in the case. `{}` gives it its default parameters. A value without braces sets the first
+parameter: `free_surface = 0.9` is short for `free_surface = { threshold = 0.9 }`.
 
-An effect is on when its key is there; `{}` takes all its defaults. A bare value stands for the first key of
-its table: `free_surface = 0.9` means `free_surface = { threshold = 0.9 }`.
+A `scheme` is a set of such keys: it sets those that the case does not give. The default is `"stable"`
+([scheme.md](scheme.md)). A `profile` changes a few keys of the default scheme, either for speed or for accuracy
+([accuracy.md](accuracy.md#profiles)). The value `"off"` switches off an effect that a scheme or a profile has switched on. A
+scheme or profile that is given by `--set` also replaces the keys that the file gives itself.
 
-A `scheme` sets the keys that the case does not give itself; without one it is `"stable"`, the default
-scheme ([scheme.md](scheme.md)). A `profile` changes a few keys of the default scheme, towards speed or
-accuracy: [accuracy.md](accuracy.md#profiles) has the keys and what they cost. `"off"` switches off an
-effect of either. Given for one run, `--set profile=reference` or `--set scheme=sph`, they replace the keys
-of the file.
+## Files that a case names
+
+A case without `use` is data: reading it executes nothing. `use` names Python files, and `run`, `resume`, `check`, `explain` and
+`study` execute them with all your rights. **Read the files of a stranger before you even check their case.** Measurements, motions
+and [geometry files](geometry.md) are read as numbers. All files must be in the folder of the case or below it, also after symbolic links are followed.
+`study --files DIR` allows another folder for measurements.
+
+## In an editor
+
+Editors complete keys, show their meaning and mark mistakes when they know the schema of a case. Write it beside the case, and name
+it in the first line of the case:
+
+```sh
+python -m psph schema > case.schema.json
+```
+
+```text
+#:schema ./case.schema.json
+```
+
+Taplo reads this line, and so does every editor that uses it: VS Code with the extension *Even Better TOML*, Neovim, Helix,
+Emacs. `taplo lint case.toml` does the same without an editor. An editor does not read `use`: it marks keys that a
+Python file brings as unknown.
 """
 
 COLUMNS = ("key", "value", "default", "unit", "meaning")

@@ -50,11 +50,15 @@ def read_summary(folder: Path) -> dict:
 
 
 def header(path: Path) -> str:
-    """The comment at the top of a case file, without its marks; empty where there is none."""
+    """The comment at the top of a case file, without its marks; empty where there is none.
+
+    Lines ``#:schema`` are for editors, and left out.
+    """
     lines: list[str] = []
     with suppress(OSError, UnicodeDecodeError):
         for line in path.read_text(encoding="utf-8").splitlines():
             if not line.startswith("#"):
                 break
-            lines.append(line.removeprefix("#").removeprefix(" "))
+            if not line.startswith("#:"):
+                lines.append(line.removeprefix("#").removeprefix(" "))
     return "\n".join(lines)

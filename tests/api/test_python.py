@@ -18,6 +18,7 @@ from psph.vectors import scale
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = sorted((ROOT / "run/python").glob("*.py"))
+NOTEBOOK = ROOT / "run/python/notebook.ipynb"
 
 TABLES = {
     "scheme": "sph",
@@ -239,3 +240,56 @@ def test_an_own_effect_gives_the_same_bits_on_several_ranks(tmp_path):
 def test_a_study_wants_a_file(tmp_path):
     with pytest.raises(psph.Foreseen, match=r"case\.save"):
         psph.study(psph.Case(TABLES, folder=tmp_path), {"space.spacing": [0.1, 0.05]})
+
+
+PIPED = """
+import psph
+from typing import NamedTuple
+from psph.vectors import scale
+class Drag(NamedTuple):
+    rate: float
+    def body(self, i):
+        return scale(i.velocity, -self.rate)
+case = psph.Case({{"scheme": "sph", "space": {{"dimensions": 2, "spacing": 0.05}}, "time.end": {end},
+    "physics.sound_speed": 10.0, "fluids.drop.shape.box": {{"lower": [0.0, 0.0], "upper": [0.5, 0.4]}},
+    "fluids.drop.velocity": [1.0, 0.0]}}, name="drop")
+made = psph.run(case, "run", effects=[Drag(50.0)], overwrite=True, quiet=True)
+print(made.frames[-1].velocity[:, 0].mean())
+"""
+
+
+@pytest.mark.timeout(240)
+def test_the_notebook_runs_in_a_kernel(tmp_path):
+    """Each cell in a Jupyter kernel; classes of cells have no file, and one of them is defined anew."""
+    nbclient, nbformat = pytest.importorskip("nbclient"), pytest.importorskip("nbformat")
+    book = nbformat.read(NOTEBOOK, as_version=4)
+    nbformat.validate(book)
+    client = nbclient.NotebookClient(book, timeout=120, resources={"metadata": {"path": str(tmp_path)}})
+    client.execute(env=clean_environment() | {"PYTHONPATH": str(ROOT)})
+    said = "".join(
+        out.get("text", "") or "".join(out.get("data", {}).get("text/plain", ""))
+        for cell in book.cells
+        for out in cell.get("outputs", ())
+    )
+    assert "SymmetricPressure" in said and "100%" in said and "<Figure" in said
+    for is_now, exact in re.findall(r"(\d\.\d{4}) m/s with.* is (\d\.\d{4})", said):
+        assert float(is_now) == pytest.approx(float(exact), abs=5e-3)
+    assert said.count("m/s with") == 2
+
+
+def test_a_class_of_a_script_from_a_pipe_or_exec_works(tmp_path):
+    """Where inspect finds no source."""
+    source = PIPED.format(end=0.005)
+    twice = f"{source}\nexec(compile({source!r}, '<text>', 'exec'), {{'__name__': 'made'}})\n"
+    job = subprocess.run(
+        [sys.executable, "-"],
+        input=twice,
+        cwd=tmp_path,
+        env=clean_environment() | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=170,
+    )
+    assert job.returncode == 0, job.stderr
+    first, second = map(float, job.stdout.split())
+    assert first == second == pytest.approx(np.exp(-0.25), abs=5e-3)
