@@ -1,6 +1,7 @@
 """The options of the command line, verb by verb."""
 
 import argparse
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,10 +14,11 @@ from psph.output.export.command import PROGRAMS
 from psph.theory.stability import FORMS, STATES
 from psph.theory.stability.lattices import LATTICES
 
-
 MODULE, COMMAND = "python -m psph", "psph"
 """What a person types to call psph: the module, or the command that its installation makes."""
 SHELLS = ("bash", "zsh", "tcsh")
+NUMBER_OF_RANKS = re.compile(r"unrecognized arguments: .*?(?:--ranks|-np?)\b[= ]?(\d+)?")
+"""What a person gives to psph that mpirun should have."""
 
 
 class _Folder(argparse.Action):
@@ -34,7 +36,10 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Leave with code 2."""
-        self.exit(2, one_line(f"{self.prog}: {message}; `{self.prog} --help` lists what there is") + "\n")
+        advice = f"`{self.prog} --help` lists what there is"
+        if found := NUMBER_OF_RANKS.search(message):
+            advice = f"the number of ranks is for mpirun: mpirun -n {found[1] or 'N'} {self.prog} ..."
+        self.exit(2, one_line(f"{self.prog}: {message}; {advice}") + "\n")
 
 
 def called(script: str) -> str:

@@ -29,7 +29,9 @@ def command(tmp_path_factory):
     """The script that pip makes of ``project.scripts``."""
     module, function = PROJECT["scripts"]["psph"].split(":")
     script = tmp_path_factory.mktemp("bin") / "psph"
-    script.write_text(f"#!{sys.executable}\nimport sys\nfrom {module} import {function}\nsys.exit({function}())\n")
+    script.write_text(
+        f"#!{sys.executable}\nimport sys\nfrom {module} import {function}\nsys.exit({function}())\n"
+    )
     script.chmod(0o755)
     return script
 
@@ -45,7 +47,9 @@ def test_the_command_is_the_module(command):
     said = run(command, "--version", env=environment)
     assert (said.returncode, said.stdout.strip()) == (0, f"psph {psph.__version__}")
     wrong = run(command, "check", env=environment)
-    assert wrong.returncode == 2 and wrong.stderr.startswith("psph check: the following arguments are required")
+    assert wrong.returncode == 2 and wrong.stderr.startswith(
+        "psph check: the following arguments are required"
+    )
 
 
 # Shells

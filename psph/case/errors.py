@@ -43,8 +43,11 @@ def _alike(word: str, other: str) -> float:
 
 def refuse_if_neither(word: str, commands: Iterable[str]) -> None:
     """Raise Refused where a word on the command line is neither a command nor a case file."""
-    if not word.endswith(".toml") and not Path(word).exists():
-        raise Refused(one_line(f"{word}: neither a command nor a case file; {advise(word, commands)}"))
+    if word.endswith(".toml") or Path(word).exists():
+        return
+    case = Path(word).with_suffix(".toml") if Path(word).name.strip(".") else Path(word)
+    advice = f"did you mean {case}?" if case.exists() else advise(word, commands)
+    raise Refused(one_line(f"{word}: neither a command nor a case file; {advice}"))
 
 
 def dotted(keys: Iterable[str | int]) -> str:

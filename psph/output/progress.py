@@ -41,8 +41,11 @@ class Progress:
             width = terminal_width()
             self._bar = _Bar(width) if width else None
 
-    def update(self, time: float, step: int, dt: float) -> None:
-        """Call it after each step; it costs less than a microsecond when nothing is due."""
+    def update(self, time: float, step: int, dt: float, speed: float) -> None:
+        """Call it after each step; it costs less than a microsecond when nothing is due.
+
+        ``speed`` is the largest of all particles that flow or bend, m/s.
+        """
         now = perf_counter()
         if now < self._due and time < self._next:
             return
@@ -51,9 +54,9 @@ class Progress:
         while len(self._samples) > 2 and now - self._samples[1].wall > WINDOW:
             self._samples.popleft()
         if self._bar:
-            self._bar.show(self.title, min(time / self.end_time, 1.0), *self._report(dt))
+            self._bar.show(self.title, min(time / self.end_time, 1.0), *self._report(dt, speed))
         elif self.lines and (time >= self._next or now - self._said > PATIENCE):
-            report, left = self._report(dt)
+            report, left = self._report(dt, speed)
             print(f"{min(time / self.end_time, 1.0):4.0%}  t {time:.4g} s  {report}  {left}", flush=True)
             self._said = now
         if time >= self._next:
@@ -71,10 +74,10 @@ class Progress:
         tenth = math.floor(10 * time / self.end_time + 1e-6) + 1
         return tenth / 10 * self.end_time * (1 - 1e-9) if tenth <= 10 else math.inf
 
-    def _report(self, dt: float) -> tuple[str, str]:
-        """Step, time step and rates; time left."""
+    def _report(self, dt: float, speed: float) -> tuple[str, str]:
+        """Step, time step, largest speed and rates; time left."""
         first, last = self._samples[0], self._samples[-1]
-        report = f"step {last.step:,}  dt {dt:.3g} s"
+        report = f"step {last.step:,}  dt {dt:.3g} s  up to {speed:.3g} m/s"
         if last.step == first.step or last.time == first.time:
             return report, ""
         seconds = last.wall - first.wall

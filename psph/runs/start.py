@@ -160,7 +160,7 @@ def _simulate(
         while simulation.time < case.time.end:
             guards.step()
             record.write_due()
-            progress.update(simulation.time, simulation.steps, simulation.dt)
+            progress.update(simulation.time, simulation.steps, simulation.dt, simulation.fluid_speed)
             _attend(simulation, record, watch, case, folder)
             if after_step and after_step(simulation):
                 break

@@ -28,20 +28,20 @@ def test_plain_line_every_tenth(alone, capsys, clock):
     bar = Progress(alone, 2.0, "tank", 1000)
     for step in range(1, 1001):
         clock.now += 0.01
-        bar.update(0.002 * step, step, 0.002)
+        bar.update(0.002 * step, step, 0.002, 0.005 * step)
     bar.close()
     lines = capsys.readouterr().out.splitlines()
     assert [line.split("%")[0].strip() for line in lines] == [f"{k}0" for k in range(1, 11)]
-    rates = "dt 0.002 s  100 steps/s  100 k particle-steps/s"
-    assert lines[4] == f" 50%  t 1 s  step 500  {rates}  5 s left"
-    assert lines[-1] == f"100%  t 2 s  step 1,000  {rates}  done"
+    rates = "100 steps/s  100 k particle-steps/s"
+    assert lines[4] == f" 50%  t 1 s  step 500  dt 0.002 s  up to 2.5 m/s  {rates}  5 s left"
+    assert lines[-1] == f"100%  t 2 s  step 1,000  dt 0.002 s  up to 5 m/s  {rates}  done"
 
 
 def test_plain_line_when_nothing_was_said_for_long(alone, capsys, clock):
     bar = Progress(alone, 1000.0, "tank", 10)
     for step in range(70):
         clock.now += 1.0
-        bar.update(0.1 * step, step, 0.1)
+        bar.update(0.1 * step, step, 0.1, 0.0)
     assert len(capsys.readouterr().out.splitlines()) == 2
 
 
@@ -49,19 +49,19 @@ def test_rate_is_that_of_the_last_seconds(alone, capsys, clock):
     bar = Progress(alone, 1.0, "tank", 10)
     for step in range(1, 2001):  # slow at first: a step a second, then a hundred
         clock.now += 1.0 if step <= 100 else 0.01
-        bar.update(step / 2000, step, 1 / 2000)
+        bar.update(step / 2000, step, 1 / 2000, 0.0)
     assert "  100 steps/s  1 k particle-steps/s" in capsys.readouterr().out.splitlines()[-1]
 
 
 def test_run_that_goes_on_from_the_middle(alone, capsys, clock):
     bar = Progress(alone, 1.0, "tank", 10)
-    bar.update(0.75, 1000, 1e-3)
-    assert capsys.readouterr().out.startswith(" 75%  t 0.75 s  step 1,000  dt 0.001 s")
+    bar.update(0.75, 1000, 1e-3, 3.0)
+    assert capsys.readouterr().out.startswith(" 75%  t 0.75 s  step 1,000  dt 0.001 s  up to 3 m/s")
 
 
 def test_other_ranks_are_silent(capsys):
     bar = Progress(SimpleNamespace(rank=1, size=2), 1.0, "tank", 10)
-    bar.update(1.0, 1, 1.0)
+    bar.update(1.0, 1, 1.0, 0.0)
     bar.close()
     assert capsys.readouterr().out == ""
 
@@ -88,7 +88,7 @@ from types import SimpleNamespace
 from psph.output.progress import Progress
 bar = Progress(SimpleNamespace(rank=0, size=1), 1.0, "tank", 1000)
 for step in range(1, 11):
-    bar.update(step / 10, step, 0.1)
+    bar.update(step / 10, step, 0.1, 2.5)
 bar.close()
 """
 
@@ -99,7 +99,7 @@ def test_bar_on_a_terminal():
     last = [line for line in re.split(r"[\r\n]+", plain) if line.strip()][-2:]
     assert re.fullmatch(r"tank ━+ 100% done", last[0])
     assert len(last[0]) == 80
-    assert last[1].startswith("step 10  dt 0.1 s  ")
+    assert last[1].startswith("step 10  dt 0.1 s  up to 2.5 m/s")
     assert text.count("\x1b[?25l") == text.count("\x1b[?25h") == 1  # the cursor is given back
 
 
