@@ -100,9 +100,10 @@ OF_MATERIAL = (
     Field("extrapolated", "1", "1 in a wall whose pressure is that of the fluid before it, else 0"),
     Field("repulsive", "1", "1 in a wall whose particles repel the fluid, else 0"),
     Field("rheology", "1", "number of the law of a fluid's viscosity, 0 where that is constant"),
-    Field("solid", "1", "number of a rigid body from 2 on, 1 in a wall, 0 in a fluid"),
+    Field("solid", "1", "number of a rigid body or an elastic solid from 2 on, 1 in a wall, 0 in a fluid"),
     Field("penalty", "1", "1 in a wall that pushes back what comes too near, else 0"),
     Field("shear_modulus", "Pa", "shear modulus of what bears an evolved stress, else 0"),
+    Field("wave_modulus", "Pa", "P-wave modulus by which a contact of solids and walls is stiff, else 0"),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""
 

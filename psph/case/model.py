@@ -336,7 +336,7 @@ class Case(Table):
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
         for solid in self.boundaries.values():
-            _fill(solid, velocity=zeros, continues=next(iter(self.fluids)))
+            _fill(solid, velocity=zeros, continues=next(iter(self.fluids), None))
         return self
 
 

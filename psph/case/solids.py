@@ -88,6 +88,8 @@ class Solid(Matter):
 
 OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
 
+CONTACT = "physics", "contact"
+
 ALONE = "nothing is known of contact between solids and these; remove one of the two"
 
 
@@ -96,15 +98,18 @@ def elastic(case) -> Iterator[Finding]:
     if not case.solids:
         if case.anvils:
             yield ("anvils",), ..., "nothing feels them but solids; remove them, or give [solids.NAME]"
+        if case.physics.contact is not None:
+            yield CONTACT, ..., "nothing feels it but elastic solids; remove it, or give [solids.NAME]"
         return
     yield from _yielding(case)
+    yield from _meeting(case)
     for name, anvil in case.anvils.items():
         if not any(anvil.normal):
             yield ("anvils", name, "normal"), anvil.normal, "has no direction; give the way out of the plane"
     here = ("solids",)
     if case.space.dimensions == 1:
         yield here, ..., "solids need two or three dimensions"
-    for name in ("bodies", "regions", "anvils" if case.fluids else "walls"):
+    for name in ("bodies", "regions", *(["anvils"] if case.fluids else [])):
         if getattr(case, name, None):
             yield (name,), ..., ALONE
     if case.space.symmetry:
@@ -127,6 +132,29 @@ def elastic(case) -> Iterator[Finding]:
                 f"{len(rows)} rows in {case.space.dimensions}D; give one for each component of the velocity"
             )
             yield (*here, name, "velocity_gradient"), rows, says
+
+
+def _meeting(case) -> Iterator[Finding]:
+    """What contact knows nothing of."""
+    contact = case.physics.contact is not None
+    if case.fluids:
+        if contact:
+            yield CONTACT, ..., "solids in a fluid do not feel each other; remove it, or the fluids"
+        return
+    for name, wall in case.walls.items():
+        here = ("walls", name)
+        if not contact:
+            yield here, ..., "solids do not feel walls without contact; give physics.contact = {}"
+        for key_of in ("motion", "velocity", "condition", "no_slip"):
+            if key_of in wall.model_fields_set:
+                yield (
+                    (*here, key_of),
+                    ...,
+                    "a wall that solids alone meet is at rest and as they are; remove this key",
+                )
+    for name, gauge in case.gauges.items():
+        if gauge.kind == "force":
+            yield ("gauges", name, "force"), ..., "knows of forces by fluids alone, and there are none"
 
 
 def _yielding(case) -> Iterator[Finding]:

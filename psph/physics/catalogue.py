@@ -38,6 +38,7 @@ from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.solid.anvil import Anvils
+from psph.physics.solid.contact import SolidContact
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.physics.walls.dry import DryWall
@@ -135,6 +136,7 @@ CATALOGUE = (
     Entry("physics.damping_zone", DampingZone),
     Entry("frame.motion", MovingFrame),
     Entry("anvils.*", Anvils),
+    Entry("physics.contact", SolidContact),
     Entry("physics.free_surface", FreeSurface),
     Entry("physics.tension_floor", TensionFloor),
     Entry("physics.background_pressure", BackgroundPressure),

@@ -27,6 +27,7 @@ from psph.scene.moving import motion_lines
 from psph.scene.rheologies import rheology_lines
 from psph.scene.solid_checks import solid_lines
 from psph.scene.waving import wave_lines
+from psph.simulation.calling import acts_in
 from psph.simulation.immersion import substeps
 from psph.simulation.plan import Plan, make_plan
 
@@ -160,7 +161,13 @@ def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
             f"  kernel      of solids: {KERNEL}, h = {plan.solid_smoothing_length:g} m "
             f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
         )
-    if plan.passes:
+    if plan.touching:
+        reach = scene.reach
+        yield (
+            f"  contact     within {reach.support:g} m of other solids and walls; lists reach "
+            f"{reach.cutoff:.4g} m"
+        )
+    elif plan.passes:
         yield (
             f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
             f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
@@ -262,7 +269,7 @@ def absent(scene, plan: Plan) -> dict[str, str]:
     return {
         entry.effect.__name__: plan.dropped.get(entry.effect.__name__) or _why_absent(scene.case, entry.key)
         for entry in plan.absent
-        if scene.case.fluids or hasattr(entry.effect, "body")
+        if acts_in(scene.case, entry.effect)
     }
 
 

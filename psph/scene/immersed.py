@@ -13,9 +13,9 @@ def is_immersed(scene: "Scene", material: int) -> bool:
 
 def shown_by(scene: "Scene") -> list[int]:
     """For each material the index of the one whose density and state it has: of a wall that of the fluid that
-    it continues, of a solid among fluids the first of these."""
+    it continues, without fluids that of the first solid; of a solid among fluids the first of these."""
     layout, fluids = scene.layout, list(scene.case.fluids)
     if not fluids:
-        return [*range(layout.movers), *layout.clamps]
+        return [*range(layout.movers), *layout.clamps, *[0] * len(scene.boundaries)]
     continued = [fluids.index(one.continues) for one in scene.boundaries.values()]
     return [*range(layout.fluids), *[0] * (layout.first_wall - layout.fluids), *continued]

@@ -29,7 +29,7 @@ from psph.scene.particles import ParticleSet, fill
 from psph.scene.pressures import range_of_pressure, weight_above
 from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
-from psph.scene.solids import anvils_of, solids_of
+from psph.scene.solids import anvils_of, modulus_shown, reach_of_contact, solids_of
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.walls import has_free_surface
 from psph.smoothing import kernel, normalised
@@ -250,6 +250,7 @@ class Scene:
                 self.layout.solid_of(index),
                 number_of(self.parts[source], self.rheologies),
                 self.layout.elastic_of(index),
+                wave_modulus=modulus_shown(self, index),
             )
             for index, (name, source, start) in enumerate(zip(self.names, shown_by(self), self.starts))
         )
@@ -330,7 +331,8 @@ class Scene:
     @property
     def reach(self) -> Reach:
         """How far particles feel and see each other."""
-        return Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
+        whole = Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
+        return whole if self.case.fluids else reach_of_contact(whole, self.spacing)
 
     @cached_property
     def starts(self) -> tuple[Start, ...]:

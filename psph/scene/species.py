@@ -29,9 +29,10 @@ class Species(NamedTuple):
     it continues; ``no_slip`` if that fluid sticks to it; ``condition`` is what it sets to the fluid before it
     (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for;
     ``rheology`` is the number of the law of its viscosity among those of the scene from 1 on, 0 where that is
-    constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body from 2 on; ``elastic``
-    is the number of the elastic solid that it is of, or None; ``shear_modulus`` in Pa that of matter whose
-    deviatoric stress evolves (psph.physics.stress), else 0.
+    constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body or elastic solid from 2
+    on; ``elastic`` is the number of the elastic solid that it is of, or None; ``shear_modulus`` in Pa that of
+    matter whose deviatoric stress evolves (psph.physics.stress), else 0; ``wave_modulus`` in Pa is the P-wave
+    modulus of an elastic solid, beside solids of a wall the largest of theirs, else 0.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Species(NamedTuple):
     rheology: int = 0
     elastic: int | None = None
     shear_modulus: float = 0.0
+    wave_modulus: float = 0.0
 
     @property
     def kind(self) -> int:
@@ -165,9 +167,11 @@ class Layout:
         return len(self.shapes) - self.bodies
 
     def solid_of(self, material: int) -> int:
-        """0 for a fluid, 1 for a wall, and another number for each body."""
+        """0 for a fluid, 1 for a wall, and another number for each elastic solid, or each body."""
         if material < self.fluids:
             return 0
+        if (elastic := self.elastic_of(material)) is not None:
+            return elastic + FIRST_BODY
         return max(1, material - self.first_body + FIRST_BODY)
 
     def masks(self, grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:

@@ -10,6 +10,11 @@ WALLS = "walls"
 """Keys of walls are asked of rigid bodies too: to the fluid they are walls."""
 
 
+def acts_in(case, effect: type) -> bool:
+    """Whether an effect can act in a case: without fluids what pulls on all, or is between solids."""
+    return bool(case.fluids) or hasattr(effect, "body") or hasattr(effect, "between_solids")
+
+
 def in_scene(effect, scene):
     """The form of an effect that a scene needs, or None."""
     return effect.in_scene(scene) if hasattr(effect, "in_scene") else effect

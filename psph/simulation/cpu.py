@@ -14,6 +14,7 @@ from psph.fields import companions, seen_at
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin, Unlisted
+from psph.particles.others import keep_others
 from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
@@ -119,6 +120,7 @@ class Engine:
             self.domain.rebuild(self.spent_on_pairs())
             for effect in self.plan.marking:
                 self._mark(effect)
+            self._list_others()
         with self.ledger("records"):
             self._fit_records()
         if self.solids:
@@ -190,6 +192,7 @@ class Engine:
             self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
         for effect in self.plan.marking:
             self._rest(effect)  # what ghosts are counts too
+        self._list_others()
         self._fit_records()
         for records in self.records:
             records.fill(0, self.store.total)
@@ -241,6 +244,11 @@ class Engine:
         plan, lists = self.plan, self.domain.lists
         solid = s["solid"] if plan.contacts else told_by  # without bodies: of numbers below those of bodies
         self._each(rest_dry, s.low, lists, told_by, wet, s.group, plan.bearing, solid, plan.free)
+
+    def _list_others(self) -> None:
+        """Solids feel only other ones in space."""
+        if self.plan.touching:
+            self._each(keep_others, self.store.low, self.domain.lists, self.store["solid"])
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""

@@ -13,6 +13,7 @@ from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import (
+    FLUID,
     IDENTITY,
     OF_EVERY_SCENE,
     OF_MATERIAL,
@@ -32,7 +33,7 @@ from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, SMOOTHING
 from psph.physics.solid.material import STEP, remembers
 from psph.physics.solid.plastic import OF_PLASTIC, Lasting
 from psph.scene.bodies import body_step
-from psph.simulation.calling import called_for, in_scene, why_dropped
+from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.groups import laws, material_value, tells
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
@@ -186,7 +187,12 @@ class Plan:
     @property
     def immersed(self) -> bool:
         """Whether elastic solids stand in a fluid."""
-        return bool(self.solids and self.passes)
+        return bool(self.solids) and FLUID in self.kinds
+
+    @property
+    def touching(self) -> bool:
+        """Whether elastic solids look for each other: a pass then begins the sums of their forces."""
+        return bool(self.solids and self.passes) and not self.immersed
 
     @property
     def floats(self) -> bool:
@@ -252,7 +258,7 @@ class Plan:
             yield self.fixed_step, "time.step"
             return
         h, factor = self.smoothing_length, FORCE_LIMIT
-        if self.passes:
+        if FLUID in self.kinds:
             yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
         else:
             h, factor = self.solid_smoothing_length, STEP
@@ -270,7 +276,7 @@ class Plan:
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     """The plan of a scene (psph.scene.Scene), with what its case or another catalogue offers."""
     case, catalogue = scene.case, catalogue or scene.case.catalogue
-    entries = [one for one in catalogue.effects if case.fluids or hasattr(one.effect, "body")]
+    entries = [one for one in catalogue.effects if acts_in(case, one.effect)]
     calls = [(entry, *found) for entry in entries if (found := called_for(case, entry))]
     fits = [(entry, in_scene(effect, scene), reason) for entry, effect, reason in calls]
     fitted = [fit for fit in fits if fit[1] is not None]
@@ -298,7 +304,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     told |= {LOAD.name} if loaded.any() else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     passes = make_passes(
-        called if case.fluids else (),
+        called if case.fluids or any(hasattr(c.effect, "radial") for c in called) else (),
         stored,
         lambda name: _array_of(name, stored),
         case.time.gather_every,

@@ -239,13 +239,26 @@ def fill_places(first, last, data, rows, columns, table, place):
 def push_solids(first, last, effects, view, columns, inverse_density, force, drawn, share, acceleration):
     """a of the rows ``first`` to ``last`` into their columns: body forces, loads, and inner forces.
 
-    The ``share`` (n,) of the loads ``drawn`` (None: there are none) acts now.
+    ``effects`` None: a pass over neighbours in space has put contacts and body forces there.  The ``share``
+    (n,) of the loads ``drawn`` (None: there are none) acts now.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         column = columns[k]
-        a = terms.body(effects, take(view, column))
+        a = begun(effects, view, column, acceleration)
         a = added(a, pulled(drawn, column, share[k]))
         put(acceleration, column, add(a, scale(at(force, k), inverse_density[k])))
+
+
+def begun(effects, view, column, acceleration):
+    """The acceleration of a particle but for that by its own solid, m/s²."""
+    return at(acceleration, column) if effects is None else terms.body(effects, take(view, column))
+
+
+@overload(begun)
+def _typed_begun(effects, view, column, acceleration):
+    if isinstance(effects, types.NoneType):
+        return lambda effects, view, column, acceleration: at(acceleration, column)
+    return lambda effects, view, column, acceleration: terms.body(effects, take(view, column))
 
 
 def pulled(drawn, column, share):

@@ -12,6 +12,7 @@ from psph.parallel.reductions import exact_sums, whole_sums
 from psph.parallel.reference import reference_rows
 from psph.particles.partners import ReferenceRows, padded_lists
 from psph.particles.records import record_width
+from psph.physics.solid.contact import CONTACT_ENERGY
 from psph.physics.solid.deformation import (
     DRAWN,
     KERNEL,
@@ -193,7 +194,7 @@ class Solids:
                 self._push,
                 0,
                 rows,
-                self.plan.effects,
+                None if self.plan.touching else self.plan.effects,
                 store.view(),
                 self._columns,
                 self._inverse_density,
@@ -219,9 +220,12 @@ class Solids:
             of[self._columns] = values
 
     def energy(self) -> float:
-        """Stored energy of all solids, J; the same bits on any number of ranks, collective."""
+        """Stored energy of all solids and their contacts, J; the same bits on any number of ranks,
+        collective."""
         self.measure()
-        return float(exact_sums(self.comm, self.store.shown(STORED.name)[:, None])[0])
+        names = [name for name in (STORED.name, CONTACT_ENERGY.name) if name in self.store]
+        found = exact_sums(self.comm, np.column_stack([self.store.shown(name) for name in names]))
+        return float(found.sum())
 
     @property
     def neighbours(self) -> float:

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
-from cases.measures import finished, window
+from cases.measures import by_id, finished, window
 from long import LONG, tell
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 TIP = "tip.displacement_{}"
 
@@ -40,6 +42,42 @@ def test_a_spinning_plate_keeps_energy_and_angular_momentum(tmp_path):
     spin, spin_0 = ((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() for a, b in ((x, v), (x_0, v_0)))
     assert spin == pytest.approx(spin_0, rel=1e-12)
     assert np.abs(v.sum(axis=0)).max() < 1e-12 * np.abs(v).sum()
+
+
+def rings(folder, *overrides):
+    """The run, and the places and velocities of the left ring and of the right one mirrored, in the same order."""
+    run = finished("solids/rings", folder, *overrides)
+    start, end = by_id(run.frame(0)), by_id(run.frame(-1))
+    sides = []
+    for group, sign in ((0, [1.0, 1.0]), (1, [-1.0, 1.0])):
+        own = start["group"] == group
+        order = np.lexsort(np.round(start["position"][own] * sign, 6).T)
+        sides.append([end[name][own][order] * sign for name in ("position", "velocity")])
+    return run, *sides
+
+
+def pieces(position, reach):
+    """How many clusters the particles make whose distances are below ``reach`` m."""
+    near = cKDTree(position).sparse_distance_matrix(cKDTree(position), reach)
+    return connected_components(near)[0]
+
+
+def test_rings_bounce_and_part_in_one_piece_each(tmp_path):
+    """With half of the case's particles across."""
+    run, (x, v), (x_m, v_m) = rings(tmp_path, "space.spacing=0.002")
+    log = run.log()
+    energy = log["kinetic_energy"] + log["stored_energy"]
+    assert np.abs(energy / energy[0] - 1.0).max() < 2e-3 and log["stored_energy"].max() > 0.8 * energy[0]
+    size = np.sqrt(2.0 * energy[0] * 0.002**2 * 1200.0 * 2 * len(x))
+    assert max(np.abs(log[f"momentum_{axis}"]).max() for axis in "xy") < 1e-13 * size
+    assert np.abs(x - x_m).max() < 0.1 * 0.002 and v[:, 0].mean() == pytest.approx(v_m[:, 0].mean(), rel=1e-9)
+    assert -13.0 < v[:, 0].mean() < -10.0 and x[:, 0].max() < -0.002  # they have parted
+    assert pieces(run.frame(-1)["position"], 1.7 * 0.002) == 2
+
+
+def test_without_contact_rings_run_through_each_other(tmp_path):
+    _, (x, v), _ = rings(tmp_path, "space.spacing=0.002", "physics.contact=off")
+    assert v[:, 0] == pytest.approx(13.97) and x[:, 0].min() > 0.0
 
 
 @LONG

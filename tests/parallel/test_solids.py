@@ -18,6 +18,7 @@ time.end = 1.0
 neighbours.skin = 0.1
 physics.gravity = [0.3, -9.8]
 parallel.axis = "x"
+physics.contact = { damping = 0.1, friction = 0.3 }
 output = { frames = 0.02, probes = 0.01, log = 0.01 }
 [space]
 dimensions = 2
@@ -47,6 +48,8 @@ density = 1300.0
 young = 1.0e6
 poisson = 0.3
 johnson_cook = { yield_stress = 2e4, hardening = 3e4, exponent = 0.4, rate = 0.05, heat_capacity = 130.0 }
+[walls.step]
+shape.box = { lower = [4.1, -0.6], upper = [4.6, 1.4] }
 [anvils.floor]
 at = [3.2, 0.0]
 normal = [-0.2, 1.0]
@@ -54,8 +57,8 @@ normal = [-0.2, 1.0]
 of = "beam"
 at = [3.0, 0.2]
 """
-"""A beam across all slabs that bends under a load, a plate of another law that spins above it, and a block
-of metal that is pressed flat on a slope."""
+"""A beam across all slabs that bends under a load, a plate of another law that spins above it and falls on it, and
+a block of metal that is pressed flat on a slope, between the beam and a wall."""
 
 
 def beams(folder):
@@ -75,6 +78,11 @@ def rows(simulation):
     return every[np.argsort(every[:, 0])], energy
 
 
+def met(simulation):
+    """How many particles are in contact."""
+    return np.count_nonzero(simulation.store.shown("contact_energy"))
+
+
 def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
     case = beams(mpi_tmp_path)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
@@ -87,6 +95,7 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
             together.rebuild()
     (one, energy), (many, energy_of_many) = rows(single), rows(together)
     assert np.isfinite(one).all() and np.abs(one - begun).max() > 0.1
+    assert met(single) > 5  # solids meet each other and the wall
     assert one[:, -1].max() > 0.02 and (one[:, -1] > 0.0).sum() > 5  # the metal yields
     assert np.array_equal(one, many) and energy == energy_of_many > 0.0
     assert together.domain.rebuilds > single.domain.rebuilds

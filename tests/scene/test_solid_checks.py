@@ -80,7 +80,27 @@ def test_a_sound_beam_is_good(tmp_path):
         ),
         (
             ["walls.floor={shape={box={lower=[0.0,-1.0],upper=[1.0,-0.5]}}}"],
-            "walls: nothing is known of contact",
+            "walls.floor: solids do not feel walls without contact; give physics.contact = {}",
+        ),
+        (
+            [
+                "physics.contact={}",
+                "walls.floor={shape={box={lower=[0.0,-1.0],upper=[1.0,-0.5]}},no_slip=true}",
+            ],
+            "walls.floor.no_slip: a wall that solids alone meet is at rest",
+        ),
+        (
+            [
+                "physics.contact={}",
+                "fluids.water={shape={box={lower=[0.0,1.0],upper=[1.0,2.0]}}}",
+                "physics.sound_speed=20.0",
+            ],
+            "physics.contact: solids in a fluid do not feel each other; remove it",
+        ),
+        (["physics.contact={damping=1.5}"], "physics.contact.damping: 1.5 is out of range"),
+        (
+            ["solids.end={shape={box={lower=[1.0,0.0],upper=[1.5,0.05]}},density=1e3,young=1e6,poisson=0.3}"],
+            "solids: beam, end do not feel each other, and run through each other where they meet; give phys",
         ),
         (["precision=mixed"], 'precision: "mixed": solids are computed in double precision'),
         (["physics.sound_speed=10.0"], "physics.sound_speed: 10.0: solids have waves of their own"),

@@ -12,6 +12,7 @@ from mpi4py import MPI
 from psph.engine.jit import FAST
 from psph.output.ledger import Ledger
 from psph.physics.catalogue import BUILT_IN, CATALOGUE, Entry
+from psph.physics.solid.contact import SolidContact
 from psph.runs.explain import bytes_per_refresh
 from psph.runs.setup import create_particles
 from psph.scene import Scene
@@ -144,8 +145,8 @@ def name_of(entry):
 
 
 SHORT = ("FreeSurface", "ArtificialViscosity", "PairPotential")
-WET = [entry for entry in CATALOGUE if not entry.key.startswith("anvils.")]
-"""Anvils are there for scenes of solids alone, which have no loop over neighbours in space."""
+WET = [one for one in CATALOGUE if not one.key.startswith("anvils.") and one.effect is not SolidContact]
+"""Anvils and contact are there for scenes of solids alone: tests/simulation/test_contact.py."""
 KEYED, ALL = (long_but_for(SHORT, entries, name_of) for entries in ([e for e in CATALOGUE if e.key], WET))
 
 
