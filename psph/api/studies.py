@@ -43,6 +43,12 @@ class StudyResults:
             if status == DONE
         ]
 
+    def report(self) -> Path:
+        """Write report.html into the folder; its path (docs/output.md)."""
+        from psph.lab.report.page import report
+
+        return report(self.folder)
+
     def __repr__(self) -> str:
         return f"<psph.StudyResults {self.folder}: {self.table.rows} runs over {', '.join(self.vary)}>"
 

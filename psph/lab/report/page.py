@@ -1,9 +1,6 @@
 """``report.html``: what was simulated and why, what came out, how far to trust it, what it cost."""
 
-import base64
-import io
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -11,24 +8,21 @@ import numpy as np
 import psph
 from psph.case import CaseError, load
 from psph.errors import Refused
+from psph.lab.report.results import report_of_results
+from psph.lab.report.sheet import REPORT, embedded, interactive, refuse_without_packages, written
 from psph.lab.report.turning import turning
 from psph.lab.study.beside import Beside, beside
 from psph.output.checkpoint import COPY
-from psph.output.errors import OutputError
 from psph.output.pictures import names
 from psph.output.pictures.plot import plot
 from psph.output.reader import Run
 from psph.runs.explain import explain
 from psph.runs.outlook import outlook
-from psph.runs.summary import read_summary
+from psph.runs.summary import UNTOLD, read_summary
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 
-REPORT, TEMPLATE = "report.html", "page.html"
-NEEDS = ("jinja2", "plotly")
-"""What the extra ``report`` installs."""
-UNTOLD: dict = {"header": "", "said": [], "parts": [], "versions": {}}
-"""The summary of a run that has not come to its end."""
+TEMPLATE = "page.html"
 FILMS = {".mp4": "video/mp4", ".gif": "image/gif"}
 LARGEST_FILM = 12 << 20
 """Bytes of a film that a report takes in."""
@@ -37,40 +31,34 @@ LARGEST_FILM = 12 << 20
 def report(folder: Path, field: str = "speed") -> Path:
     """Write the report of the run in ``folder``, whose pictures show ``field``; its path.
 
+    The folder of a study or a battery has one too, and so has a file of ``bench --json``: results.py.
+
     Pictures are drawn as ``plot`` draws them; a film that ``plot --film`` has made there is taken in.
     Raises Refused or NotThere where there is nothing to report, or nothing to make it with.
     """
-    if missing := [name for name in NEEDS if find_spec(name) is None]:
-        raise Refused(f"report: {missing[0]} is not installed: pip install psph[report]")
-    import jinja2
-
+    refuse_without_packages()
+    if path := report_of_results(folder):
+        return path
     run = Run(folder)
     measured, remarks = beside(folder), []
     try:
         drawn = plot(folder, None, field, experiments=measured)
     except Refused as error:
         drawn, remarks = [], [f"no pictures: {error}"]
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("psph.lab.report"), autoescape=True, undefined=jinja2.StrictUndefined
-    )
-    text = environment.get_template(TEMPLATE).render(
+    return written(
+        TEMPLATE,
+        run.folder / REPORT,
         title=run.attributes.get("title") or run.path.stem,
         run=run,
         summary=UNTOLD | read_summary(run.folder),
-        pictures=[(name, _embedded(path, "image/png")) for name, path in _in_order(drawn)],
-        films=[(path.name, _embedded(path, FILMS[path.suffix])) for path in _films(run.folder)],
-        turning=turning(run),
+        pictures=[(name, embedded(path, "image/png")) for name, path in _in_order(drawn)],
+        films=[(path.name, embedded(path, FILMS[path.suffix])) for path in _films(run.folder)],
+        turning=interactive(turning(run), "turning"),
         key_numbers=list(_key_numbers(run)),
         accuracy=list(_accuracy(run, measured)),
         psph_version=run.attributes.get("psph_version", psph.__version__),
         **_of_case(run.folder, remarks),
     )
-    path = run.folder / REPORT
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {error.strerror}; check the free space") from None
-    return path
 
 
 def _of_case(folder: Path, remarks: list[str]) -> dict:
@@ -102,18 +90,6 @@ def _in_order(drawn: list[Path]) -> Iterator[tuple[str, Path]]:
 def _films(folder: Path) -> list[Path]:
     found = sorted(path for path in folder.iterdir() if path.suffix in FILMS)
     return [path for path in found if path.stat().st_size <= LARGEST_FILM]
-
-
-def _embedded(path: Path, kind: str) -> str:
-    """The file as an address that holds all of it; pictures with 256 colours, a fifth of their size."""
-    content = path.read_bytes()
-    if kind == "image/png":
-        from PIL import Image
-
-        small = io.BytesIO()
-        Image.open(path).convert("RGB").quantize(256).save(small, "PNG", optimize=True)
-        content = small.getvalue()
-    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 
 def _key_numbers(run: Run) -> Iterator[tuple[str, str]]:

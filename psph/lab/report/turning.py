@@ -14,8 +14,8 @@ EYE = {"x": -0.7, "y": -2.0, "z": 1.1}
 """From the front, the left and above, as the pictures in 3D."""
 
 
-def turning(run: Run) -> str:
-    """The view with its slider over time and the library that draws it, as a part of a page."""
+def turning(run: Run):
+    """The view with its slider over time, a figure of plotly."""
     import plotly.graph_objects as go
 
     shown = spread(len(run.times), FRAMES)
@@ -59,7 +59,7 @@ def turning(run: Run) -> str:
     else:
         figure.update_yaxes(scaleanchor="x", title="y (m)")
         figure.update_xaxes(title="x (m)")
-    return figure.to_html(full_html=False, include_plotlyjs="inline", auto_play=False, div_id="turning")
+    return figure
 
 
 def _points(kind, places: np.ndarray, size: int, opacity: float = 1.0, **marker):

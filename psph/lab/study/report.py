@@ -86,7 +86,7 @@ def _cell(name: str, value, row: dict) -> str:
         return f"{value:.3g}"
     if name == "bytes":
         return f"{value / 2**20:.3g} MiB"
-    return str(value)
+    return "; ".join(str(value).splitlines())
 
 
 def percent(value: float) -> str:

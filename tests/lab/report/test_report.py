@@ -1,19 +1,21 @@
 """report.html: well formed, whole in itself, and drawn by a browser without a complaint."""
 
-import re
 import shutil
 import subprocess
 import sys
-from html.parser import HTMLParser
-from pathlib import Path
 
+import numpy as np
 import pytest
+from browser import NEEDS_CHROMIUM, Page, colours, looked_at, scripted
 from jobs import clean_environment
 
 import psph
+from psph.lab.report.sheet import interactive
+from psph.lab.report.turning import turning
+from psph.output.frames import FrameFile
+from psph.output.reader import Run
 from psph.parallel.reductions import alone
 
-VOID = {"meta", "link", "img", "br", "input", "hr"}
 HEADER = "# A drop of <water> & more.\n#\n# Source: none.\n"
 CASE = """
 title = "A drop & a wall"
@@ -26,24 +28,6 @@ walls.floor.shape.box = { lower = [-0.2, -0.15], upper = [0.7, 0.0] }
 probes.low = { position = [0.25, 0.1], fields = ["pressure"], theory.pressure = 2940.0 }
 gauges.height.level = { foot = [0.25, 0.0], top = [0.25, 0.4] }
 """
-
-
-class Page(HTMLParser):
-    """The tags of a page: those left open, and what they refer to."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.open, self.sources, self.faults = [], [], []
-        self.feed(text)
-
-    def handle_starttag(self, tag, attributes):
-        self.sources += [value for name, value in attributes if name in ("src", "href")]
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        if not self.open or self.open.pop() != tag:
-            self.faults.append(tag)
 
 
 @pytest.fixture(scope="module")
@@ -98,40 +82,75 @@ def test_a_run_that_has_not_ended_has_a_report_too(page, tmp_path):
     assert "has not come to its end" in report.read_text(encoding="utf-8")
 
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-
-
-@pytest.mark.skipif(CHROMIUM is None, reason="no chromium here: apt-get install chromium")
+@NEEDS_CHROMIUM
 def test_a_browser_draws_it_without_an_error(page, tmp_path):
-    picture = tmp_path / "seen.png"
-    job = subprocess.run(
-        [
-            CHROMIUM,
-            "--headless",
-            "--no-sandbox",
-            "--use-gl=angle",
-            "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader",
-            "--virtual-time-budget=8000",
-            "--window-size=1000,1600",
-            "--enable-logging=stderr",
-            f"--user-data-dir={tmp_path / 'profile'}",
-            f"--screenshot={picture}",
-            page.as_uri(),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    console = [line for line in job.stderr.splitlines() if ":CONSOLE:" in line]
-    assert picture.is_file()
-    assert not [line for line in console if re.search(r"error|uncaught|failed", line, re.IGNORECASE)]
-    assert _colours(picture) > 200
+    picture, complaints = looked_at(page, tmp_path)
+    assert complaints == [] and colours(picture) > 200
 
 
-def _colours(picture: Path) -> int:
-    """How many colours a picture has: text alone is grey."""
-    from PIL import Image
+@NEEDS_CHROMIUM
+def test_the_slider_changes_the_time(page, tmp_path):
+    told = scripted(page, tmp_path, SLIDES)
+    assert told["before"] == "time: 0.02 s" and told["after"] == "time: 0 s"
 
-    pixels = Image.open(picture).convert("RGB").getcolors(1 << 24)
-    return sum(max(colour) - min(colour) > 40 for _, colour in pixels)
+
+SLIDES = """
+const label = () => document.querySelector("#turning .slider-label").textContent;
+const before = label();
+const rail = document.querySelector("#turning .slider-rail-touch-rect").getBoundingClientRect();
+const at = {clientX: rail.left + 1, clientY: rail.top + rail.height / 2, bubbles: true, view: window};
+document.querySelector("#turning .slider-rail-touch-rect").dispatchEvent(new MouseEvent("mousedown", at));
+window.dispatchEvent(new MouseEvent("mouseup", at));
+await wait(1500);
+return {before, after: label()};
+"""
+
+
+@pytest.fixture
+def tank(tmp_path):
+    """The view of three frames in 3D, as a page."""
+    random = np.random.default_rng(7)
+    frames = FrameFile(tmp_path / "tank.h5", alone(), {"case": "", "dimensions": 3})
+    for k in range(3):
+        n = 300
+        cloud = {
+            "id": np.arange(n),
+            "kind": (np.arange(n) % 3 == 0).astype(np.uint8),
+            "group": np.zeros(n, np.uint8),
+            "position": random.random((n, 3)),
+            "velocity": random.normal(size=(n, 3)),
+            "density": np.full(n, 1000.0),
+            "pressure": np.zeros(n),
+        }
+        frames.write(k, 0.1 * k, k, cloud)
+    frames.complete_index()
+    path = tmp_path / "view.html"
+    shown = interactive(turning(Run(tmp_path)), "turning")
+    path.write_text(f'<!DOCTYPE html><html><head><meta charset="utf-8"></head><body>{shown}</body></html>')
+    return path
+
+
+@NEEDS_CHROMIUM
+def test_the_view_turns_under_the_mouse(tank, tmp_path):
+    picture, complaints = looked_at(tank, tmp_path)
+    assert complaints == [] and colours(picture) > 200
+    told = scripted(tank, tmp_path, DRAGS)
+    assert np.linalg.norm(told["before"]) == pytest.approx(np.linalg.norm(told["after"]), rel=1e-3)
+    assert np.linalg.norm(np.subtract(told["before"], told["after"])) > 0.3
+
+
+DRAGS = """
+const scene = document.getElementById("turning")._fullLayout.scene._scene;
+const eye = () => { const at = scene.getCamera().eye; return [at.x, at.y, at.z]; };
+const canvas = scene.glplot.canvas;
+const box = canvas.getBoundingClientRect();
+const mouse = (kind, x, buttons) => canvas.dispatchEvent(new MouseEvent(kind, {
+    clientX: box.left + x, clientY: box.top + 200, buttons, button: 0, bubbles: true, view: window}));
+const before = eye();
+mouse("mousemove", 200, 0);
+mouse("mousedown", 200, 1);
+for (let x = 200; x <= 400; x += 10) { mouse("mousemove", x, 1); await wait(20); }
+mouse("mouseup", 400, 0);
+await wait(500);
+return {before, after: eye()};
+"""
