@@ -113,6 +113,19 @@ def test_pages_are_short(page):
     assert len(text(page).splitlines()) <= longest.get(page, 299)
 
 
+@pytest.mark.parametrize("page", [p for p in PAGES if p.startswith("docs/") and "/gallery/" not in p])
+def test_each_page_begins_with_whom_it_is_for(page):
+    """In italics below the title; pages of the gallery have what is seen there instead."""
+    assert re.match(r"# [^\n]+\n\n\*For who(?:ever|m)[^*]+\*\n", text(page))
+
+
+def test_the_glossary_is_in_order_and_of_words_that_pages_use():
+    terms = re.findall(r"^\| (?!word|-)([^|]+) \| .{10,} \|$", text("docs/glossary.md"), re.MULTILINE)
+    assert len(terms) > 30 and terms == sorted(terms, key=str.lower)
+    others = "\n".join(text(page) for page in PAGES if page != "docs/glossary.md").lower()
+    assert [term for term in terms if term.lower() not in others] == []
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#]*)(#[^)]*)?\)", text(page)):
