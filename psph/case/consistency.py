@@ -13,6 +13,7 @@ from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
 from psph.case.parameters import last_part
 from psph.case.schemes import STABLE
+from psph.case.soils import earthen
 from psph.case.solids import elastic
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
@@ -42,11 +43,12 @@ def contradictions(case) -> list[InitErrorDetails]:
         _names,
         held_together,
         elastic,
+        earthen,
         _single,
         _stepped,
         due,
     )
-    if not case.fluids and not case.solids:
+    if not case.flowing and not case.solids:
         return [_without_matter(case)]
     found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
     return [
@@ -151,11 +153,11 @@ def _is_vector(value: Any) -> bool:
 
 def _square(case) -> Iterator[Finding]:
     dimensions = case.space.dimensions
-    for name, fluid in case.fluids.items():
+    for name, fluid in case.flowing.items():
         rows = fluid.velocity_gradient
         if rows and len(rows) != dimensions:
             yield (
-                ("fluids", name, "velocity_gradient"),
+                ("soils" if name in case.soils else "fluids", name, "velocity_gradient"),
                 rows,
                 (
                     f"{len(rows)} row{'s' * (len(rows) > 1)} in a case with space.dimensions = "
@@ -264,11 +266,11 @@ def _exact(case) -> Iterator[Finding]:
 
 def _continued(case) -> Iterator[Finding]:
     for name, wall in case.boundaries.items():
-        if wall.continues is not None and wall.continues not in case.fluids:
+        if wall.continues is not None and wall.continues not in case.flowing:
             yield (
                 (case.table_of(name), name, "continues"),
                 wall.continues,
-                (f"no fluid has this name; {advise(wall.continues, case.fluids)}"),
+                (f"no fluid has this name; {advise(wall.continues, case.flowing)}"),
             )
 
 
@@ -287,7 +289,7 @@ def _regions(case) -> Iterator[Finding]:
 
 
 def _friction(case) -> Iterator[Finding]:
-    rubs = any(fluid.rubs for fluid in case.fluids.values())
+    rubs = any(fluid.rubs for fluid in case.flowing.values())
     central = case.physics.central_friction is not None
     if central and not rubs:
         yield (

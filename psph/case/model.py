@@ -25,6 +25,7 @@ from psph.case.rheology import Rheology
 from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
+from psph.case.soils import Soil
 from psph.case.solids import Anvil, Solid
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
@@ -158,9 +159,9 @@ class Wall(Table):
         DYNAMIC,
     )
     continues: Name | None = key(
-        "the fluid whose density and initial pressure the wall has",
+        "the fluid, or soil, whose density and initial pressure the wall has",
         None,
-        otherwise="the first fluid",
+        otherwise="the first fluid, or soil",
     )
 
 
@@ -205,6 +206,7 @@ class Case(Table):
         {},
         max_length=MANY,
     )
+    soils: dict[Name, Soil] = key("the soils by name: alone, or beside fluids", {}, max_length=MANY)
     solids: dict[Name, Solid] = key("the elastic solids by name: alone, or in fluids", {}, max_length=MANY)
     anvils: dict[Name, Anvil] = key("rigid planes that solids may hit, by name", {}, max_length=MANY)
     walls: dict[Name, Wall] = key(
@@ -255,13 +257,19 @@ class Case(Table):
         return gauged | set(self.bodies)
 
     @property
+    def flowing(self) -> dict[str, Any]:
+        """What moves freely and finds its neighbours in space, by name: fluids, then soils."""
+        return {**self.fluids, **self.soils}
+
+    @property
     def boundaries(self) -> dict[str, Wall | Body]:
         """Walls and bodies by name."""
         return {**self.walls, **self.bodies}
 
-    def table_of(self, solid: str) -> str:
-        """The table that holds a wall or a body of that name."""
-        return "walls" if solid in self.walls else "bodies"
+    def table_of(self, name: str) -> str:
+        """The table that holds what has this name: solids may share it with others, which come first."""
+        tables = ("walls", "bodies", "fluids", "soils", "solids")
+        return next(table for table in tables if name in getattr(self, table))
 
     @property
     def series(self) -> list:
@@ -327,7 +335,7 @@ class Case(Table):
         end, zeros = self.time.end, (0.0,) * self.space.dimensions
         _fill(self.space, origin=zeros)
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
-        for matter in (*self.fluids.values(), *self.solids.values()):
+        for matter in (*self.flowing.values(), *self.solids.values()):
             _fill(matter, velocity=zeros, velocity_center=zeros)
         for gauge in self.gauges.values():
             _fill(gauge, every=self.output.probes)
@@ -336,7 +344,7 @@ class Case(Table):
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
         for solid in self.boundaries.values():
-            _fill(solid, velocity=zeros, continues=next(iter(self.fluids), None))
+            _fill(solid, velocity=zeros, continues=next(iter(self.flowing), None))
         return self
 
 

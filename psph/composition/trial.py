@@ -78,6 +78,8 @@ def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads
         for name in OF_A_PARTICLE:
             if hasattr(effect, name):
                 getattr(effect, name)(i, 1.0)
+        if hasattr(effect, "admit"):
+            effect.admit(i, (value,) * effect.bounds.width(dimensions), 1.0)
     if "m_dw_r" in pair.read:
         j.read.add("mass")
     return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read), in_sum, of_pairs)

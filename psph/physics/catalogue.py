@@ -39,6 +39,8 @@ from psph.physics.order.stress import ArtificialStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.contact import SolidContact
+from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
+from psph.physics.stress.strength import Strength
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.physics.walls.dry import DryWall
@@ -53,7 +55,7 @@ class Entry(NamedTuple):
 
     ``key`` is empty (every scene), a key of the case (present: the effect is on, and its value
     holds the effect's parameters), or ``key=name`` for one of several choices, the first of which
-    is the default.  ``*`` stands for any name.
+    is the default.  ``*`` stands for any name, and ``|`` between two keys for either.
     """
 
     key: str
@@ -102,8 +104,8 @@ def methods(kind: type) -> list[str]:
 @cache
 def _fields(effects: tuple[type, ...]) -> dict[str, Field]:
     written = [field for effect in effects for field in filled(effect)]
-    marked = [effect.marks for effect in effects if hasattr(effect, "marks")]
-    return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, OF_SCENE, written, marked)
+    more = [getattr(e, of) for e in effects for of in ("marks", "remembers") if hasattr(e, of)]
+    return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, OF_SCENE, written, more)
 
 
 CATALOGUE = (
@@ -114,6 +116,9 @@ CATALOGUE = (
     Entry("physics.pressure_gradient=tensile_control", TensileControl),
     Entry("physics.pressure_gradient=stress_points", StressPoints),
     Entry("physics.artificial_stress", ArtificialStress),
+    Entry("soils.*", DeviatorRate),
+    Entry("soils.*", DeviatoricForce),
+    Entry("soils.*", Strength),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.central_friction", CentralFriction),
     Entry("fluids.*.rheology", ApparentViscosity),

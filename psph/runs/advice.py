@@ -16,7 +16,7 @@ FASTER = 2.0
 
 def advice(scene, guard: str, suspect) -> list[str]:
     """Things to try, the most promising first; at least one."""
-    if not scene.case.fluids:
+    if not scene.case.flowing:
         return [*_solids(scene), *_bound(guard)]
     return [
         *(_solids(scene) if scene.elastic_solids else ()),
@@ -84,7 +84,7 @@ def _pressure(scene, suspect) -> Iterator[str]:
 
 def _friction(scene) -> Iterator[str]:
     physics = scene.case.physics
-    viscous = any(fluid.rubs for fluid in scene.case.fluids.values())
+    viscous = any(fluid.rubs for fluid in scene.case.flowing.values())
     damped = physics.artificial_viscosity or physics.pair_damping or physics.reconstructed_damping
     if not damped and not viscous:
         yield "give physics.artificial_viscosity = 0.05: this fluid has no damping"

@@ -54,7 +54,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     yield from output_lines(scene, plan, neighbours, found.steps)
-    if scene.case.fluids:
+    if scene.case.flowing:
         yield from outlook(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
@@ -239,7 +239,7 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     yield "Equation of state"
     for one in laws:
         yield from _acting_lines(one, width)
-    yield "Not simulated" if scene.case.fluids else "Not simulated, beside all that acts between fluids"
+    yield "Not simulated" if scene.case.flowing else "Not simulated, beside all that acts between fluids"
     for name, why in absent(scene, plan).items():
         yield f"  {name:<{width}}{why}"
 
@@ -321,7 +321,7 @@ def _friction_lines(scene, plan: Plan) -> Iterator[str]:
     ]
     if not any(viscosity for _, viscosity in found):
         return
-    fluids = scene.case.fluids.items()
+    fluids = scene.case.flowing.items()
     own = [(f"fluids.{name}", fluid.viscosity) for name, fluid in fluids if not fluid.rheology]
     yield "Kinematic viscosity, and what numerical friction acts as in a shear flow"
     width = _column(name for name, _ in (*own, *found))

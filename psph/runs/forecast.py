@@ -68,7 +68,7 @@ def long_run(scene, plan: Plan, ranks: int) -> Iterator[str]:
 def _what_to_do(scene, limit: str) -> str:
     caps = {
         fluid.rheology.law.largest / fluid.density: (name, fluid.rheology)
-        for name, fluid in scene.case.fluids.items()
+        for name, fluid in scene.case.flowing.items()
         if fluid.rheology
     }
     if limit == "apparent viscosity" and caps:
@@ -77,9 +77,9 @@ def _what_to_do(scene, limit: str) -> str:
             f"fluids.{name}.rheology.{rheology.name} sets the step by its largest viscosity, "
             f"{rheology.law.largest:.3g} Pa s; give less"
         )
-    viscosity = max((fluid.viscosity for fluid in scene.case.fluids.values()), default=0.0)
+    viscosity = max((fluid.viscosity for fluid in scene.case.flowing.values()), default=0.0)
     if limit.endswith(("viscosity", "friction")) and viscosity:
-        [name] = [n for n, f in scene.case.fluids.items() if f.viscosity == viscosity][:1]
+        [name] = [n for n, f in scene.case.flowing.items() if f.viscosity == viscosity][:1]
         return (
             f"fluids.{name}.viscosity = {viscosity:g} m²/s sets the step: it is the kinematic viscosity, "
             "1e-6 for water and 0.01 for honey"

@@ -115,7 +115,7 @@ def _far_faults(scene: Scene) -> Iterator[str]:
 
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
-    for kind in (*OF_EVERY_SCENE, *(OF_FLUIDS if scene.case.fluids else ())):
+    for kind in (*OF_EVERY_SCENE, *(OF_FLUIDS if scene.case.flowing else ())):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
 
@@ -161,7 +161,7 @@ def _spacing_faults(scene: Scene) -> Iterator[str]:
         for n, part in enumerate(scene.parts[: scene.layout.movers])
     }
     thickest = max(thickness, key=thickness.get)
-    kind = "fluids" if scene.case.fluids else "solids"
+    kind = "fluids" if scene.case.flowing else "solids"
     if scene.spacing > thickness[thickest]:
         yield (
             f"space.spacing: {scene.spacing:g} m is larger than the {kind}: {thickest} is "
@@ -226,7 +226,7 @@ def _state_faults(scene: Scene) -> Iterator[str]:
             "(by this spacing and speed of sound), lost in the rounding of the time; give "
             f"less than {0.9 * MOST_STEPS * longest:.2g}"
         )
-    for name, start in zip(scene.case.fluids, scene.starts):
+    for name, start in zip(scene.case.flowing, scene.starts):
         density = float(start.density(np.array([[0.0] * scene.dimensions]))[0])
         if not start.weight and not start.exact and not density > 0.0:
             yield (
@@ -288,9 +288,9 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
         physics.artificial_viscosity
         or physics.pair_damping
         or physics.reconstructed_damping
-        or any(fluid.rubs for fluid in scene.case.fluids.values())
+        or any(fluid.rubs for fluid in scene.case.flowing.values())
     )
-    disordered = any(fluid.jitter for fluid in scene.case.fluids.values())
+    disordered = any(fluid.jitter for fluid in scene.case.flowing.values())
     if physics.pressure_gradient == "minimum" and disordered and not rubs:
         yield (
             'physics.pressure_gradient: "minimum" does not restore order, and the fluid starts '

@@ -52,7 +52,7 @@ def _pull(scene: "Scene") -> float:
 
 def _widths(scene: "Scene") -> list[tuple[int, float]]:
     """Each axis that does not repeat, and how far the fluids reach along it, m."""
-    fluids = slice(len(scene.case.fluids))
+    fluids = slice(len(scene.case.flowing))
     top, bottom = scene.census.highest[fluids].max(axis=0), scene.census.lowest[fluids].min(axis=0)
     return [
         (d, float(top[d] - bottom[d]) + scene.spacing)

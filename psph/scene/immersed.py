@@ -8,13 +8,13 @@ if TYPE_CHECKING:
 
 def is_immersed(scene: "Scene", material: int) -> bool:
     """Whether a material is of an elastic solid beside fluids."""
-    return bool(scene.case.fluids) and scene.layout.elastic_of(material) is not None
+    return bool(scene.case.flowing) and scene.layout.elastic_of(material) is not None
 
 
 def shown_by(scene: "Scene") -> list[int]:
     """For each material the index of the one whose density and state it has: of a wall that of the fluid that
     it continues, without fluids that of the first solid; of a solid among fluids the first of these."""
-    layout, fluids = scene.layout, list(scene.case.fluids)
+    layout, fluids = scene.layout, list(scene.case.flowing)
     if not fluids:
         return [*range(layout.movers), *layout.clamps, *[0] * len(scene.boundaries)]
     continued = [fluids.index(one.continues) for one in scene.boundaries.values()]

@@ -16,7 +16,7 @@ MOST_CREEP = 0.05
 
 def laws_of(case) -> tuple[Any, ...]:
     """The different laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
-    laws = (fluid.rheology.law for fluid in case.fluids.values() if fluid.rheology)
+    laws = (fluid.rheology.law for fluid in case.flowing.values() if fluid.rheology)
     return tuple(dict.fromkeys(laws))
 
 
@@ -48,7 +48,7 @@ class Paste(NamedTuple):
 
 def pastes(scene: "Scene") -> Iterator[Paste]:
     """The fluids with a yield stress."""
-    for place, (name, fluid) in enumerate(scene.case.fluids.items()):
+    for place, (name, fluid) in enumerate(scene.case.flowing.items()):
         law = fluid.rheology and fluid.rheology.law
         if not isinstance(law, HerschelBulkley) or not law.yield_stress:
             continue
@@ -64,7 +64,7 @@ def held_speeds(scene: "Scene", pull: float, gap: float, depth: float) -> Iterat
     """The speeds in m/s that fluids reach under ``pull`` m/s² between plates ``gap`` m apart, and grains of
     this ``depth``, m, on a slope."""
     down = math.hypot(*(g for g, period in zip(scene.gravity, scene.periods) if period is None))
-    for fluid in scene.case.fluids.values():
+    for fluid in scene.case.flowing.values():
         if fluid.viscosity:
             yield pull * gap**2 / (8.0 * fluid.viscosity)
         elif fluid.rheology and isinstance(fluid.rheology.law, HerschelBulkley):
@@ -112,7 +112,7 @@ def _across(scene: "Scene", sizes: list[float]) -> int:
 def rheology_lines(scene: "Scene") -> Iterator[str]:
     """What ``explain`` says of the laws: yield, plug, Bingham number, creep, and the cost of the cap."""
     sound = scene.case.time.cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
-    for name, fluid in scene.case.fluids.items():
+    for name, fluid in scene.case.flowing.items():
         if fluid.rheology:
             cap = fluid.rheology.law.largest
             times = sound / friction_step(scene.smoothing_length, cap / fluid.density)

@@ -9,7 +9,7 @@ import numpy as np
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
 from psph.case.motion import motion_of
-from psph.case.parameters import as_numbers, chosen, last_part
+from psph.case.parameters import as_numbers, chosen
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.facts import SOUND_OVER_SPEED
@@ -26,11 +26,13 @@ from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.moving import falling_speed, fastest_corner, largest_speed
 from psph.scene.particles import ParticleSet, fill
-from psph.scene.pressures import range_of_pressure, weight_above
+from psph.scene.pressures import range_of_pressure
 from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
 from psph.scene.solids import anvils_of, modulus_shown, reach_of_contact, solids_of
 from psph.scene.species import Census, Layout, Species, Start, take_census
+from psph.scene.starts import start_of
+from psph.scene.stressed import Stressed
 from psph.scene.walls import has_free_surface
 from psph.smoothing import kernel, normalised
 from psph.theory.solutions.catalogue import SOLUTIONS
@@ -62,7 +64,7 @@ class Scene:
         self.anvils = anvils_of(case)
         self.clamped = {name: solid for name, solid in case.solids.items() if solid.clamped}
         held = (solid.held for solid in self.clamped.values())
-        moving = (*case.fluids.values(), *case.solids.values())
+        moving = (*case.flowing.values(), *case.solids.values())
         self.parts: tuple[Any, ...] = (*moving, *held, *self.boundaries.values())
         shapes = tuple(part.shape for part in self.parts)
         axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
@@ -72,7 +74,7 @@ class Scene:
         self.layout = Layout(
             self.lattice,
             shapes,
-            len(case.fluids),
+            len(case.flowing),
             len(case.bodies),
             len(case.solids),
             tuple(map(list(case.solids).index, self.clamped)),
@@ -160,13 +162,16 @@ class Scene:
 
     @cached_property
     def sound_speed(self) -> float:
-        """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow; in a scene
-        of solids alone that of the fastest wave.
+        """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow; no less than
+        the fastest wave of what bears an evolved stress, and that where there is no fluid.
 
         Raises CaseError where nothing moves and nothing falls.
         """
-        if not self.case.fluids:
+        if not self.case.flowing:
             return max(one.wave_speed for one in self.elastic_solids)
+        waves = self.stressed.wave_speed
+        if not self.case.fluids:
+            return waves
         given = self.case.physics.sound_speed
         if given is None and not self.expected_speed > 0.0:
             raise CaseError(
@@ -176,7 +181,7 @@ class Scene:
                     "speed that you expect"
                 ]
             )
-        return given or SOUND_OVER_SPEED * max(self.expected_speed, creeping_speed(self))
+        return max(given or SOUND_OVER_SPEED * max(self.expected_speed, creeping_speed(self)), waves)
 
     @cached_property
     def has_free_surface(self) -> bool:
@@ -250,7 +255,9 @@ class Scene:
                 self.layout.solid_of(index),
                 number_of(self.parts[source], self.rheologies),
                 self.layout.elastic_of(index),
-                wave_modulus=modulus_shown(self, index),
+                getattr(self.parts[index], "shear_modulus", 0.0),
+                self.stressed.number_of(index),
+                modulus_shown(self, index),
             )
             for index, (name, source, start) in enumerate(zip(self.names, shown_by(self), self.starts))
         )
@@ -260,12 +267,17 @@ class Scene:
         """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
         return laws_of(self.case)
 
+    @cached_property
+    def stressed(self) -> Stressed:
+        """What bears an evolved stress: soils."""
+        return Stressed(self)
+
     def _motion(self, index: int):
         """How a body moves: a fluid freely, a wall as its table says, or not at all."""
+        if index < self.layout.fluids:
+            return Free()
         if index < self.layout.movers:
-            if index < self.layout.fluids:
-                return Free()
-            return Immersed() if self.case.fluids else Elastic()
+            return Immersed() if self.case.flowing else Elastic()
         if index < self.layout.first_wall:
             return Clamped()
         if index >= self.layout.first_body:
@@ -276,7 +288,7 @@ class Scene:
     def names(self) -> tuple[str, ...]:
         """Of all materials, in the order of ``layout``."""
         held = (f"{name} (clamped)" for name in self.clamped)
-        return (*self.case.fluids, *self.case.solids, *held, *self.boundaries)
+        return (*self.case.flowing, *self.case.solids, *held, *self.boundaries)
 
     @cached_property
     def species_in_motion(self) -> tuple[Any, ...]:
@@ -300,11 +312,11 @@ class Scene:
 
     def key_of(self, part: int) -> str:
         """The key of the case that holds a part: ``fluids.water``, ``walls.tank``, ``bodies.buoy``."""
-        name = self.names[part]
-        if part < self.layout.movers:
-            return f"fluids.{name}" if part < self.layout.fluids else f"solids.{name}"
-        if part < self.layout.first_wall:
-            return f"solids.{list(self.clamped)[part - self.layout.movers]}.clamped"
+        name, first = self.names[part], self.layout.fluids
+        if first <= part < self.layout.first_wall:
+            held = part >= self.layout.movers
+            solid = list(self.clamped)[part - self.layout.movers] if held else name
+            return f"solids.{solid}" + ".clamped" * held
         return f"{self.case.table_of(name)}.{name}"
 
     @cached_property
@@ -321,7 +333,7 @@ class Scene:
     def regions(self) -> tuple[tuple[Any, int], ...]:
         """Where particles appear or vanish, each with the number of the fluid that comes."""
         tables = getattr(self.case, "regions", {}).values()
-        fluids = list(self.case.fluids)
+        fluids = list(self.case.flowing)
         return tuple(
             (region, fluids.index(table.into) if table.into else 0)
             for table in tables
@@ -332,12 +344,12 @@ class Scene:
     def reach(self) -> Reach:
         """How far particles feel and see each other."""
         whole = Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
-        return whole if self.case.fluids else reach_of_contact(whole, self.spacing)
+        return whole if self.case.flowing else reach_of_contact(whole, self.spacing)
 
     @cached_property
     def starts(self) -> tuple[Start, ...]:
         """The state of each material before the first step; a wall's is that of its fluid."""
-        return tuple(map(self._start, shown_by(self)))
+        return tuple(start_of(self, part) for part in shown_by(self))
 
     @cached_property
     def velocities(self) -> tuple[tuple[float, ...], ...]:
@@ -361,28 +373,6 @@ class Scene:
     def wall_reach(self) -> int:
         """Depth in sites to which a wall acts on a fluid, and one more."""
         return math.ceil(self.kernel.support * self.smoothing_length / self.spacing) + 1
-
-    def _law(self, part):
-        """The equation of state of a material: its own, or that of all."""
-        name = getattr(part, "equation_of_state", None) or self.case.physics.equation_of_state
-        [law] = (entry.effect for entry in self.case.catalogue.states if last_part(entry) == name)
-        return law()
-
-    def _start(self, index: int) -> Start:
-        part = self.parts[index]
-        pressure = getattr(part, "pressure", 0.0)
-        hydrostatic, exact = (pressure == word for word in ("hydrostatic", EXACT))
-        return Start(
-            law=self._law(part),
-            rest_density=part.density,
-            sound_speed=self.sound_speed,
-            pressure=0.0 if hydrostatic or exact else pressure,
-            weight=part.density * math.hypot(*self.height_gravity) if hydrostatic else 0.0,
-            up=self.up,
-            surface=self.surface_of(index),
-            above=weight_above(self, index) if hydrostatic else 0.0,
-            exact=(lambda x: self.exact.pressure(x, 0.0, self.setting)) if exact else None,
-        )
 
     def surface_of(self, fluid: int) -> float:
         """Height of a fluid's surface at the start, m."""

@@ -13,12 +13,12 @@ ALIKE = 0.01
 
 def several_fluids(scene) -> Iterator[str]:
     """Warnings of a scene with fluids of different density, a line each."""
-    fluids = scene.case.fluids
+    fluids, table = scene.case.flowing, scene.case.table_of
     for (a, one), (b, other) in combinations(fluids.items(), 2):
         ratio = max(one.density / other.density, other.density / one.density)
         if ratio > LARGEST_RATIO:
             yield (
-                f"fluids.{b}.density: {other.density:g} beside {one.density:g} kg/m3 of fluids.{a}, a ratio "
+                f"{table(b)}.{b}.density: {other.density:g} beside {one.density:g} kg/m3 of {table(a)}.{a}, a ratio "
                 f"of {ratio:.3g}: pressures are far off above {LARGEST_RATIO:g} (docs/limits.md); bring the "
                 "two densities nearer to each other"
             )
@@ -28,19 +28,19 @@ def several_fluids(scene) -> Iterator[str]:
 
 def _walls_of_another_fluid(scene) -> Iterator[str]:
     """A wall has the density of one fluid: beside another one pressures do not balance."""
-    names, found = list(scene.case.fluids), set()
+    names, found = list(scene.case.flowing), set()
     for first, last in scene.lattice.chunks():
         held = scene.layout.materials(first, last)
         for fluid, name in enumerate(names):
             beside = set(held[scene.layout.touching(fluid, first, last)].tolist())
             found |= {(wall, name) for wall in beside}
     for number, body in enumerate(scene.boundaries.values(), scene.layout.first_wall):
-        own = scene.case.fluids[body.continues]
+        own = scene.case.flowing[body.continues]
         for name in names:
-            density = scene.case.fluids[name].density
+            density = scene.case.flowing[name].density
             if (number, name) in found and abs(density / own.density - 1.0) > ALIKE:
                 yield (
-                    f'{scene.key_of(number)}.continues: "{body.continues}", but it touches fluids.{name} of '
+                    f'{scene.key_of(number)}.continues: "{body.continues}", but it touches {scene.case.table_of(name)}.{name} of '
                     f"{density:g} kg/m3 too, and currents arise along it; make the part there a wall of "
                     f'its own with continues = "{name}"'
                 )

@@ -39,7 +39,7 @@ def solid_faults(scene: "Scene") -> Iterator[str]:
 def solid_warnings(scene: "Scene") -> Iterator[str]:
     """A line for each number of a solid that is likely not meant."""
     case = scene.case
-    if len(case.solids) > 1 and case.physics.contact is None and not case.fluids:
+    if len(case.solids) > 1 and case.physics.contact is None and not case.flowing:
         yield (
             f"solids: {', '.join(case.solids)} do not feel each other, and run through each other where they "
             "meet; give physics.contact = {}"

@@ -31,8 +31,9 @@ class Species(NamedTuple):
     ``rheology`` is the number of the law of its viscosity among those of the scene from 1 on, 0 where that is
     constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body or elastic solid from 2
     on; ``elastic`` is the number of the elastic solid that it is of, or None; ``shear_modulus`` in Pa that of
-    matter whose deviatoric stress evolves (psph.physics.stress), else 0; ``wave_modulus`` in Pa is the P-wave
-    modulus of an elastic solid, beside solids of a wall the largest of theirs, else 0.
+    matter whose deviatoric stress evolves (psph.physics.stress), else 0; ``strength`` the number of the law
+    that bounds this stress among those of the scene from 1 on, 0 where none does; ``wave_modulus`` in Pa is
+    the P-wave modulus of an elastic solid, beside solids of a wall the largest of theirs, else 0.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Species(NamedTuple):
     rheology: int = 0
     elastic: int | None = None
     shear_modulus: float = 0.0
+    strength: int = 0
     wave_modulus: float = 0.0
 
     @property
@@ -92,7 +94,7 @@ class Start(NamedTuple):
     p = ``pressure`` everywhere, or, with a ``weight`` = ρ₀|g| in Pa/m, p = above + weight (surface −
     height) below the surface and 0 over it; ``surface`` in m along ``up``, the unit vector against
     gravity, ``above`` the weight of the fluids that rest on it, Pa.  Or p =
-    ``exact`` of the positions (n, dim).  ``law`` is the equation of state.
+    ``exact`` of the positions (n, dim), or that of a ``layer`` of soil.  ``law`` is the equation of state.
     """
 
     law: Any
@@ -104,11 +106,14 @@ class Start(NamedTuple):
     surface: float
     above: float = 0.0
     exact: Callable[[np.ndarray], np.ndarray] | None = None
+    layer: Any = None
 
     def density(self, position: np.ndarray) -> np.ndarray:
         """ρ (n,) in kg/m³ at ``position`` (n, dim); NaN where the state knows none."""
         if self.exact:
             return self._density(self.exact(position))
+        if self.layer:
+            return self._density(self.layer.pressure(position))
         if not self.weight:
             return np.full(len(position), self._density(np.float64(self.pressure)))
         depth = self.surface - projected(position, self.up)

@@ -96,7 +96,7 @@ def wave_faults(scene) -> Iterator[str]:
 
     The bed lies at the foot of the fluids, or the depth below their surface.
     """
-    for waves in waves_of(scene) if scene.case.fluids else ():
+    for waves in waves_of(scene) if scene.case.flowing else ():
         asked = waves.asked
         if not isinstance(asked, OnHinge) or asked.center is None:
             continue

@@ -12,7 +12,7 @@ WALLS = "walls"
 
 def acts_in(case, effect: type) -> bool:
     """Whether an effect can act in a case: without fluids what pulls on all, or is between solids."""
-    return bool(case.fluids) or hasattr(effect, "body") or hasattr(effect, "between_solids")
+    return bool(case.flowing) or hasattr(effect, "body") or hasattr(effect, "between_solids")
 
 
 def in_scene(effect, scene):
@@ -30,9 +30,15 @@ def called_for(case, entry: Entry) -> tuple[Any, str] | None:
     """The effect with its parameters and why it is there, or None."""
     if not entry.key:
         return entry.effect(), "every scene"
-    key, _, choice = entry.key.partition("=")
+    found = (_called_by(case, entry, key) for key in entry.key.split("|"))
+    return next((call for call in found if call), None)
+
+
+def _called_by(case, entry: Entry, key: str) -> tuple[Any, str] | None:
+    """The same by one of its keys."""
+    key, _, choice = key.partition("=")
     for path, value, given in _values(case, key.split(".")):
-        by = f"{path} = {_plain(value)}" + _origin(case, path, given)
+        by = path if key.endswith("*") else f"{path} = {_plain(value)}" + _origin(case, path, given)
         if choice:
             if value == choice:
                 return entry.effect(), by

@@ -21,6 +21,7 @@ from psph.particles.store import Store
 from psph.particles.wetting import mark_wet, rest_dry
 from psph.physics.motion import LOAD
 from psph.physics.rigid.pushes import add_pushes
+from psph.simulation.bounded import admit_kicked, admit_predicted
 from psph.simulation.floating import Floating
 from psph.simulation.integrator import (
     kick,
@@ -99,6 +100,9 @@ class Engine:
             self.immersion.advance(time, dt, pace)
         if self.plan.evolving:
             self._each(predict_rows, dt, self.store.data, self._rows_that_evolve())
+        if bounds := self.plan.bounds:
+            value = self.store[self.store.seen_as(bounds.bounds.name)]
+            self._each(admit_predicted, bounds, self._rules, self._view(pace), value, self._columns())
         for field in self.plan.evolving:
             _, *rates = companions(field)
             self.store.rotate(*(rate.name for rate in rates))
@@ -109,6 +113,9 @@ class Engine:
         if self.plan.evolving:
             self._each(kick_rows, dt, self.store.data, self._rows_that_evolve())
         parts = self._each(self._kick, time, dt, self._rules, self._view(pace), self._columns())
+        if bounds := self.plan.bounds:
+            rest = (self.store[name] for name in (bounds.bounds.name, "density", bounds.remembers.name))
+            self._each(admit_kicked, bounds, self._view(pace), *rest)
         if self.immersion:
             parts = [*parts, self.immersion.kick(dt)]
         return list(map(max, *parts)) if len(parts) > 1 else list(parts[0])

@@ -6,6 +6,7 @@ from psph.fields import OF_MATERIAL, OF_SITE
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
 from psph.physics.solid.deformation import REFERENCE
+from psph.physics.stress.deviator import DEVIATOR
 from psph.simulation.groups import material_value
 
 
@@ -16,6 +17,9 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
     for name, values in (starting | {ANCHOR.name: position, REFERENCE.name: position}).items():
         if name in store:
             block[list(store.rows[name])] = values.T
+    if DEVIATOR.name in store:
+        for name in (DEVIATOR.name, f"predicted_{DEVIATOR.name}"):
+            block[list(store.rows[name])] = scene.stressed.deviator(species, position).T
     known = {"density": density}
     known |= {
         field.name: np.array([material_value(s, field.name) for s in scene.species])[species]

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
+from psph.fields import OF_MATERIAL, OF_SITE
 from psph.physics.catalogue import Entry
 from psph.simulation.calling import called_for
 
@@ -14,8 +15,9 @@ def laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
     """
     [(_, shared)] = filter(None, (called_for(scene.case, entry) for entry in entries))
     reasons: dict[tuple[type, Any], dict[str, None]] = {}
-    for (name, fluid), one in zip(scene.case.fluids.items(), scene.species):
+    for (name, fluid), one in zip(scene.case.flowing.items(), scene.species):
         own = fluid.equation_of_state and f"fluids.{name}.equation_of_state = {fluid.equation_of_state}"
+        own = f"soils.{name}.young" if name in scene.case.soils else own
         reasons.setdefault((type(one.law), one.law), {})[own or shared] = None
     for one in scene.species[len(reasons) and len(scene.species) :]:  # of solids alone: none bears a pressure
         reasons.setdefault((type(one.law), one.law), {})[shared] = None
@@ -30,3 +32,17 @@ def tells(effect, material) -> bool:
 def material_value(material, name: str) -> float:
     """A material's value of one of the fields ``OF_MATERIAL``."""
     return float(getattr(material, "density" if name == "rest_density" else name))
+
+
+def split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Quantities fixed at the start that the scene reads: shared values, and names of those that vary."""
+    shared, varying = {}, []
+    for name in (field.name for field in OF_MATERIAL):
+        values = {material_value(m, name) for m in scene.species}
+        if name != "mass" and name not in names:
+            continue
+        if len(values) == 1:
+            shared[name] = values.pop()
+        else:
+            varying.append(name)
+    return shared, (*varying, *(field.name for field in OF_SITE if field.name in names))

@@ -17,7 +17,6 @@ from psph.fields import (
     IDENTITY,
     OF_EVERY_SCENE,
     OF_MATERIAL,
-    OF_SITE,
     Field,
     by_name,
     companions,
@@ -34,7 +33,7 @@ from psph.physics.solid.material import STEP, remembers
 from psph.physics.solid.plastic import OF_PLASTIC, Lasting
 from psph.scene.bodies import body_step
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
-from psph.simulation.groups import laws, material_value, tells
+from psph.simulation.groups import laws, material_value, split, tells
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
 from psph.simulation.reading import Called, called_with, refuse_unwritten
@@ -215,6 +214,11 @@ class Plan:
         return any(hasattr(e, "displacement") for e in self.effects)
 
     @cached_property
+    def bounds(self) -> Any:
+        """The effect that keeps an evolved field within bounds, or None."""
+        return next((e for e in self.effects if hasattr(e, "admit")), None)
+
+    @cached_property
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
         return tuple(call.effect for call in self.called if _carries(call))
@@ -283,6 +287,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     marking = [effect for _, effect, _ in fitted if hasattr(effect, "marks")]
     written = tuple(field for _, effect, _ in fitted for field in filled(effect))
     written += tuple(effect.marks for effect in marking)
+    written += tuple(effect.remembers for _, effect, _ in fitted if hasattr(effect, "remembers"))
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
     movement = movement_of(scene.species)
@@ -297,14 +302,14 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
     told = carried_fields(movement, scene.frame)
     told_by = {e.told_by for e in marking}
-    shared, varying = _split(scene, own | told_by)
+    shared, varying = split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_solids))
     refuse_unwritten(scene, called, (*computed, *told))
     told = {name for name in told if name in own or name != APPARENT.name}
     told |= {LOAD.name} if loaded.any() else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     passes = make_passes(
-        called if case.fluids or any(hasattr(c.effect, "radial") for c in called) else (),
+        called if case.flowing or any(hasattr(c.effect, "radial") for c in called) else (),
         stored,
         lambda name: _array_of(name, stored),
         case.time.gather_every,
@@ -371,29 +376,15 @@ def solid_fields(scene) -> tuple[Field, ...]:
         return ()
     loaded = any(table.loads for table in scene.case.solids.values())
     lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
-    wet = [INERTIA] if scene.case.fluids else []
+    wet = [INERTIA] if scene.case.flowing else []
     return (*OF_SOLIDS, *lasting, *([DRAWN] if loaded else []), *wet)
 
 
 def _carries(call: Called) -> bool:
     """Whether an effect has a part in kick and drift."""
-    return any(hasattr(call.effect, name) for name in OF_A_PARTICLE)
+    return any(hasattr(call.effect, name) for name in (*OF_A_PARTICLE, "admit"))
 
 
 def _array_of(name: str, stored: tuple[str, ...]) -> str:
     """The array that formulas see under a name: the predicted one of what evolves."""
     return f"predicted_{name}" if f"predicted_{name}" in stored else name
-
-
-def _split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Quantities fixed at the start that the scene reads: shared values, and names of those that vary."""
-    shared, varying = {}, []
-    for name in (field.name for field in OF_MATERIAL):
-        values = {material_value(m, name) for m in scene.species}
-        if name != "mass" and name not in names:
-            continue
-        if len(values) == 1:
-            shared[name] = values.pop()
-        else:
-            varying.append(name)
-    return shared, (*varying, *(field.name for field in OF_SITE if field.name in names))

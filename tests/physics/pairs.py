@@ -55,6 +55,7 @@ def view(n=2, dim=2, seed=3):
         grip=np.resize((0.0, 0.6, 1.0), n),
         rheology=np.resize((1.0, 0.0, 2.0), n),
         shear_modulus=np.resize((4e4, 0.0, 7e4), n),
+        strength=np.resize((1.0, 0.0, 2.0), n),
         deviator=tuple(rng.normal(size=n) * 500 for _ in range(dim * (dim + 1) // 2)),
     )
 

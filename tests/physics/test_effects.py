@@ -253,7 +253,9 @@ def test_half_a_spacing_before_a_flat_penalty_wall_nothing_pushes(dim):
 def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim, correction):
     """Whichever form of friction the scene takes, no-slip takes the same."""
     physics = SimpleNamespace(gradient_correction=correction, central_friction=None)
-    scene = SimpleNamespace(physics=physics, species=(SimpleNamespace(no_slip=True),), rheologies=())
+    scene = SimpleNamespace(
+        physics=physics, species=(SimpleNamespace(no_slip=True, viscosity=1.0),), rheologies=()
+    )
     viscosity, no_slip = LaminarViscosity().in_scene(scene), NoSlip().in_scene(scene)
     p = view(dim=dim)
     mean, slip = np.full(dim, 0.3), [v[1] for v in p.velocity] - np.full(dim, 0.3)

@@ -67,7 +67,7 @@ def _of_case(folder: Path, remarks: list[str]) -> dict:
     try:
         scene = Scene(load(folder / COPY))
         plan = make_plan(scene)
-        expected = list(outlook(scene, plan)) if scene.case.fluids else []
+        expected = list(outlook(scene, plan)) if scene.case.flowing else []
         ranks = read_summary(folder).get("ranks", 1)
         return {
             "plan": "\n".join(explain(scene, ranks)),

@@ -23,6 +23,8 @@ def without_each(case) -> dict[str, Settings]:
     for entry in case.catalogue.effects:
         if entry.key and "=" not in entry.key and entry not in absent:
             head, star, tail = entry.key.partition("*")
+            if star and not tail:
+                continue  # what a part of the scene is made of
             names = list(getattr(case, head.rstrip("."))) if star else [""]
             found[words(entry.effect.__name__)] = {f"{head}{n}{tail}": OFF for n in names}
     return found

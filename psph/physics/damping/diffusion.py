@@ -46,7 +46,7 @@ class DensityDiffusion(NamedTuple):
 
     def longest_step(self, scene):
         """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
-        return _longest_step(self.delta, scene)
+        return diffusion_step(self.delta, scene)
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
@@ -73,7 +73,7 @@ class TankDiffusion(NamedTuple):
 
     def longest_step(self, scene):
         """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
-        return _longest_step(self.delta, scene)
+        return diffusion_step(self.delta, scene)
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
@@ -148,7 +148,7 @@ class BesideSmoothDensity(NamedTuple):
 
     def longest_step(self, scene):
         """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
-        return _longest_step(self.delta, scene)
+        return diffusion_step(self.delta, scene)
 
     def linear(self, scene: Facts):
         """Its part in linear theory, of the shortest waves."""
@@ -184,7 +184,8 @@ def _nearness(i, pair):
     return pair.r2 * inverse_square(pair, i.smoothing_length) * pair.m_dw_r
 
 
-def _longest_step(delta: float, scene) -> float:
+def diffusion_step(delta: float, scene) -> float:
+    """Δt ≤ 0.15/(S h δ c), s: see STABLE."""
     spread = fastest_smoothing(scene.kernel, scene.spacing, scene.dimensions)
     rate = spread * scene.smoothing_length * delta * scene.sound_speed
     return STABLE / rate if rate > 0.0 else float("inf")

@@ -6,12 +6,28 @@ plane strain, and s_zz = −(s_xx + s_yy).  A fluid beside it has G = 0 and s = 
 
 from typing import NamedTuple
 
+import numpy as np
+
 from psph.fields import SYMMETRIC
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.physics.damping.diffusion import diffusion_step
 from psph.physics.facts import Facts
 from psph.physics.fluid.strain import linear_gradient, no_rate, rate_weight, take_rate
-from psph.vectors import add, less_diagonal, matrix_product, scale, skew_part, symmetric_part, times, trace
+from psph.vectors import (
+    add,
+    dot,
+    less_diagonal,
+    matrix_product,
+    outer,
+    scale,
+    skew_part,
+    subtract,
+    symmetric_part,
+    times,
+    trace,
+    zero_like,
+)
 
 DEVIATOR = Declared(
     "deviator", "Pa", "deviatoric stress, tension positive", SYMMETRIC, saved=True, evolves=True
@@ -54,6 +70,12 @@ class DeviatorRate(NamedTuple):
 
     writes = DEVIATOR
 
+    def in_scene(self, scene: Facts):
+        """Where soils ask for it, the form whose stress spreads between neighbours too."""
+        if not scene.stressed.diffusion:
+            return self
+        return DiffusedDeviatorRate(scene.stressed.diffusion, layered(scene))
+
     def start(self, i):
         """No neighbour yet."""
         return no_rate(i)
@@ -65,6 +87,57 @@ class DeviatorRate(NamedTuple):
     def finish_value(self, total, i, kernel):
         """ds/dt, Pa/s; 0 in what does not resist shear."""
         return jaumann_rate(linear_gradient(total, i), i.deviator, i.shear_modulus, i.position)
+
+
+@helper
+def spread(delta, of_layers, i, j, pair):
+    """2δhc V_j W′/r [s_i − s_j less what weight asks for], Pa/s, between particles that both yield."""
+    both = where(i.strength * j.strength > 0.0, 1.0, 0.0)
+    weight = both * 2.0 * delta * i.smoothing_length * i.sound_speed * j.specific_volume * pair.m_dw_r
+    depth = 0.5 * (i.rest_density + j.rest_density) * dot(pair.x_ij, of_layers[0])
+    change = subtract(subtract(i.deviator, j.deviator), scale(of_layers[1], depth))
+    return scale(change, weight)
+
+
+def layered(scene: Facts):
+    """(g in m/s², the deviator by weight ρg·x) of level ground at rest: −(1 − K₀)(n nᵀ − ⅓ 1), n along g."""
+    g = np.array(scene.gravity)
+    size = np.sqrt(g @ g) or 1.0
+    shape = -(1.0 - scene.stressed.rest_coefficient) * (np.outer(g, g) / size**2 - np.eye(len(g)) / 3.0)
+    return tuple(g.tolist()), tuple(shape[np.triu_indices(len(g))].tolist())
+
+
+class DiffusedDeviatorRate(NamedTuple):
+    """The deviatoric stress follows the flow, with the rate of Jaumann, and its noise spreads.
+
+    As :class:`DeviatorRate`, and ds_i/dt += 2δhc Σ_j V_j [s_i − s_j − s⁰(x_i) + s⁰(x_j)] W′/r between
+    particles of soil, s⁰ of level ground at rest under its weight: Feng, Fourtakas, Rogers & Lombardi (2021),
+    Adv. Water Resour. 156, 104030.  The pressure spreads as that of fluids does.  ``delta`` δ; ``of_layers``
+    by :func:`layered`.
+    """
+
+    delta: float
+    of_layers: tuple
+
+    writes = DEVIATOR
+
+    def start(self, i):
+        """No neighbour yet."""
+        return no_rate(i), outer(zero_like(i.position))
+
+    def gather(self, total, i, j, pair):
+        """Take a neighbour that holds, and what it spreads."""
+        flow = take_neighbour(total[0], j, pair)
+        return flow, add(total[1], spread(self.delta, self.of_layers, i, j, pair))
+
+    def finish_value(self, total, i, kernel):
+        """ds/dt, Pa/s; 0 in what does not resist shear."""
+        flow = jaumann_rate(linear_gradient(total[0], i), i.deviator, i.shear_modulus, i.position)
+        return add(flow, total[1])
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.15/(S h δ c), s, as that of the diffusion of density."""
+        return diffusion_step(self.delta, scene)
 
 
 class DeviatoricForce(NamedTuple):

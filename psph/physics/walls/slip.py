@@ -53,8 +53,10 @@ class NoSlip(NamedTuple):
     def in_scene(self, scene: Facts):
         """With corrected gradients, the form whose friction has them too, and that whose viscosity depends on
         the rate of strain; nothing where the fluid sticks to mirrors alone, which show it a velocity
-        themselves."""
+        themselves, or where no viscosity pulls."""
         if not any(one.no_slip for one in scene.species):
+            return None
+        if not scene.rheologies and not any(one.viscosity for one in scene.species):
             return None
         if scene.rheologies:
             return ApparentNoSlip(rub_of(scene))
@@ -62,6 +64,8 @@ class NoSlip(NamedTuple):
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
+        if any(one.no_slip for one in scene.species):
+            return "nothing has a viscosity, and the stress of what resists shear knows such walls itself"
         return "the fluid sticks to mirrors alone"
 
     def push(self, i, j, pair):

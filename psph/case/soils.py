@@ -1,0 +1,162 @@
+"""Soils of a case, and the rules between their keys."""
+
+import math
+from collections.abc import Iterator
+from typing import ClassVar
+
+from psph.case.findings import Finding
+from psph.case.keys import Vector, key
+from psph.case.matter import Matter
+from psph.physics.stress.strength import DruckerPrager, cone
+
+
+class Soil(Matter):
+    """Soil: elastic until it yields by friction and cohesion."""
+
+    velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
+    density: float = key("density of the soil with its pores, and the water in them", unit="kg/m3", gt=0)
+    young: float = key("Young's modulus E", unit="Pa", gt=0)
+    poisson: float = key("Poisson's ratio ν; in 2D the soil is in plane strain", unit="1", ge=0, lt=0.5)
+    friction_angle: float = key("angle of friction φ", unit="degrees", ge=0, lt=90)
+    cohesion: float = key("cohesion c", 0.0, unit="Pa", ge=0)
+    dilatancy: float = key("angle of dilatancy ψ, no more than that of friction", 0.0, unit="degrees", ge=0)
+    tension: float | None = key(
+        "largest mean tension that it bears",
+        None,
+        unit="Pa",
+        otherwise="that of the tip of its cone, c/tan φ in plane strain; c without friction",
+        ge=0,
+    )
+    geostatic: bool = key("it starts under its own weight, as below level ground; else without stress", True)
+    rest_coefficient: float | None = key(
+        "K0, of the start: the stress across over that along gravity, both less the water's",
+        None,
+        unit="1",
+        otherwise="ν/(1 − ν)",
+        gt=0,
+    )
+    strength_reduction: float = key(
+        "divides the cohesion and the tangents of both angles: the largest for which a slope stands is its "
+        "factor of safety",
+        1.0,
+        unit="1",
+        gt=0,
+    )
+    stress_diffusion: float = key(
+        "how strongly the deviatoric stress spreads between neighbours; 0 leaves its noise",
+        0.1,
+        unit="1",
+        ge=0,
+    )
+    water_level: float | None = key(
+        "height, against gravity, of still water in its pores, whose pressure bears no friction",
+        None,
+        unit="m",
+        otherwise="dry",
+    )
+    water_density: float = key("density of that water", 1000.0, unit="kg/m3", gt=0)
+
+    viscosity: ClassVar = 0.0
+    rheology: ClassVar = None
+    equation_of_state: ClassVar = None
+    pressure: ClassVar = 0.0
+    rubs: ClassVar = True
+
+    @property
+    def shear_modulus(self) -> float:
+        """G, Pa."""
+        return 0.5 * self.young / (1.0 + self.poisson)
+
+    @property
+    def bulk_modulus(self) -> float:
+        """K, Pa."""
+        return self.young / (3.0 * (1.0 - 2.0 * self.poisson))
+
+    @property
+    def wave_speed(self) -> float:
+        """Of the fastest wave, √((K + 4G/3)/ρ), m/s."""
+        return math.sqrt((self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus) / self.density)
+
+    @property
+    def at_rest(self) -> float:
+        """K₀ of the start."""
+        given = self.rest_coefficient
+        return self.poisson / (1.0 - self.poisson) if given is None else given
+
+    def cone(self, dimensions: int) -> tuple[float, ...]:
+        """3α, k in Pa and 3α_ψ of its yield surface, its strength reduced."""
+        by = self.strength_reduction
+        angles = (
+            math.atan(math.tan(math.radians(angle)) / by) for angle in (self.friction_angle, self.dilatancy)
+        )
+        friction, dilatancy = angles
+        return cone(friction, self.cohesion / by, dilatancy, dimensions)
+
+    def tip(self, dimensions: int) -> float:
+        """The largest mean tension, Pa; without friction k itself where none is given."""
+        friction, cohesion, _ = self.cone(dimensions)
+        if not friction:
+            return cohesion if self.tension is None else self.tension
+        return min(cohesion / friction, math.inf if self.tension is None else self.tension)
+
+    def law(self, dimensions: int, up: tuple[float, ...], pull: float) -> DruckerPrager:
+        """What bounds its stress, under gravity of ``pull`` m/s² against ``up``."""
+        friction, cohesion, dilation = self.cone(dimensions)
+        wet = self.water_level is not None
+        return DruckerPrager(
+            friction,
+            cohesion,
+            dilation,
+            self.tip(dimensions),
+            self.shear_modulus,
+            self.bulk_modulus,
+            self.water_density * pull if wet else 0.0,
+            self.water_level if wet else 0.0,
+            up,
+        )
+
+
+def earthen(case) -> Iterator[Finding]:
+    """Soils that cannot be, in a case with space.dimensions."""
+    if not case.soils:
+        return
+    if case.space.dimensions == 1:
+        yield ("soils",), ..., "soils need two or three dimensions"
+    for name in case.soils.keys() & (case.fluids.keys() | case.walls.keys()):
+        yield ("soils", name), ..., "a fluid or a wall has this name too; give the soil another"
+    for name in ("solids", "bodies", "regions"):
+        if getattr(case, name, None):
+            yield (name,), ..., "nothing is known of what these do in soil; remove one of the two"
+    if case.precision == "mixed":
+        says = 'soils are computed in double precision, since strains are small; use "double"'
+        yield ("precision",), case.precision, says
+    if case.frame.motion:
+        yield ("frame", "motion"), ..., "soils know of no frame that moves; remove one of the two"
+    if case.physics.pressure_gradient != "symmetric":
+        says = 'the stress of soils is symmetric in a pair; use "symmetric"'
+        yield ("physics", "pressure_gradient"), case.physics.pressure_gradient, says
+    if case.physics.sound_speed is not None and not case.fluids:
+        says = "soils have waves of their own, by young and poisson; remove this key"
+        yield ("physics", "sound_speed"), case.physics.sound_speed, says
+    gravity = case.physics.gravity
+    pulled = gravity is not None and any(gravity.acceleration)
+    for name, soil in case.soils.items():
+        yield from _of_one(("soils", name), soil, pulled)
+
+
+def _of_one(here, soil: Soil, pulled: bool) -> Iterator[Finding]:
+    """What contradicts itself in a soil."""
+    if soil.dilatancy > soil.friction_angle:
+        says = f"it cannot exceed friction_angle, which is {soil.friction_angle:g} degrees; give less"
+        yield (*here, "dilatancy"), soil.dilatancy, says
+    if not soil.friction_angle and not soil.cohesion:
+        says = "without friction and cohesion it is a liquid; give one of them, or a fluid"
+        yield (*here, "friction_angle"), soil.friction_angle, says
+    if soil.water_level is not None and not pulled:
+        says = "there is no gravity, so no pressure in the pores; give physics.gravity, or remove this key"
+        yield (*here, "water_level"), soil.water_level, says
+    if soil.water_level is not None and soil.water_density >= soil.density:
+        says = (
+            f"soil of {soil.density:g} kg/m³ would float in it; give the density of the soil with its water"
+        )
+        yield (*here, "water_density"), soil.water_density, says

@@ -1,0 +1,110 @@
+"""What a stress cannot exceed: soils yield by friction and cohesion, and tear where they are pulled."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.engine.jit import call_by_number, call_by_type
+from psph.physics.facts import Facts
+from psph.physics.solid.plastic import PLASTIC_STRAIN
+from psph.physics.stress.deviator import DEVIATOR
+from psph.physics.stress.invariants import j2
+from psph.vectors import dot, scale
+
+NO_STRESS = 1e-300
+"""Keeps √J₂ = 0 from dividing by zero, Pa."""
+
+returned = call_by_number("returned")
+"""(laws, number, i, s, ρ) → s and ρ within the limit of a law, and the plastic strain of the way there."""
+
+admitted = call_by_type("admit")
+"""(effect, i, s, ρ) → what the effect admits of a particle's stress and density, and what it remembers."""
+
+
+class Unbounded(NamedTuple):
+    """Matter whose stress has no limit, beside other matter that yields."""
+
+    def returned(self, i, s, rho):
+        """The stress as it is."""
+        return s, rho, 0.0
+
+
+class DruckerPrager(NamedTuple):
+    """Soil: it yields where √J₂ > k − αI₁, and bears no more tension than it is told.
+
+    Drucker & Prager (1952), Q. Appl. Math. 10, 157; the way back as in Bui, Fukagawa, Sako & Ohno (2008),
+    Int. J. Numer. Anal. Meth. Geomech. 32, 1537, along the gradient of √J₂ + α_ψI₁: with p = −I₁/3 less
+    the pressure of the water in its pores, first p ≥ −T, then Δλ = max(√J₂ − k − 3αp, 0)/(G + 9Kαα_ψ),
+    √J₂ −= GΔλ, p += 3Kα_ψΔλ.  The plastic strain is Δλ/√3, as that of von Mises.
+
+    ``friction`` 3α; ``cohesion`` k in Pa; ``dilation`` 3α_ψ; ``tension`` T ≤ k/3α in Pa; ``shear`` G
+    and ``bulk`` K in Pa.  Pores hold still water of ``pores`` = ρ_w|g| in Pa/m up to ``level`` in m along
+    ``up``; 0: dry.
+    """
+
+    friction: float
+    cohesion: float
+    dilation: float
+    tension: float
+    shear: float
+    bulk: float
+    pores: float
+    level: float
+    up: tuple[float, ...]
+
+    def returned(self, i, s, rho):
+        """s in Pa and ρ in kg/m^d on or within the yield surface, and the plastic strain of the way there."""
+        trial = self.bulk * np.log(rho / i.rest_density)
+        water = self.pores * max(self.level - dot(i.position, self.up), 0.0)
+        p = max(trial - water, -self.tension)
+        q = np.sqrt(j2(s, i.position))
+        beyond = max(q - self.cohesion - self.friction * p, 0.0)
+        slip = beyond / (self.shear + self.bulk * self.friction * self.dilation)
+        p += self.bulk * self.dilation * slip
+        left = 1.0 - self.shear * slip / max(q, NO_STRESS)
+        return scale(s, left), rho * np.exp((p + water - trial) / self.bulk), slip / math.sqrt(3.0)
+
+
+def cone(friction_angle: float, cohesion: float, dilatancy: float, dimensions: int) -> tuple[float, ...]:
+    """3α, k in Pa and 3α_ψ of soil with these angles in rad and this cohesion in Pa.
+
+    In 3D the cone through the edges of compression of Mohr and Coulomb: α = 2 sin φ/[√3(3 − sin φ)], k =
+    6c cos φ/[√3(3 − sin φ)].  In plane strain soil that flows has s_zz = −2α_ψ√J₂, and its strength is
+    that of Mohr and Coulomb for any ψ with α = sin φ/(3n), k = c cos φ/n, n = √(1 − 3α_ψ²) + α_ψ sin φ and
+    α_ψ = tan ψ/√(9 + 12 tan²ψ); with ψ = φ that is the usual α = tan φ/√(9 + 12 tan²φ).
+    """
+    sine, cosine = math.sin(friction_angle), math.cos(friction_angle)
+    if dimensions == 3:
+        spread = math.sqrt(3.0) * (3.0 - sine)
+        of_flow = 2.0 * math.sin(dilatancy) / (math.sqrt(3.0) * (3.0 - math.sin(dilatancy)))
+        return 6.0 * sine / spread, 6.0 * cohesion * cosine / spread, 3.0 * of_flow
+    of_flow = math.tan(dilatancy) / math.sqrt(9.0 + 12.0 * math.tan(dilatancy) ** 2)
+    n = math.sqrt(1.0 - 3.0 * of_flow**2) + of_flow * sine
+    return sine / n, cohesion * cosine / n, 3.0 * of_flow
+
+
+class Strength(NamedTuple):
+    """Soil yields by friction and cohesion, and tears: its stress stays within a cone.
+
+    By the law of its soil (:class:`DruckerPrager`), where the stress is predicted and after each kick.  The
+    pressure goes with the density, which is that of the elastic part of the volume: what opens as a crack, or
+    by dilatancy, is not in it.
+    """
+
+    laws: tuple = (Unbounded(),)
+
+    bounds = DEVIATOR
+    remembers = PLASTIC_STRAIN
+
+    def in_scene(self, scene: Facts):
+        """With the laws of the scene; None where no stress has a limit."""
+        return Strength((Unbounded(), *laws)) if (laws := scene.stressed.laws) else None
+
+    def why_absent(self, scene: Facts):
+        """What it lacks."""
+        return "nothing that bears an evolved stress has a limit to it"
+
+    def admit(self, i, s, rho):
+        """s, ρ and the plastic strain of the way there."""
+        return returned(self.laws, i.strength, i, s, rho)

@@ -1,0 +1,42 @@
+"""The state in which the materials of a scene start."""
+
+import math
+from typing import TYPE_CHECKING
+
+from psph.case.parameters import last_part
+from psph.case.study import EXACT
+from psph.physics.stress.bulk import Hooke
+from psph.scene.pressures import weight_above
+from psph.scene.species import Start
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+
+def law_of(scene: "Scene", part):
+    """The equation of state of a material: its own, or that of all."""
+    if hasattr(part, "bulk_modulus"):
+        return Hooke(part.bulk_modulus)
+    name = getattr(part, "equation_of_state", None) or scene.case.physics.equation_of_state
+    [law] = (entry.effect for entry in scene.case.catalogue.states if last_part(entry) == name)
+    return law()
+
+
+def start_of(scene: "Scene", index: int) -> Start:
+    """The state of a material before the first step."""
+    part = scene.parts[index]
+    pressure = getattr(part, "pressure", 0.0)
+    hydrostatic, exact = (pressure == word for word in ("hydrostatic", EXACT))
+    layer = scene.stressed.layers.get(index)
+    return Start(
+        law=law_of(scene, part),
+        rest_density=part.density,
+        sound_speed=scene.sound_speed,
+        pressure=0.0 if hydrostatic or exact else pressure,
+        weight=part.density * math.hypot(*scene.height_gravity) if hydrostatic or layer else 0.0,
+        up=scene.up,
+        surface=scene.surface_of(index),
+        above=weight_above(scene, index) if hydrostatic else 0.0,
+        exact=(lambda x: scene.exact.pressure(x, 0.0, scene.setting)) if exact else None,
+        layer=layer,
+    )

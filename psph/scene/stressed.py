@@ -1,0 +1,160 @@
+"""What bears an evolved stress in a scene: laws, waves, and soils under their own weight at the start."""
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from psph.case.soils import Soil
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+
+class Layer(NamedTuple):
+    """Soil under its own weight, as below level ground.
+
+    ``axis`` of gravity and the ``sign`` of what is up along it; ``first`` site of the lattice and
+    ``spacing``, m; ``top`` of the soil over each place of the level lattice, m along ``sign`` · axis;
+    ``weight`` of the soil and ``pores`` of the water in it, Pa/m, 0 where it is dry, up to ``level`` m;
+    ``at_rest`` is K₀.
+    """
+
+    axis: int
+    sign: float
+    first: np.ndarray
+    spacing: float
+    top: np.ndarray
+    weight: float
+    pores: float
+    level: float
+    at_rest: float
+
+    def stress(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure of the water in the pores, and what the grains bear along gravity, Pa (n,) at ``position``
+        (n, dim); zeros over the ground."""
+        across = np.delete(np.arange(position.shape[1]), self.axis)
+        sites = np.rint((position[:, across] - self.first[across]) / self.spacing).astype(int)
+        sites = np.clip(sites, 0, np.array(self.top.shape) - 1)
+        top, height = self.top[tuple(sites.T)], self.sign * position[:, self.axis]
+        water = self.pores * np.maximum(self.level - height, 0.0)
+        whole = self.weight * (top - height) + self.pores * np.maximum(self.level - top, 0.0)
+        inside = height < top
+        return np.where(inside, water, 0.0), np.where(inside, np.maximum(whole - water, 0.0), 0.0)
+
+    def pressure(self, position: np.ndarray) -> np.ndarray:
+        """p = −tr σ/3, Pa (n,)."""
+        water, borne = self.stress(position)
+        return water + borne * (1.0 + 2.0 * self.at_rest) / 3.0
+
+    def deviator(self, position: np.ndarray) -> np.ndarray:
+        """s, Pa (n, dim(dim + 1)/2): σ_nn = −σ_v along gravity and −K₀σ_v across."""
+        dimensions = position.shape[1]
+        shape = np.eye(dimensions) / 3.0
+        shape[self.axis, self.axis] -= 1.0
+        rows = shape[np.triu_indices(dimensions)]
+        return (1.0 - self.at_rest) * self.stress(position)[1][:, None] * rows
+
+
+class Stressed:
+    """What bears an evolved stress in a scene (psph.physics.stress): soils."""
+
+    def __init__(self, scene: "Scene"):
+        self._scene = scene
+        self.tables: dict[int, Any] = {
+            number: table
+            for number, table in enumerate(scene.case.flowing.values())
+            if hasattr(table, "shear_modulus")
+        }
+        self.soils: dict[int, Soil] = {n: one for n, one in self.tables.items() if isinstance(one, Soil)}
+
+    @property
+    def wave_speed(self) -> float:
+        """Of the fastest wave, m/s; 0 without such matter."""
+        return max((table.wave_speed for table in self.tables.values()), default=0.0)
+
+    @cached_property
+    def laws(self) -> tuple[Any, ...]:
+        """The different laws that bound a stress (psph.physics.stress.strength)."""
+        return tuple(dict.fromkeys(self._law(number) for number in self.soils))
+
+    def number_of(self, part: int) -> int:
+        """The number of the law of a part from 1 on, 0 where none bounds its stress."""
+        return 1 + self.laws.index(self._law(part)) if part in self.soils else 0
+
+    @property
+    def diffusion(self) -> float:
+        """How strongly the stress of soils spreads between neighbours; 0 without."""
+        return max((soil.stress_diffusion for soil in self.soils.values()), default=0.0)
+
+    @property
+    def rest_coefficient(self) -> float:
+        """K₀ of the soils, their mean; 1 without."""
+        found = [soil.at_rest for soil in self.soils.values()]
+        return sum(found) / len(found) if found else 1.0
+
+    @cached_property
+    def layers(self) -> dict[int, Layer]:
+        """How each soil starts that starts under its own weight, by its number."""
+        if not any(self._scene.gravity):
+            return {}
+        return {n: layer_of(self._scene, n, soil) for n, soil in self.soils.items() if soil.geostatic}
+
+    def deviator(self, species: np.ndarray, position: np.ndarray) -> np.ndarray:
+        """The deviatoric stress at the start, Pa (n, dim(dim + 1)/2), of particles of ``species`` (n,)."""
+        dimensions = position.shape[1]
+        found = np.zeros((len(species), dimensions * (dimensions + 1) // 2))
+        for number, layer in self.layers.items():
+            rows = species == number
+            found[rows] = layer.deviator(position[rows])
+        return found
+
+    def _law(self, part: int):
+        scene = self._scene
+        pull = math.hypot(*scene.gravity)
+        up = tuple(-g / pull if pull else 0.0 for g in scene.gravity)
+        return self.soils[part].law(scene.dimensions, up, pull)
+
+
+def layer_of(scene: "Scene", number: int, soil: Soil) -> Layer:
+    """A soil under its own weight along the axis of which gravity has most."""
+    axis = int(np.abs(scene.gravity).argmax())
+    sign = -math.copysign(1.0, scene.gravity[axis])
+    pull = abs(scene.gravity[axis])
+    wet = soil.water_level is not None
+    return Layer(
+        axis,
+        sign,
+        np.array([scene.lattice.coordinates(d)[0] for d in range(scene.dimensions)]),
+        scene.spacing,
+        ground(scene, number, axis, sign),
+        soil.density * pull,
+        soil.water_density * pull if wet else 0.0,
+        soil.water_level if wet else 0.0,
+        soil.at_rest,
+    )
+
+
+def ground(scene: "Scene", number: int, axis: int, sign: float) -> np.ndarray:
+    """The top of a part over each place of the level lattice, m along ``sign`` · axis; where there is none of
+    it, that of the nearest place with some."""
+    from scipy.ndimage import distance_transform_edt  # late: most scenes have no soil
+
+    lattice = scene.lattice
+    place = lattice.axes.index(axis)
+    height = sign * lattice.coordinates(axis)
+    others = [k for k in range(scene.dimensions) if k != place]
+    top = np.full([lattice.counts[lattice.axes[k]] for k in others], -np.inf)
+    for first, last in lattice.chunks():
+        held = scene.layout.materials(first, last) == number
+        z = height[first:last] if not place else height
+        z = z.reshape([-1 if k == place else 1 for k in range(scene.dimensions)])
+        found = np.where(held, z, -np.inf).max(axis=place)
+        rows = slice(first, last) if place else slice(None)
+        top[rows] = np.maximum(top[rows], found)
+    nearest = distance_transform_edt(np.isinf(top), return_distances=False, return_indices=True)
+    top = top[tuple(nearest)] + 0.5 * scene.spacing
+    # from the order of the lattice's axes to x, y, z
+    order = np.argsort([lattice.axes[k] for k in others])
+    return np.transpose(top, order)
