@@ -18,8 +18,8 @@ def several_fluids(scene) -> Iterator[str]:
         ratio = max(one.density / other.density, other.density / one.density)
         if ratio > LARGEST_RATIO:
             yield (
-                f"{table(b)}.{b}.density: {other.density:g} beside {one.density:g} kg/m3 of {table(a)}.{a}, a ratio "
-                f"of {ratio:.3g}: pressures are far off above {LARGEST_RATIO:g} (docs/limits.md); bring the "
+                f"{table(b)}.{b}.density: {other.density:g} beside {one.density:g} kg/m3 of {table(a)}.{a}, "
+                f"a ratio of {ratio:.3g}: pressures are far off above {LARGEST_RATIO:g} (docs/limits.md); bring the "
                 "two densities nearer to each other"
             )
     if len(fluids) > 1:
@@ -39,8 +39,9 @@ def _walls_of_another_fluid(scene) -> Iterator[str]:
         for name in names:
             density = scene.case.flowing[name].density
             if (number, name) in found and abs(density / own.density - 1.0) > ALIKE:
+                other = f"{scene.case.table_of(name)}.{name}"
                 yield (
-                    f'{scene.key_of(number)}.continues: "{body.continues}", but it touches {scene.case.table_of(name)}.{name} of '
+                    f'{scene.key_of(number)}.continues: "{body.continues}", but it touches {other} of '
                     f"{density:g} kg/m3 too, and currents arise along it; make the part there a wall of "
                     f'its own with continues = "{name}"'
                 )
