@@ -18,8 +18,9 @@ def several_fluids(scene) -> Iterator[str]:
         ratio = max(one.density / other.density, other.density / one.density)
         if ratio > LARGEST_RATIO:
             yield (
-                f"{table(b)}.{b}.density: {other.density:g} beside {one.density:g} kg/m3 of {table(a)}.{a}, "
-                f"a ratio of {ratio:.3g}: pressures are far off above {LARGEST_RATIO:g} (docs/limits.md); bring the "
+                f"{table(b)}.{b}.density: {other.density:g} beside {one.density:g} kg/m3 of "
+                f"{table(a)}.{a}, a ratio of {ratio:.3g}: pressures are far off above {LARGEST_RATIO:g} "
+                "(docs/limits.md); bring the "
                 "two densities nearer to each other"
             )
     if len(fluids) > 1:
