@@ -1,7 +1,7 @@
 """A case in Python: load or build it, change it, check it, ask what it will simulate."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -42,9 +42,13 @@ class Case:
     def _set(self, file: str, tables: dict, changes: tuple[str, ...] = (), option=OPTION, given=None):
         self._file, self._tables, self._changes = file, tables, changes
         self._option, self._given = option, given
-        self.model = checked(file, deepcopy(tables), changes, option, given)
+        self.model = self.made(changes)
         """The case as psph's own modules take it: every key as an attribute, defaults filled in."""
         return self
+
+    def made(self, changes: Sequence[str]):
+        """The model with these changes in place of those that :meth:`with_` made; for psph's own modules."""
+        return checked(self._file, deepcopy(self._tables), changes, self._option, self._given)
 
     @property
     def name(self) -> str:

@@ -1,13 +1,11 @@
 """Effects, kernels, motions and gauges of a person's own, from Python objects to a catalogue and keys."""
 
-import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from psph.case.given import key_of
 from psph.errors import Refused
 from psph.physics.catalogue import Catalogue, Entry
-
-HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 
 def own(effects: Iterable, kernel: type | None, motions: Mapping[str, Any], gauges: Iterable):
@@ -44,4 +42,4 @@ def own(effects: Iterable, kernel: type | None, motions: Mapping[str, Any], gaug
 
 def named(kind: type) -> str:
     """The key of a class: ``SurfaceCohesion`` is ``surface_cohesion``."""
-    return HUMP.sub("_", kind.__name__).lower()
+    return key_of(kind.__name__)

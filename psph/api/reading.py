@@ -157,7 +157,8 @@ class Results:
 
     @property
     def case(self):
-        """The case of the run (:class:`psph.Case`), defaults filled in."""
+        """The case of the run (:class:`psph.Case`), defaults filled in.  CaseError where physics of
+        a script were in it: build that case in the script."""
         from psph.api.case import load
         from psph.output.checkpoint import COPY
 
@@ -206,6 +207,13 @@ class Results:
 
         cut = slice_of(slice) if slice else None
         return plot(self.folder, times, field, cut, surface, experiments=beside(self.folder))
+
+    def export(self, to: str, times: Sequence[float] | None = None, out: str | Path | None = None) -> Path:
+        """Write frames for other programs, ``to`` "vtk", "gadget" or "paraview"; what is to be opened
+        (docs/export.md)."""
+        from psph.output.export.command import export
+
+        return export(self.folder, to, times, None if out is None else Path(out))
 
     def report(self, field: str = "speed") -> Path:
         """Write report.html into the folder, with pictures of ``field``; its path (docs/output.md)."""

@@ -65,24 +65,31 @@ def study(
 ) -> StudyResults:
     """Run a case with several spacings, kernels or other choices; error and run time of each.
 
-    ``vary`` has the values of each key, such as ``{"space.spacing": [0.04, 0.02]}`` (default: what the case
-    says under ``[study]``), ``grid`` makes all combinations.  The case must stand in a file, and takes
-    nothing from Python.  Raises CaseError or Refused before the first run.
+    ``vary`` has the values of each key, such as ``{"space.spacing": [0.04, 0.02]}`` (default: what the
+    case says under ``[study]``), ``grid`` makes all combinations.  Physics of your own come with
+    :meth:`psph.Case.using`.  Raises CaseError or Refused before the first run.
     """
     from psph.engine.threads import use_threads
     from psph.lab.study import command
 
     use_threads(threads)
     loaded = case if isinstance(case, Case) else load(case)
-    if not Path(loaded.file).is_file():
-        raise Refused(f"study: {loaded.file} is no file yet; write it with case.save(...) and load that")
-    if loaded.brings:
-        raise Refused("study: takes no effects from Python; put them in a file that the case names under use")
     comm = world() if comm is None else comm
     wanted = [f"{key}={','.join(map(_word, values))}" for key, values in (vary or {}).items()]
     folder = Path(out or f"{loaded.name}-study")
-    sets = list(loaded.changes)
-    command.study(comm, loaded.file, sets, wanted, grid, False, folder, None, None, quiet=quiet)
+    command.study(
+        comm,
+        loaded.file,
+        list(loaded.changes),
+        wanted,
+        grid,
+        effects=False,
+        out=folder,
+        error=None,
+        seconds=None,
+        quiet=quiet,
+        make=lambda file, sets: loaded.made(sets),
+    )
     comm.Barrier()
     return StudyResults(folder)
 

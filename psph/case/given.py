@@ -1,12 +1,17 @@
 """Effects, kernels, motions and tables that a Python script gives a case, in place of a file beside it."""
 
 import hashlib
+import re
 from collections.abc import Iterator, Sequence
 from types import CodeType
 from typing import TYPE_CHECKING
 
+from psph.case.errors import CaseError
+
 if TYPE_CHECKING:
     from psph.physics.catalogue import Catalogue
+
+HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 PYTHON = "python:"
 """What ``use`` has before the name of a class that no file holds."""
@@ -32,6 +37,31 @@ def not_given(used: Sequence[str], given: Sequence[str]) -> Iterator[str]:
                 f"{kind} came from a Python script, not from a file; go on in that script: "
                 f"psph.resume(folder, effects=[{kind}])"
             )
+
+
+def without_python(file: str, data: dict) -> list[str]:
+    """Take out of the tables of a run's case what a script gave; what that was, in words.
+
+    For those who read a run and do not go on with it.  Raises CaseError where it is the kernel, without which
+    nothing is known of the particles.
+    """
+    used = [name for name in data.get("use", []) if str(name).startswith(PYTHON)]
+    if used:
+        data["use"] = [name for name in data["use"] if name not in used]
+    for kind in map(_class, used):
+        key = key_of(kind)
+        if data.get("space", {}).get("kernel") == key:
+            raise CaseError([f"{file}: space.kernel: {kind} came from a Python script, not from a file"])
+        for table in ("physics", "tables"):
+            data.get(table, {}).pop(key, None)
+        for wall in data.get("walls", {}).values():
+            wall.get("motion", {}).pop(key, None)
+    return [f"{kind} came from a Python script and is left out here" for kind in map(_class, used)]
+
+
+def key_of(name: str) -> str:
+    """The key of a class: ``SurfaceCohesion`` is ``surface_cohesion``."""
+    return HUMP.sub("_", name).lower()
 
 
 def _class(name: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from psph.case.errors import CaseError, dotted
-from psph.case.given import names_of, not_given
+from psph.case.given import names_of, not_given, without_python
 from psph.case.profiles import OFF, fill
 from psph.errors import LONGEST_QUOTE, shortened
 
@@ -69,6 +69,16 @@ def load(
     """
     file = str(path)
     return checked(file, tables_of(file), overrides, option, given)
+
+
+def load_to_read(path: str | Path) -> tuple["Case", list[str]]:
+    """The case of a run for those who read its results, and what of it is left out, in words.
+
+    What a script gave acts in that script alone; the particles can be told without it.  Raises CaseError.
+    """
+    file, data = str(path), tables_of(path)
+    left_out = without_python(file, data)
+    return checked(file, data), [f"{file}: use: {says}" for says in left_out]
 
 
 def tables_of(path: str | Path) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """psph in a script: the same as on the command line, and no more imported than is asked for."""
 
 import re
+import shutil
 import subprocess
 import sys
 from importlib import import_module
@@ -237,9 +238,42 @@ def test_an_own_effect_gives_the_same_bits_on_several_ranks(tmp_path):
     assert files[1] == files[2]
 
 
-def test_a_study_wants_a_file(tmp_path):
-    with pytest.raises(psph.Foreseen, match=r"case\.save"):
-        psph.study(psph.Case(TABLES, folder=tmp_path), {"space.spacing": [0.1, 0.05]})
+def test_a_study_takes_tables_and_an_effect_of_the_script(tmp_path):
+    """Of a case that no file holds; the drop keeps exp(-kt) of its speed, at both spacings."""
+    drop = psph.Case(TABLES | {"study.repeats": 1, "study.error": "velocity"}, folder=tmp_path)
+    found = psph.study(
+        drop.using(effects=[Drag(50.0)]),
+        {"space.spacing": [0.1, 0.05]},
+        out=tmp_path / "study",
+        comm=alone(),
+        quiet=True,
+    )
+    assert list(found.table["status"]) == ["done", "done"] and found.vary == ["space.spacing"]
+    for run in found.runs:
+        assert run.frames[-1].velocity[:, 0].mean() == pytest.approx(np.exp(-1.0), abs=0.02)
+    assert "python:Drag" in (tmp_path / "study/run-01/case.toml").read_text()
+
+
+def test_runs_with_an_effect_of_a_script_are_read_without_it(dragged, tmp_path):
+    """Exported and reported in another process, which says what it leaves out."""
+    results, _ = dragged
+    job = python("-m", "psph", "export", results.folder, "--to", "gadget", "--out", tmp_path / "out")
+    assert job.returncode == 0, job.stderr
+    assert len(list((tmp_path / "out").glob("drop_*.hdf5"))) == len(results.frames)
+    assert results.export("vtk", times=[0.0], out=tmp_path / "vtk").is_file()
+    page = results.report().read_text(encoding="utf-8")
+    assert "use: Drag came from a Python script and is left out here" in page and "SymmetricPressure" in page
+    with pytest.raises(psph.CaseError, match="came from a Python script"):
+        results.case  # noqa: B018
+
+
+def test_a_run_with_a_kernel_of_a_script_is_not_exported(dragged, tmp_path):
+    results, _ = dragged
+    shutil.copytree(results.folder, tmp_path / "run")
+    text = (tmp_path / "run/case.toml").read_text()
+    (tmp_path / "run/case.toml").write_text(re.sub(r'kernel = ".*"', 'kernel = "drag"', text))
+    with pytest.raises(psph.CaseError, match=r"space\.kernel: Drag came from a Python script"):
+        psph.results(tmp_path / "run").export("vtk")
 
 
 PIPED = """

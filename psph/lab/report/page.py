@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 import psph
-from psph.case import CaseError, load
+from psph.case import CaseError
+from psph.case.loader import load_to_read
 from psph.errors import Refused
 from psph.lab.report.results import report_of_results
 from psph.lab.report.sheet import REPORT, embedded, interactive, refuse_without_packages, written
@@ -65,14 +66,15 @@ def _of_case(folder: Path, remarks: list[str]) -> dict:
     """What the case says, and what ``check`` and ``explain`` say of it; of a case that this psph or this
     process cannot load, why."""
     try:
-        scene = Scene(load(folder / COPY))
+        case, left_out = load_to_read(folder / COPY)
+        scene = Scene(case)
         plan = make_plan(scene)
         expected = list(outlook(scene, plan)) if scene.case.flowing else []
         ranks = read_summary(folder).get("ranks", 1)
         return {
             "plan": "\n".join(explain(scene, ranks)),
             "expected": expected,
-            "warnings": [*remarks, *check(scene)],
+            "warnings": [*remarks, *left_out, *check(scene)],
         }
     except CaseError as error:
         return {"plan": "", "expected": [], "warnings": [*remarks, *error.lines]}

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.case import CaseError, load
+from psph.case import CaseError
+from psph.case.loader import load_to_read
 from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
 from psph.lab.study.judge import series_errors, value_at
@@ -32,7 +33,7 @@ def beside(folder: Path) -> list[Beside]:
     """The experiments of the run in ``folder`` whose file and column are there."""
     run, found = Run(folder), []
     try:
-        case = load(Path(folder) / COPY)
+        case, _ = load_to_read(Path(folder) / COPY)
     except CaseError:  # of another version; the frames can be drawn all the same
         return []
     for name, experiment in case.experiments.items():

@@ -7,7 +7,7 @@ from psph.errors import Failed
 from psph.lab.errors import StudyError
 from psph.lab.study.effects import effects_words, without_each
 from psph.lab.study.ladder import rows, wanted
-from psph.lab.study.runs import DONE
+from psph.lab.study.runs import DONE, Make
 from psph.lab.study.study import Study
 
 
@@ -23,17 +23,19 @@ def study(
     seconds: float | None,
     files: Path | None = None,
     quiet: bool = False,
+    make: Make = load,
 ) -> None:
     """Run the study and print its results, unless it is to be ``quiet``; collective.
 
-    Raises CaseError or StudyError before the first run.
+    ``make`` loads the case, where that is not in a file.  Raises CaseError or StudyError before the first
+    run.
     """
     for name, value in (("error", error), ("seconds", seconds)):
         if value is not None and not value > 0.0:
             raise StudyError(f"study --{name} {value:g}: give a number above zero")
     if error is not None and error >= 1.0:
         raise StudyError(f"study --error {error:g}: a relative error below 1; for 3 % give 0.03")
-    case = load(file, sets)
+    case = make(file, sets)
     if effects:
         named = without_each(case)
         if not named:
@@ -42,7 +44,7 @@ def study(
     else:
         every = rows(wanted(case.study.vary, vary), grid or case.study.grid)
     folder = out or Path(f"{case.name}-study")
-    asked = Study(file, sets, every, folder, comm, files)
+    asked = Study(file, sets, every, folder, comm, files, make)
     if not effects:
         asked.refuse_nonsense()
 

@@ -2,7 +2,7 @@
 
 import json
 import statistics
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from psph.case import Case, CaseError, load
@@ -27,15 +27,19 @@ TIMED = ("set_up", "stepping", "output")
 """The parts of a run whose seconds count."""
 
 
-def cases(file: str, given: list[str], every: list[Settings]) -> list:
+Make = Callable[[str, Sequence[str]], Case]
+"""The case of a file, or of a script that gives it this name, with these keys changed.  Raises CaseError."""
+
+
+def cases(file: str, given: list[str], every: list[Settings], make: Make = load) -> list:
     """The case of each run, or the CaseError that refuses it."""
-    return [_case(file, [*given, *overrides(settings)]) for settings in every]
+    return [_case(file, [*given, *overrides(settings)], make) for settings in every]
 
 
-def _case(file: str, sets: list[str]):
+def _case(file: str, sets: list[str], make: Make):
     try:
-        end = load(file, sets).time.end
-        return load(file, [f"output.frames={end!r}", *sets])  # of use here: the first and the last
+        end = make(file, sets).time.end
+        return make(file, [f"output.frames={end!r}", *sets])  # of use here: the first and the last
     except CaseError as error:
         return error
 

@@ -12,7 +12,7 @@ from psph.lab.study.answer import answers
 from psph.lab.study.judge import FINEST, Judge, Judgement, known_values, window
 from psph.lab.study.ladder import PROFILE, SPACING, Settings, groups, name_of
 from psph.lab.study.picture import draw
-from psph.lab.study.runs import DONE, cases, conditions, perform
+from psph.lab.study.runs import DONE, Make, cases, conditions, perform
 from psph.output.reader import Run as Folder
 from psph.runs.room import check_size
 from psph.scene import Scene, check
@@ -25,8 +25,8 @@ class Study:
     """The runs of a study in ``folder``; methods are collective but where they say otherwise.
 
     ``file`` is the case, ``sets`` what ``--set`` gave, ``every`` the settings of each run, ``files``
-    the folder that the case's files may lie in, where it is not its own.  Raises CaseError,
-    TooLittleMemory or StudyError before anything is run.
+    the folder that the case's files may lie in, where it is not its own, ``make`` how it is loaded.
+    Raises CaseError, TooLittleMemory or StudyError before anything is run.
     """
 
     def __init__(
@@ -37,15 +37,16 @@ class Study:
         folder: Path,
         comm,
         files: Path | None = None,
+        make: Make = load,
     ):
         self.folder, self.comm, self.every = folder, comm, every
-        self.case = load(file, sets)
+        self.case = make(file, sets)
         scene = Scene(self.case)
         check_size(scene, comm)
         check(scene)
         self.judge = Judge(self.case, files)
         self.keys = list(dict.fromkeys(key for settings in every for key in settings))
-        self.cases = cases(file, sets, every)
+        self.cases = cases(file, sets, every, make)
         self.own_errors: dict[str, fit.OwnError | None] = {}
         self._merge()
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from psph.case import load
+from psph.case.loader import load_to_read
 from psph.output.checkpoint import COPY
 from psph.output.errors import NotThere
 from psph.output.reader import Run
@@ -30,8 +30,9 @@ class Exported:
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene of the run."""
-        return Scene(load(self.run.folder / COPY))
+        """The scene of the run, without what a script gave it."""
+        case, _ = load_to_read(self.run.folder / COPY)
+        return Scene(case)
 
     @property
     def stem(self) -> str:
