@@ -274,6 +274,8 @@ def _text(name: str, width: int, dimensions: int) -> str:
         return tuple_of(f"reflection.turn_strain[{place}] * j.strain[{place}]" for place in range(width))
     if name == "slip":
         return tuple_of(f"reflection.turn_velocity[{d}] * j.slip[{d}]" for d in axes)
+    if name == "solid":  # the image of a rigid body is another body, which it may touch
+        return f"min({', '.join(f'reflection.turn[{d}]' for d in axes)}) * j.solid"
     signs: dict[int, list[tuple[int, ...]]] = {
         dimensions: [(d,) for d in axes],
         dimensions * (dimensions + 1) // 2: [(d, e) for d in axes for e in axes if d <= e],

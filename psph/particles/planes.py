@@ -6,14 +6,15 @@ from psph.composition.mirrors import Plane
 from psph.fields import MATRIX, SYMMETRIC, VECTOR
 
 
-def bring_back(store, planes: Iterable[Plane]) -> None:
+def bring_back(store, planes: Iterable[Plane], free: int) -> None:
     """A particle of ``store`` that has crossed a plane changes places with its image.
 
-    Seen from the particles around it nothing changes: its image stood where it comes to stand.
+    Seen from the particles around it nothing changes: its image stood where it comes to stand.  Those of
+    groups from number ``free`` on stay where their motion has them.
     """
     for plane in planes:
         x = store["position"][plane.axis][store.inner]
-        crossed = (x - plane.at) * plane.side > 0.0
+        crossed = ((x - plane.at) * plane.side > 0.0) & (store.group[store.inner] < free)
         if crossed.any():
             x[crossed] = 2.0 * plane.at - x[crossed]
             for row in _odd_rows(store, plane.axis):

@@ -34,18 +34,18 @@ FIRST_BODY = 2
 
 
 @compiled
-def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, solid, free):
+def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, solid, free, mirrored):
     """Rows of dry walls without any fluid in their lists become empty: nothing has to be summed for them.
 
     Nor for those of a rigid body, unless it may touch another solid: ``solid`` has the number of each
-    column's, ghosts among them. Of the columns ``first`` to ``last``, those of groups from number
-    ``free`` on, which forces do not move.  One that is not ``bearing`` needs no sum even with fluid
-    around.
+    column's, ghosts among them.  Where the scene is ``mirrored`` that may be its own image.  Of the columns
+    ``first`` to ``last``, those of groups from number ``free`` on, which forces do not move.  One that is
+    not ``bearing`` needs no sum even with fluid around.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
         n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
-        idle = wet[k] == 0.0 and group[k] >= free
+        idle = wet[k] == 0.0 and group[k] >= free and not (mirrored and solid[k] >= FIRST_BODY)
         while idle and bearing[group[k]] and n < end:
             j = np.uint64(lists.lists[n])
             idle = is_fluid[j] == 0.0 and (solid[k] < FIRST_BODY or solid[k] == solid[j])

@@ -123,7 +123,7 @@ class Engine:
     def rebuild(self) -> None:
         """Put every particle where it belongs and list its neighbours."""
         with self.ledger("rebuild"):
-            bring_back(self.store, self.plan.planes)
+            bring_back(self.store, self.plan.planes, self.plan.free)
             self.domain.rebuild(self.spent_on_pairs())
             for effect in self.plan.marking:
                 self._mark(effect)
@@ -250,7 +250,8 @@ class Engine:
         told_by, wet = s[effect.told_by], s[effect.marks.name]
         plan, lists = self.plan, self.domain.lists
         solid = s["solid"] if plan.contacts else told_by  # without bodies: of numbers below those of bodies
-        self._each(rest_dry, s.low, lists, told_by, wet, s.group, plan.bearing, solid, plan.free)
+        mirrored = plan.mirrors is not None
+        self._each(rest_dry, s.low, lists, told_by, wet, s.group, plan.bearing, solid, plan.free, mirrored)
 
     def _list_others(self) -> None:
         """Solids feel only other ones in space."""

@@ -33,12 +33,12 @@ def test_fluid_does_not_wet_a_wall_that_bears_nothing():
     assert wet_at(0.5, 1.0, bearing=False) == 0.0
 
 
-def lengths_after(wet, is_fluid, group, bearing=True, solid_of=(0, 1)):
+def lengths_after(wet, is_fluid, group, bearing=True, solid_of=(0, 1), mirrored=False):
     """The lengths of the rows of three particles, each beside the next one, once dry walls rest."""
     lists = Neighbours(np.arange(3, dtype=np.uint64), np.ones(3, np.uint32), np.array([1, 2, 0], np.uint32))
     bears, groups = np.array([True] + [bearing] * (len(solid_of) - 1)), np.array(group, np.uint8)
     solids = np.array(solid_of, float)[groups]
-    rest_dry(0, 3, 0, lists, np.array(is_fluid), np.array(wet), groups, bears, solids, np.uint8(1))
+    rest_dry(0, 3, 0, lists, np.array(is_fluid), np.array(wet), groups, bears, solids, np.uint8(1), mirrored)
     return lists.lengths.tolist()
 
 
@@ -66,3 +66,9 @@ def test_a_body_that_may_touch_another_solid_does_not_rest():
     dry = {"wet": [0.0] * 3, "is_fluid": [0.0] * 3, "solid_of": (0, 1, 2, 3)}
     assert lengths_after(group=[2, 1, 3], **dry) == [1, 0, 1]
     assert lengths_after(group=[2, 2, 2], **dry) == [0, 0, 0]
+
+
+def test_a_body_that_may_touch_its_own_image_does_not_rest():
+    """The first two are of a body, the third of a wall."""
+    dry = {"wet": [0.0] * 3, "is_fluid": [0.0] * 3, "solid_of": (0, 1, 2), "group": [2, 2, 1]}
+    assert lengths_after(mirrored=True, **dry) == [1, 1, 0]

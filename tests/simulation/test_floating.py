@@ -230,6 +230,27 @@ on = ["low"]
     assert not table.any() and own[1] == pytest.approx(120.0 * 9.81, rel=0.05)
 
 
+def test_a_dry_body_lands_on_a_mirror(tmp_path):
+    # By its own image, which it touches half a spacing before the plane. The water does not reach it so soon.
+    text = (
+        POOL.format(dx=0.05).replace("upper = [1.0, 0.4]", "upper = [0.3, 0.1]").replace(".15", ".2")
+        + """
+condition = "mirror"
+[bodies.block]
+shape.box = { lower = [0.6, 0.1], upper = [0.8, 0.3] }
+density = 2000.0
+"""
+    )
+    simulation, bodies, _ = started(draft(tmp_path, text))
+    heights, speeds = [], []
+    while simulation.time < 0.25:
+        simulation.step()
+        heights.append(bodies.place[0, 1])
+        speeds.append(bodies.velocity[0, 1])
+    assert 0.09 < min(heights) < 0.1 and max(speeds) > 0.1  # it springs back
+    assert abs(bodies.place[0, 0] - 0.7) < 1e-9 and abs(bodies.angle[0]) < 1e-9
+
+
 def test_a_gate_on_a_hinge_turns_about_its_hinge(tmp_path):
     text = (
         POOL.format(dx=0.05)

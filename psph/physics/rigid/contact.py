@@ -15,7 +15,8 @@ class Contact(NamedTuple):
     """A body's particles are repelled by those of other solids where they are nearer than a spacing.
 
     f_ij = max(k (dx − r) − ζ u_ij·x_ij/r, 0) along x_ij/r where r < dx, with k = ρ₀c² dx^(d−2), so that
-    a face pressed in by a spacing bears ρ₀c² as the fluid does, and ζ = 0.6 ρ₀c dx^(d−1).  It has no
+    a face pressed in by a spacing bears ρ₀c² as the fluid does, and ζ = 0.6 ρ₀c dx^(d−1).  Before a mirror
+    it is repelled by its own image: its face then stands on the mirror.  It has no
     friction along the face but the roughness of the lattice.  ``stiffness`` k in N/m, ``damping`` ζ in N
     s/m, ``distance`` dx in m.
     """
