@@ -134,8 +134,7 @@ class Bodies:
     def drift(self, then: float, dt: float) -> None:
         """The first half of the kick, and the way to the end of the step of ``dt`` s at ``then``."""
         self._kick(then, dt)
-        loose = then > self.held
-        step = np.where(loose, dt, 0.0)
+        loose, step = then > self.held, self._lasting(then, dt)
         self.place = np.where(self.slides, self.place + step * self.velocity, self.place)
         self._tumble(step[self.tumbling, 0])
         self.angle = self.angle + step[self.hinged, 0] * self._spin_of_hinged(self.angular_momentum)
@@ -270,8 +269,12 @@ class Bodies:
         self.ahead = np.where(self.slides & ~loose, 0.0, velocity)
         self._spin(np.where(loose, momentum, 0.0))
 
+    def _lasting(self, then: float, dt: float) -> np.ndarray:
+        """How much of the step of ``dt`` s that ends at ``then`` each body is not held in, s (n, 1)."""
+        return np.clip(then - self.held, 0.0, dt)
+
     def _kick(self, then: float, dt: float) -> None:
-        half = np.where(then > self.held, 0.5 * dt, 0.0)
+        half = 0.5 * self._lasting(then, dt)
         self.velocity = np.where(self.slides, self.velocity + half * self.force / self.mass, self.velocity)
         self.angular_momentum = self.angular_momentum + half * self._driving
 

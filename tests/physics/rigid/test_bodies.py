@@ -225,6 +225,20 @@ def test_a_held_body_sets_off_at_its_release(turns):
         assert getattr(late, name) == pytest.approx(getattr(free, name), abs=1e-12), name
 
 
+def test_a_body_falls_from_its_release_within_a_step():
+    held = Bodies(
+        [body(velocity=(1.0, 2.0, -0.5), spin=(0.0, 0.0, 3.0), held=0.1003, turns=(False, False, True))],
+        (0.3, 0.0, -10.0),
+    )
+    moved(held, 1 / 64, 64)
+    since = 1.0 - 0.1003
+    assert held.place[0] == pytest.approx(
+        [1.0 + since + 0.15 * since**2, -2.0 + 2.0 * since, 0.5 - 0.5 * since - 5.0 * since**2], abs=1e-12
+    )
+    assert held.velocity[0] == pytest.approx([1.0 + 0.3 * since, 2.0, -0.5 - 10.0 * since], abs=1e-12)
+    assert held.angle == pytest.approx([3.0 * since], abs=1e-12)
+
+
 def test_what_is_not_free_stays():
     guided = body(slides=(False, True, False), turns=FIXED, velocity=(1.0, 1.0, 1.0), spin=(1.0, 1.0, 1.0))
     bodies = moved(Bodies([guided], (1.0, 2.0, 3.0)), 1e-2, 100)
