@@ -69,7 +69,13 @@ class Solid(Matter):
         None,
         otherwise="it is elastic, or yields at yield_stress",
     )
-    damping: float = key("viscosity η of the stress ηĖ of Kelvin and Voigt", 0.0, unit="Pa s", ge=0)
+    damping: float | None = key(
+        "viscosity η of the stress ηĖ of Kelvin and Voigt",
+        None,
+        unit="Pa s",
+        otherwise="0; in a fluid what calms waves that are too fast for its steps",
+        ge=0,
+    )
     hourglass: float = key(
         "strength α of the control of zigzag modes, which the stress does not see", 1.5, unit="1", ge=0, le=10
     )

@@ -322,7 +322,7 @@ class Scene:
     @cached_property
     def elastic_solids(self) -> tuple[Solid, ...]:
         """What the elastic solids of the case are made of."""
-        return solids_of(self.case)
+        return solids_of(self)
 
     @cached_property
     def tables(self) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from psph.case.keys import AXES
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import inside
+from psph.scene.solids import across, calming, impedance
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -18,6 +19,10 @@ FEWEST = 4
 LIGHTEST, HEAVIEST = 1.0, 25_000.0
 """kg/m³: an aerogel, and osmium's 22,600."""
 
+HEAVY = 0.3
+"""Part of its speed that a solid may lose to the fluid in a step: 0.06 with aluminium 4 particles thick, 0.16
+with what is as light as water."""
+
 SLOWEST = 2.0
 """Wave speed over the expected speed below which a solid is hardly one."""
 
@@ -25,8 +30,8 @@ SLOWEST = 2.0
 def solid_faults(scene: "Scene") -> Iterator[str]:
     """A line for each solid that is too thin for any stress, and for each load that pulls nothing."""
     for number, name in enumerate(scene.case.solids, scene.layout.fluids):
-        across, axis = _across(scene, number)
-        if across == 1:
+        wide, axis = across(scene, number - scene.layout.fluids)
+        if wide == 1:
             yield (
                 f"solids.{name}.shape: one particle thick along {AXES[axis]}, where no strain is known; make "
                 f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
@@ -45,11 +50,11 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
             "meet; give physics.contact = {}"
         )
     for number, (name, table) in enumerate(scene.case.solids.items(), scene.layout.fluids):
-        across, axis = _across(scene, number)
-        if across < FEWEST:
+        wide, axis = across(scene, number - scene.layout.fluids)
+        if wide < FEWEST:
             yield (
-                f"solids.{name}.shape: {across} particles thick along {AXES[axis]}: it will bend too softly; "
-                f"give space.spacing = {across * scene.spacing / FEWEST:.3g} or less"
+                f"solids.{name}.shape: {wide} particles thick along {AXES[axis]}: it will bend too softly; "
+                f"give space.spacing = {wide * scene.spacing / FEWEST:.3g} or less"
             )
         if not LIGHTEST <= table.density <= HEAVIEST:
             yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
@@ -61,18 +66,24 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
             )
         if not table.hourglass:
             yield (f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; give 1.5")
+        if scene.case.fluids:
+            yield from _answers(scene, number - scene.layout.fluids, f"solids.{name}", table)
 
 
-def _across(scene: "Scene", solid: int) -> tuple[int, int]:
-    """The fewest particles that a solid has along an axis, its clamped part with it, and that axis."""
-    parts = [n for n in range(scene.layout.first_wall) if _is_of(scene, n, solid)]
-    low, high = scene.census.lowest[parts].min(axis=0), scene.census.highest[parts].max(axis=0)
-    counts = np.rint((high - low) / scene.spacing).astype(int) + 1
-    for d, period in enumerate(scene.periods):
-        if period is not None and (counts[d] + TOLERANCE) * scene.spacing > period:
-            counts[d] = np.iinfo(int).max  # it goes on
-    axis = int(counts.argmin())
-    return int(counts[axis]), axis
+def _answers(scene: "Scene", number: int, key: str, table) -> Iterator[str]:
+    """A line where a solid answers to the fluid faster than a step can tell."""
+    share = impedance(scene, number, table)
+    if share > HEAVY:
+        yield (
+            f"{key}: the fluid takes {100.0 * share:.0f} % of its speed in a step, so thin and light it is: "
+            "they will shake each other; make it thicker, or give a smaller time.cfl"
+        )
+    needed = calming(scene, number, table)
+    if table.damping is not None and table.damping < 0.5 * needed:
+        yield (
+            f"{key}.damping: {table.damping:g} Pa s lets waves grow that a step of the fluid does not "
+            f"resolve; remove it, for {needed:.2g} Pa s"
+        )
 
 
 def _is_of(scene: "Scene", material: int, solid: int) -> bool:
@@ -94,7 +105,7 @@ def solid_lines(scene: "Scene") -> Iterator[str]:
     """What the solids are, in words, for `explain`."""
     for number, (name, table) in enumerate(scene.case.solids.items(), scene.layout.fluids):
         one = scene.elastic_solids[number - scene.layout.fluids]
-        across, axis = _across(scene, number)
+        wide, axis = across(scene, number - scene.layout.fluids)
         held = [
             n
             for n, solid in enumerate(scene.layout.clamps, scene.layout.movers)
@@ -105,8 +116,13 @@ def solid_lines(scene: "Scene") -> Iterator[str]:
         yield (
             f"  solid       {name}: {_law(table)}, E {table.young:g} Pa, ν {table.poisson:g}, waves of "
             f"{one.wave_speed:.4g} m/s; {count:,} particles, {clamped:,} of them clamped, "
-            f"{across} across {AXES[axis]}"
+            f"{wide} across {AXES[axis]}"
         )
+        if one.viscosity:
+            given = (
+                "" if table.damping is not None else ", which calms what a step of the fluid does not resolve"
+            )
+            yield f"              with a viscosity of {one.viscosity:.3g} Pa s{given}"
 
 
 def _law(table) -> str:

@@ -3,24 +3,67 @@
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from psph.particles.reach import Reach
 from psph.physics.solid.contact import REACH
-from psph.physics.solid.material import MADE_OF, Solid, solid_of
+from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, solid_of
+from psph.scene.lattice import TOLERANCE
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
 
 
-def solids_of(case) -> tuple[Solid, ...]:
-    """The elastic solids of a case, in its order."""
+def solids_of(scene: "Scene") -> tuple[Solid, ...]:
+    """The elastic solids of a scene, in the order of its case."""
     return tuple(
         solid_of(
             name,
             **{key: getattr(table, key) for key in MADE_OF},
+            damping=_damping(scene, number, table),
             johnson_cook=table.johnson_cook and dict(table.johnson_cook),
         )
-        for name, table in case.solids.items()
+        for number, (name, table) in enumerate(scene.case.solids.items())
     )
+
+
+def _damping(scene: "Scene", number: int, table) -> float:
+    """The viscosity η of a solid, Pa s: as given, or what calms it in a fluid."""
+    if table.damping is not None or not scene.case.fluids:
+        return table.damping or 0.0
+    return calming(scene, number, table)
+
+
+def impedance(scene: "Scene", number: int, table) -> float:
+    """ρ_f c Δt/(ρ_s H) of a solid in a fluid, H its thickness: the part of its speed that it loses in a step
+    Δt of the fluid to the sound that it makes."""
+    density = max(fluid.density for fluid in scene.case.fluids.values())
+    thickness = across(scene, number)[0] * scene.spacing
+    return density * scene.sound_speed * step_of_fluid(scene) / (table.density * thickness)
+
+
+def calming(scene: "Scene", number: int, table) -> float:
+    """η in Pa s that calms those waves of a solid in a fluid which a step of the fluid does not resolve."""
+    share = impedance(scene, number, table)
+    return calming_viscosity(table.young, table.poisson, share, step_of_fluid(scene))
+
+
+def step_of_fluid(scene: "Scene") -> float:
+    """The longest step of the fluid, s."""
+    time = scene.case.time
+    return time.step or time.cfl * scene.smoothing_length / scene.sound_speed
+
+
+def across(scene: "Scene", number: int) -> tuple[int, int]:
+    """The fewest particles that a solid has along an axis, its clamped part with it, and that axis."""
+    parts = [n for n in range(scene.layout.first_wall) if scene.layout.elastic_of(n) == number]
+    low, high = scene.census.lowest[parts].min(axis=0), scene.census.highest[parts].max(axis=0)
+    counts = np.rint((high - low) / scene.spacing).astype(int) + 1
+    for d, period in enumerate(scene.periods):
+        if period is not None and (counts[d] + TOLERANCE) * scene.spacing > period:
+            counts[d] = np.iinfo(int).max  # it goes on
+    axis = int(counts.argmin())
+    return int(counts[axis]), axis
 
 
 def anvils_of(case) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]:

@@ -7,6 +7,11 @@ of it is taken back and half of the new one added.  So it gives in a step the me
 fluid gets, and the momentum of both together is kept to rounding.
 O'Connor & Rogers (2021), J. Fluids Struct. 104, 103312; Zhang, Rezavand & Hu (2021), J. Comput. Phys.
 429, 110028.
+
+The fluid sees the velocity half-way between the mean of a step and that at its end: psph's own.  The mean
+alone is half a step late, and feeds slow waves too; the end alone shows more of fast waves than they move.
+What then still grows are waves that a step does not resolve; the viscosity of the solid calms them
+(psph.physics.solid.material.calming_viscosity).
 """
 
 import math
@@ -59,8 +64,8 @@ class Immersion:
             self._each(self._drift, columns, part, 1.0 / count, *seen, shown)
             solids.sum(time - dt + n * part, part)
             self._each(self._kick, columns, 0.5 * part, 0.5 * part, *seen)
+        self._each(self._show, columns, self.store["velocity"], shown, self.store["predicted_velocity"])
         self._each(self._kick, columns, 0.0, -0.5 * dt, *seen)
-        self._each(self._show, columns, self.store["predicted_velocity"], shown)
 
     def kick(self, dt: float) -> tuple[float, ...]:
         """Half of the new push of the fluid; returns what psph.simulation.integrator.kick does, of solids."""
@@ -88,8 +93,8 @@ class Immersion:
 def drift(
     first, last, columns, dt, share, view, position, velocity, predicted, acceleration, load, inertia, shown
 ):
-    """Half a kick by all forces and a drift of ``dt`` s; a ``share`` of the velocity on the way goes to its
-    what is ``shown`` to the fluid, and the velocity at the end is predicted."""
+    """Half a kick by all forces and a drift of ``dt`` s; a ``share`` of the velocity on the way goes to the
+    mean that is ``shown`` to the fluid, and the velocity at the end is predicted."""
     for k in range(np.uint64(first), np.uint64(last)):
         c = columns[k]
         push = scale(at(load, c), take(view, c).mass / inertia[c])
@@ -124,7 +129,8 @@ def kick(
 
 
 @elementwise
-def show(first, last, columns, predicted, shown):
-    """Let the fluid see a velocity, m/s."""
+def show(first, last, columns, velocity, mean, predicted):
+    """Let the fluid see what is half-way between the ``mean`` velocity of a step and that at its end, m/s."""
     for k in range(np.uint64(first), np.uint64(last)):
-        put(predicted, columns[k], at(shown, k))
+        c = columns[k]
+        put(predicted, c, scale(add(at(mean, k), at(velocity, c)), 0.5))

@@ -8,7 +8,7 @@ from mpi4py import MPI
 from psph.output.diagnostics import energies_and_momentum
 from psph.output.ledger import Ledger
 from psph.runs.setup import create_particles
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.simulation.immersion import substeps
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
@@ -89,6 +89,61 @@ def test_the_number_of_steps_follows_from_the_solid_and_the_step(tmp_path):
     longest = plan.solids[0].longest_step(plan.solid_smoothing_length, 1.0)
     for dt, count in ((0.1 * longest, 1), (longest, 1), (1.01 * longest, 2), (7.5 * longest, 8)):
         assert substeps(plan.solids, plan.solid_smoothing_length, dt, 1.0) == count
+
+
+PLATE = """
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+physics.sound_speed = 64.0
+[space]
+dimensions = 2
+spacing = 0.0125
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.1] }
+density = 1000.0
+pressure = "hydrostatic"
+[walls.sides]
+shape.union = [
+  { box = { lower = [-0.1, 0.0], upper = [0.0, 0.2] } },
+  { box = { lower = [1.0, 0.0], upper = [1.1, 0.2] } },
+]
+[solids.plate]
+shape.box = { lower = [-0.1125, -0.05], upper = [1.1125, 0.0] }
+clamped.union = [
+  { box = { lower = [-0.1125, -0.05], upper = [0.0, 0.0] } },
+  { box = { lower = [1.0, -0.05], upper = [1.1125, 0.0] } },
+]
+density = 2700.0
+young = 67.5e9
+poisson = 0.34
+"""
+"""A shallow pool on a plate of aluminium."""
+
+
+def swing(case, end):
+    """The energy of motion of the solid in J after ``end`` s."""
+    simulation = start(case)
+    while simulation.time < end:
+        simulation.step()
+    store = simulation.store
+    speed2 = (store.shown("velocity") ** 2).sum(axis=1)
+    return 0.5 * (store.shown("inertia") * speed2)[store.shown("group") == 1].sum()
+
+
+def test_a_stiff_plate_under_water_is_calm_and_without_viscosity_it_is_not(tmp_path):
+    calm, control = (draft(tmp_path, PLATE, *more) for more in ((), ("solids.plate.damping=1.0",)))
+    viscosity = make_plan(Scene(calm)).solids[0].viscosity
+    assert 5e4 < viscosity < 2e5 and make_plan(Scene(control)).solids[0].viscosity == 1.0
+    assert swing(calm, 0.06) < 1e-3  # it swings under the weight of the water, 7e-4 J at most
+    assert swing(control, 0.06) > 1e-2
+
+
+def test_what_lets_waves_of_a_solid_grow_is_said(tmp_path):
+    assert not any("plate" in one for one in check(Scene(draft(tmp_path, PLATE))))
+    few = draft(tmp_path, PLATE, "solids.plate.damping=1e4")
+    assert "solids.plate.damping: 10000 Pa s lets waves grow" in " ".join(check(Scene(few)))
+    light = draft(tmp_path, PLATE, "solids.plate.density=400.0")
+    assert "the fluid takes 44 % of its speed in a step" in " ".join(check(Scene(light)))
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,11 @@ reference in a second, and the step is as much shorter.  Without, the foot of a 
 FRICTION_STEP = 0.125
 """Δt ≤ 0.125 h²ρ₀/η, as of viscous fluids (Morris and others 1997)."""
 
-MADE_OF = ("density", "young", "poisson", "law", "damping", "hourglass", "yield_stress", "hardening")
+CALM = 0.08
+"""C in :func:`calming_viscosity`: a solid on a chain of fluid cells needs 0.06, whatever its thickness and
+frequency (tests/simulation/test_held_push.py)."""
+
+MADE_OF = ("density", "young", "poisson", "law", "hourglass", "yield_stress", "hardening")
 """The keys of a case that say what a solid is made of."""
 
 
@@ -67,6 +71,18 @@ def solid_of(
         yielding = LinearHardening(yield_stress, hardening)
     own = Metal(lame + 2.0 * shear / 3.0, shear, yielding) if yielding else LAWS[law](lame, shear)
     return Solid(name, own, density, speed, damping, hourglass * young)
+
+
+def calming_viscosity(young: float, poisson: float, share: float, dt: float) -> float:
+    """η in Pa s that calms the waves of a solid in a fluid which a step of the fluid does not resolve.
+
+    η = 2 C E′ Δt z, E′ = E/(1 − ν²), with z = ρ_f c Δt/(ρ_s H) the ``share`` of its speed that a solid of
+    thickness H loses in a step Δt = ``dt`` s to sound.  The push of the fluid is held for a step and answers
+    to velocities of the steps before, so a wave of the solid with ωΔt near 1 and more gets it with the wrong
+    sign, and grows by a part of z a step (docs/solids.md).  The stress of Kelvin and Voigt damps it by
+    ηω²Δt/2E′ = C z (ωΔt)².  What a step resolves keeps its energy to the second order in Δt.
+    """
+    return 2.0 * CALM * young / (1.0 - poisson**2) * dt * share
 
 
 HEAT = 0.9
