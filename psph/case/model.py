@@ -29,7 +29,7 @@ from psph.case.soils import Soil
 from psph.case.solids import Anvil, Solid
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
-from psph.physics.walls.conditions import CONDITIONS, DYNAMIC
+from psph.physics.walls.conditions import CONDITIONS, DYNAMIC, MIRROR
 from psph.smoothing import KERNELS
 
 if TYPE_CHECKING:  # made from the catalogues of effects and solutions
@@ -163,6 +163,15 @@ class Wall(Table):
         None,
         otherwise="the first fluid, or soil",
     )
+    displaces: bool = key("it takes the place of fluids where both are at the start, as a body does", False)
+
+    @model_validator(mode="after")
+    def _has_particles_to_displace(self) -> Self:
+        if self.displaces and self.condition == MIRROR:
+            raise PydanticCustomError(
+                "psph", "displaces is of a wall with particles, which a mirror has not; remove it"
+            )
+        return self
 
 
 class Frame(Table):

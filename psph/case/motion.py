@@ -185,6 +185,15 @@ class Series(Turning):
         """Whether it has angles."""
         return self.angle is not None
 
+    @property
+    def widest_swing(self) -> float:
+        """The largest angle of its rows, where some of them turn back; 0 where it turns on and on, rad."""
+        always = Schedule(0.0, math.inf, 0.0)
+        angles = [self._law.ways(always, time)[0][3] for time in self._law.times]
+        steps = np.diff(angles)
+        turns_back = (steps > 0.0).any() and (steps < 0.0).any()
+        return max(map(abs, angles)) if turns_back else 0.0
+
     def law(self) -> Tabulated:
         """How far it comes."""
         return self._law

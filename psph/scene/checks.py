@@ -65,9 +65,13 @@ def faults(scene: Scene) -> Iterator[str]:
         *body_faults(scene),
         *_exact_faults(scene),
     ]
-    told = [*period_faults(scene), *solid_faults(scene), *motion_faults(scene), *wave_faults(scene)]
-    places = places or told
-    for line in places or _state_faults(scene):  # an empty shape has no pressure
+    places = places or [
+        *period_faults(scene),
+        *solid_faults(scene),
+        *motion_faults(scene),
+        *wave_faults(scene),
+    ]
+    for line in places or _state_faults(scene):  # an empty shape has no pressure, and no motion
         yield f"{scene.case.file}: {line}"
 
 
@@ -185,9 +189,18 @@ def _site_faults(scene: Scene) -> Iterator[str]:
             yield (
                 f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
                 "one from the other: shape = { difference = { from = ..., minus = [...] } }"
+                f"{_or_displace(scene, one, other)}{meshes.sizes_of(scene, one, other)}"
                 f"{in_millimetres(scene, one, other)}"
             )
     yield from _particles_outside(scene)
+
+
+def _or_displace(scene: Scene, one: int, other: int) -> str:
+    """The other cure for a wall in a fluid."""
+    is_wall = scene.layout.first_wall <= other < scene.layout.first_body
+    if one >= scene.layout.fluids or not is_wall:
+        return ""
+    return f", or let the wall take the fluid's place: {scene.key_of(other)}.displaces = true"
 
 
 def _particles_outside(scene: Scene) -> Iterator[str]:
@@ -239,10 +252,12 @@ def _thin_walls(scene: Scene) -> Iterator[str]:
     need = layers_needed(scene)
     for material, (layers, site) in sorted(thinnest_walls(scene).items()):
         reach = scene.kernel.support * scene.case.space.smoothing
+        is_body = material >= scene.layout.first_body
+        what, other_cure = ("body", ", or space.spacing smaller") if is_body else ("wall", "")
         yield (
             f"{scene.key_of(material)}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
-            f"{shown(site)}, the kernel reaches over {reach:.3g}; make the wall at least "
-            f"{need} spacings ({need * scene.spacing:.6g} m) thick"
+            f"{shown(site)}, the kernel reaches over {reach:.3g}; make the {what} at least "
+            f"{need} spacings ({need * scene.spacing:.6g} m) thick{other_cure}"
         )
 
 

@@ -17,12 +17,19 @@ BURIED = 0.5
 
 
 def misplaced(scene: "Scene") -> Iterator[str]:
-    """A line for each point of a probe or a gauge outside the domain."""
+    """A line for each point of a probe or a gauge, and each whole section, outside the domain."""
     for key, point, _ in _points(scene, "position", "foot", "top"):
         if not all(low <= x <= up for low, x, up in zip(scene.lower, point, scene.upper)):
             yield (
                 f"{key}: {shown(point)} lies outside the domain {shown(scene.lower)} to "
                 f"{shown(scene.upper)}; move it inside"
+            )
+    for name, section in ((name, one.flow) for name, one in scene.case.gauges.items() if one.flow):
+        below = any(up < low for up, low in zip(section.upper, scene.lower))
+        if below or any(low > up for low, up in zip(section.lower, scene.upper)):
+            yield (
+                f"gauges.{name}.flow: a section from {shown(section.lower)} to {shown(section.upper)} lies "
+                f"outside the domain {shown(scene.lower)} to {shown(scene.upper)}; move it inside"
             )
 
 

@@ -78,6 +78,7 @@ class Scene:
             len(case.bodies),
             len(case.solids),
             tuple(map(list(case.solids).index, self.clamped)),
+            tuple(n for n, part in enumerate(self.parts) if getattr(part, "displaces", False)),
         )
         self.axis, self.planes = self.lattice.axis, self.lattice.planes
         mirrors = (bounds(wall.shape) for wall in case.walls.values() if wall.condition == MIRROR)

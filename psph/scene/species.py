@@ -139,8 +139,9 @@ class Layout:
     """Which material holds which site: fluids first, then elastic solids, their clamped parts, walls, and
     bodies, in the order of the case.
 
-    ``bodies`` of them, the last, take the place of fluids where both are.  ``clamps`` has the number of the
-    solid that each clamped part belongs to.
+    ``bodies`` of them, the last, take the place of fluids where both are, and so do the walls
+    ``displacing``, by their numbers.  ``clamps`` has the number of the solid that each clamped part
+    belongs to.
     """
 
     lattice: Lattice
@@ -149,6 +150,7 @@ class Layout:
     bodies: int = 0
     solids: int = 0
     clamps: tuple[int, ...] = ()
+    displacing: tuple[int, ...] = ()
 
     @property
     def movers(self) -> int:
@@ -187,9 +189,10 @@ class Layout:
             whole = masks[self.fluids + solid]
             masks[clamp] = masks[clamp] & whole
             masks[self.fluids + solid] = whole & ~masks[clamp]
-        if not self.bodies:
+        taking = [*(masks[wall] for wall in self.displacing), *masks[self.first_body :]]
+        if not taking:
             return masks
-        taken = reduce(np.logical_or, masks[self.first_body :])
+        taken = reduce(np.logical_or, taking)
         return [mask & ~taken for mask in masks[: self.fluids]] + masks[self.fluids :]
 
     def materials(self, first: int, last: int) -> np.ndarray:

@@ -12,6 +12,7 @@ from psph.scene.shapes import bounds
 from psph.scene.walls import unheld
 
 if TYPE_CHECKING:
+    from psph.case.motion import Motion
     from psph.scene.scene import Scene
 
 LONGEST_TANK = 300.0
@@ -25,6 +26,12 @@ MOST_SHORTER = 200.0
 """How many times friction may shorten the time steps that sound allows, without a warning: the slow flow
 between plates of run/cases/poiseuille.toml has 15."""
 
+QUICKEST_TURN = 20.0 * math.pi
+"""rad/s: ten turns a second.  Stirrers are slower; degrees or turns a minute taken for radians are not."""
+
+WIDEST_SWING = math.pi
+"""rad, to each side: a tank that rolls or a flap swings by less."""
+
 THOUSANDFOLD = 300.0
 """How many times as long as the domain, or the smallest shape, a shape is whose numbers are likely in mm."""
 
@@ -34,7 +41,7 @@ MOST_UNHELD = 0.5
 
 def slips(scene: "Scene") -> Iterator[str]:
     """A line for each number that is likely not meant."""
-    for kind in (_densities, _viscosities, _long_tank, _falls_out):
+    for kind in (_densities, _viscosities, _long_tank, _falls_out, _degrees):
         yield from kind(scene)
 
 
@@ -100,4 +107,31 @@ def _falls_out(scene: "Scene") -> Iterator[str]:
         yield (
             f"physics.gravity: {[*scene.gravity]} m/s² pulls towards {towards}, where no wall holds "
             f"{free:.0%} of the fluid: it falls for ever; turn gravity round, or give a wall there"
+        )
+
+
+def _degrees(scene: "Scene") -> Iterator[str]:
+    """A line for each turn that is likely in degrees, or in turns a minute."""
+    told = {scene.key_of(number): part for number, part in enumerate(scene.parts)}
+    for key, one in {**told, "frame": scene.case.frame}.items():
+        for part in getattr(one, "motion", None) or ():
+            yield from (f"{key}.motion.{line}" for line in _turns(part))
+
+
+def _turns(part: "Motion") -> Iterator[str]:
+    """The same of a part of a motion; a series that turns on and on may turn far."""
+    if (turn := part.rotation) and abs(w := turn.speed) > QUICKEST_TURN:
+        yield (
+            f"rotation.speed: {w:g} rad/s is {w / math.tau:.3g} turns a second; it is in rad/s: {w:g} "
+            f"degrees/s are {math.radians(w):.3g}, {w:g} turns a minute {w * math.tau / 60.0:.3g}"
+        )
+    if (swing := part.sinusoid) and abs(a := swing.angle or 0.0) > WIDEST_SWING:
+        yield (
+            f"sinusoid.angle: {a:g} rad is {math.degrees(a):.4g} degrees to each side; it is in rad: {a:g} "
+            f"degrees are {math.radians(a):.3g}"
+        )
+    if part.series and (a := part.series.widest_swing) > WIDEST_SWING:
+        yield (
+            f"series.angle: swings by {a:.3g} rad, {math.degrees(a):.4g} degrees, and back; for a column in "
+            'degrees give angle_unit = "degrees"'
         )

@@ -16,6 +16,11 @@ shape.box = { lower = [0.8, 0.8], upper = [1.1, 1.1] }
 density = 400.0
 """
 )
+THIN = """
+[bodies.board]
+shape.box = {{ lower = [0.3, 0.2], upper = [0.7, {:g}] }}
+density = 500.0
+"""
 ROPE = "bodies.raft.lines.rope={{at={at}, anchor={anchor}, stiffness=10.0{to}}}"
 
 
@@ -51,3 +56,11 @@ def test_points_and_inertia_that_a_body_hardly_has_are_warned_of(tmp_path, quiet
     assert told(quiet) == []
     [line] = told(override)
     assert says in line
+
+
+def test_a_thin_body_is_told_both_cures(tmp_path):
+    """A body of a given size does not grow thicker."""
+    [line] = check(Scene(draft(tmp_path, TANK + THIN.format(0.4))))
+    assert "bodies.board.shape: 2 layers of particles" in line
+    assert line.endswith("make the body at least 3 spacings (0.3 m) thick, or space.spacing smaller")
+    assert check(Scene(draft(tmp_path, TANK + THIN.format(0.5)))) == []

@@ -111,7 +111,15 @@ def test_a_wall_in_a_fluid_is_refused(tmp_path):
     text = WATER + "[walls.post]\nshape.box = { lower = [0.4, 0.0], upper = [0.7, 0.5] }"
     [line] = refused(tmp_path, text)
     assert line.startswith("case.toml: walls.post.shape: overlaps fluids.water at [0.45, 0.05]; ")
-    assert "subtract one from the other: shape = { difference = { from = ..., minus = [...] } }" in line
+    assert line.endswith(
+        "subtract one from the other: shape = { difference = { from = ..., minus = [...] } }, or let the wall take "
+        "the fluid's place: walls.post.displaces = true"
+    )
+    assert checked(tmp_path, text + "\ndisplaces = true") == []
+    [line] = refused(tmp_path, TANK, "walls.tank.displaces=true", "walls.tank.condition=mirror")
+    assert line.endswith(
+        "walls.tank: displaces is of a wall with particles, which a mirror has not; remove it"
+    )
 
 
 def test_walls_may_overlap(tmp_path):
@@ -166,6 +174,19 @@ def test_a_probe_outside_the_domain_is_refused(tmp_path):
     assert checked(tmp_path, TANK, "probes.P1.position=[0.5, 0.7]") == []
 
 
+def test_a_section_outside_the_domain_is_refused(tmp_path):
+    """All of it; one that reaches beyond the domain is cut there."""
+    section = "gauges.through.flow={{ lower = [{0}, {1}], upper = [{0}, {2}] }}"
+    for outside in ((9.0, 0.0, 0.5), (-0.4, 0.0, 0.5), (0.5, 0.8, 0.9), (0.5, -0.9, -0.4)):
+        [line] = refused(tmp_path, TANK, section.format(*outside))
+        x, low, up = outside
+        assert line == (
+            f"case.toml: gauges.through.flow: a section from [{x:g}, {low:g}] to [{x:g}, {up:g}] lies outside the "
+            "domain [-0.3, -0.3] to [1.3, 0.7]; move it inside"
+        )
+    assert checked(tmp_path, TANK, section.format(0.5, -0.9, 0.9)) == []
+
+
 @pytest.mark.parametrize(
     ("state", "pressure"), [("linear", -25000.0), ("linear", -30000.0), ("tait", -4000.0)]
 )
@@ -184,6 +205,16 @@ def test_an_unknown_sound_speed_is_refused(tmp_path):
     assert line.startswith("case.toml: physics.sound_speed: missing, and it cannot be derived")
     assert "give ten times the largest speed" in line
     assert checked(tmp_path, text, "physics.sound_speed=10") == []
+
+
+def test_a_spacing_larger_than_what_moves_is_told_without_ado(tmp_path, recwarn):
+    """No place is sought for a wall that holds no site."""
+    gate = (
+        "walls.gate={{ shape.box = {{ lower = [0.5, 0.5], upper = [0.6, 0.7] }}, motion.translation = {} }}"
+    )
+    [line] = refused(tmp_path, TANK, gate.format([0.0, 0.1]), "space.spacing=20.0")
+    assert line.startswith("case.toml: space.spacing: 20 m is larger than the fluids")
+    assert not recwarn.list
 
 
 def test_all_faults_of_place_are_found_at_once(tmp_path):

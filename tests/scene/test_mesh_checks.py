@@ -165,6 +165,7 @@ def test_a_wall_in_the_fluid_is_told(tmp_path):
     assert line.startswith(
         "case.toml: walls.post.shape: overlaps fluids.water at [0.55, 0.35, 0.05]; subtract"
     )
+    assert line.endswith("; parts/post.stl is 0.4 x 0.4 x 0.6 m")
 
 
 def test_a_thin_shell_is_told(tmp_path):

@@ -5,7 +5,7 @@ import pytest
 from drafts import TANK, WATER, draft
 
 from psph.fields import FLUID, WALL
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.scene import lattice as lattices
 
 BLOCK = """
@@ -204,3 +204,20 @@ density = 2.0
     found = everything(scene(tmp_path, text))
     assert found.position.tolist() == [[0.25], [0.75], [1.25], [1.75]]
     assert found.mass.tolist() == [1.0] * 4
+
+
+def test_a_wall_that_displaces_is_a_wall_that_was_subtracted(tmp_path):
+    """Particle for particle, in a shaken fluid; a body beside it takes its place too."""
+    post = "{ lower = [0.4, 0.0], upper = [0.7, 0.6] }"
+    buoy = "\n[bodies.buoy]\nshape.box = { lower = [0.1, 0.3], upper = [0.3, 0.6] }\ndensity = 500.0"
+    stands = SHAKEN + f"\n[walls.post]\nshape.box = {post}\n"
+    box = "shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }"
+    assert box in SHAKEN
+    hollow = f"shape.difference = {{ from.{box.removeprefix('shape.')}, minus = [{{ box = {post} }}] }}"
+    for rest in ("", buoy):
+        taking = scene(tmp_path, stands + "displaces = true" + rest)
+        drawn = scene(tmp_path, (stands + rest).replace(box, hollow))
+        assert check(taking) == check(drawn)
+        for name, array in vars(everything(drawn)).items():
+            assert np.array_equal(array, getattr(everything(taking), name)), name
+        assert taking.census.sizes[0] == 10 * 5 - 3 * 5 - bool(rest) * 2 * 2

@@ -108,3 +108,45 @@ def test_a_viscosity_that_shortens_the_time_steps_far_below_those_of_sound_is_wa
     assert not any("viscosity" in line for line in found[0])
     [told] = [line for line in found[1] if "fluids.water.viscosity" in line]
     assert "times shorter than sound does; it is the kinematic viscosity" in told
+
+
+@pytest.mark.parametrize(
+    ("right", "slip", "says"),
+    [
+        (
+            "rotation = { speed = 6.28, center = [0.0, 0.0] }",
+            "rotation = { speed = 360.0, center = [0.0, 0.0] }",
+            "rotation.speed: 360 rad/s is 57.3 turns a second; it is in rad/s: 360 degrees/s are 6.28, 360 turns a "
+            "minute 37.7",
+        ),
+        (
+            "sinusoid = { angle = 0.35, period = 1.5, center = [0.0, 0.0] }",
+            "sinusoid = { angle = -20.0, period = 1.5, center = [0.0, 0.0] }",
+            "sinusoid.angle: -20 rad is -1146 degrees to each side; it is in rad: -20 degrees are -0.349",
+        ),
+        (
+            "series = { file = 'roll.csv', angle = 'roll', angle_unit = 'degrees', center = [0.0, 0.0] }",
+            "series = { file = 'roll.csv', angle = 'roll', center = [0.0, 0.0] }",
+            "series.angle: swings by 10 rad, 573 degrees, and back; for a column in degrees give angle_unit = "
+            '"degrees"',
+        ),
+        (
+            "series = { file = 'roll.csv', angle = 'wheel', center = [0.0, 0.0] }",
+            "series = { file = 'roll.csv', angle = 'back', center = [0.0, 0.0] }",
+            "series.angle: swings by 9 rad, 515.7 degrees, and back; for a column in degrees give angle_unit = "
+            '"degrees"',
+        ),
+    ],
+)
+def test_degrees_taken_for_radians_are_warned_of(tmp_path, right, slip, says):
+    """A wheel that turns on and on may turn far; a swing that ends in the last row counts."""
+    (tmp_path / "roll.csv").write_text(
+        "time,roll,wheel,back\n0,0,0,0\n1,10,7,9\n2,-5,20,8\n", encoding="utf-8"
+    )
+    for motion, told in ((right, []), (slip, [f"walls.tank.motion.{says}"])):
+        found = checked(tmp_path, TANK, f"walls.tank.motion={{{motion}}}", "physics.sound_speed=1e6")
+        assert [line for line in found if "rad" in line] == told
+        framed = checked(tmp_path, TANK, f"frame.motion={{{motion}}}", "physics.sound_speed=1e6")
+        assert [line for line in framed if "rad" in line] == [
+            f"frame.motion.{line}" for line in [says] if told
+        ]

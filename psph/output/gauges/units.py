@@ -7,6 +7,9 @@ LENGTHS = ("level", "wetted", FRONT, "centre", "displacement")
 PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m", "reaction": "N", "reaction_moment": "N m"}
 """In 2D per metre of depth."""
 
+FLOWS = {"flow": ("m/s", "m²/s", "m³/s"), "mass_flow": ("kg/(m² s)", "kg/(m s)", "kg/s")}
+"""By the number of dimensions: per square metre of area in 1D, per metre of depth in 2D."""
+
 OF_TWO_WORDS = ("mass_flow", "reaction_moment")
 """Quantities whose name is not the first word of their column."""
 
@@ -29,6 +32,6 @@ def unit_of(field: str, dimensions: int) -> str:
         return PER_DEPTH[field] + ("/m" if dimensions == 2 else "")
     if field in MEASURED:
         return MEASURED[field].unit
-    others = {"turn": "rad", "spin": "rad/s", "flow": ("m/s", "m²/s", "m³/s"), "mass_flow": "kg/s"}
-    unit = others[field]
-    return unit[dimensions - 1] if isinstance(unit, tuple) else unit
+    if field in FLOWS:
+        return FLOWS[field][dimensions - 1]
+    return {"turn": "rad", "spin": "rad/s"}[field]

@@ -100,6 +100,17 @@ def size_faults(scene: "Scene") -> Iterator[str]:
             )
 
 
+def sizes_of(scene: "Scene", *parts: int) -> str:
+    """How large the geometry files of these parts are, to end a message with; or nothing."""
+    tables = tuple(f"{scene.key_of(part)}." for part in parts)
+    found = {f"{one.mesh.file} is {one.size}": None for one in scene.meshes if _stands_in(one, tables)}
+    return f"; {' and '.join(found)}" if found else ""
+
+
+def _stands_in(one: Drawn, tables: tuple[str, ...]) -> bool:
+    return any(key.startswith(tables) for key in one.keys)
+
+
 def site_faults(scene: "Scene") -> Iterator[str]:
     """Meshes that hold no site."""
     for one, sites in zip(scene.meshes, scene.mesh_sites):

@@ -90,7 +90,7 @@ def test_an_experiment_that_is_gone_is_left_out(gauged, tmp_path):
     [
         ("box.centre_x", ("centre", "x"), "m"),
         ("box.tension_left_line", ("tension", "left_line"), "N/m"),
-        ("sluice.mass_flow", ("mass_flow", ""), "kg/s"),
+        ("sluice.mass_flow", ("mass_flow", ""), "kg/(m s)"),
         ("sluice.flow", ("flow", ""), "m²/s"),
         ("in.pressure", ("pressure", ""), "Pa"),
         ("box.spin_z", ("spin", "z"), "rad/s"),
