@@ -163,7 +163,9 @@ class Wall(Table):
         None,
         otherwise="the first fluid, or soil",
     )
-    displaces: bool = key("it takes the place of fluids where both are at the start, as a body does", False)
+    displaces: bool = key(
+        "it takes the place of fluids and soils where both are at the start, as a body does", False
+    )
 
     @model_validator(mode="after")
     def _has_particles_to_displace(self) -> Self:

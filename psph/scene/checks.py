@@ -200,7 +200,7 @@ def _or_displace(scene: Scene, one: int, other: int) -> str:
     is_wall = scene.layout.first_wall <= other < scene.layout.first_body
     if one >= scene.layout.fluids or not is_wall:
         return ""
-    return f", or let the wall take the fluid's place: {scene.key_of(other)}.displaces = true"
+    return f", or let the wall take its place: {scene.key_of(other)}.displaces = true"
 
 
 def _particles_outside(scene: Scene) -> Iterator[str]:

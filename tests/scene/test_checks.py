@@ -113,7 +113,7 @@ def test_a_wall_in_a_fluid_is_refused(tmp_path):
     assert line.startswith("case.toml: walls.post.shape: overlaps fluids.water at [0.45, 0.05]; ")
     assert line.endswith(
         "subtract one from the other: shape = { difference = { from = ..., minus = [...] } }, or let the wall take "
-        "the fluid's place: walls.post.displaces = true"
+        "its place: walls.post.displaces = true"
     )
     assert checked(tmp_path, text + "\ndisplaces = true") == []
     [line] = refused(tmp_path, TANK, "walls.tank.displaces=true", "walls.tank.condition=mirror")

@@ -13,7 +13,7 @@ TICK, NUMBER, NAME = 0.05, 0.1, 0.33
 APART = 0.42
 """Inches along an edge that a number needs."""
 
-CLOSE = 0.2
+CLOSE = 0.3
 """Inches between two numbers that would touch."""
 
 
