@@ -104,6 +104,7 @@ OF_MATERIAL = (
     Field("penalty", "1", "1 in a wall that pushes back what comes too near, else 0"),
     Field("shear_modulus", "Pa", "shear modulus of what bears an evolved stress, else 0"),
     Field("wave_modulus", "Pa", "P-wave modulus by which a contact of solids and walls is stiff, else 0"),
+    Field("cone_tip", "Pa", "mean tension at which an evolved stress has no strength left, else 0"),
     Field("strength", "1", "number of the law that bounds an evolved stress, 0 where none does"),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""

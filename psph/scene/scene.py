@@ -258,6 +258,7 @@ class Scene:
                 self.layout.elastic_of(index),
                 getattr(self.parts[index], "shear_modulus", 0.0),
                 self.stressed.number_of(index),
+                self.stressed.cone_tip_of(index),
                 modulus_shown(self, index),
             )
             for index, (name, source, start) in enumerate(zip(self.names, shown_by(self), self.starts))

@@ -32,7 +32,8 @@ class Species(NamedTuple):
     constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body or elastic solid from 2
     on; ``elastic`` is the number of the elastic solid that it is of, or None; ``shear_modulus`` in Pa that of
     matter whose deviatoric stress evolves (psph.physics.stress), else 0; ``strength`` the number of the law
-    that bounds this stress among those of the scene from 1 on, 0 where none does; ``wave_modulus`` in Pa is
+    that bounds this stress among those of the scene from 1 on, 0 where none does, and ``cone_tip`` in Pa the
+    mean tension that leaves it no strength; ``wave_modulus`` in Pa is
     the P-wave modulus of an elastic solid, beside solids of a wall the largest of theirs, else 0.
     """
 
@@ -50,6 +51,7 @@ class Species(NamedTuple):
     elastic: int | None = None
     shear_modulus: float = 0.0
     strength: int = 0
+    cone_tip: float = 0.0
     wave_modulus: float = 0.0
 
     @property

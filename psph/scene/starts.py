@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def law_of(scene: "Scene", part):
     """The equation of state of a material: its own, or that of all."""
     if hasattr(part, "bulk_modulus"):
-        return Hooke(part.bulk_modulus)
+        return Hooke(part.bulk_modulus, scene.stressed.tension_of(part))
     name = getattr(part, "equation_of_state", None) or scene.case.physics.equation_of_state
     [law] = (entry.effect for entry in scene.case.catalogue.states if last_part(entry) == name)
     return law()

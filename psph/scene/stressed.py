@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from psph.scene.scene import Scene
 
 
+NEVER = 1e30
+"""Stands for a tension that leaves no strength where the strength is that of no pressure, Pa."""
+
+
 class Layer(NamedTuple):
     """Soil under its own weight, as below level ground.
 
@@ -82,6 +86,19 @@ class Stressed:
     def number_of(self, part: int) -> int:
         """The number of the law of a part from 1 on, 0 where none bounds its stress."""
         return 1 + self.laws.index(self._law(part)) if part in self.soils else 0
+
+    def tension_of(self, table) -> float:
+        """The largest mean tension that matter of a table bears, Pa."""
+        return table.tip(self._scene.dimensions) if isinstance(table, Soil) else math.inf
+
+    def cone_tip_of(self, part: int) -> float:
+        """The mean tension at which the shear strength of a part is gone, Pa; 0 of what bears no shear."""
+        if part not in self.tables:
+            return 0.0
+        friction, cohesion, _ = (
+            self.soils[part].cone(self._scene.dimensions) if part in self.soils else (0, 0, 0)
+        )
+        return cohesion / friction if friction else NEVER
 
     @property
     def diffusion(self) -> float:

@@ -56,6 +56,7 @@ def view(n=2, dim=2, seed=3):
         rheology=np.resize((1.0, 0.0, 2.0), n),
         shear_modulus=np.resize((4e4, 0.0, 7e4), n),
         strength=np.resize((1.0, 0.0, 2.0), n),
+        cone_tip=np.resize((3e3, 0.0, 0.0), n),
         deviator=tuple(rng.normal(size=n) * 500 for _ in range(dim * (dim + 1) // 2)),
     )
 

@@ -16,7 +16,7 @@ class Point:
         self.like = (0.0,) * dimensions
         self.position = position or self.like
         self.rest_density = soil.density
-        self.state = Hooke(soil.bulk_modulus)
+        self.state = Hooke(soil.bulk_modulus, soil.tip(dimensions))
         self.s = (0.0,) * (dimensions * (dimensions + 1) // 2)
         self.rho = self.state.density(pressure, soil.density, 0.0)
         self.plastic = 0.0

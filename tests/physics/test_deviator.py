@@ -76,9 +76,13 @@ def test_the_force_is_that_of_both_stresses_and_keeps_momentum(force, dim):
 def test_a_rough_wall_shows_what_stands_before_it_its_own_stress():
     p = view()
     s = tuple(np.array([v[0], 0.0]) for v in p.deviator)  # the wall bears none
-    rough = p._replace(deviator=s, no_slip=np.array([0.0, 1.0]))
+    pressed = p._replace(pressure=np.array([2e3, 2e3]), cone_tip=np.array([500.0, 0.0]))
+    rough = pressed._replace(deviator=s, no_slip=np.array([0.0, 1.0]))
     smooth = rough._replace(no_slip=np.zeros(2))
     one, two = (DeviatoricForce().push(*pair_of(q, 0, 1)) for q in (smooth, rough))
     assert two == pytest.approx(2.0 * np.array(one), rel=1e-14) and np.abs(one).max() > 0.0
     back = DeviatoricForce().push(*pair_of(rough, 1, 0))
     assert rough.mass[1] * np.array(back) == pytest.approx(-rough.mass[0] * np.array(two), rel=1e-12)
+    for wall, steep in ((4500.0, 2.0), (-900.0, 0.2), (9e4, 3.0)):  # (p + tip) of the wall over that of soil
+        other = DeviatoricForce().push(*pair_of(rough._replace(pressure=np.array([2e3, wall])), 0, 1))
+        assert other == pytest.approx((1.0 + steep) * np.array(one), rel=1e-12)

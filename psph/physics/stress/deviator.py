@@ -144,8 +144,9 @@ class DeviatoricForce(NamedTuple):
     """The divergence of the deviatoric stress, symmetric in the pair.
 
     a_i = Σ_j m_j (s_i/ρ_i² + s_j/ρ_j²) ∇W_ij; a wall without slip shows the particle before it s_j/ρ_j² =
-    s_i/ρ_i², others show none.  Gray, Monaghan & Swift (2001); with the pressure of
-    :class:`psph.physics.fluid.pressure.SymmetricPressure` it is the force of the whole stress.
+    s_i/ρ_i², of soil in proportion to the pressure (:func:`shown`), others show none.  Gray, Monaghan & Swift
+    (2001); with the pressure of :class:`psph.physics.fluid.pressure.SymmetricPressure` it is the force of the
+    whole stress.
     """
 
     conserves = ("momentum",)
@@ -179,11 +180,24 @@ class CorrectedDeviatoricForce(NamedTuple):
         return scale(add(scale(at_i, own), scale(at_j, other)), pair.m_dw_r)
 
 
+STEEPEST = 3.0
+"""Most by which the stress of a wall without slip may exceed that of the soil before it: of a layer one row
+thick the weight on the first row of the wall over that on its own."""
+
+
 @helper
 def shown(i, j):
-    """1/ρ_i² and 1/ρ_j² as factors of s_i and s_j; a wall without slip doubles that of the matter before it.
+    """1/ρ_i² and 1/ρ_j² as factors of s_i and s_j; a wall without slip shows what is before it that one's s.
 
-    What does not resist shear has s = 0.
+    Of soil in proportion to the pressure of the wall over that of the soil, both from the tip of its cone on:
+    so friction is that at the face, not that half a spacing before it.  What does not resist shear has s = 0.
     """
+    tip = i.cone_tip + j.cone_tip
+    at_i, at_j = max(i.pressure, 0.0) + tip, max(j.pressure, 0.0) + tip
+    steep_j, steep_i = min(at_j / (at_i + NO_PRESSURE), STEEPEST), min(at_i / (at_j + NO_PRESSURE), STEEPEST)
     own, other = i.specific_volume * i.specific_volume, j.specific_volume * j.specific_volume
-    return own * (1.0 + j.no_slip), other * (1.0 + i.no_slip)
+    return own * (1.0 + j.no_slip * steep_j), other * (1.0 + i.no_slip * steep_i)
+
+
+NO_PRESSURE = 1e-30
+"""Keeps no pressure from dividing by zero, Pa."""

@@ -55,7 +55,7 @@ class DruckerPrager(NamedTuple):
 
     def returned(self, i, s, rho):
         """s in Pa and ρ in kg/m^d on or within the yield surface, and the plastic strain of the way there."""
-        trial = self.bulk * np.log(rho / i.rest_density)
+        trial = max(self.bulk * np.log(rho / i.rest_density), -self.tension)
         water = self.pores * max(self.level - dot(i.position, self.up), 0.0)
         p = max(trial - water, -self.tension)
         q = np.sqrt(j2(s, i.position))
@@ -88,8 +88,8 @@ class Strength(NamedTuple):
     """Soil yields by friction and cohesion, and tears: its stress stays within a cone.
 
     By the law of its soil (:class:`DruckerPrager`), where the stress is predicted and after each kick.  The
-    pressure goes with the density, which is that of the elastic part of the volume: what opens as a crack, or
-    by dilatancy, is not in it.
+    density that goes with the pressure is that of the volume less what dilatancy has opened; a crack stays in
+    it, and has to close before the soil is pressed again (:class:`psph.physics.stress.bulk.Hooke`).
     """
 
     laws: tuple = (Unbounded(),)

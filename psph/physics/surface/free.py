@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.fields import Field as Declared
+from psph.formula import where
 from psph.physics.facts import Facts
 from psph.smoothing import weight
 
@@ -79,8 +80,11 @@ class TensionFloor(NamedTuple):
     ] = 0.98
 
     def in_scene(self, scene: Facts):
-        """None in a closed domain, where a fluid may be under tension."""
-        return self if scene.has_free_surface else None
+        """None in a closed domain, where a fluid may be under tension; beside soils the form that lets them
+        open."""
+        if not scene.has_free_surface:
+            return None
+        return FloorBesideSoils(self.least) if scene.stressed.laws else self
 
     def why_absent(self, scene: Facts):
         """What the fluid lacks."""
@@ -99,3 +103,25 @@ class TensionFloor(NamedTuple):
     def linear(self, scene: Facts):
         """It does not act on a small disturbance."""
         return None
+
+
+LOOSEST = 0.5
+"""Least density of soil that is torn apart, over its rest density."""
+
+
+class FloorBesideSoils(NamedTuple):
+    """Water that is torn apart holds no more tension than this, and walls hold none; soil may open.
+
+    The form of :class:`TensionFloor` in a scene with soils, which have their own limit of tension
+    (:class:`psph.physics.stress.strength.Strength`).
+    """
+
+    least: float
+
+    def limit_density(self, i, rho):
+        """ρ or its floor, kg/m^d."""
+        return max(rho, where(i.strength > 0.0, LOOSEST, self.least) * i.rest_density)
+
+    limit_wall_density = limit_density
+    bearing_density = TensionFloor.bearing_density
+    linear = TensionFloor.linear
