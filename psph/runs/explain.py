@@ -25,6 +25,7 @@ from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
 from psph.scene.moving import motion_lines
 from psph.scene.rheologies import rheology_lines
+from psph.scene.soils import soil_lines
 from psph.scene.solid_checks import solid_lines
 from psph.scene.waving import wave_lines
 from psph.simulation.calling import acts_in
@@ -135,6 +136,7 @@ def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
     yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
+    yield from soil_lines(scene)
     yield from solid_lines(scene)
     for body in scene.rigid_bodies:
         yield f"  body        {body.name}: {in_words(scene, body)}"

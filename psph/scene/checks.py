@@ -23,6 +23,7 @@ from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
+from psph.scene.soils import soil_warnings
 from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.unbearing import unbearing_warnings
 from psph.scene.units import in_millimetres, slips
@@ -332,6 +333,8 @@ def _transport_at_surface(scene: Scene) -> Iterator[str]:
 
 
 def _slow_sound(scene: Scene) -> Iterator[str]:
+    if not scene.case.fluids:
+        return  # soils have the waves of their moduli
     least = SOUND_OVER_SPEED * scene.undriven_speed
     if scene.sound_speed < least * (1.0 - TOLERANCE):
         yield (
@@ -355,7 +358,7 @@ def _moving(scene: Scene) -> Iterator[tuple[int, Any]]:
     return enumerate(scene.parts[: scene.layout.movers])
 
 
-OF_EVERY_SCENE = (motion_warnings, solid_warnings, _jitter, meshes.remarks, misfits)
+OF_EVERY_SCENE = (motion_warnings, soil_warnings, solid_warnings, _jitter, meshes.remarks, misfits)
 """What warns of the parts of any scene."""
 
 OF_FLUIDS = (

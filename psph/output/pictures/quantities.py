@@ -14,6 +14,8 @@ VELOCITY, SPEED, VORTICITY, GROUP = "velocity", "speed", "vorticity", "group"
 """The field, its size under the name that people use, its curl, and the number of a fluid or wall."""
 SAMPLES, FEW_SAMPLES = 24, 4
 """Frames over a run that the limits of the colours are taken from; those of a field that takes long."""
+VON_MISES, DEVIATOR = "von_mises", "deviator"
+"""The stress √(3J₂), where frames hold the deviator that it follows from, and no field of its own."""
 MATERIALS = ("fluids", "walls")
 """Tables of a case whose names ``group`` counts, in this order."""
 
@@ -51,10 +53,12 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
                 "",
                 (GROUP,),
                 _size_of(GROUP),
-                names=(*case.get("fluids", ()), *case.get("solids", ())),
+                names=(*case.get("fluids", ()), *case.get("soils", ()), *case.get("solids", ())),
                 bodies=tuple(case.get("bodies", ())),
             )
     saved = run.fields
+    if field == VON_MISES and DEVIATOR in saved and field not in saved:
+        return Quantity(field, "von Mises stress", run.unit(DEVIATOR), (DEVIATOR,), _von_mises)
     if field not in saved:
         known = ", ".join([*saved, SPEED, VORTICITY])
         raise NotThere(f"{run.path}: field: {field} is not saved; choose one of {known}")
@@ -71,16 +75,26 @@ def _size_of(field: str) -> Callable[[dict], np.ndarray]:
     return values
 
 
+def _von_mises(frame: dict) -> np.ndarray:
+    """√(3J₂) of a deviator by rows from the diagonal on; in 2D s_zz = −(s_xx + s_yy)."""
+    s = frame[DEVIATOR].astype(float)
+    plane = s.shape[1] == 3
+    on = s[:, [0, 2]] if plane else s[:, [0, 3, 5]]
+    off = s[:, [1]] if plane else s[:, [1, 2, 4]]
+    return np.sqrt(1.5 * ((on**2).sum(axis=1) + on.sum(axis=1) ** 2 + 2.0 * (off**2).sum(axis=1)))
+
+
 def _vorticity(case: dict) -> Quantity:
     """ω of the fluid: its component out of the plane in 2D, its size in 3D.  NotThere in 1D."""
     space = case["space"]
     dimensions = space["dimensions"]
     if dimensions == 1:
         raise NotThere("plot --field vorticity: a flow along one axis has none; choose another field")
-    if "fluids" not in case:
+    flowing = case.get("fluids", {}) | case.get("soils", {})
+    if not flowing:
         raise NotThere("plot --field vorticity: the run has no fluid; choose von_mises, or another field")
     periods = periods_of(case)
-    rest = np.array([material["density"] for material in case["fluids"].values()])
+    rest = np.array([material["density"] for material in flowing.values()])
 
     def values(frame: dict) -> np.ndarray:
         fluid = frame["kind"] == FLUID

@@ -1,0 +1,49 @@
+"""What the soils of a scene are, in words, and numbers of theirs that are likely a slip."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+LIGHTEST, HEAVIEST = 500.0, 4000.0
+"""kg/m³: peat with its pores, and ore."""
+
+MOST_SAG = 0.05
+"""Strain under its own weight above which soil is too soft to be taken for a solid ground."""
+
+RADIANS = 1.6
+"""Angles of friction below this many degrees, and above 0, are likely in radians: π/2 is 1.57."""
+
+
+def soil_lines(scene: "Scene") -> Iterator[str]:
+    """What ``explain`` says of the soils."""
+    for number, soil in scene.stressed.soils.items():
+        says = f"φ {soil.friction_angle:g}°, c {soil.cohesion:g} Pa, ψ {soil.dilatancy:g}°"
+        if soil.strength_reduction != 1.0:
+            says += f", strength divided by {soil.strength_reduction:g}"
+        bears = soil.tip(scene.dimensions)
+        yield (
+            f"  soil        {scene.names[number]}: {says}; slides on planes of "
+            f"{math.degrees(math.atan(soil.cone(2)[0])):.3g}°, bears {bears:.3g} Pa of mean tension; "
+            f"waves of {soil.wave_speed:.4g} m/s"
+        )
+
+
+def soil_warnings(scene: "Scene") -> Iterator[str]:
+    """A line for each number of a soil that is likely not meant."""
+    pull = math.hypot(*scene.gravity)
+    for number, soil in scene.stressed.soils.items():
+        key = scene.key_of(number)
+        if not LIGHTEST <= soil.density <= HEAVIEST:
+            yield f"{key}.density: {soil.density:g} kg/m³; dry sand has 1600, wet clay 2000"
+        if 0.0 < soil.friction_angle < RADIANS:
+            yield f"{key}.friction_angle: {soil.friction_angle:g} degrees; in radians? Sand has 30 to 40"
+        height = float(scene.census.top[number] - scene.census.bottom[number]) + scene.spacing
+        sag = soil.density * pull * height / (soil.density * soil.wave_speed**2)
+        if sag > MOST_SAG:
+            yield (
+                f"{key}.young: {soil.young:g} Pa, and its weight presses it together by {sag:.0%}; give "
+                f"{soil.young * sag / MOST_SAG:.2g} or more"
+            )
