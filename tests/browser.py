@@ -50,22 +50,22 @@ class Page(HTMLParser):
 def looked_at(page: Path, folder: Path) -> tuple[Path, list[str]]:
     """A picture of a page of 1000 by 1600 points, and what the console complains of."""
     picture = folder / "seen.png"
-    job = _chromium(
-        page, folder, f"--screenshot={picture}", "--window-size=1000,1600", "--enable-logging=stderr"
-    )
+    job = _chromium(page, folder, f"--screenshot={picture}", "--window-size=1000,1600")
     assert picture.is_file(), job.stderr
-    console = [line for line in job.stderr.splitlines() if ":CONSOLE:" in line]
-    return picture, [line for line in console if re.search(r"error|uncaught|failed", line, re.IGNORECASE)]
+    return picture, _complaints(job)
 
 
 def scripted(page: Path, folder: Path, script: str) -> dict:
-    """What ``script``, the body of an asynchronous function that may ``await wait(ms)``, returns in the page."""
+    """What ``script``, the body of an asynchronous function that may ``await wait(ms)``, returns in the page.
+
+    AssertionError where the console complains.
+    """
     tried = folder / "tried.html"
     head, _, tail = page.read_text(encoding="utf-8").rpartition("</body>")
     tried.write_text(f"{head}{TRIAL % script}{tail}", encoding="utf-8")
     job = _chromium(tried, folder, "--dump-dom", "--window-size=1000,1000")
     told = json.loads(unescape(re.findall(r"<title>(.*?)</title>", job.stdout, re.DOTALL)[0]))
-    assert "error" not in told, told
+    assert "error" not in told and not _complaints(job), (told, _complaints(job))
     return told
 
 
@@ -77,11 +77,17 @@ def colours(picture: Path) -> int:
     return sum(max(colour) - min(colour) > 40 for _, colour in pixels)
 
 
+def _complaints(job) -> list[str]:
+    console = [line for line in job.stderr.splitlines() if ":CONSOLE:" in line]
+    return [line for line in console if re.search(r"error|uncaught|failed", line, re.IGNORECASE)]
+
+
 def _chromium(page: Path, folder: Path, *options: str):
     return subprocess.run(
         [
             CHROMIUM,
             "--headless",
+            "--enable-logging=stderr",
             "--no-sandbox",
             "--use-gl=angle",
             "--use-angle=swiftshader",

@@ -132,8 +132,6 @@ def tank(tmp_path):
 
 @NEEDS_CHROMIUM
 def test_the_view_turns_under_the_mouse(tank, tmp_path):
-    picture, complaints = looked_at(tank, tmp_path)
-    assert complaints == [] and colours(picture) > 200
     told = scripted(tank, tmp_path, DRAGS)
     assert np.linalg.norm(told["before"]) == pytest.approx(np.linalg.norm(told["after"]), rel=1e-3)
     assert np.linalg.norm(np.subtract(told["before"], told["after"])) > 0.3

@@ -4,6 +4,7 @@ import json
 
 import pytest
 from browser import NEEDS_CHROMIUM, Page, colours, looked_at, scripted
+from long import LONG
 
 from psph.lab.battery import tables
 from psph.lab.battery.trials import BATTERY, OURS
@@ -116,17 +117,26 @@ def test_it_tells_what_was_measured(made):
         assert "Vortices &amp; more" in text and "numba 0.1" in text and "Decay." in text
 
 
+@LONG
 @NEEDS_CHROMIUM
 def test_a_browser_draws_it_without_an_error(made, tmp_path):
-    kind, page = made
+    _, page = made
     picture, complaints = looked_at(page, tmp_path)
     assert complaints == [] and colours(picture) > 5
-    if kind == "battery":
-        told = scripted(page, tmp_path, CELLS)
-        assert set(told["found"]) <= {*range(len(VERDICTS)), None} and len(set(told["found"])) > 2
 
 
-CELLS = 'return {found: document.getElementById("diagram").data[0].z.flat()};'
+@NEEDS_CHROMIUM
+def test_a_browser_maps_the_verdicts(tmp_path):
+    page = report(a_battery(tmp_path / "battery"))
+    told = scripted(page, tmp_path, CELLS)
+    assert set(told["found"]) <= {*range(len(VERDICTS)), None} and len(set(told["found"])) > 2
+    assert told["drawn"] > 0
+
+
+CELLS = """
+const plot = document.getElementById("diagram");
+return {found: plot.data[0].z.flat(), drawn: plot.querySelectorAll(".heatmaplayer image").length};
+"""
 
 
 def test_a_folder_without_any_is_said_to_be_none(tmp_path):
