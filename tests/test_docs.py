@@ -126,6 +126,26 @@ def test_the_glossary_is_in_order_and_of_words_that_pages_use():
     assert [term for term in terms if term.lower() not in others] == []
 
 
+ONE_WORD = {
+    "sound speed": "speed of sound",
+    "timestep": "time step",
+    "neighbor": "neighbour",
+    "ghost particle": "ghost",
+    "boundary particle": "wall particle",
+    "smoothing radius": "support",
+    "initial spacing": "spacing",
+    "gage": "gauge",
+}
+"""Words that the glossary has another for."""
+
+
+def test_each_term_is_one_word_everywhere():
+    of_others = "dynamic boundary particles (Dalrymple"  # what they call them
+    for page in (page for page in PAGES if "/gallery/" not in page):
+        said = text(page).replace(of_others, "").lower()
+        assert not [(page, word) for word in ONE_WORD if re.search(rf"\b{word}", said)]
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_links_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#]*)(#[^)]*)?\)", text(page)):
