@@ -129,6 +129,20 @@ def test_a_mesh_in_millimetres_is_refused_before_its_sites_are_visited(tmp_path,
     assert line.endswith("give scale = 0.001")
 
 
+def test_a_body_in_millimetres_is_refused_before_it_overlaps_all_else(tmp_path):
+    """Of 0.06 m, in few sites: it would lie over the fluid and the floor, which is not what is wrong."""
+    put(tmp_path, trimesh.creation.box(bounds=[[0, 0, 0], [60, 60, 60]]))
+    pool = (
+        POOL.split("[fluids")[0]
+        + """
+fluids.water.shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.5, 1.0, 0.5] }
+bodies.float = { shape.mesh = { file = "parts/post.stl", scale = 1.0 }, density = 500.0 }
+"""
+    )
+    [line] = refused(tmp_path, pool)
+    assert "60 x 60 x 60 m in size, 40 times the rest of the scene" in line and "scale = 0.001" in line
+
+
 @pytest.mark.parametrize("count", [0, 11, 13])
 def test_a_binary_file_with_a_wrong_count_is_damaged(tmp_path, count):
     put(tmp_path, POST)

@@ -90,8 +90,10 @@ def sites_in(scene: "Scene", one: Drawn) -> int:
 def size_faults(scene: "Scene") -> Iterator[str]:
     """Meshes in another unit than that of the scene, before its sites are visited."""
     rest = _rest(scene)
-    most = LARGER if math.prod(scene.lattice.counts) > MANY_SITES else FAR_LARGER
+    many = math.prod(scene.lattice.counts) > MANY_SITES
     for one in scene.meshes:
+        floats = any(key.startswith("bodies.") for key in one.keys)  # what is around it is no smaller
+        most = LARGER if many or floats else FAR_LARGER
         times = max(one.surface.size) / rest if rest else 0.0
         if times > most:
             yield (
