@@ -192,6 +192,7 @@ def _stability(options, comm) -> None:
     if options.compared:
         from psph.lab.battery.command import compare
         from psph.lab.battery.remedies import comparison
+        from psph.lab.battery.solid_kinds import SOLIDS
         from psph.lab.battery.wall_kinds import WALLS
         from psph.lab.maps.elastic import elastic
 
@@ -200,7 +201,10 @@ def _stability(options, comm) -> None:
         if options.compared == "elastic":
             elastic(comm, options.out)
             return
-        compare(comm, comparison() if options.compared == "remedies" else WALLS, options.out)
+        kinds = {"walls": WALLS, "solids": SOLIDS}
+        compare(
+            comm, comparison() if options.compared == "remedies" else kinds[options.compared], options.out
+        )
         return
     if options.battery or options.quick:
         from psph.lab.battery.command import battery

@@ -239,6 +239,13 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
         help="run hard cases with walls of every condition instead",
     )
     stability.add_argument(
+        "--solids",
+        dest="compared",
+        action="store_const",
+        const="solids",
+        help="run elastic solids in total and updated Lagrangian SPH instead",
+    )
+    stability.add_argument(
         "--elastic",
         dest="compared",
         action="store_const",

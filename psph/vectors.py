@@ -190,7 +190,7 @@ def _dyad(a, b):
     return unrolled("a, b", f"return {tuple_of(parts)}")
 
 
-def _by_dimension(one, two, three):
+def by_dimension(one, two, three):
     """A function of a matrix and more, the last argument a vector that tells the dimension."""
 
     def function(*args):
@@ -204,7 +204,7 @@ def _by_dimension(one, two, three):
     return function
 
 
-times = _by_dimension(
+times = by_dimension(
     lambda m, a: (m[0] * a[0],),
     lambda m, a: (m[0] * a[0] + m[1] * a[1], m[1] * a[0] + m[2] * a[1]),
     lambda m, a: (
@@ -215,7 +215,7 @@ times = _by_dimension(
 )
 """(m, a) → the vector m a."""
 
-adjugate = _by_dimension(
+adjugate = by_dimension(
     lambda m, a: (1.0,),
     lambda m, a: (m[2], -m[1], m[0]),
     lambda m, a: (
@@ -229,7 +229,7 @@ adjugate = _by_dimension(
 )
 """(m, a) → the symmetric matrix that is det(m) m⁻¹; ``a`` is any vector of the dimension."""
 
-determinant = _by_dimension(
+determinant = by_dimension(
     lambda m, a: m[0],
     lambda m, a: m[0] * m[2] - m[1] * m[1],
     lambda m, a: (
@@ -240,21 +240,21 @@ determinant = _by_dimension(
 )
 """(m, a) → det(m); ``a`` is any vector of the dimension."""
 
-less_diagonal = _by_dimension(
+less_diagonal = by_dimension(
     lambda m, s, a: (m[0] - s,),
     lambda m, s, a: (m[0] - s, m[1], m[2] - s),
     lambda m, s, a: (m[0] - s, m[1], m[2], m[3] - s, m[4], m[5] - s),
 )
 """(m, s, a) → m − s on the diagonal; ``a`` is any vector of the dimension."""
 
-symmetric_part = _by_dimension(
+symmetric_part = by_dimension(
     lambda m, a: (m[0],),
     lambda m, a: (m[0], 0.5 * (m[1] + m[2]), m[3]),
     lambda m, a: (m[0], 0.5 * (m[1] + m[3]), 0.5 * (m[2] + m[6]), m[4], 0.5 * (m[5] + m[7]), m[8]),
 )
 """(m, a) → (m + mᵀ)/2 of a matrix by rows; ``a`` is any vector of the dimension."""
 
-skew_part = _by_dimension(
+skew_part = by_dimension(
     lambda m, a: (0.0,),
     lambda m, a: (0.0, 0.5 * (m[1] - m[2]), 0.5 * (m[2] - m[1]), 0.0),
     lambda m, a: (
@@ -270,14 +270,14 @@ skew_part = _by_dimension(
     ),
 )
 """(m, a) → (m − mᵀ)/2 of a matrix by rows, by rows; ``a`` is any vector of the dimension."""
-transposed = _by_dimension(
+transposed = by_dimension(
     lambda m, a: (m[0],),
     lambda m, a: (m[0], m[2], m[1], m[3]),
     lambda m, a: (m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]),
 )
 """(m, a) → mᵀ of a matrix by rows; ``a`` is any vector of the dimension."""
 
-matrix_product = _by_dimension(
+matrix_product = by_dimension(
     lambda m, s, a: (m[0] * s[0],),
     lambda m, s, a: (
         m[0] * s[0] + m[1] * s[1],
@@ -299,14 +299,14 @@ matrix_product = _by_dimension(
 )
 """(m, s, a) → the matrix m s by rows, of a matrix by rows and a symmetric one."""
 
-norm_squared = _by_dimension(
+norm_squared = by_dimension(
     lambda m, a: m[0] * m[0],
     lambda m, a: m[0] * m[0] + 2.0 * (m[1] * m[1]) + m[2] * m[2],
     lambda m, a: (m[0] * m[0] + m[3] * m[3] + m[5] * m[5]) + 2.0 * (m[1] * m[1] + m[2] * m[2] + m[4] * m[4]),
 )
 """(m, a) → the sum of the squares of all entries of m; ``a`` is any vector of the dimension."""
 
-transposed_product = _by_dimension(
+transposed_product = by_dimension(
     lambda m, n, a: (m[0] * n[0],),
     lambda m, n, a: (
         m[0] * n[0] + m[2] * n[2],
@@ -324,7 +324,7 @@ transposed_product = _by_dimension(
 )
 """(m, n, a) → the symmetric part of mᵀ n, of two matrices by rows; ``a`` is any vector of the dimension."""
 
-product_transposed = _by_dimension(
+product_transposed = by_dimension(
     lambda m, n, a: (m[0] * n[0],),
     lambda m, n, a: (
         m[0] * n[0] + m[1] * n[1],
@@ -342,7 +342,7 @@ product_transposed = _by_dimension(
 )
 """(m, n, a) → the symmetric part of m nᵀ, of two matrices by rows; ``a`` is any vector of the dimension."""
 
-applied = _by_dimension(
+applied = by_dimension(
     lambda m, a: (m[0] * a[0],),
     lambda m, a: (m[0] * a[0] + m[1] * a[1], m[2] * a[0] + m[3] * a[1]),
     lambda m, a: (
@@ -353,7 +353,7 @@ applied = _by_dimension(
 )
 """(m, a) → the vector m a, of a matrix by rows."""
 
-cofactor = _by_dimension(
+cofactor = by_dimension(
     lambda m, a: (1.0,),
     lambda m, a: (m[3], -m[2], -m[1], m[0]),
     lambda m, a: (
@@ -370,14 +370,14 @@ cofactor = _by_dimension(
 )
 """(m, a) → det(m) m⁻ᵀ of a matrix by rows; ``a`` is any vector of the dimension."""
 
-first_row = _by_dimension(
+first_row = by_dimension(
     lambda m, a: (m[0],),
     lambda m, a: (m[0], m[1]),
     lambda m, a: (m[0], m[1], m[2]),
 )
 """(m, a) → the first row of a matrix; ``a`` is any vector of the dimension."""
 
-trace = _by_dimension(
+trace = by_dimension(
     lambda m, a: m[0],
     lambda m, a: m[0] + m[2],
     lambda m, a: m[0] + m[3] + m[5],

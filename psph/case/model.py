@@ -201,7 +201,9 @@ class Case(Table):
         "Python files in the folder of the case or below that bring effects, motions or regions", ()
     )
     scheme: Literal[tuple(SCHEMES)] = key(
-        "stable: the default; sph: plain SPH; ssph: the paper's; for keys that the case does not give", STABLE
+        "stable: the default; sph: plain SPH; ssph: the paper's; solid: for updated Lagrangian solids; "
+        "for keys that the case does not give",
+        STABLE,
     )
     profile: Literal[tuple(PROFILES)] | None = key(
         "changes of the default scheme by one name", None, otherwise="no profile"
@@ -269,8 +271,19 @@ class Case(Table):
 
     @property
     def flowing(self) -> dict[str, Any]:
-        """What moves freely and finds its neighbours in space, by name: fluids, then soils."""
-        return {**self.fluids, **self.soils}
+        """What moves freely and finds its neighbours in space, by name: fluids, soils, then solids that are
+        updated Lagrangian."""
+        return {**self.fluids, **self.soils, **self.updated}
+
+    @property
+    def updated(self) -> dict[str, Solid]:
+        """The solids whose neighbours are those of the present, by name."""
+        return {name: solid for name, solid in self.solids.items() if solid.is_updated}
+
+    @property
+    def referred(self) -> dict[str, Solid]:
+        """The solids whose neighbours are those of the start, by name: total Lagrangian."""
+        return {name: solid for name, solid in self.solids.items() if not solid.is_updated}
 
     @property
     def boundaries(self) -> dict[str, Wall | Body]:
@@ -346,7 +359,7 @@ class Case(Table):
         end, zeros = self.time.end, (0.0,) * self.space.dimensions
         _fill(self.space, origin=zeros)
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
-        for matter in (*self.flowing.values(), *self.solids.values()):
+        for matter in (*self.flowing.values(), *self.referred.values()):
             _fill(matter, velocity=zeros, velocity_center=zeros)
         for gauge in self.gauges.values():
             _fill(gauge, every=self.output.probes)

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-STABLE, PLAIN = "stable", "sph"
+STABLE, PLAIN, SOLID = "stable", "sph", "solid"
 
 SCHEMES: dict[str, dict[str, Any]] = {
     STABLE: {
@@ -32,9 +32,21 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "space.smoothing": 1.2,
         "physics.pressure_gradient": "minimum",
     },
+    SOLID: {
+        "space.kernel": "wendland-c2",
+        "space.smoothing": 1.4,
+        "time.cfl": 0.4,
+        "physics.pressure_gradient": "symmetric",
+        "physics.artificial_viscosity": {"alpha": 1.0, "beta": 2.0},
+        "physics.artificial_stress": 0.3,
+    },
 }
 """The default scheme, and the two of Acta Phys. Sin. 61, 224701 (2012): plain SPH, eqs. (5) to (7)
-with (9), and SSPH, (13) and (15).  docs/stability.md has the results of each."""
+with (9), and SSPH, (13) and (15): docs/stability.md has the results of each.  The last is that of solids that
+are updated Lagrangian, with the friction and the artificial stress of Gray, Monaghan & Swift (2001)."""
+
+OF_FLUIDS = tuple(name for name in SCHEMES if name != SOLID)
+"""Those for fluids."""
 
 SURFACE = "physics.free_surface"
 """With the paper's free-surface condition, eq. (14), its pressure gradient is eq. (6)."""

@@ -1,13 +1,15 @@
 """Elastic solids of a case, and the rules between their keys."""
 
+import math
 from collections.abc import Iterator
-from typing import Literal
+from typing import ClassVar, Literal
 
 from psph.case.findings import Finding, one_sided
 from psph.case.keys import Name, Table, Vector, key
 from psph.case.matter import Matter
 from psph.case.shapes import Shape
-from psph.physics.solid.laws import LAWS
+from psph.case.updated import TOTAL, UPDATED, updated
+from psph.physics.solid.laws import LAWS, moduli
 
 
 class SolidLoad(Table):
@@ -45,12 +47,17 @@ class Anvil(Table):
 
 
 class Solid(Matter):
-    """An elastic solid: total Lagrangian SPH."""
+    """An elastic solid: total or updated Lagrangian SPH."""
 
     velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
     density: float = key("density of the undeformed solid", unit="kg/m3", gt=0)
     young: float = key("Young's modulus E", unit="Pa", gt=0)
     poisson: float = key("Poisson's ratio ν; in 2D the solid is in plane strain", unit="1", gt=-1, lt=0.5)
+    description: Literal[TOTAL, UPDATED] = key(
+        "total Lagrangian: its neighbours are those of the start, and its stress is that of its deformation; "
+        "updated: its neighbours are those of the present, and its stress follows the flow (Jaumann)",
+        TOTAL,
+    )
     law: Literal[tuple(LAWS)] = key(
         "saint-venant-kirchhoff: Hooke's law for large rotations; neo-hookean: rubber", next(iter(LAWS))
     )
@@ -83,6 +90,33 @@ class Solid(Matter):
     loads: dict[Name, SolidLoad] = key("forces on parts of the solid, by name", {})
     load_rise: float = key("time in which the loads grow to their full size", 0.0, unit="s", ge=0)
 
+    viscosity: ClassVar = 0.0
+    rheology: ClassVar = None
+    equation_of_state: ClassVar = None
+    pressure: ClassVar = 0.0
+    rubs: ClassVar = False
+
+    @property
+    def is_updated(self) -> bool:
+        """Whether its neighbours are those of the present."""
+        return self.description == UPDATED
+
+    @property
+    def shear_modulus(self) -> float:
+        """G, Pa."""
+        return moduli(self.young, self.poisson)[1]
+
+    @property
+    def bulk_modulus(self) -> float:
+        """K, Pa."""
+        lame, shear = moduli(self.young, self.poisson)
+        return lame + 2.0 * shear / 3.0
+
+    @property
+    def wave_speed(self) -> float:
+        """Of the fastest wave, √((K + 4G/3)/ρ), m/s."""
+        return math.sqrt((self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus) / self.density)
+
     @property
     def held(self) -> "Solid":
         """Its clamped part, at rest."""
@@ -108,7 +142,7 @@ def elastic(case) -> Iterator[Finding]:
             yield CONTACT, ..., "nothing feels it but elastic solids; remove it, or give [solids.NAME]"
         return
     yield from _yielding(case)
-    yield from _meeting(case)
+    yield from updated(case) if case.updated else _meeting(case)
     for name, anvil in case.anvils.items():
         if not any(anvil.normal):
             yield ("anvils", name, "normal"), anvil.normal, "has no direction; give the way out of the plane"

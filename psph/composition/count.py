@@ -5,7 +5,7 @@ neighbour.  The same operation on the same numbers counts once, and what no sum 
 """
 
 import operator
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from psph.composition import terms
@@ -52,6 +52,26 @@ def flops_per_pair(
     a = added(a, terms.push(effects, i, j, pair))
     totals = terms.gather_each(reductions, totals, i, j, pair)
     return trace.operations((rate, a, totals))
+
+
+def flops_of(formula, kernel, fields: Mapping[str, tuple[float, ...]], shared: Mapping[str, float]) -> int:
+    """Operations of ``formula(kernel, i, j)`` on something of the neighbour j, and of the sum that takes it.
+
+    ``fields`` are what is read of a particle, with the components that i has beyond j; ``shared`` what all
+    have.
+    """
+    trace = _Trace()
+    known = {name: trace.leaf(value, False) for name, value in shared.items()}
+    i, j = (
+        view_of((*fields, *known))(
+            *(tuple(trace.leaf(x * share, varies) for x in values) for values in fields.values()),
+            *known.values(),
+        )
+        for share, varies in ((1.0, False), (0.0, True))
+    )
+    found = formula(trace.parameters(kernel), i, j)
+    sums = trace.running((0.0,) * len(found))
+    return trace.operations(tuple(a + b for a, b in zip(sums, found)))
 
 
 def _view(trace: "_Trace", seen, dimensions: int, known: dict, apart: float, varies: bool):

@@ -336,7 +336,7 @@ def _slow_sound(scene: Scene) -> Iterator[str]:
     if not scene.case.fluids:
         return  # soils have the waves of their moduli
     least = SOUND_OVER_SPEED * scene.undriven_speed
-    if scene.sound_speed < least * (1.0 - TOLERANCE):
+    if scene.case.fluids and scene.sound_speed < least * (1.0 - TOLERANCE):
         yield (
             f"physics.sound_speed: {scene.sound_speed:g} is below ten times the expected speed, "
             f"{scene.undriven_speed:.3g} m/s, so density will vary by more than 1 %; "

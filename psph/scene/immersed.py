@@ -18,4 +18,5 @@ def shown_by(scene: "Scene") -> list[int]:
     if not fluids:
         return [*range(layout.movers), *layout.clamps, *[0] * len(scene.boundaries)]
     continued = [fluids.index(one.continues) for one in scene.boundaries.values()]
-    return [*range(layout.fluids), *[0] * (layout.first_wall - layout.fluids), *continued]
+    held = (of if of < layout.fluids else 0 for of in layout.clamps)
+    return [*range(layout.fluids), *[0] * (layout.movers - layout.fluids), *held, *continued]

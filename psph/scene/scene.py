@@ -62,10 +62,12 @@ class Scene:
         self.walls = {name: wall for name, wall in case.walls.items() if wall.condition != MIRROR}
         self.boundaries: dict[str, Any] = {**self.walls, **case.bodies}
         self.anvils = anvils_of(case)
-        self.clamped = {name: solid for name, solid in case.solids.items() if solid.clamped}
+        self.clamped = {
+            name: solid for name, solid in (case.updated | case.referred).items() if solid.clamped
+        }
         held = (solid.held for solid in self.clamped.values())
-        moving = (*case.flowing.values(), *case.solids.values())
-        self.parts: tuple[Any, ...] = (*moving, *held, *self.boundaries.values())
+        moving = case.flowing | case.referred
+        self.parts: tuple[Any, ...] = (*moving.values(), *held, *self.boundaries.values())
         shapes = tuple(part.shape for part in self.parts)
         axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
         self.mirror_planes = planes_of(case)
@@ -76,8 +78,8 @@ class Scene:
             shapes,
             len(case.flowing),
             len(case.bodies),
-            len(case.solids),
-            tuple(map(list(case.solids).index, self.clamped)),
+            len(case.referred),
+            tuple(map(list(moving).index, self.clamped)),
             tuple(n for n, part in enumerate(self.parts) if getattr(part, "displaces", False)),
         )
         self.axis, self.planes = self.lattice.axis, self.lattice.planes
@@ -290,7 +292,7 @@ class Scene:
     def names(self) -> tuple[str, ...]:
         """Of all materials, in the order of ``layout``."""
         held = (f"{name} (clamped)" for name in self.clamped)
-        return (*self.case.flowing, *self.case.solids, *held, *self.boundaries)
+        return (*self.case.flowing, *self.case.referred, *held, *self.boundaries)
 
     @cached_property
     def species_in_motion(self) -> tuple[Any, ...]:

@@ -29,14 +29,14 @@ SLOWEST = 2.0
 
 def solid_faults(scene: "Scene") -> Iterator[str]:
     """A line for each solid that is too thin for any stress, and for each load that pulls nothing."""
-    for number, name in enumerate(scene.case.solids, scene.layout.fluids):
+    for number, name in enumerate(scene.case.referred, scene.layout.fluids):
         wide, axis = across(scene, number - scene.layout.fluids)
         if wide == 1:
             yield (
                 f"solids.{name}.shape: one particle thick along {AXES[axis]}, where no strain is known; make "
                 f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
             )
-        for load, table in scene.case.solids[name].loads.items():
+        for load, table in scene.case.referred[name].loads.items():
             if not _pulls(scene, number, table.shape):
                 yield f"solids.{name}.loads.{load}.shape: no particle of the solid lies in it; move it there"
 
@@ -44,12 +44,12 @@ def solid_faults(scene: "Scene") -> Iterator[str]:
 def solid_warnings(scene: "Scene") -> Iterator[str]:
     """A line for each number of a solid that is likely not meant."""
     case = scene.case
-    if len(case.solids) > 1 and case.physics.contact is None and not case.flowing:
+    if len(case.referred) > 1 and case.physics.contact is None and not case.flowing:
         yield (
-            f"solids: {', '.join(case.solids)} do not feel each other, and run through each other where they "
-            "meet; give physics.contact = {}"
+            f"solids: {', '.join(case.referred)} do not feel each other, and run through each other where "
+            "they meet; give physics.contact = {}"
         )
-    for number, (name, table) in enumerate(scene.case.solids.items(), scene.layout.fluids):
+    for number, (name, table) in enumerate(scene.case.referred.items(), scene.layout.fluids):
         wide, axis = across(scene, number - scene.layout.fluids)
         if wide < FEWEST:
             yield (
@@ -103,14 +103,10 @@ def _pulls(scene: "Scene", solid: int, shape) -> bool:
 
 def solid_lines(scene: "Scene") -> Iterator[str]:
     """What the solids are, in words, for `explain`."""
-    for number, (name, table) in enumerate(scene.case.solids.items(), scene.layout.fluids):
+    for number, (name, table) in enumerate(scene.case.referred.items(), scene.layout.fluids):
         one = scene.elastic_solids[number - scene.layout.fluids]
         wide, axis = across(scene, number - scene.layout.fluids)
-        held = [
-            n
-            for n, solid in enumerate(scene.layout.clamps, scene.layout.movers)
-            if solid == number - scene.layout.fluids
-        ]
+        held = [n for n, of in enumerate(scene.layout.clamps, scene.layout.movers) if of == number]
         clamped = sum(int(scene.census.sizes[n]) for n in held)
         count = int(scene.census.sizes[number]) + clamped
         yield (

@@ -23,7 +23,7 @@ def solids_of(scene: "Scene") -> tuple[Solid, ...]:
             damping=_damping(scene, number, table),
             johnson_cook=table.johnson_cook and dict(table.johnson_cook),
         )
-        for number, (name, table) in enumerate(scene.case.solids.items())
+        for number, (name, table) in enumerate(scene.case.referred.items())
     )
 
 

@@ -142,8 +142,8 @@ class Layout:
     bodies, in the order of the case.
 
     ``bodies`` of them, the last, take the place of fluids where both are, and so do the walls
-    ``displacing``, by their numbers.  ``clamps`` has the number of the solid that each clamped part
-    belongs to.
+    ``displacing``, by their numbers.  ``clamps`` has the number of the material that each clamped
+    part belongs to.
     """
 
     lattice: Lattice
@@ -168,7 +168,8 @@ class Layout:
         """The number of the elastic solid that a material is of, or None."""
         if not self.fluids <= material < self.first_wall:
             return None
-        return material - self.fluids if material < self.movers else self.clamps[material - self.movers]
+        whole = material if material < self.movers else self.clamps[material - self.movers]
+        return whole - self.fluids if whole >= self.fluids else None
 
     @property
     def first_body(self) -> int:
@@ -187,10 +188,10 @@ class Layout:
         """For each material, True at the sites that it claims."""
         tolerance = TOLERANCE * self.lattice.spacing
         masks = [np.broadcast_to(inside(s, grid, tolerance), shape) for s in self.shapes]
-        for clamp, solid in enumerate(self.clamps, self.movers):
-            whole = masks[self.fluids + solid]
+        for clamp, of in enumerate(self.clamps, self.movers):
+            whole = masks[of]
             masks[clamp] = masks[clamp] & whole
-            masks[self.fluids + solid] = whole & ~masks[clamp]
+            masks[of] = whole & ~masks[clamp]
         taking = [*(masks[wall] for wall in self.displacing), *masks[self.first_body :]]
         if not taking:
             return masks

@@ -96,7 +96,7 @@ def _falls_out(scene: "Scene") -> Iterator[str]:
     """Fluid below which there is no wall, no plane of symmetry and no period: it falls for ever."""
     axis = int(np.abs(scene.height_gravity).argmax())
     pull = scene.height_gravity[axis]
-    if not pull:
+    if not pull or scene.case.updated:  # a solid hangs on its clamp, or is thrown
         return
     sign = int(math.copysign(1, pull))
     if (axis, sign) in ((plane.axis, plane.side) for plane in scene.mirror_planes):

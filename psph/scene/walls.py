@@ -66,7 +66,7 @@ def thinnest_walls(scene) -> Thin:
     count in the same way: fluid may come to them.
     """
     need, wet, dry = layers_needed(scene), Thin(), Thin()
-    if not (scene.walls or scene.case.flowing and scene.case.solids):
+    if not (scene.walls or scene.case.flowing and scene.case.referred):
         return wet
     fluids = scene.layout.fluids
     for first, last in scene.lattice.chunks():

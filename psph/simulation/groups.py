@@ -17,7 +17,8 @@ def laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
     reasons: dict[tuple[type, Any], dict[str, None]] = {}
     for (name, fluid), one in zip(scene.case.flowing.items(), scene.species):
         own = fluid.equation_of_state and f"fluids.{name}.equation_of_state = {fluid.equation_of_state}"
-        own = f"soils.{name}.young" if name in scene.case.soils else own
+        if one.shear_modulus:
+            own = f"{scene.case.table_of(name)}.{name}.young"
         reasons.setdefault((type(one.law), one.law), {})[own or shared] = None
     for one in scene.species[len(reasons) and len(scene.species) :]:  # of solids alone: none bears a pressure
         reasons.setdefault((type(one.law), one.law), {})[shared] = None

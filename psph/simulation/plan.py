@@ -28,7 +28,7 @@ from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.contact import contact_of
-from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, SMOOTHING
+from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING
 from psph.physics.solid.material import STEP, remembers
 from psph.physics.solid.plastic import OF_PLASTIC, Lasting
 from psph.scene.bodies import body_step
@@ -373,7 +373,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
 def solid_fields(scene) -> tuple[Field, ...]:
     """What particles carry because the scene has solids, and these have loads or stand in a fluid."""
     if not scene.elastic_solids:
-        return ()
+        followed = any(gauge.displacement for gauge in scene.case.gauges.values())
+        return (REFERENCE,) if followed else ()
     loaded = any(table.loads for table in scene.case.solids.values())
     lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
     wet = [INERTIA] if scene.case.flowing else []

@@ -88,6 +88,14 @@ def reference_pair(weights, i, j, softening):
     return ReferencePair(apart, -j.volume * slope_over_r(weights.kernel, r, 1.0 / r))
 
 
+@register_jitable
+def inner_force(weights, i, j, pair, stiffness):
+    """A neighbour's share of ρ₀ a_i, N/m³: V_j g_ij [(B_i + B_j) X_ij − αE_Y x_ij]."""
+    x_ij = nearest_image(subtract(i.position, j.position), weights.periods)
+    push = subtract(applied(add(i.flux, j.flux), pair.apart), scale(x_ij, stiffness))
+    return scale(push, pair.weight)
+
+
 @compiled
 def sum_moments(first, last, weights, rows, moment):
     """L_i of the rows ``first`` to ``last``, into ``moment``; zeros where neighbours do not span space."""
@@ -164,9 +172,7 @@ def sum_inner_forces(first, last, matter, weights, rows, force):
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
             pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
-            x_ij = nearest_image(subtract(i.position, j.position), weights.periods)
-            push = subtract(applied(add(i.flux, j.flux), pair.apart), scale(x_ij, stiffness))
-            sums = add(sums, scale(push, pair.weight))
+            sums = add(sums, inner_force(weights, i, j, pair, stiffness))
         put(force, k, total(sums))
 
 

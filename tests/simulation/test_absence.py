@@ -120,7 +120,7 @@ BESIDE = {
 
 def calling_for(entry) -> list[str]:
     """Overrides that call for the effect of an entry."""
-    key, _, choice = entry.key.partition("=")
+    key, _, choice = entry.key.partition("|")[0].partition("=")
     if key.startswith("walls."):
         return [*STICKY, *(["walls.side.no_slip=false", f"walls.side.condition={choice}"] if choice else [])]
     if choice:
@@ -143,7 +143,7 @@ def calling_for(entry) -> list[str]:
 
 def not_calling_for(entry) -> list[str]:
     """Overrides of a scene that lacks the effect of an entry; none do where it is a choice."""
-    key, _, choice = entry.key.partition("=")
+    key, _, choice = entry.key.partition("|")[0].partition("=")
     if "*" in key:
         return []
     others = [e.key for e in without(entry) if choice and e.key.startswith(f"{key}=")]

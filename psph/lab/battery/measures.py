@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from psph.fields import FLUID
+from psph.lab.battery import solid_measures
 from psph.lab.battery.order import checkerboard, nearest, pieces, voids
 from psph.lab.battery.walls import lost
 from psph.lab.study.experiment import path_of, read_experiment
@@ -41,6 +42,7 @@ MEASURES = {
     "energy_left": "energy of motion over that of the exact solution, where it differs most",
     "exact_error": "velocity against the exact solution, L2",
     "ghia_error": "velocity on the centre lines against Ghia and others, rms over the lid's",
+    **solid_measures.OF_SOLIDS,
 }
 """Every measure in words; a run has those that apply to its case."""
 
@@ -59,6 +61,8 @@ grown: it was pushed."""
 def measure(folder: Path, case, speed: float) -> dict[str, float]:
     """All measures of the run in ``folder``; ``speed`` is the case's own, m/s."""
     run, scene = Run(folder), Scene(case)
+    if case.solids:
+        return solid_measures.measure_solids(run, case)
     log, frames = run.log(), [run.frame(k) for k in range(len(run.times))]
     fluids = [{n: v[f["kind"] == FLUID] for n, v in f.items()} for f in frames]
     found = _of_log(log, speed, scene)

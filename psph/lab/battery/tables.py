@@ -4,7 +4,7 @@ import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
 
-from psph.case.schemes import SCHEMES
+from psph.case.schemes import OF_FLUIDS
 from psph.lab.battery.measures import MEASURES
 from psph.lab.battery.trials import CONTROLS, OURS, Trial
 from psph.lab.battery.verdicts import BLEW_UP, FAILS, GOOD, HELD, HOLDS, REFUSED, Row, without_effect
@@ -35,7 +35,7 @@ def line(row: Row) -> str:
 def columns_of(trials: Sequence[Trial]) -> list[str]:
     """Schemes, then the controls that occur, in the order of the table."""
     used = {column for trial in trials for column in trial.columns}
-    return [column for column in (*SCHEMES, *CONTROLS) if column in used]
+    return [column for column in (*OF_FLUIDS, *CONTROLS) if column in used]
 
 
 def cell(row: Row | None) -> str:
@@ -136,7 +136,7 @@ def table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
 
 def sentences(rows: Sequence[Row]) -> Iterator[str]:
     """Trials held by each scheme, bounds missed by the default scheme, controls that did not fail."""
-    for column in SCHEMES:
+    for column in OF_FLUIDS:
         runs = [row for row in rows if row.column == column and row.verdict != REFUSED]
         if runs:
             held = sum(row.verdict in HELD for row in runs)

@@ -4,9 +4,9 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from psph.case.schemes import SCHEMES
+from psph.case.schemes import OF_FLUIDS
 
-OURS = next(iter(SCHEMES))
+OURS = OF_FLUIDS[0]
 """The scheme that shall hold everywhere."""
 
 CONTROLS: dict[str, tuple[str, ...]] = {
@@ -31,7 +31,7 @@ CONTROLS: dict[str, tuple[str, ...]] = {
 """Schemes that lack what the case needs, or have the paper's equation (14); strengths of zero share
 the compiled loops with the whole scheme."""
 
-CHANGES = {name: () if name == OURS else (f"scheme={name}",) for name in SCHEMES} | CONTROLS
+CHANGES = {name: () if name == OURS else (f"scheme={name}",) for name in OF_FLUIDS} | CONTROLS
 """The keys of a case that each scheme and each control changes."""
 
 
@@ -71,7 +71,7 @@ class Trial(NamedTuple):
     sets: tuple[str, ...] = ()
     holds: tuple[Bound, ...] = ()
     goals: tuple[Bound, ...] = ()
-    schemes: tuple[str, ...] = tuple(SCHEMES)
+    schemes: tuple[str, ...] = OF_FLUIDS
     fails: tuple[str, ...] = ()
     changes: Mapping[str, tuple[str, ...]] = CHANGES
 

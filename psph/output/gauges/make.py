@@ -64,7 +64,7 @@ def _carrier(asked, names) -> Carrier | None:
 
 def _groups(scene, name: str) -> Iterator[int]:
     """The groups of a wall, a body or an elastic solid, its clamped part among them."""
-    solids = list(scene.case.solids)
+    solids = list(scene.case.referred)
     for group, one in enumerate(scene.species):
         if name in (one.name, None if one.elastic is None else solids[one.elastic]):
             yield group

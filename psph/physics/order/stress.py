@@ -6,6 +6,7 @@ from pydantic import Field
 
 from psph.formula import where
 from psph.physics.facts import Facts
+from psph.physics.stress.repulsion import PrincipalStress
 from psph.theory.stability import parts
 
 COMPRESSED = 0.01
@@ -30,8 +31,11 @@ class ArtificialStress(NamedTuple):
     ] = 0.2
 
     def in_scene(self, scene: Facts):
-        """With the kernel's weight of a neighbour one spacing away."""
-        return NeighbourStress(self.epsilon, 1.0 / float(scene.kernel.w(scene.spacing)))
+        """With the kernel's weight of a neighbour one spacing away; for stresses, where there are any."""
+        inverse_near = 1.0 / float(scene.kernel.w(scene.spacing))
+        if any(one.shear_modulus for one in scene.species):
+            return PrincipalStress(self.epsilon, inverse_near)
+        return NeighbourStress(self.epsilon, inverse_near)
 
     @staticmethod
     def conflicts(physics, kernel):

@@ -1,0 +1,58 @@
+"""What updated Lagrangian solids can have beside them, and what not."""
+
+import pytest
+from drafts import draft, refusal
+
+from psph.scene import Scene
+
+BLOCK = """
+scheme = "solid"
+time.end = 1.0
+[space]
+dimensions = 2
+spacing = 0.1
+[solids.block]
+description = "updated"
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+clamped.box = { lower = [0.0, 0.0], upper = [0.3, 1.0] }
+velocity = [1.0, 0.0]
+density = 1000.0
+young = 1e6
+poisson = 0.25
+"""
+
+
+def test_the_parts_of_such_a_solid(tmp_path):
+    scene = Scene(draft(tmp_path, BLOCK))
+    moving, held = scene.species
+    assert scene.names == ("block", "block (clamped)") and scene.key_of(1) == "solids.block.clamped"
+    assert moving.mobile and not held.mobile and moving.shear_modulus == held.shear_modulus == 4e5
+    assert scene.census.counts.sum() == 100 and scene.velocities[1] == (0.0, 0.0)
+    assert scene.sound_speed == pytest.approx((1.2e6 / 1000.0) ** 0.5)
+    assert not scene.elastic_solids and moving.elastic is held.elastic is None
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ("solids.block.hourglass=0.1", "solids.block.hourglass"),
+        ('solids.block.law="neo-hookean"', "solids.block.law"),
+        ("scheme=stable", "physics.tension_floor"),
+        ("physics.pressure_gradient=difference", "physics.pressure_gradient"),
+        ("physics.contact={}", "physics.contact"),
+        ("anvils.floor={at=[0.0, 0.0], normal=[0.0, 1.0]}", "solids.block.description"),
+        (
+            "fluids.water={shape={box={lower=[2.0, 0.0], upper=[3.0, 1.0]}}, density=1000.0}",
+            "solids.block.description",
+        ),
+    ],
+)
+def test_what_is_refused(more, says, tmp_path):
+    assert any(says in line for line in refusal(tmp_path, BLOCK, more))
+
+
+def test_both_descriptions_in_one_case_are_refused(tmp_path):
+    both = BLOCK + BLOCK[BLOCK.index("[solids.block]") :].replace("solids.block", "solids.other").replace(
+        "updated", "total"
+    ).replace("0.0, 0.0], upper = [1", "2.0, 0.0], upper = [3").replace("clamped.box", "#")
+    assert any("beside solids that are total" in line for line in refusal(tmp_path, both))
