@@ -8,7 +8,7 @@ import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
-from psph.scene.bodies import body_step, density_ratio
+from psph.scene.bodies import body_step, density_ratio, volume_of
 from psph.scene.lattice import TOLERANCE
 
 if TYPE_CHECKING:
@@ -20,6 +20,9 @@ made."""
 
 LONGEST_ARM = 10.0
 """Sizes of a body: a pivot farther from it is likely a slip."""
+
+ASLANT = 0.02
+"""Slope by which a body's particles may lean more than its surface without a warning."""
 
 MOST_SHORTER = 10.0
 """How many times bodies may shorten the time steps that sound allows without a warning."""
@@ -107,10 +110,38 @@ def _slight(scene: "Scene") -> Iterator[str]:
             )
 
 
+def _lopsided(scene: "Scene") -> Iterator[str]:
+    """A line for each body from a geometry file whose particles lean to a side, and its surface does not.
+
+    The slope is Σ (x − c_x)(z − c_z) / Σ (x − c_x)², with z upwards.  A site on a face belongs to the body on
+    its low side alone, so a hull in round numbers may get sites on one side that it lacks on the other.
+    """
+    if scene.mirror_planes or not any(scene.gravity):  # planes cut bodies
+        return
+    for name, table in scene.case.bodies.items():
+        mesh = table.shape.mesh
+        if mesh is None or mesh.shell or table.centre is not None:
+            continue
+        from psph.scene.meshes.mass import solid_of
+
+        filled, drawn = volume_of(scene, scene.names.index(name)), solid_of(mesh)
+        up = int(np.abs(scene.gravity).argmax())
+        for d in (d for d in range(scene.dimensions) if d != up and not scene.gravity[d]):
+            mean = -drawn.inertia[d, up] / drawn.volume  # of (x − c)(z − c), as filled.spread has it
+            lean = (filled.spread[d, up] - mean) / filled.spread[d, d]
+            if abs(lean) > ASLANT:
+                yield (
+                    f"bodies.{name}.shape.mesh: its particles lean along {AXES[d]}, by {abs(lean):.2g} rad "
+                    "more than its surface: it will float aslant, since faces go through sites; move it by part "
+                    "of a spacing, or make space.spacing smaller"
+                )
+
+
 def body_warnings(scene: "Scene") -> Iterator[str]:
     """A line for each body whose density, inertia or points are likely a slip, and for steps that bodies make
     short."""
     yield from _slight(scene)
+    yield from _lopsided(scene)
     yield from _far_points(scene)
     for one in scene.rigid_bodies:
         ratio = density_ratio(scene, one)

@@ -235,3 +235,18 @@ def test_a_scene_without_a_mesh_loads_nothing_for_it():
         timeout=60,
     )
     assert job.stdout.strip() == "['psph.scene.meshes.report']", job.stderr
+
+
+def test_a_hull_whose_faces_go_through_sites_is_told(tmp_path):
+    """Its sides meet sites, and those on the high side are not its own; higher up they do not, and a shift
+    of the whole body by half a spacing makes it lean no more."""
+    sides = [(half, height) for half, height in ((150.0, 0.0), (350.0, 400.0))]
+    corners = [(x, s * half, z) for half, z in sides for s in (-1.0, 1.0) for x in (-300.0, 300.0)]
+    put(tmp_path, trimesh.convex.convex_hull(np.array(corners)))
+    text = POOL.replace("[walls.post]", "[bodies.post]\ndensity = 400.0")
+    told = []
+    for place in ([0.7, 0.5, 0.25], [0.7, 0.5, 0.3], [0.75, 0.5, 0.3]):
+        lines = checked(tmp_path, text, f"bodies.post.shape.mesh.move={place}")
+        told.append([line for line in lines if "aslant" in line])
+    assert [len(lines) for lines in told] == [1, 0, 0]
+    assert told[0][0].startswith("case.toml: bodies.post.shape.mesh: its particles lean along y, by ")
