@@ -132,8 +132,8 @@ def _lopsided(scene: "Scene") -> Iterator[str]:
             if abs(lean) > ASLANT:
                 yield (
                     f"bodies.{name}.shape.mesh: its particles lean along {AXES[d]}, by {abs(lean):.2g} rad "
-                    "more than its surface: it will float aslant, since faces go through sites; move it by part "
-                    "of a spacing, or make space.spacing smaller"
+                    "more than its surface: it will float aslant, since faces go through sites; move it by "
+                    "part of a spacing, or make space.spacing smaller"
                 )
 
 
