@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from cases.measures import finished
+from cases.measures import by_id, finished
 from numpy.polynomial import polynomial
 
 pytestmark = pytest.mark.timeout(900)
@@ -17,8 +17,11 @@ def sliding(tmp_path, angle, *sets):
     """How fast a layer on a slope of this angle gains speed after its first quarter, m/s²; and its last speed."""
     theta = math.radians(angle)
     pull = f"physics.gravity=[{G * math.sin(theta)!r}, {-G * math.cos(theta)!r}]"
-    run = finished("soils/infinite_slope", tmp_path / f"{angle}", pull, "output.log=0.005", *sets)
-    time, momentum = run.log["time"], run.log["momentum_x"]
+    run = finished(
+        "soils/infinite_slope", tmp_path / f"{angle}", pull, "output.log=0.005", "time.end=0.3", *sets
+    )
+    log = run.log()
+    time, momentum = log["time"], log["momentum_x"]
     speed = momentum / (1800.0 * 0.1 * 0.08)
     late = time > 0.25 * time[-1]
     return polynomial.polyfit(time[late], speed[late], 1)[1], speed[-1]
@@ -32,7 +35,51 @@ def test_a_layer_of_sand_rests_on_a_slope_below_its_friction_and_slides_above_it
     assert gain == pytest.approx(G * (math.sin(theta) - MU * math.cos(theta)), rel=0.03)
 
 
-def front(run, frame=-1, part=0.98):
-    """The place that this part of the sand has not passed, m."""
+def sand(run, field, frame=-1):
+    """A field of the soil in a frame."""
     found = run.frame(frame)
-    return float(np.quantile(found["position"][found["kind"] == 0][:, 0], part))
+    return found[field][found["kind"] == 0]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("spacing", (0.005, 0.0025))
+def test_a_column_runs_out_as_in_experiments_and_rests_whatever_the_spacing(spacing, tmp_path):
+    run = finished("soils/column_collapse", tmp_path, f"space.spacing={spacing}", "output.frames=0.1")
+    front = np.quantile(sand(run, "position")[:, 0], 0.98)
+    assert (front - 0.1) / 0.1 == pytest.approx(1.2, rel=0.15)
+    assert np.sqrt((sand(run, "velocity") ** 2).sum(axis=1).mean()) < 0.005
+    assert sand(run, "position")[:, 1].max() > 0.085  # the top by the wall stays
+
+
+@pytest.mark.long
+def test_a_slope_stands_below_its_factor_of_safety_and_slides_above_it(tmp_path):
+    """1.4 by finite elements (Griffiths & Lane 1999)."""
+    moved = {}
+    for factor in (1.3, 1.6):
+        reduced = f"soils.bank.strength_reduction={factor}"
+        run = finished("soils/slope", tmp_path / f"{factor}", reduced, "output.frames=0.5")
+        moved[factor] = np.linalg.norm(
+            by_id(run.frame(-1))["position"] - by_id(run.frame(0))["position"], axis=1
+        ).max()
+    assert moved[1.3] < 0.06 < 0.2 < moved[1.6]
+
+
+@pytest.mark.long
+def test_a_cut_stands_at_four_fifths_of_its_height_and_slides_at_six_fifths(tmp_path):
+    strain = {}
+    for part, cohesion in ((0.8, 3939.0), (1.2, 2626.0)):  # 4c/γ tan(45° + φ/2) over the height
+        sets = (f"soils.bank.cohesion={cohesion}", "output.frames=0.5")
+        run = finished("soils/vertical_cut", tmp_path / f"{part}", *sets)
+        strain[part] = [sand(run, "plastic_strain", frame).max() for frame in (1, -1)]
+    assert strain[0.8][1] < min(0.06, 1.1 * strain[0.8][0])  # it has come to rest
+    assert strain[1.2][1] > max(0.3, 1.2 * strain[1.2][0])
+
+
+@pytest.mark.long
+def test_a_blade_meets_the_passive_force_and_then_more(tmp_path):
+    run = finished("soils/blade", tmp_path, "output.frames=0.5")
+    push = run.gauges()["push"]
+    early = (push["time"] > 0.1) & (push["time"] < 0.2)
+    rankine = 0.5 * 1800.0 * G * 0.1**2 * (1.0 + MU) / (1.0 - MU)
+    assert -push["force_x"][early].mean() == pytest.approx(rankine, rel=0.15)
+    assert -push["force_x"][push["time"] > 0.9].mean() > 1.5 * rankine

@@ -105,8 +105,9 @@ class TensionFloor(NamedTuple):
         return None
 
 
-LOOSEST = 0.5
-"""Least density of soil that is torn apart, over its rest density."""
+LOOSEST = 0.99
+"""Least density of soil that is torn apart, over its rest density: wider gaps are forgotten, or a thin layer
+that has been stretched would slide on walls without any pressure, and so without friction."""
 
 
 class FloorBesideSoils(NamedTuple):
