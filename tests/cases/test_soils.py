@@ -81,5 +81,5 @@ def test_a_blade_meets_the_passive_force_and_then_more(tmp_path):
     push = run.gauges()["push"]
     early = (push["time"] > 0.1) & (push["time"] < 0.2)
     rankine = 0.5 * 1800.0 * G * 0.1**2 * (1.0 + MU) / (1.0 - MU)
-    assert -push["force_x"][early].mean() == pytest.approx(rankine, rel=0.15)
-    assert -push["force_x"][push["time"] > 0.9].mean() > 1.5 * rankine
+    assert -push["push.force_x"][early].mean() == pytest.approx(rankine, rel=0.15)
+    assert -push["push.force_x"][push["time"] > 0.9].mean() > 1.5 * rankine
