@@ -39,6 +39,18 @@ class Strength(Table):
     )
 
 
+class Shocked(Table):
+    """A pressure by Mie and Grüneisen, from the Hugoniot curve U_s = c + S u_p; internal energy is booked."""
+
+    slope: float = key(
+        "S, how the speed of a shock grows with that of the matter behind it", unit="1", ge=0, le=4
+    )
+    gruneisen: float = key("Grüneisen's Γ", unit="1", ge=0, le=5)
+    sound_speed: float | None = key(
+        "c, that of the bulk", None, unit="m/s", otherwise="√(K/ρ), by young and poisson", gt=0
+    )
+
+
 class Anvil(Table):
     """A rigid, frictionless plane, endless, that solids may hit."""
 
@@ -76,6 +88,9 @@ class Solid(Matter):
         None,
         otherwise="it is elastic, or yields at yield_stress",
     )
+    mie_gruneisen: Shocked | None = key(
+        "the pressure of a metal that meets shocks", None, otherwise="linear in the compression"
+    )
     damping: float | None = key(
         "viscosity η of the stress ηĖ of Kelvin and Voigt",
         None,
@@ -85,6 +100,20 @@ class Solid(Matter):
     )
     hourglass: float = key(
         "strength α of the control of zigzag modes, which the stress does not see", 1.5, unit="1", ge=0, le=10
+    )
+    critical_stretch: float | None = key(
+        "stretch of a bond over its length at the start, less 1, beyond which it is cut for good: cracks",
+        None,
+        unit="1",
+        otherwise="it holds",
+        gt=0,
+    )
+    flaws: float | None = key(
+        "Weibull modulus of the scatter of critical_stretch from particle to particle, by seed",
+        None,
+        unit="1",
+        otherwise="the same everywhere",
+        ge=1,
     )
     clamped: Shape | None = key("the part of the solid that stays where it is", None, otherwise="none")
     loads: dict[Name, SolidLoad] = key("forces on parts of the solid, by name", {})
@@ -177,7 +206,7 @@ def elastic(case) -> Iterator[Finding]:
 def _meeting(case) -> Iterator[Finding]:
     """What contact knows nothing of."""
     contact = case.physics.contact is not None
-    if case.fluids:
+    if case.flowing:
         if contact:
             yield CONTACT, ..., "solids in a fluid do not feel each other; remove it, or the fluids"
         return
@@ -204,6 +233,21 @@ def _yielding(case) -> Iterator[Finding]:
         if table and solid.yield_stress is not None:
             says = "johnson_cook has a yield_stress of its own; remove one of the two"
             yield (*here, "yield_stress"), solid.yield_stress, says
+        if solid.mie_gruneisen and not table and solid.yield_stress is None:
+            says = "a pressure of metals; give yield_stress too, as large as you like"
+            yield (*here, "mie_gruneisen"), ..., says
+        if solid.flaws is not None and solid.critical_stretch is None:
+            yield (
+                (*here, "flaws"),
+                solid.flaws,
+                "without critical_stretch nothing cracks; give it, or remove flaws",
+            )
+        if solid.critical_stretch is not None and case.flowing:
+            yield (
+                (*here, "critical_stretch"),
+                ...,
+                "nothing is known of cracks in fluids; remove it, or the fluids",
+            )
         if solid.hardening and solid.yield_stress is None:
             says = "an elastic solid does not harden; give yield_stress, or put it into johnson_cook"
             yield (*here, "hardening"), solid.hardening, says

@@ -5,9 +5,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from psph.fields import Field
 from psph.particles.reach import Reach
+from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import REACH
-from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, solid_of
+from psph.physics.solid.cracks import OF_CRACKS
+from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING
+from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, is_heated, remembers, solid_of
+from psph.physics.solid.plastic import OF_PLASTIC
 from psph.scene.lattice import TOLERANCE
 
 if TYPE_CHECKING:
@@ -22,6 +27,8 @@ def solids_of(scene: "Scene") -> tuple[Solid, ...]:
             **{key: getattr(table, key) for key in MADE_OF},
             damping=_damping(scene, number, table),
             johnson_cook=table.johnson_cook and dict(table.johnson_cook),
+            mie_gruneisen=table.mie_gruneisen and dict(table.mie_gruneisen),
+            length=SMOOTHING * scene.spacing,
         )
         for number, (name, table) in enumerate(scene.case.referred.items())
     )
@@ -85,3 +92,17 @@ def reach_of_contact(whole: Reach, spacing: float) -> Reach:
     """Of a scene of solids alone: they feel each other within two of the ``spacing`` in m, and what a
     kernel's ``whole`` reach has beyond that is skin, one spacing at least."""
     return Reach(REACH * spacing, max(whole.cutoff - REACH * spacing, spacing))
+
+
+def solid_fields(scene: "Scene") -> tuple[Field, ...]:
+    """What particles carry because the scene has solids, and these yield, crack, have loads or stand in a
+    fluid."""
+    if not scene.elastic_solids:
+        followed = any(gauge.displacement for gauge in scene.case.gauges.values())
+        return (REFERENCE,) if followed else ()
+    loaded = any(table.loads for table in scene.case.solids.values())
+    lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
+    lasting += OF_HEAT if is_heated(scene.elastic_solids) else ()
+    wet = [INERTIA] if scene.case.flowing else []
+    cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.elastic_solids) else ()
+    return (*OF_SOLIDS, *lasting, *cracks, *([DRAWN] if loaded else []), *wet)

@@ -28,10 +28,12 @@ from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.contact import contact_of
-from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING
+from psph.physics.solid.cracks import CUT
+from psph.physics.solid.deformation import SMOOTHING
 from psph.physics.solid.material import STEP, remembers
-from psph.physics.solid.plastic import OF_PLASTIC, Lasting
+from psph.physics.solid.plastic import Lasting
 from psph.scene.bodies import body_step
+from psph.scene.solids import solid_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.groups import laws, material_value, split, tells
 from psph.simulation.movement import carried_fields, movement_of
@@ -232,6 +234,11 @@ class Plan:
         return tuple(law if hasattr(law, "flow") else Lasting(law) for law in laws)
 
     @property
+    def cracks(self) -> bool:
+        """Whether bonds of a solid may be cut."""
+        return CUT.name in self.arrays
+
+    @property
     def books_work(self) -> bool:
         """Whether particles carry the energy that walls, or a moving frame, have given."""
         return WORK.name in self.arrays
@@ -368,17 +375,6 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
             *(max(material_value(m, f.name) for m in scene.species) for f in OF_MATERIAL),
         ),
     )
-
-
-def solid_fields(scene) -> tuple[Field, ...]:
-    """What particles carry because the scene has solids, and these have loads or stand in a fluid."""
-    if not scene.elastic_solids:
-        followed = any(gauge.displacement for gauge in scene.case.gauges.values())
-        return (REFERENCE,) if followed else ()
-    loaded = any(table.loads for table in scene.case.solids.values())
-    lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
-    wet = [INERTIA] if scene.case.flowing else []
-    return (*OF_SOLIDS, *lasting, *([DRAWN] if loaded else []), *wet)
 
 
 def _carries(call: Called) -> bool:

@@ -8,8 +8,9 @@ from typing import Any, NamedTuple
 from numba.core import types
 
 from psph.engine.jit import call_by_number, overload, register_jitable
+from psph.physics.solid.compression import Heat
 from psph.physics.solid.plastic import History
-from psph.vectors import at, put
+from psph.vectors import at, dot, put
 
 law_stress = call_by_number("stress")
 """(laws, number, F, [History,] a) → P, Pa."""
@@ -23,12 +24,14 @@ law_flow = call_by_number("flow")
 
 class Memory(NamedTuple):
     """Where a row's history is: its ``columns`` (rows,) in the arrays ``metric``, ``strain`` and ``work``
-    (psph.physics.solid.plastic); and the time ``dt`` since they were written, s."""
+    (psph.physics.solid.plastic), and in those of its ``heat``, None where there is none
+    (psph.physics.solid.compression); and the time ``dt`` since they were written, s."""
 
     columns: Any
     metric: Any
     strain: Any
     work: Any
+    heat: Any
     dt: float
 
 
@@ -36,16 +39,50 @@ class Memory(NamedTuple):
 def recalled(memory, k):
     """The History of row ``k``."""
     column = memory.columns[k]
-    return History(at(memory.metric, column), memory.strain[column], memory.work[column])
+    heat = warmth(memory.heat, column)
+    return History(at(memory.metric, column), memory.strain[column], memory.work[column], heat)
+
+
+def warmth(heat, column):
+    """The Heat of a particle; None where there is none."""
+    return None if heat is None else Heat(heat.energy[column], heat.swelling[column])
+
+
+@overload(warmth)
+def _typed_warmth(heat, column):
+    if isinstance(heat, types.NoneType):
+        return lambda heat, column: None
+    return lambda heat, column: Heat(heat.energy[column], heat.swelling[column])
+
+
+def keep_warm(heat, column, now):
+    """Write the Heat of a particle, where there is any."""
+    if heat is not None:
+        heat.energy[column], heat.swelling[column] = now
+
+
+@overload(keep_warm)
+def _typed_keep_warm(heat, column, now):
+    if isinstance(heat, types.NoneType):
+        return lambda heat, column, now: None
+
+    def write(heat, column, now):
+        heat.energy[column] = now.energy
+        heat.swelling[column] = now.swelling
+
+    return write
 
 
 @register_jitable
 def _flow_on(laws, number, memory, k, f, a):
+    if dot(f, f) == 0.0:  # its neighbours do not span space
+        return f
     p, now = law_flow(laws, number, f, recalled(memory, k), memory.dt, a)
     column = memory.columns[k]
     put(memory.metric, column, now.metric)
     memory.strain[column] = now.strain
     memory.work[column] = now.work
+    keep_warm(memory.heat, column, now.heat)
     return p
 
 

@@ -51,7 +51,8 @@ class Matter(NamedTuple):
     ``laws`` are the different laws, and ``number`` has that of each row.  By the number of a solid's
     material, that of its law: ``stiffness`` αE_Y of the hourglass control in Pa, ``viscosity`` in Pa s,
     ``density`` in the reference in kg/m³.  ``sums`` are what the first pass gathers
-    (psph.physics.solid.deformation).
+    (psph.physics.solid.deformation).  Of each row ``intact`` is the part of its bonds that hold, None where
+    none can be cut: its stress and energy are so much less (psph.physics.solid.cracks).
     """
 
     laws: tuple
@@ -60,6 +61,7 @@ class Matter(NamedTuple):
     stiffness: Any
     viscosity: Any
     density: Any
+    intact: Any = None
 
 
 class Weights(NamedTuple):
@@ -134,9 +136,22 @@ def sum_gradients(first, last, matter, weights, rows, moment, memory, flux):
         inverse = at(moment, k)
         f = matrix_product(folded[0], inverse, a)
         p = advanced(matter.laws, number, memory, k, f, a)
+        p = weakened(p, matter.intact, k)
         p = added(p, drag(matter.viscosity[number], f, folded, inverse, a))
         against = matrix_product(p, inverse, a)
         put(flux, k, subtract(scale(f, 0.5 * matter.stiffness[number]), against))
+
+
+def weakened(values, intact, k):
+    """What the law of row ``k`` gives, as far as its bonds hold."""
+    return values if intact is None else scale(values, intact[k])
+
+
+@overload(weakened)
+def _typed_weakened(values, intact, k):
+    if isinstance(intact, types.NoneType):
+        return lambda values, intact, k: values
+    return lambda values, intact, k: scale(values, intact[k])
 
 
 def drag(viscosity, f, folded, inverse, a):
@@ -203,12 +218,19 @@ def measure(first, last, matter, weights, rows, moment, memory, found):
             off = subtract(applied(f, pair.apart), x_ij)
             misfit = misfit + pair.weight * dot(off, off)
         held = 0.25 * matter.stiffness[number] * total(misfit)
-        found[0][k] = i.volume * (energy(matter.laws, number, memory, k, f, a) + held)
         dilated = dot(first_row(f, a), first_row(cofactor(f, a), a))
-        p = stress(matter.laws, number, memory, k, f, a)
+        if dilated == 0.0:  # its neighbours do not span space
+            found[0][k] = i.volume * held
+            put(found[1], k, scale(outer(a), 0.0))
+            found[2][k] = 0.0
+            continue
+        stored = weakened((energy(matter.laws, number, memory, k, f, a),), matter.intact, k)
+        found[0][k] = i.volume * (stored[0] + held)
+        p = weakened(stress(matter.laws, number, memory, k, f, a), matter.intact, k)
         cauchy = scale(product_transposed(p, f, a), 1.0 / dilated)
         put(found[1], k, cauchy)
-        found[2][k] = mises(cauchy, across(matter.laws, number, memory, k, f, a) / dilated, a)
+        sigma_zz = weakened((across(matter.laws, number, memory, k, f, a) / dilated,), matter.intact, k)
+        found[2][k] = mises(cauchy, sigma_zz[0], a)
 
 
 def mises(cauchy, sigma_zz, a):

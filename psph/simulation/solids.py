@@ -12,6 +12,7 @@ from psph.parallel.reductions import exact_sums, whole_sums
 from psph.parallel.reference import reference_rows
 from psph.particles.partners import ReferenceRows, padded_lists
 from psph.particles.records import record_width
+from psph.physics.solid.compression import OF_HEAT, Heat
 from psph.physics.solid.contact import CONTACT_ENERGY
 from psph.physics.solid.deformation import (
     DRAWN,
@@ -46,6 +47,9 @@ from psph.smoothing import kernel
 PLACES, FLUX = "position", "flux"
 """What partners need before the first pass of a step, and before the second."""
 
+LOOSENED, STRENGTH = "loosened", "strength"
+"""What is read of partners where solids crack: whether one lets go of its last bonds, how strong it is."""
+
 
 class Table:
     """Records of rows and partners, side by side in memory: ``names`` with the numbers that each takes."""
@@ -55,7 +59,8 @@ class Table:
         self.records = np.zeros((capacity, self.width))
         ends = np.cumsum([0, *widths.values()]).tolist()
         self.places = dict(zip(widths, zip(ends, ends[1:])))
-        shown = {name: tuple(self.records.T[slice(*place)]) for name, place in self.places.items()}
+        rows = {name: self.records.T[slice(*place)] for name, place in self.places.items()}
+        shown = {name: tuple(of) if len(of) > 1 else of[0] for name, of in rows.items()}
         self.view = view_of((*shown, "volume"))(*shown.values(), volume)
 
 
@@ -82,6 +87,9 @@ class Solids:
         self._widths = {"reference": d, **moving}, {"reference": d, PLACES: d, FLUX: d * d}
         self._moving = tuple(moving)
         self._rises = np.array([table.load_rise for table in scene.case.solids.values()])
+        self._cracks = self._made_to_crack() if plan.cracks else None
+        if self._cracks:
+            self._widths[1].update({LOOSENED: 1, STRENGTH: 1})
         self._solid_of = plan.solid_of
         self._rows = self.halo = None
         loops = (sum_moments, sum_gradients, sum_inner_forces, measure, push_solids, fill_places)
@@ -89,16 +97,24 @@ class Solids:
             settled, loops
         )
 
+    def _made_to_crack(self):
+        """What cuts bonds."""
+        from psph.simulation.solid_cracks import Cracks  # late: most solids hold
+
+        return Cracks(self.scene, self.plan, self.store)
+
     def begin(self) -> None:
         """The moments of the reference lists, and the loads; collective."""
         with self.ledger("records"):
-            moment = tuple(np.zeros(self.rows) for _ in self.store.rows[MOMENT.name])
-            first, _ = self._around
-            self._each(self._moments, 0, self.rows, self._weights, first, moment)
-            for of, found in zip(self.store[MOMENT.name], moment):
-                of[self._columns] = found
-            self._moment = moment
+            self._find_moments()
         self._draw_loads()
+
+    def _find_moments(self) -> None:
+        """L of all rows."""
+        self._moment = tuple(np.zeros(self.rows) for _ in self.store.rows[MOMENT.name])
+        self._each(self._moments, 0, self.rows, self._weights, self._around[0], self._moment)
+        for of, found in zip(self.store[MOMENT.name], self._moment):
+            of[self._columns] = found
 
     @property
     def columns(self) -> np.ndarray:
@@ -131,6 +147,9 @@ class Solids:
         self._inverse_density = 1.0 / self._matter.density[self._matter.number]
         self._make_tables(store.id[columns[order]], np.unique(partners[abroad]))
         self._moment = tuple(of[self._columns] for of in store[MOMENT.name])
+        if self._cracks:
+            self._cracks.weaken(self._around[1], self._moment)
+            self._matter = self._matter._replace(intact=self._cracks.intact)
 
     def _make_tables(self, ids: np.ndarray, wanted: np.ndarray) -> None:
         """Lists in places of the tables, and the messages that fill the places of partners."""
@@ -141,6 +160,8 @@ class Solids:
         counts, partners = self._rows.chosen(ids)
         order = np.argsort(everyone, kind="stable")
         entries = order[np.searchsorted(everyone[order], partners)]
+        if self._cracks:
+            counts, entries = self._cracks.left(self._columns, counts, entries, Metres.lanes)
         lists = padded_lists(counts, entries, Metres.lanes)
         longest = int(counts.max(initial=0))
         self._weights = self._weights._replace(
@@ -151,12 +172,17 @@ class Solids:
         self._around = tuple(Rows(one.view, one.records, lists) for one in tables)
         begin, end = tables[0].places[PLACES][0], tables[0].places[self._moving[-1]][1]
         self._to_first = self.halo.channel(tables[0].records, begin, end)
-        self._to_second = self.halo.channel(tables[1].records, *tables[1].places[FLUX])
+        end = tables[1].places[LOOSENED if self._cracks else FLUX][1]
+        self._to_second = self.halo.channel(tables[1].records, tables[1].places[FLUX][0], end)
         self._force = tuple(np.zeros(self.rows) for _ in range(self.store.dimensions))
         self._places = self.halo.channel(tables[1].records, *tables[1].places[PLACES])
         for table in tables:
             self._put(table, "reference", 0, self.rows)
             self._bring(self.halo.channel(table.records, *table.places["reference"]))
+        if self._cracks:
+            strength = self._cracks.strengths(ids, self._matter.number)
+            tables[1].records[: self.rows, tables[1].places[STRENGTH][0]] = strength
+            self._bring(self.halo.channel(tables[1].records, *tables[1].places[STRENGTH]))
 
     def sum(self, time: float, dt: float) -> None:
         """The acceleration of all particles of solids at ``time``, s, where they stand ``dt`` s after the
@@ -203,6 +229,14 @@ class Solids:
                 share[self._matter.number],
                 store["acceleration"],
             )
+            self._crack()
+
+    def _crack(self) -> None:
+        """Cut the bonds that are stretched too far: it counts from the next step on."""
+        cracks, second = self._cracks, self._around[1]
+        if cracks and cracks.cut(second, self._columns, self._matter.number):
+            self._find_moments()
+            cracks.weaken(second, self._moment)
 
     def measure(self) -> None:
         """Stored energy and stress of the particles where they stand; collective."""
@@ -214,6 +248,8 @@ class Solids:
         matter = self._matter._replace(sums=self._matter.sums[:1])
         seen = (matter, self._weights, self._around[1], self._moment, self._memory(0.0))
         self._each(self._measure, 0, n, *seen, found)
+        if self._cracks:
+            self._cracks.measure(self._columns)
         store[STORED.name][self._columns] = found[0]
         store[VON_MISES.name][self._columns] = found[2]
         for of, values in zip(store[STRESS.name], stress):
@@ -271,7 +307,10 @@ class Solids:
         """What particles remember, ``dt`` s after they last yielded; None where no solid does."""
         if not remembers(self.plan.solids):
             return None
-        return Memory(self._columns, *(self.store[field.name] for field in OF_PLASTIC), dt)
+        store = self.store
+        warm = all(field.name in store for field in OF_HEAT)
+        heat = Heat(*(store[field.name] for field in OF_HEAT)) if warm else None
+        return Memory(self._columns, *(store[field.name] for field in OF_PLASTIC), heat, dt)
 
     def _sum_gradients(self, first: int, last: int, memory: Memory | None) -> None:
         second = self._tables[1]

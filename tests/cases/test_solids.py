@@ -80,6 +80,28 @@ def test_without_contact_rings_run_through_each_other(tmp_path):
     assert v[:, 0] == pytest.approx(13.97) and x[:, 0].min() > 0.0
 
 
+def strip(folder, *overrides):
+    """Energy over that at the start, and the pieces and the frame at 7 ms, of the notched strip."""
+    run = finished("solids/notched_strip", folder, "time.end=0.007", *overrides)
+    log = run.log()
+    gained = max(np.ptp(log[f"momentum_{axis}"]) for axis in "xy")
+    assert gained < 1e-13 * log["kinetic_energy"][0]
+    energy = log["kinetic_energy"] + log["stored_energy"]
+    return energy / energy[0], pieces(run.frame(-1)["position"], 1.5 * 0.01), run.frame(-1)
+
+
+def test_a_strip_breaks_in_two_at_its_notch_and_only_loses_energy(tmp_path):
+    energy, count, frame = strip(tmp_path)
+    assert count == 2 and np.diff(energy).max() < 5e-3 and 0.5 < energy[-1] < 0.85
+    torn = frame["damage"] > 0.05
+    assert 0 < torn.sum() < 0.2 * len(torn) and np.abs(frame["position"][torn, 0]).max() < 0.1
+
+
+def test_without_a_critical_stretch_the_strip_holds_and_keeps_its_energy(tmp_path):
+    energy, count, frame = strip(tmp_path, "solids.strip.critical_stretch=off")
+    assert count == 1 and np.abs(energy - 1.0).max() < 2e-3 and "damage" not in frame
+
+
 @LONG
 @pytest.mark.parametrize("spacing", (0.005, 0.0025))
 def test_an_oscillating_plate_has_the_period_of_a_beam_and_keeps_its_swing(spacing, tmp_path):
@@ -147,6 +169,74 @@ def test_a_dam_break_bends_a_soft_plate(tmp_path):
     tell(f"dam break on a plate: {tip.max():.1f} mm at {time[tip.argmax()]:.3f} s")
     assert tip.max() == pytest.approx(47.5, rel=0.2)
     assert 0.2 < time[tip.argmax()] < 0.3
+
+
+def pierced(folder, *overrides):
+    """The log, the mean speed of the ball at 16 and 24 μs, m/s, and the last frame, by id."""
+    run = finished("solids/ball_through_plate", folder, "time.end=24e-6", "output.frames=8e-6", *overrides)
+    speeds = [frame["velocity"][frame["group"] == 0, 0].mean() for frame in map(run.frame, (-2, -1))]
+    return run.log(), speeds, by_id(run.frame(-1)), by_id(run.frame(0))
+
+
+def test_a_ball_pierces_a_plate_and_flies_on(tmp_path):
+    log, (before, after), end, start = pierced(tmp_path)
+    tell(f"ball through a plate: {after:.0f} m/s left of 800 m/s")
+    assert np.ptp(log["momentum_x"]) < 1e-13 * log["momentum_x"][0]
+    energy = log["kinetic_energy"] + log["stored_energy"]
+    assert np.diff(energy).max() < 5e-3 * energy[0] and 0.6 * energy[0] < energy[-1] < energy[0]
+    assert after == pytest.approx(before, rel=0.015) and 600.0 < after < 720.0
+    ball, far = end["group"] == 0, np.abs(start["position"][:, 1]) > 0.01
+    assert (end["damage"][far] == 0.0).all() and not end["damage"][ball].any()
+    assert end["position"][ball, 0].min() > end["position"][~ball & far, 0].max()  # it is behind the plate
+    hole = ~ball & (end["damage"] < 0.5) & (np.abs(end["position"][:, 0] - 0.002) < 0.004)
+    assert np.abs(end["position"][hole, 1]).min() > 0.003
+
+
+def test_a_plate_that_does_not_crack_holds_the_ball(tmp_path):
+    log, (before, after), end, _ = pierced(tmp_path, "solids.plate.critical_stretch=off")
+    ball = end["group"] == 0
+    assert after < 0.9 * before and end["position"][~ball, 0].max() > end["position"][ball, 0].max()
+    energy = log["kinetic_energy"] + log["stored_energy"]
+    assert np.diff(energy).max() < 1e-3 * energy[0]
+
+
+def shock(folder, *overrides):
+    """Speed of the shock in the resting plate, in its reference, m/s; speed and −σ_xx behind it; the log."""
+    run = finished("solids/plate_impact", folder, "time.end=1.7e-6", *overrides)
+    start = by_id(run.frame(0))
+    x, resting = start["position"][:, 0], start["group"] == 1
+    places = []
+    for number, time in enumerate(run.times):
+        frame = by_id(run.frame(number))
+        columns = np.unique(np.round(x[resting], 7))
+        speed = np.array([frame["velocity"][np.abs(x - column) < 1e-6, 0].mean() for column in columns])
+        if time > 0.75e-6:
+            last = np.flatnonzero(speed > 250.0)[-1]
+            part = (speed[last] - 250.0) / (speed[last] - speed[last + 1])
+            places.append((time, columns[last] + part * (columns[last + 1] - columns[last])))
+    behind = resting & (x > 0.002) & (x < places[-1][1] - 0.001)
+    return (
+        np.polyfit(*np.transpose(places), 1)[0],
+        frame["velocity"][behind, 0].mean(),
+        -frame["stress"][behind, 0].mean(),
+        run.log(),
+    )
+
+
+def test_a_shock_in_copper_runs_as_its_hugoniot_curve_says(tmp_path):
+    speed, behind, pressure, log = shock(tmp_path)
+    tell(f"shock in copper: {speed:.0f} m/s, behind it {behind:.1f} m/s and {1e-9 * pressure:.2f} GPa")
+    assert speed == pytest.approx(4684.5, rel=0.01) and behind == pytest.approx(500.0, rel=0.01)
+    assert pressure == pytest.approx(20.92e9 + 0.06e9, rel=0.01)  # with two thirds of the yield stress
+    energy = log["kinetic_energy"] + log["stored_energy"]
+    assert np.abs(energy / energy[0] - 1.0).max() < 3e-3
+
+
+def test_a_linear_pressure_lets_the_shock_run_too_slowly(tmp_path):
+    off = ("solids.flyer.mie_gruneisen=off", "solids.target.mie_gruneisen=off")
+    speed, _, _, log = shock(tmp_path, *off)
+    energy = log["kinetic_energy"] + log["stored_energy"]
+    assert speed < 0.9 * 4684.5 and energy[-1] < 0.99 * energy[0]
 
 
 def bar(folder, *overrides):

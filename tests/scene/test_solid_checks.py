@@ -97,6 +97,8 @@ def test_a_sound_beam_is_good(tmp_path):
             ],
             "physics.contact: solids in a fluid do not feel each other; remove it",
         ),
+        (["solids.beam.flaws=5.0"], "solids.beam.flaws: 5.0: without critical_stretch nothing cracks"),
+        (["solids.beam.critical_stretch=0.0"], "solids.beam.critical_stretch: 0.0 is out of range"),
         (["physics.contact={damping=1.5}"], "physics.contact.damping: 1.5 is out of range"),
         (
             ["solids.end={shape={box={lower=[1.0,0.0],upper=[1.5,0.05]}},density=1e3,young=1e6,poisson=0.3}"],

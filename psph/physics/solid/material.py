@@ -1,8 +1,10 @@
 """What an elastic solid is made of, and how fast its waves are."""
 
+import math
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
+from psph.physics.solid.compression import EvenBulk, MieGruneisen
 from psph.physics.solid.laws import LAWS, moduli
 from psph.physics.solid.plastic import JohnsonCook, LinearHardening, Metal
 
@@ -21,14 +23,27 @@ CALM = 0.08
 """C in :func:`calming_viscosity`: a solid on a chain of fluid cells needs 0.06, whatever its thickness and
 frequency (tests/simulation/test_held_push.py)."""
 
-MADE_OF = ("density", "young", "poisson", "law", "hourglass", "yield_stress", "hardening")
+MADE_OF = (
+    "density",
+    "young",
+    "poisson",
+    "law",
+    "hourglass",
+    "yield_stress",
+    "hardening",
+    "critical_stretch",
+    "flaws",
+)
 """The keys of a case that say what a solid is made of."""
 
 
 class Solid(NamedTuple):
     """An elastic solid: its ``law`` (psph.physics.solid.laws), ``density`` in the reference in kg/m³, and
     ``wave_speed`` c_l = √((λ + 2μ)/ρ₀) of its fastest wave in m/s; the ``viscosity`` of Kelvin and Voigt in
-    Pa s, and the ``stiffness`` αE of the hourglass control in Pa."""
+    Pa s, and the ``stiffness`` αE of the hourglass control in Pa.
+
+    Bonds are cut beyond the ``critical_stretch``, infinite where it does not crack; ``flaws`` is the Weibull
+    modulus of its scatter, 0 without (psph.physics.solid.cracks)."""
 
     name: str
     law: Any
@@ -36,6 +51,8 @@ class Solid(NamedTuple):
     wave_speed: float
     viscosity: float
     stiffness: float
+    critical_stretch: float = math.inf
+    flaws: float = 0.0
 
     def longest_step(self, smoothing_length: float, speed: float) -> float:
         """By waves and friction, at the largest speed in m/s, s."""
@@ -59,18 +76,37 @@ def solid_of(
     yield_stress: float | None = None,
     hardening: float = 0.0,
     johnson_cook: dict[str, float] | None = None,
+    critical_stretch: float | None = None,
+    flaws: float | None = None,
+    mie_gruneisen: dict[str, float] | None = None,
+    length: float = 0.0,
 ) -> Solid:
     """The solid of these numbers: ``young`` and ``poisson`` E in Pa and ν, ``damping`` η in Pa s; where it
-    yields, ``yield_stress`` and ``hardening`` in Pa, or the numbers of a table ``johnson_cook``."""
+    yields, ``yield_stress`` and ``hardening`` in Pa, or the numbers of a table ``johnson_cook``; where it
+    cracks, ``critical_stretch`` and perhaps the Weibull modulus ``flaws``; with the numbers of a table
+    ``mie_gruneisen`` its pressure is by that law, shocks as wide as some ``length`` in m."""
     lame, shear = moduli(young, poisson)
-    speed = ((lame + 2.0 * shear) / density) ** 0.5
+    bulk = lame + 2.0 * shear / 3.0
+    compression: Any = EvenBulk(bulk)
+    if mie_gruneisen is not None:
+        compression = mie_gruneisen_of(density, bulk, length, **mie_gruneisen)
+        bulk = density * compression.sound_speed**2
+    speed = ((bulk + 4.0 * shear / 3.0) / density) ** 0.5
     yielding: Any = None
     if johnson_cook is not None:
         yielding = johnson_cook_of(density, **johnson_cook)
     elif yield_stress is not None:
         yielding = LinearHardening(yield_stress, hardening)
-    own = Metal(lame + 2.0 * shear / 3.0, shear, yielding) if yielding else LAWS[law](lame, shear)
-    return Solid(name, own, density, speed, damping, hourglass * young)
+    own = Metal(compression, shear, yielding) if yielding else LAWS[law](lame, shear)
+    most = math.inf if critical_stretch is None else critical_stretch
+    return Solid(name, own, density, speed, damping, hourglass * young, most, flaws or 0.0)
+
+
+def mie_gruneisen_of(
+    density: float, bulk: float, length: float, slope: float, gruneisen: float, sound_speed: float | None
+) -> MieGruneisen:
+    """The pressure of a solid of ``density`` in kg/m³; ``sound_speed`` None: that of its ``bulk`` modulus."""
+    return MieGruneisen(density, sound_speed or (bulk / density) ** 0.5, slope, gruneisen, length)
 
 
 def calming_viscosity(young: float, poisson: float, share: float, dt: float) -> float:
@@ -98,6 +134,11 @@ def johnson_cook_of(density: float, heat_capacity: float | None, **numbers) -> J
 def remembers(solids: Iterable[Solid]) -> bool:
     """Whether any solid yields: then all particles carry a history."""
     return any(hasattr(one.law, "flow") for one in solids)
+
+
+def is_heated(solids: Iterable[Solid]) -> bool:
+    """Whether any solid books its internal energy."""
+    return any(isinstance(getattr(one.law, "compression", None), MieGruneisen) for one in solids)
 
 
 def is_damped(solids: Iterable[Solid]) -> bool:

@@ -3,7 +3,9 @@
 C_p⁻¹, the inverse of the plastic part of C = FᵀF, is the history.  It is symmetric, turns with nothing, and
 gives the elastic strain whatever the turn of the solid: with J = det F
 
-    b = J^{−2/3} F C_p⁻¹ Fᵀ,   τ = K/2 (J² − 1) 1 + μ dev b,   P = τ F⁻ᵀ.
+    b = J^{−2/3} F C_p⁻¹ Fᵀ,   τ = τ_m(J) 1 + μ dev b,   P = τ F⁻ᵀ,
+
+τ_m by psph.physics.solid.compression: K/2 (J² − 1), or −J times the pressure of Mie and Grüneisen.
 
 Where q = √(3/2) |μ dev b| exceeds the yield stress Y, the stress returns along a ray:
 
@@ -21,6 +23,7 @@ import numpy as np
 from psph.engine.jit import call_by_type, overload, register_jitable
 from psph.fields import SYMMETRIC, Field
 from psph.formula import where
+from psph.physics.solid.compression import mean_stress, pressed, stored_by
 from psph.vectors import (
     cofactor,
     determinant,
@@ -50,11 +53,15 @@ CLOSE = 1e-13
 
 
 class History(NamedTuple):
-    """What a particle remembers: C_p⁻¹ − 1, the equivalent plastic ``strain``, the plastic ``work``, J/m³."""
+    """What a particle remembers: C_p⁻¹ − 1, the equivalent plastic ``strain``, the plastic ``work``, J/m³.
+
+    ``heat`` is its psph.physics.solid.compression.Heat where a solid of the scene asks for it, else None.
+    """
 
     metric: Any
     strain: Any
     work: Any
+    heat: Any = None
 
 
 class LinearHardening(NamedTuple):
@@ -128,10 +135,11 @@ strength = call_by_type("strength")
 class Metal(NamedTuple):
     """Hooke's law for the elastic part of large deformations, and a yield stress: see above.
 
-    ``bulk`` K and ``shear`` μ in Pa; ``yielding`` says how hard it yields.
+    ``compression`` says how it resists a change of volume (psph.physics.solid.compression), ``yielding`` how
+    hard it yields; ``shear`` μ in Pa.
     """
 
-    bulk: float
+    compression: Any
     shear: float
     yielding: Any
 
@@ -143,6 +151,7 @@ class Metal(NamedTuple):
         s, s_zz = scale(less_diagonal(b, mean, a), self.shear), self.shear * only_in_plane(b_zz - mean, a)
         size2 = norm_squared(s, a) + s_zz * s_zz
         q = np.sqrt(1.5 * size2)
+        before = past.work
         if q > strength(self.yielding, past.strain, 0.0, past.work):
             stiffness = 3.0 * self.shear * mean
             more = max(increment(self.yielding, q, stiffness, past, dt), 0.0)
@@ -154,31 +163,32 @@ class Metal(NamedTuple):
             again = matrix_product(inverse, less_diagonal(b, -unit, a), a)
             metric = scale(product_transposed(again, inverse, a), np.abs(volume) ** (2.0 / 3.0))
             work = past.work + more * (q - stiffness * more)
-            past = History(less_diagonal(metric, 1.0, a), past.strain + more, work)
-        pressure = 0.5 * self.bulk * (volume * volume - 1.0)
-        return nominal(less_diagonal(s, -pressure, a), f, volume, a), past
+            past = History(less_diagonal(metric, 1.0, a), past.strain + more, work, past.heat)
+        swells, heat = pressed(self.compression, volume, past.heat, past.work - before, dt)
+        past = History(past.metric, past.strain, past.work, heat)
+        return nominal(less_diagonal(s, -swells, a), f, volume, a), past
 
     def stress(self, f, past, a):
         """P in Pa by rows at what it remembers."""
         volume = dilation(f, a)
         b, b_zz = elastic_part(f, past.metric, volume, a)
         mean = (trace(b, a) + b_zz) / 3.0
-        pressure = 0.5 * self.bulk * (volume * volume - 1.0)
         s = scale(less_diagonal(b, mean, a), self.shear)
-        return nominal(less_diagonal(s, -pressure, a), f, volume, a)
+        swells = mean_stress(self.compression, volume, past.heat)
+        return nominal(less_diagonal(s, -swells, a), f, volume, a)
 
     def across(self, f, past, a):
         """P along z in plane strain, Pa."""
         volume = dilation(f, a)
         b, b_zz = elastic_part(f, past.metric, volume, a)
         mean = (trace(b, a) + b_zz) / 3.0
-        return 0.5 * self.bulk * (volume * volume - 1.0) + self.shear * (b_zz - mean)
+        return mean_stress(self.compression, volume, past.heat) + self.shear * (b_zz - mean)
 
     def energy(self, f, past, a):
-        """ψ = K/2 ((J² − 1)/2 − ln J) + μ/2 (tr b − 3), J per reference volume."""
+        """What is stored in the volume, and μ/2 (tr b − 3), J per reference volume."""
         volume = dilation(f, a)
         b, b_zz = elastic_part(f, past.metric, volume, a)
-        squeezed = 0.5 * self.bulk * (0.5 * (volume * volume - 1.0) - np.log(volume))
+        squeezed = stored_by(self.compression, volume, past.heat)
         return squeezed + 0.5 * self.shear * (trace(b, a) + b_zz - 3.0)
 
 

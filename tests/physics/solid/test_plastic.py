@@ -5,6 +5,7 @@ import pytest
 from physics.solid.test_laws import axis, rows, turned
 
 from psph.engine.jit import compiled
+from psph.physics.solid.compression import EvenBulk
 from psph.physics.solid.laws import moduli
 from psph.physics.solid.material import solid_of
 from psph.physics.solid.plastic import (
@@ -24,7 +25,7 @@ VERGENT = JohnsonCook(90e6, 292e6, 0.31, 0.025, 1.09, 1063.0, 0.9 / (8930.0 * 38
 
 
 def copper(yielding):
-    return Metal(BULK, SHEAR, yielding)
+    return Metal(EvenBulk(BULK), SHEAR, yielding)
 
 
 def fresh(d):
