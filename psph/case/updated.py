@@ -16,6 +16,9 @@ OF_REFERENCE = (
     "hourglass",
     "loads",
     "load_rise",
+    "critical_stretch",
+    "flaws",
+    "mie_gruneisen",
 )
 """Keys that mean nothing to a solid whose neighbours are those of the present."""
 
