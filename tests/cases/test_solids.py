@@ -170,7 +170,7 @@ def test_a_gate_of_rubber_opens_as_another_code_has_it(opened):
 
 @LONG
 @pytest.mark.xfail(
-    reason="up goes as the square of out, and a rubber plate with 4 across is too stiff: docs/solids.md",
+    reason="it goes out 9 to 12 % less far, and up goes as the square of out: docs/solids.md",
     strict=True,
 )
 def test_a_gate_of_rubber_rises_as_another_code_has_it(opened):
