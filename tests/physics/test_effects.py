@@ -42,6 +42,7 @@ from psph.physics.order.shifting import LatticeShift, ParticleShifting, lattice_
 from psph.physics.order.stress import NeighbourStress
 from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.rigid.motion import Rigid
+from psph.physics.solid.anvil import Anvils
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
@@ -54,7 +55,10 @@ DIMENSIONS = (1, 2, 3)
 
 
 def made(effect, dim):
-    """An instance with its defaults, or with a number or vector where it asks for one."""
+    """An instance with its defaults, or with a number or vector where it asks for one; of anvils, one that most
+    particles have come too near to."""
+    if effect is Anvils:
+        return Anvils((((0.3, -0.8, 0.3)[:dim], (0.6, 0.8, 0.0)[:dim]),), 2.0, 50.0)
     hints = get_type_hints(effect)
     needed = [n for n in effect._fields if n not in effect._field_defaults]
     vector = (0.3, -9.8, 0.3)[:dim]
