@@ -115,7 +115,7 @@ def calming_viscosity(young: float, poisson: float, share: float, dt: float) -> 
     η = 2 C E′ Δt z, E′ = E/(1 − ν²), with z = ρ_f c Δt/(ρ_s H) the ``share`` of its speed that a solid of
     thickness H loses in a step Δt = ``dt`` s to sound.  The push of the fluid is held for a step and answers
     to velocities of the steps before, so a wave of the solid with ωΔt near 1 and more gets it with the wrong
-    sign, and grows by a part of z a step (docs/solids.md).  The stress of Kelvin and Voigt damps it by
+    sign, and grows by a part of z a step (docs/coupling.md).  The stress of Kelvin and Voigt damps it by
     ηω²Δt/2E′ = C z (ωΔt)².  What a step resolves keeps its energy to the second order in Δt.
     """
     return 2.0 * CALM * young / (1.0 - poisson**2) * dt * share
