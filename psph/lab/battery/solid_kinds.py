@@ -54,10 +54,11 @@ TRIALS = (
     _judging(
         "rings",
         "rings",
-        0.011,
+        0.02,
         _ways("left", "right", contact=True),
         (Bound("pieces", 2, 2), Bound("momentum", most=1e-9)),
         (Bound("flight", least=0.5),),
+        ("solids.left.velocity=[7.0, 0.0]", "solids.right.velocity=[-7.0, 0.0]"),
     ),
     _judging(
         "pulled_strip",

@@ -37,10 +37,10 @@ def take_rate(total, pair, u_ij, moving, lying):
 
 
 @helper
-def linear_gradient(total, i):
-    """−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ, by rows, 1/s."""
+def linear_gradient(total, i, least=FEWEST):
+    """−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ, by rows, 1/s; fades where det M < ``least``."""
     changes, place = total
-    size = max(determinant(place, i.position), FEWEST)
+    size = max(determinant(place, i.position), least)
     inverse = scale(adjugate(place, i.position), 1.0 / size)
     return matrix_product(changes, inverse, i.position)
 

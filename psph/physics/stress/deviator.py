@@ -13,7 +13,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.physics.damping.diffusion import diffusion_step
 from psph.physics.facts import Facts
-from psph.physics.fluid.strain import linear_gradient, no_rate, rate_weight, take_rate
+from psph.physics.fluid.strain import FEWEST, linear_gradient, no_rate, rate_weight, take_rate
 from psph.vectors import (
     add,
     dot,
@@ -32,6 +32,9 @@ from psph.vectors import (
 DEVIATOR = Declared(
     "deviator", "Pa", "deviatoric stress, tension positive", SYMMETRIC, saved=True, evolves=True
 )
+
+FEWEST_OF_ELASTIC = 0.45
+"""Determinant of M below which the gradient of the velocity fades in matter that never yields."""
 
 
 @helper
@@ -68,10 +71,15 @@ class DeviatorRate(NamedTuple):
     Appl. Mech. Eng. 190, 6641; corrected, Randles & Libersky (1996), 139, 375.
     """
 
+    least: float = FEWEST
+
     writes = DEVIATOR
 
     def in_scene(self, scene: Facts):
-        """Where soils ask for it, the form whose stress spreads between neighbours too."""
+        """Where soils ask for it, the form whose stress spreads between neighbours too; in matter that never
+        yields the correction fades sooner: else particles with few neighbours, at an edge, tear out."""
+        if not scene.stressed.laws:
+            return DeviatorRate(FEWEST_OF_ELASTIC)
         if not scene.stressed.diffusion:
             return self
         return DiffusedDeviatorRate(scene.stressed.diffusion, layered(scene))
@@ -86,7 +94,8 @@ class DeviatorRate(NamedTuple):
 
     def finish_value(self, total, i, kernel):
         """ds/dt, Pa/s; 0 in what does not resist shear."""
-        return jaumann_rate(linear_gradient(total, i), i.deviator, i.shear_modulus, i.position)
+        gradient = linear_gradient(total, i, self.least)
+        return jaumann_rate(gradient, i.deviator, i.shear_modulus, i.position)
 
 
 @helper
