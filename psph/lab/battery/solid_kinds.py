@@ -71,11 +71,11 @@ TRIALS = (
     _judging(
         "oscillating_plate",
         "plate",
-        0.6,
+        0.45,
         _ways("plate"),
         (Bound("period_error", -0.12, 0.12), Bound("swing_kept", least=0.8)),
         (Bound("period_error", -0.02, 0.02),),
-        ("space.spacing=0.002",),
+        ("space.spacing=0.00125",),
     ),
     _judging(
         "spinning_plate",
