@@ -56,6 +56,6 @@ def test_the_table_stands(tmp_path):
     rows = {(t.name, c): _run(MPI.COMM_SELF, t, c, tmp_path) for t in SOLIDS.trials for c in t.columns}
     assert all(rows[t.name, "total"].verdict == "good" for t in TRIALS)
     assert abs(rows["plate", "updated, corrected gradients"].found["period_error"]) < 0.12
-    assert rows["spin", "updated"].found["kinetic"] > 0.96
+    assert rows["spin", "updated"].found["kinetic"] > 0.93
     assert rows["spin", BARE].found["pieces"] > 5.0
-    assert rows["rings", BARE].found["pieces"] > 5.0
+    assert rows["rings", "updated"].found["pieces"] == 2.0 and rows["rings", BARE].found["pieces"] > 5.0
