@@ -5,12 +5,12 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from psph.case.findings import Finding
+from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
-from psph.case.matter import Matter
 from psph.physics.stress.strength import DruckerPrager, cone
 
 
-class Soil(Matter):
+class Soil(Hookean):
     """Soil: elastic until it yields by friction and cohesion."""
 
     velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
@@ -56,26 +56,7 @@ class Soil(Matter):
     )
     water_density: float = key("density of that water", 1000.0, unit="kg/m3", gt=0)
 
-    viscosity: ClassVar = 0.0
-    rheology: ClassVar = None
-    equation_of_state: ClassVar = None
-    pressure: ClassVar = 0.0
     rubs: ClassVar = True
-
-    @property
-    def shear_modulus(self) -> float:
-        """G, Pa."""
-        return 0.5 * self.young / (1.0 + self.poisson)
-
-    @property
-    def bulk_modulus(self) -> float:
-        """K, Pa."""
-        return self.young / (3.0 * (1.0 - 2.0 * self.poisson))
-
-    @property
-    def wave_speed(self) -> float:
-        """Of the fastest wave, √((K + 4G/3)/ρ), m/s."""
-        return math.sqrt((self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus) / self.density)
 
     @property
     def at_rest(self) -> float:

@@ -1,15 +1,14 @@
 """Elastic solids of a case, and the rules between their keys."""
 
-import math
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
 from psph.case.findings import Finding, one_sided
+from psph.case.hooke import Hookean
 from psph.case.keys import Name, Table, Vector, key
-from psph.case.matter import Matter
 from psph.case.shapes import Shape
 from psph.case.updated import TOTAL, UPDATED, updated
-from psph.physics.solid.laws import LAWS, moduli
+from psph.physics.solid.laws import LAWS
 
 
 class SolidLoad(Table):
@@ -58,7 +57,7 @@ class Anvil(Table):
     normal: Vector = key("direction out of it, towards the solids, of any length", unit="1")
 
 
-class Solid(Matter):
+class Solid(Hookean):
     """An elastic solid: total or updated Lagrangian SPH."""
 
     velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
@@ -119,32 +118,12 @@ class Solid(Matter):
     loads: dict[Name, SolidLoad] = key("forces on parts of the solid, by name", {})
     load_rise: float = key("time in which the loads grow to their full size", 0.0, unit="s", ge=0)
 
-    viscosity: ClassVar = 0.0
-    rheology: ClassVar = None
-    equation_of_state: ClassVar = None
-    pressure: ClassVar = 0.0
     rubs: ClassVar = False
 
     @property
     def is_updated(self) -> bool:
         """Whether its neighbours are those of the present."""
         return self.description == UPDATED
-
-    @property
-    def shear_modulus(self) -> float:
-        """G, Pa."""
-        return moduli(self.young, self.poisson)[1]
-
-    @property
-    def bulk_modulus(self) -> float:
-        """K, Pa."""
-        lame, shear = moduli(self.young, self.poisson)
-        return lame + 2.0 * shear / 3.0
-
-    @property
-    def wave_speed(self) -> float:
-        """Of the fastest wave, √((K + 4G/3)/ρ), m/s."""
-        return math.sqrt((self.bulk_modulus + 4.0 / 3.0 * self.shear_modulus) / self.density)
 
     @property
     def held(self) -> "Solid":
