@@ -58,7 +58,7 @@ class Zone:
     """
 
     def __init__(self, lattice: Lattice, sites: np.ndarray, system: Callable[[np.ndarray], System]):
-        self.lattice, self.sites, self.system = lattice, sites, system
+        self.lattice, self.sites, self.waves = lattice, sites, system
         count = WAVES[self.lattice.dimensions]
         self.grid, self.step = zone_grid(self.lattice, count), 1.0 / count
         self.noise = self._system(self.grid).noise
@@ -97,7 +97,7 @@ class Zone:
         return _climb(self.urge_for_length, self.grid, self.step)
 
     def _system(self, parts: np.ndarray) -> System:
-        return self.system(parts @ self.lattice.reciprocal)
+        return self.waves(parts @ self.lattice.reciprocal)
 
 
 def waves_of(pairs: Couplings, waves: np.ndarray) -> System:

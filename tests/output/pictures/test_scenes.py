@@ -151,7 +151,9 @@ def test_what_a_scene_lacks_is_one_line(tank3d, monkeypatch):
 
 def test_what_only_a_scene_has_is_refused_of_a_plane(tank3d):
     flat = quantity(
-        tank3d, {"space": {"dimensions": 3, "spacing": 1, "smoothing": 1}, "fluids": {}}, "vorticity"
+        tank3d,
+        {"space": {"dimensions": 3, "spacing": 1, "smoothing": 1}, "fluids": {"water": {"density": 1000.0}}},
+        "vorticity",
     )
     assert not flat.signed  # in 3D it is a size
     with pytest.raises(NotThere, match="a flow along one axis has none"):
