@@ -41,8 +41,9 @@ class DisplacementGauge(NamedTuple):
                     part[:, axis] -= period * np.rint(part[:, axis] / period)
         weight = np.maximum(1.0 - (away**2).sum(axis=1) / self.reach**2, 0.0) ** 2
         basis = np.column_stack([np.ones(len(away)), away / self.reach])
-        squares = (weight[:, None, None] * basis[:, :, None] * basis[:, None, :]).reshape(len(away), -1)
-        values = (weight[:, None, None] * basis[:, :, None] * moved[:, None, :]).reshape(len(away), -1)
-        sums = exact_sums(simulation.comm, np.column_stack([squares, values]))
+        squares = weight[:, None, None] * basis[:, :, None] * basis[:, None, :]
+        values = weight[:, None, None] * basis[:, :, None] * moved[:, None, :]
+        flat = (table.reshape(len(away), (1 + d) * table.shape[2]) for table in (squares, values))
+        sums = exact_sums(simulation.comm, np.column_stack([*flat]))
         matrix, right = sums[: (1 + d) ** 2].reshape(1 + d, 1 + d), sums[(1 + d) ** 2 :].reshape(1 + d, d)
         return np.linalg.lstsq(matrix, right, rcond=1e-9)[0][0].tolist()
