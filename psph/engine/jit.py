@@ -165,24 +165,37 @@ def _kept(loop):
     return loop
 
 
-INNER = {"no_cfunc_wrapper": True, "forceinline": True}
-"""Of functions that only compiled code calls. They need no entry for C: to build it takes an eighth of the
-time that they take to compile. LLVM writes each into its caller, however long it is: a call that is left
-would go to the function as it was compiled by itself in the process that compiles, and to a copy of it in a
-process that loads the loop from the cache, and the two may round differently."""
+INNER = {"no_cfunc_wrapper": True}
+"""Functions that only compiled code calls need no entry for C: to build it takes an eighth of the
+time that they take to compile."""
 
-OPTIONS = {"error_model": "numpy", "nogil": True, "no_cfunc_wrapper": True}
+OPTIONS = {"error_model": "numpy", "nogil": True, **INNER}
 """Of every loop: division by zero gives infinity, and threads run side by side."""
 
 
-def overload(function, **options):
+INSIDE = {**INNER, "forceinline": True}
+"""Functions that LLVM writes into their caller, however long they are: a call that hands on a hundred arrays
+counts the holders of each, and takes a hundred times as long as the rest of a loop over columns."""
+
+
+def overload(function, jit_options=INNER, **options):
     """Decorator: what compiled code has in the place of ``function`` (numba.extending.overload)."""
-    return extending.overload(function, jit_options=INNER, **options)
+    return extending.overload(function, jit_options=jit_options, **options)
 
 
 def register_jitable(function):
     """Let compiled code call a plain function (numba.extending.register_jitable)."""
     return extending.register_jitable(**INNER)(function)
+
+
+def inside(function):
+    """The same, for a part of a loop that takes all of the loop's arrays: see INSIDE."""
+    return extending.register_jitable(**INSIDE)(function)
+
+
+def overload_inside(function):
+    """As :func:`overload`, for such a part of a loop."""
+    return overload(function, jit_options=INSIDE)
 
 
 def call_by_type(name: str):

@@ -6,7 +6,7 @@ Each part is there twice, for motions by a formula (psph.physics.motion) and for
 
 from numba.core import types
 
-from psph.engine.jit import call_by_number, overload, register_jitable
+from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
 from psph.vectors import add, affine, at, dot, nearest_to, put, scale, subtract, zero_like
@@ -17,7 +17,7 @@ velocity = call_by_number("velocity")
 """(motions, number, anchor, time) → v, m/s."""
 
 
-@register_jitable
+@inside
 def carry(rules, group, k, time, columns):
     """Put particle ``k`` of a wall where the motion of its ``group`` has it at ``time``, if it moves."""
     number = rules.motion_of[group]
@@ -25,19 +25,19 @@ def carry(rules, group, k, time, columns):
     _carry_by_pose(rules.poses, rules.pose_of, number, group, k, rules.periods, columns)
 
 
-@register_jitable
+@inside
 def hurry(rules, group, k, time, dt, columns):
     """|v|² and |a|² of particle ``k`` by its prescribed motion, m²/s², m²/s⁴; zeros without one."""
     return _hurry(rules.motions, rules.poses, rules, group, k, time, dt, columns)
 
 
-@register_jitable
+@inside
 def feel(rules, group, k, time, dt, columns):
     """Store the force per mass of a moving frame on particle ``k`` less its prescribed acceleration, m/s²."""
     _feel(columns.apparent, rules, group, k, time, dt, columns)
 
 
-@register_jitable
+@inside
 def give(rules, i, group, k, dt, columns):
     """Book what particle ``k``, seen as ``i``, gives in a step of ``dt`` s, J.
 
@@ -60,7 +60,7 @@ def _carry_formula(motions, number, k, time, periods, columns):
         settle(columns, k, x, v, periods)
 
 
-@overload(_carry_by_formula)
+@overload_inside(_carry_by_formula)
 def _typed_carry_by_formula(motions, number, k, time, periods, columns):
     return _carry_formula if len(motions) else lambda motions, number, k, time, periods, columns: None
 
@@ -77,14 +77,14 @@ def _carry_pose(poses, pose_of, number, group, k, periods, columns):
         settle(columns, k, x, v, periods)
 
 
-@overload(_carry_by_pose)
+@overload_inside(_carry_by_pose)
 def _typed_carry_by_pose(poses, pose_of, number, group, k, periods, columns):
     if isinstance(poses, types.NoneType):
         return lambda poses, pose_of, number, group, k, periods, columns: None
     return _carry_pose
 
 
-@register_jitable
+@inside
 def settle(columns, k, x, v, periods):
     """Put particle ``k`` at ``x``, or at the image of it that is nearest to where it is, with ``v``."""
     put(columns.position, k, nearest_to(x, at(columns.position, k), periods))
@@ -92,7 +92,7 @@ def settle(columns, k, x, v, periods):
     put(columns.predicted_velocity, k, v)
 
 
-@register_jitable
+@inside
 def prescribed_acceleration(rules, group, k, time, dt, columns):
     """a of particle ``k`` by its prescribed motion, m/s²; zeros without one."""
     number = rules.motion_of[group]
@@ -116,7 +116,7 @@ def _acceleration_formula(motions, number, k, time, dt, columns):
     return scale(subtract(v, before), 1.0 / dt if dt > 0.0 else 0.0)
 
 
-@overload(_acceleration_by_formula)
+@overload_inside(_acceleration_by_formula)
 def _typed_acceleration_by_formula(motions, number, k, time, dt, columns):
     if len(motions):
         return _acceleration_formula
@@ -134,7 +134,7 @@ def _acceleration_pose(poses, pose_of, number, group, k, columns):
     return affine(poses[pose_of[group]], ACCELERATION, anchor) if number == RIGID else zero_like(anchor)
 
 
-@overload(_acceleration_by_pose)
+@overload_inside(_acceleration_by_pose)
 def _typed_acceleration_by_pose(poses, pose_of, number, group, k, columns):
     if isinstance(poses, types.NoneType):
         return lambda poses, pose_of, number, group, k, columns: zero_like(columns.position)
@@ -154,7 +154,7 @@ def _hurry_told(motions, poses, rules, group, k, time, dt, columns):
     return dot(v, v), dot(a, a)
 
 
-@overload(_hurry)
+@overload_inside(_hurry)
 def _typed_hurry(motions, poses, rules, group, k, time, dt, columns):
     if not len(motions) and isinstance(poses, types.NoneType):
         return lambda motions, poses, rules, group, k, time, dt, columns: (0.0, 0.0)
@@ -172,7 +172,7 @@ def _feel_it(apparent, rules, group, k, time, dt, columns):
     put(apparent, k, subtract(inertial(rules.frame, x, v), a))
 
 
-@overload(_feel)
+@overload_inside(_feel)
 def _typed_feel(apparent, rules, group, k, time, dt, columns):
     if isinstance(apparent, types.NoneType):
         return lambda apparent, rules, group, k, time, dt, columns: None
@@ -188,7 +188,7 @@ def _inertial(frame, x, v):
     return add(affine(frame, 0, x), affine(frame, 1, v))
 
 
-@overload(inertial)
+@overload_inside(inertial)
 def _typed_inertial(frame, x, v):
     return (lambda frame, x, v: zero_like(x)) if isinstance(frame, types.NoneType) else _inertial
 
@@ -206,7 +206,7 @@ def _give_it(work, rules, i, group, k, dt, columns):
         work[k] -= dt * i.mass * dot(stored(columns.load, v, k), v)
 
 
-@overload(_give)
+@overload_inside(_give)
 def _typed_give(work, rules, i, group, k, dt, columns):
     if isinstance(work, types.NoneType):
         return lambda work, rules, i, group, k, dt, columns: None
@@ -218,7 +218,7 @@ def stored(arrays, v, k):
     return zero_like(v) if arrays is None else at(arrays, k)
 
 
-@overload(stored)
+@overload_inside(stored)
 def _typed_stored(arrays, v, k):
     if isinstance(arrays, types.NoneType):
         return lambda arrays, v, k: zero_like(v)
