@@ -174,8 +174,10 @@ OPTIONS = {"error_model": "numpy", "nogil": True, **INNER}
 
 
 INSIDE = {**INNER, "forceinline": True}
-"""Functions that LLVM writes into their caller, however long they are: a call that hands on a hundred arrays
-counts the holders of each, and takes a hundred times as long as the rest of a loop over columns."""
+"""Of functions that LLVM writes into their caller, however long they are.  A call that is left hands on a
+hundred arrays, counts the holders of each, and takes a hundred times as long as the rest of a loop over columns.
+And it goes to the function as it was compiled by itself in a process that compiles, to a copy of it in a process
+that loads the loop from the cache: the two may round differently."""
 
 
 def overload(function, jit_options=INNER, **options):
@@ -207,9 +209,9 @@ def call_by_type(name: str):
     def call(value, *args):
         return getattr(value, name)(*args)
 
-    @overload(call)
+    @overload_inside(call)
     def typed(value, *args):
-        formula = method_of(value, name)
+        formula = inside(formula_of(value, name))
         return lambda value, *args: formula(value, *args)
 
     return call
@@ -224,9 +226,9 @@ def call_by_number(name: str):
     def call(values, number, *args):
         return getattr(values[int(number)], name)(*args)
 
-    @overload(call)
+    @overload_inside(call)
     def typed(values, number, *args):
-        formulas = {f"formula_{n}": method_of(kind, name) for n, kind in enumerate(values)}
+        formulas = {f"formula_{n}": inside(formula_of(kind, name)) for n, kind in enumerate(values)}
         lines = ["found = formula_0(values[0], *args)"]
         for n in range(1, len(values)):
             lines += [f"if number == {n}:", f"    found = formula_{n}(values[{n}], *args)"]
@@ -253,5 +255,10 @@ def tuple_of(parts) -> str:
 
 def method_of(named_type, name: str):
     """The compiled form of method ``name`` of a NamedTuple's class, or None if it has none."""
-    formula = getattr(named_type.instance_class, name, None)
+    formula = formula_of(named_type, name)
     return formula and register_jitable(formula)
+
+
+def formula_of(named_type, name: str):
+    """Method ``name`` of a NamedTuple's class, or None if it has none."""
+    return getattr(named_type.instance_class, name, None)

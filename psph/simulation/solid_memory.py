@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from numba.core import types
 
-from psph.engine.jit import call_by_number, overload, register_jitable
+from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.solid.compression import Heat
 from psph.physics.solid.plastic import History
 from psph.vectors import at, dot, put
@@ -35,7 +35,7 @@ class Memory(NamedTuple):
     dt: float
 
 
-@register_jitable
+@inside
 def recalled(memory, k):
     """The History of row ``k``."""
     column = memory.columns[k]
@@ -48,7 +48,7 @@ def warmth(heat, column):
     return None if heat is None else Heat(heat.energy[column], heat.swelling[column])
 
 
-@overload(warmth)
+@overload_inside(warmth)
 def _typed_warmth(heat, column):
     if isinstance(heat, types.NoneType):
         return lambda heat, column: None
@@ -61,7 +61,7 @@ def keep_warm(heat, column, now):
         heat.energy[column], heat.swelling[column] = now
 
 
-@overload(keep_warm)
+@overload_inside(keep_warm)
 def _typed_keep_warm(heat, column, now):
     if isinstance(heat, types.NoneType):
         return lambda heat, column, now: None
@@ -73,7 +73,7 @@ def _typed_keep_warm(heat, column, now):
     return write
 
 
-@register_jitable
+@inside
 def _flow_on(laws, number, memory, k, f, a):
     if dot(f, f) == 0.0:  # its neighbours do not span space
         return f
@@ -91,7 +91,7 @@ def advanced(laws, number, memory, k, f, a):
     return law_stress(laws, number, f, a) if memory is None else _flow_on(laws, number, memory, k, f, a)
 
 
-@overload(advanced)
+@overload_inside(advanced)
 def _typed_advanced(laws, number, memory, k, f, a):
     if isinstance(memory, types.NoneType):
         return lambda laws, number, memory, k, f, a: law_stress(laws, number, f, a)
@@ -106,7 +106,7 @@ def _of_state(law_value):
             return law_value(laws, number, f, a)
         return law_value(laws, number, f, recalled(memory, k), a)
 
-    @overload(value)
+    @overload_inside(value)
     def typed(laws, number, memory, k, f, a):
         if isinstance(memory, types.NoneType):
             return lambda laws, number, memory, k, f, a: law_value(laws, number, f, a)

@@ -5,10 +5,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 from jobs import clean_environment
+from long import LONG
 
 from psph.engine import jit
 from psph.engine.cache import IN_USE, KEPT, Cache
+from psph.output.reader import Run
 
 SCRIPT = """
 import sys
@@ -125,3 +128,24 @@ def test_older_folders_are_removed_unless_in_use(tmp_path):
     own.prune()
     assert not (tmp_path / names[0]).exists()
     own.close()
+
+
+@LONG
+def test_who_compiles_gets_the_bits_of_who_loads(tmp_path):
+    """A metal has the longest formulas: they were once called, not written into the loop."""
+    case = Path(__file__).parents[2] / "run/cases/solids/plate_impact.toml"
+    frames = []
+    for name in ("compiling", "loading"):
+        words = ["-m", "psph", str(case), "--out", str(tmp_path / name), "--set", "time.end=4e-7"]
+        job = subprocess.run(
+            [sys.executable, *words],
+            env=clean_environment() | {"PSPH_CACHE": str(tmp_path / "cache")},
+            capture_output=True,
+            text=True,
+            timeout=150,
+        )
+        assert job.returncode == 0, job.stderr
+        frames.append(Run(tmp_path / name).frame(-1))
+    assert frames[0]["plastic_strain"].max() > 0.0
+    for name, values in frames[0].items():
+        assert np.array_equal(values, frames[1][name]), name
