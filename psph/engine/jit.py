@@ -174,10 +174,10 @@ OPTIONS = {"error_model": "numpy", "nogil": True, **INNER}
 
 
 INSIDE = {**INNER, "forceinline": True}
-"""Of functions that LLVM writes into their caller, however long they are.  A call that is left hands on a
-hundred arrays, counts the holders of each, and takes a hundred times as long as the rest of a loop over columns.
-And it goes to the function as it was compiled by itself in a process that compiles, to a copy of it in a process
-that loads the loop from the cache: the two may round differently."""
+"""Of functions that LLVM writes into their caller, however long they are.  A call that is left hands on
+a hundred arrays, counts the holders of each, and takes a hundred times as long as the rest of a loop over
+columns.  And it goes to the function as it was compiled by itself in a process that compiles, to a copy of
+it in a process that loads the loop from the cache: the two may round differently."""
 
 
 def overload(function, jit_options=INNER, **options):
