@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from psph.runs.explain import Acting, absent, acting, bytes_of_rank, explain, laws_of, slab_planes
+from psph.runs.absent import absent
+from psph.runs.explain import Acting, acting, bytes_of_rank, explain, laws_of, slab_planes
 from psph.runs.forecast import forecast, pull
 from psph.runs.hints import hints
 from psph.simulation.plan import make_plan

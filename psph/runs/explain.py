@@ -5,7 +5,6 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from psph.case.keys import AXES
-from psph.case.profiles import OFF
 from psph.composition.space import Metres
 from psph.output.tables import GAUGE
 from psph.parallel.domain import CELLS_A_PARTICLE
@@ -17,6 +16,7 @@ from psph.particles.store import SPARE
 from psph.physics.motion import deforms
 from psph.physics.solid.deformation import KERNEL, SMOOTHING, places_of, support_of
 from psph.physics.solid.material import is_damped
+from psph.runs.absent import absent_lines
 from psph.runs.forecast import forecast, forecast_lines, pull, sites_within
 from psph.runs.hints import hints
 from psph.runs.outlay import output_lines
@@ -28,7 +28,6 @@ from psph.scene.rheologies import rheology_lines
 from psph.scene.soils import soil_lines
 from psph.scene.solid_checks import solid_lines
 from psph.scene.waving import wave_lines
-from psph.simulation.calling import acts_in
 from psph.simulation.immersion import substeps
 from psph.simulation.plan import Plan, make_plan
 
@@ -241,9 +240,7 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     yield "Equation of state"
     for one in laws:
         yield from _acting_lines(one, width)
-    yield "Not simulated" if scene.case.flowing else "Not simulated, beside all that acts between fluids"
-    for name, why in absent(scene, plan).items():
-        yield f"  {name:<{width}}{why}"
+    yield from absent_lines(scene, plan, width)
 
 
 class Acting(NamedTuple):
@@ -264,15 +261,6 @@ def laws_of(plan: Plan) -> list[Acting]:
     return [
         Acting(type(law).__name__, _first_line(law), why) for law, why in zip(plan.laws, plan.law_reasons)
     ]
-
-
-def absent(scene, plan: Plan) -> dict[str, str]:
-    """Why each effect is not simulated that the case could have asked for."""
-    return {
-        entry.effect.__name__: plan.dropped.get(entry.effect.__name__) or _why_absent(scene.case, entry.key)
-        for entry in plan.absent
-        if acts_in(scene.case, entry.effect)
-    }
 
 
 def _acting_lines(one: Acting, width: int) -> Iterator[str]:
@@ -296,18 +284,6 @@ def _early_passes(plan: Plan) -> Iterator[str]:
         often = "one a step" if early.every == 1 else f"one in {early.every} steps"
         sent = f"; ghosts then get {', '.join(later.brought)}" if later.brought else ""
         yield f"Pass over the neighbours, {often}, before the next: sums of {names}{sent}"
-
-
-def _why_absent(case, key: str) -> str:
-    by, value = case.presets.get(key, (None, OFF))
-    if value != OFF:
-        return f"switched off: {by} has {key}, and the case takes it out"
-    return f"the case does not say {_asked_by(key)}"
-
-
-def _asked_by(key: str) -> str:
-    name, _, choice = key.partition("=")
-    return f'{name} = "{choice}"' if choice else name
 
 
 def _first_line(effect) -> str:

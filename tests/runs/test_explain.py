@@ -7,6 +7,7 @@ from drafts import TANK, draft
 from mpi4py import MPI
 
 from psph.output.ledger import Ledger
+from psph.runs.absent import absent
 from psph.runs.explain import bytes_per_particle, bytes_per_refresh, explain
 from psph.runs.setup import create_particles
 from psph.scene import Scene
@@ -97,10 +98,12 @@ def test_explain_says_what_comes_from_the_profile(tmp_path):
 
 
 def not_simulated(tmp_path, text, *overrides) -> dict[str, str]:
-    """What explain says of each effect that is absent."""
-    lines = list(explain(Scene(draft(tmp_path, text, *overrides)), 1))
-    end = next(k for k, line in enumerate(lines) if line.startswith("Time step"))
-    return dict(line.split(maxsplit=1) for line in lines[lines.index("Not simulated") + 1 : end])
+    """Why each effect is absent; explain has the line of each that was left out or switched off."""
+    scene = Scene(draft(tmp_path, text, *overrides))
+    why, lines = absent(scene, make_plan(scene)), list(explain(scene, 1))
+    shown = dict(line.split(maxsplit=1) for line in lines if " left out, though " in line)
+    assert shown == {name: said for name, said in why.items() if said.startswith("left out")}
+    return why
 
 
 def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
@@ -123,12 +126,24 @@ def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
 
 
 def test_names_and_what_is_said_of_them_stand_in_two_columns(tmp_path):
-    lines = list(explain(Scene(draft(tmp_path, TANK)), 1))
-    [line] = [line for line in lines if "GeneralisedTransportVelocity" in line]
-    assert "GeneralisedTransportVelocity  the case" in line
-    begins = line.index("the case")
+    lines = list(explain(Scene(draft(tmp_path, TANK, "scheme=stable")), 1))
+    [left_out] = [line for line in lines if line.startswith("  BackgroundPressure")]
     [because] = [one for one in lines if one.endswith("because: every scene")]
-    assert because.index("because") == begins
+    assert because.index("because") == left_out.index("left out")
+
+
+def test_keys_that_the_case_does_not_name_stand_together_by_table(tmp_path):
+    lines = list(
+        explain(Scene(draft(tmp_path, TANK, "walls.tank.no_slip=true", "fluids.water.viscosity=1e-3")), 1)
+    )
+    begin = lines.index("Not simulated: the case does not name these keys (docs/case.md)")
+    end = next(k for k, line in enumerate(lines) if line.startswith("Time step"))
+    told = " ".join(line.strip() for line in lines[begin + 1 : end])
+    assert "physics   pressure_gradient = minimum or difference or tensile_control or stress_points, " in told
+    assert "walls     condition = extrapolated or repulsive or penalty" in told
+    assert "xsph" in told and "fluids    rheology" in told
+    assert "no_slip" not in told and "viscosity" not in told.split("fluids")[1] and "gravity" not in told
+    assert max(map(len, lines[begin:end])) <= 110
 
 
 def test_what_the_case_takes_out_of_its_scheme_is_switched_off(tmp_path):

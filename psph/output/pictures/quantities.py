@@ -49,7 +49,7 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
         case "group":
             return Quantity(
                 GROUP,
-                "fluid",
+                "group",
                 "",
                 (GROUP,),
                 _size_of(GROUP),
