@@ -237,7 +237,7 @@ VERBS = {
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
     "export": (_export, "the frames of a run as files of other programs: VTK, Gadget, ParaView"),
-    "report": (_report, "a run, a study, a battery or a bench as one HTML file for a browser"),
+    "report": (_report, "a run, a study, a battery, a map or a bench as one HTML file for a browser"),
     "study": (_study, "error and run time of a case over spacings, kernels and other choices"),
     "stability": (_stability, "growth rates of lattice instabilities; hard cases under every scheme"),
     "completion": (_completion, "what teaches a shell to complete psph's verbs, options and files"),

@@ -113,7 +113,9 @@ def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
     _add_plot_options(verb["plot"])
     _add_export_options(verb["export"])
     verb["report"].add_argument(
-        "folder", action=_Folder, help="the folder of a run, a study or a battery; or a file of bench --json"
+        "folder",
+        action=_Folder,
+        help="the folder of a run, a study, a battery or a map; or a file of bench --json",
     )
     verb["report"].add_argument("--field", default="speed", help="what the pictures show (default: speed)")
     verb["completion"].add_argument("shell", choices=SHELLS, help="the shell that is to complete")

@@ -11,6 +11,11 @@ from psph.lab.report.sheet import REPORT, Told, first_run
 KINDS = {
     CSV: (PAGE, "Hard cases under every scheme", "what each scheme does in cases in which plain SPH fails"),
     "remedies.csv": ("remedies.md", "Each remedy alone", "what one remedy does where plain SPH fails"),
+    "solids.csv": (
+        "solids.md",
+        "Total or updated Lagrangian",
+        "what each description of elastic solids does",
+    ),
     "walls.csv": ("walls.md", "Walls side by side", "what walls of each condition do in the same cases"),
 }
 """Of each kind of table: its page, its title, and what it tells."""

@@ -32,7 +32,7 @@ LARGEST_FILM = 12 << 20
 def report(folder: Path, field: str = "speed") -> Path:
     """Write the report of the run in ``folder``, whose pictures show ``field``; its path.
 
-    The folder of a study or a battery has one too, and so has a file of ``bench --json``: results.py.
+    The folder of a study, a battery or a map has one too, and so has a file of ``bench --json``: results.py.
 
     Pictures are drawn as ``plot`` draws them; a film that ``plot --film`` has made there is taken in.
     Raises Refused or NotThere where there is nothing to report, or nothing to make it with.

@@ -1,8 +1,8 @@
-"""The report of a study, a battery or a bench: its page, a diagram for the mouse, its pictures."""
+"""The report of a study, a battery, a map or a bench: its page, a diagram for the mouse, its pictures."""
 
 from pathlib import Path
 
-from psph.lab.report import battery, bench, study
+from psph.lab.report import battery, bench, maps, study
 from psph.lab.report.sheet import Told, embedded, interactive, written
 from psph.output.checkpoint import COPY
 from psph.runs.summary import UNTOLD, read_summary
@@ -13,10 +13,10 @@ TEMPLATE = "results.html"
 def report_of_results(path: Path) -> Path | None:
     """Write the report of what was measured in ``path``; its path, None where nothing of that kind is there.
 
-    ``path`` is the folder of a study, of a battery, of remedies or walls compared, or a file of
+    ``path`` is the folder of a study, of a battery, of remedies or walls compared, of a map, or a file of
     ``bench --json``.
     """
-    for told in (study.told, battery.told, bench.told):
+    for told in (study.told, battery.told, maps.told, bench.told):
         if found := told(path):
             return _write(found)
     return None

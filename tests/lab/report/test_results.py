@@ -1,7 +1,8 @@
-"""Reports of a study, a battery and a bench: whole in themselves, drawn by a browser, with what was measured."""
+"""Reports of a study, a battery, a map and a bench: whole in themselves, drawn by a browser, with what was measured."""
 
 import json
 
+import numpy as np
 import pytest
 from browser import NEEDS_CHROMIUM, Page, colours, looked_at, scripted
 from long import LONG
@@ -9,11 +10,17 @@ from long import LONG
 from psph.lab.battery import tables
 from psph.lab.battery.trials import BATTERY, OURS
 from psph.lab.battery.verdicts import VERDICTS, judged
+from psph.lab.maps import picture as map_picture
+from psph.lab.maps import tables as map_tables
+from psph.lab.maps.survey import Row
 from psph.lab.report.page import report
 from psph.lab.study.report import markdown, write_json
 from psph.lab.study.study import KEPT, PAGE
 from psph.output.errors import NotThere
 from psph.runs.summary import SUMMARY
+from psph.theory.stability.growth import Growth
+from psph.theory.stability.uniform import Settings
+from psph.theory.stability.windows import SMOOTHINGS
 
 ROWS = [
     {"space.spacing": dx, "error_l2": e, "error_linf": 2 * e, "seconds": t, "particle_steps": 1e6 * t}
@@ -85,12 +92,32 @@ def a_bench(folder):
     return path
 
 
+def a_map(folder):
+    """Two kernels under compression and tension, as ``stability`` writes them."""
+    folder.mkdir()
+    rows = [
+        Row(kernel, state, tuple(Growth(rate * h, np.array([np.pi, 0.0]), rate == 0.0) for h in SMOOTHINGS))
+        for kernel, state, rate in [
+            ("cubic", "compression", 0.0),
+            ("quintic", "compression", 0.1),
+            ("cubic", "tension", 2.0),
+            ("quintic", "tension", 1.0),
+        ]
+    ]
+    settings = Settings("cubic", 1.2, "square", 1.0, "symmetric", 1.0, 10.0, 1.0)
+    (folder / map_tables.CSV).write_text(map_tables.as_csv(settings, rows))
+    (folder / map_tables.PAGE).write_text(map_tables.markdown(settings, rows))
+    map_picture.draw(folder / map_tables.PICTURE, rows, "square lattice")
+    return folder
+
+
 KINDS = {
     "study": (
         a_study,
         ["Vortices: what accuracy costs", "<li>0.21 % costs 60 s.", "too &lt;coarse&gt;; for h"],
     ),
     "battery": (a_battery, ["Hard cases under every scheme", BATTERY[0].name, OURS]),
+    "map": (a_map, ["Which lattices are stable", "<h3>Square lattice", "under tension", "stable"]),
     "bench": (
         a_bench,
         ["A &lt;processor&gt;, 2 cores", "dam break half-way through its fall", "<td>5.00</td>"],
@@ -136,6 +163,26 @@ def test_a_browser_maps_the_verdicts(tmp_path):
 CELLS = """
 const plot = document.getElementById("diagram");
 return {found: plot.data[0].z.flat(), drawn: plot.querySelectorAll(".heatmaplayer image").length};
+"""
+
+
+@NEEDS_CHROMIUM
+def test_a_browser_draws_the_growth_of_a_map(tmp_path):
+    told = scripted(report(a_map(tmp_path / "map")), tmp_path, GROWTH)
+    stable, grows, none_stable, all_grow = told["found"]
+    assert stable == len(SMOOTHINGS) and none_stable == 0  # the cubic spline under compression alone
+    assert grows == len(SMOOTHINGS) and all_grow == 2 * len(SMOOTHINGS)
+    assert told["drawn"] == 3 and "grows by 0.12" in told["words"]
+
+
+GROWTH = """
+const plot = document.getElementById("diagram");
+const full = (grid) => grid.flat().filter((value) => value !== null).length;
+return {
+    found: plot.data.map((one) => full(one.z)),
+    words: plot.data[1].text[1][plot.data[1].x.indexOf(1.2)],
+    drawn: plot.querySelectorAll(".heatmaplayer image").length,
+};
 """
 
 
