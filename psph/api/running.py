@@ -12,6 +12,8 @@ from psph.api.reading import Results
 from psph.errors import Failed
 from psph.parallel.reductions import largest, world
 
+# The signatures of run and resume are written out, for help(), editors and mypy; tests/api keeps them alike.
+
 Callback = Callable[["Moment"], Any]
 """Called on every rank; where any rank's returns True the run ends there, with a checkpoint."""
 
@@ -83,11 +85,9 @@ def run(
     are as in :meth:`psph.Case.using`.  Raises Foreseen: CaseError before anything is run, and what stops
     a run.
     """
-    from psph.engine.threads import use_threads
     from psph.runs import start
 
-    use_threads(threads)
-    comm = world() if comm is None else comm
+    comm = _ranks(comm, threads)
     loaded = case if isinstance(case, Case) else load(case)
     asked = loaded.using(effects, kernel, motions, gauges).model
     folder = Path(out or asked.name)
@@ -118,17 +118,23 @@ def resume(
     same).  The rest is as in :func:`psph.run`.
     """
     from psph.api.own import own
-    from psph.engine.threads import use_threads
     from psph.runs import start
 
-    use_threads(threads)
-    comm = world() if comm is None else comm
+    comm = _ranks(comm, threads)
     given, _ = own(effects, kernel, motions or {}, gauges)
     say = _nothing if quiet else None
     after = _after_step(callback, every)
     start.resume(Path(folder), comm, texts(extend), chosen, say, after, given if any(given) else None)
     comm.Barrier()
     return Results(folder)
+
+
+def _ranks(comm, threads: int):
+    """The communicator of a run, each of its ranks on so many threads."""
+    from psph.engine.threads import use_threads
+
+    use_threads(threads)
+    return world() if comm is None else comm
 
 
 def _nothing(line: str, where=None) -> None:

@@ -1,5 +1,6 @@
 """psph in a script: the same as on the command line, and no more imported than is asked for."""
 
+import inspect
 import re
 import shutil
 import subprocess
@@ -327,3 +328,12 @@ def test_a_class_of_a_script_from_a_pipe_or_exec_works(tmp_path):
     assert job.returncode == 0, job.stderr
     first, second = map(float, job.stdout.split())
     assert first == second == pytest.approx(np.exp(-0.25), abs=5e-3)
+
+
+def test_run_and_resume_take_the_same_options():
+    """With the same defaults and types, in the same order; each has its own besides."""
+    run, resume = ({**inspect.signature(made).parameters} for made in (psph.run, psph.resume))
+    of_run = [run.pop(name) for name in ("case", "out", "overwrite")]
+    of_resume = [resume.pop(name) for name in ("folder", "extend", "chosen")]
+    assert list(run.values()) == list(resume.values()) and len(run) == 9
+    assert not {one.name for one in of_run} & {one.name for one in of_resume}
