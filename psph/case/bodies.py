@@ -39,7 +39,7 @@ class Line(Table):
         "length without tension", None, unit="m", otherwise="the distance of the points at the start", ge=0
     )
     damping: float = key("force per speed at which it becomes longer", 0.0, unit="N s/m", ge=0)
-    pulls_only: bool = key("slack where it is shorter than its length: a mooring line without weight", False)
+    pulls_only: bool = key("it is slack when shorter than its length: a mooring line without weight", False)
 
 
 class Body(Table):
@@ -62,8 +62,8 @@ class Body(Table):
         otherwise="that of its particles",
     )
     free: Annotated[tuple[Literal[SLIDES + TURNS], ...], Strict(False)] | None = key(
-        "what it is free to do: move along x, y, z and turn about them, turn_x, turn_y, turn_z; of turns "
-        "none, one or all",
+        "how it is free to move: along x, y, z, and by turns about them, turn_x, turn_y, turn_z; of "
+        "the turns none, one or all",
         None,
         otherwise="everything; with a pivot all turns",
     )
@@ -78,12 +78,14 @@ class Body(Table):
         "angular velocity at the start: a number in 2D, three in 3D", None, unit="rad/s", otherwise="zeros"
     )
     motion: Motions | None = key(
-        "how it moves in what it is not free to do, as `walls.NAME.motion`", None, otherwise="not at all"
+        "prescribed motion in the directions that are not free, as `walls.NAME.motion`",
+        None,
+        otherwise="not at all",
     )
     held: float = key("until this time it stays where it is", 0.0, unit="s", ge=0)
     lines: dict[Name, Line] = key("springs, dampers and mooring lines by name", {})
     no_slip: bool = key("the fluid has the body's velocity at its face; needs a viscosity", False)
-    condition: Literal[BEARING] = key("what the body sets to the fluid before it, as a wall does", DYNAMIC)
+    condition: Literal[BEARING] = key("how it acts on the fluid, as the condition of a wall", DYNAMIC)
     continues: Name | None = key(
         "the fluid whose density and initial pressure its particles have",
         None,

@@ -93,7 +93,7 @@ class Displacement(Table):
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")
 
 
-ANOTHER_KIND = "another kind"
+ANOTHER_KIND = "one kind of gauge is required"
 """The default of a gauge's kinds, of which one is given."""
 
 

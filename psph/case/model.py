@@ -71,7 +71,7 @@ class Space(Table):
     )
     periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("periodic axes", ())
     symmetry: Annotated[tuple[Literal[SIDES], ...], Strict(False)] = key(
-        "sides of the domain that are planes of symmetry: what is before one is seen behind it once more", ()
+        "sides of the domain that are planes of symmetry: the flow before one is mirrored behind it", ()
     )
     lower: Vector | None = key(
         "lowest corner of the domain; required where an axis is periodic or has a plane of symmetry",
@@ -142,7 +142,7 @@ class Wall(Table):
         otherwise="zeros",
     )
     motion: Motions | None = key(
-        "how the wall moves: a part, or a list of parts of which each moves what those before it have made",
+        "how the wall moves: one part, or a list of parts that act one after the other",
         None,
         otherwise="it stays where it is",
     )
@@ -151,11 +151,11 @@ class Wall(Table):
         False,
     )
     condition: Literal[CONDITIONS] = key(
-        "dynamic: its particles' density evolves as that of the fluid; extrapolated: their pressure is that "
-        "of the fluid before it, continued by its weight; repulsive: they repel the fluid; penalty: the wall "
-        "pushes back what is nearer than half a spacing (these two bear no pressure); mirror: no particles, "
-        "the fluid sees its image behind a plane: a box along a whole side of the fluids, or a box around "
-        "them less a box",
+        "dynamic: the density of the wall's particles evolves as that of the fluid; extrapolated: their "
+        "pressure is that of the nearby fluid, continued hydrostatically; repulsive: they repel the fluid; "
+        "penalty: they push back what is nearer than half a spacing (these two bear no pressure); mirror: "
+        "there are no particles, and the fluid is mirrored at a plane: the shape is a box along a whole side "
+        "of the fluids, or a box around them minus a box",
         DYNAMIC,
     )
     continues: Name | None = key(
@@ -163,9 +163,7 @@ class Wall(Table):
         None,
         otherwise="the first fluid, or soil",
     )
-    displaces: bool = key(
-        "it takes the place of fluids and soils where both are at the start, as a body does", False
-    )
+    displaces: bool = key("it replaces fluid and soil where they overlap at the start, as a body does", False)
 
     @model_validator(mode="after")
     def _has_particles_to_displace(self) -> Self:

@@ -104,7 +104,7 @@ class Acceleration(Parameters):
         return Accelerated((*in_space(self.acceleration), 0.0))
 
 
-CENTER = key("the point that it turns about, fixed in space but for parts that come after", None, unit="m")
+CENTER = key("the point that it turns about, fixed in space unless a later part moves it", None, unit="m")
 AXIS = key("the axis that it turns about, by the right-hand rule (3D)", None, otherwise="z in 2D")
 
 
@@ -157,14 +157,14 @@ class Series(Turning):
     file: Text = key("CSV file in the case's folder or below, with a line of names; # begins a comment")
     time: Text = key("name of its column of times, in s from the start of this part", "time")
     displacement: Annotated[tuple[Text, ...], Strict(False)] | None = key(
-        "names of its columns of places, in m, one per dimension; the first row is where the wall stands",
+        "names of its columns of positions, m, one per dimension; the first row is the wall as it was drawn",
         None,
         otherwise="it turns",
         min_length=1,
         max_length=3,
     )
     angle: Text | None = key(
-        "name of its column of angles; the first row is as the wall stands",
+        "name of its column of angles; the first row is the wall as it was drawn",
         None,
         otherwise="it does not turn",
     )

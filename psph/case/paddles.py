@@ -43,7 +43,7 @@ class Wavemaker(Table):
 
     depth: float = key("depth of the water at rest before the paddle", unit="m", gt=0)
     direction: Vector | None = key(
-        "where the waves go, a horizontal vector of any length", None, otherwise="along x"
+        "direction in which the waves run, a horizontal vector of any length", None, otherwise="along x"
     )
 
     @property
@@ -86,7 +86,7 @@ class Absorb(Table):
     """A paddle goes with waves that come back, so that they do not run through the tank again."""
 
     memory: float | None = key(
-        "time over which it forgets a level that stays, and comes back to its stroke",
+        "time over which it forgets a lasting change of the level, and returns to its stroke",
         None,
         unit="s",
         otherwise="five periods, or strokes of a solitary wave",
@@ -101,9 +101,9 @@ class Absorber(Wavemaker):
     """A paddle that may take up waves that come back."""
 
     absorb: Absorb | None = key(
-        "the paddle takes up waves that come back, by the level at its face; {} takes all defaults",
+        "the paddle absorbs waves that come back to it, by the level at its face; {} takes all defaults",
         None,
-        otherwise="it sends them back",
+        otherwise="it reflects them",
     )
 
     def beat(self, gravity: float) -> float:
@@ -255,7 +255,9 @@ class Irregular(OnHinge, Absorber):
     period: float = key("period T_p of the peak of the spectrum", unit="s", gt=0)
     gamma: float = key("peak enhancement γ of JONSWAP; 1 gives Pierson-Moskowitz", 3.3, ge=1, le=10)
     components: int = key("number of waves", 64, ge=1, le=MOST_WAVES)
-    seed: int = key("of their random phases and frequencies; the same seed gives the same waves", 1, ge=0)
+    seed: int = key(
+        "seed of their random phases and frequencies; the same seed gives the same waves", 1, ge=0
+    )
     center: Vector | None = key(
         "a point of the hinge of a flap that makes them", None, unit="m", otherwise="a piston"
     )

@@ -106,7 +106,7 @@ class Cross(Table):
     viscosity_at_rest: float = key("viscosity in slow shear", unit="Pa s", gt=0)
     viscosity_in_shear: float = key("viscosity in fast shear", unit="Pa s", ge=0)
     time: float = key("one over the rate of strain half-way between the two", unit="s", gt=0)
-    exponent: float = key("how steeply it passes", 1.0, unit="1", gt=0, le=3)
+    exponent: float = key("steepness of the transition", 1.0, unit="1", gt=0, le=3)
 
     @property
     def law(self) -> laws.Cross:
@@ -125,7 +125,9 @@ class Granular(Table):
     largest_viscosity: float = key(
         "cap of the viscosity: it sets the time step, and the creep of what should stand", unit="Pa s", gt=0
     )
-    least_rate: float = key("rate of strain that is added where grains stand", 1e-3, unit="1/s", gt=0)
+    least_rate: float = key(
+        "rate of strain that is added, so that the law is finite where grains stand", 1e-3, unit="1/s", gt=0
+    )
 
     @model_validator(mode="after")
     def _grows(self) -> Self:
@@ -157,7 +159,9 @@ class Rheology(Table):
         "a paste that thins or thickens in shear", None, otherwise="another law"
     )
     power_law: PowerLaw | None = key("a power of the rate of strain", None, otherwise="another law")
-    cross: Cross | None = key("between two viscosities", None, otherwise="another law")
+    cross: Cross | None = key(
+        "a viscosity that falls from one value to another", None, otherwise="another law"
+    )
     granular: Granular | None = key("dry grains, the law mu(I)", None, otherwise="another law")
 
     @property

@@ -110,8 +110,8 @@ class Neighbours(Table):
     """The neighbour lists."""
 
     skin: float = key(
-        "how far a list reaches beyond the kernel's support, as a fraction of it; walls get wet when "
-        "lists are rebuilt",
+        "how far a list reaches beyond the kernel's support, as a fraction of it; a wall "
+        "becomes wet or dry only when lists are rebuilt",
         0.08,
         unit="1",
         ge=0,

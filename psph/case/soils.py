@@ -14,7 +14,7 @@ class Soil(Hookean):
     """Soil: elastic until it yields by friction and cohesion."""
 
     velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
-    density: float = key("density of the soil with its pores, and the water in them", unit="kg/m3", gt=0)
+    density: float = key("bulk density, of the soil with its pores and the water in them", unit="kg/m3", gt=0)
     young: float = key("Young's modulus E", unit="Pa", gt=0)
     poisson: float = key("Poisson's ratio ν; in 2D the soil is in plane strain", unit="1", ge=0, lt=0.5)
     friction_angle: float = key("angle of friction φ", unit="degrees", ge=0, lt=90)
@@ -27,9 +27,11 @@ class Soil(Hookean):
         otherwise="that of the tip of its cone, c/tan φ in plane strain; c without friction",
         ge=0,
     )
-    geostatic: bool = key("it starts under its own weight, as below level ground; else without stress", True)
+    geostatic: bool = key(
+        "it starts with the stress of its weight below level ground; else without stress", True
+    )
     rest_coefficient: float | None = key(
-        "K0, of the start: the stress across over that along gravity, both less the water's",
+        "K0 at the start: effective stress across gravity over that along it",
         None,
         unit="1",
         otherwise="ν/(1 − ν)",
@@ -49,7 +51,7 @@ class Soil(Hookean):
         ge=0,
     )
     water_level: float | None = key(
-        "height, against gravity, of still water in its pores, whose pressure bears no friction",
+        "height of the still water in its pores; friction acts on the stress less the pressure of that water",
         None,
         unit="m",
         otherwise="dry",

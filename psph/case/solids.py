@@ -15,7 +15,7 @@ class SolidLoad(Table):
     """A force on a part of a solid, the same on each of its particles, whatever its deformation."""
 
     shape: Shape = key("the part of the solid that it pulls, at the start")
-    force: Vector = key("the whole force; in 2D per metre of depth", unit="N")
+    force: Vector = key("the total force; in 2D per metre of depth", unit="N")
 
 
 class Strength(Table):
@@ -85,7 +85,7 @@ class Solid(Hookean):
     johnson_cook: Strength | None = key(
         "a yield stress that depends on strain, rate and heat, in the place of yield_stress",
         None,
-        otherwise="it is elastic, or yields at yield_stress",
+        otherwise="it is elastic, or has yield_stress",
     )
     mie_gruneisen: Shocked | None = key(
         "the pressure of a metal that meets shocks", None, otherwise="linear in the compression"
@@ -94,14 +94,14 @@ class Solid(Hookean):
         "viscosity η of the stress ηĖ of Kelvin and Voigt",
         None,
         unit="Pa s",
-        otherwise="0; in a fluid what calms waves that are too fast for its steps",
+        otherwise="0; in a fluid enough to damp waves that its steps do not resolve",
         ge=0,
     )
     hourglass: float = key(
-        "strength α of the control of zigzag modes, which the stress does not see", 1.5, unit="1", ge=0, le=10
+        "strength α of the control of zigzag modes, which cause no stress", 1.5, unit="1", ge=0, le=10
     )
     critical_stretch: float | None = key(
-        "stretch of a bond over its length at the start, less 1, beyond which it is cut for good: cracks",
+        "strain of a bond (length over that at the start, minus 1) beyond which it is cut for good: cracks",
         None,
         unit="1",
         otherwise="it holds",

@@ -15,7 +15,7 @@ tank of water gains energy, with 0.3 at 0.4 and 1.0 at 0.25 it does not."""
 
 
 class AcousticDamper(NamedTuple):
-    """A pressure against the rate of compression: sound and impacts fade, and shear does not feel it.
+    """A pressure that opposes the rate of compression: it damps sound and impacts, and not shear.
 
     q_i = α h c dρ_i/dt, of a fluid and with the dρ/dt of :class:`Continuity
     <psph.physics.fluid.continuity.Continuity>` alone in the pass before, acts as a pressure beside p:

@@ -21,7 +21,7 @@ and S h² is 1.9 to 5.7.  The fastest wave decays at the rate 2 S h δ c.  Densi
 
 
 class DensityDiffusion(NamedTuple):
-    """Density spreads between neighbours: the noise of the pressure fades.
+    """Density diffuses between neighbours: this damps the noise of the pressure.
 
     dρ_i/dt = 2 δ h c Σ_j (m_j/ρ_j) [(ρ_i − ρ₀_i) − (ρ_j − ρ₀_j)] x_ij·∇W_ij / max(r², 0.01 h²).
     Molteni & Colagrossi (2009), Comput. Phys. Commun. 180, 861, with max(r², η²) for r² + η²: it is
@@ -81,7 +81,7 @@ class TankDiffusion(NamedTuple):
 
 
 class FourthOrderDiffusion(NamedTuple):
-    """Density spreads between neighbours, but for what a smooth field has: noise alone fades.
+    """Density diffuses between neighbours, except for the part of a smooth field: this damps noise alone.
 
     As :class:`DensityDiffusion` with s′ = s − g in the bracket, s = (ρ_i − ρ₀_i) − (ρ_j − ρ₀_j) and
     g = ½(∇ρ_i + ∇ρ_j)·x_ij: zero pair by pair where the density is linear or quadratic.  Antuono,
@@ -109,7 +109,7 @@ class FourthOrderDiffusion(NamedTuple):
 
 
 class BesideSmoothDensity(NamedTuple):
-    """Density spreads between neighbours, but for what a smooth field has: noise alone fades.
+    """Density diffuses between neighbours, except for the part of a smooth field: this damps noise alone.
 
     The form of :class:`FourthOrderDiffusion` in a scene; ``gravity`` in m/s², None on an axis without.
     """

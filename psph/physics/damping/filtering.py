@@ -13,7 +13,7 @@ a quarter a step leaves room for places where particles crowd."""
 
 
 class ConservativeSmoothing(NamedTuple):
-    """Velocity drifts towards the mean around it, which takes the short waves away.
+    """Velocity relaxes towards the mean around it: this damps short waves.
 
     du_i/dt = (α c/h) Σ_j m_j/ρ̄_ij (u_j − u_i) W_ij over fluid neighbours: the filter of Swegle,
     Hicks & Attaway (1995), J. Comput. Phys. 116, 123, and Wen, Hicks & Swegle (1994), Sandia report

@@ -21,7 +21,7 @@ AT_WALLS = 0.02
 
 
 class ReconstructedDamping(NamedTuple):
-    """Numerical friction along the line of a pair, on its motion beside the linear flow: it calms disorder.
+    """Numerical friction along a pair, on its motion relative to the linear flow around: it damps disorder.
 
     a_i = α c h Σ_j ρ₀ m_j/(ρ_i ρ_j) s′/max(r², 0.01 h²) ∇W_ij, as :class:`PairDamping
     <psph.physics.fluid.viscosity.PairDamping>`, with s′ = s − g for its s = u_ij·x_ij: the flow that is
@@ -57,7 +57,7 @@ class ReconstructedDamping(NamedTuple):
 
 
 class BesideLinearFlow(NamedTuple):
-    """Numerical friction along the line of a pair, on its motion beside the linear flow: it calms disorder.
+    """Numerical friction along a pair, on its motion relative to the linear flow around: it damps disorder.
 
     The form of :class:`ReconstructedDamping` in a scene; ``near2`` is (0.7 dx)², m², ``more`` what α gains
     in disorder.

@@ -14,7 +14,7 @@ STABLE = 0.075
 
 
 class RiemannDissipation(NamedTuple):
-    """Each pair meets as two states of a low-dissipation Riemann problem: noise fades.
+    """Each pair is a Riemann problem with limited dissipation: this damps noise.
 
     Beside the mean of both sides, p* = ½ β ρ̄ ΔU and U* = (p_i − p_j)/(2ρ̄c), ΔU = −u_ij·x_ij/r:
     a_i = −2 Σ_j m_j/(ρ_i ρ_j) p* ∇W_ij with the limiter β = min(η max(ΔU, 0), c), and

@@ -14,7 +14,7 @@ STABLE = 0.2
 
 
 class DampingZone(NamedTuple):
-    """Waves fade in a zone of the fluid, so that they do not come back from its end.
+    """Waves fade in a zone of the fluid, so that its end does not reflect them.
 
     a_i = −β s² v_i where 0 ≤ s ≤ 1, s = (x − x₀)/(x₁ − x₀); elsewhere none.  A sponge layer as that of
     Altomare and others (2017), Coast. Eng. 127, 37, who take a part off the velocity in place of a force.  It
@@ -53,7 +53,7 @@ class DampingZone(NamedTuple):
 
 
 class Absorbing(NamedTuple):
-    """Waves fade in a zone of the fluid, so that they do not come back from its end.
+    """Waves fade in a zone of the fluid, so that its end does not reflect them.
 
     :class:`DampingZone` in a scene: s = g·x − s₀, with the ``growth`` g of s in 1/m and its ``offset`` s₀.
     """

@@ -164,7 +164,7 @@ class BackgroundPressure(NamedTuple):
     pressure: Annotated[
         Annotated[float, Field(ge=0)] | Literal["auto"],
         Field(
-            description='p_b, no less than what the pressure falls below zero, or "auto"',
+            description='p_b, at least as large as the strongest tension, or "auto"',
             json_schema_extra={"unit": "Pa"},
         ),
     ]

@@ -14,7 +14,7 @@ FOLLOWING = 2.0
 
 
 class StressPoints(NamedTuple):
-    """Pressure at every other particle, the stress points; the rest are moved by it.
+    """Pressure is computed at every other particle, a stress point, and moves the others.
 
     The sites of the lattice take turns.  A velocity point feels stress points s alone, a_i = −2 Σ_s
     m_s p_s/ρ_s² ∇W_is; one of these sees how velocity points v part, dρ_s/dt = 2 Σ_v m_v u_sv·∇W_sv, and

@@ -178,7 +178,7 @@ def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:
 
 
 class ArtificialViscosity(NamedTuple):
-    """Numerical friction between approaching particles: it spreads shocks and calms noise.
+    """Numerical friction between approaching particles: it spreads shocks and damps noise.
 
     a_i = −Σ_j m_j Π_ij ∇W_ij, Π = (−α c μ + β μ²)/ρ̄, μ = h u_ij·x_ij/(r² + 0.01 h²) where the pair
     approaches, else 0.  Monaghan (1992), Annu. Rev. Astron. Astrophys. 30, 543, eq. (4.1).  It
@@ -220,7 +220,7 @@ class ArtificialViscosity(NamedTuple):
 
 
 class PairDamping(NamedTuple):
-    """Numerical friction along the line of every pair, approaching or parting: it calms sound.
+    """Numerical friction along the line of every pair, approaching or parting: it damps sound.
 
     a_i = α c h Σ_j ρ₀ m_j/(ρ_i ρ_j) (u_ij·x_ij)/max(r², 0.01 h²) ∇W_ij, ρ₀ the smaller of the
     pair's two rest densities.  Monaghan & Gingold (1983), J.
@@ -255,7 +255,7 @@ class PairDamping(NamedTuple):
 
 
 class ImpactDamping(NamedTuple):
-    """Numerical friction where neighbours meet fast: it stops what comes at a wall at up to c.
+    """Numerical friction between neighbours that approach fast: it stops what hits a wall at up to c.
 
     a_i = −β Σ_j ρ₀ m_j/(ρ_i ρ_j) e² ∇W_ij, e = max(−h u_ij·x_ij/max(r², 0.01 h²) − c/5, 0), ρ₀ the
     smaller of the pair's two rest densities: over a length h of matter a speed falls by e^β.  von

@@ -43,7 +43,7 @@ Strength = Annotated[
 
 
 class PairPotential(NamedTuple):
-    """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
+    """Near neighbours repel, farther ones attract: pairs keep their distance, and no pressure is added.
 
     a_i = −(2K/ρ₀) dx^d Σ_j ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊, scaled to
     −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
@@ -65,7 +65,7 @@ class PairPotential(NamedTuple):
 
 
 class NeutralPotential(NamedTuple):
-    """Near neighbours repel, farther ones attract: pairs keep their distance, at no pressure.
+    """Near neighbours repel, farther ones attract: pairs keep their distance, and no pressure is added.
 
     The form of :class:`PairPotential` for the lattice of a scene: −ψ′/r as (``core`` − ``steepness`` r)²₊/r
     + Σ_k ±(``heights`` − ``slopes`` r²)²₊, the last with a minus; times 2K dx^d/ρ₀, 1/s².

@@ -95,7 +95,7 @@ class ParticleShifting(NamedTuple):
 
 
 class PositionShift(NamedTuple):
-    """Particles shift from where they crowd to where they are few, and keep their velocity.
+    """Particles shift from where they crowd to where they are few, with unchanged velocity.
 
     δx_i = −2 U Δt h Σ_j m_j/ρ_j [n + 0.2 n⁴] ∇W_ij, |δx_i| ≤ U Δt, n = m_j/ρ_j W′/r over what it is at
     dx on the lattice.  None where −Σ_j m_j/ρ_j r W′ is below 0.7 of what it is on the lattice.  U is no
@@ -135,7 +135,7 @@ class PositionShift(NamedTuple):
 
 
 class LatticeShift(NamedTuple):
-    """Particles shift from where they crowd to where they are few, and keep their velocity.
+    """Particles shift from where they crowd to where they are few, with unchanged velocity.
 
     The form of :class:`PositionShift` for the lattice of a scene.
     ``full`` is Σ dx^d r W′ over the lattice of the start; ``near`` 1/(dx^d W′(dx)/dx), m².

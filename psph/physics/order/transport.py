@@ -93,7 +93,7 @@ class XSPH(NamedTuple):
 
 
 class TransportVelocity(NamedTuple):
-    """A background pressure moves particles into order, and not the fluid.
+    """A background pressure moves particles into order without accelerating the fluid.
 
     dx_i/dt = ũ_i = u_i − (h/8c) p_b Σ_j m_j (1/ρ_i² + 1/ρ_j²) ∇W_ij, h/8c half of the source's time
     step; density follows ũ, and a_i = Σ_j m_j (A_i/ρ_i² + A_j/ρ_j²)·∇W_ij, A = ρ u (ũ − u), carries
@@ -131,7 +131,7 @@ class TransportVelocity(NamedTuple):
 
 
 class GeneralisedTransportVelocity(NamedTuple):
-    """A background pressure of each particle's own moves particles into order, and not the fluid.
+    """A background pressure of each particle moves particles into order without accelerating the fluid.
 
     As :class:`TransportVelocity` with ũ_i = u_i − (h/8c) p_i⁰ Σ_j m_j/ρ_i² ∇W_ij, p_i⁰ =
     min(10|p_i|, p_b): at a free surface, where p is small, it fades.  Zhang, Hu & Adams (2017),

@@ -25,7 +25,7 @@ AT_REST = 1e-12
 
 
 class SolidContact(NamedTuple):
-    """Particles of two solids, or of a solid and a wall, push each other: they are nearer than two spacings.
+    """Particles of two solids, or of a solid and a wall, repel each other where nearer than two spacings.
 
     f_ij = ¼k dx q² along x_ij/r, q = 2 − r/dx: the derivative of the pair's energy k dx² q³/12. k = s
     2M_iM_j/(M_i + M_j) dx^(d−2) with the ``stiffness`` s and the P-wave moduli M = λ + 2μ (of a wall, the
@@ -104,7 +104,7 @@ def pressing(contact, i, j, pair):
 
 
 class Touching(NamedTuple):
-    """Particles of two solids, or of a solid and a wall, push each other: they are nearer than two spacings.
+    """Particles of two solids, or of a solid and a wall, repel each other where nearer than two spacings.
 
     The form of :class:`SolidContact` in a scene: ``stiffness`` s dx^(d−2), ``damping`` ζ, ``friction`` μ,
     ``spacing`` dx in m, and the longest ``step`` in s.

@@ -62,7 +62,7 @@ class FreeSurface(NamedTuple):
 
 
 class TensionFloor(NamedTuple):
-    """Water that is torn apart holds no more tension than this, and walls hold none.
+    """A lower bound of the density limits the tension of the fluid; walls bear no tension at all.
 
     ρ_i ≥ f ρ₀_i: below, the density is set to it.  The pressure of a wall is that of max(ρ_i, ρ₀_i),
     while its density stays what the water makes it.  Where a fluid has a free surface a splash would

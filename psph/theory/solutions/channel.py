@@ -34,7 +34,7 @@ def _along_x(speed: np.ndarray, setting: Setting) -> np.ndarray:
 
 
 class Poiseuille(NamedTuple):
-    """Flow along x between resting plates, set going by gravity along x.
+    """Flow along x between plates at rest, driven by gravity along x.
 
     u = F/(2ν) y(L − y) − Σₙ 4FL²/(νπ³m³) sin(πmy/L) e^(−m²π²νt/L²), m = 2n + 1, F = gₓ, y from the
     lower plate on.  Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214, eq. (26).
@@ -66,7 +66,7 @@ class Poiseuille(NamedTuple):
 
 
 class Couette(NamedTuple):
-    """Flow along x between a resting lower plate and an upper one that sets off at once.
+    """Flow along x between a lower plate at rest and an upper one that moves at full speed from the start.
 
     u = U y/L + Σₙ 2U/(nπ) (−1)ⁿ sin(nπy/L) e^(−n²π²νt/L²).  Morris, Fox & Zhu (1997), J. Comput.
     Phys. 136, 214, eq. (24).
