@@ -338,13 +338,17 @@ class Case(Table):
 
     def to_toml(self) -> str:
         """This case as TOML that :func:`psph.case.load` reads back to an equal case."""
+        text = tomli_w.dumps(self.tables())
+        return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)
+
+    def tables(self) -> dict[str, Any]:
+        """What :meth:`to_toml` writes: all keys that have a value."""
         tables = self.model_dump(by_alias=True, exclude_none=True)
         for name in self.presets:
             table, _, effect = name.rpartition(".")
             if table:  # what the case switched off must not return with a profile or scheme
                 tables[table].setdefault(effect, OFF)
-        text = tomli_w.dumps({name: value for name, value in tables.items() if value})
-        return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)
+        return {name: value for name, value in tables.items() if value}
 
     @model_validator(mode="after")
     def _agree(self) -> Self:

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 import psph
-from psph.engine.jit import compiled
+from psph.engine.jit import SOURCES, compiled
 from psph.errors import Refused
 from psph.output import rows as hdf5
 from psph.output.errors import cause, together
@@ -102,6 +102,7 @@ def write(
     header = header | {
         "format": FORMAT,
         "psph": psph.__version__,
+        "sources": SOURCES,
         "particles": total,
         "checksums": dict(zip(arrays, sums)),
     }
@@ -186,6 +187,15 @@ class Saved:
         """The state of the simulation besides its particles."""
         return self.header["state"]
 
+    @property
+    def foreign(self) -> bool:
+        """Whether other sources of psph wrote it."""
+        return self._foreign(self.header)
+
+    @staticmethod
+    def _foreign(header: dict[str, Any]) -> bool:
+        return header.get("sources") != SOURCES
+
     def frames(self) -> bytes:
         """The structure that restores the frames' file, on rank 0; collective."""
 
@@ -234,10 +244,15 @@ class Saved:
                 f"{self.path}: written by psph {header['psph']} (format {header['format']}), this "
                 f"is psph {psph.__version__} (format {FORMAT}): resume with the psph that wrote it"
             )
-        if header["case"] != case:
+        copy = self.path.with_name(COPY)
+        if header["case"] != case and self._foreign(header):
             yield (
-                f"{self.path}: belongs to another case than {self.path.with_name(COPY)}: "
-                "put that file back as the run wrote it"
+                f"{self.path}: other sources of psph wrote it, for which {copy} has other defaults than for "
+                "these, or that file is not as the run wrote it: resume with those sources, or start it again"
+            )
+        elif header["case"] != case:
+            yield (
+                f"{self.path}: belongs to another case than {copy}: put that file back as the run wrote it"
             )
         size = os.fstat(file.fileno()).st_size
         if size != header["size"]:

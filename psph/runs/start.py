@@ -144,6 +144,8 @@ def _simulate(
     simulation, record = _begin(scene, plan, comm, folder, saved)
     if saved:
         say(f"resuming from {saved.path.name}: step {simulation.steps:,}, {simulation.time:.6g} s")
+        if saved.foreign:
+            say("warning: other sources of psph wrote it: the bits may be others from here on", sys.stderr)
     first = simulation.steps
     record.write_due()
     guards = Guards(scene, simulation, record, folder, lambda line: say(line, sys.stderr))

@@ -1,6 +1,7 @@
 """A run that goes on from a checkpoint has the bits of one that was never stopped."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -22,6 +23,7 @@ from runs.resuming import (
 from simulation.test_precision import box as precise_box
 
 from psph.case import CaseError, load
+from psph.output import checkpoint
 from psph.output.checkpoint import CheckpointError, checkpoints
 from psph.output.errors import OutputError
 from psph.runs.resume import case_digest, take_up
@@ -189,6 +191,30 @@ def test_another_case_is_refused(whole, tmp_path):
     text = (folder / "case.toml").read_text()
     (folder / "case.toml").write_text(text.replace("cfl = 0.4", "cfl = 0.3"))
     with pytest.raises(CheckpointError, match="belongs to another case than .*case.toml"):
+        resume(folder, COMM, **QUIET)
+
+
+def test_later_sources_go_on_where_they_read_the_case_alike(whole, tmp_path, monkeypatch):
+    """A key that a case does not have, and the order of keys, belong to the sources and not to the case."""
+    monkeypatch.setattr(checkpoint, "SOURCES", "later ones")
+    folder, said = copy(whole, tmp_path / "run"), []
+    resume(folder, COMM, say=lambda line, where=None: said.append(line))
+    assert "warning: other sources of psph wrote it: the bits may be others from here on" in said
+    assert same_files(folder, whole)
+    case = load(folder / "case.toml")
+    turned = SimpleNamespace(tables=lambda: dict(reversed(case.tables().items())), versions=case.versions)
+    assert case_digest(turned) == case_digest(case)
+    assert None not in case.tables()["physics"].values() and None in case.physics.model_dump().values()
+
+
+def test_later_sources_with_other_defaults_say_so(whole, tmp_path, monkeypatch):
+    folder = copy(whole, tmp_path / "run")
+    text = (folder / "case.toml").read_text()
+    (folder / "case.toml").write_text(text.replace("cfl = 0.4", "cfl = 0.3"))
+    monkeypatch.setattr(checkpoint, "SOURCES", "later ones")
+    with pytest.raises(
+        CheckpointError, match="other sources of psph wrote it, for which .*case.toml has other"
+    ):
         resume(folder, COMM, **QUIET)
 
 
