@@ -296,8 +296,16 @@ class Case(Table):
     @property
     def series(self) -> list:
         """The series of motions that the case names (psph.case.motion.Series)."""
-        moving = [*(one.motion for one in self.boundaries.values()), self.frame.motion]
-        return [series for parts in moving for series in series_in(parts or ())]
+        return [series for parts in self.motions.values() for series in series_in(parts)]
+
+    @property
+    def motions(self) -> dict[tuple[str, ...], tuple]:
+        """The parts of each motion of the case, by the location of its key."""
+        found = {(self.table_of(name), name): one.motion for name, one in self.boundaries.items()}
+        for name, solid in self.solids.items():
+            found |= {("solids", name, "clamps", grip): one.motion for grip, one in solid.clamps.items()}
+        found[("frame",)] = self.frame.motion
+        return {(*loc, "motion"): parts for loc, parts in found.items() if parts}
 
     @cached_property
     def meshes(self) -> dict[str, Mesh]:

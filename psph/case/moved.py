@@ -7,18 +7,20 @@ from psph.case.keys import AXES
 from psph.case.motion import PADDLES, Turning, misfits
 from psph.physics.walls.conditions import MIRROR
 
+NOT_ABSORBING = {"bodies": "a body", "solids": "a clamp"}
+"""Tables whose motions do not answer to the water, and what they hold."""
+
 
 def moved(case) -> Iterator[tuple[tuple, Any, str]]:
     """Motions that are none, or none here: location, value and message."""
     gravity = case.physics.gravity.acceleration if case.physics.gravity else ()
-    found = {("walls", name, "motion"): wall.motion for name, wall in case.walls.items()}
-    found |= {("bodies", name, "motion"): body.motion for name, body in case.bodies.items()}
-    for loc, parts in (found | {("frame", "motion"): case.frame.motion}).items():
-        for place, name, says in misfits(parts or (), case.space.dimensions, gravity):
+    for loc, parts in case.motions.items():
+        for place, name, says in misfits(parts, case.space.dimensions, gravity):
             inner = (place,) if len(parts) > 1 else ()
             yield (*loc, *inner, *([name] if name else [])), ..., says
+        if loc[0] in NOT_ABSORBING and any(len(one.ways) == 1 and one.absorbs for one in parts):
+            yield loc, ..., f"a wall may absorb waves, {NOT_ABSORBING[loc[0]]} not; remove absorb"
     yield from _walls(case)
-    yield from _bodies(case)
     yield from _frame(case)
 
 
@@ -32,13 +34,6 @@ def _walls(case) -> Iterator[tuple[tuple, Any, str]]:
                 wall.velocity,
                 "is of a wall that stands; its motion gives it one; remove one of the two",
             )
-
-
-def _bodies(case) -> Iterator[tuple[tuple, Any, str]]:
-    for name, body in case.bodies.items():
-        for one in body.motion or ():
-            if len(one.ways) == 1 and one.absorbs:
-                yield ("bodies", name, "motion"), ..., "a wall may absorb waves, a body not; remove absorb"
 
 
 def _frame(case) -> Iterator[tuple[tuple, Any, str]]:

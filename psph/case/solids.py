@@ -6,6 +6,7 @@ from typing import ClassVar, Literal
 from psph.case.findings import Finding, one_sided
 from psph.case.hooke import Hookean
 from psph.case.keys import Name, Table, Vector, key
+from psph.case.motion import Motions
 from psph.case.shapes import Shape
 from psph.case.updated import TOTAL, UPDATED, updated
 from psph.physics.solid.laws import LAWS
@@ -16,6 +17,15 @@ class SolidLoad(Table):
 
     shape: Shape = key("the part of the solid that it pulls, at the start")
     force: Vector = key("the total force; in 2D per metre of depth", unit="N")
+
+
+class Clamp(Table):
+    """A part of a solid that forces do not move: it stays, or moves as a whole as it is told."""
+
+    shape: Shape = key("the part of the solid, at the start")
+    motion: Motions | None = key(
+        "how it moves, as `walls.NAME.motion`; forces change nothing of it", None, otherwise="not at all"
+    )
 
 
 class Strength(Table):
@@ -115,6 +125,7 @@ class Solid(Hookean):
         ge=1,
     )
     clamped: Shape | None = key("the part of the solid that stays where it is", None, otherwise="none")
+    clamps: dict[Name, Clamp] = key("further clamps, by name, each with a motion of its own", {})
     loads: dict[Name, SolidLoad] = key("forces on parts of the solid, by name", {})
     load_rise: float = key("time in which the loads grow to their full size", 0.0, unit="s", ge=0)
 
@@ -126,11 +137,16 @@ class Solid(Hookean):
         return self.description == UPDATED
 
     @property
-    def held(self) -> "Solid":
-        """Its clamped part, at rest."""
+    def grips(self) -> dict[str, Clamp]:
+        """All its clamps by their keys: `clamped`, `clamps.NAME`."""
+        still = {"clamped": Clamp.model_construct(shape=self.clamped)} if self.clamped else {}
+        return still | {f"clamps.{name}": clamp for name, clamp in self.clamps.items()}
+
+    def held(self, clamp: Clamp) -> "Solid":
+        """The part in a clamp, at rest."""
         still = (0.0,) * len(self.velocity_center)
         return self.model_copy(
-            update={"shape": self.clamped, "velocity": still, "velocity_gradient": None, "loads": {}}
+            update={"shape": clamp.shape, "velocity": still, "velocity_gradient": None, "loads": {}}
         )
 
 

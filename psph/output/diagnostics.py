@@ -41,10 +41,12 @@ def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ..
     return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
 
 
-def total_energy(comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable) -> float:
+def total_energy(
+    comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable, led: np.ndarray
+) -> float:
     """Σ m (v²/2 − g·x) of fluids and solids and Σ m u of all particles, J.
 
-    ``elastic`` takes densities and rest densities (n,) and gives u, J/kg.  NaN where a density is
+    Groups that are ``led`` (groups,) move as they are told: they count as walls.  ``elastic`` takes densities and rest densities (n,) and gives u, J/kg.  NaN where a density is
     below zero.  The same bits on any number of ranks; collective.
     """
     inner = store.inner
@@ -53,7 +55,8 @@ def total_energy(comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic
     )
     with np.errstate(invalid="ignore", divide="ignore"):
         stored = elastic(store.shown("density"), store.shown("rest_density"))
-    moving = store.shown(_inert(store)) * np.where(store.shown("kind") != WALL, moved, 0.0)
+    moves = (store.shown("kind") != WALL) & ~led[store.shown("group")]
+    moving = store.shown(_inert(store)) * np.where(moves, moved, 0.0)
     energy = moving + store.shown("mass") * stored
     return float(exact_sums(comm, energy[:, None])[0])
 

@@ -13,7 +13,7 @@ it stood at the start, m) and the time (s), which are compiled into the loops:
 Neither is integrated, so that particles never drift from where they belong, however many steps a run takes.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from psph.fields import FLUID, SOLID, VECTOR, WALL, Field
 
@@ -62,6 +62,18 @@ class Clamped(NamedTuple):
     """Particles of a solid that stay where they are."""
 
     kind = SOLID
+
+
+class MovingClamp(NamedTuple):
+    """Particles of a solid that move as a whole by a rigid ``motion``, as they are told."""
+
+    motion: Any
+
+    kind = SOLID
+
+    def pose(self, time: float):
+        """The pose of the whole at ``time``, s."""
+        return self.motion.pose(time)
 
 
 FREE, FIXED, RIGID, PRESCRIBED = 0, 1, 2, 3

@@ -42,7 +42,8 @@ class Guards:
     def __init__(self, scene, simulation: Simulation, record: Record, folder: Path, say: Callable):
         self.scene, self.simulation, self.record = scene, simulation, record
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
-        moving = [one for one in scene.species if is_prescribed(one.motion)]
+        self._led = np.array([is_prescribed(one.motion) for one in scene.species], bool)
+        moving = [one for one, led in zip(scene.species, self._led) if led]
         pulled = any(table.loads for table in scene.case.solids.values())
         whole = any(hasattr(effect, "finish_acceleration") for effect in simulation.plan.effects)
         # What walls give is booked by pairs, of walls that bear a pressure.
@@ -182,7 +183,7 @@ class Guards:
                 stored = np.where(law_of == number, law.energy(density, rest, c), stored)
             return stored
 
-        whole = total_energy(sim.comm, sim.store, self.scene.height_gravity, elastic)
+        whole = total_energy(sim.comm, sim.store, self.scene.height_gravity, elastic, self._led)
         whole += sim.engine.stored_energy()
         return whole - (work_done(sim.comm, sim.store) if sim.plan.books_work else 0.0)
 

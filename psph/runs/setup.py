@@ -70,6 +70,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
         tuple((law, bool(one.viscosity) or None) for law, one in zip(plan.solid_laws, plan.solids)),
         DRAWN.name in plan.arrays or None,
         plan.cracks or None,
+        bool(plan.grips) or None,
         scene.periods,
         store.view(),
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN, RADIANS
-from psph.physics.motion import is_free, is_rigid
+from psph.physics.motion import Immersed, is_free, is_rigid
 from psph.physics.rigid.bodies import Body
 from psph.physics.rigid.motion import Part, Rigid
 from psph.physics.rigid.pose import PLACE, maps
@@ -143,18 +143,19 @@ def motion_faults(scene) -> Iterator[str]:
 def motion_lines(scene) -> Iterator[str]:
     """What moves, in words, for `explain`."""
     tables: dict[str, Any] = {
-        key: (found, scene.parts[n], scene.species_in_motion[n]) for n, key, found in moving_parts(scene)
+        key: (found, scene.species_in_motion[n]) for n, key, found in moving_parts(scene)
     }
     if framed := frame_sweep(scene):
-        tables["frame"] = (framed, scene.case.frame, scene.frame)
-    for key, (found, table, moved) in tables.items():
-        parts = [_part_in_words(part) for part in table.motion]
+        tables["frame"] = (framed, scene.frame)
+    told = {".".join(loc): parts for loc, parts in scene.case.motions.items()}
+    for key, (found, moved) in tables.items():
+        parts = [_part_in_words(part) for part in told[f"{key}.motion"]]
         yield f"  motion      {key}: {'; then '.join(parts)}"
         yield (
             f"              at most {found.way:.3g} m from its start, {found.speed:.3g} m/s "
             f"({found.speed / scene.sound_speed:.2g} c), {found.acceleration:.3g} m/s2"
         )
-        motion = moved.motion if isinstance(moved, Body) else moved
+        motion = getattr(moved, "motion", moved)  # of a body or clamp that one
         yield from (f"              {line}" for line in _turns_in_words(motion, scene.case.time.end))
         if found.jump > 0.0:
             yield f"              it begins at once with {found.jump:.3g} m/s"
@@ -199,7 +200,7 @@ def motion_warnings(scene) -> Iterator[str]:
     for number, part, found in moving_parts(scene):
         key = f"{part}.motion"
         share = found.speed / scene.sound_speed
-        if share > QUICK:
+        if share > QUICK and (scene.case.fluids or not scene.case.solids):
             yield (
                 f"{key}: {found.speed:.3g} m/s is {share:.2g} of the speed of sound, which compresses the "
                 f"fluid before it; give physics.sound_speed = {10.0 * found.speed:.3g} or more"
@@ -251,7 +252,7 @@ def _is_free(motion) -> bool:
     """Whether forces say where a part goes, at least along an axis."""
     if isinstance(motion, Body):
         return any((*motion.slides, *motion.turns))
-    return is_free(motion)
+    return is_free(motion) or isinstance(motion, Immersed)
 
 
 def _sites(scene, number: int) -> np.ndarray:

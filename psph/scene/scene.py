@@ -13,7 +13,7 @@ from psph.case.parameters import as_numbers, chosen
 from psph.case.study import EXACT
 from psph.particles.reach import Reach
 from psph.physics.facts import SOUND_OVER_SPEED
-from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed
+from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed, MovingClamp
 from psph.physics.rigid.bodies import Body
 from psph.physics.solid.material import Solid
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
@@ -29,7 +29,7 @@ from psph.scene.particles import ParticleSet, fill
 from psph.scene.pressures import range_of_pressure
 from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
-from psph.scene.solids import anvils_of, modulus_shown, reach_of_contact, solids_of
+from psph.scene.solids import anvils_of, grips_of, modulus_shown, reach_of_contact, solids_of
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.starts import start_of
 from psph.scene.stressed import Stressed
@@ -45,7 +45,7 @@ class Scene:
     The same on every rank.  ``axis`` is the slab axis, ``lower`` and ``upper`` the corners of the domain in
     m, ``periods`` a length in m or None for each axis, ``lattice`` the sites that may hold a particle,
     ``planes`` its planes across ``axis``, ``mirror_planes`` its mirrors; ``walls`` those with particles, by
-    name, ``boundaries`` these and the rigid bodies, ``clamped`` the elastic solids with a part that stays;
+    name, ``boundaries`` these and the rigid bodies, ``grips`` the clamps of elastic solids;
     ``parts`` the tables of the case that hold particles, in the order of ``layout``; ``meshes`` the files
     of shapes.
     """
@@ -62,10 +62,8 @@ class Scene:
         self.walls = {name: wall for name, wall in case.walls.items() if wall.condition != MIRROR}
         self.boundaries: dict[str, Any] = {**self.walls, **case.bodies}
         self.anvils = anvils_of(case)
-        self.clamped = {
-            name: solid for name, solid in (case.updated | case.referred).items() if solid.clamped
-        }
-        held = (solid.held for solid in self.clamped.values())
+        self.grips = grips_of(case)
+        held = (case.solids[grip.solid].held(grip.table) for grip in self.grips)
         moving = case.flowing | case.referred
         self.parts: tuple[Any, ...] = (*moving.values(), *held, *self.boundaries.values())
         shapes = tuple(part.shape for part in self.parts)
@@ -79,7 +77,7 @@ class Scene:
             len(case.flowing),
             len(case.bodies),
             len(case.referred),
-            tuple(map(list(moving).index, self.clamped)),
+            tuple(list(moving).index(grip.solid) for grip in self.grips),
             tuple(n for n, part in enumerate(self.parts) if getattr(part, "displaces", False)),
         )
         self.axis, self.planes = self.lattice.axis, self.lattice.planes
@@ -283,7 +281,8 @@ class Scene:
         if index < self.layout.movers:
             return Immersed() if self.case.flowing else Elastic()
         if index < self.layout.first_wall:
-            return Clamped()
+            told = motion_of(self.grips[index - self.layout.movers].table.motion, self.gravity)
+            return MovingClamp(told) if told else Clamped()
         if index >= self.layout.first_body:
             return self.rigid_bodies[index - self.layout.first_body]
         return motion_of(self.parts[index].motion, self.gravity) or Fixed()
@@ -291,7 +290,7 @@ class Scene:
     @property
     def names(self) -> tuple[str, ...]:
         """Of all materials, in the order of ``layout``."""
-        held = (f"{name} (clamped)" for name in self.clamped)
+        held = (f"{grip.solid} ({grip.key})" for grip in self.grips)
         return (*self.case.flowing, *self.case.referred, *held, *self.boundaries)
 
     @cached_property
@@ -318,9 +317,10 @@ class Scene:
         """The key of the case that holds a part: ``fluids.water``, ``walls.tank``, ``bodies.buoy``."""
         name, first = self.names[part], self.layout.fluids
         if first <= part < self.layout.first_wall:
-            held = part >= self.layout.movers
-            solid = list(self.clamped)[part - self.layout.movers] if held else name
-            return f"solids.{solid}" + ".clamped" * held
+            if part < self.layout.movers:
+                return f"solids.{name}"
+            grip = self.grips[part - self.layout.movers]
+            return f"solids.{grip.solid}.{grip.key}"
         return f"{self.case.table_of(name)}.{name}"
 
     @cached_property

@@ -1,7 +1,7 @@
 """What the elastic solids of a case are made of, and the planes that they may hit."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,24 @@ from psph.physics.solid.plastic import OF_PLASTIC
 from psph.scene.lattice import TOLERANCE
 
 if TYPE_CHECKING:
+    from psph.case.solids import Clamp
     from psph.scene.scene import Scene
+
+
+class Grip(NamedTuple):
+    """A clamp: the name of its ``solid``, its ``key`` in the table of that, and what the case says of it."""
+
+    solid: str
+    key: str
+    table: "Clamp"
+
+
+def grips_of(case) -> tuple[Grip, ...]:
+    """The clamps of all solids of a case."""
+    solids = case.updated | case.referred
+    return tuple(
+        Grip(name, key, one) for name, solid in solids.items() for key, one in solid.grips.items()
+    )
 
 
 def solids_of(scene: "Scene") -> tuple[Solid, ...]:

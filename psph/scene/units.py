@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from psph.case.errors import dotted
 from psph.case.keys import AXES
 from psph.physics.fluid.viscosity import FRICTION_STEP
 from psph.scene.shapes import bounds
@@ -112,10 +113,9 @@ def _falls_out(scene: "Scene") -> Iterator[str]:
 
 def _degrees(scene: "Scene") -> Iterator[str]:
     """A line for each turn that is likely in degrees, or in turns a minute."""
-    told = {scene.key_of(number): part for number, part in enumerate(scene.parts)}
-    for key, one in {**told, "frame": scene.case.frame}.items():
-        for part in getattr(one, "motion", None) or ():
-            yield from (f"{key}.motion.{line}" for line in _turns(part))
+    for loc, parts in scene.case.motions.items():
+        for part in parts:
+            yield from (f"{dotted(loc)}.{line}" for line in _turns(part))
 
 
 def _turns(part: "Motion") -> Iterator[str]:

@@ -62,6 +62,8 @@ class Immersion:
         shown = tuple(np.zeros(len(columns)) for _ in range(self.store.dimensions))
         for n in range(1, count + 1):
             self._each(self._drift, columns, part, 1.0 / count, *seen, shown)
+            if solids.clamps and count > 1:
+                solids.clamps.carry(time - (count - n) * part)
             solids.sum(time - dt + n * part, part)
             self._each(self._kick, columns, 0.5 * part, 0.5 * part, *seen)
         self._each(self._show, columns, self.store["velocity"], shown, self.store["predicted_velocity"])

@@ -25,7 +25,7 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, is_prescribed
+from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, MovingClamp, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.contact import contact_of
 from psph.physics.solid.cracks import CUT
@@ -191,6 +191,11 @@ class Plan:
         return bool(self.solids) and FLUID in self.kinds
 
     @property
+    def grips(self) -> tuple[Any, ...]:
+        """The motions of clamps that move, among those that are rigid."""
+        return tuple(one for one in self.rigid if isinstance(one, MovingClamp))
+
+    @property
     def touching(self) -> bool:
         """Whether elastic solids look for each other: a pass then begins the sums of their forces."""
         return bool(self.solids and self.passes) and not self.immersed
@@ -303,7 +308,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present = {entry for entry, *_ in fitted}
     own_laws = laws(scene, catalogue.states)
-    loaded = np.array([one.loaded or is_prescribed(one.motion) for one in scene.species], bool)
+    loaded = [one.loaded or bool(case.flowing) and is_prescribed(one.motion) for one in scene.species]
+    loaded = np.array(loaded, bool)
     contacts = (contact_of(scene),) if scene.case.bodies else ()
     for_loads = (*LOADED_READ * bool(loaded.any()), *CONTACTS_READ * bool(contacts))
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))

@@ -92,10 +92,17 @@ class Solids:
             self._widths[1].update({LOOSENED: 1, STRENGTH: 1})
         self._solid_of = plan.solid_of
         self._rows = self.halo = None
+        self.clamps = self._made_to_move() if plan.grips else None
         loops = (sum_moments, sum_gradients, sum_inner_forces, measure, push_solids, fill_places)
         self._moments, self._gradients, self._forces, self._measure, self._push, self._fill = map(
             settled, loops
         )
+
+    def _made_to_move(self):
+        """What moves clamps."""
+        from psph.simulation.clamps import Clamps  # late: most clamps stay
+
+        return Clamps(self.scene, self.plan, self.store)
 
     def _made_to_crack(self):
         """What cuts bonds."""
@@ -144,7 +151,10 @@ class Solids:
         self._columns = columns[order].astype(np.uint64)
         self.rows, self._inner = len(columns), int(np.count_nonzero(~rim))
         self._matter = self._matter._replace(number=self._solid_of[store.group[columns[order]]])
-        self._inverse_density = 1.0 / self._matter.density[self._matter.number]
+        density = self._matter.density[self._matter.number]
+        self._inverse_density = 1.0 / density
+        if self.clamps:
+            self.clamps.settle(self._columns, density * self._volume)
         self._make_tables(store.id[columns[order]], np.unique(partners[abroad]))
         self._moment = tuple(of[self._columns] for of in store[MOMENT.name])
         if self._cracks:
@@ -229,6 +239,8 @@ class Solids:
                 share[self._matter.number],
                 store["acceleration"],
             )
+            if self.clamps:
+                self.clamps.book(dt)
             self._crack()
 
     def _crack(self) -> None:

@@ -114,7 +114,7 @@ def _stored(scene, plan, frame: dict) -> float:
 
 def _momenta(scene, first: dict, last: dict) -> Iterator[tuple[str, float]]:
     """Momenta where nothing acts from outside, and the energy of the solids' flight."""
-    if scene.clamped or scene.walls or any(scene.gravity):
+    if scene.grips or scene.walls or any(scene.gravity):
         return
     pace = np.linalg.norm(first["velocity"], axis=1).sum()
     yield (
