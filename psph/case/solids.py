@@ -125,7 +125,7 @@ class Solid(Hookean):
         ge=1,
     )
     clamped: Shape | None = key("the part of the solid that stays where it is", None, otherwise="none")
-    clamps: dict[Name, Clamp] = key("further clamps, by name, each with a motion of its own", {})
+    clamps: dict[Name, Clamp] = key("parts of the solid that stay, or move as they are told, by name", {})
     loads: dict[Name, SolidLoad] = key("forces on parts of the solid, by name", {})
     load_rise: float = key("time in which the loads grow to their full size", 0.0, unit="s", ge=0)
 

@@ -46,8 +46,9 @@ def total_energy(
 ) -> float:
     """Σ m (v²/2 − g·x) of fluids and solids and Σ m u of all particles, J.
 
-    Groups that are ``led`` (groups,) move as they are told: they count as walls.  ``elastic`` takes densities and rest densities (n,) and gives u, J/kg.  NaN where a density is
-    below zero.  The same bits on any number of ranks; collective.
+    Groups that are ``led`` (groups,) move as they are told: they count as walls.  ``elastic`` takes densities
+    and rest densities (n,) and gives u, J/kg.  NaN where a density is below zero.  The same bits on any
+    number of ranks; collective.
     """
     inner = store.inner
     moved = sum(

@@ -26,7 +26,7 @@ from psph.scene.shapes import bounds
 from psph.scene.soils import soil_warnings
 from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.unbearing import unbearing_warnings
-from psph.scene.units import in_millimetres, slips
+from psph.scene.units import in_degrees, in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
 from psph.scene.waving import wave_faults, wave_warnings
 
@@ -358,7 +358,15 @@ def _moving(scene: Scene) -> Iterator[tuple[int, Any]]:
     return enumerate(scene.parts[: scene.layout.movers])
 
 
-OF_EVERY_SCENE = (motion_warnings, soil_warnings, solid_warnings, _jitter, meshes.remarks, misfits)
+OF_EVERY_SCENE = (
+    motion_warnings,
+    in_degrees,
+    soil_warnings,
+    solid_warnings,
+    _jitter,
+    meshes.remarks,
+    misfits,
+)
 """What warns of the parts of any scene."""
 
 OF_FLUIDS = (

@@ -28,7 +28,9 @@ SLOWEST = 2.0
 
 
 def solid_faults(scene: "Scene") -> Iterator[str]:
-    """A line for each solid that is too thin for any stress, and for each load that pulls nothing."""
+    """A line for each solid that is too thin for any stress, for each load that pulls nothing, and for each
+    two clamps of a solid that share particles."""
+    yield from _shared(scene)
     for number, name in enumerate(scene.case.referred, scene.layout.fluids):
         wide, axis = across(scene, number - scene.layout.fluids)
         if wide == 1:
@@ -84,6 +86,28 @@ def _answers(scene: "Scene", number: int, key: str, table) -> Iterator[str]:
             f"{key}.damping: {table.damping:g} Pa s lets waves grow that a step of the fluid does not "
             f"resolve; remove it, for {needed:.2g} Pa s"
         )
+
+
+def _shared(scene: "Scene") -> Iterator[str]:
+    """A line for each clamp that shares particles with an earlier one of its solid."""
+    for n, grip in enumerate(scene.grips):
+        for other in (one for one in scene.grips[:n] if one.solid == grip.solid):
+            whole = scene.case.solids[grip.solid].shape
+            if (count := _sites_in(scene, whole, grip.table.shape, other.table.shape)) > 0:
+                yield (
+                    f"solids.{grip.solid}.{grip.key}: shares {count:,} particles with solids.{other.solid}."
+                    f"{other.key}; let each be in one clamp"
+                )
+
+
+def _sites_in(scene: "Scene", *shapes) -> int:
+    """How many sites lie in all of some shapes."""
+    tolerance, count = TOLERANCE * scene.spacing, 0
+    for first, last in scene.lattice.chunks():
+        grid, size = scene.lattice.grid(first, last), scene.lattice.shape(first, last)
+        held = (np.broadcast_to(inside(shape, grid, tolerance), size) for shape in shapes)
+        count += int(np.count_nonzero(np.logical_and.reduce([*held])))
+    return count
 
 
 def _is_of(scene: "Scene", material: int, solid: int) -> bool:

@@ -31,9 +31,7 @@ class Grip(NamedTuple):
 def grips_of(case) -> tuple[Grip, ...]:
     """The clamps of all solids of a case."""
     solids = case.updated | case.referred
-    return tuple(
-        Grip(name, key, one) for name, solid in solids.items() for key, one in solid.grips.items()
-    )
+    return tuple(Grip(name, key, one) for name, solid in solids.items() for key, one in solid.grips.items())
 
 
 def solids_of(scene: "Scene") -> tuple[Solid, ...]:

@@ -42,7 +42,7 @@ MOST_UNHELD = 0.5
 
 def slips(scene: "Scene") -> Iterator[str]:
     """A line for each number that is likely not meant."""
-    for kind in (_densities, _viscosities, _long_tank, _falls_out, _degrees):
+    for kind in (_densities, _viscosities, _long_tank, _falls_out):
         yield from kind(scene)
 
 
@@ -111,7 +111,7 @@ def _falls_out(scene: "Scene") -> Iterator[str]:
         )
 
 
-def _degrees(scene: "Scene") -> Iterator[str]:
+def in_degrees(scene: "Scene") -> Iterator[str]:
     """A line for each turn that is likely in degrees, or in turns a minute."""
     for loc, parts in scene.case.motions.items():
         for part in parts:

@@ -22,7 +22,7 @@ class Clamps:
         self._carry, self._book = settled(carry), settled(book)
 
     def settle(self, columns: np.ndarray, masses: np.ndarray) -> None:
-        """Those among the ``columns`` of solids, whose true ``masses`` are in kg, after these have changed."""
+        """Those among the ``columns`` of solids and their true ``masses``, kg, after these have changed."""
         own = self._moves[self._store.group[columns]]
         self._columns, self._masses = columns[own], masses[own]
 

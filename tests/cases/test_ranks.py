@@ -61,6 +61,7 @@ END = {
     "soils/submerged_slide": 0.05,
     "solids/spinning_plate": 0.005,
     "solids/oscillating_plate": 0.01,
+    "solids/shaken_plate": 0.01,
     "solids/cantilever": 0.005,
     "solids/csm1": 0.01,
     "solids/csm3": 0.01,

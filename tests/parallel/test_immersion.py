@@ -30,7 +30,8 @@ shape.difference.from.box = { lower = [-0.25, -0.25], upper = [2.25, 0.8] }
 shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [2.0, 0.8] } }]
 [solids.sheet]
 shape.box = { lower = [0.0, 0.4], upper = [2.0, 0.6] }
-clamped.box = { lower = [0.0, 0.4], upper = [0.3, 0.6] }
+clamps.grip.shape.box = { lower = [0.0, 0.4], upper = [0.3, 0.6] }
+clamps.grip.motion.sinusoid = { amplitude = [0.0, 0.02], period = 0.1 }
 density = 1300.0
 young = 3.0e6
 poisson = 0.35
@@ -45,7 +46,7 @@ law = "neo-hookean"
 [gauges.push.force]
 on = ["sheet"]
 """
-"""A sheet on water, clamped at one end, across all slabs, and a post of another law under it."""
+"""A sheet on water, shaken at one end, across all slabs, and a post of another law under it."""
 
 
 def flap(folder):

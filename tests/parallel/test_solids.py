@@ -25,7 +25,9 @@ dimensions = 2
 spacing = 0.1
 [solids.beam]
 shape.box = { lower = [-0.8, 0.0], upper = [3.0, 0.4] }
-clamped.box = { lower = [-0.8, 0.0], upper = [0.0, 0.4] }
+clamped.box = { lower = [-0.8, 0.0], upper = [-0.4, 0.4] }
+clamps.grip.shape.box = { lower = [-0.4, 0.0], upper = [0.0, 0.4] }
+clamps.grip.motion = [{ rotation = { speed = 2.0, center = [-0.4, 0.2] } }, { translation = [0.2, 0.1], ramp = 0.02 }]
 density = 1100.0
 young = 3.0e5
 poisson = 0.35
@@ -60,7 +62,7 @@ normal = [-0.2, 1.0]
 of = "beam"
 at = [3.0, 0.2]
 """
-"""A beam across all slabs that bends under a load, a plate of another law, with flaws, that spins above it and falls on it,
+"""A beam across all slabs that bends under a load and by a clamp that moves, a plate of another law, with flaws, that spins above it and falls on it,
 and a block of metal that is pressed flat on a slope, between the beam and a wall."""
 
 
@@ -75,7 +77,17 @@ def rows(simulation):
     """All that moves, by id, and the stored energy."""
     energy = simulation.engine.stored_energy()
     store = simulation.store
-    names = ("position", "velocity", "acceleration", "cut", "stress", "von_mises", "damage", "plastic_strain")
+    names = (
+        "position",
+        "velocity",
+        "acceleration",
+        "cut",
+        "stress",
+        "von_mises",
+        "damage",
+        "plastic_strain",
+        "work",
+    )
     parts = [store.owned_rows("id")[:, None], *(store.owned_rows(n).reshape(store.owned, -1) for n in names)]
     every = np.concatenate(simulation.comm.allgather(np.hstack(parts)))
     return every[np.argsort(every[:, 0])], energy
@@ -101,7 +113,8 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
     assert np.isfinite(one).all() and np.abs(one - begun).max() > 0.1
     assert met(single) > 5  # solids meet each other and the wall
     assert 0.0 < single.store.shown("damage").mean() < 0.2  # weak bonds are cut
-    assert one[:, -1].max() > 0.02 and (one[:, -1] > 0.0).sum() > 5  # the metal yields
+    assert one[:, -2].max() > 0.02 and (one[:, -2] > 0.0).sum() > 5  # the metal yields
+    assert np.abs(one[:, -1]).max() > 0.0  # the clamp that moves does work
     assert np.array_equal(one, many) and energy == energy_of_many > 0.0
     assert together.domain.rebuilds == single.domain.rebuilds > 6
 

@@ -24,6 +24,8 @@ young = 1.4e6
 poisson = 0.4
 """
 
+END = "solids.beam.clamps.end={shape={box={lower=[0.3,0.0],upper=[0.4,0.05]}},"
+
 WATER = "fluids.water={shape={box={lower=[1.0,0.0],upper=[2.0,1.0]}}}"
 
 
@@ -62,6 +64,40 @@ def test_a_sound_beam_is_good(tmp_path):
         (
             ["solids.beam.clamped.box={lower=[5.0,0.0],upper=[6.0,1.0]}"],
             "solids.beam.clamped: holds no particle of the solid; let the shapes meet",
+        ),
+        (
+            ["solids.beam.clamps.end={shape={box={lower=[5.0,0.0],upper=[6.0,1.0]}}}"],
+            "solids.beam.clamps.end: holds no particle of the solid; let the shapes meet",
+        ),
+        (
+            ["solids.beam.clamps.end={shape={box={lower=[-0.05,0.0],upper=[0.1,0.05]}}}"],
+            "solids.beam.clamps.end: shares 25 particles with solids.beam.clamped; let each be in one clamp",
+        ),
+        (
+            ["solids.beam.clamps.end={motion={translation=[1.0,0.0]}}"],
+            "solids.beam.clamps.end.shape: missing; add shape",
+        ),
+        (["solids.beam.motion={translation=[1.0,0.0]}"], "solids.beam.motion"),
+        (["solids.beam.clamped.motion={translation=[1.0,0.0]}"], "solids.beam.clamped"),
+        (
+            [END + "motion={rotation={speed=1.0}}}"],
+            "solids.beam.clamps.end.motion.rotation: turns about a point; give center",
+        ),
+        (
+            [END + "motion={translation=[1.0]}}"],
+            "solids.beam.clamps.end.motion.translation: [1.0]: 1 number in a case with space.dimensions = 2; give 2",
+        ),
+        (
+            [END + "motion={piston={height=0.1,period=1.0,depth=1.0,absorb={}}}}"],
+            "solids.beam.clamps.end.motion: a wall may absorb waves, a clamp not; remove absorb",
+        ),
+        (
+            [END + "motion={series={file='no.csv',displacement=['x','y']}}}"],
+            "solids.beam.clamps.end.motion.series",
+        ),
+        (
+            [END + "motion={rotation={speed=100.0,center=[0.0,0.0]}}}"],
+            "solids.beam.clamps.end.motion.rotation.speed: 100 rad/s is 15.9 turns a second",
         ),
         (
             ["solids.beam.shape.box.upper=[0.4,0.02]"],
