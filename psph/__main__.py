@@ -6,6 +6,7 @@ import sys
 import time
 import traceback
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from pathlib import Path
 
 from psph.errors import Failed, Foreseen, Refused, one_line
 from psph.runs.watch import listen
@@ -201,10 +202,11 @@ def _stability(options, comm) -> None:
         if options.compared == "elastic":
             elastic(comm, options.out)
             return
-        kinds = {"walls": WALLS, "solids": SOLIDS}
-        compare(
-            comm, comparison() if options.compared == "remedies" else kinds[options.compared], options.out
-        )
+        kinds = {"remedies": (comparison(), SOLIDS), "walls": (WALLS,), "solids": (SOLIDS,)}
+        first, *others = kinds[options.compared]
+        compare(comm, first, options.out)
+        for other in others:
+            compare(comm, other, (options.out or Path(first.name)) / other.name)
         return
     if options.battery or options.quick:
         from psph.lab.battery.command import battery

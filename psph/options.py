@@ -231,7 +231,7 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
         dest="compared",
         action="store_const",
         const="remedies",
-        help="run each remedy alone in cases in which plain SPH fails instead",
+        help="run each remedy alone in cases in which plain SPH fails instead, then what --solids runs",
     )
     stability.add_argument(
         "--walls",

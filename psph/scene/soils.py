@@ -24,10 +24,10 @@ def soil_lines(scene: "Scene") -> Iterator[str]:
         if soil.strength_reduction != 1.0:
             says += f", strength divided by {soil.strength_reduction:g}"
         bears = soil.tip(scene.dimensions)
+        slides = math.degrees(math.atan(soil.cone(scene.dimensions)[0]))
         yield (
-            f"  soil        {scene.names[number]}: {says}; slides on planes of "
-            f"{math.degrees(math.atan(soil.cone(2)[0])):.3g}°, bears {bears:.3g} Pa of mean tension; "
-            f"waves of {soil.wave_speed:.4g} m/s"
+            f"  soil        {scene.names[number]}: {says}; slides on planes of {slides:.3g}°, "
+            f"bears {bears:.3g} Pa of mean tension; waves of {soil.wave_speed:.4g} m/s"
         )
 
 

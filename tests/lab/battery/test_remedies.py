@@ -163,7 +163,7 @@ def test_the_command_line(monkeypatch, tmp_path):
     monkeypatch.setattr(command, "compare", lambda comm, of, out: asked.append((of.name, out)))
     for name in ("remedies", "walls"):
         assert main(["stability", f"--{name}", "--out", str(tmp_path)]) == 0
-    assert asked == [("remedies", tmp_path), ("walls", tmp_path)]
+    assert asked == [("remedies", tmp_path), ("solids", tmp_path / "solids"), ("walls", tmp_path)]
     for other in ("--battery", "--quick"):
         with pytest.raises(Refused, match="^stability --remedies: stands alone"):
             main(["stability", "--remedies", other])
