@@ -346,10 +346,10 @@ class Case(Table):
 
     def to_toml(self) -> str:
         """This case as TOML that :func:`psph.case.load` reads back to an equal case."""
-        text = tomli_w.dumps(self.tables())
+        text = tomli_w.dumps(self.as_tables())
         return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)
 
-    def tables(self) -> dict[str, Any]:
+    def as_tables(self) -> dict[str, Any]:
         """What :meth:`to_toml` writes: all keys that have a value."""
         tables = self.model_dump(by_alias=True, exclude_none=True)
         for name in self.presets:

@@ -28,7 +28,7 @@ MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": Tru
 
 def case_digest(case) -> str:
     """Fingerprint of all of a case that its steps and the rows of its files rest on."""
-    tables = case.tables()
+    tables = case.as_tables()
     for name, keys in MAY_CHANGE.items():
         table = tables.pop(name, {})
         if keys is not True:

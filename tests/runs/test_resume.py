@@ -202,9 +202,11 @@ def test_later_sources_go_on_where_they_read_the_case_alike(whole, tmp_path, mon
     assert "warning: other sources of psph wrote it: the bits may be others from here on" in said
     assert same_files(folder, whole)
     case = load(folder / "case.toml")
-    turned = SimpleNamespace(tables=lambda: dict(reversed(case.tables().items())), versions=case.versions)
+    turned = SimpleNamespace(
+        as_tables=lambda: dict(reversed(case.as_tables().items())), versions=case.versions
+    )
     assert case_digest(turned) == case_digest(case)
-    assert None not in case.tables()["physics"].values() and None in case.physics.model_dump().values()
+    assert None not in case.as_tables()["physics"].values() and None in case.physics.model_dump().values()
 
 
 def test_later_sources_with_other_defaults_say_so(whole, tmp_path, monkeypatch):
