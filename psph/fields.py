@@ -105,6 +105,9 @@ OF_MATERIAL = (
     Field("shear_modulus", "Pa", "shear modulus of what bears an evolved stress, else 0"),
     Field("wave_modulus", "Pa", "P-wave modulus by which a contact of solids and walls is stiff, else 0"),
     Field("cone_tip", "Pa", "mean tension at which an evolved stress has no strength left, else 0"),
+    Field("wave_speed", "m/s", "speed of pressure waves in the matter itself; the numerical one in a fluid"),
+    Field("stress_diffusion", "1", "strength of the spreading of an evolved stress"),
+    Field("rest_coefficient", "1", "stress across over that along gravity, in level ground at rest"),
     Field("strength", "1", "number of the law that bounds an evolved stress, 0 where none does"),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""

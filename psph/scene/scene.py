@@ -260,6 +260,9 @@ class Scene:
                 self.stressed.number_of(index),
                 self.stressed.cone_tip_of(index),
                 modulus_shown(self, index),
+                getattr(self.parts[source], "wave_speed", self.sound_speed),
+                getattr(self.parts[source], "stress_diffusion", 0.0),
+                getattr(self.parts[source], "at_rest", 1.0),
             )
             for index, (name, source, start) in enumerate(zip(self.names, shown_by(self), self.starts))
         )

@@ -34,7 +34,9 @@ class Species(NamedTuple):
     matter whose deviatoric stress evolves (psph.physics.stress), else 0; ``strength`` the number of the law
     that bounds this stress among those of the scene from 1 on, 0 where none does, and ``cone_tip`` in Pa the
     mean tension that leaves it no strength; ``wave_modulus`` in Pa is
-    the P-wave modulus of an elastic solid, beside solids of a wall the largest of theirs, else 0.
+    the P-wave modulus of an elastic solid, beside solids of a wall the largest of theirs, else 0;
+    ``wave_speed`` in m/s is that of pressure waves in matter whose deviatoric stress evolves, else the
+    numerical one; ``stress_diffusion`` and ``rest_coefficient`` K₀ are those of a soil, 0 and 1 else.
     """
 
     name: str
@@ -53,6 +55,9 @@ class Species(NamedTuple):
     strength: int = 0
     cone_tip: float = 0.0
     wave_modulus: float = 0.0
+    wave_speed: float = 0.0
+    stress_diffusion: float = 0.0
+    rest_coefficient: float = 1.0
 
     @property
     def kind(self) -> int:

@@ -21,8 +21,9 @@ class Layer(NamedTuple):
 
     ``axis`` of gravity and the ``sign`` of what is up along it; ``first`` site of the lattice and
     ``spacing``, m; ``top`` of the soil over each place of the level lattice, m along ``sign`` · axis;
-    ``weight`` of the soil and ``pores`` of the water in it, Pa/m, 0 where it is dry, up to ``level`` m;
-    ``at_rest`` is K₀.
+    ``burden`` in Pa at each place and height of the lattice: what other soils above weigh, less what this
+    one would where they lie in it; ``weight`` of the soil and ``pores`` of the water in it, Pa/m, 0 where it
+    is dry, up to ``level`` m; ``at_rest`` is K₀.
     """
 
     axis: int
@@ -30,6 +31,7 @@ class Layer(NamedTuple):
     first: np.ndarray
     spacing: float
     top: np.ndarray
+    burden: np.ndarray
     weight: float
     pores: float
     level: float
@@ -38,12 +40,14 @@ class Layer(NamedTuple):
     def stress(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressure of the water in the pores, and what the grains bear along gravity, Pa (n,) at ``position``
         (n, dim); zeros over the ground."""
-        across = np.delete(np.arange(position.shape[1]), self.axis)
-        sites = np.rint((position[:, across] - self.first[across]) / self.spacing).astype(int)
-        sites = np.clip(sites, 0, np.array(self.top.shape) - 1)
-        top, height = self.top[tuple(sites.T)], self.sign * position[:, self.axis]
+        order = [*np.delete(np.arange(position.shape[1]), self.axis), self.axis]
+        sites = np.rint((position[:, order] - self.first[order]) / self.spacing).astype(int)
+        sites = tuple(np.clip(sites, 0, np.array(self.burden.shape) - 1).T)
+        top, height = self.top[sites[:-1]], self.sign * position[:, self.axis]
         water = self.pores * np.maximum(self.level - height, 0.0)
-        whole = self.weight * (top - height) + self.pores * np.maximum(self.level - top, 0.0)
+        whole = (
+            self.burden[sites] + self.weight * (top - height) + self.pores * np.maximum(self.level - top, 0.0)
+        )
         inside = height < top
         return np.where(inside, water, 0.0), np.where(inside, np.maximum(whole - water, 0.0), 0.0)
 
@@ -102,14 +106,8 @@ class Stressed:
 
     @property
     def diffusion(self) -> float:
-        """How strongly the stress of soils spreads between neighbours; 0 without."""
+        """How strongly the stress of a soil spreads between neighbours at most; 0 without."""
         return max((soil.stress_diffusion for soil in self.soils.values()), default=0.0)
-
-    @property
-    def rest_coefficient(self) -> float:
-        """K₀ of the soils, their mean; 1 without."""
-        found = [soil.at_rest for soil in self.soils.values()]
-        return sum(found) / len(found) if found else 1.0
 
     @cached_property
     def layers(self) -> dict[int, Layer]:
@@ -135,43 +133,58 @@ class Stressed:
 
 
 def layer_of(scene: "Scene", number: int, soil: Soil) -> Layer:
-    """A soil under its own weight along the axis of which gravity has most."""
+    """A soil under its own weight, and that of soils above it, along the axis of which gravity has most."""
     axis = int(np.abs(scene.gravity).argmax())
     sign = -math.copysign(1.0, scene.gravity[axis])
     pull = abs(scene.gravity[axis])
     wet = soil.water_level is not None
+    pores, level = (soil.water_density * pull, soil.water_level) if wet else (0.0, 0.0)
+    held = columns(scene, axis)
+    top, nearest = ground(held == number, sign * scene.lattice.coordinates(axis), scene.spacing)
     return Layer(
         axis,
         sign,
         np.array([scene.lattice.coordinates(d)[0] for d in range(scene.dimensions)]),
         scene.spacing,
-        ground(scene, number, axis, sign),
+        top,
+        burden(scene, number, held, top, sign * scene.lattice.coordinates(axis), (pores, level))[nearest],
         soil.density * pull,
-        soil.water_density * pull if wet else 0.0,
-        soil.water_level if wet else 0.0,
+        pores,
+        level,
         soil.at_rest,
     )
 
 
-def ground(scene: "Scene", number: int, axis: int, sign: float) -> np.ndarray:
-    """The top of a part over each place of the level lattice, m along ``sign`` · axis; where there is none of
-    it, that of the nearest place with some."""
+def columns(scene: "Scene", axis: int) -> np.ndarray:
+    """Material of each site of the lattice, uint8, in the order x, y, z but for ``axis``, which is last."""
+    lattice = scene.lattice
+    held = np.concatenate([scene.layout.materials(*chunk) for chunk in lattice.chunks()])
+    others = [d for d in range(scene.dimensions) if d != axis]
+    return held.transpose([lattice.axes.index(d) for d in (*others, axis)])
+
+
+def ground(held: np.ndarray, height: np.ndarray, spacing: float) -> tuple[np.ndarray, tuple]:
+    """The top of a part over each place of the level lattice, m as ``height`` (heights,), and which place
+    says so: the nearest where there is none of it.  ``held`` (places, ..., heights) is True where it is."""
     from scipy.ndimage import distance_transform_edt  # late: most scenes have no soil
 
-    lattice = scene.lattice
-    place = lattice.axes.index(axis)
-    height = sign * lattice.coordinates(axis)
-    others = [k for k in range(scene.dimensions) if k != place]
-    top = np.full([lattice.counts[lattice.axes[k]] for k in others], -np.inf)
-    for first, last in lattice.chunks():
-        held = scene.layout.materials(first, last) == number
-        z = height[first:last] if not place else height
-        z = z.reshape([-1 if k == place else 1 for k in range(scene.dimensions)])
-        found = np.where(held, z, -np.inf).max(axis=place)
-        rows = slice(first, last) if place else slice(None)
-        top[rows] = np.maximum(top[rows], found)
-    nearest = distance_transform_edt(np.isinf(top), return_distances=False, return_indices=True)
-    top = top[tuple(nearest)] + 0.5 * scene.spacing
-    # from the order of the lattice's axes to x, y, z
-    order = np.argsort([lattice.axes[k] for k in others])
-    return np.transpose(top, order)
+    top = np.where(held, height, -np.inf).max(axis=-1)
+    nearest = tuple(distance_transform_edt(np.isinf(top), return_distances=False, return_indices=True))
+    return top[nearest] + 0.5 * spacing, nearest
+
+
+def burden(scene: "Scene", number: int, held, top, height, water: tuple[float, float]) -> np.ndarray:
+    """What other soils above each site weigh, less what part ``number`` with ``water`` on it would weigh in
+    their place, Pa (places, ..., heights)."""
+    pull, (pores, level) = abs(scene.gravity[int(np.abs(scene.gravity).argmax())]), water
+    own = scene.stressed.soils[number].density * pull
+    replaced = np.where(height < top[..., None], own, np.where(height < level, pores, 0.0))
+    weight = np.zeros(held.shape)
+    for other, soil in scene.stressed.soils.items():
+        if other != number:
+            weight += (held == other) * (soil.density * pull - replaced)
+    if height[-1] > height[0]:  # summed from above
+        weight = weight[..., ::-1].cumsum(axis=-1)[..., ::-1] - weight
+    else:
+        weight = weight.cumsum(axis=-1) - weight
+    return weight * scene.spacing

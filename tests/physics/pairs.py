@@ -56,6 +56,9 @@ def view(n=2, dim=2, seed=3):
         rheology=np.resize((1.0, 0.0, 2.0), n),
         shear_modulus=np.resize((4e4, 0.0, 7e4), n),
         strength=np.resize((1.0, 0.0, 2.0), n),
+        wave_speed=np.resize((60.0, 50.0, 45.0), n),
+        stress_diffusion=np.resize((0.1, 0.0, 0.3), n),
+        rest_coefficient=np.resize((0.4, 1.0, 0.6), n),
         cone_tip=np.resize((3e3, 0.0, 0.0), n),
         deviator=tuple(rng.normal(size=n) * 500 for _ in range(dim * (dim + 1) // 2)),
     )

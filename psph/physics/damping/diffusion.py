@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.engine.jit import call_by_type
 from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper, where
@@ -18,6 +19,44 @@ STABLE = 0.15
 """S h δ c Δt must stay below; S is the fastest smoothing of the kernel on the lattice (psph.smoothing), 1/m²,
 and S h² is 1.9 to 5.7.  The fastest wave decays at the rate 2 S h δ c.  Density, predicted with the weights
 7/4, −1, 1/4, is stable up to a third of its value a step; a tenth of that is left for disorder."""
+
+
+class OneMatter(NamedTuple):
+    """Density spreads between all: a pressure asks for the same excess of density in each."""
+
+    def alike(self, i, j):
+        """1: whatever both are."""
+        return 1.0
+
+    def speed(self, i):
+        """The speed of sound, m/s, by which a pressure asks for an excess of density."""
+        return i.sound_speed
+
+
+class SeveralMatters(NamedTuple):
+    """Density spreads within each matter, where soils differ from each other or from a fluid.
+
+    A pressure p asks for an excess of density near p/c² with the c of each.  Where density spread
+    between two of them, it would press the soft one and stretch the stiff one without end.
+    """
+
+    def alike(self, i, j):
+        """1 between particles that a pressure compresses alike, else 0."""
+        faster, slower = max(i.wave_speed, j.wave_speed), min(i.wave_speed, j.wave_speed)
+        return where(faster > slower, 0.0, 1.0)
+
+    def speed(self, i):
+        """The speed of sound in the particle's own matter, m/s."""
+        return i.wave_speed
+
+
+def matter_of(scene: Facts):
+    """Between which particles of a scene density spreads."""
+    return SeveralMatters() if len({one.wave_speed for one in scene.species}) > 1 else OneMatter()
+
+
+alike, speed = call_by_type("alike"), call_by_type("speed")
+"""(matter, i, j) → 1 or 0; (matter, i) → m/s: see :class:`OneMatter`."""
 
 
 class DensityDiffusion(NamedTuple):
@@ -35,10 +74,10 @@ class DensityDiffusion(NamedTuple):
     delta: Annotated[float, Field(ge=0, description="strength δ", json_schema_extra={"unit": "1"})] = 0.1
 
     def in_scene(self, scene: Facts):
-        """Under gravity or beside walls, the form that knows of them."""
+        """Under gravity, beside walls or where matters differ, the form that knows of them."""
         held = any(scene.gravity) or not all(one.is_fluid for one in scene.species)
-        pull = tuple(g or None for g in scene.gravity)
-        return TankDiffusion(self.delta, pull) if held else self
+        pull, matter = tuple(g or None for g in scene.gravity), matter_of(scene)
+        return TankDiffusion(self.delta, pull, matter) if held or isinstance(matter, SeveralMatters) else self
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
@@ -60,15 +99,16 @@ class TankDiffusion(NamedTuple):
     mean of the pair's two rest densities: the slope of density in a fluid at rest, linear in the
     depth, stays, and what one particle gains in volume the other loses.  Antuono, Colagrossi,
     Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532, with the exact slope for theirs.
-    ``gravity`` in m/s², None on an axis without.
+    ``gravity`` in m/s², None on an axis without; ``matter`` by :func:`matter_of`.
     """
 
     delta: float
     gravity: tuple[float | None, ...]
+    matter: OneMatter | SeveralMatters = OneMatter()
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        taken = _excess(self.delta, i, j, _weight(self.gravity, i, j, pair))
+        taken = _excess(self.delta, i, j, _weight(self, i, j, pair)) * alike(self.matter, i, j)
         return where(_giving(i, j) > 0.0, taken, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
@@ -98,7 +138,7 @@ class FourthOrderDiffusion(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """The form that knows gravity."""
-        return BesideSmoothDensity(self.delta, tuple(g or None for g in scene.gravity))
+        return BesideSmoothDensity(self.delta, tuple(g or None for g in scene.gravity), matter_of(scene))
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -111,11 +151,13 @@ class FourthOrderDiffusion(NamedTuple):
 class BesideSmoothDensity(NamedTuple):
     """Density diffuses between neighbours, except for the part of a smooth field: this damps noise alone.
 
-    The form of :class:`FourthOrderDiffusion` in a scene; ``gravity`` in m/s², None on an axis without.
+    The form of :class:`FourthOrderDiffusion` in a scene; ``gravity`` in m/s², None on an axis without;
+    ``matter`` by :func:`matter_of`.
     """
 
     delta: float
     gravity: tuple[float | None, ...]
+    matter: OneMatter | SeveralMatters = OneMatter()
 
     writes = Declared("density_gradient", "kg/m4", "gradient of the density over its rest density", VECTOR)
     lagged = True
@@ -128,7 +170,7 @@ class BesideSmoothDensity(NamedTuple):
     def gather(self, total, i, j, pair):
         """Add −V_j [(ρ − ρ₀)_i − (ρ − ρ₀)_j] ∇W_ij."""
         level = 1.0 / i.specific_volume + (j.rest_density - i.rest_density)
-        rise = level * j.specific_volume - 1.0
+        rise = (level * j.specific_volume - 1.0) * alike(self.matter, i, j)
         return add(total, scale(pair.x_ij, -rise * pair.m_dw_r))
 
     def finish_value(self, total, i, kernel):
@@ -137,13 +179,13 @@ class BesideSmoothDensity(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        weight = _weight(self.gravity, i, j, pair)
+        weight = _weight(self, i, j, pair)
         rise = 1.0 / i.specific_volume - 1.0 / j.specific_volume + (j.rest_density - i.rest_density) - weight
         smooth = 0.5 * dot(add(i.density_gradient, j.density_gradient), pair.x_ij) - weight
         smooth = min(max(smooth, min(rise, 0.0)), max(rise, 0.0))
         ordered = 1.0 - half_disorder(ROUGH, i) - half_disorder(ROUGH, j)
         mixing = 2.0 * self.delta * i.smoothing_length * i.sound_speed
-        flux = mixing * j.specific_volume * (rise - ordered * smooth)
+        flux = mixing * j.specific_volume * alike(self.matter, i, j) * (rise - ordered * smooth)
         return where(_giving(i, j) > 0.0, flux, 0.0) * _nearness(i, pair)
 
     def longest_step(self, scene):
@@ -156,10 +198,11 @@ class BesideSmoothDensity(NamedTuple):
 
 
 @helper
-def _weight(gravity, i, j, pair):
+def _weight(effect, i, j, pair):
     """ρ̄₀ g·x_ij/c², kg/m^d: what the weight of a still column asks for."""
     mean = 0.5 * (i.rest_density + j.rest_density)
-    return mean / (i.sound_speed * i.sound_speed) * along(pair.x_ij, gravity)
+    c = speed(effect.matter, i)
+    return mean / (c * c) * along(pair.x_ij, effect.gravity)
 
 
 @helper

@@ -82,7 +82,7 @@ class DeviatorRate(NamedTuple):
             return DeviatorRate(FEWEST_OF_ELASTIC)
         if not scene.stressed.diffusion:
             return self
-        return DiffusedDeviatorRate(scene.stressed.diffusion, layered(scene))
+        return DiffusedDeviatorRate(scene.stressed.diffusion, levelled(scene))
 
     def start(self, i):
         """No neighbour yet."""
@@ -99,20 +99,22 @@ class DeviatorRate(NamedTuple):
 
 
 @helper
-def spread(delta, of_layers, i, j, pair):
-    """2δhc V_j W′/r [s_i − s_j less what weight asks for], Pa/s, between particles that both yield."""
-    both = where(i.strength * j.strength > 0.0, 1.0, 0.0)
-    weight = both * 2.0 * delta * i.smoothing_length * i.sound_speed * j.specific_volume * pair.m_dw_r
-    depth = 0.5 * (i.rest_density + j.rest_density) * dot(pair.x_ij, of_layers[0])
-    change = subtract(subtract(i.deviator, j.deviator), scale(of_layers[1], depth))
-    return scale(change, weight)
+def spread(level, i, j, pair):
+    """2δhc V_j W′/r [s_i − s_j less what weight asks for], Pa/s, between particles of one soil."""
+    weaker, stronger = min(i.strength, j.strength), max(i.strength, j.strength)
+    one_soil = where(weaker > 0.0, 1.0, 0.0) * where(stronger > weaker, 0.0, 1.0)
+    mixing = (i.stress_diffusion + j.stress_diffusion) * i.smoothing_length * i.sound_speed
+    loosely = 1.0 - 0.5 * (i.rest_coefficient + j.rest_coefficient)
+    depth = 0.5 * (i.rest_density + j.rest_density) * loosely * dot(pair.x_ij, level[0])
+    change = subtract(subtract(i.deviator, j.deviator), scale(level[1], depth))
+    return scale(change, one_soil * mixing * j.specific_volume * pair.m_dw_r)
 
 
-def layered(scene: Facts):
-    """(g in m/s², the deviator by weight ρg·x) of level ground at rest: −(1 − K₀)(n nᵀ − ⅓ 1), n along g."""
+def levelled(scene: Facts):
+    """(g in m/s², −(n nᵀ − ⅓ 1) with n along g): the deviator of level ground at rest by (1 − K₀) ρg·x."""
     g = np.array(scene.gravity)
     size = np.sqrt(g @ g) or 1.0
-    shape = -(1.0 - scene.stressed.rest_coefficient) * (np.outer(g, g) / size**2 - np.eye(len(g)) / 3.0)
+    shape = np.eye(len(g)) / 3.0 - np.outer(g, g) / size**2
     return tuple(g.tolist()), tuple(shape[np.triu_indices(len(g))].tolist())
 
 
@@ -120,13 +122,13 @@ class DiffusedDeviatorRate(NamedTuple):
     """The deviatoric stress follows the flow, with the rate of Jaumann, and its noise spreads.
 
     As :class:`DeviatorRate`, and ds_i/dt += 2δhc Σ_j V_j [s_i − s_j − s⁰(x_i) + s⁰(x_j)] W′/r between
-    particles of soil, s⁰ of level ground at rest under its weight: Feng, Fourtakas, Rogers & Lombardi (2021),
-    Adv. Water Resour. 156, 104030.  The pressure spreads as that of fluids does.  ``delta`` δ; ``of_layers``
-    by :func:`layered`.
+    particles of one soil, s⁰ of level ground at rest under its weight: Feng, Fourtakas, Rogers & Lombardi
+    (2021), Adv. Water Resour. 156, 104030.  The pressure spreads as that of fluids does.  ``largest`` δ of
+    any soil; ``level`` by :func:`levelled`.
     """
 
-    delta: float
-    of_layers: tuple
+    largest: float
+    level: tuple
 
     writes = DEVIATOR
 
@@ -137,7 +139,7 @@ class DiffusedDeviatorRate(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take a neighbour that holds, and what it spreads."""
         flow = take_neighbour(total[0], j, pair)
-        return flow, add(total[1], spread(self.delta, self.of_layers, i, j, pair))
+        return flow, add(total[1], spread(self.level, i, j, pair))
 
     def finish_value(self, total, i, kernel):
         """ds/dt, Pa/s; 0 in what does not resist shear."""
@@ -146,7 +148,7 @@ class DiffusedDeviatorRate(NamedTuple):
 
     def longest_step(self, scene):
         """Δt ≤ 0.15/(S h δ c), s, as that of the diffusion of density."""
-        return diffusion_step(self.delta, scene)
+        return diffusion_step(self.largest, scene)
 
 
 class DeviatoricForce(NamedTuple):

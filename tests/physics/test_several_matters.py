@@ -1,0 +1,63 @@
+"""What spreads between neighbours where soils differ from each other, or from a fluid."""
+
+import numpy as np
+import pytest
+from physics.pairs import pair_of, view
+
+from psph.physics.damping.diffusion import BesideSmoothDensity, OneMatter, SeveralMatters, TankDiffusion
+from psph.physics.stress.deviator import spread
+
+PULL = (0.4, -9.8)
+LEVEL = (PULL, (-0.2, 0.1, 0.3))
+SPREADING = (TankDiffusion, BesideSmoothDensity)
+
+
+def beside(**fields):
+    """A pair of particles that both flow, with further fields."""
+    p = view()._replace(is_fluid=np.ones(2), mass=np.array([0.06, 0.09]))
+    return p._replace(**{name: np.array(values) for name, values in fields.items()})
+
+
+@pytest.mark.parametrize("effect", SPREADING)
+def test_density_spreads_within_a_matter_alone_and_what_one_gains_the_other_loses(effect):
+    apart, within = beside(wave_speed=(60.0, 45.0)), beside(wave_speed=(45.0, 45.0))
+    several, one = effect(0.1, PULL, SeveralMatters()), effect(0.1, PULL, OneMatter())
+    assert several.density_rate(*pair_of(apart, 0, 1)) == 0.0
+    assert one.density_rate(*pair_of(apart, 0, 1)) != 0.0  # the control: as in a fluid
+    gained = [several.density_rate(*pair_of(within, *ends)) for ends in ((0, 1), (1, 0))]
+    volume = within.mass * within.specific_volume
+    assert gained[0] * volume[0] == pytest.approx(-gained[1] * volume[1], rel=1e-12)
+    assert gained[0] != 0.0
+
+
+@pytest.mark.parametrize("effect", SPREADING)
+def test_a_still_column_keeps_the_slope_of_its_own_matter(effect):
+    """ρ − ρ₀ = ρ₀ g·x/c² with the c of the soil, not that of the scene."""
+    p = beside(wave_speed=(30.0, 30.0), rest_density=(900.0, 900.0))
+    x = np.array(p.position)
+    slope = 900.0 * np.array(PULL) / 30.0**2
+    level = p._replace(
+        specific_volume=1.0 / (900.0 + slope @ x), density_gradient=tuple(np.full(2, g) for g in slope)
+    )
+    i, j, pair = pair_of(level, 0, 1)
+    still = effect(0.1, PULL, SeveralMatters()).density_rate(i, j, pair)
+    assert abs(still) < 1e-9 * abs(effect(0.1, PULL, OneMatter()).density_rate(i, j, pair))
+
+
+def test_stress_spreads_within_a_soil_alone_and_what_one_gains_the_other_loses():
+    apart, within = beside(strength=(1.0, 2.0)), beside(strength=(2.0, 2.0))
+    assert spread(LEVEL, *pair_of(apart, 0, 1)) == (0.0, 0.0, 0.0)
+    assert spread(LEVEL, *pair_of(beside(strength=(0.0, 0.0)), 0, 1)) == (0.0, 0.0, 0.0)
+    gained = [np.array(spread(LEVEL, *pair_of(within, *ends))) for ends in ((0, 1), (1, 0))]
+    volume = within.mass * within.specific_volume
+    assert gained[0] * volume[0] == pytest.approx(-gained[1] * volume[1], rel=1e-12)
+    assert (gained[0] != 0.0).all()
+
+
+def test_the_stress_of_level_ground_stays_with_the_coefficient_of_its_soil():
+    p = beside(strength=(1.0, 1.0), rest_coefficient=(0.4, 0.4), rest_density=(900.0, 900.0))
+    depth = 900.0 * np.array(PULL) @ np.array(p.position)
+    level = p._replace(deviator=tuple(0.6 * part * depth for part in LEVEL[1]))
+    moved = level._replace(rest_coefficient=np.array((0.6, 0.6)))
+    still, other = (np.abs(spread(LEVEL, *pair_of(q, 0, 1))).max() for q in (level, moved))
+    assert still < 1e-9 * other
