@@ -209,8 +209,14 @@ def _meeting(case) -> Iterator[Finding]:
         here = ("walls", name)
         if not contact:
             yield here, ..., "solids do not feel walls without contact; give physics.contact = {}"
-        for key_of in ("motion", "velocity", "condition", "no_slip"):
-            if key_of in wall.model_fields_set:
+        given = {
+            "motion": wall.motion,
+            "velocity": any(wall.velocity or ()),
+            "condition": wall.condition != type(wall).model_fields["condition"].default,
+            "no_slip": wall.no_slip,
+        }
+        for key_of, asks in given.items():  # the copy of a case in its run's folder names all keys
+            if asks:
                 yield (
                     (*here, key_of),
                     ...,

@@ -167,3 +167,10 @@ def test_the_step_is_that_of_the_fastest_wave(tmp_path):
     h = 0.01 * 2.0**0.5
     assert plan.longest_step(1.0, 0.0)[0] == pytest.approx(0.6 * h / (54.772 + 1.0), rel=1e-4)
     assert plan.longest_step(0.0, 1e9) == (pytest.approx(0.6 * (h / 1e9) ** 0.5), "force")
+
+
+def test_the_copy_of_a_case_in_its_run_can_be_read_again(tmp_path):
+    """It names all keys, those of a wall that solids alone meet too."""
+    wall = "walls.floor={shape={box={lower=[0.0,-1.0],upper=[1.0,-0.5]}}}"
+    case = draft(tmp_path, BEAM, "physics.contact={}", wall, END + "motion={translation=[1.0,0.0]}}")
+    assert draft(tmp_path, case.to_toml()).as_tables() == case.as_tables()
