@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
+from scipy.spatial import cKDTree
 
 from psph.case import load
 from psph.output.reader import Run
@@ -50,3 +51,15 @@ def checkerboard(frame, spacing, scale):
         if near.sum() >= 6:  # not at the surface
             noise.append(p[i] - p[near].mean())
     return np.sqrt(np.mean(np.square(noise))) / scale
+
+
+def roughness(position, values, spacing):
+    """rms over the particles of ``values`` (n, k) less the linear fit through the neighbours of each within 2.1
+    spacings; particles with fewer than eight of them, at corners, are left out."""
+    tree, rest = cKDTree(position), []
+    for i, near in enumerate(tree.query_ball_point(position, 2.1 * spacing)):
+        near = np.array([j for j in near if j != i])
+        if len(near) >= 8:
+            plane = np.c_[np.ones(len(near)), position[near] - position[i]]
+            rest.append(values[i] - np.linalg.lstsq(plane, values[near], rcond=None)[0][0])
+    return np.sqrt(np.mean(np.square(rest)))

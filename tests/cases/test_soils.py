@@ -4,8 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from cases.measures import by_id, finished
+from cases.measures import by_id, finished, roughness
+from long import LONG, tell
 from numpy.polynomial import polynomial
+
+from psph.case import soils
+from psph.physics.stress.invariants import j2
+from psph.physics.stress.strength import NO_STRESS, DruckerPrager
+from psph.vectors import scale
 
 pytestmark = pytest.mark.timeout(900)
 
@@ -41,7 +47,7 @@ def sand(run, field, frame=-1):
     return found[field][found["kind"] == 0]
 
 
-@pytest.mark.long
+@LONG
 @pytest.mark.parametrize("spacing", (0.005, 0.0025))
 def test_a_column_runs_out_as_in_experiments_and_rests_whatever_the_spacing(spacing, tmp_path):
     run = finished("soils/column_collapse", tmp_path, f"space.spacing={spacing}", "output.frames=0.1")
@@ -51,7 +57,21 @@ def test_a_column_runs_out_as_in_experiments_and_rests_whatever_the_spacing(spac
     assert sand(run, "position")[:, 1].max() > 0.085  # the top by the wall stays
 
 
-@pytest.mark.long
+@LONG
+def test_a_round_column_runs_out_as_in_experiments(tmp_path):
+    """1.24 times its height, Lube and others (2004)."""
+    run = finished("soils/round_column", tmp_path, "output.frames=0.1")
+    x = sand(run, "position")
+    radius = np.hypot(x[:, 0], x[:, 1])
+    tell(f"round column: run-out {(np.quantile(radius, 0.98) - 0.1) / 0.1:.2f}, top {x[:, 2].max():.3f} m")
+    assert (np.quantile(radius, 0.98) - 0.1) / 0.1 == pytest.approx(1.24, rel=0.15)
+    assert np.sqrt((sand(run, "velocity") ** 2).sum(axis=1).mean()) < 0.03
+    assert np.abs(x[:, :2].mean(axis=0)).max() < 1e-3  # round still
+    around = radius[np.abs(np.arctan2(x[:, 1], x[:, 0]) % (np.pi / 4.0) - np.pi / 8.0) < np.pi / 16.0]
+    assert np.quantile(around, 0.98) == pytest.approx(np.quantile(radius, 0.98), rel=0.05)
+
+
+@LONG
 def test_a_slope_stands_below_its_factor_of_safety_and_slides_above_it(tmp_path):
     """1.4 by finite elements (Griffiths & Lane 1999)."""
     moved = {}
@@ -64,7 +84,7 @@ def test_a_slope_stands_below_its_factor_of_safety_and_slides_above_it(tmp_path)
     assert moved[1.3] < 0.06 < 0.2 < moved[1.6]
 
 
-@pytest.mark.long
+@LONG
 def test_a_cut_stands_at_four_fifths_of_its_height_and_slides_at_six_fifths(tmp_path):
     strain = {}
     for part, cohesion in ((0.8, 3939.0), (1.2, 2626.0)):  # 4c/γ tan(45° + φ/2) over the height
@@ -75,7 +95,7 @@ def test_a_cut_stands_at_four_fifths_of_its_height_and_slides_at_six_fifths(tmp_
     assert strain[1.2][1] > max(0.3, 1.2 * strain[1.2][0])
 
 
-@pytest.mark.long
+@LONG
 def test_a_blade_meets_the_passive_force_and_then_more(tmp_path):
     run = finished("soils/blade", tmp_path, "output.frames=0.5")
     push = run.gauges()["push"]
@@ -83,3 +103,53 @@ def test_a_blade_meets_the_passive_force_and_then_more(tmp_path):
     rankine = 0.5 * 1800.0 * G * 0.1**2 * (1.0 + MU) / (1.0 - MU)
     assert -push["push.force_x"][early].mean() == pytest.approx(rankine, rel=0.15)
     assert -push["push.force_x"][push["time"] > 0.9].mean() > 1.5 * rankine
+
+
+@LONG
+def test_without_stress_diffusion_the_stress_of_standing_soil_is_noise(tmp_path):
+    """The control: the cut that stands; between neighbours s differs by a tenth of the weight of the bank."""
+    weight, rough, creep = 1835.0 * G * 1.5, {}, {}
+    for diffusion in (0.1, 0.0):
+        run = finished(
+            "soils/vertical_cut",
+            tmp_path / f"{diffusion}",
+            f"soils.bank.stress_diffusion={diffusion}",
+            "time.end=1.0",
+        )
+        rough[diffusion] = roughness(sand(run, "position"), sand(run, "deviator"), 0.1) / weight
+        creep[diffusion] = np.sqrt((sand(run, "velocity") ** 2).sum(axis=1).mean())
+    tell(f"cut that stands, noise of s with and without diffusion: {rough[0.1]:.4f}, {rough[0.0]:.4f} ρgH")
+    tell(f"the same, speed (rms): {creep[0.1]:.4f}, {creep[0.0]:.4f} m/s")
+    assert rough[0.1] < 0.01 and rough[0.0] > 0.08
+    assert creep[0.1] < 0.01 < 0.02 < creep[0.0]
+
+
+class Untorn(DruckerPrager):
+    """Soil without a limit of tension: beyond the tip of its cone it bears no shear, and any tension."""
+
+    def returned(self, i, s, rho):
+        """As of the law, without dilatancy and without the cut-off."""
+        p = self.bulk * np.log(rho / i.rest_density)
+        q = np.sqrt(j2(s, i.position))
+        slip = max(q - max(self.cohesion + self.friction * p, 0.0), 0.0) / self.shear
+        return scale(s, 1.0 - self.shear * slip / max(q, NO_STRESS)), rho, slip / math.sqrt(3.0)
+
+
+def run_out(folder):
+    """Of 98 % of the sand of the column over its height, and the lowest pressure of all frames, Pa."""
+    run = finished("soils/column_collapse", folder, "space.spacing=0.005", "output.frames=0.1")
+    front = np.quantile(sand(run, "position")[:, 0], 0.98)
+    lowest = min(sand(run, "pressure", frame).min() for frame in range(len(run.times)))
+    return (front - 0.1) / 0.1, lowest
+
+
+@LONG
+def test_sand_that_bears_tension_hangs_together_and_stops_short(tmp_path, monkeypatch):
+    """The control of the tension cut-off: 1.2 by experiments, ± 15 %."""
+    found, lowest = run_out(tmp_path / "torn")
+    monkeypatch.setattr(soils, "DruckerPrager", Untorn)
+    monkeypatch.setattr(soils.Soil, "tip", lambda soil, dimensions: 1e30)
+    without, pulled = run_out(tmp_path / "untorn")
+    tell(f"run-out of a column with and without the tension cut-off: {found:.2f}, {without:.2f}")
+    assert lowest > -1.0 and pulled < -0.05 * 1800.0 * G * 0.1
+    assert without < 0.9 * found and without < 0.85 * 1.2 < found
