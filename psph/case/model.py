@@ -371,6 +371,8 @@ class Case(Table):
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
         for matter in (*self.flowing.values(), *self.referred.values()):
             _fill(matter, velocity=zeros, velocity_center=zeros)
+        for solid in self.referred.values():
+            _fill(solid, continues=next(iter(self.fluids), None))
         for gauge in self.gauges.values():
             _fill(gauge, every=self.output.probes)
             if gauge.force:

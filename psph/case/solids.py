@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
+from psph.case.errors import advise
 from psph.case.findings import Finding, one_sided
 from psph.case.hooke import Hookean
 from psph.case.keys import Name, Table, Vector, key
@@ -107,6 +108,11 @@ class Solid(Hookean):
         otherwise="0; in a fluid enough to damp waves that its steps do not resolve",
         ge=0,
     )
+    continues: Name | None = key(
+        "the fluid in whose density and initial pressure fluids see it",
+        None,
+        otherwise="the first fluid",
+    )
     hourglass: float = key(
         "strength α of the control of zigzag modes, which cause no stress", 1.5, unit="1", ge=0, le=10
     )
@@ -190,6 +196,10 @@ def elastic(case) -> Iterator[Finding]:
         says = 'solids are computed in double precision, since strains are small; use "double"'
         yield ("precision",), case.precision, says
     for name, solid in case.solids.items():
+        if solid.continues is not None and solid.continues not in case.fluids:
+            says = f"no fluid has this name; {advise(solid.continues, case.fluids)}"
+            says = says if case.fluids else "there is no fluid to see the solid; remove it"
+            yield (*here, name, "continues"), solid.continues, says
         rows = solid.velocity_gradient
         if rows and len(rows) != case.space.dimensions:
             says = (

@@ -18,6 +18,7 @@ OF_REFERENCE = (
     "load_rise",
     "critical_stretch",
     "flaws",
+    "continues",
     "mie_gruneisen",
 )
 """Keys that mean nothing to a solid whose neighbours are those of the present."""

@@ -12,11 +12,11 @@ def is_immersed(scene: "Scene", material: int) -> bool:
 
 
 def shown_by(scene: "Scene") -> list[int]:
-    """For each material the index of the one whose density and state it has: of a wall that of the fluid that
-    it continues, without fluids that of the first solid; of a solid among fluids the first of these."""
+    """For each material the index of the one whose density and state it has: of a wall, and of a solid among
+    fluids, that of the fluid that it continues; without fluids of a wall that of the first solid."""
     layout, fluids = scene.layout, list(scene.case.flowing)
     if not fluids:
         return [*range(layout.movers), *layout.clamps, *[0] * len(scene.boundaries)]
     continued = [fluids.index(one.continues) for one in scene.boundaries.values()]
-    held = (of if of < layout.fluids else 0 for of in layout.clamps)
-    return [*range(layout.fluids), *[0] * (layout.movers - layout.fluids), *held, *continued]
+    movers = [*range(layout.fluids), *(fluids.index(one.continues) for one in scene.case.referred.values())]
+    return [*movers, *(movers[of] for of in layout.clamps), *continued]

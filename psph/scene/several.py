@@ -28,21 +28,34 @@ def several_fluids(scene) -> Iterator[str]:
 
 
 def _walls_of_another_fluid(scene) -> Iterator[str]:
-    """A wall has the density of one fluid: beside another one pressures do not balance."""
+    """A wall or a solid has the density of one fluid: beside another one pressures do not balance."""
     names, found = list(scene.case.flowing), set()
     for first, last in scene.lattice.chunks():
         held = scene.layout.materials(first, last)
         for fluid, name in enumerate(names):
             beside = set(held[scene.layout.touching(fluid, first, last)].tolist())
             found |= {(wall, name) for wall in beside}
-    for number, body in enumerate(scene.boundaries.values(), scene.layout.first_wall):
-        own = scene.case.flowing[body.continues]
+    for key, numbers, continued in _continuing(scene):
+        own = scene.case.flowing[continued]
         for name in names:
             density = scene.case.flowing[name].density
-            if (number, name) in found and abs(density / own.density - 1.0) > ALIKE:
+            beside = any((number, name) in found for number in numbers)
+            if beside and abs(density / own.density - 1.0) > ALIKE:
                 other = f"{scene.case.table_of(name)}.{name}"
+                cure = f'make the part there a wall of its own with continues = "{name}"'
+                if key.startswith("solids."):
+                    cure = "let it continue the fluid that it touches most"
                 yield (
-                    f'{scene.key_of(number)}.continues: "{body.continues}", but it touches {other} of '
-                    f"{density:g} kg/m3 too, and currents arise along it; make the part there a wall of "
-                    f'its own with continues = "{name}"'
+                    f'{key}.continues: "{continued}", but it touches {other} of {density:g} kg/m3 too, and '
+                    f"currents arise along it; {cure}"
                 )
+
+
+def _continuing(scene) -> Iterator[tuple[str, list[int], str]]:
+    """The key of each wall, body and solid, the numbers of its parts, and the fluid that it continues."""
+    layout = scene.layout
+    for elastic, (name, solid) in enumerate(scene.case.referred.items()):
+        parts = [n for n in range(layout.first_wall) if layout.elastic_of(n) == elastic]
+        yield f"solids.{name}", parts, solid.continues
+    for number, one in enumerate(scene.boundaries.values(), layout.first_wall):
+        yield scene.key_of(number), [number], one.continues

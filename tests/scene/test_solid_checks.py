@@ -140,6 +140,10 @@ def test_a_sound_beam_is_good(tmp_path):
             ["solids.end={shape={box={lower=[1.0,0.0],upper=[1.5,0.05]}},density=1e3,young=1e6,poisson=0.3}"],
             "solids: beam, end do not feel each other, and run through each other where they meet; give phys",
         ),
+        (
+            ["solids.beam.continues=water"],
+            'solids.beam.continues: "water": there is no fluid to see the solid',
+        ),
         (["precision=mixed"], 'precision: "mixed": solids are computed in double precision'),
         (["physics.sound_speed=10.0"], "physics.sound_speed: 10.0: solids have waves of their own"),
         (["gauges.a.displacement={of='bean',at=[0.4,0.0]}"], "gauges.a.displacement.of"),

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from drafts import draft, refusal
+from long import LONG
 from mpi4py import MPI
 
 from psph.output.diagnostics import energies_and_momentum
@@ -63,13 +64,15 @@ def momentum(simulation):
     return (mass[:, None] * velocity).sum(axis=0), (mass * np.linalg.norm(velocity, axis=1)).sum()
 
 
-def test_fluids_and_a_solid_keep_the_momentum_of_both(tmp_path):
-    simulation = start(draft(tmp_path, STIRRED))
+@pytest.mark.parametrize("seen, density", [("heavy", 1200.0), ("light", 900.0)])
+def test_fluids_and_a_solid_keep_the_momentum_of_both(seen, density, tmp_path):
+    """In whosever density the fluids see it."""
+    simulation = start(draft(tmp_path, STIRRED, f"solids.block.continues={seen}"))
     plan = simulation.plan
     before, size = momentum(simulation)
     block = simulation.store.shown("group") == 2
     own = (simulation.store.shown("inertia") / simulation.store.shown("mass"))[block]
-    assert own == pytest.approx(2500.0 / 1200.0)
+    assert own == pytest.approx(2500.0 / density)
     for _ in range(40):
         simulation.step()
     count = substeps(plan.solids, plan.solid_smoothing_length, simulation.dt, simulation.pace)
@@ -89,6 +92,65 @@ def test_the_number_of_steps_follows_from_the_solid_and_the_step(tmp_path):
     longest = plan.solids[0].longest_step(plan.solid_smoothing_length, 1.0)
     for dt, count in ((0.1 * longest, 1), (longest, 1), (1.01 * longest, 2), (7.5 * longest, 8)):
         assert substeps(plan.solids, plan.solid_smoothing_length, dt, 1.0) == count
+
+
+def test_a_solid_beside_another_fluid_than_the_one_it_continues_is_said(tmp_path):
+    case = draft(tmp_path, STIRRED)
+    assert case.solids["block"].continues == "heavy"
+    lines = [line for line in check(Scene(case)) if "block" in line]
+    [line] = lines
+    assert "solids.block.continues" in line and "touches fluids.light of 900 kg/m3 too" in line
+    says = " ".join(refusal(tmp_path, STIRRED, "solids.block.continues=hevy"))
+    assert 'solids.block.continues: "hevy": no fluid has this name; did you mean' in says
+
+
+LAYERS = """
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+physics.sound_speed = 40.0
+[space]
+dimensions = 2
+spacing = 0.025
+periodic = ["x"]
+lower = [0.0, -0.2]
+upper = [1.0, 1.0]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.3] }
+density = 1000.0
+pressure = "hydrostatic"
+[fluids.oil]
+shape.difference.from.box = { lower = [0.0, 0.3], upper = [1.0, 0.8] }
+shape.difference.minus = [{ box = { lower = [0.4, 0.45], upper = [0.6, 0.65] } }]
+density = 700.0
+pressure = "hydrostatic"
+[walls.floor]
+shape.box = { lower = [0.0, -0.15], upper = [1.0, 0.0] }
+[solids.block]
+shape.box = { lower = [0.4, 0.45], upper = [0.6, 0.65] }
+clamped.box = { lower = [0.45, 0.5], upper = [0.55, 0.6] }
+density = 2000.0
+young = 2.0e6
+poisson = 0.3
+"""
+"""A block that is held in oil above water, all at rest."""
+
+
+@LONG
+def test_a_block_in_oil_floats_as_archimedes_says_if_it_continues_the_oil(tmp_path):
+    found = {}
+    for seen in ("oil", "water"):
+        simulation = start(draft(tmp_path, LAYERS, f"solids.block.continues={seen}"))
+        store, lift, fastest = simulation.store, [], []
+        while simulation.time < 0.4:
+            simulation.step()
+            if simulation.time > 0.2:
+                block = np.isin(store.shown("group"), (2, 3))
+                fluid = (store.shown("group") < 2) & (np.abs(store.shown("position")[:, 1] - 0.55) < 0.2)
+                lift.append((store.shown("mass") * store.shown("load")[:, 1])[block].sum())
+                fastest.append(np.linalg.norm(store.shown("velocity")[fluid], axis=1).max())
+        found[seen] = np.mean(lift) / (700.0 * 9.81 * 0.2**2), np.mean(fastest)
+    assert found["oil"][0] == pytest.approx(1.0, abs=0.01) and found["oil"][1] < 0.005
+    assert abs(found["water"][0] - 1.0) > 0.02 and found["water"][1] > 0.05  # the control
 
 
 PLATE = """
