@@ -27,6 +27,10 @@ ASLANT = 0.02
 MOST_SHORTER = 10.0
 """How many times bodies may shorten the time steps that sound allows without a warning."""
 
+MOST_CRUSHED, SAFE = 0.5, 0.4
+"""Strain of the water under a body that lands, beyond which the guard of density stops a run, and one that
+it bears."""
+
 
 def body_faults(scene: "Scene") -> Iterator[str]:
     """A line for each body that a plane of symmetry cuts and that is free to leave it."""
@@ -137,12 +141,38 @@ def _lopsided(scene: "Scene") -> Iterator[str]:
                 )
 
 
+def _crushing(scene: "Scene") -> Iterator[str]:
+    """A line for each heavy body under which water gives way where it lands on the floor.
+
+    The last row of water, and contact, are as stiff as the fluid: they stop a body of the density ρ_b and
+    the height h_b at the strain ε with ½ ρc² ε² dx = ½ ρ_b h_b v², ε = (v/c) √(ρ_b h_b/(ρ dx)).  v is that
+    of a fall to the floor, of which friction and the water that must get out of the way leave less.
+    """
+    pull = math.hypot(*scene.height_gravity)
+    floor = float(scene.census.bottom[: scene.layout.fluids].min(initial=math.inf))
+    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
+        ratio, bottom = density_ratio(scene, one), float(scene.census.bottom[number])
+        if ratio <= 1.0 or not any(slides and g for slides, g in zip(one.slides, scene.height_gravity)):
+            continue
+        fall = max(bottom - floor, 0.0) * (1.0 - 1.0 / ratio)
+        speed = math.sqrt(2.0 * pull * fall + sum(v * v for v in one.velocity))
+        layers = round((float(scene.census.top[number]) - bottom) / scene.spacing) + 1
+        strain = speed / scene.sound_speed * math.sqrt(ratio * layers)
+        if strain > MOST_CRUSHED:
+            yield (
+                f"bodies.{one.name}: {ratio:.3g} times as dense as its fluid, {layers} spacings high; where "
+                f"it lands on the floor at up to {speed:.3g} m/s it may press water into it; give "
+                f"physics.sound_speed = {math.ceil(scene.sound_speed * strain / SAFE)} or more"
+            )
+
+
 def body_warnings(scene: "Scene") -> Iterator[str]:
     """A line for each body whose density, inertia or points are likely a slip, and for steps that bodies make
     short."""
     yield from _slight(scene)
     yield from _lopsided(scene)
     yield from _far_points(scene)
+    yield from _crushing(scene)
     for one in scene.rigid_bodies:
         ratio = density_ratio(scene, one)
         if not LIGHTEST <= ratio <= HEAVIEST:
