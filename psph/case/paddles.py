@@ -14,6 +14,7 @@ from psph.theory.water_waves import (
     bound_crest,
     boussinesq,
     flap_gain,
+    grimshaw,
     jonswap,
     piston_gain,
     rayleigh,
@@ -297,13 +298,13 @@ class SolitaryWave(Absorber):
     """A piston that makes a solitary wave by one stroke forwards."""
 
     height: float = key("height of the wave above the surface at rest", unit="m", gt=0)
-    theory: Literal["rayleigh", "boussinesq"] = key(
-        "whose profile the wave has; rayleigh's is longer than boussinesq's", "rayleigh"
+    theory: Literal["rayleigh", "boussinesq", "grimshaw"] = key(
+        "whose profile the wave has; grimshaw's, of third order, holds for high waves too", "rayleigh"
     )
 
     def law(self, gravity: float) -> SolitaryStroke:
         """How it moves."""
-        wave = {"rayleigh": rayleigh, "boussinesq": boussinesq}[self.theory]
+        wave = {"grimshaw": grimshaw, "rayleigh": rayleigh, "boussinesq": boussinesq}[self.theory]
         return SolitaryStroke(self.forwards, wave(self.height, self.depth, gravity))
 
     def beat(self, gravity: float) -> float:

@@ -16,6 +16,9 @@ from psph.theory.water_waves import HIGHEST_IN_DEPTH, MADSEN, steepest, wave_num
 FEWEST = 5.0
 """Spacings in the height of a wave, below which little is left of it after some wavelengths."""
 
+HIGHEST_OF_FIRST_ORDER = 0.3
+"""H/h of a solitary wave, above which that of Rayleigh has 5 % too much water, and that of Boussinesq 8 % too
+little, by the exact wave (tests/physics/rigid/test_solitary.py)."""
 
 MISTAKEN = 0.1
 """Part of the depth before a paddle by which the one that the case gives may differ without a warning."""
@@ -125,6 +128,11 @@ def wave_warnings(scene) -> Iterator[str]:
             yield (
                 f"{key}: H/h = {height / depth:.3g} is above {HIGHEST_IN_DEPTH} (McCowan): such waves break; "
                 f"give a height below {_below(HIGHEST_IN_DEPTH * depth)} m"
+            )
+        elif getattr(asked, "theory", "grimshaw") != "grimshaw" and height > HIGHEST_OF_FIRST_ORDER * depth:
+            yield (
+                f"{key}: H/h = {height / depth:.3g} is above {HIGHEST_OF_FIRST_ORDER:g}, where a wave by "
+                f'{asked.theory} changes as it runs; give theory = "grimshaw"'
             )
         second = getattr(asked, "order", 1) == 2 and length is not None
         if second and (ursell := _ursell(height, length, depth)) >= MADSEN:

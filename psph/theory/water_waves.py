@@ -121,30 +121,45 @@ class Running(NamedTuple):
 
 
 class Solitary(NamedTuple):
-    """A solitary wave of ``height`` H on water of ``depth`` h, η = H sech² K(x − ct), c = √(g(h + H)).
+    """A solitary wave of ``height`` H on water of ``depth`` h: η = h Σ a_n sech²ⁿ K(x − ct), n = 1, 2 ...
 
-    ``outskirts`` K, 1/m: √(3H/4h³) (Boussinesq), or √(3H/(4h²(h + H))) (Rayleigh), which is longer.
+    ``outskirts`` K, 1/m; ``speed`` c, m/s; ``terms`` a_n, which add up to H/h.
     """
 
     height: float
     depth: float
-    gravity: float
     outskirts: float
-
-    @property
-    def speed(self) -> float:
-        """c, m/s."""
-        return math.sqrt(self.gravity * (self.depth + self.height))
+    speed: float
+    terms: tuple[float, ...]
 
 
 def boussinesq(height: float, depth: float, gravity: float) -> Solitary:
-    """The wave of Boussinesq."""
-    return Solitary(height, depth, gravity, math.sqrt(0.75 * height / depth**3))
+    """The wave of Boussinesq: η = H sech², K = √(3H/4h³), c = √(g(h + H))."""
+    e = height / depth
+    return Solitary(height, depth, math.sqrt(0.75 * e) / depth, math.sqrt(gravity * (depth + height)), (e,))
 
 
 def rayleigh(height: float, depth: float, gravity: float) -> Solitary:
-    """The wave of Rayleigh."""
-    return Solitary(height, depth, gravity, math.sqrt(0.75 * height / (depth**2 * (depth + height))))
+    """The wave of Rayleigh: η = H sech², K = √(3H/(4h²(h + H))), c = √(g(h + H)); it is too long."""
+    wave = boussinesq(height, depth, gravity)
+    return wave._replace(outskirts=wave.outskirts / math.sqrt(1.0 + height / depth))
+
+
+def grimshaw(height: float, depth: float, gravity: float) -> Solitary:
+    """The wave of Grimshaw to third order in ε = H/h, s = sech² Kx.
+
+    η/h = εs − ¾ε² s(1 − s) + ε³(5/8 s(1 − s) − 101/80 s²(1 − s)), Kh = √(¾ε)(1 − 5/8 ε + 71/128 ε²),
+    c² = gh(1 + ε − ε²/20 − 3ε³/70).  Grimshaw (1971), J. Fluid Mech. 46, 611.
+    """
+    e = height / depth
+    rate = math.sqrt(0.75 * e) * (1.0 - 0.625 * e + 71.0 / 128.0 * e * e)
+    speed = math.sqrt(gravity * depth * (1.0 + e - e * e / 20.0 - 3.0 / 70.0 * e**3))
+    terms = (
+        e - 0.75 * e * e + 0.625 * e**3,
+        0.75 * e * e - 151.0 / 80.0 * e**3,
+        101.0 / 80.0 * e**3,
+    )
+    return Solitary(height, depth, rate / depth, speed, terms)
 
 
 def steepest(kh: float) -> float:

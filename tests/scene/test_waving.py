@@ -139,6 +139,10 @@ WARNED = {
         "is above 0.142 tanh kh = 0.137 (Miche)",
     ),
     "high": ("{ solitary = { height = 0.24, depth = 0.3 } }", "H/h = 0.8 is above 0.78 (McCowan)"),
+    "high for its theory": (
+        "{ solitary = { height = 0.1, depth = 0.3 } }",
+        'is above 0.3, where a wave by rayleigh changes as it runs; give theory = "grimshaw"',
+    ),
     "long": (
         "{ piston = { height = 0.1, period = 2.2, depth = 0.3, order = 2 } }",
         "is not below 8π²/3 = 26.3 (Madsen)",
@@ -156,7 +160,7 @@ WARNED = {
         "depth = 0.26 m, and the fluid is 0.3 m deep before the paddle",
     ),
     "late": (
-        "{ solitary = { height = 0.1, depth = 0.3 }, start = 30.0 }",
+        '{ solitary = { height = 0.1, depth = 0.3, theory = "grimshaw" }, start = 30.0 }',
         "the paddle starts at 30 s, and the run ends at 30 s: no wave is made",
     ),
     "far": ("{ piston = { height = 0.1, period = 100.0, depth = 0.3 } }", "the paddle goes"),

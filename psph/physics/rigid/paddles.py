@@ -54,10 +54,9 @@ class Crests(NamedTuple):
 class SolitaryStroke(NamedTuple):
     """The stroke of a piston before which a solitary wave rises, from where the piston stands, forwards.
 
-    The piston goes with the water beside it, dx/dt = cη/(h + η), whose solution is x = H/(Kh) tanh θ,
-    θ = K(ct − x), for every profile η = H sech²θ: Goring (1978), Caltech report KH-R-38, for Boussinesq's K;
-    Rayleigh's is taken in the same way.  It begins at θ = −3.8 and ends at 3.8, within a thousandth of its
-    way from rest.
+    The piston goes with the water beside it, dx/dt = cη/(h + η), whose solution is Kx = ∫ η/h dθ, θ = K(ct −
+    x), for every profile η(θ): Goring (1978), Caltech report KH-R-38, for Boussinesq's; others are taken in
+    the same way.  It begins at θ = −3.8 and ends at 3.8, within a thousandth of its way from rest.
     """
 
     direction: Vector
@@ -91,14 +90,22 @@ class SolitaryStroke(NamedTuple):
         """η of its wave, m, at a ``distance``, m, from where the piston stood at the start."""
         since = time - schedule.start - 0.5 * self.duration
         theta = self.wave.outskirts * (self.wave.speed * since - (distance - self._curve(TAIL)[0]))
-        return self.wave.height / math.cosh(min(abs(theta), FAR)) ** 2
+        s = math.cosh(min(abs(theta), FAR)) ** -2
+        return self.wave.depth * math.fsum(a * s**n for n, a in enumerate(self.wave.terms, 1))
 
     def _curve(self, theta: float) -> tuple[float, float, float]:
-        """x, m, with its first and second derivative by θ."""
-        size = self.wave.height / (self.wave.outskirts * self.wave.depth)
+        """x, m, with its first and second derivative by θ: Kx = ∫ η/h dθ.
+
+        The integrals I_n of sech²ⁿ follow from each other: (2n + 1) I_{n+1} = tanh θ sech²ⁿ θ + 2n I_n.
+        """
         t = math.tanh(theta)
         s = 1.0 - t * t
-        return size * t, size * s, -2.0 * size * s * t
+        x = dx = ddx = 0.0
+        integral, power = t, s
+        for n, a in enumerate(self.wave.terms, 1):
+            x, dx, ddx = x + a * integral, dx + a * power, ddx - 2.0 * n * a * power * t
+            integral, power = (t * power + 2.0 * n * integral) / (2.0 * n + 1.0), power * s
+        return scale((x, dx, ddx), 1.0 / self.wave.outskirts)
 
     def _moment(self, theta: float) -> float:
         """t = (θ/K + x(θ))/c, s: it rises with θ."""
