@@ -1,5 +1,6 @@
 """Waves from paddles, two wavelengths and ten depths away, against the theory that moves the paddle."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,29 @@ def test_a_solitary_wave_keeps_its_height_and_speed(tmp_path):
     (begin, low), (end, high) = (crest(found, name) for name in ("first", "second"))
     assert 3.0 / (end - begin) == pytest.approx(1.879, rel=0.01)
     assert (low, high) == pytest.approx((0.06, 0.06), rel=0.05)
+
+
+HIGH = (
+    "space.spacing=0.015",
+    "time.end=3.4",
+    "physics.sound_speed=18.0",
+    "physics.position_shift=off",
+    "gauges.first.level.top=[0.8, 0.44]",
+    "gauges.second.level.top=[3.8, 0.44]",
+    "walls.paddle.motion.solitary.height=0.12",
+    'walls.paddle.motion.solitary.theory="grimshaw"',
+)
+"""A wave of 0.4 of the depth, 8 spacings."""
+
+
+@LONG
+def test_a_high_solitary_wave_keeps_its_height_and_speed(tmp_path):
+    """Against the exact wave of 0.4 of the depth, F = 1.178 (tests/physics/rigid/test_solitary.py)."""
+    run(load(Path(CASES) / "solitary_wave.toml", HIGH), tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
+    (begin, low), (end, high) = (crest(Run(tmp_path / "run"), name) for name in ("first", "second"))
+    assert 3.0 / (end - begin) == pytest.approx(1.178 * math.sqrt(9.81 * DEPTH), rel=0.015)
+    assert high == pytest.approx(low, rel=0.03)
+    assert (low, high) == pytest.approx((0.12, 0.12), rel=0.07)
 
 
 @LONG
