@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from physics.pairs import pair_of, view
 
-from psph.physics.damping.diffusion import BesideSmoothDensity, OneMatter, SeveralMatters, TankDiffusion
+from psph.physics.damping.diffusion import BesideSmoothDensity, TankDiffusion
+from psph.physics.damping.matter import OneMatter, SeveralMatters
 from psph.physics.stress.deviator import spread
 
 PULL = (0.4, -9.8)

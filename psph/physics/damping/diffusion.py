@@ -4,10 +4,10 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.engine.jit import call_by_type
 from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.physics.damping.matter import OneMatter, SeveralMatters, alike, matter_of, speed
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square
@@ -19,44 +19,6 @@ STABLE = 0.15
 """S h δ c Δt must stay below; S is the fastest smoothing of the kernel on the lattice (psph.smoothing), 1/m²,
 and S h² is 1.9 to 5.7.  The fastest wave decays at the rate 2 S h δ c.  Density, predicted with the weights
 7/4, −1, 1/4, is stable up to a third of its value a step; a tenth of that is left for disorder."""
-
-
-class OneMatter(NamedTuple):
-    """Density spreads between all: a pressure asks for the same excess of density in each."""
-
-    def alike(self, i, j):
-        """1: whatever both are."""
-        return 1.0
-
-    def speed(self, i):
-        """The speed of sound, m/s, by which a pressure asks for an excess of density."""
-        return i.sound_speed
-
-
-class SeveralMatters(NamedTuple):
-    """Density spreads within each matter, where soils differ from each other or from a fluid.
-
-    A pressure p asks for an excess of density near p/c² with the c of each.  Where density spread
-    between two of them, it would press the soft one and stretch the stiff one without end.
-    """
-
-    def alike(self, i, j):
-        """1 between particles that a pressure compresses alike, else 0."""
-        faster, slower = max(i.wave_speed, j.wave_speed), min(i.wave_speed, j.wave_speed)
-        return where(faster > slower, 0.0, 1.0)
-
-    def speed(self, i):
-        """The speed of sound in the particle's own matter, m/s."""
-        return i.wave_speed
-
-
-def matter_of(scene: Facts):
-    """Between which particles of a scene density spreads."""
-    return SeveralMatters() if len({one.wave_speed for one in scene.species}) > 1 else OneMatter()
-
-
-alike, speed = call_by_type("alike"), call_by_type("speed")
-"""(matter, i, j) → 1 or 0; (matter, i) → m/s: see :class:`OneMatter`."""
 
 
 class DensityDiffusion(NamedTuple):
