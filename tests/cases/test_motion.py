@@ -81,6 +81,7 @@ def test_a_moving_tank_and_an_accelerated_frame_are_one_flow(motion, condition, 
 PULL = "{ acceleration = [1.962, 0.0], ramp = 1.0 }"
 
 
+@LONG
 def asides(run):
     """How far the middle of the water lies beside that of the tank, m, in the frames after two seconds."""
     found = []

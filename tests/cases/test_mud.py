@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from cases.measures import finished
+from long import LONG
 
 pytestmark = pytest.mark.timeout(900)
 
@@ -113,6 +114,7 @@ def bagnold(z, degrees, depth=0.0106, d=5.3e-4, packing=0.6):
     return 2 * inertial / (3 * d) * math.sqrt(packing * down) * rise
 
 
+@LONG
 @pytest.mark.long
 @pytest.mark.parametrize(
     ("degrees", "spacing", "most"),

@@ -131,7 +131,7 @@ OF_EACH_KIND = (
         "still_water",
     ),
     *("floating_box", "cylinder_on_spring", "hull", "paddle_wheel", "absorbing_paddle", "solitary_wave"),
-    *("mud/bingham_channel", "mud/grains_on_slope", "soils/round_column", "soils/submerged_slide"),
+    *("mud/bingham_channel", "mud/grains_on_slope", "soils/blade", "soils/submerged_slide"),
     *("solids/gate", "solids/taylor_bar", "solids/rings", "solids/ball_through_plate", "solids/pulled_strip"),
     *("hard/patch_3d", "hard/twins"),
 )

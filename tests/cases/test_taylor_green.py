@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from cases.measures import finished
+from long import LONG
 
 BOUGHT = ("pressure_gradient", "gradient_correction", "density_diffusion", "particle_shifting")
 
@@ -32,6 +33,7 @@ def test_the_error_falls_with_more_than_the_square_of_the_spacing(error):
     assert np.log2(coarse / fine) > 2.2
 
 
+@LONG
 @pytest.mark.long
 def test_without_its_effects_the_flow_is_gone(error):
     """The control, 34 %: where the pressure is negative, the symmetric form tears the lattice."""

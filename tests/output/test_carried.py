@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from drafts import TANK, draft, refusal
 from gauging import readings, started
+from long import LONG
 
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.level import stretches
@@ -34,6 +35,7 @@ def ridden(folder, with_it, overrides, steps):
     return readings(simulation, scene), simulation.time
 
 
+@LONG
 def test_gauges_on_a_tank_that_goes_by_read_what_they_read_at_rest(tmp_path):
     sound = "physics.sound_speed=30.0"
     rest, time = ridden(tmp_path, "", (sound,), 80)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from drafts import TANK, WATER, draft, refusal
 from gauging import readings, started
+from long import LONG
 
 from psph.fields import FLUID
 from psph.output.gauges.level import surfaces
@@ -59,7 +60,7 @@ about = [0.5, 0.2]
 
 
 @pytest.mark.parametrize("condition", ["dynamic", "extrapolated"])
-@pytest.mark.parametrize("every", [1, 4])
+@pytest.mark.parametrize("every", [4, pytest.param(1, marks=LONG)])
 def test_force_on_walls_is_what_the_fluid_feels_of_them_turned_round(tmp_path, condition, every):
     case = draft(tmp_path, STIRRED.format(condition=condition, every=every))
     simulation, scene = started(case, 7)

@@ -16,6 +16,7 @@ from psph.composition.trial import UnknownField, reads
 from psph.physics.catalogue import BUILT_IN, CATALOGUE
 from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.damping.filtering import ConservativeSmoothing
+from psph.physics.damping.matter import SeveralMatters
 from psph.physics.damping.riemann import RiemannDissipation
 from psph.physics.fluid.absorbing import Absorbing, DampingZone
 from psph.physics.fluid.continuity import Continuity
@@ -363,7 +364,7 @@ def agree_compiled(one, dim):
         assert compiled is plain is None or compiled == pytest.approx(plain, rel=1e-12)
 
 
-@pytest.mark.parametrize("dim", DIMENSIONS)
+@pytest.mark.parametrize("dim", long_but_for((2, 3), DIMENSIONS, int))
 @pytest.mark.parametrize("one", [neutral_potential, LatticeShift])
 def test_forms_of_a_scene_are_compiled_as_they_are_plain(one, dim):
     agree_compiled(one(0.5, 50.0, 0.01, dim) if one is neutral_potential else one(0.1, -2.0, 1e-6), dim)
@@ -640,7 +641,12 @@ def pulled_down(delta, gravity):
     return TankDiffusion(delta, (None, *gravity[1:]))
 
 
-@pytest.mark.parametrize("dim", DIMENSIONS)
+def beside_others(delta, gravity):
+    """Among several matters."""
+    return TankDiffusion(delta, gravity, SeveralMatters())
+
+
+@pytest.mark.parametrize("dim", long_but_for((2, 3), DIMENSIONS, int))
 @pytest.mark.parametrize(
     "one",
     [
@@ -650,6 +656,7 @@ def pulled_down(delta, gravity):
         CorrectedNoSlip(),
         TankDiffusion,
         pulled_down,
+        beside_others,
         NeighbourStress(0.2, 1e-4),
     ],
     ids=lambda one: getattr(one, "__name__", type(one).__name__),

@@ -64,7 +64,7 @@ def momentum(simulation):
     return (mass[:, None] * velocity).sum(axis=0), (mass * np.linalg.norm(velocity, axis=1)).sum()
 
 
-@pytest.mark.parametrize("seen, density", [("heavy", 1200.0), ("light", 900.0)])
+@pytest.mark.parametrize("seen, density", [pytest.param("heavy", 1200.0, marks=LONG), ("light", 900.0)])
 def test_fluids_and_a_solid_keep_the_momentum_of_both(seen, density, tmp_path):
     """In whosever density the fluids see it."""
     simulation = start(draft(tmp_path, STIRRED, f"solids.block.continues={seen}"))
