@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from psph.case.shapes import Shape
 from psph.fields import WALL
-from psph.output.pictures.groups import first_body, solids_of
+from psph.output.pictures.groups import first_body, first_wall, solids_of
 from psph.output.pictures.view import box_around
 from psph.output.pictures.walls import Triangles, encloses, inwards, surface
 from psph.output.pictures.water import fluid_surface
@@ -76,7 +76,7 @@ def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator
     wet = start["kind"] != WALL
     inner = box_around(start["position"][wet])
     held = [_shape(one["shape"], folder) for one in solids_of(case)]
-    known = {group: shape for group, shape in enumerate(held, len(case.get("fluids", ()))) if shape}
+    known = {group: shape for group, shape in enumerate(held, first_wall(case)) if shape}
     for group in sorted(known.keys() | set(start["group"][~wet].tolist())):
         if shape := known.get(group):
             faces, around = surface(shape, spacing, lower, upper), encloses(shape, *inner)

@@ -1,6 +1,9 @@
-"""How ``group`` counts what is not fluid in a case: walls and bodies."""
+"""How ``group`` counts what holds its form in a case: walls and bodies."""
 
 from psph.physics.walls.conditions import MIRROR
+
+MATTER = ("fluids", "soils", "solids")
+"""Tables of a case whose particles forces move, and which may be clamped."""
 
 SOLIDS = ("walls", "bodies")
 """Tables of a case whose shapes have particles that are no fluid, in the order of ``group``."""
@@ -12,6 +15,13 @@ def solids_of(case: dict) -> list[dict]:
     return [one for one in solids if one.get("condition") != MIRROR]
 
 
+def first_wall(case: dict) -> int:
+    """The ``group`` of the first wall, or body: below are fluids, soils, solids, and clamps."""
+    matter = [one for table in MATTER for one in case.get(table, {}).values()]
+    clamps = sum(len(one.get("clamps", ())) + ("clamped" in one) for one in matter)
+    return len(matter) + clamps
+
+
 def first_body(case: dict) -> int:
-    """The ``group`` of the first body, if there are any: those of fluids and walls are below."""
-    return len(case.get("fluids", ())) + len(solids_of(case)) - len(case.get("bodies", ()))
+    """The ``group`` of the first body, if there are any: those of walls are below."""
+    return first_wall(case) + len(solids_of(case)) - len(case.get("bodies", ()))
