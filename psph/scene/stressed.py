@@ -114,7 +114,9 @@ class Stressed:
         """How each soil starts that starts under its own weight, by its number."""
         if not any(self._scene.gravity):
             return {}
-        return {n: layer_of(self._scene, n, soil) for n, soil in self.soils.items() if soil.geostatic}
+        resting = {n: soil for n, soil in self.soils.items() if soil.geostatic}
+        held = columns(self._scene, int(np.abs(self._scene.gravity).argmax())) if resting else None
+        return {n: layer_of(self._scene, n, soil, held) for n, soil in resting.items()}
 
     def deviator(self, species: np.ndarray, position: np.ndarray) -> np.ndarray:
         """The deviatoric stress at the start, Pa (n, dim(dim + 1)/2), of particles of ``species`` (n,)."""
@@ -132,27 +134,24 @@ class Stressed:
         return self.soils[part].law(scene.dimensions, up, pull)
 
 
-def layer_of(scene: "Scene", number: int, soil: Soil) -> Layer:
-    """A soil under its own weight, and that of soils above it, along the axis of which gravity has most."""
+def layer_of(scene: "Scene", number: int, soil: Soil, held) -> Layer:
+    """A soil under its own weight, and that of soils above it, along the axis of which gravity has most; the
+    sites are ``held`` as :func:`columns` says."""
     axis = int(np.abs(scene.gravity).argmax())
     sign = -math.copysign(1.0, scene.gravity[axis])
     pull = abs(scene.gravity[axis])
     wet = soil.water_level is not None
     pores, level = (soil.water_density * pull, soil.water_level) if wet else (0.0, 0.0)
-    held = columns(scene, axis)
-    top, nearest = ground(held == number, sign * scene.lattice.coordinates(axis), scene.spacing)
-    return Layer(
-        axis,
-        sign,
-        np.array([scene.lattice.coordinates(d)[0] for d in range(scene.dimensions)]),
-        scene.spacing,
-        top,
-        burden(scene, number, held, top, sign * scene.lattice.coordinates(axis), (pores, level))[nearest],
-        soil.density * pull,
-        pores,
-        level,
-        soil.at_rest,
-    )
+    height = sign * scene.lattice.coordinates(axis)
+    top, nearest = ground(held == number, height, scene.spacing)
+    above = {other: one.density * pull for other, one in scene.stressed.soils.items() if other != number}
+    weight = soil.density * pull
+    loads = np.broadcast_to(0.0, held.shape)  # one soil needs no array for it
+    if above:
+        replaced = np.where(height < top[..., None], weight, np.where(height < level, pores, 0.0))
+        loads = scene.spacing * burden(held, above, replaced, upwards=sign > 0.0)[nearest]
+    first = np.array([scene.lattice.coordinates(d)[0] for d in range(scene.dimensions)])
+    return Layer(axis, sign, first, scene.spacing, top, loads, weight, pores, level, soil.at_rest)
 
 
 def columns(scene: "Scene", axis: int) -> np.ndarray:
@@ -168,23 +167,19 @@ def ground(held: np.ndarray, height: np.ndarray, spacing: float) -> tuple[np.nda
     says so: the nearest where there is none of it.  ``held`` (places, ..., heights) is True where it is."""
     from scipy.ndimage import distance_transform_edt  # late: most scenes have no soil
 
-    top = np.where(held, height, -np.inf).max(axis=-1)
-    nearest = tuple(distance_transform_edt(np.isinf(top), return_distances=False, return_indices=True))
-    return top[nearest] + 0.5 * spacing, nearest
+    ascending = height[-1] > height[0]
+    from_above = held[..., ::-1] if ascending else held
+    tops = (height[::-1] if ascending else height)[from_above.argmax(axis=-1)]
+    nearest = tuple(distance_transform_edt(~held.any(axis=-1), return_distances=False, return_indices=True))
+    return tops[nearest] + 0.5 * spacing, nearest
 
 
-def burden(scene: "Scene", number: int, held, top, height, water: tuple[float, float]) -> np.ndarray:
-    """What other soils above each site weigh, less what part ``number`` with ``water`` on it would weigh in
-    their place, Pa (places, ..., heights)."""
-    pull, (pores, level) = abs(scene.gravity[int(np.abs(scene.gravity).argmax())]), water
-    own = scene.stressed.soils[number].density * pull
-    replaced = np.where(height < top[..., None], own, np.where(height < level, pores, 0.0))
+def burden(held: np.ndarray, above: dict[int, float], replaced: np.ndarray, upwards: bool) -> np.ndarray:
+    """What is over each site of the other soils less what they replace, both by weights in Pa/m, summed over
+    sites (places, ..., heights); ``above`` has the weights of the soils by their numbers."""
     weight = np.zeros(held.shape)
-    for other, soil in scene.stressed.soils.items():
-        if other != number:
-            weight += (held == other) * (soil.density * pull - replaced)
-    if height[-1] > height[0]:  # summed from above
-        weight = weight[..., ::-1].cumsum(axis=-1)[..., ::-1] - weight
-    else:
-        weight = weight.cumsum(axis=-1) - weight
-    return weight * scene.spacing
+    for other, own in above.items():
+        weight += (held == other) * (own - replaced)
+    if upwards:  # the lattice runs upwards, and the sum from above
+        return weight[..., ::-1].cumsum(axis=-1)[..., ::-1] - weight
+    return weight.cumsum(axis=-1) - weight
