@@ -17,7 +17,7 @@ from psph.scene.driven import driven_flow
 from psph.scene.gauging import buried, left_behind, misplaced, shown
 from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
-from psph.scene.moving import FARTHEST, motion_faults, motion_warnings
+from psph.scene.moving import FARTHEST, motion_faults, motion_warnings, overshoots
 from psph.scene.multiples import misfits
 from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
@@ -360,6 +360,7 @@ def _moving(scene: Scene) -> Iterator[tuple[int, Any]]:
 
 OF_EVERY_SCENE = (
     motion_warnings,
+    overshoots,
     in_degrees,
     soil_warnings,
     solid_warnings,

@@ -15,11 +15,15 @@ if TYPE_CHECKING:
 BURIED = 0.5
 """Spacings behind a wall's face from which on a probe is said to be in the wall."""
 
+TRIFLE = 1e-6
+"""Spacings by which a point may lie outside: 54 times 0.0075 is less than 0.405 in binary numbers."""
+
 
 def misplaced(scene: "Scene") -> Iterator[str]:
     """A line for each point of a probe or a gauge, and each whole section, outside the domain."""
+    off = TRIFLE * scene.spacing
     for key, point, _ in _points(scene, "position", "foot", "top"):
-        if not all(low <= x <= up for low, x, up in zip(scene.lower, point, scene.upper)):
+        if not all(low - off <= x <= up + off for low, x, up in zip(scene.lower, point, scene.upper)):
             yield (
                 f"{key}: {shown(point)} lies outside the domain {shown(scene.lower)} to "
                 f"{shown(scene.upper)}; move it inside"

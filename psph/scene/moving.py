@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from psph.case.errors import dotted
 from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN, RADIANS
 from psph.physics.motion import Immersed, is_free, is_rigid
@@ -26,6 +27,9 @@ LOOKS, LOOKED_AT = 100, 4000
 
 QUICK = 0.1
 """Part of the speed of sound above which a wall is said to be fast: it compresses the fluid by a tenth."""
+
+FAR_OFF = 0.25
+"""Part of a column's range that a spline may go beyond two rows; a sine in four rows a period goes 0.21."""
 
 
 class Sweep(NamedTuple):
@@ -212,6 +216,19 @@ def motion_warnings(scene) -> Iterator[str]:
                 f"{key}: at {time:.3g} s it is in {other}, near "
                 f"({', '.join(f'{x:.3g}' for x in place)}): they run through each other"
             )
+
+
+def overshoots(scene) -> Iterator[str]:
+    """Series whose rows are too few where they bend for a smooth curve to stay near them."""
+    for loc, parts in scene.case.motions.items():
+        for series in (part.series for part in parts if part.series):
+            share, first, last = series.law().overshoot()
+            if share > FAR_OFF:
+                yield (
+                    f"{dotted(loc)}.series: between its rows at {first:g} and {last:g} s the smooth curve "
+                    f"through {series.file} goes beyond both by {share:.2g} of the whole way of that column; "
+                    "give more rows there"
+                )
 
 
 def _leaving(scene, key: str, found: Sweep) -> Iterator[str]:

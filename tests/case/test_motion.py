@@ -180,6 +180,26 @@ def test_check_warns_of_a_wall_that_runs_through_another_or_is_fast(name, tmp_pa
     )
 
 
+def test_check_warns_of_a_series_whose_smooth_curve_leaves_its_rows(tmp_path, path):
+    """A jump between rows close together makes the next interval swing; four rows a period of a sine do not."""
+    told = f"{SCENE}\nmotion = {series(displacement=['x', 'y'], angle='angle', center=[0.0, 0.0])}"
+    rows = [
+        "time,x,y,angle",
+        "0.0,0.0,0.0,0.0",
+        "0.01,0.1,0.0,0.001",
+        "0.8,0.1,0.0,0.002",
+        "1.2,0.1,0.0,0.002",
+    ]
+    path(rows)
+    [line] = (line for line in check(Scene(draft(tmp_path, told))) if "series" in line)
+    assert "walls.floor.motion.series: between its rows at 0.01 and 0.8 s the smooth curve" in line
+    path([*rows[:2], *(f"{0.01 + 0.02 * k},0.1,0.0,0.001" for k in range(1, 40))])  # what the line asks for
+    near = check(Scene(draft(tmp_path, told)))
+    times = np.arange(0.0, 2.01, 0.25)
+    path(["time,x,y,angle", *(f"{t},{0.1 * np.sin(np.pi * (2.0 * t - 0.25))},0,0" for t in times)])
+    assert not any("series" in line for line in near + check(Scene(draft(tmp_path, told))))
+
+
 BRICK = """
 [bodies.brick]
 shape.box = { lower = [1.0, 0.7], upper = [1.4, 1.0] }

@@ -174,6 +174,16 @@ def test_a_probe_outside_the_domain_is_refused(tmp_path):
     assert checked(tmp_path, TANK, "probes.P1.position=[0.5, 0.7]") == []
 
 
+def test_a_gauge_may_end_at_the_rim_whatever_rounding_makes_of_it(tmp_path):
+    """54 cells of 0.0075 m are less than 0.405 in binary numbers."""
+    rim = TANK.replace("spacing = 0.1", "spacing = 0.0075").replace("0.7]", "0.405]")
+    rim = rim.replace("[1.0, 0.5]", "[0.15, 0.0525]").replace("-0.3", "-0.0225").replace("[1.3,", "[0.1725,")
+    rim = rim.replace("[1.0, 0.405]", "[0.15, 0.405]")
+    line = "gauges.wave.level={ foot = [0.075, 0.0], top = [0.075, 0.405] }"
+    assert checked(tmp_path, rim, line) == []
+    assert 54 * 0.0075 < 0.405
+
+
 def test_a_section_outside_the_domain_is_refused(tmp_path):
     """All of it; one that reaches beyond the domain is cut there."""
     section = "gauges.through.flow={{ lower = [{0}, {1}], upper = [{0}, {2}] }}"

@@ -19,6 +19,9 @@ Ways = tuple[Vector, Vector, Vector]
 
 STILL = (0.0, 0.0, 0.0, 0.0)
 
+LOOKS = 33
+"""Places between two rows of a series at which its spline is looked at."""
+
 
 class Steady(NamedTuple):
     """Constant rates: s = v ∫r dt; ``rate`` v in m/s and rad/s."""
@@ -89,6 +92,23 @@ class Tabulated:
     def ways(self, schedule: Schedule, time: float) -> Ways:
         """The law: as a sinusoid, with the values of the table in the place of A sin."""
         return faded(schedule, time, self._spline)
+
+    def overshoot(self) -> tuple[float, float, float]:
+        """How far the spline goes beyond both of two successive rows, at most, and where.
+
+        Over the range of their column; then the times of these rows, s since the start of the part.
+        """
+        steps = np.diff(self.times)[:, None]
+        a, b, c, d = np.moveaxis(np.array(self.pieces), 1, 0)
+        u = steps * np.linspace(0.0, 1.0, LOOKS)[:, None, None]  # (looks, rows, columns)
+        way = ((a * u + b) * u + c) * u
+        beyond = np.maximum(
+            way.max(axis=0) - np.maximum(way[-1], 0.0), np.minimum(way[-1], 0.0) - way.min(axis=0)
+        )
+        extent = np.ptp(np.concatenate([d, d[-1:] + way[-1, -1:]]), axis=0)
+        share = np.divide(beyond, extent, out=np.zeros_like(beyond), where=extent > 0.0).max(axis=1)
+        row = int(share.argmax())
+        return float(share[row]), self.times[row], self.times[row + 1]
 
     def _spline(self, t: float) -> Ways:
         inside = min(max(t, self.times[0]), self.times[-1])
