@@ -26,7 +26,7 @@ APPARENT = Field(
     VECTOR,
 )
 
-WORK = Field("work", "J", "energy that a moving wall, or the force of an accelerated frame, has given")
+WORK = Field("work", "J", "energy that a moving wall, a load or the force of an accelerated frame has given")
 
 LOAD = Field("load", "m/s2", "acceleration by the fluid alone, of particles whose load is asked for", VECTOR)
 

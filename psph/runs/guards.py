@@ -44,11 +44,10 @@ class Guards:
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
         self._led = np.array([is_prescribed(one.motion) for one in scene.species], bool)
         moving = [one for one, led in zip(scene.species, self._led) if led]
-        pulled = any(table.loads for table in scene.case.solids.values())
         whole = any(hasattr(effect, "finish_acceleration") for effect in simulation.plan.effects)
         # What walls give is booked by pairs, of walls that bear a pressure.
         unbooked = moving and (whole or not all(one.bearing for one in moving))
-        self._books = not simulation.plan.regions and not unbooked and not pulled
+        self._books = not simulation.plan.regions and not unbooked
         self.solids = [(Solid(scene), None)]
         self.solids += [(Solid(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
         self.seen: Counter[str] = Counter()

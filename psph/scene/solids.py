@@ -7,6 +7,7 @@ import numpy as np
 
 from psph.fields import Field
 from psph.particles.reach import Reach
+from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import REACH
 from psph.physics.solid.cracks import OF_CRACKS
@@ -120,4 +121,4 @@ def solid_fields(scene: "Scene") -> tuple[Field, ...]:
     lasting += OF_HEAT if is_heated(scene.elastic_solids) else ()
     wet = [INERTIA] if scene.case.flowing else []
     cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.elastic_solids) else ()
-    return (*OF_SOLIDS, *lasting, *cracks, *([DRAWN] if loaded else []), *wet)
+    return (*OF_SOLIDS, *lasting, *cracks, *([DRAWN, WORK] if loaded else []), *wet)

@@ -268,12 +268,12 @@ def push_solids(first, last, effects, view, columns, inverse_density, force, dra
     """a of the rows ``first`` to ``last`` into their columns: body forces, loads, and inner forces.
 
     ``effects`` None: a pass over neighbours in space has put contacts and body forces there.  The ``share``
-    (n,) of the loads ``drawn`` (None: there are none) acts now.
+    (n,) of the loads ``drawn`` acts now; both are None where there are none.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         column = columns[k]
         a = begun(effects, view, column, acceleration)
-        a = added(a, pulled(drawn, column, share[k]))
+        a = added(a, pulled(drawn, share, column, k))
         put(acceleration, column, add(a, scale(at(force, k), inverse_density[k])))
 
 
@@ -289,13 +289,13 @@ def _typed_begun(effects, view, column, acceleration):
     return lambda effects, view, column, acceleration: terms.body(effects, take(view, column))
 
 
-def pulled(drawn, column, share):
+def pulled(drawn, share, column, k):
     """The loads on a particle, m/s²; None where there are none."""
-    return None if drawn is None else scale(at(drawn, column), share)
+    return None if drawn is None else scale(at(drawn, column), share[k])
 
 
 @overload(pulled)
-def _typed_pulled(drawn, column, share):
+def _typed_pulled(drawn, share, column, k):
     if isinstance(drawn, types.NoneType):
-        return lambda drawn, column, share: None
-    return lambda drawn, column, share: scale(at(drawn, column), share)
+        return lambda drawn, share, column, k: None
+    return lambda drawn, share, column, k: scale(at(drawn, column), share[k])

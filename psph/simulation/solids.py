@@ -8,7 +8,7 @@ from psph.engine.threads import in_threads
 from psph.fields import view_of
 from psph.parallel.domain import Extent
 from psph.parallel.partner_halo import PartnerHalo, follow
-from psph.parallel.reductions import exact_sums, whole_sums
+from psph.parallel.reductions import exact_sums
 from psph.parallel.reference import reference_rows
 from psph.particles.partners import ReferenceRows, padded_lists
 from psph.particles.records import record_width
@@ -27,8 +27,6 @@ from psph.physics.solid.deformation import (
 )
 from psph.physics.solid.material import is_damped, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
-from psph.scene.lattice import TOLERANCE
-from psph.scene.shapes import inside
 from psph.simulation.plan import NO_SOLID
 from psph.simulation.solid_memory import Memory
 from psph.simulation.solid_pairs import (
@@ -86,13 +84,13 @@ class Solids:
         moving = {PLACES: d} | ({"predicted_velocity": d} if damped else {})
         self._widths = {"reference": d, **moving}, {"reference": d, PLACES: d, FLUX: d * d}
         self._moving = tuple(moving)
-        self._rises = np.array([table.load_rise for table in scene.case.solids.values()])
         self._cracks = self._made_to_crack() if plan.cracks else None
         if self._cracks:
             self._widths[1].update({LOOSENED: 1, STRENGTH: 1})
         self._solid_of = plan.solid_of
         self._rows = self.halo = None
         self.clamps = self._made_to_move() if plan.grips else None
+        self.loads = self._made_to_pull() if DRAWN.name in store else None
         loops = (sum_moments, sum_gradients, sum_inner_forces, measure, push_solids, fill_places)
         self._moments, self._gradients, self._forces, self._measure, self._push, self._fill = map(
             settled, loops
@@ -104,6 +102,12 @@ class Solids:
 
         return Clamps(self.scene, self.plan, self.store)
 
+    def _made_to_pull(self):
+        """What pulls parts of solids."""
+        from psph.simulation.solid_loads import SolidLoads  # late: most solids have no loads
+
+        return SolidLoads(self.scene, self.store, self.comm)
+
     def _made_to_crack(self):
         """What cuts bonds."""
         from psph.simulation.solid_cracks import Cracks  # late: most solids hold
@@ -114,7 +118,8 @@ class Solids:
         """The moments of the reference lists, and the loads; collective."""
         with self.ledger("records"):
             self._find_moments()
-        self._draw_loads()
+        if self.loads:
+            self.loads.draw(self._columns, self._matter.number)
 
     def _find_moments(self) -> None:
         """L of all rows."""
@@ -130,7 +135,7 @@ class Solids:
 
     def fill_masses(self, mass: np.ndarray) -> None:
         """The true masses of rows, kg, into the columns of all particles."""
-        mass[self._columns] = self._matter.density[self._matter.number] * self._volume
+        mass[self._columns] = self._masses
 
     def settle(self) -> None:
         """Rows and partners after particles have found new columns or ranks; the first time the reference
@@ -152,9 +157,9 @@ class Solids:
         self.rows, self._inner = len(columns), int(np.count_nonzero(~rim))
         self._matter = self._matter._replace(number=self._solid_of[store.group[columns[order]]])
         density = self._matter.density[self._matter.number]
-        self._inverse_density = 1.0 / density
+        self._inverse_density, self._masses = 1.0 / density, density * self._volume
         if self.clamps:
-            self.clamps.settle(self._columns, density * self._volume)
+            self.clamps.settle(self._columns, self._masses)
         self._make_tables(store.id[columns[order]], np.unique(partners[abroad]))
         self._moment = tuple(of[self._columns] for of in store[MOMENT.name])
         if self._cracks:
@@ -225,7 +230,7 @@ class Solids:
             self._finish(self._to_second)
         with self.ledger("solids"):
             self._sum_forces(inner, rows)
-            share = self._share(time)
+            number, loads = self._matter.number, self.loads
             self._each(
                 self._push,
                 0,
@@ -235,10 +240,12 @@ class Solids:
                 self._columns,
                 self._inverse_density,
                 self._force,
-                store[DRAWN.name] if DRAWN.name in store else None,
-                share[self._matter.number],
+                store[DRAWN.name] if loads else None,
+                loads.share(time)[number] if loads else None,
                 store["acceleration"],
             )
+            if loads:
+                loads.book(time, dt, self._columns, number, self._masses)
             if self.clamps:
                 self.clamps.book(dt)
             self._crack()
@@ -295,25 +302,6 @@ class Solids:
         reference = store.shown("reference")[own]
         ids = store.id[store.inner][own]
         return reference_rows(self.comm, extent, self.support, ids, reference, body[own])
-
-    def _draw_loads(self) -> None:
-        """What the loads of the case give each particle, at their full size; collective."""
-        store, scene = self.store, self.scene
-        if DRAWN.name not in store:
-            return
-        grid = [x[self._columns] for x in store["reference"]]
-        for number, table in enumerate(scene.case.solids.values()):
-            for load in table.loads.values():
-                pulled = inside(load.shape, grid, TOLERANCE * scene.spacing) & (self._matter.number == number)
-                [count] = whole_sums(self.comm, [np.count_nonzero(pulled)])
-                mass = max(count, 1) * self._volume * table.density
-                for of, force in zip(store[DRAWN.name], load.force):
-                    of[self._columns[pulled]] += force / mass
-
-    def _share(self, time: float) -> np.ndarray:
-        """The part of the loads of each solid that acts at ``time``."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self._rises > 0.0, np.minimum(time / self._rises, 1.0), 1.0)
 
     def _memory(self, dt: float) -> Memory | None:
         """What particles remember, ``dt`` s after they last yielded; None where no solid does."""

@@ -259,14 +259,14 @@ def test_a_shock_in_copper_runs_as_its_hugoniot_curve_says(tmp_path):
     assert speed == pytest.approx(4684.5, rel=0.01) and behind == pytest.approx(500.0, rel=0.01)
     assert pressure == pytest.approx(20.92e9 + 0.06e9, rel=0.01)  # with two thirds of the yield stress
     energy = log["kinetic_energy"] + log["stored_energy"]
-    assert np.abs(energy / energy[0] - 1.0).max() < 3e-3
+    assert np.abs(energy / energy[0] - 1.0).max() < 5e-4
 
 
 def test_a_linear_pressure_lets_the_shock_run_too_slowly(tmp_path):
     off = ("solids.flyer.mie_gruneisen=off", "solids.target.mie_gruneisen=off")
     speed, _, _, log = shock(tmp_path, *off)
     energy = log["kinetic_energy"] + log["stored_energy"]
-    assert speed < 0.9 * 4684.5 and energy[-1] < 0.99 * energy[0]
+    assert speed < 0.9 * 4684.5 and energy[-1] < 0.995 * energy[0]
 
 
 def bar(folder, *overrides):

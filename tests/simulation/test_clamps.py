@@ -50,10 +50,10 @@ def advanced(simulation, end):
     return simulation
 
 
-def energy(simulation):
-    """Of what is not in the clamp, with what is stored everywhere; and the work of the clamp, J."""
-    comm, store, led = simulation.comm, simulation.store, np.array([False, True])
-    moving = total_energy(comm, store, (0.0, 0.0), lambda density, rest: 0.0 * density, led)
+def energy(simulation, led=(False, True)):
+    """Of what is not in the clamp, with what is stored everywhere; and the work of clamp and loads, J."""
+    comm, store = simulation.comm, simulation.store
+    moving = total_energy(comm, store, (0.0, 0.0), lambda density, rest: 0.0 * density, np.array(led))
     return moving + simulation.engine.stored_energy(), work_done(comm, store)
 
 
