@@ -69,6 +69,14 @@ class Bingham(Paste):
 
     plastic_viscosity: float = key("slope of the stress over the rate of strain", unit="Pa s", gt=0)
 
+    @model_validator(mode="after")
+    def _is_capped_above(self) -> Self:
+        if self.law.largest <= self.plastic_viscosity:
+            raise PydanticCustomError(
+                "psph", "has a cap no larger than its plastic_viscosity; give a larger largest_viscosity"
+            )
+        return self
+
     @property
     def law(self) -> laws.HerschelBulkley:
         """Bingham's law: that of Herschel and Bulkley with the exponent 1."""

@@ -14,7 +14,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.driven import driven_flow
-from psph.scene.gauging import buried, left_behind, misplaced, shown
+from psph.scene.gauging import astray, buried, left_behind, misplaced, shown
 from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings, overshoots
@@ -63,6 +63,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *_mirror_faults(scene),
         *_site_faults(scene),
         *misplaced(scene),
+        *astray(scene),
         *body_faults(scene),
         *_exact_faults(scene),
     ]
@@ -180,6 +181,8 @@ def _site_faults(scene: Scene) -> Iterator[str]:
     for material, size in enumerate(census.sizes):
         if not size and scene.layout.movers <= material < scene.layout.first_wall:
             yield f"{scene.key_of(material)}: holds no particle of the solid; let the shapes meet"
+        elif not size and _held_as_a_whole(scene, material):
+            yield f"{scene.key_of(material)}: its clamps hold all of it; leave a part of it free"
         elif not size:
             yield (
                 f"{scene.key_of(material)}.shape: no lattice site lies in it; make it larger than "
@@ -194,6 +197,12 @@ def _site_faults(scene: Scene) -> Iterator[str]:
                 f"{in_millimetres(scene, one, other)}"
             )
     yield from _particles_outside(scene)
+
+
+def _held_as_a_whole(scene: Scene, material: int) -> bool:
+    """Whether all particles of a solid are clamped."""
+    layout, sizes = scene.layout, scene.census.sizes
+    return any(of == material and sizes[n] for n, of in enumerate(layout.clamps, layout.movers))
 
 
 def _or_displace(scene: Scene, one: int, other: int) -> str:

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from psph.scene.behind import Solid
+from psph.scene.lattice import TOLERANCE
 from psph.scene.moving import moving_parts
+from psph.scene.shapes import inside
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -17,6 +19,9 @@ BURIED = 0.5
 
 TRIFLE = 1e-6
 """Spacings by which a point may lie outside: 54 times 0.0075 is less than 0.405 in binary numbers."""
+
+BESIDE = 1.0
+"""Spacings along each axis by which a point of a solid may lie beside it: edges follow the lattice."""
 
 
 def misplaced(scene: "Scene") -> Iterator[str]:
@@ -34,6 +39,21 @@ def misplaced(scene: "Scene") -> Iterator[str]:
             yield (
                 f"gauges.{name}.flow: a section from {shown(section.lower)} to {shown(section.upper)} lies "
                 f"outside the domain {shown(scene.lower)} to {shown(scene.upper)}; move it inside"
+            )
+
+
+def astray(scene: "Scene") -> Iterator[str]:
+    """A line for each point whose displacement is asked for and that is neither in nor on its solid."""
+    around = np.linspace(-BESIDE, BESIDE, 7) * scene.spacing
+    for name, gauge in scene.case.gauges.items():
+        if (asked := gauge.displacement) is None:
+            continue
+        places = np.meshgrid(*(x + around for x in asked.at), indexing="ij")
+        grid = [scene.folded(d, place) for d, place in enumerate(places)]
+        if not inside(scene.case.solids[asked.of].shape, grid, TOLERANCE * scene.spacing).any():
+            yield (
+                f"gauges.{name}.displacement.at: {shown(asked.at)} lies off solids.{asked.of}; give a point "
+                "in it or on its face"
             )
 
 

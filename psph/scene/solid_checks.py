@@ -8,7 +8,7 @@ import numpy as np
 from psph.case.keys import AXES
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import inside
-from psph.scene.solids import across, calming, impedance
+from psph.scene.solids import across, anvils_of, calming, impedance
 from psph.scene.species import NONE
 
 if TYPE_CHECKING:
@@ -23,6 +23,12 @@ LIGHTEST, HEAVIEST = 1.0, 25_000.0
 HEAVY = 0.3
 """Part of its speed that a solid may lose to the fluid in a step: 0.06 with aluminium 4 particles thick, 0.16
 with what is as light as water."""
+
+LOCKING = 0.49
+"""Poisson's ratio above which plates bend too stiffly (docs/solids.md)."""
+
+ALIKE = 1.3
+"""By how much the two speeds of sound in the bulk of a metal may differ: of copper by 1.04."""
 
 SLOWEST = 2.0
 """Wave speed over the expected speed below which a solid is hardly one."""
@@ -40,7 +46,7 @@ def solid_faults(scene: "Scene") -> Iterator[str]:
                 f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
             )
         for load, table in scene.case.referred[name].loads.items():
-            if not _pulls(scene, number, table.shape):
+            if not _pulls(scene, _parts(scene, number), table.shape):
                 yield f"solids.{name}.loads.{load}.shape: no particle of the solid lies in it; move it there"
 
 
@@ -71,8 +77,49 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
             )
         if not table.hourglass:
             yield (f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; give 1.5")
+        yield from _numbers(f"solids.{name}", table)
+        for load, pulling in table.loads.items():
+            if not _pulls(scene, [number], pulling.shape):
+                yield (
+                    f"solids.{name}.loads.{load}: all particles that it pulls are clamped, and do not move; "
+                    "let its shape reach beyond the clamp"
+                )
+        yield from _behind_anvils(scene, number, f"solids.{name}")
         if scene.case.fluids:
             yield from _answers(scene, number - scene.layout.fluids, f"solids.{name}", table)
+
+
+def _numbers(key: str, table) -> Iterator[str]:
+    """A line for each number of a solid's material that hides what it is like."""
+    if table.poisson > LOCKING:
+        yield (
+            f"{key}.poisson: {table.poisson:g}: above {LOCKING:g} a solid hardly bends, since each particle "
+            f"keeps its volume; give {LOCKING:g} or less"
+        )
+    asked = table.mie_gruneisen and table.mie_gruneisen.sound_speed
+    own = (table.young / (3.0 * (1.0 - 2.0 * table.poisson) * table.density)) ** 0.5
+    if asked and not own / ALIKE <= asked <= own * ALIKE:
+        yield (
+            f"{key}.mie_gruneisen.sound_speed: {asked:g} m/s, where young and poisson give {own:.4g} m/s to "
+            "the bulk; let the two fit"
+        )
+
+
+def _behind_anvils(scene: "Scene", number: int, key: str) -> Iterator[str]:
+    """A line for each anvil that pushes a solid from the start."""
+    parts = _parts(scene, number)
+    for name, (place, normal) in zip(scene.case.anvils, anvils_of(scene.case)):
+        nearest = np.inf
+        for first, last in scene.lattice.chunks():
+            own = np.isin(scene.layout.materials(first, last), parts)
+            grid = scene.lattice.grid(first, last)
+            above = sum(n * (x - x_0) for n, x, x_0 in zip(normal, grid, place))
+            nearest = min(nearest, np.broadcast_to(above, own.shape)[own].min(initial=np.inf))
+        if nearest < (0.5 - TOLERANCE) * scene.spacing:
+            yield (
+                f"anvils.{name}: {key} reaches {0.5 * scene.spacing - nearest:.3g} m behind it at the start, "
+                "and will fly off; move one of the two"
+            )
 
 
 def _pushed_apart(scene: "Scene") -> Iterator[str]:
@@ -142,12 +189,17 @@ def _is_of(scene: "Scene", material: int, solid: int) -> bool:
     return scene.layout.elastic_of(material) == solid - scene.layout.fluids
 
 
-def _pulls(scene: "Scene", solid: int, shape) -> bool:
-    """Whether any site of a solid, or of its clamped part, lies in a shape."""
+def _parts(scene: "Scene", solid: int) -> list[int]:
+    """The materials of a solid: its own, and those of its clamps."""
+    return [n for n in range(scene.layout.first_wall) if _is_of(scene, n, solid)]
+
+
+def _pulls(scene: "Scene", parts: list[int], shape) -> bool:
+    """Whether any site of these materials lies in a shape."""
     tolerance = TOLERANCE * scene.spacing
     for first, last in scene.lattice.chunks():
         held = scene.layout.materials(first, last)
-        own = np.isin(held, [n for n in range(scene.layout.first_wall) if _is_of(scene, n, solid)])
+        own = np.isin(held, parts)
         if (inside(shape, scene.lattice.grid(first, last), tolerance) & own).any():
             return True
     return False

@@ -80,6 +80,11 @@ GRAINS = (
             "(fluids.water.density), and a grain itself less; give a larger grain_density",
         ),
         (
+            [BINGHAM, "fluids.water.rheology.bingham.largest_viscosity=0.4"],
+            "fluids.water.rheology.bingham: has a cap no larger than its plastic_viscosity; give a larger "
+            "largest_viscosity",
+        ),
+        (
             ["fluids.water.rheology.bingham={yield_stress=-1.0, plastic_viscosity=0.5}"],
             "fluids.water.rheology.bingham.yield_stress: -1.0 is out of range; it must be above 0",
         ),

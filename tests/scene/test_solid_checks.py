@@ -39,6 +39,11 @@ def said(tmp_path, *overrides):
 
 def test_a_sound_beam_is_good(tmp_path):
     assert said(tmp_path) == ""
+    anvil, gauge = (
+        "anvils.floor={at=[0.0,0.0],normal=[0.0,2.0]}",
+        "gauges.a.displacement={of='beam',at=[0.4,0.05]}",
+    )
+    assert said(tmp_path, anvil, gauge, "physics.contact={}") == ""
 
 
 @pytest.mark.parametrize(
@@ -154,6 +159,30 @@ def test_a_sound_beam_is_good(tmp_path):
         (
             ["solids.beam.continues=water"],
             'solids.beam.continues: "water": there is no fluid to see the solid',
+        ),
+        (["solids.beam.poisson=0.495"], "solids.beam.poisson: 0.495: above 0.49 a solid hardly bends"),
+        (
+            ["solids.beam.clamped.box={lower=[-1.0,-1.0],upper=[1.0,1.0]}"],
+            "solids.beam: its clamps hold all of it; leave a part of it free",
+        ),
+        (
+            ["solids.beam.loads.end={shape={box={lower=[-0.1,0.0],upper=[0.0,1.0]}},force=[0.0,1.0]}"],
+            "solids.beam.loads.end: all particles that it pulls are clamped",
+        ),
+        (
+            [
+                "solids.beam.yield_stress=1e4",
+                "solids.beam.mie_gruneisen={slope=1.5,gruneisen=2.0,sound_speed=10.0}",
+            ],
+            "solids.beam.mie_gruneisen.sound_speed: 10 m/s, where young and poisson give 48.3 m/s to the bulk",
+        ),
+        (
+            ["anvils.floor={at=[0.0,0.02],normal=[0.0,2.0]}"],
+            "anvils.floor: solids.beam reaches 0.02 m behind it at the start, and will fly off",
+        ),
+        (
+            ["gauges.a.displacement={of='beam',at=[0.4,0.2]}"],
+            "gauges.a.displacement.at: [0.4, 0.2] lies off solids.beam; give a point in it or on its face",
         ),
         (["precision=mixed"], 'precision: "mixed": solids are computed in double precision'),
         (["physics.sound_speed=10.0"], "physics.sound_speed: 10.0: solids have waves of their own"),
