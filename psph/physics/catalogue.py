@@ -26,6 +26,7 @@ from psph.physics.fluid.pressure import (
 )
 from psph.physics.fluid.state import Linear, Tait
 from psph.physics.fluid.stress_points import StressPoints
+from psph.physics.fluid.summation import SummationDensity
 from psph.physics.fluid.viscosity import (
     ArtificialViscosity,
     CentralFriction,
@@ -147,6 +148,7 @@ CATALOGUE = (
     Entry("physics.background_pressure", BackgroundPressure),
     Entry("physics.density_diffusion", DensityDiffusion),
     Entry("physics.fourth_order_diffusion", FourthOrderDiffusion),
+    Entry("physics.summation_density", SummationDensity),
     Entry("physics.particle_shifting", ParticleShifting),
     Entry("physics.position_shift", PositionShift),
     Entry("physics.xsph", XSPH),

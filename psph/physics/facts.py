@@ -44,5 +44,7 @@ class Facts(Protocol):
     has_free_surface: bool
     lowest_pressure: float
     """Of a fluid at the start, Pa."""
+    starting_fullness: tuple[float, float]
+    """Smallest and largest m/(ρ dx^d) of a fluid at the start, with 1 among them."""
     standing_tension: float
     """What a fluid lacks to zero pressure at the start, and its flow does not explain, Pa."""

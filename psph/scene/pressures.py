@@ -10,6 +10,9 @@ from psph.scene.lattice import TOLERANCE
 def range_of_pressure(scene, fluid: int) -> tuple[float, float]:
     """The lowest and the highest pressure of a fluid at the start, Pa."""
     start = scene.starts[fluid]
+    if start.weight:
+        depth = start.surface - float(scene.census.bottom[fluid])
+        return start.pressure, start.above + start.weight * max(depth, 0.0)
     if not start.exact:
         return start.pressure, start.pressure
     found = []
@@ -19,6 +22,20 @@ def range_of_pressure(scene, fluid: int) -> tuple[float, float]:
         found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
     pressure = start.exact(np.concatenate(found))
     return float(pressure.min()), float(pressure.max())
+
+
+def starting_fullness(scene) -> tuple[float, float]:
+    """Smallest and largest m/(ρ dx^d) of a fluid at the start, with 1 among them.
+
+    Equal masses do not fill the lattice where the pressure differs from place to place.
+    """
+    filled = [1.0]
+    for fluid in range(scene.layout.fluids):
+        start, mass = scene.starts[fluid], scene.species[fluid].mass
+        for pressure in range_of_pressure(scene, fluid):
+            rho = start.law.density(np.float64(pressure), start.rest_density, start.sound_speed)
+            filled.append(mass / scene.spacing**scene.dimensions / float(rho))
+    return min(filled), max(filled)
 
 
 def weight_above(scene, fluid: int) -> float:

@@ -26,7 +26,7 @@ from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.moving import falling_speed, fastest_corner, largest_speed
 from psph.scene.particles import ParticleSet, fill
-from psph.scene.pressures import range_of_pressure
+from psph.scene.pressures import range_of_pressure, starting_fullness
 from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds
 from psph.scene.solids import anvils_of, grips_of, modulus_shown, reach_of_contact, solids_of
@@ -206,6 +206,11 @@ class Scene:
             for start, (lowest, highest) in zip(self.starts, self._pressures)
         )
         return max(0.0, -min(borne))
+
+    @property
+    def starting_fullness(self) -> tuple[float, float]:
+        """Smallest and largest m/(ρ dx^d) of a fluid at the start, with 1 among them."""
+        return starting_fullness(self)
 
     @cached_property
     def exact(self):
