@@ -15,7 +15,6 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.pressure_gradient": "symmetric",
         "physics.gradient_correction": 0.7,
         "physics.fourth_order_diffusion": 0.1,
-        "physics.summation_density": 0.002,
         "physics.reconstructed_damping": {"alpha": 0.03, "in_disorder": 0.2},
         "physics.impact_damping": 4.0,
         "physics.local_potential": {"strength": 0.004, "threshold": 0.2},
