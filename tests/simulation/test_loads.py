@@ -7,7 +7,7 @@ from runs.test_moving_guards import watched
 from simulation.test_clamps import BAR, FLAP, advanced, begun, energy
 
 PULLED = (
-    BAR.replace("time.end = 10.0", "time.end = 10.0")
+    BAR
     + """
 [solids.bar.loads.end]
 shape.box = { lower = [0.5, 0.0], upper = [0.6, 0.06] }

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from drafts import draft, refusal
-from long import LONG
 from mpi4py import MPI
 from numba import njit
 
@@ -86,7 +85,6 @@ def test_a_still_column_goes_on_behind_a_mirror_with_the_slope_of_its_density(pu
 SIDES = (-1.0, 1.0)
 
 
-@LONG
 def shifted(sides):
     """Perturbations that put a particle, and its images, over a plane."""
     each = (f"{{ position = [{0.025 * s}, {0.225 * t}], shift = [{-0.03 * s}, 0.0] }}" for s, t in sides)
