@@ -156,7 +156,7 @@ def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
         style.ticks(axes.yaxis, 4)
         axes.margins(y=0.12)
     axes.grid(axis="y", color=style.WALLS, lw=0.4)
-    axes.set_title(f"{chart.title} ({unit})", loc="left", size=9, weight="bold")
+    axes.set_title(f"{chart.title} ({unit})" if unit else chart.title, loc="left", size=9, weight="bold")
     _legend(axes, chart)
     axes.set_xlim(chart.time[0] * seconds, chart.time[-1] * seconds)
     style.ticks(axes.xaxis, 6)

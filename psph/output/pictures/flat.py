@@ -15,7 +15,7 @@ from psph.output.errors import NotThere
 from psph.output.pictures import style
 from psph.output.pictures.moorings import Moorings
 from psph.output.pictures.scale import Scale
-from psph.output.pictures.view import Room, on_page
+from psph.output.pictures.view import Room
 
 TELLING = 4.0
 """Size in points (1/72 inch) above which single particles are visible."""
@@ -116,14 +116,15 @@ class Flat:
             for one in self.moorings.at(frame) if self.moorings else ():
                 across, up = one.ends[:, self.across], one.ends[:, self.up]
                 axes.plot(across, up, color=style.PALE if one.slack else style.INK, lw=0.8)
-        style.ticks(axes.xaxis, 5)
-        style.ticks(axes.yaxis, 5)
+        length = self.room.length[0]
+        style.ticks(axes.xaxis, 5, length)
+        style.ticks(axes.yaxis, 5, 1.0 if self.room.dimensions == 1 else length)
         axes.spines[["bottom", "left"]].set_position(("outward", 4))
         axes.tick_params(labelleft=first, labelbottom=last)
         if first:
-            axes.set_ylabel(scale.label if self.room.dimensions == 1 else on_page(self.up))
+            axes.set_ylabel(scale.label if self.room.dimensions == 1 else self.room.on_page(self.up))
         if last:
-            axes.set_xlabel(on_page(self.across))
+            axes.set_xlabel(self.room.on_page(self.across))
 
 
 def circles(axes: Axes, places: np.ndarray, spacing: float, **colours) -> EllipseCollection:

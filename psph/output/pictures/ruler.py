@@ -6,7 +6,7 @@ from matplotlib.ticker import MaxNLocator
 
 from psph.output.pictures import style
 from psph.output.pictures.camera import Camera
-from psph.output.pictures.view import Room, on_page
+from psph.output.pictures.view import Room
 
 TICK, NUMBER, NAME = 0.05, 0.1, 0.33
 """Length of a tick, and how far a number and the name of an axis are from their edge, inches."""
@@ -32,7 +32,7 @@ def rulers(axes: Axes, camera: Camera, lower: np.ndarray, upper: np.ndarray, roo
         # Upright the edge farthest to the left; on the floor the one that is nearest.
         which = 0 if axis == room.up else 1
         best = int(np.argmin([points[:, which].mean() for points in seen]))
-        _ruler(axes, camera, ends[best], axis, page, centre, taken)
+        _ruler(axes, camera, ends[best], axis, page, centre, taken, room)
 
 
 def _edge(axis: int, corner: tuple[int, int], lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
@@ -45,7 +45,7 @@ def _edge(axis: int, corner: tuple[int, int], lower: np.ndarray, upper: np.ndarr
 
 
 def _ruler(
-    axes: Axes, camera: Camera, ends: np.ndarray, axis: int, page: np.ndarray, centre, taken: list
+    axes: Axes, camera: Camera, ends: np.ndarray, axis: int, page: np.ndarray, centre, taken: list, room: Room
 ) -> None:
     first, last = camera.seen(ends) * page
     along = (last - first) / max(float(np.linalg.norm(last - first)), 1e-9)
@@ -64,9 +64,9 @@ def _ruler(
         _line(axes, [point / page, (point + TICK * out) / page])
         place = point + NUMBER * out
         if all(np.linalg.norm(place - other) > CLOSE for other in taken):
-            axes.text(*(place / page), style.number(tick), **how, size=8)
+            axes.text(*(place / page), style.number(room.length[0] * tick), **how, size=8)
             taken.append(place)
-    axes.text(*(((first + last) / 2 + NAME * out) / page), on_page(axis), **how)
+    axes.text(*(((first + last) / 2 + NAME * out) / page), room.on_page(axis), **how)
 
 
 def _line(axes: Axes, ends) -> None:

@@ -20,6 +20,8 @@ NEAR_ZERO = 0.1
 """Share of the highest value below which the colours begin at zero."""
 OUTLIER = 0.25
 """Share of the range by which outliers may extend the colours."""
+UNIFORM = 1e-5
+"""Share of the largest value below which a range is none: numbers of the key have six digits."""
 
 LETTER = 0.085
 """Width of one in the key, inches."""
@@ -40,7 +42,7 @@ class Scale(NamedTuple):
 
     @property
     def label(self) -> str:
-        """The quantity and its unit."""
+        """The quantity and its unit, where it has one."""
         return f"{self.title} ({self.unit})" if self.unit else self.title
 
     @property
@@ -69,7 +71,8 @@ class Scale(NamedTuple):
         )
         bar.outline.set_visible(False)
         style.ticks(axes.yaxis, 6)
-        bar.set_label(self.label)
+        room = style.height(axes) + style.TOP  # the subtitle has the name too
+        bar.set_label(self.label if LETTER * len(self.label) < room else self.unit)
 
 
 def scale_of(quantity: Quantity, samples: Sequence[np.ndarray]) -> Scale:
@@ -92,7 +95,7 @@ def scale_of(quantity: Quantity, samples: Sequence[np.ndarray]) -> Scale:
         low, high = -largest, largest
     elif abs(low) < NEAR_ZERO * high:
         low = 0.0
-    if high - low <= 1e-9 * abs(largest):  # uniform
+    if high - low <= UNIFORM * abs(largest):
         low, high = low - 0.01 * abs(low) - 1e-30, high + 0.01 * abs(high) + 1e-30
     beyond = (values.min() < low, values.max() > high)
     extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[beyond]

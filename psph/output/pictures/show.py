@@ -19,7 +19,7 @@ from psph.output.pictures.mirrors import mirrors_of, with_mirrors
 from psph.output.pictures.moorings import has_moorings, moorings_of
 from psph.output.pictures.quantities import quantity
 from psph.output.pictures.scale import Scale, scale_of
-from psph.output.pictures.view import Panel, box_around, room_of, spread
+from psph.output.pictures.view import Panel, around_most, box_around, room_of, spread
 from psph.output.progress import told
 from psph.output.reader import Run
 
@@ -36,10 +36,11 @@ VALUES = 100_000
 
 
 class Glance(NamedTuple):
-    """What a sample of a run's frames says: the ``box`` (2, dim) around its particles, m, those around each
-    group in 3D, and ``values`` of the fluid."""
+    """What a sample of a run's frames says: the ``box`` (2, dim) around its particles, m, that around
+    ``most`` of them, those around each group in 3D, and ``values`` of the fluid."""
 
     box: np.ndarray
+    most: np.ndarray
     groups: dict[int, np.ndarray]
     values: np.ndarray
 
@@ -95,7 +96,8 @@ class Show:
         glances = [self._glance(k) for k in told(sample, "looking at the run", "frames")]
         scale = scale_of(self.quantity, [glance.values for glance in glances])
         mirrors = mirrors_of(self.case)
-        room = room_of(self.case, [with_mirrors(glance.box, mirrors) for glance in glances])
+        boxes = [with_mirrors(glance.box, mirrors) for glance in glances]
+        room = room_of(self.case, boxes, [glance.most for glance in glances])
         if not self._solid:
             bodies = first_body(self.case) if "bodies" in self.case else None
             lines = moorings_of(self.case, self._whole(0)) if room.dimensions == 2 else None
@@ -109,7 +111,7 @@ class Show:
         places, values = frame["position"], frame["values"][frame["kind"] != WALL]
         groups = np.unique(frame["group"]).tolist() if self._solid else []
         boxes = {group: box_around(places[frame["group"] == group]) for group in groups}
-        return Glance(box_around(places), boxes, values[:: len(values) // VALUES + 1])
+        return Glance(box_around(places), around_most(places), boxes, values[:: len(values) // VALUES + 1])
 
     def _chosen(self, times: Sequence[float] | None) -> list[int]:
         """The frames nearest to ``times`` s, or to four over the run."""

@@ -18,6 +18,8 @@ LEFT, RIGHT, TOP, BOTTOM = 0.8, 1.1, 0.8, 0.6
 """Margins, inches."""
 DPI = 160
 """Pixels of a picture per inch."""
+ACROSS, DOWN = 0.5, 0.18
+"""Inches that a number of a scale needs along a level axis, and along an upright one."""
 _LOOK = {
     "font.size": 9,
     "text.color": INK,
@@ -69,12 +71,17 @@ def width(axes: Axes) -> float:
     return axes.get_position().width * axes.figure.get_figwidth()
 
 
-def ticks(axis, count: int) -> None:
-    """At most ``count`` steps between round numbers, as many as fit, written short."""
-    if axis.axis_name == "x":
-        count = max(1, min(count, int(width(axis.axes) / 0.5)))
-    axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]))
-    axis.set_major_formatter(lambda value, _: number(value))
+def height(axes: Axes) -> float:
+    """Height of the axes on the page, inches."""
+    return axes.get_position().height * axes.figure.get_figheight()
+
+
+def ticks(axis, count: int, factor: float = 1.0) -> None:
+    """At most ``count`` steps between round numbers, as many as fit, written short and times ``factor``."""
+    fit = width(axis.axes) / ACROSS if axis.axis_name == "x" else height(axis.axes) / DOWN
+    count = max(1, min(count, int(fit)))
+    axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10], min_n_ticks=1))
+    axis.set_major_formatter(lambda value, _: number(factor * value))
 
 
 def number(value: float) -> str:
@@ -95,8 +102,8 @@ _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
 def readable(unit: str, largest: float) -> tuple[float, str]:
-    """Factor and unit that give numbers up to ``largest`` few digits: 25000 Pa -> 0.001, 'kPa'."""
-    text = unit.replace("m3", "m³").replace("m2", "m²").replace("/(m³ s)", "/(m³ s)")
+    """Factor and unit that give numbers up to ``largest`` few digits: 25000 Pa -> 0.001, 'kPa'; '1' -> ''."""
+    text = "" if unit == "1" else unit.replace("m3", "m³").replace("m2", "m²").replace("/(m³ s)", "/(m³ s)")
     if not math.isfinite(largest) or largest == 0 or 0.01 <= largest < 20_000:
         return 1.0, text
     power = 3 * math.floor(math.log10(largest) / 3 + 1e-9)
@@ -104,6 +111,14 @@ def readable(unit: str, largest: float) -> tuple[float, str]:
         return 10.0**-power, _PREFIXES[power] + text
     power = math.floor(math.log10(largest) + 1e-9)
     return 10.0**-power, f"$10^{{{power}}}$ {text}".strip()
+
+
+def length(largest: float) -> tuple[float, str]:
+    """Factor and unit for places up to ``largest`` m from the origin."""
+    for size, factor, unit in ((0.1, 1.0, "m"), (1e-4, 1e3, "mm"), (0.0, 1e6, "µm")):
+        if largest >= size:
+            return factor, unit
+    return 1.0, "m"
 
 
 def clock(end: float) -> tuple[float, str]:

@@ -7,7 +7,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from psph.case.keys import AXES
+from psph.output.pictures import style
 from psph.output.pictures.scale import Scale
+
+MOST = (1.0, 99.0)
+"""Percentiles of the places along an axis between which most particles lie."""
 
 
 class Panel(Protocol):
@@ -48,23 +52,35 @@ class Room(NamedTuple):
         """Number of axes."""
         return len(self.lower)
 
+    @property
+    def length(self) -> tuple[float, str]:
+        """Factor and unit of its places: ``(1000.0, "mm")`` for a small one."""
+        return style.length(max(np.abs(self.lower).max(), np.abs(self.upper).max()))
+
+    def on_page(self, axis: int) -> str:
+        """The label of an axis."""
+        return f"{AXES[axis]} ({self.length[1]})"
+
     def holds(self, places: np.ndarray) -> np.ndarray:
         """True (n,) for places (n, dim) in it; not for those that are not finite."""
         edge = 1e-6 * self.spacing
         return ((places >= self.lower - edge) & (places <= self.upper + edge)).all(axis=1)
 
 
-def room_of(case: dict, boxes: Sequence[np.ndarray]) -> Room:
+def room_of(case: dict, boxes: Sequence[np.ndarray], most: Sequence[np.ndarray]) -> Room:
     """The room of frames with ``boxes`` (2, dim) around their particles, m, that at the start first.
 
-    Gravity points down, but for a periodic axis.
+    ``most``: boxes around most of them.  Gravity points down, but for a periodic axis.
     """
     dimensions, spacing = case["space"]["dimensions"], case["space"]["spacing"]
     extents = np.array(boxes)
     size = extents[0, 1] - extents[0, 0] + spacing
-    # What a run that blows up throws far away must not make the rest small.
-    lower = np.maximum(extents[:, 0].min(axis=0), extents[0, 0] - size) - spacing / 2
-    upper = np.minimum(extents[:, 1].max(axis=0), extents[0, 1] + size) + spacing / 2
+    # What a run that blows up throws far away must not make the rest small; a thin beam that bends is seen.
+    bulk = np.array(most)
+    low = np.maximum(np.minimum(bulk[:, 0].min(axis=0), extents[0, 0]), extents[0, 0] - size.max())
+    high = np.minimum(np.maximum(bulk[:, 1].max(axis=0), extents[0, 1]), extents[0, 1] + size.max())
+    lower = np.maximum(extents[:, 0].min(axis=0), low - size) - spacing / 2
+    upper = np.minimum(extents[:, 1].max(axis=0), high + size) + spacing / 2
     gravity = case.get("physics", {}).get("gravity", {}).get("acceleration", [0.0] * dimensions)
     # Along a periodic axis gravity drives a channel: there is no height.
     pull = [0.0 if "xyz"[d] in case["space"].get("periodic", ()) else g for d, g in enumerate(gravity)]
@@ -79,9 +95,10 @@ def box_around(places: np.ndarray) -> np.ndarray:
     return np.stack([places.min(axis=0, initial=np.inf), places.max(axis=0, initial=-np.inf)])
 
 
-def on_page(axis: int) -> str:
-    """The label of an axis."""
-    return f"{AXES[axis]} (m)"
+def around_most(places: np.ndarray) -> np.ndarray:
+    """The corners (2, dim) of a box around ``MOST`` of all finite positions (n, dim) along each axis."""
+    places = places[np.isfinite(places).all(axis=1)]
+    return np.percentile(places, MOST, axis=0) if len(places) else box_around(places)
 
 
 def spread(count: int, most: int) -> Sequence[int]:

@@ -18,7 +18,7 @@ scheme = "sph"
 title = "{dimensions}D tank"
 [space]
 dimensions = {dimensions}
-spacing = 0.1
+spacing = {spacing}
 [time]
 end = 1.0
 [physics.gravity]
@@ -44,10 +44,10 @@ def box(*cells):
 def run_with(tmp_path, alone):
     """Make the folder of a run whose frames hold the given pressures, 0.25 s apart."""
 
-    def make(arrays, *pressures, gravity=None):
+    def make(arrays, *pressures, gravity=None, spacing=0.1):
         dimensions = arrays["position"].shape[1]
         gravity = gravity or [0.0] * (dimensions - 1) + [-9.8]
-        case = CASE.format(dimensions=dimensions, gravity=gravity)
+        case = CASE.format(dimensions=dimensions, gravity=gravity, spacing=spacing)
         frames = FrameFile(tmp_path / "tank.h5", alone, {"case": case})
         for k, pressure in enumerate(pressures):
             velocity = np.ones_like(arrays["position"])
@@ -133,6 +133,7 @@ def test_title_tells_case_field_and_time(tank):
         (lambda x: 30 * x - 10, "viridis", -10.0, 20.0),  # the same colours whatever the signs
         (lambda x: 100 * x - 2, "viridis", 0.0, 98.0),  # hardly below zero
         (lambda x: 0 * x - 2500, "viridis", -2525.0, -2475.0),  # uniform
+        (lambda x: 1e-4 * x - 2500, "viridis", -2525.0, -2475.0),  # more digits than the key has
     ],
 )
 def test_colours_follow_the_signs(run_with, pressure, colours, low, high):
@@ -162,6 +163,51 @@ def test_run_that_blew_up_can_still_be_seen(run_with, alone):
     frames.write(2, 0.2, 2, lost | {"kind": arrays["kind"]})
     assert Show(run, [0.2], "pressure").panel.upper == pytest.approx([4.0, 2.0], abs=0.06)
     plot(run.folder)
+
+
+def bent(count, sag):
+    """A beam of two layers, 0.1 apart, whose free end hangs lower by ``sag`` m."""
+    arrays = box(count, 2)
+    arrays["position"][:, 1] -= sag * (arrays["position"][:, 0] / (0.1 * count)) ** 2
+    return arrays
+
+
+@pytest.mark.parametrize(("sag", "lowest"), [(0.0, -0.03), (2.0, -2.0), (50.0, -5.0)])
+def test_a_thin_beam_that_bends_is_seen_whole(run_with, alone, sag, lowest):
+    run = run_with(box(40, 2))
+    frames = FrameFile(run.path, alone, {"case": run.case_text})
+    for k, shape in enumerate([bent(40, 0.0), bent(40, sag)]):
+        frames.write(k, 0.1 * k, k, shape | {"pressure": np.linspace(0, 1, 80)})
+    reached = Show(run, None, "pressure").panel.lower[1]
+    assert reached == pytest.approx(lowest, abs=0.2) if sag < 10 else reached > lowest  # not what blew up
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.01, 2e-4])
+@pytest.mark.parametrize("layers", [2, 4, 12])
+def test_numbers_of_a_low_panel_do_not_overlap_and_stay_on_the_page(run_with, layers, scale):
+    arrays = box(100, layers)
+    arrays["position"] *= scale
+    run = run_with(arrays, np.linspace(0, 3e9, 100 * layers), spacing=0.1 * scale)
+    figure = Show(run, [0.0], "pressure").picture([0])
+    renderer = figure.canvas.get_renderer()
+    figure.draw(renderer)
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            texts = [axis.label, *axis.get_ticklabels()]
+            low, high = sorted(axis.get_view_interval())
+            places = [None, *axis.get_ticklocs()]
+            seen = [t for t, p in zip(texts, places) if t.get_text() and (p is None or low <= p <= high)]
+            boxes = [text.get_window_extent(renderer) for text in seen]
+            assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
+            assert all(0 <= b.x0 and b.x1 <= figure.bbox.x1 for b in boxes)
+            assert all(0 <= b.y0 and b.y1 <= figure.bbox.y1 for b in boxes)
+
+
+@pytest.mark.parametrize(
+    ("largest", "factor", "unit"), [(4.0, 1.0, "m"), (0.02, 1e3, "mm"), (5e-5, 1e6, "µm"), (0.0, 1e6, "µm")]
+)
+def test_places_are_told_in_a_unit_of_their_size(largest, factor, unit):
+    assert style.length(largest) == (factor, unit)
 
 
 MIRRORED = """
@@ -260,6 +306,7 @@ def test_log_shows_the_change_of_energy_and_growth_in_decades(tank):
         ("m/s", 1e-7, 1e7, "$10^{-7}$ m/s"),
         ("m/s", 0.0, 1.0, "m/s"),
         ("m2/s", np.inf, 1.0, "m²/s"),
+        ("1", 0.3, 1.0, ""),
     ],
 )
 def test_numbers_have_few_digits(unit, largest, factor, text):
