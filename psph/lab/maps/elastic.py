@@ -1,16 +1,22 @@
 """The verb ``stability --elastic``: waves of an elastic lattice in each description of it."""
 
-from collections.abc import Iterator, Mapping
+import csv
+import io
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from psph.lab.battery.tables import table
 from psph.lab.maps.tables import write
 from psph.theory.stability.elastic import Matter, TotalLagrangian, UpdatedLagrangian
+from psph.theory.stability.growth import Growth
 from psph.theory.stability.zigzags import Description, elastic_growth, fastest, limp_waves, zigzag
 
-PAGE, FOLDER = "elastic.md", Path("elastic")
+CSV, PAGE, FOLDER = "elastic.csv", "elastic.md", Path("elastic")
+UNIT = "c_l/h"
+"""Of rates of growth."""
 
 POISSON = 0.4
 """Of the tables."""
@@ -36,14 +42,31 @@ STATES: Mapping[str, tuple[float, float]] = {
 """Stretches of a square lattice; "one way" nothing pulls across, in plane strain."""
 
 
+class Row(NamedTuple):
+    """A description of elastic matter: its ``limp`` waves (n, 2) in π/dx, ω h/c_l of its softest ``zigzag``
+    and of its ``fastest`` wave, all at rest, and the growth in each of ``STATES``, rates in ``UNIT``."""
+
+    description: str
+    limp: np.ndarray
+    zigzag: float
+    fastest: float
+    growths: tuple[Growth, ...]
+
+    @property
+    def limp_waves(self) -> str:
+        """Those waves in words; nothing where there are none."""
+        return ", ".join("(" + " ".join(f"{k:.3g}" for k in wave) + ")" for wave in self.limp)
+
+
 def elastic(comm, out: Path | None) -> None:
     """Compute and print the table, on rank 0."""
     if comm.rank == 0:
-        rows = list(_rows())
-        text, folder = "\n".join(_markdown(rows)) + "\n", out or FOLDER
+        rows = list(survey())
+        text, folder = markdown(rows), out or FOLDER
         print(text)
+        write(folder / CSV, as_csv(rows))
         write(folder / PAGE, text)
-        print(f"wrote {folder / PAGE}")
+        print(f"wrote {folder}: {CSV}, {PAGE}")
 
 
 def matter(poisson: float, **more) -> Matter:
@@ -52,32 +75,55 @@ def matter(poisson: float, **more) -> Matter:
     return Matter(part, 0.5 * (1.0 - part), **{"stretches": (1.0, 1.0), **more})
 
 
-def _rows() -> Iterator[list[str]]:
-    yield ["description", "limp", "zigzag", "fastest", *STATES]
+def survey() -> Iterator[Row]:
+    """Each description, at rest and stretched."""
     for name, of in DESCRIPTIONS.items():
         rest = matter(POISSON)
-        rates = (elastic_growth(of, matter(POISSON, stretches=s)) for s in STATES.values())
-        yield [
+        found = (elastic_growth(of, matter(POISSON, stretches=s)) for s in STATES.values())
+        yield Row(
             name,
-            ", ".join(_word(wave) for wave in limp_waves(of, rest)) or "–",
-            f"{round(zigzag(of, rest), 9):.2g}",
-            f"{fastest(of, rest):.3g}",
-            *("·" if one.stable else f"{one.rate * rest.smoothing:.2g}" for one in rates),
-        ]
+            limp_waves(of, rest),
+            zigzag(of, rest),
+            fastest(of, rest),
+            tuple(one._replace(rate=one.rate * rest.smoothing) for one in found),
+        )
 
 
-def _word(wave: np.ndarray) -> str:
-    """A wave vector in π/dx."""
-    return "(" + " ".join(f"{k:.3g}" for k in wave) + ")"
+def markdown(rows: Sequence[Row]) -> str:
+    """The table and what its columns mean."""
+    return "\n".join(_markdown(rows)) + "\n"
 
 
-def _markdown(rows: list[list[str]]) -> Iterator[str]:
-    head, *body = rows
-    yield from table(head, body)
+def _markdown(rows: Sequence[Row]) -> Iterator[str]:
+    yield from table(["description", "limp", "zigzag", "fastest", *STATES], [_cells(row) for row in rows])
     yield ""
     yield (
         f"Square lattice, Wendland C2, h/dx √2, ν {POISSON:g}, plane strain. *limp*: waves without stiffness "
         "at rest, their k in π/dx; *zigzag*: ω h/c_l of the softest wave at the corners of the Brillouin "
-        "zone, at rest; *fastest*: ω h/c_l, which limits the time step; then the fastest growth in c_l/h of "
-        "a lattice that is stretched evenly, · where nothing grows."
+        "zone, at rest; *fastest*: ω h/c_l, which limits the time step; then the fastest growth in "
+        f"{UNIT} of a lattice that is stretched evenly, · where nothing grows."
     )
+
+
+def _cells(row: Row) -> list[str]:
+    rates = ["·" if one.stable else f"{one.rate:.2g}" for one in row.growths]
+    return [
+        row.description,
+        row.limp_waves or "–",
+        f"{round(row.zigzag, 9):.2g}",
+        f"{row.fastest:.3g}",
+        *rates,
+    ]
+
+
+def as_csv(rows: Sequence[Row]) -> str:
+    """Every growth with all its digits and its wave vector, rad/dx."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    names = ["description", "state", "growth_rate", "stable", "wave_x", "wave_y", "limp", "zigzag", "fastest"]
+    writer.writerow(names)
+    for row in rows:
+        rest = [row.limp_waves, row.zigzag, row.fastest]
+        for state, one in zip(STATES, row.growths):
+            writer.writerow([row.description, state, one.rate, one.stable, *one.wave_vector.tolist(), *rest])
+    return out.getvalue()

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from psph.lab.report import battery, bench, maps, study
+from psph.lab.report import battery, bench, elastic, maps, study
 from psph.lab.report.sheet import Told, embedded, interactive, written
 from psph.output.checkpoint import COPY
 from psph.runs.summary import UNTOLD, read_summary
@@ -13,10 +13,10 @@ TEMPLATE = "results.html"
 def report_of_results(path: Path) -> Path | None:
     """Write the report of what was measured in ``path``; its path, None where nothing of that kind is there.
 
-    ``path`` is the folder of a study, of a battery, of remedies or walls compared, of a map, or a file of
-    ``bench --json``.
+    ``path`` is the folder of a study, of a battery, of remedies or walls compared, of a map or a table of
+    ``stability``, or a file of ``bench --json``.
     """
-    for told in (study.told, battery.told, maps.told, bench.told):
+    for told in (study.told, battery.told, maps.told, elastic.told, bench.told):
         if found := told(path):
             return _write(found)
     return None

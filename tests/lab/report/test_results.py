@@ -1,4 +1,4 @@
-"""Reports of a study, a battery, a map and a bench: whole in themselves, drawn by a browser, with what was measured."""
+"""Reports of a study, a battery, a map, a table and a bench: whole in themselves, drawn by a browser, with what was measured."""
 
 import json
 
@@ -10,6 +10,7 @@ from long import LONG
 from psph.lab.battery import tables
 from psph.lab.battery.trials import BATTERY, OURS
 from psph.lab.battery.verdicts import VERDICTS, judged
+from psph.lab.maps import elastic
 from psph.lab.maps import picture as map_picture
 from psph.lab.maps import tables as map_tables
 from psph.lab.maps.survey import Row
@@ -111,6 +112,19 @@ def a_map(folder):
     return folder
 
 
+def an_elastic_table(folder):
+    """What ``stability --elastic`` writes of two descriptions, one of which grows in all states but the last."""
+    folder.mkdir()
+    wave, none = np.array([np.pi, 0.0]), np.zeros((0, 2))
+    grows = tuple(Growth(0.1 * k, wave, k == 0) for k in (1, 2, 3, 0))
+    stands = tuple(Growth(0.0, wave, True) for _ in elastic.STATES)
+    limp = np.array([[0.0, 1.0], [1.0, 1.0]])
+    rows = [elastic.Row("total", none, 1.4, 1.5, stands), elastic.Row("updated", limp, 0.0, 1.13, grows)]
+    (folder / elastic.CSV).write_text(elastic.as_csv(rows))
+    (folder / elastic.PAGE).write_text(elastic.markdown(rows))
+    return folder
+
+
 KINDS = {
     "study": (
         a_study,
@@ -118,6 +132,10 @@ KINDS = {
     ),
     "battery": (a_battery, ["Hard cases under every scheme", BATTERY[0].name, OURS]),
     "map": (a_map, ["Which lattices are stable", "<h3>Square lattice", "under tension", "stable"]),
+    "elastic table": (
+        an_elastic_table,
+        ["Which descriptions of elastic solids are stable", "<td>(0 1), (1 1)</td>", "5 % longer one way"],
+    ),
     "bench": (
         a_bench,
         ["A &lt;processor&gt;, 2 cores", "dam break half-way through its fall", "<td>5.00</td>"],
@@ -181,6 +199,23 @@ const full = (grid) => grid.flat().filter((value) => value !== null).length;
 return {
     found: plot.data.map((one) => full(one.z)),
     words: plot.data[1].text[1][plot.data[1].x.indexOf(1.2)],
+    drawn: plot.querySelectorAll(".heatmaplayer image").length,
+};
+"""
+
+
+@NEEDS_CHROMIUM
+def test_a_browser_draws_the_growth_of_elastic_lattices(tmp_path):
+    told = scripted(report(an_elastic_table(tmp_path / "elastic")), tmp_path, ELASTIC)
+    assert told["found"] == [len(elastic.STATES) + 1, len(elastic.STATES) - 1]  # stable, growing
+    assert told["drawn"] == 2 and told["words"] == "grows by 0.2 c_l/h, wave vector (3.14, 0) rad/dx"
+
+
+ELASTIC = """
+const plot = document.getElementById("diagram");
+return {
+    found: plot.data.map((one) => one.z.flat().filter((value) => value !== null).length),
+    words: plot.data[1].text[1][1],
     drawn: plot.querySelectorAll(".heatmaplayer image").length,
 };
 """
