@@ -8,7 +8,7 @@ import numpy as np
 from psph.case.keys import AXES
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import inside
-from psph.scene.solids import across, anvils_of, calming, impedance
+from psph.scene.solids import across, anvils_of, calming, impedance, thinnest
 from psph.scene.species import NONE
 
 if TYPE_CHECKING:
@@ -30,6 +30,9 @@ LOCKING = 0.49
 ALIKE = 1.3
 """By how much the two speeds of sound in the bulk of a metal may differ: of copper by 1.04."""
 
+STIFFEST = 1.3e12
+"""Pa: diamond has 1.2e12."""
+
 SLOWEST = 2.0
 """Wave speed over the expected speed below which a solid is hardly one."""
 
@@ -38,14 +41,14 @@ def solid_faults(scene: "Scene") -> Iterator[str]:
     """A line for each solid that is too thin for any stress, for each load that pulls nothing, and for each
     two clamps of a solid that share particles."""
     yield from _shared(scene)
-    for number, name in enumerate(scene.case.referred, scene.layout.fluids):
-        wide, axis = across(scene, number - scene.layout.fluids)
+    for number, name in _elastic(scene):
+        wide, axis = thinnest(scene, number)
         if wide == 1:
             yield (
                 f"solids.{name}.shape: one particle thick along {AXES[axis]}, where no strain is known; make "
                 f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
             )
-        for load, table in scene.case.referred[name].loads.items():
+        for load, table in scene.case.solids[name].loads.items():
             if not _pulls(scene, _parts(scene, number), table.shape):
                 yield f"solids.{name}.loads.{load}.shape: no particle of the solid lies in it; move it there"
 
@@ -60,21 +63,9 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
         )
     if case.physics.contact is not None:
         yield from _pushed_apart(scene)
+    for number, name in _elastic(scene):
+        yield from _of_either_description(scene, number, name)
     for number, (name, table) in enumerate(scene.case.referred.items(), scene.layout.fluids):
-        wide, axis = across(scene, number - scene.layout.fluids)
-        if wide < FEWEST:
-            yield (
-                f"solids.{name}.shape: {wide} particles thick along {AXES[axis]}: it will bend too softly; "
-                f"give space.spacing = {wide * scene.spacing / FEWEST:.3g} or less"
-            )
-        if not LIGHTEST <= table.density <= HEAVIEST:
-            yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
-        wave = scene.elastic_solids[number - scene.layout.fluids].wave_speed
-        if wave < SLOWEST * scene.expected_speed:
-            yield (
-                f"solids.{name}.young: waves of {wave:.3g} m/s, where {scene.expected_speed:.3g} m/s are "
-                "expected: it will collapse; Young's modulus is in Pa: rubber has 1e6 to 1e8, steel 2e11"
-            )
         if not table.hourglass:
             yield (f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; give 1.5")
         yield from _numbers(f"solids.{name}", table)
@@ -87,6 +78,37 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
         yield from _behind_anvils(scene, number, f"solids.{name}")
         if scene.case.fluids:
             yield from _answers(scene, number - scene.layout.fluids, f"solids.{name}", table)
+
+
+def _elastic(scene: "Scene") -> Iterator[tuple[int, str]]:
+    """The material and the name of each elastic solid, total or updated Lagrangian."""
+    case = scene.case
+    yield from ((n, name) for n, name in enumerate(case.flowing) if name in case.updated)
+    yield from enumerate(case.referred, scene.layout.fluids)
+
+
+def _of_either_description(scene: "Scene", number: int, name: str) -> Iterator[str]:
+    """A line for a solid that is thin, and for each number of it that is likely in another unit."""
+    table, (wide, axis) = scene.case.solids[name], thinnest(scene, number)
+    if 1 < wide < FEWEST:
+        yield (
+            f"solids.{name}.shape: {wide} particles thick along {AXES[axis]}: it will bend too softly; "
+            f"give space.spacing = {wide * scene.spacing / FEWEST:.3g} or less"
+        )
+    if not LIGHTEST <= table.density <= HEAVIEST:
+        yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
+    own = number - scene.layout.fluids
+    wave = table.wave_speed if table.is_updated else scene.elastic_solids[own].wave_speed
+    if wave < SLOWEST * scene.expected_speed:
+        yield (
+            f"solids.{name}.young: waves of {wave:.3g} m/s, where {scene.expected_speed:.3g} m/s are "
+            "expected: it will collapse; Young's modulus is in Pa: rubber has 1e6 to 1e8, steel 2e11"
+        )
+    if table.young > STIFFEST:
+        yield (
+            f"solids.{name}.young: {table.young:g} Pa, and diamond has 1.2e12; it is in Pa: rubber has 1e6 "
+            "to 1e8, steel 2e11"
+        )
 
 
 def _numbers(key: str, table) -> Iterator[str]:

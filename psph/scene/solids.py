@@ -79,7 +79,13 @@ def step_of_fluid(scene: "Scene") -> float:
 
 def across(scene: "Scene", number: int) -> tuple[int, int]:
     """The fewest particles that a solid has along an axis, its clamped part with it, and that axis."""
-    parts = [n for n in range(scene.layout.first_wall) if scene.layout.elastic_of(n) == number]
+    return thinnest(scene, scene.layout.fluids + number)
+
+
+def thinnest(scene: "Scene", material: int) -> tuple[int, int]:
+    """The same of any material that moves freely."""
+    layout = scene.layout
+    parts = [material, *(n for n, of in enumerate(layout.clamps, layout.movers) if of == material)]
     low, high = scene.census.lowest[parts].min(axis=0), scene.census.highest[parts].max(axis=0)
     counts = np.rint((high - low) / scene.spacing).astype(int) + 1
     for d, period in enumerate(scene.periods):

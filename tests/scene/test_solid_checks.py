@@ -110,6 +110,7 @@ def test_a_sound_beam_is_good(tmp_path):
         ),
         (["solids.beam.shape.box.upper=[0.4,0.01]"], "solids.beam.shape: one particle thick along y"),
         (["solids.beam.young=1.0"], "solids.beam.young: waves of 0.0463 m/s"),
+        (["solids.beam.young=1e15"], "solids.beam.young: 1e+15 Pa, and diamond has 1.2e12"),
         (["solids.beam.hourglass=0.0"], "solids.beam.hourglass: 0 leaves zigzags"),
         (
             ["solids.beam.loads.end={shape={box={lower=[7.0,0.0],upper=[8.0,1.0]}},force=[0.0,1.0]}"],
@@ -191,6 +192,22 @@ def test_a_sound_beam_is_good(tmp_path):
 )
 def test_what_is_wrong_is_said(tmp_path, overrides, says):
     assert says in said(tmp_path, *overrides)
+
+
+@pytest.mark.parametrize(
+    ("override", "says"),
+    [
+        ("solids.beam.shape.box.upper=[0.4,0.01]", "solids.beam.shape: one particle thick along y"),
+        ("solids.beam.shape.box.upper=[0.4,0.02]", "solids.beam.shape: 2 particles thick along y"),
+        ("solids.beam.young=1.0", "solids.beam.young: waves of 0.0463 m/s"),
+        ("solids.beam.density=1e5", "solids.beam.density: 100000 kg/m3"),
+        ("solids.beam.clamped.box.upper=[0.4,0.05]", "solids.beam: its clamps hold all of it"),
+    ],
+)
+def test_of_updated_solids_too(override, says, tmp_path):
+    updated = ('scheme="solid"', "solids.beam.description=updated")
+    assert said(tmp_path, *updated) == ""
+    assert says in said(tmp_path, *updated, override)
 
 
 def test_clamped_and_free_particles_share_the_solid(tmp_path):
