@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 MOST_CREEP = 0.05
 """Rate of the creep below the yield, over that of the flow, above which the cap hides the yield."""
 
+MOST_STRAIN = 0.1
+"""By which a paste that is to stand may creep until the end of a run."""
+
 
 def laws_of(case) -> tuple[Any, ...]:
     """The different laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
@@ -44,6 +47,15 @@ class Paste(NamedTuple):
     def creep(self) -> float:
         """The largest rate of strain below its yield, 1/s."""
         return self.law.yield_stress / self.law.largest
+
+    @property
+    def sag(self) -> float:
+        """The rate at which it creeps under ``stress`` below its yield, −ln(1 − τ/τ_y)/m and no less than by
+        the cap, 1/s."""
+        part = self.stress / self.law.yield_stress
+        if part >= 1.0:
+            return math.inf
+        return max(self.stress / self.law.largest, -math.log1p(-part) / self.law.regularisation)
 
 
 def pastes(scene: "Scene") -> Iterator[Paste]:
@@ -132,6 +144,7 @@ def _paste_lines(paste: Paste) -> Iterator[str]:
     yield says
     if not paste.rate:
         yield f"does not flow: weight over {paste.thickness:.3g} m brings about {paste.stress:.3g} Pa at most"
+        yield f"creeps under that at up to {paste.sag:.2g} 1/s"
         return
     flowing = law.consistency * paste.rate**law.exponent
     yield f"Bingham number {law.yield_stress / flowing:.2g} at {paste.rate:.3g} 1/s, the most that moves it"
@@ -147,4 +160,11 @@ def rheology_warnings(scene: "Scene") -> Iterator[str]:
                 f"{paste.key}: the largest viscosity, {paste.law.largest:.3g} Pa s, hides the yield: below "
                 f"that the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of the rate "
                 f"of its flow; give largest_viscosity = {least:.2g} or more"
+            )
+        if not paste.rate and (strain := paste.sag * scene.case.time.end) > MOST_STRAIN:
+            least = paste.law.largest * strain / MOST_STRAIN
+            yield (
+                f"{paste.key}: it is to stand, but by its largest viscosity, {paste.law.largest:.3g} Pa s, "
+                f"it creeps by a strain of {strain:.2g} until time.end; "
+                f"give largest_viscosity = {least:.2g} or more"
             )

@@ -41,8 +41,19 @@ def test_explain_tells_yield_plug_bingham_number_creep_and_cost(tmp_path):
 
 
 def test_explain_says_where_nothing_flows(tmp_path):
-    lines = said(tmp_path, TANK, MUD % (5000.0, 2e4))
-    assert lines[-1] == "does not flow: weight over 0.5 m brings about 4.9e+03 Pa at most"
+    *_, line, creep = said(tmp_path, TANK, MUD % (5000.0, 2e4))
+    assert line == "does not flow: weight over 0.5 m brings about 4.9e+03 Pa at most"
+    assert creep == "creeps under that at up to 0.98 1/s"  # −ln(1 − 0.98)/4 s
+
+
+def test_a_cap_by_which_standing_mud_creeps_is_warned_of(tmp_path):
+    """4900 Pa under 1e5 Pa: −ln(1 − 0.049) 1e5/1e5 = 0.0502 1/s, a strain of 0.1 in 2 s; the advice is quiet."""
+    [line] = checked(tmp_path, TANK, MUD % (1e5, 2e4))
+    assert line.endswith(
+        "it is to stand, but by its largest viscosity, 2e+04 Pa s, it creeps by a strain of 0.5 until time.end; "
+        "give largest_viscosity = 1e+05 or more"
+    )
+    assert checked(tmp_path, TANK, MUD % (1e5, 1.01e5)) == []
 
 
 def test_a_cap_that_hides_the_yield_is_warned_of(tmp_path):
@@ -80,7 +91,7 @@ def test_a_layer_of_some_length_on_a_slope_is_sheared_by_its_front_too(tmp_path)
     """1 m long, 0.5 m thick: 0.98 m/s² along it and half of 9.75 across it, 2.93 kPa over its thickness."""
     tilted = "physics.gravity=[0.98, -9.75]"
     lines = said(tmp_path, TANK, MUD % (5000.0, 2e4), tilted)
-    assert lines[-1] == "does not flow: weight over 0.5 m brings about 2.93e+03 Pa at most"
+    assert lines[-2] == "does not flow: weight over 0.5 m brings about 2.93e+03 Pa at most"
 
 
 @pytest.mark.parametrize(("tau", "warned"), [(10.0, True), (49.0, False)])
