@@ -47,7 +47,7 @@ def _with_verb(arguments: list[str]) -> list[str]:
     if arguments and not arguments[0].startswith("-") and arguments[0] not in VERBS:
         from psph.case.errors import refuse_if_neither
 
-        refuse_if_neither(arguments[0], VERBS)
+        refuse_if_neither(arguments[0], [*VERBS, "--help", "--version"])
         return ["run", *arguments]
     return arguments
 

@@ -1,6 +1,7 @@
 """The options of the command line, verb by verb."""
 
 import argparse
+import difflib
 import re
 import sys
 from collections.abc import Iterator
@@ -34,11 +35,33 @@ class _Folder(argparse.Action):
 class _Parser(argparse.ArgumentParser):
     """Says in one line what is wrong with the arguments."""
 
+    def parse_args(self, args=None, namespace=None):
+        """The options; what a verb does not know is refused with what is nearest to it there."""
+        parsed, unknown = self.parse_known_args(args, namespace)
+        if unknown:
+            verbs = next((a.choices for a in self._actions if isinstance(a, argparse._SubParsersAction)), {})
+            verb = (args or [""])[0]
+            self._refuse(unknown, verbs.get(verb, self))
+        return parsed
+
+    def _refuse(self, unknown: list[str], by: argparse.ArgumentParser) -> NoReturn:
+        """Leave with code 2, for words that the parser of a verb does not know."""
+        said, first = f"unrecognized arguments: {' '.join(unknown)}", unknown[0].partition("=")[0]
+        near = difflib.get_close_matches(first, by._option_string_actions, n=1, cutoff=0.7)
+        advice = f"`{by.prog} --help` lists what there is"
+        if found := NUMBER_OF_RANKS.search(said):
+            advice = f"the number of ranks is for mpirun: mpirun -n {found[1] or 'N'} {self.prog} ..."
+        elif near:
+            advice = f"did you mean {near[0]}?"
+        elif first.endswith(".toml"):
+            advice = "one case at a time; give a command for each"
+        elif first.startswith("--") and "--set" in by._option_string_actions:
+            advice += "; a key of the case is set by --set KEY=VALUE"
+        self.exit(2, one_line(f"{self.prog}: {said}; {advice}") + "\n")
+
     def error(self, message: str) -> NoReturn:
         """Leave with code 2."""
         advice = f"`{self.prog} --help` lists what there is"
-        if found := NUMBER_OF_RANKS.search(message):
-            advice = f"the number of ranks is for mpirun: mpirun -n {found[1] or 'N'} {self.prog} ..."
         self.exit(2, one_line(f"{self.prog}: {message}; {advice}") + "\n")
 
 

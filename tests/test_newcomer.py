@@ -52,6 +52,53 @@ IN_THE_CASE = {
         "raduis",
         "drop.toml: fluids.drop.shape.disc.raduis: unknown key; did you mean 'radius'?",
     ),
+    "no spacing": (
+        "spacing = 0.01",
+        "spacing = 0",
+        "drop.toml: space.spacing: 0 is out of range; it must be above 0",
+    ),
+    "an end before the start": (
+        "time.end = 0.6",
+        "time.end = -1",
+        "drop.toml: time.end: -1 is out of range; it must be above 0",
+    ),
+    "gravity in cm/s²": (
+        "-9.8",
+        "-980",
+        "warning: drop.toml: physics.gravity: [0.0, -980.0] m/s² is 99.9 times that of the earth, which is 9.81 "
+        "m/s²; were other units meant?",
+    ),
+    "a scheme by a slip of the pen": (
+        "physics.gravity",
+        'scheme = "stabel"\nphysics.gravity',
+        "drop.toml: scheme: \"stabel\" is not known; did you mean 'stable'?",
+    ),
+    "corners in the wrong order": (
+        "lower = [0.0, 0.0], upper = [1.0, 0.2]",
+        "lower = [1.0, 0.2], upper = [0.0, 0.0]",
+        "drop.toml: fluids.pool.shape.box: has no inside; let every number of 'upper' exceed that of 'lower'",
+    ),
+    "a body without mass": (
+        "[walls.tank",
+        "bodies.b.shape.box = { lower = [0.1, 0.3], upper = [0.2, 0.35] }\n[walls.tank",
+        "drop.toml: bodies.b: give either mass or density",
+    ),
+    "a mesh that is not there": (
+        "[walls.tank",
+        'bodies.b = { shape.mesh = { file = "hull.stl", scale = 1.0 }, density = 500 }\n[walls.tank',
+        "drop.toml: bodies.b.shape.mesh.file: hull.stl: No such file or directory; give a file that is there",
+    ),
+    "a probe outside": (
+        "[walls.tank",
+        "probes.p.position = [5.0, 0.0]\n[walls.tank",
+        "drop.toml: probes.p.position: [5, 0] lies outside the domain [-0.03, -0.03] to [1.03, 0.6]; move it inside",
+    ),
+    "a viscosity that is none": (
+        "[walls.tank",
+        "fluids.pool.viscosity = 1000\n[walls.tank",
+        "warning: drop.toml: fluids.pool.viscosity: 1000 m²/s makes time steps 9.1e+03 times shorter than sound "
+        "does; it is the kinematic viscosity in m²/s: water has 1e-6, honey 7e-3",
+    ),
     "a kernel by half its name": (
         "spacing = 0.01",
         'spacing = 0.01, kernel = "wendland"',
@@ -84,6 +131,17 @@ ON_THE_COMMAND_LINE = {
     "drop.toml --ranks 4": "python -m psph: unrecognized arguments: --ranks 4; the number of ranks is for mpirun: "
     "mpirun -n 4 python -m psph ...",
     "check drop.toml --set time_end=1": "drop.toml with --set time_end=1: time_end: unknown key; did you mean 'time'?",
+    "drop.toml drop.toml": "python -m psph: unrecognized arguments: drop.toml; one case at a time; give a command "
+    "for each",
+    "drop.toml --ouput here": "python -m psph: unrecognized arguments: --ouput here; did you mean --out?",
+    "drop.toml --end 3": "python -m psph: unrecognized arguments: --end 3; `python -m psph run --help` lists what "
+    "there is; a key of the case is set by --set KEY=VALUE",
+    "help": "help: neither a command nor a case file; did you mean '--help'?",
+    "drop.toml --set time.end": "drop.toml with --set time.end: no key and value; write it as key.key=value",
+    "explain drop.toml --ranks 0": "explain --ranks 0: not a number of ranks; give 1 or more",
+    "export drop.toml --to vtp": "python -m psph export: argument --to: invalid choice: 'vtp' (choose from 'vtk', "
+    "'gadget', 'paraview'); `python -m psph export --help` lists what there is",
+    "check .": ".: Is a directory; give the path of a case in TOML",
     "resume drop": "drop: there is no such folder: give the folder that a run has written",
     "plot drop.toml": "drop.toml: the folder of a run holds one file of frames (.h5), here: none; give the folder "
     "that psph wrote to",

@@ -6,9 +6,42 @@ from pathlib import Path
 import numpy as np
 
 from psph.case.files import Unfit
+from psph.errors import LONGEST_QUOTE, UNPRINTABLE, shortened
 
 MOST_ROWS = 1_000_000
 """Of a series: a day at 10 per second."""
+
+
+def rows_of(path: Path, most: int) -> list[tuple[int, list[str]]]:
+    """Numbers of lines and cells of a CSV file, without what is empty or begins with #; the first ``most``.
+
+    Raises Unfit where it cannot be read, is no text, or no CSV.
+    """
+    found: list[tuple[int, list[str]]] = []
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as file:
+            for n, line in enumerate(file, 1):
+                if UNPRINTABLE.search(line.replace("\t", " ").rstrip("\r\n")):
+                    raise Unfit(f"{path}: line {n} is no text; {GIVE}")
+                if line.strip() and line[0] != "#":
+                    found.append((n, next(csv.reader([line], strict=True))))
+                if len(found) == most:
+                    break
+    except UnicodeDecodeError:
+        raise Unfit(f"{path} is no text in UTF-8; {GIVE}") from None
+    except OSError as error:
+        raise Unfit(f"{path}: {error.strerror or error}; give a CSV file in the case's folder") from None
+    except csv.Error as error:
+        raise Unfit(f"{path}: line {n}: {error}; give numbers with commas between them") from None
+    return found
+
+
+GIVE = "give a CSV file: a line of names, and rows of numbers"
+
+
+def named(names: list[str]) -> str:
+    """The columns that a file has, for a message."""
+    return shortened(", ".join(names), LONGEST_QUOTE)
 
 
 def read_columns(path: Path, names: list[str]) -> np.ndarray:
@@ -16,20 +49,15 @@ def read_columns(path: Path, names: list[str]) -> np.ndarray:
 
     Raises Unfit.
     """
-    try:
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            lines = ((n, line) for n, line in enumerate(file, 1) if line.strip() and line[0] != "#")
-            (first, head), *body = lines
-            found = [part.strip() for part in next(csv.reader([head], strict=True))]
-            cells = [(n, next(csv.reader([line], strict=True))) for n, line in body[: MOST_ROWS + 1]]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise Unfit(f"{path}: {error}; give a CSV file of numbers") from None
-    except ValueError:
-        raise Unfit(f"{path} is empty; give a line of names, and rows of numbers") from None
+    lines = rows_of(path, MOST_ROWS + 2)
+    if not lines:
+        raise Unfit(f"{path} is empty; {GIVE}")
+    (_, head), *cells = lines
+    found = [part.strip() for part in head]
     for name in names:
         if found.count(name) != 1:
             how = "no column" if name not in found else "more than one column"
-            raise Unfit(f"{path} has {how} '{name}', only {', '.join(found)}; name one of its columns")
+            raise Unfit(f"{path} has {how} '{name}', only {named(found)}; name one of its columns")
     if len(cells) < 2:
         raise Unfit(f"{path} has {len(cells)} row{'s' * (len(cells) != 1)}; give two at least")
     if len(cells) > MOST_ROWS:
@@ -50,7 +78,7 @@ def _numbers(path: Path, line: int, row: list[str], names: list[str], places: li
         try:
             values.append(float(row[place]))
         except ValueError:
-            word = row[place].strip() or "nothing"
+            word = shortened(row[place].strip(), LONGEST_QUOTE) or "nothing"
             raise Unfit(f"{path}: line {line}: {names[place]} is {word}; give a number") from None
         if not abs(values[-1]) < 1e30:
             raise Unfit(

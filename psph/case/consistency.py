@@ -7,7 +7,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.bodies import held_together
 from psph.case.errors import advise
-from psph.case.findings import Finding, Location, asked_of
+from psph.case.findings import Finding, Location, asked_of, not_of
 from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
@@ -25,7 +25,6 @@ def contradictions(case) -> list[InitErrorDetails]:
     """All contradictions between the keys of a case."""
     rules = (
         _named,
-        _dimensions,
         _square,
         _axes,
         _domain,
@@ -50,7 +49,9 @@ def contradictions(case) -> list[InitErrorDetails]:
     )
     if not case.flowing and not case.solids:
         return [_without_matter(case)]
-    found = list(_sizes(case)) or [finding for rule in rules for finding in rule(case)]
+    wrong = list(_dimensions(case))
+    more = (finding for rule in rules for finding in rule(case))
+    found = list(_sizes(case)) or [*wrong, *not_of(wrong, more)]
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}

@@ -1,7 +1,9 @@
 """What a rule between the keys of a case finds, and what several of them ask."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
+
+from psph.case.errors import dotted
 
 Location = tuple[str | int, ...]
 Finding = tuple[Location, Any, str]
@@ -12,6 +14,14 @@ MOMENTUM = "momentum"
 
 OF_PAIRS = ("radial", "shear", "push", "finish_acceleration")
 """Methods by which an effect pushes."""
+
+
+def not_of(wrong: Sequence[Finding], findings: Iterable[Finding]) -> Iterator[Finding]:
+    """Those ``findings`` that do not speak of a key that is ``wrong``: rules that read it find it too."""
+    named = [(loc, dotted(loc[:2] if loc[0] == "physics" else loc)) for loc, *_ in wrong]
+    for finding in findings:
+        if not any(finding[0][: len(loc)] == loc or name in finding[2] for loc, name in named):
+            yield finding
 
 
 def asked_of(case) -> Iterator[tuple[str, Any, Any]]:

@@ -14,7 +14,7 @@ from psph.rows import projected
 
 def _velocity(value: Any, validate) -> Any:
     """One message for anything that is not a velocity; a list gets the messages of its numbers."""
-    if isinstance(value, str) and value != EXACT:
+    if value == [] or isinstance(value, str) and value != EXACT:
         raise PydanticCustomError("psph", 'not a velocity; give one number per dimension in m/s, or "exact"')
     return validate(value)
 

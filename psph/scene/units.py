@@ -23,6 +23,9 @@ table-top tank longer than that."""
 LIGHTEST, HEAVIEST = 0.05, 25_000.0
 """kg/m³: hydrogen has 0.08 at room temperature, osmium 22,600."""
 
+EARTH, STRONGEST = 9.81, 100.0
+"""m/s²: gravity at the ground, and that from which on cm/s² or mm/s² are more likely than a centrifuge."""
+
 MOST_SHORTER = 200.0
 """How many times friction may shorten the time steps that sound allows, without a warning: the slow flow
 between plates of run/cases/poiseuille.toml has 15."""
@@ -42,7 +45,7 @@ MOST_UNHELD = 0.5
 
 def slips(scene: "Scene") -> Iterator[str]:
     """A line for each number that is likely not meant."""
-    for kind in (_densities, _viscosities, _long_tank, _falls_out):
+    for kind in (_gravity, _densities, _viscosities, _long_tank, _falls_out):
         yield from kind(scene)
 
 
@@ -55,6 +58,15 @@ def in_millimetres(scene: "Scene", *parts: int) -> str:
         rest = max(up - low for low, up in zip(space.lower, space.upper))
     found = [scene.key_of(part) for part in sorted(parts) if sizes[part] > THOUSANDFOLD * rest]
     return f"; is {' and '.join(found)} given in mm? Lengths are in m" if found else ""
+
+
+def _gravity(scene: "Scene") -> Iterator[str]:
+    pull = float(np.linalg.norm(scene.gravity))
+    if pull > STRONGEST:
+        yield (
+            f"physics.gravity: {[*scene.gravity]} m/s² is {pull / EARTH:.3g} times that of the earth, which "
+            "is 9.81 m/s²; were other units meant?"
+        )
 
 
 def _densities(scene: "Scene") -> Iterator[str]:

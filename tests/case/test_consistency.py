@@ -3,6 +3,8 @@
 import pytest
 from drafts import WATER, draft, refusal
 
+from psph.case import CaseError, load
+
 BALL = "{ center = [0.0, 0.0, 0.0], radius = 1.0 }"
 BOX = "{ lower = [0.0, 0.0], upper = [1.0, 0.5] }"
 PERIODIC = 'spacing = 0.1\nperiodic = ["x"]\n'
@@ -151,6 +153,20 @@ def test_all_contradictions_are_found_at_once(tmp_path):
     text = WATER + "velocity = [1.0]" + WALL + 'continues = "oil"'
     keys = [line.split(": ")[1] for line in refusal(tmp_path, text)]
     assert keys == ["fluids.water.velocity", "walls.floor.continues"]
+
+
+@pytest.mark.parametrize("gravity", ["[0.0]", "[0.0, 0.0, -9.8]", "[]"])
+def test_gravity_of_another_length_is_named_once(gravity):
+    """Waves and hydrostatic pressure read it too."""
+    with pytest.raises(CaseError) as caught:
+        load("run/cases/piston_wave.toml", [f"physics.gravity={gravity}"])
+    [line] = str(caught.value).splitlines()
+    assert f"physics.gravity: {gravity}" in line and "give 2" in line or gravity == "[]"
+
+
+def test_an_empty_velocity_is_named_once(tmp_path):
+    [line] = refusal(tmp_path, WATER + "velocity = []")
+    assert "fluids.water.velocity: []: not a velocity; give one number per dimension" in line
 
 
 def test_the_proposals_are_accepted(tmp_path):

@@ -94,6 +94,8 @@ BAD_ROWS = {
     "one row": (ROWS[:2], "has 1 row; give two at least"),
     "no row": (ROWS[:1], "has 0 rows"),
     "nothing": ([], "is empty"),
+    "a file of bytes": (["\0\1\2" * 500], "line 1 is no text; give a CSV file"),
+    "a line as long as a file": (["a" * 5000, "1", "2"], "aaa ...; name one of its columns"),
     "a column twice": (["time,x,x", "0,1,2", "1,2,3"], "has more than one column 'x'"),
 }
 
