@@ -6,7 +6,9 @@ from psph.case.running import Guards
 from psph.case.schemes import STABLE
 from psph.fields import FLUID
 from psph.physics.facts import SOUND_OVER_SPEED
+from psph.physics.solid.laws import SaintVenantKirchhoff
 from psph.physics.walls.conditions import DYNAMIC
+from psph.scene.solid_checks import fast_start
 from psph.scene.unbearing import unbearing_walls
 from psph.scene.walls import layers_needed, thinnest_walls
 
@@ -17,7 +19,7 @@ FASTER = 2.0
 def advice(scene, guard: str, suspect) -> list[str]:
     """Things to try, the most promising first; at least one."""
     if not scene.case.flowing:
-        return [*_solids(scene), *_bound(guard)]
+        return [*(fast_start(scene) if guard == "speed" else ()), *_solids(scene), *_bound(guard)]
     return [
         *(_solids(scene) if scene.elastic_solids else ()),
         *_driven(scene, guard, suspect),
@@ -35,10 +37,9 @@ def advice(scene, guard: str, suspect) -> list[str]:
 def _solids(scene) -> Iterator[str]:
     if scene.case.time.step is not None:
         yield "remove time.step: the waves in the solids set the step then"
-    yield (
-        'give law = "neo-hookean", which stands more compression, a larger hourglass, or some damping; '
-        "look at the units of young, density and loads"
-    )
+    softens = any(isinstance(one.law, SaintVenantKirchhoff) for one in scene.elastic_solids)
+    law = 'law = "neo-hookean", which stands more compression, ' if softens else ""
+    yield f"give {law}a larger hourglass, or some damping; look at the units of young, density and loads"
 
 
 def _driven(scene, guard: str, suspect) -> Iterator[str]:
@@ -66,12 +67,14 @@ def _shorter_step(scene) -> Iterator[str]:
 
 
 def _scheme(scene) -> Iterator[str]:
-    if scene.case.scheme != STABLE:
+    if scene.case.scheme != STABLE and not scene.case.updated:
         yield f'try scheme = "{STABLE}" in place of "{scene.case.scheme}" and its keys'
 
 
 def _pressure(scene, suspect) -> Iterator[str]:
     physics, open_air = scene.case.physics, scene.has_free_surface
+    if not scene.case.fluids:
+        return  # soils bear as much tension as they are told, and solids any
     if physics.pressure_gradient == "minimum" and open_air:
         yield ('give physics.pressure_gradient = "symmetric": "minimum" (p⁻) is unstable at a free surface')
     if not (suspect.value("pressure") < 0.0 or scene.lowest_pressure < 0.0):
@@ -93,6 +96,10 @@ def _friction(scene) -> Iterator[str]:
 def _sound(scene, guard: str) -> Iterator[str]:
     c = scene.sound_speed
     expected = scene.undriven_speed
+    if not scene.case.fluids:
+        if guard == "density":
+            yield "give a larger young: densities differ by (speed/c)², and c is that of its waves"
+        return
     if expected > FASTER * c / SOUND_OVER_SPEED:
         yield (
             f"raise physics.sound_speed to {SOUND_OVER_SPEED * expected:.3g} m/s, ten times the "

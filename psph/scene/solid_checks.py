@@ -63,6 +63,8 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
         )
     if case.physics.contact is not None:
         yield from _pushed_apart(scene)
+    if case.referred and not case.flowing:
+        yield from fast_start(scene)
     for number, name in _elastic(scene):
         yield from _of_either_description(scene, number, name)
     for number, (name, table) in enumerate(scene.case.referred.items(), scene.layout.fluids):
@@ -78,6 +80,16 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
         yield from _behind_anvils(scene, number, f"solids.{name}")
         if scene.case.fluids:
             yield from _answers(scene, number - scene.layout.fluids, f"solids.{name}", table)
+
+
+def fast_start(scene: "Scene") -> Iterator[str]:
+    """A line where solids start at a speed that guards.speed takes for trouble, as in an impact of shocks."""
+    most, speed = scene.case.guards.speed, scene.starting_speed / scene.sound_speed
+    if speed > most:
+        yield (
+            f"guards.speed: {most:g}, and the solids start at {speed:.3g} speeds of sound: the run would "
+            f"stop at once; give guards.speed = {2.0 * speed:.2g} if this is intended"
+        )
 
 
 def _elastic(scene: "Scene") -> Iterator[tuple[int, str]]:
@@ -99,7 +111,7 @@ def _of_either_description(scene: "Scene", number: int, name: str) -> Iterator[s
         yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
     own = number - scene.layout.fluids
     wave = table.wave_speed if table.is_updated else scene.elastic_solids[own].wave_speed
-    if wave < SLOWEST * scene.expected_speed:
+    if wave < SLOWEST * scene.expected_speed and not table.mie_gruneisen:
         yield (
             f"solids.{name}.young: waves of {wave:.3g} m/s, where {scene.expected_speed:.3g} m/s are "
             "expected: it will collapse; Young's modulus is in Pa: rubber has 1e6 to 1e8, steel 2e11"

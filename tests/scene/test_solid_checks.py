@@ -111,6 +111,10 @@ def test_a_sound_beam_is_good(tmp_path):
         (["solids.beam.shape.box.upper=[0.4,0.01]"], "solids.beam.shape: one particle thick along y"),
         (["solids.beam.young=1.0"], "solids.beam.young: waves of 0.0463 m/s"),
         (["solids.beam.young=1e15"], "solids.beam.young: 1e+15 Pa, and diamond has 1.2e12"),
+        (
+            ["solids.beam.velocity=[100.0,0.0]"],
+            "guards.speed: 1, and the solids start at 1.83 speeds of sound",
+        ),
         (["solids.beam.hourglass=0.0"], "solids.beam.hourglass: 0 leaves zigzags"),
         (
             ["solids.beam.loads.end={shape={box={lower=[7.0,0.0],upper=[8.0,1.0]}},force=[0.0,1.0]}"],
