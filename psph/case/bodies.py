@@ -38,7 +38,7 @@ class Line(Table):
     length: float | None = key(
         "length without tension", None, unit="m", otherwise="the distance of the points at the start", ge=0
     )
-    damping: float = key("force per speed at which it becomes longer", 0.0, unit="N s/m", ge=0)
+    damping: float = key("force over the rate at which it lengthens", 0.0, unit="N s/m", ge=0)
     pulls_only: bool = key("it is slack when shorter than its length: a mooring line without weight", False)
 
 

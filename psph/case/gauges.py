@@ -8,7 +8,7 @@ from pydantic_core import PydanticCustomError
 from psph.case.keys import Axis, Name, Table, Vector, key
 
 MOVES_WITH = key(
-    "the moving wall or the body that carries it along, and turns it; places are then those of the start",
+    "the moving wall or the body that carries it along, and turns it; its places are those of the start",
     None,
     otherwise="it stays where it is in space",
 )

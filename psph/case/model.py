@@ -136,7 +136,7 @@ class Wall(Table):
 
     shape: Shape = key("where the wall is")
     velocity: Vector | None = key(
-        "velocity of the wall's surface in the viscous force, as that of a belt: the wall does not move",
+        "velocity at which its surface drags viscous fluid along, as a belt does: the wall itself stays",
         None,
         unit="m/s",
         otherwise="zeros",

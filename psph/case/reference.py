@@ -58,9 +58,9 @@ python -m psph schema > case.schema.json
 #:schema ./case.schema.json
 ```
 
-Taplo reads this line, and so does every editor that uses it: VS Code with the extension *Even Better TOML*,
-Neovim, Helix, Emacs. `taplo lint case.toml` does the same without an editor. An editor does not read `use`:
-it marks keys that a Python file brings as unknown.
+Taplo reads this line, and so do the editors that build on Taplo: VS Code with the extension *Even Better
+TOML*, Neovim, Helix, Emacs. `taplo lint case.toml` does the same without an editor. An editor does not read
+`use`: it marks keys that a Python file brings as unknown.
 """
 
 COLUMNS = ("key", "value", "default", "unit", "meaning")

@@ -12,8 +12,8 @@ class Probe(Table):
 
     position: Vector | None = key("where", None, unit="m", otherwise="give front")
     extent: Vector | None = key(
-        "lengths along the axes of a sensor around the position: what is written is the mean over it, with "
-        "no pressure where no fluid reaches it",
+        "lengths along the axes of a sensor with the position at its middle: the mean over it is written; "
+        "where it is dry the pressure counts as 0",
         None,
         unit="m",
         otherwise="a point",

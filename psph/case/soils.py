@@ -24,7 +24,7 @@ class Soil(Hookean):
         "largest mean tension that it bears",
         None,
         unit="Pa",
-        otherwise="that of the tip of its cone, c/tan φ in plane strain; c without friction",
+        otherwise="at the tip of its yield cone: c/tan φ in plane strain; c without friction",
         ge=0,
     )
     geostatic: bool = key(

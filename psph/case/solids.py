@@ -109,7 +109,7 @@ class Solid(Hookean):
         ge=0,
     )
     continues: Name | None = key(
-        "the fluid in whose density and initial pressure fluids see it",
+        "the fluid whose density and initial pressure it shows to fluids around it",
         None,
         otherwise="the first fluid",
     )

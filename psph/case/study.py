@@ -34,7 +34,7 @@ class Experiment(Table):
     value: Text = key("name of its column of values")
     probe: Text = key("the column of probes.csv or of a gauge to compare with, such as tip.front")
     time_unit: float = key("seconds per unit of its times", 1.0, unit="s", gt=0)
-    value_unit: float = key("its unit of values, in the probe's unit", 1.0, unit="1")
+    value_unit: float = key("the probe's units per unit of its values", 1.0, unit="1")
 
 
 Choices = Annotated[tuple[float | int | bool | Text, ...], Strict(False), Field(min_length=1)]

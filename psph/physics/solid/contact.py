@@ -43,14 +43,14 @@ class SolidContact(NamedTuple):
 
     stiffness: Annotated[
         float,
-        Key(gt=0, le=10, description="s, over that of the solids", json_schema_extra={"unit": "1"}),
+        Key(gt=0, le=10, description="s: stiffness over that of the solids", json_schema_extra={"unit": "1"}),
     ] = 1.0
     damping: Annotated[
         float,
         Key(
             ge=0,
             le=1,
-            description="ζ, over that at which two particles would not swing back",
+            description="ζ: damping over that from which on two particles do not swing back",
             json_schema_extra={"unit": "1"},
         ),
     ] = 0.0
