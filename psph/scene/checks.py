@@ -14,7 +14,7 @@ from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.fluid.pressure import AUTO
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.driven import driven_flow
-from psph.scene.gauging import astray, buried, left_behind, misplaced, shown
+from psph.scene.gauging import astray, buried, misplaced, misread, shown
 from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings, overshoots
@@ -391,7 +391,7 @@ OF_FLUIDS = (
     driven_flow,
     unbearing_warnings,
     buried,
-    left_behind,
+    misread,
     several_fluids,
     slips,
     rheology_warnings,

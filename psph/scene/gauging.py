@@ -80,7 +80,25 @@ def within_reach(scene: "Scene", names: list[str], point: tuple[float, ...]) -> 
             yield name
 
 
-def left_behind(scene: "Scene") -> Iterator[str]:
+def misread(scene: "Scene") -> Iterator[str]:
+    """A line for each gauge that reads something else than it is likely meant to."""
+    yield from _left_behind(scene)
+    yield from _upside_down(scene)
+
+
+def _upside_down(scene: "Scene") -> Iterator[str]:
+    """A line for each line of a level that goes down: its level is the distance to its lowest wet point."""
+    for name, gauge in scene.case.gauges.items():
+        if (line := gauge.level) is None:
+            continue
+        if sum(g * (top - foot) for g, foot, top in zip(scene.gravity, line.foot, line.top)) > 0.0:
+            yield (
+                f"gauges.{name}.level: its foot {shown(line.foot)} is above its top {shown(line.top)}, and "
+                "the level counts from the foot to the farthest point in the fluid; exchange the two"
+            )
+
+
+def _left_behind(scene: "Scene") -> Iterator[str]:
     """A line for each sensor on a wall that moves away from it."""
     moving = [scene.names[number] for number, _, _ in moving_parts(scene)]
     sensors = [(name, gauge.sensor) for name, gauge in scene.case.gauges.items() if gauge.sensor]

@@ -11,7 +11,7 @@ from long import LONG
 from psph.fields import FLUID
 from psph.output.gauges.level import surfaces
 from psph.output.gauges.points import disc
-from psph.scene import Scene
+from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 
 STIRRED = """
@@ -231,3 +231,11 @@ def test_scenes_without_forces_sum_no_loads(tmp_path):
     assert asked.loaded.tolist() == [False, True] and set(asked.arrays) - set(plain.arrays) == {"load"}
     level = draft(tmp_path, WATER, "gauges.top.highest.axis='y'")
     assert make_plan(Scene(level)).arrays == make_plan(Scene(draft(tmp_path))).arrays
+
+
+def test_check_warns_of_a_level_that_is_measured_downwards(tmp_path):
+    line = "gauges.rod.level={{foot=[0.5,{}],top=[0.5,{}]}}"
+    [told] = [text for text in check(Scene(draft(tmp_path, TANK, line.format(0.6, 0.0)))) if "rod" in text]
+    assert "gauges.rod.level: its foot [0.5, 0.6] is above its top [0.5, 0]" in told
+    upright, level = line.format(0.0, 0.6), "gauges.front.level={foot=[0.0,0.2],top=[1.0,0.2]}"
+    assert not [text for text in check(Scene(draft(tmp_path, TANK, upright, level))) if "gauges" in text]
