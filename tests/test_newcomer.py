@@ -142,6 +142,7 @@ ON_THE_COMMAND_LINE = {
     "export drop.toml --to vtp": "python -m psph export: argument --to: invalid choice: 'vtp' (choose from 'vtk', "
     "'gadget', 'paraview'); `python -m psph export --help` lists what there is",
     "check .": ".: Is a directory; give the path of a case in TOML",
+    "resume drop.toml": "drop.toml: is a file: give the folder that a run has written",
     "resume drop": "drop: there is no such folder: give the folder that a run has written",
     "plot drop.toml": "drop.toml: the folder of a run holds one file of frames (.h5), here: none; give the folder "
     "that psph wrote to",

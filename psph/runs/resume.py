@@ -78,7 +78,8 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
     """
     folder = Path(folder)
     if not (folder / COPY).is_file():
-        lacks = "holds no run" if folder.is_dir() else "there is no such folder"
+        lacks = "is a file" if folder.is_file() else "there is no such folder"
+        lacks = "holds no run" if folder.is_dir() else lacks
         raise CheckpointError(f"{folder}: {lacks}: give the folder that a run has written")
     case = load(folder / COPY, _allowed(extend), "--extend", given)
     found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
