@@ -172,8 +172,9 @@ def _axes(case) -> Iterator[Finding]:
     named = [(("space", "periodic", k), axis) for k, axis in enumerate(case.space.periodic)]
     named.append((("parallel", "axis"), case.parallel.axis))
     named += [(("probes", name, "front"), probe.front) for name, probe in case.probes.items()]
-    if case.physics.damping_zone is not None:
-        named.append((("physics", "damping_zone", "axis"), case.physics.damping_zone.axis))
+    for zone in ("damping_zone", "other_damping_zone"):
+        if (asked := getattr(case.physics, zone)) is not None:
+            named.append((("physics", zone, "axis"), asked.axis))
     for loc, axis in named:
         if axis is not None and axis not in axes:
             yield loc, axis, (f"no axis in {case.space.dimensions}D; give one of {', '.join(axes)}")

@@ -11,7 +11,7 @@ from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusio
 from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.reconstructed import ReconstructedDamping
 from psph.physics.damping.riemann import RiemannDissipation
-from psph.physics.fluid.absorbing import DampingZone
+from psph.physics.fluid.absorbing import DampingZone, OtherDampingZone
 from psph.physics.fluid.apparent import ApparentViscosity
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import GradientCorrection
@@ -140,6 +140,7 @@ CATALOGUE = (
     Entry("physics.gravity", Gravity),
     Entry("physics.central_force", CentralForce),
     Entry("physics.damping_zone", DampingZone),
+    Entry("physics.other_damping_zone", OtherDampingZone),
     Entry("frame.motion", MovingFrame),
     Entry("anvils.*", Anvils),
     Entry("physics.contact", SolidContact),

@@ -13,6 +13,7 @@ from mpi4py import MPI
 from psph.case import load
 from psph.output.reader import Run
 from psph.runs.start import run
+from psph.theory.water_waves import bound_crest, wave_number
 
 DEPTH = 0.3
 
@@ -25,13 +26,21 @@ def sloshed(folder, *overrides):
     return by_id(Run(folder / "run").frame(-1))
 
 
-def test_a_damping_zone_calms_what_is_in_it_alone(tmp_path):
+def test_damping_zones_calm_what_is_in_them_alone(tmp_path):
     free = sloshed(tmp_path / "free")
     beside = sloshed(tmp_path / "beside", "physics.damping_zone={ begin = 1.5, end = 2.5 }")
     assert all(np.array_equal(free[name], beside[name]) for name in free)  # no water is there
     within = sloshed(tmp_path / "within", "physics.damping_zone={ begin = -0.5, end = 1.2 }")
     energy, left = ((one["velocity"] ** 2).sum() for one in (free, within))
     assert left < 0.5 * energy
+    other = sloshed(tmp_path / "other", "physics.other_damping_zone={ begin = -0.5, end = 1.2 }")
+    assert all(np.array_equal(within[name], other[name]) for name in within)
+    ends = (
+        "physics.damping_zone={ begin = -0.5, end = 1.2 }",
+        "physics.other_damping_zone={ begin = 1.5, end = -0.2 }",
+    )
+    both = sloshed(tmp_path / "both", *ends)
+    assert (both["velocity"] ** 2).sum() < 0.5 * left
 
 
 @LONG
@@ -87,6 +96,68 @@ def test_a_paddle_that_absorbs_keeps_waves_before_a_wall_from_growing(tmp_path):
         found.append(np.mean([np.ptp(levels) for levels in periods]))
     assert found[0] == pytest.approx(0.12, rel=0.08)
     assert found[1] > 2.0 * found[0]
+
+
+FLUME = """
+space = { dimensions = 2, spacing = 0.015 }
+time.end = 9.6
+[physics]
+gravity = [0.0, -9.81]
+position_shift = "off"
+damping_zone = { begin = 3.0, end = 5.4 }
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [5.4, 0.3] }
+pressure = "hydrostatic"
+[walls.flume]
+shape.union = [
+  { box = { lower = [-0.15, -0.045], upper = [5.445, 0.0] } },
+  { box = { lower = [5.4, 0.0], upper = [5.445, 0.45] } },
+]
+[walls.paddle]
+shape.box = { lower = [-0.045, 0.0], upper = [0.0, 0.45] }
+motion = { piston = { height = 0.06, period = 1.6, depth = 0.3, order = ORDER }, ramp = 1.6 }
+[output]
+frames = 9.6
+probes = 0.02
+"""
+"""Waves of kh = 0.75 and HL²/h³ = 14, 4 spacings high."""
+PLACES = [0.8 + 0.2 * n for n in range(11)]
+
+
+def second_harmonics(folder, order):
+    """Amplitudes, m, of the waves of half the period: that which goes with the crests, and the free one.
+
+    c₂(x) = B exp(−2ikx) + F exp(−ik₂x), (2ω)² = gk₂ tanh k₂h, through the second harmonic c₂ at the gauges.
+    """
+    folder.mkdir()
+    gauges = (f"gauges.g{n}.level={{ foot = [{x}, 0.0], top = [{x}, 0.42] }}" for n, x in enumerate(PLACES))
+    run(
+        draft(folder, FLUME.replace("ORDER", str(order)), *gauges),
+        folder / "run",
+        MPI.COMM_SELF,
+        say=lambda *_: None,
+    )
+    tables, omega = Run(folder / "run").gauges(), 2.0 * math.pi / 1.6
+    found = []
+    for n in range(len(PLACES)):
+        time = window(tables[f"g{n}"], "time", 6.4, 9.6)
+        turns = [f(m * omega * time) for m in (1, 2, 3) for f in (np.cos, np.sin)]
+        level = window(tables[f"g{n}"], f"g{n}.level", 6.4, 9.6)
+        fit = np.linalg.lstsq(np.stack([np.ones_like(time), *turns], axis=1), level, rcond=None)[0]
+        found.append(fit[3] - 1j * fit[4])
+    numbers = (2.0 * wave_number(omega, DEPTH, 9.81), wave_number(2.0 * omega, DEPTH, 9.81))
+    waves = np.stack([np.exp(-1j * k * np.array(PLACES)) for k in numbers], axis=1)
+    return np.abs(np.linalg.lstsq(waves, np.array(found), rcond=None)[0])
+
+
+@LONG
+@pytest.mark.timeout(1800)
+def test_to_second_order_a_piston_makes_no_free_wave_of_half_the_period(tmp_path):
+    """MEASURED"""
+    bound = bound_crest(0.06, DEPTH * wave_number(2.0 * math.pi / 1.6, DEPTH, 9.81), DEPTH)
+    (with_first, free), (with_second, rest) = (second_harmonics(tmp_path / str(n), n) for n in (1, 2))
+    assert (with_first, with_second) == pytest.approx((bound, bound), rel=0.2)
+    assert rest < 0.35 * free
 
 
 def crest(found, name):

@@ -133,7 +133,7 @@ def calling_for(entry) -> list[str]:
         return [f"{key.replace('*', 'water')}=0.001"]
     if key == "frame.motion":
         return ["frame.motion={translation=[0.2, 0.2]}"]
-    if key == "physics.damping_zone":
+    if key.endswith("damping_zone"):
         return [f"{key}={{begin=0.1, end=0.4}}"]
     hints = get_type_hints(entry.effect)
     values = {n: [0.2, 0.2] if get_origin(hint) is tuple else 0.2 for n, hint in hints.items()}

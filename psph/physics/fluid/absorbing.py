@@ -52,6 +52,16 @@ class DampingZone(NamedTuple):
         return Absorbing(growth, self.begin * slope, self.strength)
 
 
+class OtherDampingZone(DampingZone):
+    """A second zone in which waves fade, at the other end of the water."""
+
+    @staticmethod
+    def conflicts(physics, kernel):
+        """It needs a length to grow over."""
+        if physics.other_damping_zone.begin == physics.other_damping_zone.end:
+            yield "begins where it ends; give another end"
+
+
 class Absorbing(NamedTuple):
     """Waves fade in a zone of the fluid, so that its end does not reflect them.
 
