@@ -161,6 +161,13 @@ def test_a_mesh_away_from_what_it_is_taken_from_is_one_line(tmp_path):
     )
 
 
+def test_a_mesh_far_from_all_else_is_told(tmp_path):
+    put(tmp_path, POST)
+    [line] = checked(tmp_path, POOL, "walls.post.shape.mesh.move=[0.5, 0.3, 99.0]")
+    assert line.startswith("case.toml: walls.post.shape.mesh: it lies 98.5 m from the rest of the scene")
+    assert not checked(tmp_path, POOL, "walls.post.shape.mesh.move=[0.5, 0.3, 2.0]")
+
+
 def test_a_cut_off_file_is_one_line(tmp_path):
     put(tmp_path, POST)
     whole = (tmp_path / "parts/post.stl").read_bytes()

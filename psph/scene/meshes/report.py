@@ -28,6 +28,9 @@ MANY_SITES = 10**9
 MISFIT = 0.05
 """Part of a mesh's volume by which that of its sites may differ without a warning."""
 
+ASTRAY = 3.0
+"""Times the rest of a scene that a mesh lies off it: its file has another origin."""
+
 COARSE = 0.1
 """Spacings: how far the corners of a file may be rounded without a warning."""
 
@@ -171,6 +174,11 @@ def _sizes(scene: "Scene", one: Drawn) -> Iterator[str]:
             f"{one.size} in size beside a scene of {rest:.4g} m; lengths are in m: scale = 0.001 is right "
             f"for a file in mm, 1 for one in m, and here it is {one.mesh.scale:g}"
         )
+    if rest and (off := _off(scene, one)) > ASTRAY * rest:
+        yield (
+            f"it lies {off:.4g} m from the rest of the scene, from {shown(one.surface.lower)} on; the file "
+            "has an origin of its own: give move, which comes after scale and rotate"
+        )
     if one.surface.rounding > COARSE * scene.spacing:
         yield (
             f"its corners lie so far from the origin of the file that they are taken as equal within "
@@ -189,7 +197,19 @@ def _volumes(scene: "Scene", one: Drawn, sites: int) -> Iterator[str]:
 
 
 def _rest(scene: "Scene") -> float:
-    """The largest extent, m, of the domain where it is given and of all shapes but meshes; 0 without any."""
+    """The largest extent, m, of what :func:`_others` encloses; 0 without any."""
+    lower, upper = _others(scene)
+    return float((upper - lower).max(initial=0.0))
+
+
+def _off(scene: "Scene", one: Drawn) -> float:
+    """The gap along an axis, m, between a mesh and what :func:`_others` encloses."""
+    (lower, upper), (low, high) = _others(scene), bounds(one.shape)
+    return float(np.maximum(low - upper, lower - high).max(initial=0.0))
+
+
+def _others(scene: "Scene") -> tuple[np.ndarray, np.ndarray]:
+    """Corners of a box around the domain, where it is given, and all shapes but meshes, m; or none."""
     space, boxes = scene.case.space, []
     if space.lower and space.upper:
         boxes.append((space.lower, space.upper))
@@ -197,9 +217,9 @@ def _rest(scene: "Scene") -> float:
         if isinstance(value, Shape) and not isinstance(value.form, (Mesh, Difference, tuple)):
             boxes.append(bounds(value))
     if not boxes:
-        return 0.0
+        return np.empty(0), np.empty(0)
     lower, upper = (np.array(ends) for ends in zip(*boxes))
-    return float((upper.max(axis=0) - lower.min(axis=0)).max())
+    return lower.min(axis=0), upper.max(axis=0)
 
 
 def _is_within(scene: "Scene", one: Drawn) -> bool:
