@@ -8,6 +8,7 @@ from mpi4py import MPI
 
 from psph.output.diagnostics import energies_and_momentum
 from psph.output.ledger import Ledger
+from psph.physics.fluid.continuity import Continuity
 from psph.runs.setup import create_particles
 from psph.scene import Scene, check
 from psph.simulation.immersion import substeps
@@ -206,6 +207,49 @@ def test_what_lets_waves_of_a_solid_grow_is_said(tmp_path):
     assert "solids.plate.damping: 10000 Pa s lets waves grow" in " ".join(check(Scene(few)))
     light = draft(tmp_path, PLATE, "solids.plate.density=400.0")
     assert "the fluid takes 44 % of its speed in a step" in " ".join(check(Scene(light)))
+
+
+SOFT = """
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+[space]
+dimensions = 2
+spacing = 0.05
+[fluids.water]
+shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.5, 0.8] }
+shape.difference.minus = [{ box = { lower = [0.6, 0.3], upper = [0.9, 0.6] } }]
+density = 1000.0
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = { lower = [-0.2, -0.2], upper = [1.7, 1.2] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.5, 1.2] } }]
+[solids.block]
+shape.box = { lower = [0.6, 0.3], upper = [0.9, 0.6] }
+density = 1000.0
+young = 1.0e5
+poisson = 0.3
+"""
+"""A block as heavy as water in a tank of it, under 3.4 kPa, and ten times as soft as the water is for its sound."""
+
+
+@LONG
+@pytest.mark.timeout(900)
+def test_a_block_softer_than_the_water_is_pressed_together_and_does_not_shake(tmp_path, monkeypatch):
+    """By p/(2(λ + μ)) = 1.8 %, most of it within 0.2 s.  The control: with the strain of the block in the density
+    that it shows."""
+    found = []
+    for chosen in (Continuity.in_scene, lambda self, scene: self):
+        monkeypatch.setattr(Continuity, "in_scene", chosen)
+        simulation = start(draft(tmp_path, SOFT))
+        while simulation.time < 0.2:
+            simulation.step()
+        store = simulation.store
+        block = store.shown("group") == 1
+        speed = np.linalg.norm(store.shown("velocity")[block], axis=1).max()
+        found.append((speed, np.ptp(store.shown("position")[block], axis=0) / 0.25))
+    (calm, size), (shaken, _) = found
+    assert calm < 0.2 and shaken > 2.0
+    assert size == pytest.approx([0.985, 0.985], abs=0.007)
 
 
 @pytest.mark.parametrize(
