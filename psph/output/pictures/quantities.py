@@ -12,7 +12,7 @@ from psph.output.reader import Run
 
 VELOCITY, SPEED, VORTICITY, GROUP = "velocity", "speed", "vorticity", "group"
 """The field, its size under the name that people use, its curl, and the number of a fluid or wall."""
-SAMPLES, FEW_SAMPLES = 24, 4
+SAMPLES, FEW_SAMPLES = 25, 4
 """Frames over a run that the limits of the colours are taken from; those of a field that takes long."""
 VON_MISES, DEVIATOR = "von_mises", "deviator"
 """The stress √(3J₂), where frames hold the deviator that it follows from, and no field of its own."""
