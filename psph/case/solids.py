@@ -235,6 +235,9 @@ def _meeting(case) -> Iterator[Finding]:
     for name, gauge in case.gauges.items():
         if gauge.kind == "force":
             yield ("gauges", name, "force"), ..., "knows of forces by fluids alone, and there are none"
+    for name in case.probes:
+        says = "measures fluids, and there are none; give gauges.NAME.displacement, or plot the frames"
+        yield ("probes", name), ..., says
 
 
 def _yielding(case) -> Iterator[Finding]:

@@ -189,6 +189,7 @@ def test_a_sound_beam_is_good(tmp_path):
             ["gauges.a.displacement={of='beam',at=[0.4,0.2]}"],
             "gauges.a.displacement.at: [0.4, 0.2] lies off solids.beam; give a point in it or on its face",
         ),
+        (["probes.p.position=[0.2,0.02]"], "probes.p: measures fluids, and there are none; give gauges"),
         (["precision=mixed"], 'precision: "mixed": solids are computed in double precision'),
         (["physics.sound_speed=10.0"], "physics.sound_speed: 10.0: solids have waves of their own"),
         (["gauges.a.displacement={of='bean',at=[0.4,0.0]}"], "gauges.a.displacement.of"),
