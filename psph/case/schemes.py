@@ -19,6 +19,7 @@ SCHEMES: dict[str, dict[str, Any]] = {
         "physics.impact_damping": 4.0,
         "physics.local_potential": {"strength": 0.004, "threshold": 0.2},
         "physics.position_shift": 0.1,
+        "physics.summation_density": 0.002,
         "physics.tension_floor": 0.98,
         "physics.background_pressure": "auto",
     },

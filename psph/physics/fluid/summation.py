@@ -26,8 +26,7 @@ class SummationDensity(NamedTuple):
     Zhang, Rezavand & Hu (2020), J. Comput. Phys. 404, 109135, take the sum in every step.  The slow
     form is psph's own: sound, in which f stays 1, does not feel it.  f is right on average: it is 0.999
     among particles that a flow has mixed.  It is left out beside walls that bear no pressure, since rows
-    before them are not full, beside matter with an evolved stress, and with several fluids: two at rest
-    would move.
+    before them are not full, and beside matter with an evolved stress.
     """
 
     rate: Annotated[
@@ -49,7 +48,7 @@ class SummationDensity(NamedTuple):
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
-        return "it needs a single fluid, walls that bear pressure, and no matter with an evolved stress"
+        return "it needs walls that bear pressure, and no matter with an evolved stress"
 
 
 class SummedOnLattice(NamedTuple):
@@ -93,8 +92,7 @@ class SummedOnLattice(NamedTuple):
 
 
 def _applies(scene: Facts) -> bool:
-    alone = sum(one.is_fluid for one in scene.species) == 1
-    return alone and all(one.bearing and not one.shear_modulus for one in scene.species)
+    return all(one.bearing and not one.shear_modulus for one in scene.species)
 
 
 @helper
