@@ -6,8 +6,6 @@ several.  All are branch-free: ``max(k - s, 0)`` cuts a power off.  W has the un
 """
 
 import math
-from functools import lru_cache
-from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -349,8 +347,7 @@ KERNELS = {
 }
 """Every smoothing kernel by the name that a case gives it.
 
-A case that names neither kernel, scheme nor profile gets the default scheme's: hyperbolic at h/dx 1.3,
-normalised (psph.case.schemes).  The first stands in for a case whose scheme or profile names none."""
+The first stands in for a case whose scheme or profile names none."""
 
 
 def kernel(name: str, smoothing_length: float, dimensions: int):
@@ -358,37 +355,3 @@ def kernel(name: str, smoothing_length: float, dimensions: int):
     cls: Any = KERNELS[name]
     constants = np.atleast_1d(cls.norm[dimensions - 1]) / smoothing_length**dimensions
     return cls(1.0 / smoothing_length, *constants.tolist())
-
-
-def first_moment(kernel, spacing: float, dimensions: int) -> float:
-    """Σ dx^d r W′ over the row, square or cube lattice of ``spacing`` m; about −dimensions."""
-    radii = (math.hypot(*site) * spacing for site in _sites(kernel, spacing, dimensions))
-    return float(sum(r * kernel.dw(r) for r in radii)) * spacing**dimensions
-
-
-@lru_cache
-def fastest_smoothing(kernel, spacing: float, dimensions: int) -> float:
-    """The largest Σ dx^d (−W′/r) (1 − cos k·x) over the same lattice and all wave vectors k, 1/m².
-
-    A field f that changes at 2ν Σ_j V_j (f_i − f_j) W′/r loses the wave it loses fastest at 2ν times this.
-    """
-    sites = np.array([*_sites(kernel, spacing, dimensions)], float)
-    radii = np.linalg.norm(sites, axis=1) * spacing
-    weights = np.array([-kernel.dw(r) / r for r in radii]) * spacing**dimensions
-    waves = np.array([*product(np.linspace(0.0, np.pi, WAVES), repeat=dimensions)])
-    return float((weights * (1.0 - np.cos(waves @ sites.T))).sum(axis=1).max())
-
-
-WAVES = 13
-"""Wave numbers along an axis, from 0 to the shortest wave."""
-
-
-def _sites(kernel, spacing: float, dimensions: int):
-    """Where the neighbours of a particle on a lattice are, in spacings."""
-    reach = math.ceil(kernel.support / (kernel.inverse_h * spacing))
-    return (site for site in product(range(-reach, reach + 1), repeat=dimensions) if any(site))
-
-
-def normalised(kernel, spacing: float, dimensions: int) -> Normalised:
-    """``kernel`` normalised on the row, square or cube lattice of ``spacing``, m."""
-    return Normalised(kernel, -dimensions / first_moment(kernel, spacing, dimensions))

@@ -14,6 +14,7 @@ LAYERS = [
     {"engine"},
     {"formula"},
     {"vectors", "smoothing", "rows"},
+    {"moments"},
     {"composition"},
     {"theory"},
     {"physics"},

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from psph.composition.space import BEYOND
-from psph.smoothing import KERNELS, fastest_smoothing, kernel, normalised, slope_over_r
+from psph.moments import fastest_smoothing, moments_below_a_surface, normalised
+from psph.smoothing import KERNELS, kernel, slope_over_r
 
 H = 0.7
 ALL = [(name, dim) for name in KERNELS for dim in (1, 2, 3)]
@@ -104,6 +105,12 @@ def test_kernel_sums_on_the_square_lattice(smoothing, inside, row):
     w = np.array([k.w(r) for r in np.hypot(x, y)])
     assert w.sum() == pytest.approx(inside, abs=5e-4)
     assert w[y <= 0].sum() == pytest.approx(row, abs=5e-4)
+
+
+@pytest.mark.parametrize("dim, rows", [(1, (0.5, 0.870)), (2, (0.631, 0.936)), (3, (0.678, 0.960))])
+def test_moments_below_a_plane_surface(dim, rows):
+    *found, full = moments_below_a_surface(kernel("wendland-c2", 1.4, dim), 1.0, dim)
+    assert np.array(found[:2]) / full == pytest.approx(rows, abs=5e-4)
 
 
 @pytest.mark.parametrize("smoothing, moment", [(1.2, 0.945), (1.3, 0.974)])

@@ -11,6 +11,7 @@ from psph.case.keys import AXES
 from psph.case.motion import motion_of
 from psph.case.parameters import as_numbers, chosen
 from psph.case.study import EXACT
+from psph.moments import normalised
 from psph.particles.reach import Reach
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed, MovingClamp
@@ -34,7 +35,7 @@ from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.starts import start_of
 from psph.scene.stressed import Stressed
 from psph.scene.walls import has_free_surface
-from psph.smoothing import kernel, normalised
+from psph.smoothing import kernel
 from psph.theory.solutions.catalogue import SOLUTIONS
 from psph.theory.solutions.setting import Setting
 

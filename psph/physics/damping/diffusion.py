@@ -7,11 +7,11 @@ from pydantic import Field
 from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.moments import fastest_smoothing
 from psph.physics.damping.matter import OneMatter, SeveralMatters, alike, matter_of, speed
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square
-from psph.smoothing import fastest_smoothing
 from psph.theory.stability import parts
 from psph.vectors import add, along, dot, scale, times, zero_like
 

@@ -7,8 +7,8 @@ from pydantic import Field
 from psph.fields import SYMMETRIC
 from psph.fields import Field as Declared
 from psph.formula import helper
+from psph.moments import first_moment
 from psph.physics.facts import Facts
-from psph.smoothing import first_moment
 from psph.vectors import (
     add,
     adjugate,

@@ -6,11 +6,12 @@ from pydantic import Field
 
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.moments import moments_below_a_surface
 from psph.physics.facts import Facts
-from psph.smoothing import first_moment
 
-SPARSE = 0.97
-"""Fullness below which a particle is taken for one near a surface: the second row has 0.94."""
+SPARSE, NEARLY_FULL = 0.97, 0.99
+"""Fullness below which a particle is near a surface, at least; and from which a row below a plane surface is
+taken for full."""
 
 FULLNESS = Declared("fullness", "1", "volume of the neighbours over that of a whole lattice")
 
@@ -19,7 +20,9 @@ class SummationDensity(NamedTuple):
     """Density returns slowly to the one that the places of the particles give.
 
     dρ_i/dt = β c/h ρ_i (f_i − f̂_i), f_i = Σ_j m_j/ρ_j r W′ over what Σ dx^d r W′ is on the lattice, and
-    f̂ the f nearest to it that the scene starts with; nothing near a surface, where f < 0.97.
+    f̂ the f nearest to it that the scene starts with; nothing near a surface, where f is less than half-way
+    between the rows that a plane surface makes sparse and those below (0.97 with the default scheme in 2D,
+    whose second row has 0.94; 0.98 in 3D).
     Without it nothing ties the density of the continuity equation to the places: where particles are in
     disorder a fluid sinks together under its weight, and its density does not know.  Colagrossi &
     Landrini (2003), J. Comput. Phys. 191, 448, renew the density every so many steps for such reasons;
@@ -43,8 +46,10 @@ class SummationDensity(NamedTuple):
         """The form that knows the lattice and the start."""
         if not _applies(scene):
             return None
-        full = first_moment(scene.kernel, scene.spacing, scene.dimensions)
-        return SummedOnLattice(self.rate, full, *scene.starting_fullness)
+        *rows, full = moments_below_a_surface(scene.kernel, scene.spacing, scene.dimensions)
+        sparse, deepest = around_a_surface([row / full for row in rows])
+        low, high = scene.starting_fullness
+        return SummedOnLattice(self.rate, full, min(low, deepest), high, sparse)
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
@@ -55,13 +60,14 @@ class SummedOnLattice(NamedTuple):
     """Density returns slowly to the one that the places of the particles give.
 
     The form of :class:`SummationDensity` in a scene: ``full`` is Σ dx^d r W′ over its lattice, ``low`` and
-    ``high`` the smallest and the largest f that it starts with.
+    ``high`` the smallest and the largest f that it starts with; where f < ``sparse`` a surface is near.
     """
 
     rate: float
     full: float
     low: float
     high: float
+    sparse: float
 
     writes = FULLNESS
     lagged = True
@@ -82,13 +88,23 @@ class SummedOnLattice(NamedTuple):
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s): what it has of f."""
         settled = min(max(i.fullness, self.low), self.high)
-        excess = where(i.fullness > SPARSE, i.fullness - settled, 0.0) * i.is_fluid
+        excess = where(i.fullness > self.sparse, i.fullness - settled, 0.0) * i.is_fluid
         strength = self.rate / self.full * i.sound_speed / i.smoothing_length
         return strength * excess / i.specific_volume * _share(j, pair)
 
     def linear(self, scene: Facts):
         """It does not act on a small disturbance."""
         return None
+
+
+def around_a_surface(rows: list[float]) -> tuple[float, float]:
+    """Fullness below which a particle is near a surface, and the smallest of a row that is not.
+
+    ``rows``: fullness of the first, second ... row of the lattice below a plane surface.
+    """
+    deepest = min([row for row in rows if row >= NEARLY_FULL], default=1.0)
+    sparse = max(row for row in rows if row < NEARLY_FULL)
+    return max(SPARSE, 0.5 * (sparse + deepest)), deepest
 
 
 def _applies(scene: Facts) -> bool:

@@ -8,9 +8,10 @@ from pydantic import Field
 from psph.fields import VECTOR
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.moments import first_moment
 from psph.physics.facts import Facts
 from psph.physics.roles import ORDER
-from psph.smoothing import first_moment, slope_over_r, weight
+from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, dot, scale, zero_like
 
 CROWDING = 0.2

@@ -1,0 +1,55 @@
+"""Sums of a smoothing kernel over the row, square or cube lattice on which the particles start."""
+
+import math
+from functools import lru_cache
+from itertools import accumulate, product
+
+import numpy as np
+
+from psph.smoothing import Normalised
+
+
+def normalised(kernel, spacing: float, dimensions: int) -> Normalised:
+    """``kernel`` normalised on the lattice of ``spacing``, m."""
+    return Normalised(kernel, -dimensions / first_moment(kernel, spacing, dimensions))
+
+
+def first_moment(kernel, spacing: float, dimensions: int) -> float:
+    """Σ dx^d r W′ over the lattice of ``spacing`` m; about −dimensions."""
+    return moments_below_a_surface(kernel, spacing, dimensions)[-1]
+
+
+def moments_below_a_surface(kernel, spacing: float, dimensions: int) -> list[float]:
+    """Σ dx^d r W′ over the part of that lattice that the first, second ... row below a plane surface has."""
+    rows = [0.0] * (_reach(kernel, spacing) + 1)
+    for *level, height in _sites(kernel, spacing, dimensions):
+        r = math.hypot(*level, height) * spacing
+        rows[max(height, 0)] += r * kernel.dw(r) * spacing**dimensions
+    return [*map(float, accumulate(rows))]
+
+
+@lru_cache
+def fastest_smoothing(kernel, spacing: float, dimensions: int) -> float:
+    """The largest Σ dx^d (−W′/r) (1 − cos k·x) over the same lattice and all wave vectors k, 1/m².
+
+    A field f that changes at 2ν Σ_j V_j (f_i − f_j) W′/r loses the wave it loses fastest at 2ν times this.
+    """
+    sites = np.array([*_sites(kernel, spacing, dimensions)], float)
+    radii = np.linalg.norm(sites, axis=1) * spacing
+    weights = np.array([-kernel.dw(r) / r for r in radii]) * spacing**dimensions
+    waves = np.array([*product(np.linspace(0.0, np.pi, WAVES), repeat=dimensions)])
+    return float((weights * (1.0 - np.cos(waves @ sites.T))).sum(axis=1).max())
+
+
+WAVES = 13
+"""Wave numbers along an axis, from 0 to the shortest wave."""
+
+
+def _sites(kernel, spacing: float, dimensions: int):
+    """Where the neighbours of a particle on a lattice are, in spacings."""
+    reach = _reach(kernel, spacing)
+    return (site for site in product(range(-reach, reach + 1), repeat=dimensions) if any(site))
+
+
+def _reach(kernel, spacing: float) -> int:
+    return math.ceil(kernel.support / (kernel.inverse_h * spacing))
