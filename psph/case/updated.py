@@ -23,7 +23,14 @@ OF_REFERENCE = (
 )
 """Keys that mean nothing to a solid whose neighbours are those of the present."""
 
-OF_FLUIDS = ("tension_floor", "position_shift", "particle_shifting", "local_potential", "pair_potential")
+OF_FLUIDS = (
+    "tension_floor",
+    "position_shift",
+    "particle_shifting",
+    "summation_density",
+    "local_potential",
+    "pair_potential",
+)
 """Keys of ``physics`` that keep a fluid in order, and take a solid apart."""
 
 

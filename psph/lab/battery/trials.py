@@ -25,6 +25,7 @@ CONTROLS: dict[str, tuple[str, ...]] = {
         "physics.impact_damping=0",
         "physics.fourth_order_diffusion=0",
         "physics.position_shift=0",
+        "physics.summation_density=0",
         "physics.tension_floor=0.01",
     ),
 }
