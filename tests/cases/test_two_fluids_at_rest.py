@@ -26,9 +26,6 @@ seed = 3
 """
 STEPS = 30
 
-FORGETFUL = ("physics.local_potential=off", "physics.summation_density=off")
-"""Without the two parts of the default scheme that act on disorder itself, at any density."""
-
 
 def fastest(tmp_path, *keys):
     """The largest speed and |ρ/ρ₀ − 1| after some steps."""
@@ -45,11 +42,12 @@ def fastest(tmp_path, *keys):
     "keys",
     [
         ("scheme=sph", "physics.particle_shifting=0.1", "physics.density_diffusion=0.1"),
-        (*FORGETFUL,),
-        ("profile=reference", *FORGETFUL),
+        ("physics.local_potential=off",),
+        ("profile=reference", "physics.local_potential=off"),
     ],
 )
 def test_they_stay_at_rest(tmp_path, keys):
-    """Shifting took the step of the rest density for a slope: 1.5 m/s after a second."""
+    """Shifting took the step of the rest density for a slope: 1.5 m/s after a second.  The potential
+    of the default scheme is left out: it orders particles in disorder."""
     speed, strain = fastest(tmp_path, *keys)
     assert speed < 1e-12 and strain < 1e-12
