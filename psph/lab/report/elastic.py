@@ -1,31 +1,18 @@
 """The report of ``stability --elastic``: growth by description of an elastic lattice and by its stretch."""
 
-import csv
 from pathlib import Path
 
 from psph.lab.maps.elastic import CSV, PAGE, UNIT
-from psph.lab.report.growth import cells
-from psph.lab.report.sheet import REPORT, Told
+from psph.lab.report.growth import cells, told_of
+from psph.lab.report.sheet import Told
 
 TITLE = "Which descriptions of elastic solids are stable"
+KIND = "Linear theory of small waves on an elastic lattice, at rest and evenly stretched."
 
 
 def told(folder: Path) -> Told | None:
     """The table in a folder; None where it holds none."""
-    if not ((folder / CSV).is_file() and (folder / PAGE).is_file()):
-        return None
-    with open(folder / CSV, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return Told(
-        title=TITLE,
-        kind="Linear theory of small waves on an elastic lattice, at rest and evenly stretched.",
-        text=(folder / PAGE).read_text(encoding="utf-8"),
-        figure=_figure(rows),
-        caption=f"Fastest growth in {UNIT}; blue is stable. The mouse shows the rate and its wave vector.",
-        pictures=[],
-        run=None,
-        out=folder / REPORT,
-    )
+    return told_of(folder, CSV, PAGE, UNIT, TITLE, KIND, _figure)
 
 
 def _figure(rows: list[dict[str, str]]):

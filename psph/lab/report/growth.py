@@ -1,10 +1,41 @@
-"""Cells of a map of growth: what is stable in one colour, the rest by the logarithm of its rate."""
+"""Reports of growth by linear theory: what is stable in one colour, the rest by the logarithm of its rate."""
 
+import csv
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
+from psph.lab.report.sheet import REPORT, Told
+
 STABLE, GROWS = "#56b4e9", [[0.0, "#fff3e0"], [0.4, "#f5b041"], [0.7, "#d55e00"], [1.0, "#5b1a00"]]
+
+
+def told_of(
+    folder: Path,
+    table: str,
+    page: str,
+    unit: str,
+    title: str,
+    kind: str,
+    figure: Callable[[list[dict[str, str]]], Any],
+    pictures: Sequence[str] = (),
+) -> Told | None:
+    """What a report says of the ``table`` (CSV) and the ``page`` in a folder; None without them."""
+    if not ((folder / table).is_file() and (folder / page).is_file()):
+        return None
+    with open(folder / table, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return Told(
+        title=title,
+        kind=kind,
+        text=(folder / page).read_text(encoding="utf-8"),
+        figure=figure(rows),
+        caption=f"Fastest growth in {unit}; blue is stable. The mouse shows the rate and its wave vector.",
+        pictures=[folder / name for name in pictures],
+        run=None,
+        out=folder / REPORT,
+    )
 
 
 def cells(

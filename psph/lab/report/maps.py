@@ -1,32 +1,19 @@
 """The report of a map of ``stability``: growth by kernel and h/dx, under compression and under tension."""
 
-import csv
 from pathlib import Path
 
 from psph.lab.maps.tables import CSV, PAGE, PICTURE, UNIT
-from psph.lab.report.growth import cells
-from psph.lab.report.sheet import REPORT, Told
+from psph.lab.report.growth import cells, told_of
+from psph.lab.report.sheet import Told
 from psph.theory.stability import STATES
 
 TITLE = "Which lattices are stable, and how fast instabilities grow on the others"
+KIND = "A map of stability: linear theory of small waves on a lattice at rest, by kernel and h/dx."
 
 
 def told(folder: Path) -> Told | None:
     """The map in a folder; None where it holds none."""
-    if not ((folder / CSV).is_file() and (folder / PAGE).is_file()):
-        return None
-    with open(folder / CSV, encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return Told(
-        title=TITLE,
-        kind="A map of stability: linear theory of small waves on a lattice at rest, by kernel and h/dx.",
-        text=(folder / PAGE).read_text(encoding="utf-8"),
-        figure=_figure(rows),
-        caption=f"Fastest growth in {UNIT}; blue is stable. The mouse shows the rate and its wave vector.",
-        pictures=[folder / PICTURE],
-        run=None,
-        out=folder / REPORT,
-    )
+    return told_of(folder, CSV, PAGE, UNIT, TITLE, KIND, _figure, [PICTURE])
 
 
 def _figure(rows: list[dict[str, str]]):
