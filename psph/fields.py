@@ -6,7 +6,7 @@ Arrays, records, messages, files and the views that formulas see follow from the
 from collections import namedtuple
 from collections.abc import Iterable
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 SCALAR, VECTOR, SYMMETRIC, MATRIX = "scalar", "vector", "symmetric", "matrix"
 """Shapes of a field: a number, one number per axis, a symmetric matrix (its rows from the diagonal
@@ -20,11 +20,92 @@ KINDS = ("fluid", "wall", "solid")
 """Their names, in this order."""
 
 
+class Same(NamedTuple):
+    """An image has it as the particle does: a number that knows no direction."""
+
+    shapes = (SCALAR,)
+
+
+class Turned(NamedTuple):
+    """Each index turns as a place does: the gradient of a number, a matrix of places."""
+
+    shapes = (VECTOR, SYMMETRIC, MATRIX)
+
+
+class Place(NamedTuple):
+    """x′ = x − 2[(x − x₀)·n]n: where the image stands, m."""
+
+    shapes = (VECTOR,)
+
+
+class Moving(NamedTuple):
+    """v′ = v − 2(v·n)n, and 2v_w − v at a plane that sticks: how the image moves, m/s."""
+
+    shapes = (VECTOR,)
+
+
+class Drifting(NamedTuple):
+    """The difference of two velocities, m/s, or a rate of one: as :class:`Moving` without 2v_w."""
+
+    shapes = (VECTOR,)
+
+
+class VelocityGradient(NamedTuple):
+    """∂v_a/∂x_b turns as a velocity in a and as a place in b, 1/s: a matrix by rows."""
+
+    shapes = (MATRIX,)
+
+
+class StrainRate(NamedTuple):
+    """The symmetric part of a velocity gradient, 1/s; at a plane that sticks the shear along it goes on."""
+
+    shapes = (SYMMETRIC,)
+
+
+class Stress(NamedTuple):
+    """Each index turns as a place does; behind a plane that sticks a stress goes on as it is, for the plane
+    bears its shear, Pa or what is in proportion to it."""
+
+    shapes = (SYMMETRIC,)
+
+
+class StillPressure(NamedTuple):
+    """p′ = p + ρ₀g·(x′ − x), Pa: a still column goes on behind the plane."""
+
+    shapes = (SCALAR,)
+
+
+class StillDensity(NamedTuple):
+    """ρ′ = ρ + ρ₀g·(x′ − x)/c², kg/m³, of such a column."""
+
+    shapes = (SCALAR,)
+
+
+class StillVolume(NamedTuple):
+    """1/ρ′ of such a column, m³/kg."""
+
+    shapes = (SCALAR,)
+
+
+class StillSlope(NamedTuple):
+    """∇ρ turns as a place does, and gains what the weight of such a column adds to it, kg/m⁴."""
+
+    shapes = (VECTOR,)
+
+
+class Numbered(NamedTuple):
+    """The number of a rigid body: its image is another one, −n, which it may touch."""
+
+    shapes = (SCALAR,)
+
+
 class Field(NamedTuple):
     """A quantity that each particle carries.
 
     ``saved``: stands in every frame.  ``evolves``: has a rate and is advanced in time as density is;
     formulas then see its predicted value.  ``start``: what stands in it before it is first filled.
+    ``image``: how it turns at a plane mirror along which matter slips, and at one that it sticks to: one of
+    the types above, of its shape; without one it cannot be read of a neighbour beside mirrors.
     """
 
     name: str
@@ -34,11 +115,17 @@ class Field(NamedTuple):
     saved: bool = False
     evolves: bool = False
     start: float = 0.0
+    image: Any = None
 
     @property
     def composed(self) -> bool:
         """Whether it has several components, by the dimension."""
         return self.shape != SCALAR
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether a mirror can show it: its ``image`` is one of its shape."""
+        return self.image is not None and self.shape in self.image.shapes
 
     @property
     def rate(self) -> str:
@@ -55,17 +142,21 @@ class Field(NamedTuple):
         }[self.shape]
 
 
-POSITION = Field("position", "m", "place", VECTOR, saved=True)
-VELOCITY = Field("velocity", "m/s", "velocity", VECTOR, saved=True)
-PREDICTED_VELOCITY = Field("predicted_velocity", "m/s", "velocity at the end of the step, predicted", VECTOR)
-ACCELERATION = Field("acceleration", "m/s2", "acceleration of the last pass", VECTOR)
-LISTED_POSITION = Field("listed_position", "m", "place when the neighbour list was built", VECTOR)
-DENSITY = Field("density", "kg/m3", "density", saved=True)
-DENSITY_RATE = Field("density_rate", "kg/(m3 s)", "rate of density of the last pass")
-DENSITY_RATE_1 = Field("density_rate_1", "kg/(m3 s)", "rate of density one step before")
-DENSITY_RATE_2 = Field("density_rate_2", "kg/(m3 s)", "rate of density two steps before")
-PRESSURE = Field("pressure", "Pa", "pressure by the equation of state", saved=True)
-SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces read it")
+POSITION = Field("position", "m", "place", VECTOR, saved=True, image=Place)
+VELOCITY = Field("velocity", "m/s", "velocity", VECTOR, saved=True, image=Moving)
+PREDICTED_VELOCITY = Field(
+    "predicted_velocity", "m/s", "velocity at the end of the step, predicted", VECTOR, image=Moving
+)
+ACCELERATION = Field("acceleration", "m/s2", "acceleration of the last pass", VECTOR, image=Drifting)
+LISTED_POSITION = Field(
+    "listed_position", "m", "place when the neighbour list was built", VECTOR, image=Place
+)
+DENSITY = Field("density", "kg/m3", "density", saved=True, image=StillDensity)
+DENSITY_RATE = Field("density_rate", "kg/(m3 s)", "rate of density of the last pass", image=Same)
+DENSITY_RATE_1 = Field("density_rate_1", "kg/(m3 s)", "rate of density one step before", image=Same)
+DENSITY_RATE_2 = Field("density_rate_2", "kg/(m3 s)", "rate of density two steps before", image=Same)
+PRESSURE = Field("pressure", "Pa", "pressure by the equation of state", saved=True, image=StillPressure)
+SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces read it", image=StillVolume)
 
 OF_EVERY_SCENE = (
     POSITION,
@@ -90,35 +181,46 @@ IDENTITY = (
 )
 """Whole numbers that stand beside the fields."""
 
+
+def _fixed(name: str, unit: str, meaning: str, image: Any = Same) -> Field:
+    """A number that no effect changes."""
+    return Field(name, unit, meaning, image=image)
+
+
 OF_MATERIAL = (
-    Field("mass", "kg", "mass"),
-    Field("rest_density", "kg/m3", "density at zero pressure"),
-    Field("viscosity", "m2/s", "kinematic viscosity"),
-    Field("is_fluid", "1", "1 in a fluid, else 0"),
-    Field("mobile", "1", "1 where forces move the particle, else 0"),
-    Field("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
-    Field("extrapolated", "1", "1 in a wall whose pressure is that of the fluid before it, else 0"),
-    Field("repulsive", "1", "1 in a wall whose particles repel the fluid, else 0"),
-    Field("rheology", "1", "number of the law of a fluid's viscosity, 0 where that is constant"),
-    Field("solid", "1", "number of a rigid body or an elastic solid from 2 on, 1 in a wall, 0 in a fluid"),
-    Field("penalty", "1", "1 in a wall that pushes back what comes too near, else 0"),
-    Field("shear_modulus", "Pa", "shear modulus of what bears an evolved stress, else 0"),
-    Field("wave_modulus", "Pa", "P-wave modulus by which a contact of solids and walls is stiff, else 0"),
-    Field("cone_tip", "Pa", "mean tension at which an evolved stress has no strength left, else 0"),
-    Field("wave_speed", "m/s", "speed of pressure waves in the matter itself; the numerical one in a fluid"),
-    Field("stress_diffusion", "1", "strength of the spreading of an evolved stress"),
-    Field("rest_coefficient", "1", "stress across over that along gravity, in level ground at rest"),
-    Field("strength", "1", "number of the law that bounds an evolved stress, 0 where none does"),
+    _fixed("mass", "kg", "mass"),
+    _fixed("rest_density", "kg/m3", "density at zero pressure"),
+    _fixed("viscosity", "m2/s", "kinematic viscosity"),
+    _fixed("is_fluid", "1", "1 in a fluid, else 0"),
+    _fixed("mobile", "1", "1 where forces move the particle, else 0"),
+    _fixed("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
+    _fixed("extrapolated", "1", "1 in a wall whose pressure is that of the fluid before it, else 0"),
+    _fixed("repulsive", "1", "1 in a wall whose particles repel the fluid, else 0"),
+    _fixed("rheology", "1", "number of the law of a fluid's viscosity, 0 where that is constant"),
+    _fixed(
+        "solid",
+        "1",
+        "number of a rigid body or an elastic solid from 2 on, 1 in a wall, 0 in a fluid",
+        Numbered,
+    ),
+    _fixed("penalty", "1", "1 in a wall that pushes back what comes too near, else 0"),
+    _fixed("shear_modulus", "Pa", "shear modulus of what bears an evolved stress, else 0"),
+    _fixed("wave_modulus", "Pa", "P-wave modulus by which a contact of solids and walls is stiff, else 0"),
+    _fixed("cone_tip", "Pa", "mean tension at which an evolved stress has no strength left, else 0"),
+    _fixed("wave_speed", "m/s", "speed of pressure waves in the matter itself; the numerical one in a fluid"),
+    _fixed("stress_diffusion", "1", "strength of the spreading of an evolved stress"),
+    _fixed("rest_coefficient", "1", "stress across over that along gravity, in level ground at rest"),
+    _fixed("strength", "1", "number of the law that bounds an evolved stress, 0 where none does"),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""
 
-OF_SITE = (Field("stress_point", "1", "1 where pressure is borne, 0 where velocity is carried"),)
+OF_SITE = (_fixed("stress_point", "1", "1 where pressure is borne, 0 where velocity is carried"),)
 """Fixed at the start by the site of the lattice: 1 on every other one, 0 between."""
 
 OF_SCENE = (
-    Field("sound_speed", "m/s", "numerical speed of sound"),
-    Field("smoothing_length", "m", "smoothing length h"),
-    Field("largest_speed", "m/s", "largest speed of any fluid particle, a step old; for displacements"),
+    _fixed("sound_speed", "m/s", "numerical speed of sound"),
+    _fixed("smoothing_length", "m", "smoothing length h"),
+    _fixed("largest_speed", "m/s", "largest speed of any fluid particle, a step old; for displacements"),
 )
 """What all particles of a scene share; formulas read it like a field."""
 
@@ -161,9 +263,9 @@ def companions(field: Field) -> tuple[Field, ...]:
     """The further fields that advance one that evolves: its prediction and its rates."""
     name, unit = field.name, f"{field.unit}/s"
     return (
-        Field(f"predicted_{name}", field.unit, f"{field.meaning}, predicted", field.shape),
+        Field(f"predicted_{name}", field.unit, f"{field.meaning}, predicted", field.shape, image=field.image),
         *(
-            Field(f"{field.rate}{of}", unit, f"rate of {name} {when}", field.shape)
+            Field(f"{field.rate}{of}", unit, f"rate of {name} {when}", field.shape, image=field.image)
             for of, when in (("", "of the last pass"), ("_1", "one step before"), ("_2", "two steps before"))
         ),
     )

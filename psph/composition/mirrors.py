@@ -6,7 +6,7 @@ the same row, without ghost particles, further lists or messages.  In a right-an
 image is seen the same way.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import permutations, product
 from typing import Any, NamedTuple
 
@@ -15,6 +15,23 @@ from numba.core import types
 
 from psph.engine.jit import overload, register_jitable, tuple_of, unrolled
 from psph.engine.simd import AHEAD
+from psph.fields import (
+    Drifting,
+    Field,
+    Moving,
+    Numbered,
+    Place,
+    Same,
+    StillDensity,
+    StillPressure,
+    StillSlope,
+    StillVolume,
+    StrainRate,
+    Stress,
+    Turned,
+    VelocityGradient,
+    view_of,
+)
 from psph.vectors import along
 
 BELOW, ABOVE = -1, 1
@@ -42,15 +59,18 @@ ABSENT = -1
 class Reflection(NamedTuple):
     """An image of a particle stands at ``turn`` x + ``shift``, m, and moves with ``turn_velocity`` v +
     ``shift_velocity``, m/s.  ``turn_strain`` are the signs that the components of a rate of strain take,
-    upper triangle by rows.  ``gravity`` in m/s², None on an axis without: a still column goes on behind the
-    plane."""
+    upper triangle by rows, ``turn_stress`` those of a stress.  ``gravity`` in m/s², None on an axis without:
+    a still column goes on behind the plane.  ``rules``: how each field is turned, by its name (psph.fields),
+    None where it does not say."""
 
     turn: tuple[float, ...]
     shift: tuple[float, ...]
     turn_velocity: tuple[float, ...]
     shift_velocity: tuple[float, ...]
     turn_strain: tuple[float, ...]
+    turn_stress: tuple[float, ...]
     gravity: tuple[float | None, ...]
+    rules: Any
 
     def seen(self, point) -> tuple[float, ...]:
         """The image of a point, m."""
@@ -70,8 +90,9 @@ class Mirrors(NamedTuple):
     own: Any
 
 
-def mirrors_of(planes: Sequence[Plane], gravity, reach: float) -> Mirrors | None:
-    """What is seen beside some planes, under ``gravity`` m/s², from ``reach`` m on; None without planes."""
+def mirrors_of(planes: Sequence[Plane], gravity, reach: float, fields: Iterable[Field]) -> Mirrors | None:
+    """What is seen of some ``fields`` beside some planes, under ``gravity`` m/s², from ``reach`` m on; None
+    without planes."""
     if not planes:
         return None
     dimensions = len(gravity)
@@ -79,11 +100,13 @@ def mirrors_of(planes: Sequence[Plane], gravity, reach: float) -> Mirrors | None
         [None, *(plane for plane in planes if plane.axis == d)] for d in range(dimensions)
     ]
     pull = tuple(float(g) or None for g in gravity)
-    found = (_reflection(list(filter(None, chosen)), pull) for chosen in product(*beside))
+    rule_of = {field.name: field.image and field.image() for field in fields}
+    rules = view_of(tuple(rule_of))(**rule_of)
+    found = (_reflection(list(filter(None, chosen)), pull, rules) for chosen in product(*beside))
     return Mirrors(tuple(found), reach, np.uint64(0))
 
 
-def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...]) -> Reflection:
+def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...], rules) -> Reflection:
     """One reflection after the other, in the planes ``chosen``.
 
     Where walls of several velocities meet, the velocity of the image depends on which comes first: the mean
@@ -95,12 +118,15 @@ def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...]) -> Refle
         turn[plane.axis], shift[plane.axis] = -1.0, 2.0 * plane.at
     seen = [_velocities(order, dimensions) for order in permutations(chosen)]
     turn_velocity, shift_velocity = np.mean(seen, axis=0)
-    strain = _strain_turned({plane.axis for plane in chosen if plane.sticks}, turn, turn_velocity)
-    rows = (turn, shift, turn_velocity, shift_velocity, strain)
-    return Reflection(*(tuple(row.tolist()) for row in rows), gravity)
+    sticking = [plane.axis for plane in chosen if plane.sticks]
+    strain = _strain_turned(sticking, turn, turn_velocity)
+    sliding = np.where(np.isin(np.arange(dimensions), sticking), 1.0, turn)
+    stress = np.outer(sliding, sliding)[np.triu_indices(dimensions)]
+    rows = (turn, shift, turn_velocity, shift_velocity, strain, stress)
+    return Reflection(*(tuple(row.tolist()) for row in rows), gravity, rules)
 
 
-def _strain_turned(sticking: set[int], turn: np.ndarray, turn_velocity: np.ndarray) -> np.ndarray:
+def _strain_turned(sticking: list[int], turn: np.ndarray, turn_velocity: np.ndarray) -> np.ndarray:
     """Signs of the components of a rate of strain, upper triangle by rows.
 
     ∂v_d/∂x_e takes that of v_d times that of x_e.  Where these differ for d, e and e, d, across a plane that
@@ -209,8 +235,8 @@ def _typed_at_look(mirrors, look):
 
 
 def image(reflection, i, j):
-    """Neighbours j as particle i sees them in a reflection, under ``gravity``: a field is a vector, a
-    symmetric matrix or a matrix by the number of its components."""
+    """Neighbours j as particle i sees them in a reflection: each field turns as it declares, and is a vector,
+    a symmetric matrix or a matrix by the number of its components."""
     return j if reflection is None else _image(reflection, i, j)
 
 
@@ -223,7 +249,8 @@ def _typed_image(reflection, i, j):
 
 def _image(reflection, i, j):
     widths = (ABSENT if entry is None else len(entry) if isinstance(entry, tuple) else 0 for entry in j)
-    return _seen(type(j), tuple(widths))(reflection, i, j)
+    rules = {name: type(rule) for name, rule in reflection.rules._asdict().items()}
+    return _seen(type(j), tuple(widths), rules)(reflection, i, j)
 
 
 @overload(_image)
@@ -232,13 +259,18 @@ def _typed_image_of(reflection, i, j):
         ABSENT if isinstance(kind, types.NoneType) else len(kind) if isinstance(kind, types.BaseTuple) else 0
         for kind in j.types
     )
-    return _seen(j.instance_class, tuple(widths))
+    rules = dict(zip(reflection.instance_class._fields, reflection.types))["rules"]
+    kinds = (getattr(kind, "instance_class", type(None)) for kind in rules.types)
+    return _seen(j.instance_class, tuple(widths), dict(zip(rules.instance_class._fields, kinds)))
 
 
-def _seen(view, widths: tuple[int, ...]):
+def _seen(view, widths: tuple[int, ...], rules: dict[str, type]):
     """The function (reflection, i, j) → the image of a ``view`` j whose entries have so many components."""
     dimensions = widths[view._fields.index("position")]
-    parts = (_text(name, width, dimensions) for name, width in zip(view._fields, widths))
+    parts = (
+        f"j.{name}" if width == ABSENT else _text(name, rules[name], width, dimensions)
+        for name, width in zip(view._fields, widths)
+    )
     return unrolled(
         "reflection, i, j",
         f"return View{tuple_of(parts)}",
@@ -248,43 +280,51 @@ def _seen(view, widths: tuple[int, ...]):
     )
 
 
-def _text(name: str, width: int, dimensions: int) -> str:
-    """How an image has the entry ``name``, of ``width`` components, or 0 for a number."""
+STILL = "weight(reflection, i, j)"
+SQUARED = "(i.sound_speed * i.sound_speed)"
+
+OF_NUMBERS = {
+    Same: "j.{name}",
+    StillPressure: f"j.{{name}} + {STILL}",
+    StillDensity: f"j.{{name}} + {STILL} / {SQUARED}",
+    StillVolume: f"j.{{name}} / (1.0 + j.{{name}} * ({STILL} / {SQUARED}))",
+    Numbered: "{least} * j.{name}",
+}
+"""How an image has a number, by the rule that its field declares."""
+
+OF_COMPONENTS = {
+    Place: "reflection.turn[{d}] * j.{name}[{n}] + reflection.shift[{d}]",
+    Moving: "reflection.turn_velocity[{d}] * j.{name}[{n}] + reflection.shift_velocity[{d}]",
+    Drifting: "reflection.turn_velocity[{d}] * j.{name}[{n}]",
+    Turned: "{turn} * j.{name}[{n}]",
+    VelocityGradient: "reflection.turn_velocity[{d}] * reflection.turn[{e}] * j.{name}[{n}]",
+    StrainRate: "reflection.turn_strain[{n}] * j.{name}[{n}]",
+    Stress: "reflection.turn_stress[{n}] * j.{name}[{n}]",
+    StillSlope: "reflection.turn[{d}] * j.{name}[{n}] + slope(reflection, i)[{d}]",
+}
+"""How it has component n of a vector along axis d, or of a matrix of axes d and e."""
+
+
+def _text(name: str, rule: type, width: int, dimensions: int) -> str:
+    """How an image has the entry ``name``, of ``width`` components, or 0 for a number, by a ``rule``."""
     axes = range(dimensions)
-    if width == ABSENT:
-        return f"j.{name}"
-    if name == "position":
-        return tuple_of(f"reflection.turn[{d}] * j.position[{d}] + reflection.shift[{d}]" for d in axes)
-    if name == "velocity":
-        return tuple_of(
-            f"reflection.turn_velocity[{d}] * j.velocity[{d}] + reflection.shift_velocity[{d}]" for d in axes
-        )
-    if name == "pressure":
-        return "j.pressure + weight(reflection, i, j)"
-    if name == "specific_volume":
-        squared = "(i.sound_speed * i.sound_speed)"
-        return f"j.specific_volume / (1.0 + j.specific_volume * (weight(reflection, i, j) / {squared}))"
-    if name == "density":
-        return "j.density + weight(reflection, i, j) / (i.sound_speed * i.sound_speed)"
-    if name == "density_gradient":
-        return tuple_of(
-            f"reflection.turn[{d}] * j.density_gradient[{d}] + slope(reflection, i)[{d}]" for d in axes
-        )
-    if name == "strain":
-        return tuple_of(f"reflection.turn_strain[{place}] * j.strain[{place}]" for place in range(width))
-    if name == "slip":
-        return tuple_of(f"reflection.turn_velocity[{d}] * j.slip[{d}]" for d in axes)
-    if name == "solid":  # the image of a rigid body is another body, which it may touch
-        return f"min({', '.join(f'reflection.turn[{d}]' for d in axes)}) * j.solid"
-    signs: dict[int, list[tuple[int, ...]]] = {
+    if rule is type(None):  # nobody reads it of a neighbour: psph.simulation.reading
+        return "None"
+    if not width:
+        least = f"min({', '.join(f'reflection.turn[{d}]' for d in axes)})"
+        return OF_NUMBERS[rule].format(name=name, least=least)
+    shapes: dict[int, list[tuple[int, ...]]] = {
         dimensions: [(d,) for d in axes],
         dimensions * (dimensions + 1) // 2: [(d, e) for d in axes for e in axes if d <= e],
         dimensions**2: [(d, e) for d in axes for e in axes],
     }
-    if not width:
-        return f"j.{name}"
-    turns = (" * ".join(f"reflection.turn[{d}]" for d in odd) for odd in signs[width])
-    return tuple_of(f"{turn} * j.{name}[{place}]" for place, turn in enumerate(turns))
+    parts = (
+        OF_COMPONENTS[rule].format(
+            name=name, n=n, d=at[0], e=at[-1], turn=" * ".join(f"reflection.turn[{d}]" for d in at)
+        )
+        for n, at in enumerate(shapes[width])
+    )
+    return tuple_of(parts)
 
 
 @register_jitable

@@ -15,7 +15,7 @@ Neither is integrated, so that particles never drift from where they belong, how
 
 from typing import Any, NamedTuple
 
-from psph.fields import FLUID, SOLID, VECTOR, WALL, Field
+from psph.fields import FLUID, SOLID, VECTOR, WALL, Field, Turned
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
 
@@ -24,6 +24,7 @@ APPARENT = Field(
     "m/s2",
     "force per mass of an accelerated frame, less the acceleration of a moving wall",
     VECTOR,
+    image=Turned,
 )
 
 WORK = Field("work", "J", "energy that a moving wall, a load or the force of an accelerated frame has given")

@@ -38,7 +38,7 @@ from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.groups import laws, material_value, split, tells
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
-from psph.simulation.reading import Called, called_with, refuse_unwritten
+from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
@@ -318,6 +318,10 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     shared, varying = split(scene, own | told_by)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_solids))
     refuse_unwritten(scene, called, (*computed, *told))
+    seen = tuple(field for name, field in fields.items() if name in own)
+    imaged = by_name(OF_EVERY_SCENE, seen).values()
+    if scene.mirror_planes:
+        refuse_without_image(scene, called, fields)
     told = {name for name in told if name in own or name != APPARENT.name}
     told |= {LOAD.name} if loaded.any() else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
@@ -346,7 +350,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         bearing=np.array([one.bearing for one in scene.species], bool),
         law_reasons=tuple(own_laws.values()),
         planes=scene.mirror_planes,
-        mirrors=mirrors_of(scene.mirror_planes, scene.gravity, scene.reach.cutoff),
+        mirrors=mirrors_of(scene.mirror_planes, scene.gravity, scene.reach.cutoff, imaged),
         precision=case.precision,
         space=fixed_point(scene.smoothing_length, scene.periods)
         if case.precision == "mixed"
@@ -354,7 +358,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         smoothing_length=scene.smoothing_length,
         constants=shared | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
         fields=fields,
-        seen=tuple(field for name, field in fields.items() if name in own),
+        seen=seen,
         arrays=stored,
         passes=passes,
         refreshed=tuple(n for n in stored if n in fresh and n in computed),

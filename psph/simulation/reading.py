@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from psph.case.extensions import origin
 from psph.composition.trial import Reads, UnknownField, WrongShape, reads
-from psph.errors import one_line
+from psph.errors import Refused, one_line
 from psph.fields import OF_MATERIAL, OF_SCENE, OF_SITE, Field
 from psph.physics.catalogue import Entry
 
@@ -24,6 +24,14 @@ class Called(NamedTuple):
     def title(self) -> str:
         """Its name in words, as it stands in messages: ``DensityDiffusion`` -> ``density diffusion``."""
         return words(self.name)
+
+
+RULES = "image=Same of a number, Turned, Drifting, VelocityGradient, StrainRate or Stress"
+"""What the field of an effect may turn by."""
+
+
+class WithoutImage(Refused):
+    """A field that is read of a neighbour does not say how a mirror turns it."""
 
 
 def words(name: str) -> str:
@@ -50,6 +58,18 @@ def refuse_unwritten(scene, called: Iterable[Called], computed: Iterable[str]) -
         for name in sorted((call.reads.own | call.reads.neighbour).difference(known)):
             says = f"reads '{name}', which no effect of this scene writes; it may read {', '.join(known)}"
             raise UnknownField(_line(scene, call.effect, f"{call.name} {says}"))
+
+
+def refuse_without_image(scene, called: Iterable[Called], fields: Mapping[str, Field]) -> None:
+    """Raise WithoutImage where an effect reads of a neighbour what does not say how a mirror turns it."""
+    for call in called:
+        for name in sorted(call.reads.neighbour):
+            if not fields[name].mirrored:
+                says = (
+                    f"reads '{name}' of a neighbour, and a mirror cannot show it: let its Field say how "
+                    f"an image has it, as {RULES} (psph.fields), or take the mirrors away"
+                )
+                raise WithoutImage(_line(scene, call.effect, f"{call.name} {says}"))
 
 
 def _line(scene, effect, says: str) -> str:

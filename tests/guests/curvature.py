@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.fields import VECTOR
+from psph.fields import VECTOR, Turned
 from psph.fields import Field as Declared
 from psph.physics.catalogue import Catalogue, Entry
 from psph.vectors import add, scale, subtract, zero_like
@@ -19,7 +19,7 @@ class Curvature(NamedTuple):
 
     strength: Annotated[float, Field(ge=0, description="strength γ", json_schema_extra={"unit": "m^d/s2"})]
 
-    writes = Declared("normal", "1", "h times the gradient of the kernel sum", VECTOR)
+    writes = Declared("normal", "1", "h times the gradient of the kernel sum", VECTOR, image=Turned)
 
     def start(self, i):
         """No neighbour yet."""

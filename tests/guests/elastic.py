@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.engine.jit import register_jitable
-from psph.fields import SYMMETRIC
+from psph.fields import SYMMETRIC, Stress
 from psph.fields import Field as Declared
 from psph.physics.catalogue import Catalogue, Entry
 from psph.vectors import add, less_diagonal, outer, scale, subtract, times, zero_like
@@ -32,7 +32,7 @@ class Elasticity(NamedTuple):
         float, Field(ge=0, description="shear modulus G", json_schema_extra={"unit": "Pa"})
     ]
 
-    writes = Declared("stress", "Pa", "deviatoric stress", SYMMETRIC, saved=True, evolves=True)
+    writes = Declared("stress", "Pa", "deviatoric stress", SYMMETRIC, saved=True, evolves=True, image=Stress)
 
     def start(self, i):
         """No neighbour yet."""

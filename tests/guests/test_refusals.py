@@ -15,6 +15,7 @@ from psph.output.tables import ERRORS, LOG, PROBES
 from psph.runs.explain import explain
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
+from psph.simulation.reading import WithoutImage
 
 BRINGS = '''
 from typing import NamedTuple
@@ -156,6 +157,36 @@ def test_a_formula_that_reads_what_nobody_has_is_refused_with_its_file(read, say
     line = str(refused.value)
     assert line.startswith(f"{path}: use: {tmp_path / 'mine.py'}: {says}") and refused.value.exit_code == 2
     assert "\n" not in line and len(line) < LONGEST_LINE and ("viscosity" in line or "dw_r" in line)
+
+
+MARKED = """    writes = Field("mark", "1", "how marked it is"{shape})
+
+    def start(self, i):
+        return 0.0
+
+    def gather(self, total, i, j, pair):
+        return total + j.mark{first} * pair.w
+
+    def finish_value(self, total, i, kernel):
+        return total
+"""
+
+
+@pytest.mark.parametrize("shape", ["", ", image=Turned", ", VECTOR, image=Same"])
+def test_a_field_that_does_not_say_how_a_mirror_turns_it_is_refused_beside_one(shape, mine):
+    """Declared by none of the rules, or by one of another shape; without a mirror it is taken."""
+    formula = MARKED.format(shape=shape, first="[0]" * ("VECTOR" in shape))
+    path = mine('effects=(Entry("physics.mine", Mine),)', formula, "physics.mine = {}")
+    brought = path.with_name("mine.py")
+    brought.write_text("from psph.fields import *\n" + brought.read_text())
+    make_plan(Scene(load(path)))
+    path.write_text(path.read_text().replace('periodic = ["x"]', 'symmetry = ["x.lower"]'))
+    with pytest.raises(WithoutImage) as refused:
+        make_plan(Scene(load(path)))
+    says = (
+        "Mine reads 'mark' of a neighbour, and a mirror cannot show it: let its Field say how an image has it"
+    )
+    assert str(refused.value).startswith(f"{path}: use: {brought}: {says}, as image=Same of a number, ")
 
 
 def test_a_link_to_a_file_elsewhere_is_refused_and_not_executed(mine, tmp_path):

@@ -11,7 +11,20 @@ from numba import njit
 
 from psph.case import CaseError
 from psph.composition.mirrors import ABOVE, BELOW, Plane, at_look, image, images, mirrors_of
-from psph.fields import view_of
+from psph.fields import (
+    MATRIX,
+    OF_EVERY_SCENE,
+    OF_MATERIAL,
+    SYMMETRIC,
+    VECTOR,
+    Field,
+    StillSlope,
+    StrainRate,
+    Stress,
+    Turned,
+    VelocityGradient,
+    view_of,
+)
 from psph.output.ledger import Ledger
 from psph.output.probes import Probe
 from psph.runs.setup import create_particles
@@ -20,6 +33,18 @@ from psph.scene.checks import faults
 from psph.scene.walls import has_free_surface
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
+
+FIELDS = (
+    *OF_EVERY_SCENE,
+    *OF_MATERIAL,
+    Field("wet", "1", "read of no neighbour"),
+    Field("strain", "1/s", "a rate of strain", SYMMETRIC, image=StrainRate),
+    Field("gradient", "1/s", "a gradient of the velocity", MATRIX, image=VelocityGradient),
+    Field("matrix", "1", "of places", MATRIX, image=Turned),
+    Field("crowding", "1", "a gradient", VECTOR, image=Turned),
+    Field("stress", "Pa", "a stress", SYMMETRIC, image=Stress),
+    Field("density_gradient", "kg/m4", "a gradient under weight", VECTOR, image=StillSlope),
+)
 
 CROSS = """
 space = { dimensions = 2, spacing = 0.05, lower = [-1.0, -1.0], upper = [1.0, 1.0] }
@@ -75,7 +100,7 @@ def test_a_still_column_goes_on_behind_a_mirror_with_the_slope_of_its_density(pu
     i = view_of(("rest_density", "sound_speed"))(900.0, 15.0)
     still = tuple(900.0 / 15.0**2 * g for g in pull)
     j = view_of(("position", "density_gradient"))((0.3, 0.1), still)
-    for reflection in mirrors_of((Plane(0, BELOW, 0.2), Plane(1, BELOW, 0.0)), pull, 0.3).reflections:
+    for reflection in mirrors_of((Plane(0, BELOW, 0.2), Plane(1, BELOW, 0.0)), pull, 0.3, FIELDS).reflections:
         assert image(reflection, i, j).density_gradient == pytest.approx(still, abs=1e-12)
         other = j._replace(density_gradient=(40.0, -70.0))
         compiled = njit(lambda *seen: image(*seen))(reflection, i, other).density_gradient
@@ -142,7 +167,7 @@ def test_images_are_reflections(dim, sticks):
     rng, g, rho, c = np.random.default_rng(5), np.array([0.3, -9.8, 2.0][:dim]), 900.0, 15.0
     belt = tuple([0.4, 0.0, 0.7][:dim])
     planes = (Plane(0, BELOW, 0.2), Plane(1, ABOVE, 1.5, sticks, belt))
-    mirrors = mirrors_of(planes, tuple(g), 0.3)
+    mirrors = mirrors_of(planes, tuple(g), 0.3, FIELDS)
     assert images(mirrors) == 4 and images(None) == 1
     names = (
         "position",
@@ -151,6 +176,8 @@ def test_images_are_reflections(dim, sticks):
         "specific_volume",
         "density",
         "strain",
+        "gradient",
+        "stress",
         "matrix",
         "mass",
         "wet",
@@ -173,6 +200,8 @@ def test_images_are_reflections(dim, sticks):
         1e-3,
         1000.0,
         tuple(symmetric[upper]),
+        tuple(gradient.ravel()),
+        tuple(symmetric[upper]),
         tuple(full.ravel()),
         2.0,
         None,
@@ -191,6 +220,9 @@ def test_images_are_reflections(dim, sticks):
         assert np.array(seen.crowding) == pytest.approx(turn @ vector)
         there_too = np.diag(mirrors.reflections[m].turn_velocity) @ gradient @ turn
         assert np.array(seen.strain) == pytest.approx((there_too + there_too.T)[upper])
+        assert np.array(seen.gradient).reshape(dim, dim) == pytest.approx(there_too)
+        slides = np.diag([*turn.diagonal()[:1], 1.0 if sticks else turn[1, 1], *[1.0] * (dim - 2)])
+        assert np.array(seen.stress) == pytest.approx((slides @ symmetric @ slides)[upper])
         assert np.array(seen.matrix).reshape(dim, dim) == pytest.approx(turn @ full @ turn)
         weight = rho * g @ (there - x)
         assert seen.pressure == pytest.approx(5.0 + weight)
@@ -214,7 +246,7 @@ def test_the_image_in_a_corner_of_a_lid_and_a_side_goes_as_the_fluid_does():
     """Seen in the side first it would go at v + 2U, in the lid first at v − 2U: either blows a cavity up."""
     lid, side = Plane(1, ABOVE, 1.0, True, (0.7, 0.0)), Plane(0, ABOVE, 1.0, True, (0.0, 0.0))
     j = view_of(("position", "velocity"))((0.9, 0.95), (0.3, -0.2))
-    seen = image(mirrors_of((side, lid), (0.0, 0.0), 0.3).reflections[3], None, j)
+    seen = image(mirrors_of((side, lid), (0.0, 0.0), 0.3, FIELDS).reflections[3], None, j)
     assert seen.position == pytest.approx((1.1, 1.05)) and seen.velocity == pytest.approx((0.3, -0.2))
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.fields import Field as Declared
+from psph.fields import Same
 from psph.physics.facts import Facts
 from psph.physics.fluid.pressure import is_corrected
 from psph.vectors import add, dot, scale, times
@@ -29,7 +30,7 @@ class AcousticDamper(NamedTuple):
 
     alpha: Annotated[float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})] = 0.3
 
-    writes = Declared("compression", "Pa", "pressure against the rate of compression")
+    writes = Declared("compression", "Pa", "pressure against the rate of compression", image=Same)
     lagged = True
 
     def in_scene(self, scene: Facts):

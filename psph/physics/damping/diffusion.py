@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.fields import VECTOR
+from psph.fields import VECTOR, StillSlope
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.moments import fastest_smoothing
@@ -121,7 +121,9 @@ class BesideSmoothDensity(NamedTuple):
     gravity: tuple[float | None, ...]
     matter: OneMatter | SeveralMatters = OneMatter()
 
-    writes = Declared("density_gradient", "kg/m4", "gradient of the density over its rest density", VECTOR)
+    writes = Declared(
+        "density_gradient", "kg/m4", "gradient of the density over its rest density", VECTOR, image=StillSlope
+    )
     lagged = True
     slow = True
 

@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.fields import SYMMETRIC
+from psph.fields import SYMMETRIC, StrainRate
 from psph.fields import Field as Declared
 from psph.formula import where
 from psph.physics.facts import Facts
@@ -69,7 +69,7 @@ class BesideLinearFlow(NamedTuple):
     near2: float
     more: float = 0.0
 
-    writes = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC)
+    writes = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC, image=StrainRate)
     lagged = True
     slow = True
 

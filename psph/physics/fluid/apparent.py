@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.engine.jit import call_by_type
-from psph.fields import Field
+from psph.fields import Field, Same
 from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.physics.fluid.rheology import STILL, Granular, Newtonian, apparent_viscosity
@@ -13,9 +13,11 @@ from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_ra
 from psph.physics.fluid.viscosity import corrected_friction, friction, friction_step
 from psph.vectors import norm_squared, subtract
 
-STRAIN_RATE = Field("strain_rate", "1/s", "rate of strain, the root of 2 D:D; 0 in a wall", saved=True)
+STRAIN_RATE = Field(
+    "strain_rate", "1/s", "rate of strain, the root of 2 D:D; 0 in a wall", saved=True, image=Same
+)
 APPARENT_VISCOSITY = Field(
-    "apparent_viscosity", "Pa s", "viscosity at this rate of strain; 0 in a wall", saved=True
+    "apparent_viscosity", "Pa s", "viscosity at this rate of strain; 0 in a wall", saved=True, image=Same
 )
 
 

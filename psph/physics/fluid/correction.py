@@ -4,7 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.fields import SYMMETRIC
+from psph.fields import SYMMETRIC, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.moments import first_moment
@@ -25,7 +25,9 @@ from psph.vectors import (
 CORRECTED = ("symmetric", "difference")
 """Pressure gradients that work with a corrected kernel gradient."""
 
-CORRECTION = Declared("gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC)
+CORRECTION = Declared(
+    "gradient_correction", "1", "correction of the kernel's gradient, L - 1", SYMMETRIC, image=Turned
+)
 
 
 DISORDER = 0.2

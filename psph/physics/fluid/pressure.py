@@ -5,6 +5,7 @@ from typing import Annotated, Literal, NamedTuple
 from pydantic import Field
 
 from psph.fields import Field as Declared
+from psph.fields import Same
 from psph.formula import where
 from psph.physics.facts import Facts
 from psph.smoothing import KERNELS, weight
@@ -120,7 +121,7 @@ class TensileControl(NamedTuple):
     matrix, and shift particles besides.  Momentum is conserved where s = 1 alone.
     """
 
-    writes = Declared("inside", "1", "1 inside the fluid, 0 at a free surface")
+    writes = Declared("inside", "1", "1 inside the fluid, 0 at a free surface", image=Same)
     lagged = True
 
     def start(self, i):

@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.fields import Field as Declared
+from psph.fields import Same
 from psph.formula import helper, where
 from psph.moments import moments_below_a_surface
 from psph.physics.facts import Facts
@@ -13,7 +14,7 @@ SPARSE, NEARLY_FULL = 0.97, 0.99
 """Fullness below which a particle is near a surface, at least; and from which a row below a plane surface is
 taken for full."""
 
-FULLNESS = Declared("fullness", "1", "volume of the neighbours over that of a whole lattice")
+FULLNESS = Declared("fullness", "1", "volume of the neighbours over that of a whole lattice", image=Same)
 
 
 class SummationDensity(NamedTuple):

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from psph.fields import VECTOR
+from psph.fields import VECTOR, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.moments import first_moment
@@ -28,7 +28,7 @@ LEAST = 1e-12
 """Floor of (V W(dx))⁴, for a kernel that hardly reaches the nearest particle."""
 
 
-CROWDED = Declared("crowding", "1", "h times the gradient of how crowded it is", VECTOR)
+CROWDED = Declared("crowding", "1", "h times the gradient of how crowded it is", VECTOR, image=Turned)
 
 
 class ParticleShifting(NamedTuple):

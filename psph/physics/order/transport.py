@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from psph.fields import VECTOR
+from psph.fields import VECTOR, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.physics.roles import CARRIER, ORDER
@@ -20,7 +20,9 @@ OWN_PRESSURE = 10.0
 """Largest background pressure over |p| of the particle (Zhang, Hu & Adams 2017)."""
 
 
-TRANSPORT = Declared("transport", "m/s", "velocity of the particle minus that of the fluid", VECTOR)
+TRANSPORT = Declared(
+    "transport", "m/s", "velocity of the particle minus that of the fluid", VECTOR, image=Turned
+)
 
 
 def _conflicts(physics, kernel):

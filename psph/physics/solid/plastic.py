@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.engine.jit import call_by_type, overload, register_jitable
-from psph.fields import SYMMETRIC, Field
+from psph.fields import SYMMETRIC, Field, Same
 from psph.formula import where
 from psph.physics.solid.compression import mean_stress, pressed, stored_by
 from psph.vectors import (
@@ -39,7 +39,7 @@ from psph.vectors import (
 )
 
 PLASTIC_METRIC = Field("plastic_metric", "1", "C_p⁻¹ − 1, the history of a solid that yields", SYMMETRIC)
-PLASTIC_STRAIN = Field("plastic_strain", "1", "equivalent plastic strain of a solid", saved=True)
+PLASTIC_STRAIN = Field("plastic_strain", "1", "equivalent plastic strain of a solid", saved=True, image=Same)
 PLASTIC_WORK = Field("plastic_work", "J/m3", "work that has gone into plastic strain, by volume at the start")
 
 OF_PLASTIC = (PLASTIC_METRIC, PLASTIC_STRAIN, PLASTIC_WORK)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.fields import SYMMETRIC
+from psph.fields import SYMMETRIC, Stress
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.physics.damping.diffusion import diffusion_step
@@ -30,7 +30,7 @@ from psph.vectors import (
 )
 
 DEVIATOR = Declared(
-    "deviator", "Pa", "deviatoric stress, tension positive", SYMMETRIC, saved=True, evolves=True
+    "deviator", "Pa", "deviatoric stress, tension positive", SYMMETRIC, saved=True, evolves=True, image=Stress
 )
 
 FEWEST_OF_ELASTIC = 0.45

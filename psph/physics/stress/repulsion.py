@@ -5,11 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.engine.jit import register_jitable
-from psph.fields import SYMMETRIC
+from psph.fields import SYMMETRIC, Stress
 from psph.fields import Field as Declared
 from psph.vectors import add, by_dimension, less_diagonal, outer, scale, times
 
-REPULSION = Declared("repulsion", "m5/(kg s2)", "−ε σ′/ρ² of the principal stresses σ′ > 0", SYMMETRIC)
+REPULSION = Declared(
+    "repulsion", "m5/(kg s2)", "−ε σ′/ρ² of the principal stresses σ′ > 0", SYMMETRIC, image=Stress
+)
 
 TURNS = 15
 """Turns of Jacobi, three a sweep: five sweeps find eigenvectors to rounding."""

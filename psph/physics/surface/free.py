@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.fields import Field as Declared
+from psph.fields import Same
 from psph.formula import where
 from psph.physics.facts import Facts
 from psph.smoothing import weight
@@ -32,6 +33,7 @@ class FreeSurface(NamedTuple):
         "1",
         "sum of W m/rho over the support, the particle included",
         start=NOT_YET_SUMMED,
+        image=Same,
     )
     lagged = True
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from psph.fields import Field
+from psph.fields import Field, Same
 from psph.formula import where
 from psph.physics.facts import Facts
 
@@ -19,7 +19,7 @@ class DryWall(NamedTuple):
     A wall whose condition bears no pressure (psph.physics.walls.conditions) is always dry.
     """
 
-    marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0)
+    marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0, image=Same)
     """The field that says whether there was fluid in reach when the neighbours were listed."""
     told_by = "is_fluid"
     """The field of a neighbour that tells fluid from wall."""

@@ -2,15 +2,23 @@
 
 from typing import Any, NamedTuple
 
-from psph.fields import VECTOR, Field
+from psph.fields import VECTOR, Drifting, Field, Same
 from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.physics.fluid.apparent import rub, rub_of
 from psph.physics.fluid.viscosity import corrected_friction, friction, newtonian
 from psph.vectors import add, scale, subtract, zero_like
 
-MIRRORED = Field("slip", "m/s", "a wall's velocity minus that of the fluid around it; 0 in the fluid", VECTOR)
-GRIP = Field("grip", "1", "how much of what a wall mirrors counts in a rate of strain; 0 in the fluid")
+MIRRORED = Field(
+    "slip",
+    "m/s",
+    "a wall's velocity minus that of the fluid around it; 0 in the fluid",
+    VECTOR,
+    image=Drifting,
+)
+GRIP = Field(
+    "grip", "1", "how much of what a wall mirrors counts in a rate of strain; 0 in the fluid", image=Same
+)
 
 FULL_GRIP = 4.0
 """One over the part of a kernel that fluid fills around the first layer of a wall."""
