@@ -13,7 +13,7 @@ LAYERS = [
     {"errors", "fields"},
     {"engine"},
     {"formula"},
-    {"vectors", "smoothing", "rows"},
+    {"vectors", "smoothing", "rows", "acts"},
     {"moments"},
     {"composition"},
     {"theory"},

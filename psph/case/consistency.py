@@ -6,6 +6,7 @@ from typing import Any
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.case.bodies import held_together
+from psph.case.corners import idle
 from psph.case.errors import advise
 from psph.case.findings import Finding, Location, asked_of, not_of
 from psph.case.keys import AXES, Table
@@ -32,6 +33,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         _hydrostatic,
         _exact,
         _effects,
+        idle,
         _continued,
         moved,
         _regions,

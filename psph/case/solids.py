@@ -168,8 +168,6 @@ def elastic(case) -> Iterator[Finding]:
     if not case.solids:
         if case.anvils:
             yield ("anvils",), ..., "nothing feels them but solids; remove them, or give [solids.NAME]"
-        if case.physics.contact is not None:
-            yield CONTACT, ..., "nothing feels it but elastic solids; remove it, or give [solids.NAME]"
         return
     yield from _yielding(case)
     yield from updated(case) if case.updated else _meeting(case)

@@ -49,7 +49,9 @@ def _typed_is_due(loads, k):
 
 def by_fluid(loads, j, coefficient):
     """A neighbour's share of a sum, 0 in a pass of loads unless j is fluid; None stays None."""
-    return j.is_fluid * coefficient if isinstance(loads, Loads) and coefficient is not None else coefficient
+    if not isinstance(loads, Loads) or coefficient is None:
+        return coefficient
+    return scale(coefficient, j.is_fluid) if isinstance(coefficient, tuple) else j.is_fluid * coefficient
 
 
 @overload(by_fluid)

@@ -97,6 +97,8 @@ push = _sum_of("push", "i, j, pair", lambda i, j, pair: None, add)
 """(effects, i, j, pair) → an acceleration along neither, m/s², or None."""
 body = _sum_of("body", "i", _no_vector, add)
 """(effects, i) → acceleration from outside, m/s²."""
+potential = _sum_of("potential", "i", lambda i: 0.0, operator.add)
+"""(effects, i) → potential energy of a particle by its mass, J/kg."""
 displacement = _sum_of("displacement", "i, dt", _no_vector, add)
 """(effects, i, dt) → what a fluid particle moves beside its velocity in a step, m."""
 

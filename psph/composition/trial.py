@@ -106,6 +106,8 @@ def _rates(effect, i, j, pair, dimensions: int) -> None:
         _check(effect, "finish_acceleration", effect.finish_acceleration(total, i), dimensions)
     if hasattr(effect, "body"):
         _check(effect, "body", effect.body(i), dimensions)
+    if hasattr(effect, "potential"):
+        _check(effect, "potential", effect.potential(i), None)
 
 
 def _check(effect, name: str, value, width: int | None) -> None:

@@ -27,24 +27,34 @@ def columns(dimensions: int, solids: bool = False) -> list[str]:
     ]
 
 
-def energies_and_momentum(comm: MPI.Comm, store: Store, gravity: tuple[float, ...]) -> np.ndarray:
-    """Σ m v²/2 (J), −Σ m g·x (J) and Σ m v (kg m/s) of fluids and solids, per metre of depth in 2D.
+def energies_and_momentum(
+    comm: MPI.Comm, store: Store, gravity: Sequence[float], potential: np.ndarray | float = 0.0
+) -> np.ndarray:
+    """Σ m v²/2 (J), Σ m (φ − g·x) (J) and Σ m v (kg m/s) of fluids and solids, per metre of depth in 2D.
 
-    Order-independent sums, the same bits on any number of ranks; collective.
+    ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.  Order-independent sums, the same
+    bits on any number of ranks; collective.
     """
     moved = store.owned_rows("kind") != WALL
     mass = store.owned_rows(_inert(store))[moved]
     velocity = store.owned_rows("velocity")[moved]
     position = store.owned_rows("position")[moved]
     kinetic = 0.5 * mass * (velocity**2).sum(axis=1)
-    potential = -mass * projected(position, gravity)
-    return exact_sums(comm, np.column_stack([kinetic, potential, mass[:, None] * velocity]))
+    height = mass * (np.broadcast_to(potential, moved.shape)[moved] - projected(position, gravity))
+    return exact_sums(comm, np.column_stack([kinetic, height, mass[:, None] * velocity]))
 
 
 def total_energy(
-    comm: MPI.Comm, store: Store, gravity: Sequence[float], elastic: Callable, led: np.ndarray
+    comm: MPI.Comm,
+    store: Store,
+    gravity: Sequence[float],
+    elastic: Callable,
+    led: np.ndarray,
+    potential: np.ndarray | float = 0.0,
 ) -> float:
-    """Σ m (v²/2 − g·x) of fluids and solids and Σ m u of all particles, J.
+    """Σ m (v²/2 + φ − g·x) of fluids and solids and Σ m u of all particles, J.
+
+    ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.
 
     Groups that are ``led`` (groups,) move as they are told: they count as walls.  ``elastic`` takes densities
     and rest densities (n,) and gives u, J/kg.  NaN where a density is below zero.  The same bits on any
@@ -57,7 +67,7 @@ def total_energy(
     with np.errstate(invalid="ignore", divide="ignore"):
         stored = elastic(store.shown("density"), store.shown("rest_density"))
     moves = (store.shown("kind") != WALL) & ~led[store.shown("group")]
-    moving = store.shown(_inert(store)) * np.where(moves, moved, 0.0)
+    moving = store.shown(_inert(store)) * np.where(moves, moved + potential, 0.0)
     energy = moving + store.shown("mass") * stored
     return float(exact_sums(comm, energy[:, None])[0])
 

@@ -182,7 +182,8 @@ class Guards:
                 stored = np.where(law_of == number, law.energy(density, rest, c), stored)
             return stored
 
-        whole = total_energy(sim.comm, sim.store, self.scene.height_gravity, elastic, self._led)
+        heights, held = sim.plan.pulls.heights(self.scene.periods), sim.engine.potential()
+        whole = total_energy(sim.comm, sim.store, heights, elastic, self._led, held)
         whole += sim.engine.stored_energy()
         return whole - (work_done(sim.comm, sim.store) if sim.plan.books_work else 0.0)
 

@@ -66,7 +66,7 @@ class Record:
     def __init__(self, scene, simulation: Simulation, folder: Path, saved: Saved | None = None):
         case, comm = scene.case, simulation.comm
         self.simulation, self.kernel = simulation, scene.kernel
-        self.gravity = scene.height_gravity
+        self.heights = simulation.plan.pulls.heights(scene.periods)
         self.frames = FrameFile(
             folder / f"{case.name}.h5",
             comm,
@@ -193,7 +193,8 @@ class Record:
     def write_log(self) -> None:
         """A line of energies, momentum and limits, and one of errors where these are known."""
         sim = self.simulation
-        sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.gravity)
+        potential = sim.engine.potential()
+        sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.heights, potential)
         error = diagnostics.density_error(sim.comm, sim.store)
         energies, momentum = sums[:2].tolist(), sums[2:].tolist()
         stored = [sim.engine.stored_energy()] if sim.plan.solids else []

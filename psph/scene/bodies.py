@@ -81,6 +81,22 @@ def _body(scene: "Scene", number: int, name: str, table) -> Body:
     )
 
 
+def shares_of(scene: "Scene") -> np.ndarray:
+    """How the mass of each body is shared among its particles, kg: (bodies, 1 + dim).
+
+    A particle that was at x₀ at the start has w_0 + Σ_d w_(1 + d) x₀_d: the same for each of N where the
+    case leaves the centre of mass c to them, else M/N (1 + b·(x₀ − x̄)) with S b = c − x̄ and the spread S of
+    the particles about their mean x̄, so that Σ w x₀ = M c.
+    """
+    found, d = [], scene.dimensions
+    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
+        filled, each = volume_of(scene, number), one.mass / float(scene.census.sizes[number])
+        spread = filled.spread[:d, :d] - scene.spacing**2 / 12.0 * np.eye(d)
+        slope = np.linalg.pinv(spread, rcond=1e-9) @ (np.array(one.centre) - filled.centre)[:d]
+        found.append([each * (1.0 - slope @ filled.centre[:d]), *(each * slope)])
+    return np.array(found)
+
+
 def density_ratio(scene: "Scene", body: Body) -> float:
     """The density of a body over that of its fluid."""
     number = [one.name for one in scene.species].index(body.name)

@@ -2,7 +2,9 @@
 
 from typing import Any
 
+from psph.acts import acts_on
 from psph.case import Case
+from psph.case.corners import matter_in
 from psph.case.parameters import as_numbers
 from psph.physics.catalogue import Entry
 
@@ -11,8 +13,8 @@ WALLS = "walls"
 
 
 def acts_in(case, effect: type) -> bool:
-    """Whether an effect can act in a case: without fluids what pulls on all, or is between solids."""
-    return bool(case.flowing) or hasattr(effect, "body") or hasattr(effect, "between_solids")
+    """Whether there is matter in a case on which an effect acts."""
+    return not matter_in(case).isdisjoint(acts_on(effect))
 
 
 def in_scene(effect, scene):

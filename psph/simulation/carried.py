@@ -6,6 +6,7 @@ Each part is there twice, for motions by a formula (psph.physics.motion) and for
 
 from numba.core import types
 
+from psph.composition import terms
 from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
@@ -41,8 +42,8 @@ def feel(rules, group, k, time, dt, columns):
 def give(rules, i, group, k, dt, columns):
     """Book what particle ``k``, seen as ``i``, gives in a step of ``dt`` s, J.
 
-    A wall that moves pushes the fluid with −m_i a_i, a_i by the fluid around it; to fluid the force of a
-    moving frame gives.
+    A wall that moves pushes the fluid with −m_i a_i, a_i by the fluid around it; to what moves freely those
+    body forces give that have no potential, a moving frame's among them.
     """
     _give(columns.work, rules, i, group, k, dt, columns)
 
@@ -201,7 +202,7 @@ def _give(work, rules, i, group, k, dt, columns):
 def _give_it(work, rules, i, group, k, dt, columns):
     v = at(columns.velocity, k)
     if group < rules.free:
-        work[k] += dt * i.mass * dot(stored(columns.apparent, v, k), v)
+        work[k] += dt * i.mass * dot(terms.body(rules.booked, i), v)
     elif rules.motion_of[group] > FIXED:
         work[k] -= dt * i.mass * dot(stored(columns.load, v, k), v)
 

@@ -36,6 +36,7 @@ from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbo
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
+from psph.simulation.pulls import potentials
 from psph.simulation.rules import Columns, Rules
 
 
@@ -75,10 +76,12 @@ class Engine:
             plan.pose_of if plan.rigid else None,
             self.poses.frame,
             scene.periods,
+            plan.pulls.booked,
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._load, self._push = settled(sum_over_neighbours), settled(add_pushes)
+        self._potential = settled(potentials)
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
 
     def _solids(self, scene):
@@ -161,10 +164,11 @@ class Engine:
             self.solids.sum(time, dt)
 
     def push_bodies(self, time: float, dt: float) -> None:
-        """The second kick of rigid bodies at ``time``, by the pushes that the last pass has summed; without a
-        step ``dt`` these alone."""
+        """The second kick of rigid bodies at ``time``, by body forces and the pushes that the last pass has
+        summed; without a step ``dt`` these alone."""
         floating = self.poses.floating
         of_each = floating.body_of, floating.bodies.place, floating.units, self.domain.periods
+        of_each += self.plan.pulls.bodies, floating.masses
         parts = self._each(self._push, *of_each, self._view(0.0), self._columns())
         floating.load(sum(parts), self.domain.comm)
         if dt > 0.0:
@@ -177,6 +181,13 @@ class Engine:
         state_of(s.low, s.low + s.owned, self._rules, self._view(pace), self._columns())
         if self.solids:
             self.solids.measure()
+
+    def potential(self) -> np.ndarray:
+        """Potential energy by mass of this rank's particles, J/kg (n,), but for that of uniform pulls."""
+        found = np.zeros(self.store.total)
+        if held := self.plan.pulls.held:
+            self._each(self._potential, held, self.store.view(), found)
+        return found[self.store.inner]
 
     def stored_energy(self) -> float:
         """Energy of deformation of all solids, J; collective."""

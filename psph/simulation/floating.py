@@ -5,7 +5,7 @@ import numpy as np
 from psph.parallel.reductions import whole_sums
 from psph.physics.rigid.bodies import Bodies, Body, crossing
 from psph.physics.rigid.lines import pulls
-from psph.scene.bodies import lines_of
+from psph.scene.bodies import lines_of, shares_of
 
 BITS = 58
 """Of whole numbers of 64 bits, for a push of ρ₀c² on all particles of bodies: room for sixteen times that."""
@@ -17,13 +17,15 @@ class Floating:
     ``rows`` are their places there and ``bodies`` their state (psph.physics.rigid.bodies), the same on
     every rank: the fluid's pushes are added as whole numbers, so that they do not depend on how
     particles are spread, in ``units`` of N and N m.  ``body_of`` has the row of each group's body, −1 without
-    one; ``tensions`` are those of their lines, N.
+    one; ``tensions`` are those of their lines, N; ``masses`` share the mass of each body among its particles
+    (psph.scene.bodies.shares_of), where body forces ask for that.
     """
 
     def __init__(self, scene, plan):
         self.rows = [row for row, motion in enumerate(plan.rigid) if isinstance(motion, Body)]
         own = [plan.rigid[row] for row in self.rows]
-        self.bodies, self._dimensions = Bodies(own, scene.gravity), scene.dimensions
+        self.bodies, self._dimensions = Bodies(own, plan.pulls.uniform), scene.dimensions
+        self.masses = shares_of(scene) if plan.pulls.bodies else None
         self.lines = lines_of(scene, [one.name for one in own])
         self.tensions = np.zeros(len(self.lines))
         self.body_of = np.full(len(scene.species), -1)
@@ -48,8 +50,9 @@ class Floating:
         return found
 
     def load(self, pushes: np.ndarray, comm) -> None:
-        """The forces at the end of the step: the fluid's on the particles of this rank, ``pushes`` in whole
-        numbers of :attr:`units` (psph.physics.rigid.pushes), those of lines, and the weight; collective."""
+        """The forces at the end of the step: those on the particles of this rank, ``pushes`` in whole
+        numbers of :attr:`units` (psph.physics.rigid.pushes), those of lines, and uniform pulls;
+        collective."""
         total = whole_sums(comm, pushes).astype(np.float64)
         pull, twist, self.tensions = pulls(self.lines, self.bodies)
         self.bodies.load(total[:, :3] * self.units[0] + pull, total[:, 3:] * self.units[1] + twist)

@@ -19,11 +19,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from psph.composition import terms
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
-from psph.physics.motion import LOAD, Immersed
+from psph.physics.motion import LOAD, WORK, Immersed
 from psph.physics.solid.deformation import INERTIA
 from psph.vectors import add, at, dot, put, scale
 
@@ -41,7 +42,7 @@ class Immersion:
     def __init__(self, solids, scene, plan, store):
         self.solids, self.plan, self.store = solids, plan, store
         self._moves = np.array([isinstance(one.motion, Immersed) for one in scene.species], bool)
-        self._drift, self._kick, self._show = map(settled, (drift, kick, show))
+        self._drift, self._kick, self._show, self._book = map(settled, (drift, kick, show, book))
 
     def begin(self) -> None:
         """True masses, and the first inner forces; collective."""
@@ -66,6 +67,10 @@ class Immersion:
                 solids.clamps.carry(time - (count - n) * part)
             solids.sum(time - dt + n * part, part)
             self._each(self._kick, columns, 0.5 * part, 0.5 * part, *seen)
+            if booked := plan.pulls.booked_in_solids:
+                names = ("velocity", INERTIA.name, WORK.name)
+                arrays = (self.store[name] for name in names)
+                self._each(self._book, columns, part, booked, self.store.view(), *arrays)
         self._each(self._show, columns, self.store["velocity"], shown, self.store["predicted_velocity"])
         self._each(self._kick, columns, 0.0, -0.5 * dt, *seen)
 
@@ -128,6 +133,14 @@ def kick(
         fastest = max(fastest, v2 if finite else 0.0)
         trouble = max(trouble, 0.0 if finite else np.inf)
     return fastest, trouble
+
+
+@elementwise
+def book(first, last, columns, dt, effects, view, velocity, inertia, work):
+    """Add m b·v dt, J, with the body forces b of ``effects`` that have no potential, m/s²."""
+    for k in range(np.uint64(first), np.uint64(last)):
+        c = columns[k]
+        work[c] += dt * inertia[c] * dot(terms.body(effects, take(view, c)), at(velocity, c))
 
 
 @elementwise

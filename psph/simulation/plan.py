@@ -30,22 +30,20 @@ from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.contact import contact_of
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import SMOOTHING
-from psph.physics.solid.material import STEP, remembers
+from psph.physics.solid.material import remembers
 from psph.physics.solid.plastic import Lasting
 from psph.scene.bodies import body_step
 from psph.scene.solids import solid_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.groups import laws, material_value, split, tells
+from psph.simulation.limits import step_limits
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
+from psph.simulation.pulls import Pulls, pulls_of, shares_loop
 from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
-
-FORCE_LIMIT = 0.25
-"""Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
-
 
 NO_SOLID = 255
 """In place of the number of a solid."""
@@ -104,6 +102,8 @@ class Plan:
     constants: dict[str, float]
     fields: dict[str, Field]
     """Everything that a particle of the scene can carry, by name."""
+    pulls: Pulls
+    """What the body forces of the scene pull."""
     seen: tuple[Field, ...]
     """What formulas read of a particle."""
     arrays: tuple[str, ...]
@@ -251,7 +251,8 @@ class Plan:
     @cached_property
     def uncarried(self) -> dict[str, None]:
         """What neither the equation of state nor the carriers read of a particle."""
-        read = set(OF_STATE).union(*(call.reads.own for call in self.called if _carries(call)))
+        asked = (call for call in self.called if _carries(call) or self.pulls.ask(call.effect))
+        read = set(OF_STATE).union(*(call.reads.own for call in asked))
         read |= {"mass"} if self.books_work else set()
         return dict.fromkeys(field.name for field in self.seen if field.name not in read)
 
@@ -270,23 +271,7 @@ class Plan:
 
     def step_limits(self, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """Every limit of the time step with its name, s."""
-        if self.fixed_step is not None:
-            yield self.fixed_step, "time.step"
-            return
-        h, factor = self.smoothing_length, FORCE_LIMIT
-        if FLUID in self.kinds:
-            yield self.cfl * h / (self.constants["sound_speed"] + speed), "sound (CFL)"
-        else:
-            h, factor = self.solid_smoothing_length, STEP
-        for one in () if self.immersed else self.solids:
-            yield one.longest_step(h, speed), f"waves in solids.{one.name}"
-        if acceleration > 0.0:
-            yield factor * (h / acceleration) ** 0.5, "force"
-        if self.body_step is not None and self.body_step < np.inf:
-            yield self.body_step, "bodies"
-        for call in self.called:
-            if hasattr(call.effect, "longest_step"):
-                yield call.effect.longest_step(self.extremes), call.title
+        return step_limits(self, speed, acceleration)
 
 
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
@@ -306,7 +291,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     of_solids = solid_fields(scene)
     fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_solids)
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
-    present = {entry for entry, *_ in fitted}
+    present, pulls = {entry for entry, *_ in fitted}, pulls_of(called, scene.dimensions, bool(case.flowing))
     own_laws = laws(scene, catalogue.states)
     led = [bool(case.flowing) and is_prescribed(one.motion) for one in scene.species]
     loaded = np.array([one.loaded for one in scene.species], bool) | np.array(led, bool)
@@ -324,9 +309,11 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         refuse_without_image(scene, called, fields)
     told = {name for name in told if name in own or name != APPARENT.name}
     told |= {LOAD.name} if loaded.any() else set()
+    told |= {WORK.name} if pulls.booked or pulls.booked_in_solids else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
+    paired = shares_loop(called, bool(case.flowing))
     passes = make_passes(
-        called if case.flowing or any(hasattr(c.effect, "radial") for c in called) else (),
+        paired if case.flowing or any(hasattr(c.effect, "radial") for c in paired) else (),
         stored,
         lambda name: _array_of(name, stored),
         case.time.gather_every,
@@ -358,6 +345,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         smoothing_length=scene.smoothing_length,
         constants=shared | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
         fields=fields,
+        pulls=pulls,
         seen=seen,
         arrays=stored,
         passes=passes,

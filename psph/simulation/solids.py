@@ -235,7 +235,7 @@ class Solids:
                 self._push,
                 0,
                 rows,
-                None if self.plan.touching else self.plan.effects,
+                None if self.plan.touching else self.plan.pulls.solids,
                 store.view(),
                 self._columns,
                 self._inverse_density,

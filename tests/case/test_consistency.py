@@ -186,3 +186,22 @@ def test_numbers_that_no_comma_has_made_are_not_asked_about(tmp_path, velocity):
 def test_what_agrees_is_accepted(tmp_path):
     text = WATER.replace("spacing = 0.1", PERIODIC + "lower = [0.0, 0.0]\nupper = [1.0, 1.0]")
     assert draft(tmp_path, text + WALL).space.periodic == ("x",)
+
+
+IN_SPACE = "solids.block = { shape.box = " + BOX + ", density = 1e3, young = 1e6, poisson = 0.3 }\n"
+
+
+@pytest.mark.parametrize(
+    ("key", "acts"),
+    [
+        ("physics.damping_zone = { begin = 0.0, end = 1.0 }", "fluids"),
+        ("physics.xsph = 0.1", "fluids, soils and updated Lagrangian solids"),
+    ],
+)
+def test_an_effect_without_matter_to_act_on_is_refused(tmp_path, key, acts):
+    """Whatever schemes set stands for nothing that is asked; nor do body forces that pull solids."""
+    space = "space = { dimensions = 2, spacing = 0.1 }\ntime.end = 1.0\n"
+    says = refusal(tmp_path, f"{space}{key}\n{IN_SPACE}")
+    assert len(says) == 1 and f"acts on {acts} alone, and the case has none; remove this key" in says[0]
+    pull = "physics.central_force = { frequency = 1.0, center = [0.0, 0.0] }\n"
+    assert draft(tmp_path, f"{space}{pull}{IN_SPACE}").physics.fourth_order_diffusion is not None

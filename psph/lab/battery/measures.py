@@ -120,10 +120,7 @@ def _of_particles(scene, frame: dict, fluid: dict, speed: float) -> dict[str, fl
 def _conserved(scene, log: dict, first: dict, last: dict, speed: float) -> dict[str, float]:
     """Energy everywhere, momenta where nothing from outside changes them."""
     mass = scene.species[0].mass
-    energy = [
-        log["kinetic_energy"][k] + log["potential_energy"][k] + _bound(scene, mass, fluid)
-        for k, fluid in ((0, first), (-1, last))
-    ]
+    energy = [log["kinetic_energy"][k] + log["potential_energy"][k] for k in (0, -1)]
     scale = 0.5 * mass * len(first["id"]) * speed**2
     found = {"energy": float(energy[1] - energy[0]) / scale}
     if scene.case.walls or any(scene.gravity) or scene.case.physics.central_force:
@@ -135,15 +132,6 @@ def _conserved(scene, log: dict, first: dict, last: dict, speed: float) -> dict[
     if not any(scene.periods):
         found["angular"] = float(np.linalg.norm(_spin(last) - _spin(first)) / max(_lever(first), 1e-300))
     return found
-
-
-def _bound(scene, mass: float, fluid: dict) -> float:
-    """Energy in a central force, J: it is not in the log."""
-    force = scene.case.physics.central_force
-    if force is None:
-        return 0.0
-    away = fluid["position"] - np.array(force.center)
-    return 0.5 * mass * force.frequency**2 * float((away**2).sum())
 
 
 def _spin(fluid: dict) -> np.ndarray:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
+from psph.acts import FLUIDS, of_fluids
 from psph.formula import where
 from psph.physics.facts import Facts
 from psph.vectors import dot, scale
@@ -18,8 +19,10 @@ class DampingZone(NamedTuple):
 
     a_i = −β s² v_i where 0 ≤ s ≤ 1, s = (x − x₀)/(x₁ − x₀); elsewhere none.  A sponge layer as that of
     Altomare and others (2017), Coast. Eng. 127, 37, who take a part off the velocity in place of a force.  It
-    conserves neither momentum nor energy: it takes both.
+    conserves neither momentum nor energy: it takes both.  Soils, solids and bodies in it feel nothing of it.
     """
+
+    acts = (FLUIDS,)
 
     begin: Annotated[
         float,
@@ -68,6 +71,9 @@ class Absorbing(NamedTuple):
     :class:`DampingZone` in a scene: s = g·x − s₀, with the ``growth`` g of s in 1/m and its ``offset`` s₀.
     """
 
+    acts = DampingZone.acts
+    dissipates = True
+
     growth: tuple[float, ...]
     offset: float
     strength: float
@@ -75,7 +81,8 @@ class Absorbing(NamedTuple):
     def body(self, i):
         """−β s² v_i, m/s²."""
         s = dot(i.position, self.growth) - self.offset
-        return scale(i.velocity, where((s >= 0.0) & (s <= 1.0), -self.strength * s * s, 0.0))
+        rate = where((s >= 0.0) & (s <= 1.0), -self.strength * s * s, 0.0)
+        return scale(i.velocity, of_fluids(i, rate))
 
     def longest_step(self, scene: Facts):
         """Δt ≤ 0.2/β, s: see STABLE."""

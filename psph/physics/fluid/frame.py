@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from psph.acts import FLUIDS
+
 
 class MovingFrame(NamedTuple):
     """The frame of reference moves: the fluid feels the forces of inertia, and gravity turns.
@@ -11,6 +13,8 @@ class MovingFrame(NamedTuple):
     (psph.physics.rigid.pose); x_i and v_i are told in the frame.  Batchelor (1967), An Introduction to Fluid
     Dynamics, sec. 3.2.  The step fills it in where particles drift (psph.simulation.carried.feel).
     """
+
+    acts = (FLUIDS,)
 
     def body(self, i):
         """It, m/s²."""

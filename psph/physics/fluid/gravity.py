@@ -5,14 +5,16 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.physics.facts import Facts
-from psph.vectors import scale, subtract
+from psph.vectors import dot, scale, subtract
 
 
 class Gravity(NamedTuple):
-    """A uniform body force on every fluid particle.
+    """A uniform pull on all that has a mass.
 
     a_i = g.
     """
+
+    uniform = True
 
     acceleration: Annotated[
         tuple[float, ...],
@@ -39,10 +41,10 @@ class Gravity(NamedTuple):
 
 
 class CentralForce(NamedTuple):
-    """A pull towards a centre that grows with the distance, as that of a spring.
+    """A pull towards a centre that grows with the distance, as that of a spring, on all that has a mass.
 
-    a_i = −B² (x_i − X).  Monaghan & Rafiee (2013), Int. J. Numer. Methods Fluids 71, 537, whose
-    drop swings in it between two ellipses.
+    a_i = −B² (x_i − X), with the potential B² |x_i − X|²/2.  Monaghan & Rafiee (2013), Int. J. Numer. Methods
+    Fluids 71, 537, whose drop swings in it between two ellipses.
     """
 
     frequency: Annotated[float, Field(description="B", json_schema_extra={"unit": "rad/s"})]
@@ -58,3 +60,8 @@ class CentralForce(NamedTuple):
     def body(self, i):
         """−B² (x − X), m/s²."""
         return scale(subtract(i.position, self.center), -self.frequency * self.frequency)
+
+    def potential(self, i):
+        """B² |x − X|²/2, J/kg."""
+        away = subtract(i.position, self.center)
+        return 0.5 * self.frequency * self.frequency * dot(away, away)

@@ -1,18 +1,21 @@
-"""What the fluid does to rigid bodies: the loads of their particles, added as whole numbers."""
+"""What pushes and pulls rigid bodies: the loads of their particles, added as whole numbers."""
 
 import numpy as np
 
+from psph.composition import terms
 from psph.composition.pair import take
 from psph.engine.jit import elementwise, overload, unrolled
-from psph.vectors import Vector, at, nearest_image, scale, subtract, zero_like
+from psph.vectors import Vector, add, at, nearest_image, scale, subtract, zero_like
 
 
 @elementwise
-def add_pushes(first, last, body_of, places, units, periods, view, columns):
-    """F = Σ m_w a_w and T = Σ (x_w − X) × m_w a_w of each body, with accelerations by the fluid alone.
+def add_pushes(first, last, body_of, places, units, periods, pulls, masses, view, columns):
+    """F = Σ f_w and T = Σ (x_w − X) × f_w of each body, f_w = m_w a_w + M_w b_w.
 
     Over the columns ``first`` to ``last``; ``body_of`` has the row of each group's body, −1 without one,
-    and ``places`` X, m, the point about which each turns.  Returns whole numbers (bodies, 6) of the ``units``
+    and ``places`` X, m, the point about which each turns.  a_w is the acceleration by the fluid alone of a
+    particle with the mass m_w that it shows, b_w that by the effects ``pulls`` on its part M_w of the body's
+    mass, by ``masses`` (psph.scene.bodies.shares_of).  Returns whole numbers (bodies, 6) of the ``units``
     of force, N, and of torque, N m, so that the sums do not depend on the order of particles.
     """
     found = np.zeros((len(places), 6), np.int64)
@@ -21,13 +24,35 @@ def add_pushes(first, last, body_of, places, units, periods, view, columns):
         body = body_of[columns.group[k]]
         if body < 0:
             continue
-        a = at(columns.load, k)
-        if a == zero_like(a):
+        force = pulled(pulls, masses, body, take(view, k), k, columns)
+        if force == zero_like(force):
             continue
-        force = scale(a, take(view, k).mass)
-        arm = nearest_image(subtract(at(columns.position, k), point(places, body, a)), periods)
+        arm = nearest_image(subtract(at(columns.position, k), point(places, body, force)), periods)
         _book(found, body, force, moment(arm, force), per_force, per_torque)
     return found
+
+
+def pulled(pulls, masses, body, i, k, columns) -> Vector:
+    """The force on particle ``k`` of a ``body``, seen as ``i``, N."""
+    return (
+        _pulled(pulls, masses, body, i, k, columns) if pulls else _pushed(pulls, masses, body, i, k, columns)
+    )
+
+
+def _pushed(pulls, masses, body, i, k, columns):
+    return scale(at(columns.load, k), i.mass)
+
+
+def _pulled(pulls, masses, body, i, k, columns):
+    share, anchor = masses[body, 0], at(columns.anchor, k)
+    for d in range(len(anchor)):
+        share += masses[body, 1 + d] * anchor[d]
+    return add(scale(at(columns.load, k), i.mass), scale(terms.body(pulls, i), share))
+
+
+@overload(pulled)
+def _typed_pulled(pulls, masses, body, i, k, columns):
+    return _pulled if len(pulls) else _pushed
 
 
 def point(places, body, like) -> Vector:

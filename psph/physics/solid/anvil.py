@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from psph.acts import SOLIDS
+from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.vectors import add, dot, scale, subtract, zero_like
 
@@ -13,6 +15,8 @@ class Anvils(NamedTuple):
     stiff as the layer of particles that it holds, with the fastest wave c_l of all solids.  A pressure p on
     the plane presses it in by dx p/(ρ c_l²).  The force has a potential, and no part along the plane.
     """
+
+    acts = (SOLIDS,)
 
     planes: tuple = ()
     half: float = 0.0
@@ -28,6 +32,18 @@ class Anvils(NamedTuple):
         """The push, m/s²."""
         push = zero_like(i.position)
         for place, normal in self.planes:
-            depth = max(self.half - dot(subtract(i.position, place), normal), 0.0)
-            push = add(push, scale(normal, self.stiffness * depth))
+            push = add(push, scale(normal, self.stiffness * pressed(self.half, i.position, place, normal)))
         return push
+
+    def potential(self, i):
+        """(c_l/dx)² Σ max(dx/2 − (x_i − X)·n, 0)²/2, J/kg."""
+        total = 0.0
+        for place, normal in self.planes:
+            total += pressed(self.half, i.position, place, normal) ** 2
+        return 0.5 * self.stiffness * total
+
+
+@helper
+def pressed(half, position, place, normal):
+    """How far a particle is nearer than ``half`` to a plane through ``place``, m."""
+    return max(half - dot(subtract(position, place), normal), 0.0)

@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field as Key
 
+from psph.acts import SOLIDS
 from psph.fields import Field
 from psph.formula import helper, where
 from psph.physics.facts import Facts
@@ -39,7 +40,7 @@ class SolidContact(NamedTuple):
     Comput. Methods Appl. Mech. Eng. 184, 49.
     """
 
-    between_solids = True
+    acts = (SOLIDS,)
 
     stiffness: Annotated[
         float,
