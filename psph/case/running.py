@@ -110,8 +110,7 @@ class Neighbours(Table):
     """The neighbour lists."""
 
     skin: float = key(
-        "how far a list reaches beyond the kernel's support, as a fraction of it; a wall "
-        "becomes wet or dry only when lists are rebuilt",
+        "how far a list reaches beyond the kernel's support, as a fraction of it",
         0.08,
         unit="1",
         ge=0,

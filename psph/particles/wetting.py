@@ -1,32 +1,73 @@
-"""Which walls have fluid in reach: found where the neighbours are listed."""
+"""Which walls have fluid in reach: decided by the places of each step."""
+
+from typing import NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import compiled
+from psph.engine.jit import compiled, elementwise
 from psph.vectors import at, dot, nearest_image, subtract
 
 
-@compiled
-def mark_wet(first, last, low, lists, support, cutoff, periods, position, group, bearing, is_fluid, wet):
-    """``wet`` of the columns ``first`` to ``last``: 0 in a wall without fluid in reach, else 1.
+class Rows(NamedTuple):
+    """Of the lists of each particle the whole ``lengths``, and whether it may ``rest`` while it is dry."""
 
-    A wall becomes wet where fluid comes within the kernel's ``support``, m, and dry where it leaves the
-    ``cutoff`` of the lists, m: between the two it stays what it was, so that water that trembles does not
+    lengths: np.ndarray
+    rest: np.ndarray
+
+
+WETTING = 0.95
+"""Part of the kernel's support within which fluid makes a wall wet; it stays so up to the whole support.
+W there is 1e-4 of that of a neighbour a spacing away, or less: no force tells one distance from the other."""
+
+
+@elementwise
+def mark_wet(first, last, walls, low, lists, rows, support, periods, position, group, bearing, is_fluid, wet):
+    """``wet`` of the columns that the entries ``first`` to ``last`` of ``walls`` name: 0 in a wall without
+    fluid in reach, else 1.
+
+    A wall becomes wet where fluid comes within the part WETTING of the kernel's ``support``, m, and dry
+    where it leaves the support: between the two it stays what it was, so that water that trembles does not
     make a wall at the edge of its reach lose its pressure again and again.  ``lists`` are
-    :class:`psph.particles.neighbours.Neighbours` of the particles from column ``low`` on; ``is_fluid`` 1
-    in a fluid, else 0.  Particles of a ``group`` that is not ``bearing`` stay dry.
+    :class:`psph.particles.neighbours.Neighbours` of the particles from column ``low`` on, whose row becomes
+    empty in a dry wall that :class:`Rows` let rest; ``is_fluid`` 1 in a fluid, else 0.  Particles of a
+    ``group`` that is not ``bearing`` stay dry.
     """
-    for k in range(np.uint64(first), np.uint64(last)):
+    for w in range(np.uint64(first), np.uint64(last)):
+        k = np.uint64(walls[w])
         row = k - np.uint64(low)
         found = is_fluid[k]
-        reach = cutoff if wet[k] > 0.0 else support
-        n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
+        reach = support if wet[k] > 0.0 else WETTING * support
+        n, end = lists.begin[row], lists.begin[row] + np.uint64(rows.lengths[row])
         while found == 0.0 and bearing[group[k]] and n < end:
             j = np.uint64(lists.lists[n])
             x = nearest_image(subtract(at(position, k), at(position, j)), periods)
             found = 1.0 if is_fluid[j] > 0.0 and dot(x, x) < reach * reach else 0.0
             n += np.uint64(1)
         wet[k] = found
+        if rows.rest[row]:
+            lists.lengths[row] = rows.lengths[row] if found > 0.0 else 0
+
+
+@elementwise
+def find_undecided(first, last, low, lists, reach, periods, listed, group, bearing, is_fluid, wet, undecided):
+    """Which of the columns ``first`` to ``last`` :func:`mark_wet` may change while the lists last.
+
+    ``undecided`` of a row is True in a wall that bears a pressure, but where it is wet and fluid stood nearer
+    than ``reach``, m, at the ``listed`` places when the lists were made, and where it is dry and none is
+    listed.  ``reach`` is the support without the skin by which two particles may have parted since.
+    """
+    for k in range(np.uint64(first), np.uint64(last)):
+        row = k - np.uint64(low)
+        held = some = False
+        n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
+        bears = is_fluid[k] == 0.0 and bearing[group[k]]
+        while bears and not held and n < end:
+            j = np.uint64(lists.lists[n])
+            x = nearest_image(subtract(at(listed, k), at(listed, j)), periods)
+            some = some or is_fluid[j] > 0.0
+            held = is_fluid[j] > 0.0 and reach > 0.0 and dot(x, x) < reach * reach and wet[k] > 0.0
+            n += np.uint64(1)
+        undecided[row] = bears and not held and (some or wet[k] > 0.0)
 
 
 FIRST_BODY = 2
@@ -34,21 +75,19 @@ FIRST_BODY = 2
 
 
 @compiled
-def rest_dry(first, last, low, lists, is_fluid, wet, group, bearing, solid, free, mirrored):
-    """Rows of dry walls without any fluid in their lists become empty: nothing has to be summed for them.
+def find_resting(first, last, low, lists, group, solid, free, mirrored, rest):
+    """``rest`` of the rows of the columns ``first`` to ``last``: whether nothing has to be summed while dry.
 
-    Nor for those of a rigid body, unless it may touch another solid: ``solid`` has the number of each
-    column's, ghosts among them.  Where the scene is ``mirrored`` that may be its own image.  Of the columns
-    ``first`` to ``last``, those of groups from number ``free`` on, which forces do not move.  One that is
-    not ``bearing`` needs no sum even with fluid around.
+    That is so in a wall, and in a rigid body unless it may touch another solid: ``solid`` has the number of
+    each column's, ghosts among them.  Where the scene is ``mirrored`` that may be its own image.  Groups
+    from number ``free`` on are those that forces do not move.
     """
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
         n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
-        idle = wet[k] == 0.0 and group[k] >= free and not (mirrored and solid[k] >= FIRST_BODY)
-        while idle and bearing[group[k]] and n < end:
+        rests = group[k] >= free and not (mirrored and solid[k] >= FIRST_BODY)
+        while rests and solid[k] >= FIRST_BODY and n < end:
             j = np.uint64(lists.lists[n])
-            idle = is_fluid[j] == 0.0 and (solid[k] < FIRST_BODY or solid[k] == solid[j])
+            rests = solid[j] == solid[k] or solid[j] == 0.0
             n += np.uint64(1)
-        if idle:
-            lists.lengths[row] = 0
+        rest[row] = rests

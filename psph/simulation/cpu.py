@@ -18,7 +18,6 @@ from psph.particles.others import keep_others
 from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.particles.wetting import mark_wet, rest_dry
 from psph.physics.motion import LOAD
 from psph.physics.rigid.pushes import add_pushes
 from psph.simulation.bounded import admit_kicked, admit_predicted
@@ -38,6 +37,7 @@ from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
 from psph.simulation.rules import Columns, Rules
+from psph.simulation.wetting import Wetting
 
 
 class Engine:
@@ -57,7 +57,6 @@ class Engine:
             plan.space.lanes if plan.passes else None,
         )
         self.skin = Skin(self.domain, scene.reach.skin, plan.planes) if plan.passes else Unlisted()
-        self._reach = scene.reach
         self.solids = self._solids(scene) if plan.solids else None
         self.immersion = self._immersion(scene) if plan.immersed else None
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
@@ -83,6 +82,7 @@ class Engine:
         self._load, self._push = settled(sum_over_neighbours), settled(add_pushes)
         self._potential = settled(potentials)
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
+        self.wetting = [Wetting(one, plan, store, self.domain, scene.reach) for one in plan.marking]
 
     def _solids(self, scene):
         """What the engine has of elastic solids."""
@@ -128,8 +128,8 @@ class Engine:
         with self.ledger("rebuild"):
             bring_back(self.store, self.plan.planes, self.plan.free)
             self.domain.rebuild(self.spent_on_pairs())
-            for effect in self.plan.marking:
-                self._mark(effect)
+            for one in self.wetting:
+                one.settle()
             self._list_others()
         with self.ledger("records"):
             self._fit_records()
@@ -139,6 +139,8 @@ class Engine:
 
     def begin(self) -> None:
         """What particles keep of the start, from where they stand then; lists have to be there."""
+        for one in self.wetting:
+            one.begin()
         if self.solids:
             self.solids.begin()
         if self.immersion:
@@ -160,6 +162,8 @@ class Engine:
             if one.settles:
                 self._each(settle_told, self._rules, self._view(0.0), self._columns())
             stale, written = (), written | one.written
+        for wetting in self.wetting:
+            wetting.mark()
         if self.solids and not self.immersion:
             self.solids.sum(time, dt)
 
@@ -208,8 +212,8 @@ class Engine:
         self.poses.restore(saved.state["poses"], saved.state["time"])
         if self.plan.passes:
             self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
-        for effect in self.plan.marking:
-            self._rest(effect)  # what ghosts are counts too
+        for one in self.wetting:
+            one.settle()  # what ghosts are counts too
         self._list_others()
         self._fit_records()
         for records in self.records:
@@ -236,34 +240,6 @@ class Engine:
         paid, self._paid = self._paid, self.ledger.seconds["pairs"]
         return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
 
-    def _mark(self, effect) -> None:
-        """Which walls have fluid in reach."""
-        s, lists, reach = self.store, self.domain.lists, self._reach
-        told_by, wet = s[effect.told_by], s[effect.marks.name]
-        self._each(
-            mark_wet,
-            s.low,
-            lists,
-            reach.support,
-            reach.cutoff,
-            self.domain.periods,
-            s["position"],
-            s.group,
-            self.plan.bearing,
-            told_by,
-            wet,
-        )
-        self._rest(effect)
-
-    def _rest(self, effect) -> None:
-        """Nothing is summed for walls out of reach of the fluid."""
-        s = self.store
-        told_by, wet = s[effect.told_by], s[effect.marks.name]
-        plan, lists = self.plan, self.domain.lists
-        solid = s["solid"] if plan.contacts else told_by  # without bodies: of numbers below those of bodies
-        mirrored = plan.mirrors is not None
-        self._each(rest_dry, s.low, lists, told_by, wet, s.group, plan.bearing, solid, plan.free, mirrored)
-
     def _list_others(self) -> None:
         """Solids feel only other ones in space."""
         if self.plan.touching:
@@ -276,7 +252,8 @@ class Engine:
         self._mirrors, self._lists = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
         if not self.records:
             return
-        longest = int(self.domain.lists.lengths[: self.store.owned].max(initial=0))
+        listed = int(self.domain.lists.lengths[: self.store.owned].max(initial=0))
+        longest = max([listed, *(one.longest for one in self.wetting)])
         self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
 
     def _each(self, loop, *args) -> list:

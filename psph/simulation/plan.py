@@ -177,7 +177,7 @@ class Plan:
 
     @cached_property
     def marking(self) -> tuple:
-        """Effects with a field that is found when the neighbours are listed."""
+        """Effects with a field that is found from the places of the neighbours in each step."""
         return tuple(e for e in self.effects if hasattr(e, "marks"))
 
     @property

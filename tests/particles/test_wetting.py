@@ -1,28 +1,67 @@
-"""Which walls are wet: fluid makes them so within its reach, and leaves them so a little farther out."""
+"""Which walls are wet: fluid makes them so within its reach, and leaves them so up to its end."""
 
 import numpy as np
 import pytest
 
 from psph.particles.neighbours import Neighbours
-from psph.particles.wetting import mark_wet, rest_dry
+from psph.particles.wetting import Rows, find_resting, find_undecided, mark_wet
 
-SUPPORT, CUTOFF, PERIOD = 1.0, 1.2, 10.0
+SUPPORT, SKIN, PERIOD = 1.0, 0.2, 10.0
 
 
-def wet_at(distance, before, other_is_fluid=1.0, first=9.5, bearing=True):
-    """Whether a wall is wet with a neighbour at a distance, across the end of a period, if it was before."""
+def lists_of(*names):
+    """Rows of one neighbour each."""
+    count = len(names)
+    return Neighbours(
+        np.arange(count, dtype=np.uint64), np.ones(count, np.uint32), np.array(names, np.uint32)
+    )
+
+
+def a_pair(distance, before, other_is_fluid, first=9.5, bearing=True):
+    """A wall, wet or not before, and a neighbour at a distance across the end of a period: places, then what
+    the loops read after them."""
     x = np.array([first, (first + distance) % PERIOD])
     is_fluid, wet = np.array([0.0, other_is_fluid]), np.array([before, 1.0])
-    lists = Neighbours(np.array([0, 1], np.uint64), np.array([1, 1], np.uint32), np.array([1, 0], np.uint32))
-    group, bears = np.array([1, 0], np.uint8), np.array([True, bearing])
-    mark_wet(0, 2, 0, lists, SUPPORT, CUTOFF, (PERIOD,), (x,), group, bears, is_fluid, wet)
+    return (x,), np.array([1, 0], np.uint8), np.array([True, bearing]), is_fluid, wet
+
+
+def wet_at(distance, before, other_is_fluid=1.0, rests=True, **more):
+    """Whether a wall is wet with a neighbour at a distance, if it was before; if not, its row may be empty."""
+    position, group, bears, is_fluid, wet = a_pair(distance, before, other_is_fluid, **more)
+    both, lists = np.array([0, 1], np.uint64), lists_of(1, 0)
+    rows = Rows(lists.lengths.copy(), np.array([rests, False]))
+    mark_wet(0, 2, both, 0, lists, rows, SUPPORT, (PERIOD,), position, group, bears, is_fluid, wet)
     assert wet[1] == other_is_fluid  # fluid counts as wet, a wall beside a wall does not
+    assert lists.lengths.tolist() == [wet[0] if rests else 1, 1]
     return wet[0]
 
 
-@pytest.mark.parametrize(("distance", "was_dry", "was_wet"), [(0.9, 1, 1), (1.1, 0, 1), (1.3, 0, 0)])
-def test_a_wall_stays_what_it_was_between_support_and_cutoff(distance, was_dry, was_wet):
+@pytest.mark.parametrize(("distance", "was_dry", "was_wet"), [(0.94, 1, 1), (0.96, 0, 1), (1.01, 0, 0)])
+def test_a_wall_stays_what_it_was_at_the_edge_of_the_support(distance, was_dry, was_wet):
     assert wet_at(distance, 0.0) == was_dry and wet_at(distance, 1.0) == was_wet
+    assert wet_at(distance, 1.0, rests=False) == was_wet
+
+
+def undecided_at(distance, before, other_is_fluid=1.0, **more):
+    """Whether each of the pair may change while the lists last."""
+    found = np.zeros(2, bool)
+    reach, rest = SUPPORT - SKIN, a_pair(distance, before, other_is_fluid, **more)
+    find_undecided(0, 2, 0, lists_of(1, 0), reach, (PERIOD,), *rest, found)
+    return found.tolist()
+
+
+@pytest.mark.parametrize(("distance", "was_dry", "was_wet"), [(0.79, True, False), (0.81, True, True)])
+def test_what_a_skin_cannot_change_is_decided(distance, was_dry, was_wet):
+    """Nor is the fluid itself ever in doubt."""
+    assert undecided_at(distance, 0.0) == [was_dry, False]
+    assert undecided_at(distance, 1.0) == [was_wet, False]
+
+
+def test_a_dry_wall_without_fluid_in_its_list_is_decided():
+    """One that is still wet there becomes dry."""
+    assert undecided_at(0.5, 0.0, other_is_fluid=0.0)[0] is False
+    assert undecided_at(0.5, 1.0, other_is_fluid=0.0)[0] is True
+    assert undecided_at(0.9, 0.0, bearing=False) == [False, False]
 
 
 def test_another_wall_makes_no_wall_wet():
@@ -33,42 +72,25 @@ def test_fluid_does_not_wet_a_wall_that_bears_nothing():
     assert wet_at(0.5, 1.0, bearing=False) == 0.0
 
 
-def lengths_after(wet, is_fluid, group, bearing=True, solid_of=(0, 1), mirrored=False):
-    """The lengths of the rows of three particles, each beside the next one, once dry walls rest."""
-    lists = Neighbours(np.arange(3, dtype=np.uint64), np.ones(3, np.uint32), np.array([1, 2, 0], np.uint32))
-    bears, groups = np.array([True] + [bearing] * (len(solid_of) - 1)), np.array(group, np.uint8)
+def resting(group, solid_of=(0, 1), mirrored=False):
+    """Which of three particles rest while they are dry, each beside the next one."""
+    found, groups = np.zeros(3, bool), np.array(group, np.uint8)
     solids = np.array(solid_of, float)[groups]
-    rest_dry(0, 3, 0, lists, np.array(is_fluid), np.array(wet), groups, bears, solids, np.uint8(1), mirrored)
-    return lists.lengths.tolist()
+    find_resting(0, 3, 0, lists_of(1, 2, 0), groups, solids, np.uint8(1), mirrored, found)
+    return found.tolist()
 
 
-def test_a_dry_wall_without_fluid_in_its_list_rests():
-    """The first has a wall beside it, the second a fluid, out of reach but listed."""
-    assert lengths_after(wet=[0.0, 0.0, 1.0], is_fluid=[0.0, 0.0, 1.0], group=[1, 1, 0]) == [0, 1, 1]
-
-
-def test_what_is_wet_or_moves_freely_does_not_rest():
-    assert lengths_after(wet=[1.0, 0.0, 1.0], is_fluid=[0.0, 0.0, 0.0], group=[1, 1, 1]) == [1, 0, 1]
-    assert lengths_after(wet=[0.0, 0.0, 0.0], is_fluid=[0.0, 0.0, 0.0], group=[0, 0, 1]) == [1, 1, 0]
-
-
-def test_a_wall_that_bears_nothing_rests_beside_the_fluid():
-    """The second has a fluid in its list."""
-    assert lengths_after(wet=[0.0, 0.0, 1.0], is_fluid=[0.0, 0.0, 1.0], group=[1, 1, 0], bearing=False) == [
-        0,
-        0,
-        1,
-    ]
+def test_walls_rest_and_what_moves_freely_does_not():
+    assert resting(group=[1, 0, 1]) == [True, False, True]
 
 
 def test_a_body_that_may_touch_another_solid_does_not_rest():
     """The first is of a body beside a wall, the second of the wall beside another body, the third of that body."""
-    dry = {"wet": [0.0] * 3, "is_fluid": [0.0] * 3, "solid_of": (0, 1, 2, 3)}
-    assert lengths_after(group=[2, 1, 3], **dry) == [1, 0, 1]
-    assert lengths_after(group=[2, 2, 2], **dry) == [0, 0, 0]
+    assert resting(group=[2, 1, 3], solid_of=(0, 1, 2, 3)) == [False, True, False]
+    assert resting(group=[2, 2, 2], solid_of=(0, 1, 2, 3)) == [True, True, True]
+    assert resting(group=[0, 3, 0], solid_of=(0, 1, 2, 3)) == [False, True, False]  # beside fluid alone
 
 
 def test_a_body_that_may_touch_its_own_image_does_not_rest():
     """The first two are of a body, the third of a wall."""
-    dry = {"wet": [0.0] * 3, "is_fluid": [0.0] * 3, "solid_of": (0, 1, 2), "group": [2, 2, 1]}
-    assert lengths_after(mirrored=True, **dry) == [1, 1, 0]
+    assert resting(group=[2, 2, 1], solid_of=(0, 1, 2), mirrored=True) == [False, False, True]

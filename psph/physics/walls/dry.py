@@ -10,17 +10,17 @@ from psph.physics.facts import Facts
 class DryWall(NamedTuple):
     """A wall that no fluid touches bears nothing: it has its rest density.
 
-    ρ_i = ρ₀_i in a wall particle without a fluid particle within the kernel's support.  Which those
-    are is found when the neighbours are listed, so that the pair loop knows nothing of it.  A wall that
-    was wet becomes dry where the fluid leaves the cutoff of the lists, a skin farther out: were it one
-    distance, still water would tremble, for a wall at the edge of reach would lose its pressure again and
-    again.  Without it a wall would keep for ever the pressure that it had when the fluid left.  Where no
-    fluid is even listed, nothing is summed for such a wall (psph.particles.wetting.rest_dry).
+    ρ_i = ρ₀_i in a wall particle without a fluid particle within the kernel's support.  The places of each
+    step decide which those are, and the pair loop knows nothing of it (psph.particles.wetting.mark_wet).
+    A wall that was dry becomes wet where fluid comes within 0.95 of the support: were it one distance, still
+    water would tremble, for a wall at the edge of reach would lose its pressure again and again.  Without
+    it a wall would keep for ever the pressure that it had when the fluid left.  Where no fluid is even
+    listed, nothing is summed for such a wall (psph.simulation.wetting).
     A wall whose condition bears no pressure (psph.physics.walls.conditions) is always dry.
     """
 
     marks = Field("wet", "1", "0 in a wall without fluid in reach, else 1", start=1.0, image=Same)
-    """The field that says whether there was fluid in reach when the neighbours were listed."""
+    """The field that says whether there is fluid in reach."""
     told_by = "is_fluid"
     """The field of a neighbour that tells fluid from wall."""
 

@@ -1,0 +1,64 @@
+"""The walls of a rank that have fluid in reach, and the rows of the others, which rest."""
+
+import numpy as np
+
+from psph.engine.threads import in_threads
+from psph.parallel.domain import Domain
+from psph.particles.reach import Reach
+from psph.particles.store import Store
+from psph.particles.wetting import Rows, find_resting, find_undecided, mark_wet
+from psph.simulation.plan import Plan
+
+
+class Wetting:
+    """Fills the field that ``effect`` marks (:class:`psph.physics.walls.dry.DryWall`) in the particles of
+    ``store``, by their lists in ``domain``.
+
+    A step looks only at those which may become wet or dry while the lists last, and nothing is summed for
+    those that are dry.
+    """
+
+    def __init__(self, effect, plan: Plan, store: Store, domain: Domain, reach: Reach):
+        self.effect, self.plan, self.store, self.domain, self.reach = effect, plan, store, domain, reach
+        self._undecided = np.zeros(0, np.uint64)
+        self._rows = Rows(np.zeros(0, np.uint32), np.zeros(0, bool))
+
+    def settle(self) -> None:
+        """Lists are new, or taken up: the rows of dry walls become empty."""
+        s, plan, lists = self.store, self.plan, self.domain.lists
+        undecided, self._rows = np.zeros(s.owned, bool), Rows(lists.lengths.copy(), np.zeros(s.owned, bool))
+        safe, wet = self.reach.support - self.reach.skin, s[self.effect.marks.name]
+        self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
+        self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
+        solid = s["solid"] if plan.contacts else s[self.effect.told_by]  # without bodies: below their numbers
+        self._each(find_resting, s.group, solid, plan.free, plan.mirrors is not None, self._rows.rest)
+        lists.lengths[: s.owned][self._rows.rest & (wet[s.inner] == 0.0)] = 0
+
+    def begin(self) -> None:
+        """Decide of all; lists have to be there."""
+        s = self.store
+        self._mark(np.arange(s.low, s.low + s.owned, dtype=np.uint64))
+
+    def mark(self) -> None:
+        """Decide by the places of this step, ghosts as they were brought for its sums."""
+        self._mark(self._undecided)
+
+    @property
+    def longest(self) -> int:
+        """Entries of the longest row when nothing rests."""
+        return int(self._rows.lengths[: self.store.owned].max(initial=0))
+
+    @property
+    def _kinds(self) -> tuple:
+        """What the loops read of a particle but its place."""
+        s = self.store
+        return s.group, self.plan.bearing, s[self.effect.told_by], s[self.effect.marks.name]
+
+    def _mark(self, walls: np.ndarray) -> None:
+        s, reach = self.store, (self.reach.support, self.domain.periods)
+        rest = s.low, self.domain.lists, self._rows, *reach, s["position"], *self._kinds
+        in_threads(mark_wet, 0, len(walls), walls, *rest)
+
+    def _each(self, loop, *args) -> None:
+        s = self.store
+        in_threads(loop, s.low, s.low + s.owned, s.low, self.domain.lists, *args)
