@@ -1,4 +1,4 @@
-"""What the fluid alone does to a wall or a body: the sum over its neighbours in the fluid; and contacts."""
+"""What the fluid alone does to a wall or a body: the sum over its neighbours in the fluid."""
 
 from typing import Any, NamedTuple
 
@@ -12,13 +12,11 @@ from psph.vectors import add, scale
 class Loads(NamedTuple):
     """A pass over the groups that are ``loaded`` (groups,): what it sums as acceleration is the fluid's push.
 
-    ``group`` has the group of each column; ``contacts`` are effects by which solids push each other, which
-    count whatever the neighbour.  All other sums of these particles are those of every pass.
+    ``group`` has the group of each column.  All other sums of these particles are those of every pass.
     """
 
     loaded: Any
     group: Any
-    contacts: tuple = ()
 
 
 class Unloaded(NamedTuple):
@@ -61,18 +59,6 @@ def _typed_by_fluid(loads, j, coefficient):
     if isinstance(coefficient, types.BaseTuple):
         return lambda loads, j, coefficient: scale(coefficient, j.is_fluid)
     return lambda loads, j, coefficient: j.is_fluid * coefficient
-
-
-def by_contact(loads, i, j, pair):
-    """Coefficient of x_ij in the acceleration by contacts, 1/s², or None."""
-    return terms.radial(loads.contacts, i, j, pair) if isinstance(loads, Loads) else None
-
-
-@overload(by_contact)
-def _typed_by_contact(loads, i, j, pair):
-    if not _is(Loads, loads):
-        return lambda loads, i, j, pair: None
-    return lambda loads, i, j, pair: terms.radial(loads.contacts, i, j, pair)
 
 
 def completed(loads, effects, reductions, folded, i, force):

@@ -70,24 +70,11 @@ def find_undecided(first, last, low, lists, reach, periods, listed, group, beari
         undecided[row] = bears and not held and (some or wet[k] > 0.0)
 
 
-FIRST_BODY = 2
-"""Number of a first rigid body among solids: 0 is no solid, 1 a wall."""
-
-
 @compiled
-def find_resting(first, last, low, lists, group, solid, free, mirrored, rest):
+def find_resting(first, last, low, lists, group, free, rest):
     """``rest`` of the rows of the columns ``first`` to ``last``: whether nothing has to be summed while dry.
 
-    That is so in a wall, and in a rigid body unless it may touch another solid: ``solid`` has the number of
-    each column's, ghosts among them.  Where the scene is ``mirrored`` that may be its own image.  Groups
-    from number ``free`` on are those that forces do not move.
+    That is so in a wall and in a rigid body: groups from number ``free`` on, which forces do not move.
     """
     for k in range(np.uint64(first), np.uint64(last)):
-        row = k - np.uint64(low)
-        n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
-        rests = group[k] >= free and not (mirrored and solid[k] >= FIRST_BODY)
-        while rests and solid[k] >= FIRST_BODY and n < end:
-            j = np.uint64(lists.lists[n])
-            rests = solid[j] == solid[k] or solid[j] == 0.0
-            n += np.uint64(1)
-        rest[row] = rests
+        rest[k - np.uint64(low)] = group[k] >= free

@@ -18,6 +18,12 @@ FASTER = 2.0
 
 def advice(scene, guard: str, suspect) -> list[str]:
     """Things to try, the most promising first; at least one."""
+    if guard == "overlap":
+        return [
+            "let a motion that forces a body into another end before, or let the other give way",
+            *_shorter_step(scene),
+            *_bound(guard),
+        ]
     if not scene.case.flowing:
         return [*(fast_start(scene) if guard == "speed" else ()), *_solids(scene), *_bound(guard)]
     return [

@@ -21,14 +21,15 @@ from psph.runs.resume import newest_checkpoint, write_checkpoint
 from psph.runs.suspect import Suspect, find
 from psph.scene.behind import Solid
 from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
+from psph.simulation.touching import Overlap
 
 EVERY = 100
 """Steps from one look behind the walls and at the energy to the next."""
 
-STOP, CLOCK, DEPTH = "stop", "clock", "depth"
+STOP, CLOCK, DEPTH, OVERLAP = "stop", "clock", "depth", "overlap"
 
 
-VERBS = {DEPTH: "lost a particle", CLOCK: "stands still"}
+VERBS = {DEPTH: "lost a particle", CLOCK: "stands still", OVERLAP: "has a body inside another"}
 """What the run did, by guard, where it is not that it blew up."""
 
 
@@ -142,9 +143,15 @@ class Guards:
             with simulation.ledger("guards"):
                 slow = [
                     (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
+                    (OVERLAP, self._overlap().depth > bounds.overlap * self.scene.spacing),
                     ("energy", self._books and self._gain() > bounds.energy),
                 ]
             yield from (name for name, passed in slow if passed)
+
+    def _overlap(self) -> Overlap:
+        """Where a rigid body is deepest inside another or a wall; the same on every rank."""
+        floating = self.simulation.engine.poses.floating
+        return floating.contacts.deepest(floating.bodies) if floating else Overlap(0.0, -1, "")
 
     def _hidden(self) -> np.ndarray:
         """True for each particle of this rank that is fluid and too deep behind a wall's face."""
@@ -263,6 +270,10 @@ class Guards:
     def _worst_by_depth(self) -> np.ndarray:
         return self._hidden().astype(float)
 
+    def _worst_by_overlap(self) -> np.ndarray:
+        floating = self.simulation.engine.poses.floating
+        return (floating.body_of[self.simulation.store.shown("group")] == self._overlap().body).astype(float)
+
     def _moving(self) -> np.ndarray:
         return self.simulation.store.shown("kind") != WALL
 
@@ -297,6 +308,10 @@ class Guards:
             case "density":
                 part = suspect.value("density") / suspect.value("rest_density")
                 return f"{who} has {part:.3g} of its rest density{bound}"
+            case _ if guard == OVERLAP:
+                found = self._overlap()
+                inner = self.simulation.engine.poses.floating.bodies.bodies[found.body].name
+                return f"bodies.{inner} is {found.depth:.3g} m inside {found.other}{bound}"
             case _ if guard == DEPTH:
                 if (side := self._side_passed(suspect)) is not None:
                     return f"{who} has left the walls {side}{bound}"

@@ -8,13 +8,21 @@ import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.motion import motion_of
+from psph.case.parameters import as_numbers
 from psph.physics.rigid.bodies import Bodies, Body
-from psph.physics.rigid.contact import contact_of
 from psph.physics.rigid.lines import Line, longest_step
 from psph.physics.rigid.pose import in_space
+from psph.physics.solid.contact import SolidContact
+from psph.scene.lattice import lattice_around
+from psph.scene.mirrors import clipped
+from psph.scene.shapes import bounds, inside
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
+
+
+FINER = 7
+"""By how much finer the lattice is that tells the volume of a shape."""
 
 
 class Volume(NamedTuple):
@@ -46,6 +54,17 @@ def volume_of(scene: "Scene", material: int) -> Volume:
     spread = np.zeros((3, 3))
     spread[:d, :d] = second / count - np.outer(mean, mean) + dx * dx / 12.0 * np.eye(d)
     return Volume(count * dx**d, np.array(in_space(tuple(mean + middle))), spread)
+
+
+def drawn_volume(scene: "Scene", shape) -> float:
+    """The volume of a shape itself, m^d, this side of mirrors: that of the cells of a finer lattice in it."""
+    fine = scene.spacing / FINER
+    lattice = lattice_around([clipped(bounds(shape), scene.mirror_planes)], scene.lattice.lower, fine, None)
+    count = sum(
+        np.count_nonzero(np.broadcast_to(inside(shape, lattice.grid(*ends), 0.0), lattice.shape(*ends)))
+        for ends in lattice.chunks()
+    )
+    return float(count) * fine**scene.dimensions
 
 
 def rigid_bodies(scene: "Scene") -> tuple[Body, ...]:
@@ -97,6 +116,12 @@ def shares_of(scene: "Scene") -> np.ndarray:
     return np.array(found)
 
 
+def contact_of(scene: "Scene") -> SolidContact:
+    """How the bodies of a scene rub and bounce: as its case says, or by default."""
+    table = scene.case.physics.contact
+    return SolidContact() if table is None else SolidContact(**as_numbers(table))
+
+
 def density_ratio(scene: "Scene", body: Body) -> float:
     """The density of a body over that of its fluid."""
     number = [one.name for one in scene.species].index(body.name)
@@ -136,9 +161,8 @@ def lines_of(scene: "Scene", order: Sequence[str]) -> tuple[Line, ...]:
 def body_step(scene: "Scene") -> float:
     """The longest step that the bodies of a scene stand, s.
 
-    That of their lines; Δt ≤ 0.5 √(M/Nk) for a body that stands on a face of N particles of stiffness k
-    (psph.physics.rigid.contact); and Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid
-    within h of its surface A, whose push in a step would move it too far.
+    That of their lines; and Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within h of its
+    surface A, whose push in a step would move it too far.  Contact is hard, and asks for no step of its own.
     """
     own = scene.rigid_bodies
     bodies = Bodies(own, scene.gravity)
@@ -149,8 +173,6 @@ def body_step(scene: "Scene") -> float:
         area = (
             2.0 * d * count ** ((d - 1.0) / d) * dx ** (d - 1)
         )  # of a cube with so many sites: no body has less
-        pressed = count ** ((d - 1.0) / d)  # particles of a face that stands on another
-        shortest = min(shortest, 0.5 * (one.mass / (pressed * contact_of(scene).stiffness)) ** 0.5)
         share = one.mass / (scene.species[number].density * area * h)
         if any(one.slides) and share < 1.0:
             shortest = min(shortest, 0.5 * share**0.5 * h / c)

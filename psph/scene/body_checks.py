@@ -8,8 +8,9 @@ import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
-from psph.scene.bodies import body_step, density_ratio, volume_of
+from psph.scene.bodies import body_step, density_ratio, drawn_volume, volume_of
 from psph.scene.lattice import TOLERANCE
+from psph.scene.multiples import is_of_boxes
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -20,6 +21,9 @@ made."""
 
 LONGEST_ARM = 10.0
 """Sizes of a body: a pivot farther from it is likely a slip."""
+
+MOST_MISFILLED = 0.02
+"""Part of its volume by which a body's particles may fill more or less without a warning."""
 
 ASLANT = 0.02
 """Slope by which a body's particles may lean more than its surface without a warning."""
@@ -141,6 +145,23 @@ def _lopsided(scene: "Scene") -> Iterator[str]:
                 )
 
 
+def _misfilled(scene: "Scene") -> Iterator[str]:
+    """A line for each body whose particles fill another volume than its shape, where that is no box.
+
+    Of boxes psph.scene.multiples tells.
+    """
+    for number, (name, table) in enumerate(scene.case.bodies.items(), scene.layout.first_body):
+        if table.density is None or is_of_boxes(table.shape):
+            continue
+        own, drawn = volume_of(scene, number).volume, drawn_volume(scene, table.shape)
+        if abs(own / drawn - 1.0) > MOST_MISFILLED:
+            unit = "m2" if scene.dimensions == 2 else "m3"
+            yield (
+                f"bodies.{name}: its particles fill {own:.4g} {unit} of the {drawn:.4g} {unit} of its shape, "
+                "and it weighs and displaces what they fill; make space.spacing smaller"
+            )
+
+
 def _crushing(scene: "Scene") -> Iterator[str]:
     """A line for each heavy body under which water gives way where it lands on the floor.
 
@@ -173,6 +194,7 @@ def body_warnings(scene: "Scene") -> Iterator[str]:
     yield from _lopsided(scene)
     yield from _far_points(scene)
     yield from _crushing(scene)
+    yield from _misfilled(scene)
     for one in scene.rigid_bodies:
         ratio = density_ratio(scene, one)
         if not LIGHTEST <= ratio <= HEAVIEST:

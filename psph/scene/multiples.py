@@ -34,15 +34,16 @@ class Width(NamedTuple):
 
 
 def widths(scene: "Scene") -> list[Width]:
-    """Of every box of a fluid or a solid and every closed room in a wall, and the periods of the domain."""
+    """Of every box of a fluid, a solid or a body and every closed room in a wall, and the periods."""
     case = scene.case
     found = [
         Width("space.upper", d, low, low + period)
         for d, (low, period) in enumerate(zip(scene.lower, scene.periods))
         if period is not None
     ]
-    for number, part in enumerate(scene.parts[: scene.layout.movers]):
-        boxes = _boxes(part.shape)
+    movers, first = scene.layout.movers, scene.layout.first_body
+    for number in (*range(movers), *range(first, len(scene.parts))):
+        boxes = _boxes(scene.parts[number].shape)
         found += (Width(scene.key_of(number), *side) for box in boxes for side in _sides(box))
     for name, wall in case.walls.items():
         found += (Width(f"walls.{name}", *side) for side in _cavities(wall.shape))
@@ -101,6 +102,15 @@ def _boxes(shape: Shape) -> Iterator[Box]:
             yield from _boxes(base)
         case Box() as box:
             yield box
+
+
+def is_of_boxes(shape: Shape) -> bool:
+    """Whether a shape is one box, or several."""
+    match shape.form:
+        case tuple() as shapes:
+            return all(map(is_of_boxes, shapes))
+        case form:
+            return isinstance(form, Box)
 
 
 def _sides(box: Box) -> Iterator[tuple[int, float, float]]:

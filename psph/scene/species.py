@@ -9,7 +9,6 @@ import numpy as np
 
 from psph.case.shapes import Shape
 from psph.fields import FLUID
-from psph.particles.wetting import FIRST_BODY
 from psph.physics.motion import is_free
 from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.rows import projected
@@ -18,6 +17,9 @@ from psph.scene.shapes import Grid, inside
 
 NONE = 255
 """In place of a material: a site without a particle."""
+
+FIRST_BODY = 2
+"""Number of a first rigid body or elastic solid among solids: 0 is no solid, 1 a wall."""
 
 
 class Species(NamedTuple):

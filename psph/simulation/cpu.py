@@ -176,7 +176,7 @@ class Engine:
         parts = self._each(self._push, *of_each, self._view(0.0), self._columns())
         floating.load(sum(parts), self.domain.comm)
         if dt > 0.0:
-            floating.bodies.kick(time, dt)
+            floating.kick(time, dt)
         self.poses.turn_to(time)
 
     def settle_pressure(self, pace: float) -> None:
@@ -298,7 +298,7 @@ class Engine:
         rest = None
         if one.gives_rates and plan.loaded is not None:
             rest = Unloaded(plan.loaded, s.group)
-            loads = Loads(plan.loaded, s.group, plan.contacts)
+            loads = Loads(plan.loaded, s.group)
             summed = Summed(one.effects, one.reductions, loads)
             in_threads(self._load, first, last, summed, *seen, sums._replace(acceleration=s[LOAD.name]))
         summed = Summed(one.effects, one.reductions, rest)

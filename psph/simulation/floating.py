@@ -6,6 +6,7 @@ from psph.parallel.reductions import whole_sums
 from psph.physics.rigid.bodies import Bodies, Body, crossing
 from psph.physics.rigid.lines import pulls
 from psph.scene.bodies import lines_of, shares_of
+from psph.simulation.touching import Contacts
 
 BITS = 58
 """Of whole numbers of 64 bits, for a push of ρ₀c² on all particles of bodies: room for sixteen times that."""
@@ -37,6 +38,20 @@ class Floating:
         units = 2.0 ** (BITS - count.bit_length())
         force = pressure * scene.spacing ** (scene.dimensions - 1) / units
         self.units = (force, force * max(up - low for low, up in zip(scene.lower, scene.upper)))
+        self._scene, self._plan = scene, plan
+        self.contacts: Contacts | None = None
+
+    def meet_in(self, maps: np.ndarray) -> None:
+        """Look for contacts where the ``maps`` of all rigid motions have bodies and walls."""
+        self.contacts = Contacts(self._scene, self._plan, self.rows, maps)
+
+    def drift(self, time: float, dt: float) -> None:
+        """The first half of a kick, and the way to ``time``, s, with contacts."""
+        self.bodies.drift(time, dt, self.contacts)
+
+    def kick(self, time: float, dt: float) -> None:
+        """The second half of the kick."""
+        self.bodies.kick(time, dt, self.contacts)
 
     def maps(self) -> np.ndarray:
         """The affine maps of each body, as psph.physics.rigid.pose.maps: (n, 3, dim, 1 + dim)."""

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.composition import terms
-from psph.composition.loads import by_contact, by_fluid, completed, is_due
+from psph.composition.loads import by_fluid, completed, is_due
 from psph.composition.mirrors import at_look, ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
@@ -84,7 +84,6 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
                 pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
                 rate = rate + terms.density_rate(effects, i, j, pair)
                 a = pushed(a, pair.x_ij, by_fluid(loads, j, terms.radial(effects, i, j, pair)))
-                a = pushed(a, pair.x_ij, by_contact(loads, i, j, pair))
                 a = pushed(a, pair.u_ij, by_fluid(loads, j, terms.shear(effects, i, j, pair)))
                 a = added(a, by_fluid(loads, j, terms.push(effects, i, j, pair)))
                 totals = terms.gather_each(reductions, totals, i, j, pair)

@@ -27,7 +27,6 @@ from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, MovingClamp, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
-from psph.physics.rigid.contact import contact_of
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import SMOOTHING
 from psph.physics.solid.material import remembers
@@ -62,9 +61,6 @@ ALWAYS_READ = (
 
 LOADED_READ = ("is_fluid",)
 """What a pass of loads reads of a neighbour, beside what its effects read."""
-
-CONTACTS_READ = ("solid",)
-"""What contacts read of a particle beside that."""
 
 OF_SCENE = ("sound_speed", "smoothing_length", "kernel", "spacing", "dimensions")
 
@@ -128,8 +124,6 @@ class Plan:
     """The row of the pose of each group; 0 where it has none."""
     loaded: np.ndarray | None
     """Whether the push of the fluid alone is summed on the particles of a group: (groups,); None: on none."""
-    contacts: tuple[Any, ...]
-    """How solids push each other: one effect where there are bodies, else none."""
     body_step: float | None
     """The longest step that rigid bodies stand, s; None without bodies."""
     solids: tuple[Any, ...]
@@ -295,8 +289,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     own_laws = laws(scene, catalogue.states)
     led = [bool(case.flowing) and is_prescribed(one.motion) for one in scene.species]
     loaded = np.array([one.loaded for one in scene.species], bool) | np.array(led, bool)
-    contacts = (contact_of(scene),) if scene.case.bodies else ()
-    for_loads = (*LOADED_READ * bool(loaded.any()), *CONTACTS_READ * bool(contacts))
+    for_loads = LOADED_READ * bool(loaded.any())
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
     told = carried_fields(movement, scene.frame)
     told_by = {e.told_by for e in marking}
@@ -358,7 +351,6 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         free=np.uint8(sum(one.mobile for one in scene.species)),
         **movement._asdict(),
         loaded=loaded if loaded.any() else None,
-        contacts=contacts,
         body_step=body_step(scene) if scene.case.bodies else None,
         solids=scene.elastic_solids,
         solid_of=np.array(

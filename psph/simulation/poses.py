@@ -37,6 +37,8 @@ class Poses:
         self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
         self.frame = None if frame is None else np.zeros((2, dimensions, 1 + dimensions))
         self.turn_to(0.0)
+        if floating:
+            floating.meet_in(self.maps)
 
     def turn_to(self, time: float) -> None:
         """Have all that is prescribed by time where it is at ``time``, s."""
@@ -61,7 +63,7 @@ class Poses:
             return 0.0
         before = self._at_corners()
         if self.floating:
-            self.floating.bodies.drift(time, dt)
+            self.floating.drift(time, dt)
         if self.paddles:
             self.paddles.advance(dt)
         self.turn_to(time)

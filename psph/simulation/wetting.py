@@ -30,8 +30,7 @@ class Wetting:
         safe, wet = self.reach.support - self.reach.skin, s[self.effect.marks.name]
         self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
-        solid = s["solid"] if plan.contacts else s[self.effect.told_by]  # without bodies: below their numbers
-        self._each(find_resting, s.group, solid, plan.free, plan.mirrors is not None, self._rows.rest)
+        self._each(find_resting, s.group, plan.free, self._rows.rest)
         lists.lengths[: s.owned][self._rows.rest & (wet[s.inner] == 0.0)] = 0
 
     def begin(self) -> None:

@@ -72,25 +72,12 @@ def test_fluid_does_not_wet_a_wall_that_bears_nothing():
     assert wet_at(0.5, 1.0, bearing=False) == 0.0
 
 
-def resting(group, solid_of=(0, 1), mirrored=False):
+def resting(group):
     """Which of three particles rest while they are dry, each beside the next one."""
-    found, groups = np.zeros(3, bool), np.array(group, np.uint8)
-    solids = np.array(solid_of, float)[groups]
-    find_resting(0, 3, 0, lists_of(1, 2, 0), groups, solids, np.uint8(1), mirrored, found)
+    found = np.zeros(3, bool)
+    find_resting(0, 3, 0, lists_of(1, 2, 0), np.array(group, np.uint8), np.uint8(1), found)
     return found.tolist()
 
 
 def test_walls_rest_and_what_moves_freely_does_not():
     assert resting(group=[1, 0, 1]) == [True, False, True]
-
-
-def test_a_body_that_may_touch_another_solid_does_not_rest():
-    """The first is of a body beside a wall, the second of the wall beside another body, the third of that body."""
-    assert resting(group=[2, 1, 3], solid_of=(0, 1, 2, 3)) == [False, True, False]
-    assert resting(group=[2, 2, 2], solid_of=(0, 1, 2, 3)) == [True, True, True]
-    assert resting(group=[0, 3, 0], solid_of=(0, 1, 2, 3)) == [False, True, False]  # beside fluid alone
-
-
-def test_a_body_that_may_touch_its_own_image_does_not_rest():
-    """The first two are of a body, the third of a wall."""
-    assert resting(group=[2, 2, 1], solid_of=(0, 1, 2), mirrored=True) == [False, False, True]

@@ -14,8 +14,9 @@ class ForceGauge(NamedTuple):
 
     F = Σ_w m_w a_w and T = Σ_w (x_w − X) × m_w a_w over their particles, with the accelerations a_w by
     their neighbours in the fluid alone, without gravity: what the fluid feels of these particles,
-    turned round.  X is ``about``, m (dim,).  N and N m; per metre of depth in 2D.  Where a domain repeats,
-    what moves as a whole is where its way has led it, also beyond the domain: moments have no jump there.
+    turned round.  Those of bodies have their contacts too.  X is ``about``, m (dim,).  N and N m; per metre
+    of depth in 2D.  Where a domain repeats, what moves as a whole is where its way has led it, also beyond
+    the domain: moments have no jump there.
     """
 
     name: str
@@ -34,7 +35,19 @@ class ForceGauge(NamedTuple):
         held = np.isin(store.shown("group"), self.groups)
         force = store.shown("mass")[held, None] * store.shown("load")[held]
         arm = self._places(simulation, held) - np.array(self.about)
-        return exact_sums(simulation.comm, np.column_stack([force, *moments(arm, force)]))
+        found = exact_sums(simulation.comm, np.column_stack([force, *moments(arm, force)]))
+        floating = simulation.engine.poses.floating
+        return found + self._contacts(floating) if floating else found
+
+    def _contacts(self, floating) -> np.ndarray:
+        """Force and moment of the contacts of bodies among the groups."""
+        bodies, d = floating.bodies, len(self.about)
+        own = np.isin(np.arange(len(bodies.bodies)), floating.body_of[list(self.groups)])
+        about = np.zeros(3)
+        about[:d] = self.about
+        twist = bodies.twisting + np.cross(bodies.place - about, bodies.pressing)
+        turned = ["xyz".index(axis) for axis in turns(d)]
+        return np.concatenate([bodies.pressing[own, :d].sum(axis=0), twist[own][:, turned].sum(axis=0)])
 
     def _places(self, simulation, held: np.ndarray) -> np.ndarray:
         """Where the particles ``held`` are, m (n, dim): those that move as one beside each other."""

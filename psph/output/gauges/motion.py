@@ -48,8 +48,8 @@ class MotionGauge(NamedTuple):
             velocity[slid],
             bodies.turned(k)[turned],
             bodies.spin[k, turned],
-            bodies.force[k, slid],
-            bodies.torque[k, turned],
+            bodies.pushed[k, slid],
+            bodies.turned_by[k, turned],
         )
         own = [t for line, t in zip(floating.lines, floating.tensions.tolist()) if line.body == k]
         if self.restrained:

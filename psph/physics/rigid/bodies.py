@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.fields import WALL
+from psph.physics.rigid.contact import Yielding
 from psph.physics.rigid.pose import Pose, in_space
 from psph.vectors import Vector
 
@@ -41,6 +42,8 @@ KEPT = (
     "loose",
     "prescribed",
     "prescribed_turn",
+    "pressing",
+    "twisting",
 )
 """The arrays of a state."""
 
@@ -95,7 +98,8 @@ class Bodies:
     ``frame`` has the principal axes of those that turn freely.  ``ahead`` and ``spin_ahead`` are
     velocity and angular velocity as they will be at the end of the step if the force stays; ``loose`` (n, 1)
     is 0 for a body that is held, which shows no velocity and no acceleration, else 1; ``prescribed``, m/s²,
-    and ``prescribed_turn``, rad/s² (n, 3), are the accelerations of what is prescribed.
+    and ``prescribed_turn``, rad/s² (n, 3), are the accelerations of what is prescribed.  ``pressing`` N and
+    ``twisting`` N m (n, 3) are what contacts were in the last step, in the mean over it.
     """
 
     def __init__(self, bodies: Sequence[Body], gravity: Sequence[float]):
@@ -126,14 +130,22 @@ class Bodies:
         self.force, self.torque = np.zeros((n, 3)), np.zeros((n, 3))
         self.ahead, self.spin_ahead = np.zeros((n, 3)), np.zeros((n, 3))
         self.prescribed, self.prescribed_turn = np.zeros((n, 3)), np.zeros((n, 3))
+        self.pressing, self.twisting = np.zeros((n, 3)), np.zeros((n, 3))
         self._led = [row for row, one in enumerate(bodies) if one.motion]
         self._swung = any(one.motion and one.pivot for one in bodies)
         self._lead(range(n), 0.0)
         self._begin()
 
-    def drift(self, then: float, dt: float) -> None:
-        """The first half of the kick, and the way to the end of the step of ``dt`` s at ``then``."""
+    def drift(self, then: float, dt: float, contacts=None) -> None:
+        """The first half of the kick, and the way to the end of the step of ``dt`` s at ``then``.
+
+        ``contacts`` between the two keep bodies from getting into each other (psph.simulation.touching).
+        """
+        before = self.velocity, self.spin_by(self.angular_momentum)
         self._kick(then, dt)
+        self.pressing, self.twisting = np.zeros_like(self.force), np.zeros_like(self.torque)
+        if contacts and dt > 0.0:
+            contacts.meet(self, before, then, dt)
         loose, step = then > self.held, self._lasting(then, dt)
         self.place = np.where(self.slides, self.place + step * self.velocity, self.place)
         self._tumble(step[self.tumbling, 0])
@@ -142,9 +154,11 @@ class Bodies:
         velocity = np.where(self.slides, self.velocity + 0.5 * step * self.force / self.mass, self.velocity)
         self._show(loose, velocity, self.angular_momentum + 0.5 * step * self._driving)
 
-    def kick(self, then: float, dt: float) -> None:
-        """The second half of the kick, by the forces at the end of the step."""
+    def kick(self, then: float, dt: float, contacts=None) -> None:
+        """The second half of the kick, by the forces at the end of the step and by ``contacts``."""
         self._kick(then, dt)
+        if contacts:
+            contacts.rest(self, dt)
         self._show(then > self.held, self.velocity, self.angular_momentum)
 
     def load(self, force: np.ndarray, torque: np.ndarray) -> None:
@@ -168,18 +182,29 @@ class Bodies:
         return self.spin_ahead
 
     @property
+    def pushed(self) -> np.ndarray:
+        """All forces, N (n, 3), those of contacts among them."""
+        return self.force + self.pressing
+
+    @property
+    def turned_by(self) -> np.ndarray:
+        """All torques about the reference points, N m (n, 3)."""
+        return self.torque + self.twisting
+
+    @property
     def acceleration(self) -> np.ndarray:
         """Of the reference points, m/s² (n, 3): by the last forces, or as their motions have it."""
-        return np.where(self.slides, self.loose * self.force / self.mass, self.prescribed)
+        return np.where(self.slides, self.loose * self.pushed / self.mass, self.prescribed)
 
     @property
     def angular_acceleration(self) -> np.ndarray:
         """By the last torques, rad/s² (n, 3): I⁻¹ (T − r × M A − ω × L); or as their motions have it."""
         found = self.prescribed_turn.copy()
-        found[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(self._driving)[:, None]
+        driving = self._driving + self.twisting
+        found[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(driving)[:, None]
         if len(self.tumbling):
             spin, momentum = self.spin_ahead[self.tumbling], self.angular_momentum[self.tumbling]
-            twist = self._driving[self.tumbling] - np.cross(spin, momentum)
+            twist = driving[self.tumbling] - np.cross(spin, momentum)
             own = np.einsum("nde,nd->ne", self.frame, twist) / self.moments
             found[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
         return np.where(self.loose, found, self.prescribed_turn)
@@ -194,14 +219,38 @@ class Bodies:
         """
         spin, change, arm = self.spin_ahead, self.angular_acceleration, self.arm
         whirl = np.cross(change, arm) + np.cross(spin, np.cross(spin, arm))
-        force = self.mass * (self.acceleration + whirl) - self.force
+        force = self.mass * (self.acceleration + whirl) - self.pushed
         there = self.turn @ self.inertia @ self.turn.transpose(0, 2, 1)
         momentum = np.einsum("nde,ne->nd", there, spin)
         driven = np.einsum("nde,ne->nd", there, change) + np.cross(spin, momentum)
-        torque = driven + self.mass * np.cross(arm, self.acceleration) - self.torque
+        torque = driven + self.mass * np.cross(arm, self.acceleration) - self.turned_by
         loose = self.loose > 0.0
         torque = np.where(loose & (self.axis > 0.0), 0.0, torque)
         return np.where(loose & self.slides, 0.0, force), torque
+
+    def yielding(self, then: float) -> Yielding:
+        """How they give way to impulses at their reference points at the time ``then``, s."""
+        loose = then > self.held
+        turning = np.zeros((len(self.bodies), 3, 3))
+        turning[self.hinged] = _outer(self.axis[self.hinged]) / self.about[:, None, None]
+        turning[self.tumbling] = np.einsum("nde,ne,nfe->ndf", self.frame, 1.0 / self.moments, self.frame)
+        return Yielding(
+            np.where(self.slides & loose, 1.0 / self.mass, 0.0), np.where(loose[:, :, None], turning, 0.0)
+        )
+
+    def shoved(self, push: np.ndarray, twist: np.ndarray, sign: float = 1.0) -> None:
+        """Let impulses ``push`` N s and ``twist`` N m s, (n, 3), act, or take them back with ``sign`` −1."""
+        self.velocity = np.where(self.slides, self.velocity + sign * push / self.mass, self.velocity)
+        self.angular_momentum = self.angular_momentum + sign * twist
+
+    def spin_by(self, momentum: np.ndarray) -> np.ndarray:
+        """Angular velocities, rad/s (n, 3), with an angular ``momentum``; of what is told, as it is told."""
+        spin = self.spin_ahead.copy()
+        spin[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(momentum)[:, None]
+        if len(self.tumbling):
+            own = np.einsum("nde,nd->ne", self.frame, momentum[self.tumbling]) / self.moments
+            spin[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
+        return spin
 
     def state(self) -> dict:
         """What the next steps rest on, as lists of numbers."""
@@ -312,10 +361,7 @@ class Bodies:
 
     def _spin(self, momentum: np.ndarray) -> None:
         """The angular velocities of what turns freely or about an axis, from its angular momentum."""
-        self.spin_ahead[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(momentum)[:, None]
-        if len(self.tumbling):
-            own = np.einsum("nde,nd->ne", self.frame, momentum[self.tumbling]) / self.moments
-            self.spin_ahead[self.tumbling] = np.einsum("nde,ne->nd", self.frame, own)
+        self.spin_ahead = self.spin_by(momentum)
 
 
 def crossing(a: np.ndarray) -> np.ndarray:

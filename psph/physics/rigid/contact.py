@@ -1,42 +1,172 @@
-"""Contact of rigid bodies with each other and with walls."""
+"""Contact of rigid bodies with each other, with walls and with mirrors: hard, by impulses."""
 
 from typing import NamedTuple
 
-from psph.formula import where
+import numpy as np
 
-WALL_SOLID = 1.0
-"""The number of a wall among solids; those of bodies are above."""
+from psph.engine.jit import elementwise
+from psph.vectors import add, dot, multiply, scale
 
-LOSS = 0.3
-"""Damping of a contact over that at which one particle would not swing back."""
+ROUNDS = 200
+"""Rounds over all contacts at most."""
+
+ENOUGH = 1e-10
+"""Part of the largest impulse below which a round changes nothing."""
+
+OUT = 0.2
+"""Part of an overlap that a step takes back."""
 
 
-class Contact(NamedTuple):
-    """A body's particles are repelled by those of other solids where they are nearer than a spacing.
+class Touching(NamedTuple):
+    """Points in which bodies may meet in a step, each an entry of m.
 
-    f_ij = max(k (dx − r) − ζ u_ij·x_ij/r, 0) along x_ij/r where r < dx, with k = ρ₀c² dx^(d−2), so that
-    a face pressed in by a spacing bears ρ₀c² as the fluid does, and ζ = 0.6 ρ₀c dx^(d−1).  Before a mirror
-    it is repelled by its own image: its face then stands on the mirror.  It has no
-    friction along the face but the roughness of the lattice.  ``stiffness`` k in N/m, ``damping`` ζ in N
-    s/m, ``distance`` dx in m.
+    ``first`` (m,) is the row of a body, ``second`` that of the body it meets, −1 for a wall; ``arms`` and
+    ``other_arms`` (m, 3) lead from their reference points to the point, m; ``normal`` (m, 3) is the unit
+    vector out of the second; ``gap`` (m,) m how far the point is before the face; ``told`` (m, 3) m/s the
+    velocity of a wall there.
     """
 
-    stiffness: float
-    damping: float
-    distance: float
-
-    def radial(self, i, j, pair):
-        """Coefficient of x_ij in the acceleration, 1/s²."""
-        other, is_body = j.solid - i.solid, max(i.solid - WALL_SOLID, 0.0)
-        depth = max(self.distance - pair.r, 0.0) * (1.0 - j.is_fluid)
-        per_mass = 1.0 / i.mass  # once a particle, where a division in each pair would cost
-        stiffness, damping = self.stiffness * per_mass, self.damping * per_mass
-        push = max(stiffness * depth - damping * pair.u_dot_x * pair.inverse_r, 0.0)
-        return where(is_body * depth * other * other > 0.0, push * pair.inverse_r, 0.0)
+    first: np.ndarray
+    second: np.ndarray
+    arms: np.ndarray
+    other_arms: np.ndarray
+    normal: np.ndarray
+    gap: np.ndarray
+    told: np.ndarray
 
 
-def contact_of(scene) -> Contact:
-    """The contact of a scene's bodies: as stiff as its heaviest fluid."""
-    density, c = max(one.density for one in scene.species), scene.sound_speed
-    dx, d = scene.spacing, scene.dimensions
-    return Contact(density * c * c * dx ** (d - 2), 2.0 * LOSS * density * c * dx ** (d - 1), dx)
+class Yielding(NamedTuple):
+    """How bodies give way to an impulse P at the arm r.
+
+    Velocities change by ``sliding`` (n, 3) P, 1/kg, and spins by ``turning`` (n, 3, 3) (r × P), 1/(kg m²);
+    zeros in what is held.
+    """
+
+    sliding: np.ndarray
+    turning: np.ndarray
+
+
+def approach(touching: Touching, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
+    """The speed (m,) m/s at which points of contact part, of bodies with ``velocity`` and ``spin`` (n, 3)."""
+    one, other = touching.first, touching.second
+    here = velocity[one] + np.cross(spin[one], touching.arms)
+    there = velocity[other] + np.cross(spin[other], touching.other_arms)
+    there = np.where(other[:, None] < 0, touching.told, there)
+    return ((here - there) * touching.normal).sum(axis=1)
+
+
+@elementwise
+def solve(touching, yielding, wanted, friction, velocity, spin):
+    """The impulses (m, 3) N s after which no point parts more slowly than ``wanted`` (m,) m/s.
+
+    Signorini and Coulomb: along the normal p ≥ 0, and above 0 only where the point would part more slowly;
+    along the face |p_t| ≤ μ p, against the sliding, and below that only where nothing slides any more.  By
+    rounds over the contacts one after the other (Gauss & Seidel projected: Moreau 1988; Jourdan, Alart & Jean
+    1998, Comput. Methods Appl. Mech. Eng. 155, 31; Catto 2005).  ``velocity`` and ``spin`` (n, 3) take what
+    the impulses change.
+    """
+    count = len(touching.first)
+    impulse, along = np.zeros((count, 3)), np.zeros(count)
+    for _ in range(ROUNDS):
+        changed = largest = 0.0
+        for c in range(count):
+            slip = _sliding(touching, c, velocity, spin)
+            normal = _row(touching.normal, c)
+            give = _give(touching, yielding, c, normal)
+            if give > 0.0:
+                pushed = max(along[c] + (wanted[c] - dot(slip, normal)) / give, 0.0)
+                step = pushed - along[c]
+                along[c] = pushed
+                _push(touching, yielding, c, scale(normal, step), impulse, velocity, spin)
+                changed, largest = max(changed, abs(step)), max(largest, pushed)
+            if friction > 0.0 and along[c] > 0.0:
+                rubbed = _rub(touching, yielding, c, friction * along[c], impulse, velocity, spin)
+                changed = max(changed, rubbed)
+        if changed <= ENOUGH * largest:
+            break
+    return impulse
+
+
+@elementwise
+def _rub(touching, yielding, c, most, impulse, velocity, spin):
+    """Friction of at most ``most`` N s at contact c; returns how much it changed."""
+    normal, slip = _row(touching.normal, c), _sliding(touching, c, velocity, spin)
+    slip = add(slip, scale(normal, -dot(slip, normal)))
+    speed = np.sqrt(dot(slip, slip))
+    own = _row(impulse, c)
+    held = add(own, scale(normal, -dot(own, normal)))
+    wanted = held
+    if speed > 0.0:
+        give = _give(touching, yielding, c, scale(slip, 1.0 / speed))
+        if give > 0.0:
+            wanted = add(held, scale(slip, -1.0 / give))
+    size = np.sqrt(dot(wanted, wanted))
+    if size > most:
+        wanted = scale(wanted, most / size)
+    step = add(wanted, scale(held, -1.0))
+    _push(touching, yielding, c, step, impulse, velocity, spin)
+    return np.sqrt(dot(step, step))
+
+
+@elementwise
+def _sliding(touching, c, velocity, spin):
+    """The velocity of the first at contact c relative to the second, m/s."""
+    i, j = touching.first[c], touching.second[c]
+    here = add(_row(velocity, i), _cross(_row(spin, i), _row(touching.arms, c)))
+    if j < 0:
+        return add(here, scale(_row(touching.told, c), -1.0))
+    there = add(_row(velocity, j), _cross(_row(spin, j), _row(touching.other_arms, c)))
+    return add(here, scale(there, -1.0))
+
+
+@elementwise
+def _give(touching, yielding, c, way):
+    """By how much both give way along a unit vector, 1/kg."""
+    i, j = touching.first[c], touching.second[c]
+    given = _give_of(yielding, i, _row(touching.arms, c), way)
+    return given if j < 0 else given + _give_of(yielding, j, _row(touching.other_arms, c), way)
+
+
+@elementwise
+def _give_of(yielding, row, arm, way):
+    twist = _cross(arm, way)
+    slid = dot(way, multiply(_row(yielding.sliding, row), way))
+    return slid + dot(twist, _turned(yielding.turning, row, twist))
+
+
+@elementwise
+def _push(touching, yielding, c, push, impulse, velocity, spin):
+    """Let an impulse act at contact c."""
+    i, j = touching.first[c], touching.second[c]
+    _shove(yielding, i, _row(touching.arms, c), push, velocity, spin)
+    if j >= 0:
+        _shove(yielding, j, _row(touching.other_arms, c), scale(push, -1.0), velocity, spin)
+    for d in range(3):
+        impulse[c, d] += push[d]
+
+
+@elementwise
+def _shove(yielding, row, arm, push, velocity, spin):
+    turn = _turned(yielding.turning, row, _cross(arm, push))
+    for d in range(3):
+        velocity[row, d] += yielding.sliding[row, d] * push[d]
+        spin[row, d] += turn[d]
+
+
+@elementwise
+def _row(rows, k):
+    return rows[k, 0], rows[k, 1], rows[k, 2]
+
+
+@elementwise
+def _cross(a, b):
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@elementwise
+def _turned(turns, k, a):
+    return (
+        turns[k, 0, 0] * a[0] + turns[k, 0, 1] * a[1] + turns[k, 0, 2] * a[2],
+        turns[k, 1, 0] * a[0] + turns[k, 1, 1] * a[1] + turns[k, 1, 2] * a[2],
+        turns[k, 2, 0] * a[0] + turns[k, 2, 1] * a[1] + turns[k, 2, 2] * a[2],
+    )

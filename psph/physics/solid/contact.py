@@ -7,8 +7,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field as Key
 
-from psph.acts import SOLIDS
-from psph.fields import Field
+from psph.acts import BODIES, SOLIDS
+from psph.fields import WALL, Field
 from psph.formula import helper, where
 from psph.physics.facts import Facts
 from psph.vectors import dot
@@ -40,7 +40,7 @@ class SolidContact(NamedTuple):
     Comput. Methods Appl. Mech. Eng. 184, 49.
     """
 
-    acts = (SOLIDS,)
+    acts = (SOLIDS, BODIES)
 
     stiffness: Annotated[
         float,
@@ -58,6 +58,15 @@ class SolidContact(NamedTuple):
     friction: Annotated[
         float, Key(ge=0, description="Coulomb's coefficient μ", json_schema_extra={"unit": "1"})
     ] = 0.0
+    restitution: Annotated[
+        float,
+        Key(
+            ge=0,
+            le=1,
+            description="of rigid bodies: speed after an impact over that before",
+            json_schema_extra={"unit": "1"},
+        ),
+    ] = 0.3
 
     def in_scene(self, scene: Facts):
         """With the spacing of the scene; nothing where there is but one solid, and no wall."""
@@ -72,7 +81,9 @@ class SolidContact(NamedTuple):
         return made._replace(step=STEP / (math.sqrt(hardest) * (1.0 + self.damping)))
 
     def why_absent(self, scene: Facts):
-        """That nothing can meet."""
+        """That nothing can meet, or nothing elastic."""
+        if any(one.solid > WALL and one.elastic is None for one in scene.species):
+            return "rigid bodies meet by impulses, with its friction and its restitution"
         return "the scene has one solid and no wall, so nothing meets"
 
 

@@ -87,13 +87,13 @@ def windings(x, y, z, corners, turns, boxes, found):
 
 
 @elementwise
-def sides(points, reach, corners, normals, boxes, found):
+def sides(points, reach, corners, normals, boxes, found, away, hit):
     """On which side of the nearest triangle points lie that are nearer to it than ``reach``, m.
 
     ``points`` (n, 3); ``corners`` (t, 3, 3) in the order of the tree; ``normals`` (t, 7, 3) of each
     triangle, of its corners, of its edges from corner k to k + 1 (Bærentzen & Aanæs 2005: summed over the
     faces that meet there); ``boxes`` of the tree.  Fills ``found`` (n,) with (x − nearest)·normal, 0 where
-    nothing is near.
+    nothing is near, ``away`` (n, 3) with x − nearest, m, and ``hit`` (n, 2) with the triangle and its part.
     """
     leaves = len(boxes) // 2
     waiting = np.empty(DEEPEST, np.int64)
@@ -126,6 +126,8 @@ def sides(points, reach, corners, normals, boxes, found):
                 if square < least:
                     least = square
                     side = d_x * normals[t, part, 0] + d_y * normals[t, part, 1] + d_z * normals[t, part, 2]
+                    away[i, 0], away[i, 1], away[i, 2] = d_x, d_y, d_z
+                    hit[i, 0], hit[i, 1] = t, part
         found[i] = side
 
 

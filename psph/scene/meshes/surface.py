@@ -89,9 +89,18 @@ class Surface:
         shape = np.broadcast_shapes(*(x.shape for x in points))
         flat = np.stack([np.broadcast_to(x, shape).ravel() for x in points], axis=1)
         tree, corners, normals = self._lined
-        found = np.empty(len(flat))
-        sides(flat, thickness, corners, normals, tree.boxes, found)
+        found, _, _ = _sides(flat, thickness, tree, corners, normals)
         return ((found > 0.0) if outside else (found < 0.0)).reshape(shape)
+
+    def faces(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Signed distances (n,) m of ``points`` (n, 3) from the closed surface, below zero inside, and the
+        directions (n, 3) in which they grow."""
+        tree, corners, normals = self._closed
+        side, away, (triangle, part) = _sides(points, np.inf, tree, corners, normals)
+        sign, length = np.where(side < 0.0, -1.0, 1.0), np.sqrt((away**2).sum(axis=1))
+        flat = (part == 0) | (length == 0.0)
+        out = sign[:, None] * away / np.where(flat, 1.0, length)[:, None]
+        return sign * length, np.where(flat[:, None], normals[triangle, 0], out)
 
     def _off_the_faces(self, grid: Sequence[np.ndarray], tolerance: float) -> list[np.ndarray]:
         """The coordinates moved by a trifle, so that the low side of a face is inside and no point on it.
@@ -115,8 +124,12 @@ class Surface:
     @cached_property
     def _lined(self) -> tuple[Tree, np.ndarray, np.ndarray]:
         """The tree of the surface as it is, its triangles, and the normals of their parts."""
-        tree = tree_of(self.sheet.corners)
-        return tree, self.sheet.corners[tree.order], _normals(self.sheet)[tree.order]
+        return _lined(self.sheet)
+
+    @cached_property
+    def _closed(self) -> tuple[Tree, np.ndarray, np.ndarray]:
+        """The same of the closed surface."""
+        return _lined(self.whole)
 
 
 def surface_of(mesh: Mesh) -> Surface:
@@ -188,6 +201,20 @@ def _placed(surface: Welded, scale: float, turns: Sequence[Turn], move: Sequence
         axis = np.array(turn.axis) / np.linalg.norm(turn.axis)
         vertices = Rotation.from_rotvec(turn.degrees * axis, degrees=True).apply(vertices)
     return Welded(vertices + np.array(move), surface.faces, rounding)
+
+
+def _sides(points, reach, tree: Tree, corners, normals):
+    """What psph.scene.meshes.loops.sides finds."""
+    found, away = np.empty(len(points)), np.zeros((len(points), 3))
+    hit = np.zeros((len(points), 2), np.int64)
+    sides(np.ascontiguousarray(points), reach, corners, normals, tree.boxes, found, away, hit)
+    return found, away, hit.T
+
+
+def _lined(surface: Welded) -> tuple[Tree, np.ndarray, np.ndarray]:
+    """The tree of a surface, its triangles, and the normals of their parts."""
+    tree = tree_of(surface.corners)
+    return tree, surface.corners[tree.order], _normals(surface)[tree.order]
 
 
 def _normals(surface: Welded) -> np.ndarray:

@@ -1,0 +1,161 @@
+"""How far points are from the faces that a case draws, and which way out."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from psph.case.keys import AXES
+from psph.case.mesh import Mesh
+from psph.case.shapes import Ball, Box, Cylinder, Difference, Disc, Polygon, Shape
+from psph.scene.shapes import bounds, inside
+
+BESIDE = 1e-6
+"""Of the size of a shape: so far before a face a point lies outside of it."""
+
+
+class Faces(NamedTuple):
+    """The signed distance φ of points from the faces of a shape, ``away`` (n,) m, below zero inside, and its
+    gradient, the unit ``normal`` (n, dim) out of the shape."""
+
+    away: np.ndarray
+    normal: np.ndarray
+
+
+def faces_of(shape: Shape, points: np.ndarray) -> Faces:
+    """φ and ∇φ of ``shape`` at ``points`` (n, dim), m; exact before and behind a plane face."""
+    match shape.form:
+        case tuple() as shapes:
+            return _joined(shapes, points)
+        case Difference(base=base, minus=minus):
+            taken = [faces_of(one, points) for one in minus]
+            left = [Faces(-one.away, -one.normal) for one in taken]
+            return _chosen([faces_of(base, points), *left], np.argmax)
+        case Box(lower=lower, upper=upper):
+            return _of_box(points, np.array(lower), np.array(upper))
+        case Disc(center=center, radius=radius) | Ball(center=center, radius=radius):
+            away, normal = _radial(points - np.array(center))
+            return Faces(away - radius, normal)
+        case Cylinder() as cylinder:
+            return _of_cylinder(points, cylinder)
+        case Polygon(points=corners):
+            return _of_polygon(points, np.array(corners))
+        case Mesh() as mesh:
+            from psph.scene.meshes.surface import surface_of
+
+            found = surface_of(mesh).faces(points)
+            if not mesh.shell:
+                return Faces(*found)
+            away, normal = found
+            middle = 0.5 * mesh.shell * (1.0 if mesh.side == "outside" else -1.0)
+            side = np.where(away < middle, -1.0, 1.0)
+            return Faces(side * (away - middle) - 0.5 * mesh.shell, side[:, None] * normal)
+
+
+def corners_of(shape: Shape) -> np.ndarray:
+    """The corners (n, dim) that a shape draws, m; those inside its own parts among them."""
+    match shape.form:
+        case tuple() as shapes:
+            return np.concatenate([corners_of(one) for one in shapes])
+        case Difference(base=base, minus=minus):
+            return np.concatenate([corners_of(one) for one in (base, *minus)])
+        case Box(lower=lower, upper=upper):
+            return np.stack(np.meshgrid(*zip(lower, upper), indexing="ij"), axis=-1).reshape(-1, len(lower))
+        case Polygon(points=points):
+            return np.array(points)
+        case _:
+            return np.empty((0, len(bounds(shape)[0])))
+
+
+def _chosen(found: Sequence[Faces], choose) -> Faces:
+    """Of several faces at each point the one whose distance is chosen."""
+    away, normal = (np.stack(of) for of in zip(*found))
+    which, row = choose(away, axis=0), np.arange(away.shape[1])
+    return Faces(away[which, row], normal[which, row])
+
+
+def _joined(shapes: Sequence[Shape], points: np.ndarray) -> Faces:
+    """Of a union: faces that lie within other parts are none."""
+    found = [faces_of(one, points) for one in shapes]
+    if len(shapes) == 1:
+        return found[0]
+    whole = _chosen(found, np.argmin)
+    within = np.flatnonzero(whole.away <= 0.0)
+    if len(within):
+        real = []
+        for number, (own, part) in enumerate(zip(shapes, found)):
+            lower, upper = bounds(own)
+            step = BESIDE * max(up - low for low, up in zip(lower, upper))
+            there = part.normal[within] * (step - part.away[within, None])
+            before = [*(points[within] + there).T]
+            others = [one for k, one in enumerate(shapes) if k != number]
+            hidden = np.logical_or.reduce([inside(one, before, 0.0) for one in others])
+            away = np.where(hidden | (part.away[within] > 0.0), -np.inf, part.away[within])
+            real.append(Faces(away, part.normal[within]))
+        nearest = _chosen(real, np.argmax)
+        known = np.isfinite(nearest.away)
+        whole.away[within[known]], whole.normal[within[known]] = nearest.away[known], nearest.normal[known]
+    return whole
+
+
+def _radial(arm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lengths and directions of vectors (n, dim); the first axis where there is none."""
+    length = np.sqrt((arm**2).sum(axis=1))
+    normal = arm / np.where(length > 0.0, length, 1.0)[:, None]
+    normal[length == 0.0, 0] = 1.0
+    return length, normal
+
+
+def _of_box(points: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> Faces:
+    arm = points - 0.5 * (lower + upper)
+    beyond = np.abs(arm) - 0.5 * (upper - lower)
+    sign, row = np.where(arm < 0.0, -1.0, 1.0), np.arange(len(points))
+    nearest = beyond.argmax(axis=1)
+    flat = np.zeros_like(arm)
+    flat[row, nearest] = sign[row, nearest]
+    outer = np.maximum(beyond, 0.0)
+    aslant = np.count_nonzero(outer, axis=1) > 1
+    away, normal = _radial(sign * outer)
+    return Faces(
+        np.where(aslant, away, beyond[row, nearest]),
+        np.where(aslant[:, None], normal, flat),
+    )
+
+
+def _of_cylinder(points: np.ndarray, cylinder: Cylinder) -> Faces:
+    along = AXES.index(cylinder.axis)
+    across = [d for d in range(len(AXES)) if d != along]
+    arm = points - np.array(cylinder.center)
+    length, out = _radial(arm[:, across])
+    flat = np.column_stack([length, arm[:, along]])
+    half = np.array([cylinder.radius, 0.5 * cylinder.height])
+    found = _of_box(flat, -half, half)
+    normal = np.empty_like(points)
+    normal[:, across], normal[:, along] = found.normal[:, :1] * out, found.normal[:, 1]
+    return Faces(found.away, normal)
+
+
+def _of_polygon(points: np.ndarray, corners: np.ndarray) -> Faces:
+    """By the nearest edge: φ has its normal unless a corner is nearest."""
+    edge = np.roll(corners, -1, axis=0) - corners
+    area = (corners[:, 0] * np.roll(corners[:, 1], -1) - np.roll(corners[:, 0], -1) * corners[:, 1]).sum()
+    edge_normal = np.column_stack([edge[:, 1], -edge[:, 0]]) * np.sign(area)
+    edge_normal /= np.sqrt((edge_normal**2).sum(axis=1))[:, None]
+    arm = points[:, None] - corners
+    share = np.clip((arm * edge).sum(axis=2) / (edge**2).sum(axis=1), 0.0, 1.0)
+    left = arm - share[:, :, None] * edge
+    square, row = (left**2).sum(axis=2), np.arange(len(points))
+    nearest = square.argmin(axis=1)
+    found, normal = left[row, nearest], edge_normal[nearest]
+    on_edge = (share[row, nearest] > 0.0) & (share[row, nearest] < 1.0)
+    # Of two edges that meet at the nearest corner, the point may lie before one and behind the other.
+    odd = np.zeros(len(points), bool)
+    for (x_1, y_1), (x_2, y_2) in zip(corners, np.roll(corners, -1, axis=0)):
+        if y_1 != y_2:
+            crossing = x_1 + (points[:, 1] - y_1) * ((x_2 - x_1) / (y_2 - y_1))
+            odd ^= ((points[:, 1] < y_1) != (points[:, 1] < y_2)) & (points[:, 0] < crossing)
+    sign = np.where(odd, -1.0, 1.0)
+    length, out = _radial(found)
+    to_corner = ~on_edge & (length > 0.0)
+    away = np.where(to_corner, sign * length, (found * normal).sum(axis=1))
+    return Faces(away, np.where(to_corner[:, None], sign[:, None] * out, normal))
