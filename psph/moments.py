@@ -34,15 +34,40 @@ def fastest_smoothing(kernel, spacing: float, dimensions: int) -> float:
 
     A field f that changes at 2ν Σ_j V_j (f_i − f_j) W′/r loses the wave it loses fastest at 2ν times this.
     """
-    sites = np.array([*_sites(kernel, spacing, dimensions)], float)
-    radii = np.linalg.norm(sites, axis=1) * spacing
-    weights = np.array([-kernel.dw(r) / r for r in radii]) * spacing**dimensions
-    waves = np.array([*product(np.linspace(0.0, np.pi, WAVES), repeat=dimensions)])
+    sites, weights, waves = _waves(kernel, spacing, dimensions)
     return float((weights * (1.0 - np.cos(waves @ sites.T))).sum(axis=1).max())
+
+
+@lru_cache
+def fastest_braking(kernel, spacing: float, dimensions: int) -> float:
+    """The largest eigenvalue of Σ dx^d (−W′/r) r̂ r̂ᵀ (1 − cos k·x) over the same waves, 1/m².
+
+    Velocities that change at ν Σ_j V_j (u_ij·r̂) r̂ W′/r lose the wave they lose fastest at ν times this.
+    """
+    sites, weights, waves = _waves(kernel, spacing, dimensions)
+    along = sites / np.linalg.norm(sites, axis=1)[:, None]
+    sums = np.einsum("kr,ri,rj->kij", weights * (1.0 - np.cos(waves @ sites.T)), along, along)
+    return float(np.linalg.eigvalsh(sums).max())
+
+
+@lru_cache
+def fastest_wave(kernel, spacing: float, dimensions: int) -> float:
+    """The largest |Σ dx^d ∇W sin k·x| over the same waves, 1/m: over c the frequency of the fastest sound."""
+    sites, weights, waves = _waves(kernel, spacing, dimensions)
+    gradients = np.sin(waves @ sites.T) @ (weights[:, None] * sites * spacing)
+    return float(np.linalg.norm(gradients, axis=1).max())
 
 
 WAVES = 13
 """Wave numbers along an axis, from 0 to the shortest wave."""
+
+
+def _waves(kernel, spacing: float, dimensions: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sites (n, d) in spacings, their dx^d (−W′/r) (n,), 1/m², and wave vectors (waves, d), rad a spacing."""
+    sites = np.array([*_sites(kernel, spacing, dimensions)], float)
+    radii = np.linalg.norm(sites, axis=1) * spacing
+    weights = np.array([-kernel.dw(r) / r for r in radii]) * spacing**dimensions
+    return sites, weights, np.array([*product(np.linspace(0.0, np.pi, WAVES), repeat=dimensions)])
 
 
 def _sites(kernel, spacing: float, dimensions: int):

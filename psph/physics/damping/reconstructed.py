@@ -10,7 +10,7 @@ from psph.formula import where
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
-from psph.physics.fluid.viscosity import inverse_square, lighter
+from psph.physics.fluid.viscosity import braking_step, inverse_square, lighter
 from psph.vectors import add, dot, times
 
 NEAR = 0.7
@@ -100,6 +100,5 @@ class BesideLinearFlow(NamedTuple):
         return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r
 
     def longest_step(self, scene):
-        """Δt ≤ h/(α c), s: that of :class:`psph.physics.fluid.viscosity.PairDamping`, of the largest α."""
-        friction = (self.alpha + self.more) * scene.sound_speed
-        return scene.smoothing_length / friction if friction > 0.0 else float("inf")
+        """That of :class:`psph.physics.fluid.viscosity.PairDamping`, of the largest α, s."""
+        return braking_step(self.alpha + self.more, scene)

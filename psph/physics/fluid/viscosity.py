@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 from pydantic import Field
 
 from psph.formula import helper
+from psph.moments import fastest_braking
 from psph.physics.facts import Facts
 from psph.theory.stability import parts
 from psph.vectors import add, dot, times
@@ -177,6 +178,19 @@ def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:
     return alpha * scene.sound_speed * scene.smoothing_length / (2.0 * (scene.dimensions + 2))
 
 
+BRAKING = 0.7
+"""B α c h Δt must stay below; B is the fastest braking along pairs on the lattice (psph.moments), 1/m².  A
+velocity that is predicted to first order is stable up to the whole of its decay a step; the rest is left for
+disorder."""
+
+
+def braking_step(alpha: float, scene) -> float:
+    """Δt ≤ 0.7/(B α c h), s, of a numerical friction along pairs of strength ``alpha``: see BRAKING."""
+    braking = fastest_braking(scene.kernel, scene.spacing, scene.dimensions)
+    rate = braking * scene.smoothing_length * alpha * scene.sound_speed
+    return BRAKING / rate if rate > 0.0 else float("inf")
+
+
 class ArtificialViscosity(NamedTuple):
     """Numerical friction between approaching particles: it spreads shocks and damps noise.
 
@@ -208,9 +222,8 @@ class ArtificialViscosity(NamedTuple):
         return 0.5 * _viscosity_of_pairs(self.alpha, scene)
 
     def longest_step(self, scene):
-        """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
-        friction = self.alpha * scene.sound_speed
-        return scene.smoothing_length / friction if friction > 0.0 else float("inf")
+        """Δt ≤ 0.7/(B α c h), s: see :func:`braking_step`."""
+        return braking_step(self.alpha, scene)
 
     def idle(self, scene: Facts, effects):
         """Why it has no influence, or None."""
@@ -245,9 +258,8 @@ class PairDamping(NamedTuple):
         return _viscosity_of_pairs(self.alpha, scene)
 
     def longest_step(self, scene):
-        """Δt ≤ h/(α c), s: the laminar limit for the viscosity αch/8 that α stands for."""
-        friction = self.alpha * scene.sound_speed
-        return scene.smoothing_length / friction if friction > 0.0 else float("inf")
+        """Δt ≤ 0.7/(B α c h), s: see :func:`braking_step`."""
+        return braking_step(self.alpha, scene)
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""

@@ -1,0 +1,198 @@
+"""Small scenes of every kind, as tables of a case: some hundred particles, in disorder, far from rest."""
+
+import copy
+from itertools import product
+
+import numpy as np
+
+DX = 0.125
+"""m; a power of two, so that faces of shapes are where they are said to be."""
+
+PULL = [1.5, -9.0]
+"""m/s²; across both axes, so that a scene that is turned has the same compiled loops."""
+
+
+def box(lower, upper):
+    """A shape."""
+    return {"box": {"lower": list(lower), "upper": list(upper)}}
+
+
+def less(shape, *others):
+    """A shape without others."""
+    return {"difference": {"from": shape, "minus": list(others)}}
+
+
+def shifts(lower, upper, seed=1, size=0.15, part=0.4, hole=0.0):
+    """Shifts and kicks of a part of the particles between two corners, as perturbations of a case; none within
+    ``hole``, m, of the middle, where a body may be."""
+    rng = np.random.default_rng(seed)
+    counts = [round((b - a) / DX) for a, b in zip(lower, upper)]
+    sites = np.array(list(product(*map(range, counts))))
+    far = np.linalg.norm((sites + 0.5) * DX + lower - np.add(lower, upper) / 2.0, axis=1) >= hole
+    drawn = sites[(rng.random(len(sites)) < part) & far]
+    return [
+        {
+            "position": ((site + 0.5) * DX + lower).tolist(),
+            "shift": (rng.uniform(-size, size, len(site)) * DX).round(6).tolist(),
+            "velocity": rng.uniform(-0.3, 0.3, len(site)).round(6).tolist(),
+        }
+        for site in drawn
+    ]
+
+
+def scene(**tables):
+    """A scene in 2D, with what all share."""
+    whole = {"space": {"dimensions": 2, "spacing": DX}, "time": {"end": 10.0}}
+    whole |= {"physics": {"sound_speed": 20.0}} if "fluids" in tables else {}
+    for name, table in tables.items():
+        whole[name] = {**whole[name], **table} if isinstance(whole.get(name), dict) else table
+    return copy.deepcopy(whole)
+
+
+WATER, BLOCK = ((0.0, 0.0), (1.5, 1.0)), box((0.0, 0.0), (1.5, 1.0))
+STIR = [[0.3, 0.8], [-0.5, -0.3]]
+
+
+def water(**keys):
+    """A fluid in a block, which stirs."""
+    start = {"velocity_gradient": STIR, "velocity_center": [0.7, 0.4]}
+    return {"shape": BLOCK, "density": 1000.0, **start, **keys}
+
+
+def tank(layers=4, **keys):
+    """A tank around the block, higher than it."""
+    t = layers * DX
+    return {"shape": less(box((-t, -t), (1.5 + t, 1.25)), box((0.0, 0.0), (1.5, 1.25))), **keys}
+
+
+def poured(walls, fluids=None, **tables):
+    """Water in a tank under gravity."""
+    physics = {"gravity": PULL, **tables.pop("physics", {})}
+    return scene(
+        fluids=fluids or {"water": water()},
+        walls=walls,
+        physics=physics,
+        perturbations=shifts(*WATER, hole=0.0 if "bodies" not in tables else 0.35),
+        **tables,
+    )
+
+
+def muddy(law, numbers):
+    """Mud in a tank to which it sticks."""
+    return poured({"tank": tank(no_slip=True)}, {"mud": water(density=1500.0, rheology={law: numbers})})
+
+
+LAWS = {
+    "bingham": {"yield_stress": 20.0, "plastic_viscosity": 2.0, "largest_viscosity": 40.0},
+    "herschel_bulkley": {
+        "yield_stress": 20.0,
+        "consistency": 3.0,
+        "exponent": 0.5,
+        "largest_viscosity": 40.0,
+        "regularisation": 2.0,
+    },
+    "power_law": {"consistency": 5.0, "exponent": 0.5, "largest_viscosity": 40.0},
+    "cross": {"viscosity_at_rest": 40.0, "viscosity_in_shear": 1.0, "time": 0.5},
+    "granular": {
+        "friction": 0.38,
+        "fast_friction": 0.64,
+        "inertial_number": 0.28,
+        "diameter": 1e-2,
+        "grain_density": 2500.0,
+        "largest_viscosity": 40.0,
+        "least_rate": 0.001,
+    },
+}
+
+SAND = {"density": 1600.0, "young": 1e6, "poisson": 0.3, "friction_angle": 30.0, "cohesion": 200.0}
+RUBBER = {"density": 1100.0, "young": 4e5, "poisson": 0.3}
+
+
+def stirred_solid(**keys):
+    """A solid that starts with a flow in it."""
+    return {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **RUBBER, **keys}
+
+
+TWO = {
+    "water": water(shape=box((0.0, 0.0), (1.5, 0.5)), viscosity=0.02),
+    "oil": water(shape=box((0.0, 0.5), (1.5, 1.0)), density=600.0, viscosity=0.1),
+}
+DISC = {"shape": {"disc": {"center": [0.75, 0.5], "radius": 0.3}}, "density": 700.0}
+SWING = {"sinusoid": {"angle": 0.2, "frequency": 2.0, "center": [0.7, 0.3], "phase": 0.5}}
+SWAY = {"translation": {"velocity": [0.7, 0.4]}, "ramp": 0.05}
+
+SCENES = {
+    "drop": scene(fluids={"water": water()}, perturbations=shifts(*WATER)),
+    "viscous drop": scene(fluids={"water": water(viscosity=0.1)}, perturbations=shifts(*WATER)),
+    "pulled drop": scene(
+        fluids={"water": water()},
+        physics={"central_force": {"frequency": 3.0, "center": [0.5, 0.75]}},
+        perturbations=shifts(*WATER),
+    ),
+    "two fluids": poured({"tank": tank(no_slip=True)}, TWO),
+    "tank": poured({"tank": tank()}),
+    "plain": poured({"tank": tank()}, scheme="sph"),
+    "sticky tank": poured({"tank": tank(no_slip=True)}, {"water": water(viscosity=0.1)}),
+    "extrapolated": poured(
+        {"tank": tank(no_slip=True, condition="extrapolated")}, {"water": water(viscosity=0.1)}
+    ),
+    "repulsive": poured({"tank": tank(condition="repulsive")}),
+    "penalty": poured({"tank": tank(condition="penalty")}),
+    "mirrors": poured({"tank": tank(condition="mirror")}),
+    "sticky mirrors": poured(
+        {"tank": tank(condition="mirror", no_slip=True)}, {"water": water(viscosity=0.1)}
+    ),
+    "dry floor": scene(
+        fluids={"water": water(velocity=[1.0, -4.0])},
+        walls={"floor": {"shape": box((-1.0, -0.875), (3.0, -0.375))}},
+        physics={"gravity": PULL},
+        perturbations=shifts(*WATER),
+    ),
+    "rocked tank": poured(
+        {"tank": tank(motion=[SWING, SWAY], no_slip=True)}, {"water": water(viscosity=0.1)}
+    ),
+    "rocked extrapolated": poured({"tank": tank(motion=[SWING, SWAY], condition="extrapolated")}),
+    "frame": poured({"tank": tank()}, frame={"motion": [SWING, SWAY]}),
+    "body": poured({"tank": tank()}, bodies={"disc": {**DISC, "velocity": [0.5, 0.2], "spin": 2.0}}),
+    "sticky body": poured(
+        {"tank": tank(no_slip=True)},
+        {"water": water(viscosity=0.1)},
+        bodies={"disc": {**DISC, "no_slip": True, "spin": 2.0}},
+    ),
+    "solid": scene(solids={"block": stirred_solid()}),
+    "rubber": scene(solids={"block": stirred_solid(law="neo-hookean", damping=50.0)}),
+    "metal": scene(solids={"block": stirred_solid(yield_stress=2e3, hardening=1e4)}),
+    "updated": scene(scheme="solid", solids={"block": stirred_solid(description="updated")}),
+    "solids that meet": scene(
+        solids={
+            "left": {"shape": box((0.0, 0.0), (0.75, 1.0)), "velocity": [2.0, 0.3], **RUBBER},
+            "right": {"shape": box((0.875, 0.25), (1.75, 0.875)), "velocity": [-2.0, 0.0], **RUBBER},
+        },
+        physics={"contact": {"damping": 0.1, "friction": 0.3}},
+    ),
+    "solid in water": poured(
+        {"tank": tank()},
+        solids={
+            "plate": {
+                "shape": box((0.625, -0.5), (0.875, 0.75)),
+                "clamped": box((0.625, -0.5), (0.875, 0.0)),
+                **RUBBER,
+            }
+        },
+    ),
+    "soil": scene(
+        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, **SAND}},
+        walls={"floor": {"shape": box((-0.5, -0.5), (2.0, 0.0)), "no_slip": True}},
+        physics={"gravity": PULL},
+    ),
+    "smooth soil": scene(
+        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, **SAND}},
+        walls={"tank": tank()},
+        physics={"gravity": PULL},
+    ),
+    "falling sand": scene(
+        soils={"sand": {"shape": BLOCK, "geostatic": False, "velocity_gradient": STIR, **SAND}},
+        physics={"gravity": PULL},
+    ),
+}
+SCENES |= {f"mud by {law}": muddy(law, numbers) for law, numbers in LAWS.items()}

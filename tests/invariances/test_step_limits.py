@@ -1,0 +1,110 @@
+"""At each limit of the time step a lattice is stable, and at a longer step it is not: by the waves that the step
+of the code itself multiplies, and by noise that runs.  No formula of the limits is used."""
+
+import math
+
+import numpy as np
+import pytest
+from invariances.amplification import amplification
+from invariances.running import begun, by_id
+from invariances.scenes import DX
+from long import LONG
+
+from psph.errors import Failed
+
+GROWS = 1e-3
+"""Growth of a wave a step that counts; between stable and unstable it is 0 to some 1e-6."""
+
+
+def lattice(
+    physics=None, scheme="sph", kernel="wendland-c2", smoothing=1.4, support=2.0, gather_every=1, **fluid
+):
+    """A fluid at rest without ends, as small as its kernel allows."""
+    n = 2 * math.ceil(0.5 * max(10.0, 3.3 * support * smoothing))
+    ends = {"lower": [0.0, 0.0], "upper": [n * DX, n * DX]}
+    space = {"kernel": kernel, "smoothing": smoothing, "periodic": ["x", "y"], **ends}
+    return {
+        "scheme": scheme,
+        "space": {"dimensions": 2, "spacing": DX, **space},
+        "time": {"end": 10.0, "gather_every": gather_every},
+        "physics": {"sound_speed": 20.0, **(physics or {})},
+        "fluids": {"water": {"shape": {"box": ends}, **fluid}},
+    }
+
+
+LIMITS = {
+    "sound": (lattice(scheme="stable", physics={"fourth_order_diffusion": "off"}), 1.6),
+    "sound of steep kernels": (lattice({}, kernel="wendland-c6", smoothing=2.0), 3.1),
+    "laminar viscosity": (lattice(viscosity=5.0), 1.6),
+    "apparent viscosity": (
+        lattice(
+            rheology={"bingham": {"yield_stress": 9.0, "plastic_viscosity": 2.0, "largest_viscosity": 5e3}}
+        ),
+        1.6,
+    ),
+    "pair damping": (lattice({"pair_damping": 20.0}), 1.6),
+    "pair damping of wide kernels": (lattice({"pair_damping": 20.0}, kernel="quintic", support=3.0), 1.6),
+    "reconstructed damping": (lattice({"reconstructed_damping": 20.0}, scheme="stable"), 1.6),
+    "acoustic damper": (lattice({"acoustic_damper": 20.0}), 1.8),
+    "acoustic damper of steep kernels": (
+        lattice({"acoustic_damper": 20.0}, kernel="wendland-c6", smoothing=2.0),
+        1.8,
+    ),
+    "density diffusion": (lattice({"density_diffusion": 5.0}), 1.5),
+    "fourth order diffusion": (lattice({"fourth_order_diffusion": 0.2}, scheme="stable"), 1.5),
+    "Riemann dissipation": (lattice({"riemann_dissipation": 3.0}), 2.0),
+    "conservative smoothing": (lattice({"conservative_smoothing": 20.0}), 4.5),
+    "stress points": (lattice({"pressure_gradient": "stress_points"}), 3.0),
+}
+"""A lattice where this is the shortest limit, or that of sound, and how many times the step is unstable."""
+
+ALWAYS = ("pair damping", "acoustic damper of steep kernels")
+"""The rest is long."""
+
+
+def limit_of(tables, folder) -> float:
+    """The longest step of a scene, s."""
+    return begun(tables, folder).plan.longest_step(0.0, 0.0)[0]
+
+
+@pytest.mark.parametrize("name", [n if n in ALWAYS else pytest.param(n, marks=LONG) for n in LIMITS])
+def test_no_wave_grows_at_the_limit_and_one_does_beyond(tmp_path, name):
+    tables, beyond = LIMITS[name]
+    step = limit_of(tables, tmp_path)
+    assert amplification(tables, tmp_path, step) < 1.0 + GROWS
+    assert amplification(tables, tmp_path, beyond * step) > 1.0 + GROWS
+
+
+NOISE = {
+    "artificial viscosity": (lattice({"artificial_viscosity": 20.0}), 4.0),
+    "pair damping": (lattice({"pair_damping": 20.0}), 2.2),
+    **{name: LIMITS[name] for name in ("sound", "laminar viscosity", "density diffusion")},
+}
+
+
+def noise_after(tables, folder, times, steps=300) -> float:
+    """The speed of a lattice that began with noise, over that at the start, after steps ``times`` as long as the
+    limit; infinite where it blew up."""
+    step = limit_of(tables, folder) * times
+    counts = [round(n / DX) for n in tables["space"]["upper"]]
+    rng = np.random.default_rng(3)
+    kicks = [
+        {"position": [(x + 0.5) * DX, (y + 0.5) * DX], "velocity": rng.uniform(-0.02, 0.02, 2).tolist()}
+        for x, y in np.ndindex(*counts)
+    ]
+    ran = begun({**tables, "time": {**tables["time"], "step": step}, "perturbations": kicks}, folder)
+    before = np.square(by_id(ran, "velocity")).sum()
+    try:
+        for _ in range(steps):
+            ran.step()
+    except Failed:
+        return math.inf
+    return float(np.sqrt(np.square(by_id(ran, "velocity")).sum() / before))
+
+
+@LONG
+@pytest.mark.parametrize("name", NOISE)
+def test_noise_fades_at_the_limit_and_blows_up_beyond(tmp_path, name):
+    tables, beyond = NOISE[name]
+    assert noise_after(tables, tmp_path, 1.0) < 1.0
+    assert noise_after(tables, tmp_path, beyond) > 10.0
