@@ -1,4 +1,10 @@
-"""The words in which an effect says on what it acts."""
+"""The words in which effects, gauges and kinds of matter say what acts on what.
+
+Each says so itself: ``acts`` names the matter on which it acts, and ``refuses`` has a sentence, with the
+cure, for each of these words beside which it does not work.  All else follows (psph.case.corners).
+"""
+
+from collections.abc import Mapping
 
 from psph.formula import helper, where
 
@@ -16,13 +22,48 @@ MATTER = (FLUIDS, SOILS, UPDATED, SOLIDS, BODIES)
 FLOWING = (FLUIDS, SOILS, UPDATED)
 """What moves freely and finds its neighbours in space: these share one pair loop."""
 
+FRAME, SEAM, SYMMETRY, MIXED = "moving frames", "periodic axes", "planes of symmetry", "mixed precision"
+"""Surroundings, beside walls, which have the words of psph.physics.walls.conditions."""
 
-def acts_on(effect) -> tuple[str, ...]:
+ONE, TWO, THREE = "1D", "2D", "3D"
+DIMENSIONS = (ONE, TWO, THREE)
+
+MOMENTUM = "momentum"
+"""What an effect says that it conserves."""
+
+OF_PAIRS = ("radial", "shear", "push", "finish_acceleration")
+"""Methods by which an effect pushes."""
+
+UNANSWERED = "does not push back what pushes, so that no force on a {} is known; take another"
+
+
+MADE_FOR_FLUIDS = {UPDATED: 'it is made for fluids; give scheme = "solid", or remove this key'}
+"""What effects refuse that keep a fluid in order, and would take a solid apart."""
+
+
+def acts_on(asker) -> tuple[str, ...]:
     """The kinds of matter on which an effect acts: its attribute ``acts``.
 
     Where it declares none: all matter if it has a body force, else what flows.
     """
-    return getattr(effect, "acts", MATTER if hasattr(effect, "body") else FLOWING)
+    return getattr(asker, "acts", MATTER if hasattr(asker, "body") else FLOWING)
+
+
+def one_sided(effect) -> bool:
+    """Whether an effect pushes without being pushed back."""
+    pushes = any(hasattr(effect, method) for method in OF_PAIRS)
+    return pushes and MOMENTUM not in getattr(effect, "conserves", ())
+
+
+def refusals(asker) -> Mapping[str, str]:
+    """Beside what an effect, a gauge or a kind of matter does not work, and why: its ``refuses``."""
+    return getattr(asker, "refuses", {})
+
+
+def refusals_of_effect(effect) -> Mapping[str, str]:
+    """The same of an effect that a key of ``physics`` asks for: forces on bodies and solids need answers."""
+    unanswered = {BODIES: UNANSWERED.format("body"), SOLIDS: UNANSWERED.format("solid")}
+    return {**(unanswered if one_sided(effect) else {}), **refusals(effect)}
 
 
 @helper

@@ -1,13 +1,14 @@
 """Rigid bodies of a case: what they are, what holds them, and the rules between their keys."""
 
 from collections.abc import Iterator
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Strict
 
+from psph.acts import FRAME, ONE
 from psph.case.errors import advise
-from psph.case.findings import Finding, one_sided
+from psph.case.findings import Finding
 from psph.case.keys import AXES, Name, Table, Vector, key
 from psph.case.motion import Motions, way_and_turn
 from psph.case.shapes import Shape
@@ -92,6 +93,11 @@ class Body(Table):
         otherwise="the first fluid",
     )
 
+    refuses: ClassVar = {
+        ONE: "bodies need two or three dimensions",
+        FRAME: "bodies know of no frame that moves; remove one of the two, or move the tank",
+    }
+
     def freed(self, dimensions: int) -> tuple[str, ...]:
         """What it is free to do."""
         slides, turns = freedoms(dimensions)
@@ -112,7 +118,6 @@ def held_together(case) -> Iterator[Finding]:
     for name, body in case.bodies.items():
         here = ("bodies", name)
         if dimensions == 1:
-            yield here, ..., "bodies need two or three dimensions"
             continue
         if (body.mass is None) == (body.density is None):
             yield here, ..., "give either mass or density"
@@ -145,8 +150,6 @@ def held_together(case) -> Iterator[Finding]:
             )
         elif body.motion:
             yield from _moved_and_free(here, body, freed)
-        if case.frame.motion:
-            yield here, ..., "bodies know of no frame that moves; remove one of the two, or move the tank"
         for line, table in body.lines.items():
             if table.to is not None and (table.to not in case.bodies or table.to == name):
                 others = [other for other in case.bodies if other != name]
@@ -157,10 +160,6 @@ def held_together(case) -> Iterator[Finding]:
     if parts > MOST_PARTS:
         says = f"{parts} fluids, walls and bodies; a case holds {MOST_PARTS} at most, so join some by union"
         yield ("bodies",), ..., says
-    if case.bodies:
-        for key in one_sided(case):
-            says = f"{key} does not push back what pushes, so that no force on a body is known; take another"
-            yield ("bodies",), ..., says
     for name in case.bodies.keys() & (case.fluids.keys() | case.walls.keys()):
         yield ("bodies", name), ..., "a fluid or a wall has this name too; give the body another"
 

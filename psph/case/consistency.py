@@ -5,8 +5,9 @@ from typing import Any
 
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
+from psph.acts import refusals
 from psph.case.bodies import held_together
-from psph.case.corners import idle
+from psph.case.corners import cornered
 from psph.case.errors import advise
 from psph.case.findings import Finding, Location, asked_of, not_of
 from psph.case.keys import AXES, Table
@@ -18,7 +19,7 @@ from psph.case.soils import earthen
 from psph.case.solids import elastic
 from psph.case.study import EXACT
 from psph.physics.roles import ROLES
-from psph.physics.walls.conditions import MIRROR, STICKING
+from psph.physics.walls.slip import NoSlip
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 
@@ -33,7 +34,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         _hydrostatic,
         _exact,
         _effects,
-        idle,
+        cornered,
         _continued,
         moved,
         _regions,
@@ -206,14 +207,6 @@ def _domain(case) -> Iterator[Finding]:
 def _mirrored(case) -> Iterator[Finding]:
     """Mirrors where none can be."""
     space, gravity, central = case.space, case.physics.gravity, case.physics.central_force
-    walls = [("walls", name, "condition") for name, wall in case.walls.items() if wall.condition == MIRROR]
-    for loc in (*([("space", "symmetry")] if space.symmetry else ()), *walls):
-        if space.dimensions == 1:
-            yield loc, ..., "mirrors need two or three dimensions"
-        if case.precision == "mixed":
-            yield loc, ..., 'mirrors do not work with precision = "mixed"; use "double"'
-        if case.physics.pressure_gradient == "stress_points":
-            yield loc, ..., 'mirrors do not work with physics.pressure_gradient = "stress_points"'
     for side in space.symmetry:
         axis, end = AXES.index(side[0]), side[2:]
         loc = ("space", "symmetry")
@@ -308,13 +301,8 @@ def _friction(case) -> Iterator[Finding]:
                 True,
                 ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove no_slip"),
             )
-        elif wall.no_slip and wall.condition not in STICKING:
-            known = " or ".join(f'"{one}"' for one in STICKING)
-            yield (
-                (case.table_of(name), name, "no_slip"),
-                True,
-                f'does nothing where condition = "{wall.condition}"; take {known}, or remove no_slip',
-            )
+        elif wall.no_slip and (says := refusals(NoSlip).get(wall.condition)):
+            yield (case.table_of(name), name, "no_slip"), True, says
         elif wall.no_slip and central:
             yield (
                 (case.table_of(name), name, "no_slip"),

@@ -1,21 +1,124 @@
-"""Which kinds of matter a case has, and what is asked to act on others."""
+"""What acts on what: the table that effects, gauges and kinds of matter make by what each says of itself."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
 
-from psph.acts import BODIES, FLUIDS, SOILS, SOLIDS, UPDATED, acts_on
-from psph.case.findings import Finding, asked_of
+from psph.acts import (
+    BODIES,
+    DIMENSIONS,
+    FLUIDS,
+    FRAME,
+    MATTER,
+    MIXED,
+    SEAM,
+    SOILS,
+    SOLIDS,
+    SYMMETRY,
+    UPDATED,
+    acts_on,
+    refusals,
+    refusals_of_effect,
+)
+from psph.case.bodies import Body
+from psph.case.findings import Finding, Location, asked_of
+from psph.case.soils import Soil
+from psph.case.solids import Solid
+from psph.case.updated import Updated
+from psph.physics.fluid.frame import MovingFrame
+from psph.physics.walls.conditions import CONDITIONS, CORNERS, MIRROR, Mirror
+
+ACTS, REFUSED, IRRELEVANT = "acts", "refused", "irrelevant"
+
+KINDS: dict[str, Any] = {
+    SOILS: Soil,
+    UPDATED: Updated,
+    SOLIDS: Solid,
+    BODIES: Body,
+    MIRROR: Mirror,
+    FRAME: MovingFrame,
+    SYMMETRY: Mirror,
+}
+"""What says of itself beside what it does not work."""
+
+
+class Answer(NamedTuple):
+    """Whether something acts beside something else; where it is refused, why and what to do."""
+
+    kind: str
+    says: str = ""
+
+
+def between(one: str, other: str) -> str:
+    """Why two kinds of matter or surroundings do not go together; empty where they do."""
+    return refusals(KINDS.get(one)).get(other) or refusals(KINDS.get(other)).get(one, "")
+
+
+def answer(asker: Any, corner: str, refused: Mapping[str, str]) -> Answer:
+    """Whether an effect or a gauge acts on a kind of matter, or in surroundings; it has ``refused`` some."""
+    if corner in refused:
+        return Answer(REFUSED, refused[corner])
+    acts = acts_on(asker)
+    if corner in acts:
+        return Answer(ACTS)
+    needs = [kind for kind, of in KINDS.items() if of is asker] or [kind for kind in acts if kind in MATTER]
+    apart = [between(kind, corner) for kind in needs]
+    if all(apart):
+        return Answer(REFUSED, apart[0])
+    of_walls = any(kind in CONDITIONS for kind in acts)
+    return Answer(IRRELEVANT if corner in MATTER or corner in CONDITIONS and of_walls else ACTS)
+
+
+class Row(NamedTuple):
+    """What something that a key asks for does in every corner."""
+
+    key: str
+    name: str
+    answers: tuple[Answer, ...]
+
+
+def rows_of_effects(catalogue) -> Iterator[Row]:
+    """A row for each effect of a catalogue."""
+    for entry in catalogue.effects:
+        own = refusals_of_effect if entry.key.startswith("physics.") else refusals
+        found = (answer(entry.effect, corner, own(entry.effect)) for corner in CORNERS)
+        yield Row(entry.key, entry.effect.__name__, tuple(found))
+
+
+def rows_of_gauges(kinds: Mapping[str, Any]) -> Iterator[Row]:
+    """A row for each kind of gauge, by its key and table."""
+    for key, table in kinds.items():
+        yield Row(key, key, tuple(answer(table, corner, refusals(table)) for corner in CORNERS))
+
+
+def rows_of_kinds() -> Iterator[Row]:
+    """A row for each kind of matter and surroundings that does not go with every other."""
+    for one in KINDS:
+        said = (between(one, corner) for corner in CORNERS)
+        yield Row(one, one, tuple(Answer(REFUSED, says) if says else Answer(ACTS) for says in said))
+
+
+def present(case) -> dict[str, list[tuple[Location, Any]]]:
+    """The corners that a case has, each with the keys that say so and their values; none of its dimension,
+    which no key can take out."""
+    found: dict[str, list[tuple[Location, Any]]] = {
+        FLUIDS: [(("fluids",), ...)] if case.fluids else [],
+        SOILS: [(("soils",), ...)] if case.soils else [],
+        UPDATED: [(("solids", name, "description"), one.description) for name, one in case.updated.items()],
+        SOLIDS: [(("solids",), ...)] if case.referred else [],
+        BODIES: [(("bodies",), ...)] if case.bodies else [],
+        FRAME: [(("frame", "motion"), ...)] if case.frame.motion else [],
+        SEAM: [(("space", "periodic"), case.space.periodic)] if case.space.periodic else [],
+        SYMMETRY: [(("space", "symmetry"), ...)] if case.space.symmetry else [],
+        MIXED: [(("precision",), case.precision)] if case.precision == "mixed" else [],
+    }
+    for name, wall in case.walls.items():
+        found.setdefault(wall.condition, []).append((("walls", name, "condition"), wall.condition))
+    return {corner: keys for corner, keys in found.items() if keys}
 
 
 def matter_in(case) -> frozenset[str]:
     """The kinds of matter in a case (psph.acts)."""
-    held = {
-        FLUIDS: case.fluids,
-        SOILS: case.soils,
-        UPDATED: case.updated,
-        SOLIDS: case.referred,
-        BODIES: case.bodies,
-    }
-    return frozenset(kind for kind, tables in held.items() if tables)
+    return frozenset(MATTER).intersection(present(case))
 
 
 def listed(words: Sequence[str]) -> str:
@@ -24,11 +127,25 @@ def listed(words: Sequence[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def idle(case) -> Iterator[Finding]:
-    """Effects that a case asks for, and that act on nothing in it; what a scheme sets asks for nothing."""
-    here = matter_in(case)
+def cornered(case) -> Iterator[Finding]:
+    """What a case asks for and what does not go together, as the table has it."""
+    here = present(case)
+    dimension = DIMENSIONS[case.space.dimensions - 1]
+    for kind in (one for one in KINDS if one in here):
+        for corner, says in refusals(KINDS[kind]).items():
+            if corner == dimension:
+                yield from ((loc, ..., says) for loc, _ in here[kind])
+            yield from ((loc, value, says) for loc, value in here.get(corner, ()))
     for name, value, effect in asked_of(case):
         acts = acts_on(effect)
-        if here.isdisjoint(acts) and not case.preset(f"physics.{name}"):
-            says = f"acts on {listed(acts)} alone, and the case has none; remove this key"
-            yield ("physics", name), value, says
+        idle = here.keys().isdisjoint(acts)
+        refused = refusals(effect) if idle else refusals_of_effect(effect)
+        found = [says for corner, says in refused.items() if corner in here or corner == dimension]
+        if idle and not found and not case.preset(f"physics.{name}"):  # what a scheme sets asks for nothing
+            found = [f"acts on {listed(acts)} alone, and the case has none; remove this key"]
+        yield from ((("physics", name), value, says) for says in found)
+    for name, gauge in case.gauges.items():
+        asked = getattr(gauge, gauge.kind)
+        if not hasattr(asked, "of") and here.keys().isdisjoint(acts := acts_on(asked)):
+            says = f"measures {listed(acts)} alone, and the case has none; remove this gauge"
+            yield ("gauges", name, gauge.kind), ..., says

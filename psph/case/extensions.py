@@ -82,8 +82,10 @@ def _clash(group: str, there: "Sequence[Entry]", brought: "Sequence[Entry]") -> 
 
 
 def _uncalled(effects: "Sequence[Entry]") -> Iterator[str]:
-    """Methods of effects that nothing calls, in words: a name that is not quite right would do nothing."""
+    """Methods of effects that nothing calls, and words that say nothing: a name that is not quite right would
+    do nothing."""
     from psph.physics.catalogue import methods, methods_of_effects
+    from psph.physics.walls.conditions import CORNERS
 
     known = methods_of_effects()
     for entry in effects:
@@ -93,6 +95,13 @@ def _uncalled(effects: "Sequence[Entry]") -> Iterator[str]:
                     f"{entry.effect.__name__} has a method {method} that psph never calls: "
                     f"{advise(method, sorted(known))} Begin its name with _ if you call it yourself"
                 )
+        for attribute in ("acts", "refuses"):
+            for word in getattr(entry.effect, attribute, ()):
+                if word not in CORNERS:
+                    yield (
+                        f"{entry.effect.__name__}.{attribute}: '{word}' is no word of docs/acts.md; "
+                        f"{advise(word, CORNERS)}"
+                    )
 
 
 def _name(group: str, entry: "Entry") -> str:

@@ -3,17 +3,12 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from psph.acts import one_sided
 from psph.case.errors import dotted
 
 Location = tuple[str | int, ...]
 Finding = tuple[Location, Any, str]
 """Location, value, and a message that says what is wrong and what to do."""
-
-MOMENTUM = "momentum"
-"""What an effect says that it conserves."""
-
-OF_PAIRS = ("radial", "shear", "push", "finish_acceleration")
-"""Methods by which an effect pushes."""
 
 
 def not_of(wrong: Sequence[Finding], findings: Iterable[Finding]) -> Iterator[Finding]:
@@ -34,11 +29,10 @@ def asked_of(case) -> Iterator[tuple[str, Any, Any]]:
             yield name, value if choice else ..., entry.effect
 
 
-def one_sided(case) -> list[str]:
+def keys_one_sided(case) -> list[str]:
     """The keys of ``physics`` whose effects push without being pushed back."""
     return [
         f"physics.{name}" + ("" if value is ... else f" = {value}")
         for name, value, effect in asked_of(case)
-        if any(hasattr(effect, method) for method in OF_PAIRS)
-        and MOMENTUM not in getattr(effect, "conserves", ())
+        if one_sided(effect)
     ]

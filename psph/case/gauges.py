@@ -5,7 +5,9 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Strict, model_validator
 from pydantic_core import PydanticCustomError
 
+from psph.acts import BODIES, MATTER, SOLIDS, UPDATED
 from psph.case.keys import Axis, Name, Table, Vector, key
+from psph.physics.walls.conditions import BEARING, CONDITIONS
 
 MOVES_WITH = key(
     "the moving wall or the body that carries it along, and turns it; its places are those of the start",
@@ -14,8 +16,18 @@ MOVES_WITH = key(
 )
 
 
+KNOWN = " or ".join(f'"{one}"' for one in BEARING)
+
+
 class Force(Table):
     """Force and moment of the fluid on walls, bodies and solids."""
+
+    acts: ClassVar = MATTER
+    refuses: ClassVar = {
+        one: f'a wall with condition = "{one}" bears no force; take {KNOWN}'
+        for one in CONDITIONS
+        if one not in BEARING
+    }
 
     on: Annotated[tuple[Name, ...], Strict(False)] = key(
         "names of walls, bodies and solids in a fluid, taken together", min_length=1
@@ -83,11 +95,19 @@ class Flow(Table):
 class MotionOf(Table):
     """Place, turn, speed of a rigid body, and what acts on it."""
 
+    acts: ClassVar = (BODIES,)
+
     of: Name = key("the name of the body")
 
 
 class Displacement(Table):
     """How far a point of a solid has moved, by the straight line fitted to the particles around it."""
+
+    acts: ClassVar = (SOLIDS,)
+    refuses: ClassVar = {
+        UPDATED: "an updated Lagrangian solid keeps no place of the start; plot the frames, or give it "
+        'description = "total"'
+    }
 
     of: Name = key("the name of the solid")
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")

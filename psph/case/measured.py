@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
+from psph.acts import UPDATED, refusals
 from psph.case.errors import advise
-from psph.case.findings import Finding, one_sided
+from psph.case.findings import Finding, keys_one_sided
 from psph.case.keys import AXES
-from psph.physics.walls.conditions import BEARING
 
 MOST_MOMENTS = 1e9
 """Moments of one cadence: far below 1e12, where rounding would shift them."""
@@ -36,7 +36,10 @@ def gauged(case) -> Iterator[Finding]:
         if gauge.displacement and gauge.displacement.of not in case.solids:
             says = f"no solid has this name; {advise(gauge.displacement.of, case.solids)}"
             yield ("gauges", name, "displacement", "of"), gauge.displacement.of, says
-        for key in one_sided(case) if gauge.force else ():
+        elif gauge.displacement and gauge.displacement.of in case.updated:
+            says = refusals(gauge.displacement)[UPDATED]
+            yield ("gauges", name, "displacement", "of"), gauge.displacement.of, says
+        for key in keys_one_sided(case) if gauge.force else ():
             says = f"{key} does not push back what pushes, so that no force on a wall is known; take another"
             yield ("gauges", name, "force"), ..., says
         for place, wall in enumerate(gauge.force.on if gauge.force else ()):
@@ -46,13 +49,8 @@ def gauged(case) -> Iterator[Finding]:
             if wall not in case.boundaries:
                 known = {**case.boundaries, **(case.solids if case.fluids else {})}
                 yield loc, wall, f"no wall or body has this name; {advise(wall, known)}"
-            elif (condition := case.boundaries[wall].condition) not in BEARING:
-                known = " or ".join(f'"{one}"' for one in BEARING)
-                yield (
-                    loc,
-                    wall,
-                    f'a wall with condition = "{condition}" bears no force; take {known}',
-                )
+            elif says := refusals(gauge.force).get(case.boundaries[wall].condition):
+                yield loc, wall, says
 
 
 def _cannot_carry(case, name: str | None) -> str | None:

@@ -44,8 +44,6 @@ def _frame(case) -> Iterator[tuple[tuple, Any, str]]:
         yield loc, ..., "is no rigid motion; give one of psph's own"
     if any(one.way in PADDLES for one in parts if len(one.ways) == 1):
         yield loc, ..., "a paddle makes waves as a wall in its tank; give it to a wall"
-    if space.symmetry or any(wall.condition == MIRROR for wall in case.walls.values()):
-        yield loc, ..., "does not work with mirrors, which know of no frame that moves; remove one of the two"
     turns = [getattr(one, one.way) for one in parts if len(one.ways) == 1]
     axes = [one.axis for one in turns if isinstance(one, Turning) and one.turns]
     for axis in axes:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
+from psph.acts import BODIES, FRAME, MIXED, ONE, SOLIDS, UPDATED
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
@@ -59,6 +60,14 @@ class Soil(Hookean):
     water_density: float = key("density of that water", 1000.0, unit="kg/m3", gt=0)
 
     rubs: ClassVar = True
+    refuses: ClassVar = {
+        ONE: "soils need two or three dimensions",
+        **dict.fromkeys(
+            (SOLIDS, UPDATED, BODIES), "nothing is known of what these do in soil; remove one of the two"
+        ),
+        MIXED: 'soils are computed in double precision, since strains are small; use "double"',
+        FRAME: "soils know of no frame that moves; remove one of the two",
+    }
 
     @property
     def at_rest(self) -> float:
@@ -103,21 +112,10 @@ def earthen(case) -> Iterator[Finding]:
     """Soils that cannot be, in a case with space.dimensions."""
     if not case.soils:
         return
-    if case.space.dimensions == 1:
-        yield ("soils",), ..., "soils need two or three dimensions"
     for name in case.soils.keys() & (case.fluids.keys() | case.walls.keys()):
         yield ("soils", name), ..., "a fluid or a wall has this name too; give the soil another"
-    for name in ("solids", "bodies", "regions"):
-        if getattr(case, name, None):
-            yield (name,), ..., "nothing is known of what these do in soil; remove one of the two"
-    if case.precision == "mixed":
-        says = 'soils are computed in double precision, since strains are small; use "double"'
-        yield ("precision",), case.precision, says
-    if case.frame.motion:
-        yield ("frame", "motion"), ..., "soils know of no frame that moves; remove one of the two"
-    if case.physics.pressure_gradient != "symmetric":
-        says = 'the stress of soils is symmetric in a pair; use "symmetric"'
-        yield ("physics", "pressure_gradient"), case.physics.pressure_gradient, says
+    if getattr(case, "regions", None):
+        yield ("regions",), ..., "nothing is known of what these do in soil; remove one of the two"
     if case.physics.sound_speed is not None and not case.fluids:
         says = "soils have waves of their own, by young and poisson; remove this key"
         yield ("physics", "sound_speed"), case.physics.sound_speed, says

@@ -3,13 +3,14 @@
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
+from psph.acts import BODIES
 from psph.case.errors import advise
-from psph.case.findings import Finding, one_sided
+from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Name, Table, Vector, key
 from psph.case.motion import Motions
 from psph.case.shapes import Shape
-from psph.case.updated import TOTAL, UPDATED, updated
+from psph.case.updated import OF_SOLIDS, TOTAL, UPDATED, updated
 from psph.physics.solid.laws import LAWS
 
 
@@ -136,6 +137,7 @@ class Solid(Hookean):
     load_rise: float = key("time in which the loads grow to their full size", 0.0, unit="s", ge=0)
 
     rubs: ClassVar = False
+    refuses: ClassVar = OF_SOLIDS
 
     @property
     def is_updated(self) -> bool:
@@ -160,8 +162,6 @@ OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic p
 
 CONTACT = "physics", "contact"
 
-ALONE = "nothing is known of contact between solids and these; remove one of the two"
-
 
 def elastic(case) -> Iterator[Finding]:
     """Solids that cannot be, in a case with space.dimensions."""
@@ -175,24 +175,12 @@ def elastic(case) -> Iterator[Finding]:
         if not any(anvil.normal):
             yield ("anvils", name, "normal"), anvil.normal, "has no direction; give the way out of the plane"
     here = ("solids",)
-    if case.space.dimensions == 1:
-        yield here, ..., "solids need two or three dimensions"
-    for name in ("bodies", "regions", *(["anvils"] if case.fluids else [])):
+    for name in ("regions", *(["anvils"] if case.fluids else [])):
         if getattr(case, name, None):
-            yield (name,), ..., ALONE
-    if case.space.symmetry:
-        yield ("space", "symmetry"), case.space.symmetry, "mirrors know of no solids; draw the whole solid"
-    for key_of in one_sided(case) if case.fluids else ():
-        says = f"{key_of} does not push back what pushes, so that no force on a solid is known; take another"
-        yield here, ..., says
+            yield (name,), ..., OF_SOLIDS[BODIES]
     if case.physics.sound_speed is not None and not case.fluids:
         says = "solids have waves of their own, by young and poisson; remove this key"
         yield ("physics", "sound_speed"), case.physics.sound_speed, says
-    if case.frame.motion:
-        yield ("frame", "motion"), ..., "solids know of no frame that moves; remove one of the two"
-    if case.precision == "mixed":
-        says = 'solids are computed in double precision, since strains are small; use "double"'
-        yield ("precision",), case.precision, says
     for name, solid in case.solids.items():
         if solid.continues is not None and solid.continues not in case.fluids:
             says = f"no fluid has this name; {advise(solid.continues, case.fluids)}"

@@ -1,7 +1,9 @@
 """Solids whose neighbours are those of the present, and the rules between their keys."""
 
 from collections.abc import Iterator
+from typing import ClassVar
 
+from psph import acts
 from psph.case.findings import Finding
 
 TOTAL, UPDATED = "total", "updated"
@@ -23,35 +25,36 @@ OF_REFERENCE = (
 )
 """Keys that mean nothing to a solid whose neighbours are those of the present."""
 
-OF_FLUIDS = (
-    "tension_floor",
-    "position_shift",
-    "particle_shifting",
-    "summation_density",
-    "local_potential",
-    "pair_potential",
-)
-"""Keys of ``physics`` that keep a fluid in order, and take a solid apart."""
+OF_SOLIDS = {
+    acts.ONE: "solids need two or three dimensions",
+    acts.BODIES: "nothing is known of contact between solids and these; remove one of the two",
+    acts.FRAME: "solids know of no frame that moves; remove one of the two",
+    acts.SYMMETRY: "mirrors know of no solids; draw the whole solid",
+    acts.MIXED: 'solids are computed in double precision, since strains are small; use "double"',
+}
+"""Beside what solids of either description do not work (psph.acts)."""
+
+
+class Updated:
+    """Beside what updated Lagrangian solids do not work."""
+
+    refuses: ClassVar = OF_SOLIDS | {
+        other: f"nothing is known of updated Lagrangian solids beside {beside}; remove one"
+        for other, beside in (
+            (acts.FLUIDS, "fluids"),
+            (acts.SOILS, "soils"),
+            (acts.SOLIDS, "solids that are total Lagrangian"),
+        )
+    }
 
 
 def updated(case) -> Iterator[Finding]:
     """What updated Lagrangian solids do not know, in a case that has some."""
     here = ("solids", next(iter(case.updated)), "description")
-    for name in ("fluids", "soils", "anvils", "referred"):
-        if getattr(case, name):
-            beside = "solids that are total Lagrangian" if name == "referred" else name
-            yield here, UPDATED, f"nothing is known of updated Lagrangian solids beside {beside}; remove one"
+    if case.anvils:
+        yield here, UPDATED, "nothing is known of updated Lagrangian solids beside anvils; remove one"
     for name in case.updated.keys() & case.walls.keys():
         yield ("solids", name), ..., "a wall has this name too; give the solid another"
-    if case.physics.pressure_gradient != "symmetric":
-        says = 'the stress of solids is symmetric in a pair; use "symmetric"'
-        yield ("physics", "pressure_gradient"), case.physics.pressure_gradient, says
-    if case.physics.contact is not None:
-        says = 'updated Lagrangian solids feel each other without; remove it, or give description = "total"'
-        yield ("physics", "contact"), ..., says
-    for name in OF_FLUIDS:
-        if getattr(case.physics, name) is not None:
-            yield ("physics", name), ..., 'it is made for fluids; give scheme = "solid", or remove this key'
     for name, solid in case.updated.items():
         for key_of in OF_REFERENCE:
             default = type(solid).model_fields[key_of].get_default(call_default_factory=True)

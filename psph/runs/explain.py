@@ -17,6 +17,7 @@ from psph.physics.motion import deforms
 from psph.physics.solid.deformation import KERNEL, SMOOTHING, places_of, support_of
 from psph.physics.solid.material import is_damped
 from psph.runs.absent import absent_lines
+from psph.runs.acting import matter_lines
 from psph.runs.forecast import forecast, forecast_lines, pull, sites_within
 from psph.runs.hints import hints
 from psph.runs.outlay import output_lines
@@ -44,6 +45,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from _scene_lines(scene, plan, particles)
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
+    yield from matter_lines(scene.case, plan)
     yield from _step_lines(scene, plan)
     for place, line in enumerate(rheology_lines(scene)):
         if not place:

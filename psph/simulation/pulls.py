@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.acts import BODIES, FLOWING, SOLIDS, acts_on
+from psph.acts import BODIES, FLOWING, SOLIDS
 from psph.composition import terms
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
@@ -43,20 +43,21 @@ class Pulls(NamedTuple):
 def shares_loop(called: Iterable[Called], flowing: bool) -> tuple[Called, ...]:
     """The effects that act in the passes over neighbours: on what flows, or on solids where nothing does."""
     matter = FLOWING if flowing else (SOLIDS,)
-    return tuple(call for call in called if not set(matter).isdisjoint(acts_on(call.effect)))
+    return tuple(call for call in called if not set(matter).isdisjoint(call.acts))
 
 
 def pulls_of(called: Iterable[Called], dimensions: int, flowing: bool) -> Pulls:
     """What pulls in a scene, where something may be ``flowing``."""
     called = tuple(call for call in called if hasattr(call.effect, "body"))
     pulling, moving = [one.effect for one in called], [one.effect for one in shares_loop(called, flowing)]
+    on_bodies = [one.effect for one in called if BODIES in one.acts]
     whole = (0.0,) * dimensions
     for one in pulling:
         whole = add(whole, one.body(None)) if _is_uniform(one) else whole
-    solids = [one for one in pulling if SOLIDS in acts_on(one)]
+    solids = [one.effect for one in called if SOLIDS in one.acts]
     return Pulls(
         whole,
-        tuple(one for one in pulling if BODIES in acts_on(one) and not _is_uniform(one)),
+        tuple(one for one in on_bodies if not _is_uniform(one)),
         tuple(solids),
         tuple(one for one in pulling if hasattr(one, "potential")),
         tuple(filter(_is_booked, moving)),

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
+from psph.acts import acts_on
 from psph.case.extensions import origin
 from psph.composition.trial import Reads, UnknownField, WrongShape, reads
 from psph.errors import Refused, one_line
@@ -12,13 +13,14 @@ from psph.physics.catalogue import Entry
 
 
 class Called(NamedTuple):
-    """An effect of the scene, the key of the case that called for it, what it reads, and its name in the
-    catalogue: some effects have forms of their own for a scene."""
+    """An effect of the scene, the key of the case that called for it, what it reads, its name in the
+    catalogue, and on what it acts (psph.acts): some effects have forms of their own for a scene."""
 
     effect: Any
     reason: str
     reads: Reads
     name: str
+    acts: tuple[str, ...]
 
     @property
     def title(self) -> str:
@@ -48,7 +50,8 @@ def called_with(entry: Entry, effect, reason: str, scene, fields: Mapping[str, F
         found = reads(effect, scene.dimensions, scene.kernel, fields)
     except (UnknownField, WrongShape) as error:
         raise type(error)(_line(scene, effect, str(error))) from None
-    return Called(effect, reason, found, entry.effect.__name__)
+    declares = entry.effect if hasattr(entry.effect, "acts") else effect
+    return Called(effect, reason, found, entry.effect.__name__, acts_on(declares))
 
 
 def refuse_unwritten(scene, called: Iterable[Called], computed: Iterable[str]) -> None:

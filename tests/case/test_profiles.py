@@ -110,9 +110,8 @@ fluids.water.shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
 
 
 def test_a_profile_that_sets_what_another_key_cannot_have_is_named(tmp_path):
-    says = 'case.toml: space.symmetry: mirrors do not work with precision = "mixed"; use "double"'
-    assert refusal(tmp_path, 'profile = "quick"\n' + MIRRORED) == [
-        f"{says}; precision is set by profile quick"
-    ]
-    assert refusal(tmp_path, 'precision = "mixed"\n' + MIRRORED) == [says]
+    says = 'precision: "mixed": mirrors do not work in single precision; use "double"'
+    by_profile = refusal(tmp_path, 'profile = "quick"\n' + MIRRORED)
+    assert by_profile == [f"case.toml with profile quick: {says}"]
+    assert refusal(tmp_path, 'precision = "mixed"\n' + MIRRORED) == [f"case.toml: {says}"]
     assert draft(tmp_path, 'profile = "quick"\nprecision = "double"\n' + MIRRORED).precision == "double"

@@ -43,7 +43,7 @@ def test_the_parts_of_such_a_solid(tmp_path):
         ("anvils.floor={at=[0.0, 0.0], normal=[0.0, 1.0]}", "solids.block.description"),
         (
             "fluids.water={shape={box={lower=[2.0, 0.0], upper=[3.0, 1.0]}}, density=1000.0}",
-            "solids.block.description",
+            "fluids: nothing is known of updated Lagrangian solids beside fluids",
         ),
     ],
 )

@@ -337,7 +337,7 @@ BRICK = "bodies.brick.shape.box={lower=[0.2,0.5],upper=[0.4,0.7]}"
         ),
         (
             ("bodies.brick.mass=1.0", "physics.pressure_gradient=minimum", "scheme=sph"),
-            "physics.pressure_gradient = minimum does not push back what pushes",
+            'physics.pressure_gradient: "minimum": does not push back what pushes',
         ),
         (("bodies.brick.mass=1.0", "gauges.g.motion.of=tank"), "no body has this name"),
         (

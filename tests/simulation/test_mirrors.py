@@ -291,7 +291,7 @@ def test_a_shear_flow_between_mirrors_that_it_sticks_to_stays_as_it_is(tmp_path)
         (
             CROSS,
             (*QUARTER, 'physics.pressure_gradient="stress_points"', "scheme=sph"),
-            'mirrors do not work with physics.pressure_gradient = "stress_points"',
+            'physics.pressure_gradient: "stress_points": does not work with mirrors',
         ),
         (
             CROSS,
@@ -351,7 +351,7 @@ def test_lists_last_shorter_where_particles_move_across_a_mirror(tmp_path):
         ),
         (
             ('space.symmetry=["x.lower"]', 'precision="mixed"'),
-            'space.symmetry: mirrors do not work with precision = "mixed"; use "double"',
+            'precision: "mixed": mirrors do not work in single precision; use "double"',
         ),
     ],
 )

@@ -71,7 +71,6 @@ class Absorbing(NamedTuple):
     :class:`DampingZone` in a scene: s = g·x − s₀, with the ``growth`` g of s in 1/m and its ``offset`` s₀.
     """
 
-    acts = DampingZone.acts
     dissipates = True
 
     growth: tuple[float, ...]

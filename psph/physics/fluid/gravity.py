@@ -4,7 +4,9 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.acts import SEAM
 from psph.physics.facts import Facts
+from psph.physics.walls.conditions import EXTRAPOLATED, MIRROR
 from psph.vectors import dot, scale, subtract
 
 
@@ -46,6 +48,14 @@ class CentralForce(NamedTuple):
     a_i = −B² (x_i − X), with the potential B² |x_i − X|²/2.  Monaghan & Rafiee (2013), Int. J. Numer. Methods
     Fluids 71, 537, whose drop swings in it between two ellipses.
     """
+
+    refuses = {
+        SEAM: "it would turn round at the seam of an axis that repeats; take the axis out of space.periodic",
+        **dict.fromkeys(
+            (MIRROR, EXTRAPOLATED),
+            "walls of this condition continue the pressure by the weight alone; take another condition",
+        ),
+    }
 
     frequency: Annotated[float, Field(description="B", json_schema_extra={"unit": "rad/s"})]
     center: Annotated[

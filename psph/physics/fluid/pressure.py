@@ -4,6 +4,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
+from psph.acts import SOILS, UPDATED
 from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.formula import where
@@ -46,6 +47,13 @@ class SymmetricPressure(NamedTuple):
         return None
 
 
+UNEQUAL = {
+    SOILS: 'the stress of soils is symmetric in a pair; use "symmetric"',
+    UPDATED: 'the stress of solids is symmetric in a pair; use "symmetric"',
+}
+"""Beside what forms that are not symmetric in a pair do not work."""
+
+
 class MinimumPressure(NamedTuple):
     """Pressure gradient relative to the smallest neighbour pressure (p⁻): pairs only repel.
 
@@ -54,6 +62,8 @@ class MinimumPressure(NamedTuple):
     (p_i − p_i⁻) Σ_j m_j/ρ_j ∇W_ij, known when the minimum is, follows at the end.
     Conserves neither momentum nor energy; unstable with a free surface.
     """
+
+    refuses = UNEQUAL
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the part relative to p_i, 1/s²."""
@@ -101,6 +111,8 @@ class DifferencePressure(NamedTuple):
     exactly.
     """
 
+    refuses = UNEQUAL
+
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
@@ -120,6 +132,8 @@ class TensileControl(NamedTuple):
     included, is at least 0.9; they tell a surface, and what is near it, by the eigenvalues of a
     matrix, and shift particles besides.  Momentum is conserved where s = 1 alone.
     """
+
+    refuses = UNEQUAL
 
     writes = Declared("inside", "1", "1 inside the fluid, 0 at a free surface", image=Same)
     lagged = True

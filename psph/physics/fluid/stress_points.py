@@ -2,7 +2,10 @@
 
 from typing import NamedTuple
 
+from psph.acts import SYMMETRY
+from psph.physics.fluid.pressure import UNEQUAL
 from psph.physics.order.transport import TRANSPORT, moved
+from psph.physics.walls.conditions import MIRROR
 from psph.physics.walls.slip import NO_FLUID
 from psph.vectors import add, scale, zero_like
 
@@ -24,6 +27,11 @@ class StressPoints(NamedTuple):
     Libersky (2000), Comput. Methods Appl. Mech. Eng. 184, 67.  Theirs are extra points; these are half
     of the particles, at twice the spacing in volume.  Momentum and energy are not conserved exactly.
     """
+
+    refuses = UNEQUAL | dict.fromkeys(
+        (MIRROR, SYMMETRY),
+        "does not work with mirrors, which know no stress points; remove one of the two",
+    )
 
     def density_rate(self, i, j, pair):
         """At a stress point what the sum over velocity points is more than that over all, kg/(m^d s)."""

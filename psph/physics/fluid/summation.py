@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.acts import FLUIDS, MADE_FOR_FLUIDS
 from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.formula import helper, where
@@ -33,6 +34,9 @@ class SummationDensity(NamedTuple):
     accuracy.  So it is left out where no free surface lets the fluid sink, and before walls that bear no
     pressure, whose rows are not full, and beside matter with an evolved stress.
     """
+
+    acts = (FLUIDS,)
+    refuses = MADE_FOR_FLUIDS
 
     rate: Annotated[
         float,

@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
+from psph.acts import MADE_FOR_FLUIDS
 from psph.composition.pair import Pair
 from psph.fields import view_of
 from psph.formula import helper
@@ -53,6 +54,8 @@ class PairPotential(NamedTuple):
     momentum, angular momentum and energy are conserved.  Between two masses the force is that
     between two of the smaller mass: the heavier one is moved less.
     """
+
+    refuses = MADE_FOR_FLUIDS
 
     conserves = ("momentum", "angular momentum")
 
@@ -111,6 +114,8 @@ class LocalPotential(NamedTuple):
     gradients, is 1 where neighbours are in order all around.  psph's own.  It costs a flow in good order
     nothing, keeps momentum and angular momentum, and is no potential: energy is not conserved by it.
     """
+
+    refuses = MADE_FOR_FLUIDS
 
     conserves = ("momentum", "angular momentum")
 

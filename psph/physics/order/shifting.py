@@ -5,6 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
+from psph.acts import MADE_FOR_FLUIDS
 from psph.fields import VECTOR, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper, where
@@ -42,6 +43,8 @@ class ParticleShifting(NamedTuple):
     of the pass before.  Walls stay, and so does their density.  Momentum and angular momentum are not
     conserved exactly.
     """
+
+    refuses = MADE_FOR_FLUIDS
 
     roles = (ORDER,)
 
@@ -109,6 +112,8 @@ class PositionShift(NamedTuple):
     Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun et al. (2017), Comput. Methods Appl.
     Mech. Eng. 315, 25.
     """
+
+    refuses = MADE_FOR_FLUIDS
 
     roles = (ORDER,)
 

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field as Key
 
-from psph.acts import BODIES, SOLIDS
+from psph.acts import BODIES, SOLIDS, UPDATED
 from psph.fields import WALL, Field
 from psph.formula import helper, where
 from psph.physics.facts import Facts
@@ -41,6 +41,9 @@ class SolidContact(NamedTuple):
     """
 
     acts = (SOLIDS, BODIES)
+    refuses = {
+        UPDATED: 'updated Lagrangian solids feel each other without; remove it, or give description = "total"'
+    }
 
     stiffness: Annotated[
         float,

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.acts import SOILS, UPDATED
 from psph.fields import SYMMETRIC, Stress
 from psph.fields import Field as Declared
 from psph.formula import helper, where
@@ -70,6 +71,8 @@ class DeviatorRate(NamedTuple):
     without slip: exact for a linear flow up to a surface.  Gray, Monaghan & Swift (2001), Comput. Methods
     Appl. Mech. Eng. 190, 6641; corrected, Randles & Libersky (1996), 139, 375.
     """
+
+    acts = (SOILS, UPDATED)
 
     least: float = FEWEST
 
@@ -159,6 +162,8 @@ class DeviatoricForce(NamedTuple):
     (2001); with the pressure of :class:`psph.physics.fluid.pressure.SymmetricPressure` it is the force of the
     whole stress.
     """
+
+    acts = (SOILS, UPDATED)
 
     conserves = ("momentum",)
 

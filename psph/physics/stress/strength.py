@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.acts import SOILS
 from psph.engine.jit import call_by_number, call_by_type
 from psph.physics.facts import Facts
 from psph.physics.solid.plastic import PLASTIC_STRAIN
@@ -91,6 +92,8 @@ class Strength(NamedTuple):
     density that goes with the pressure is that of the volume less what dilatancy has opened; a crack stays in
     it, and has to close before the soil is pressed again (:class:`psph.physics.stress.bulk.Hooke`).
     """
+
+    acts = (SOILS,)
 
     laws: tuple = (Unbounded(),)
 

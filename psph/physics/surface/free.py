@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.acts import FLUIDS, MADE_FOR_FLUIDS
 from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.formula import where
@@ -70,6 +71,9 @@ class TensionFloor(NamedTuple):
     while its density stays what the water makes it.  Where a fluid has a free surface a splash would
     otherwise be held together, or pulled to a wall, by pressures that water does not bear.
     """
+
+    acts = (FLUIDS,)
+    refuses = MADE_FOR_FLUIDS
 
     least: Annotated[
         float,

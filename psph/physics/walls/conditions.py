@@ -1,5 +1,9 @@
 """The conditions that a wall can set to the fluid before it: ``walls.NAME.condition``."""
 
+from typing import ClassVar
+
+from psph.acts import DIMENSIONS, FRAME, MATTER, MIXED, ONE, SEAM, SYMMETRY
+
 DYNAMIC = "dynamic"
 """Its particles have a density, which evolves as that of the fluid (psph.physics.walls.dry)."""
 
@@ -23,3 +27,17 @@ stay dry (psph.physics.walls.dry), and no sum is made for them."""
 
 STICKING = (DYNAMIC, EXTRAPOLATED, MIRROR)
 """A fluid sticks to them where the case says no_slip: of others no sum says how it flows before them."""
+
+
+CORNERS = (*MATTER, *CONDITIONS, FRAME, SEAM, SYMMETRY, *DIMENSIONS, MIXED)
+"""All that an effect may act on, or refuse: kinds of matter, walls by their condition, surroundings."""
+
+
+class Mirror:
+    """Beside what a plane mirror does not work (psph.acts)."""
+
+    refuses: ClassVar = {
+        ONE: "mirrors need two or three dimensions",
+        MIXED: 'mirrors do not work in single precision; use "double"',
+        FRAME: "does not work with mirrors, which know of no frame that moves; remove one of the two",
+    }

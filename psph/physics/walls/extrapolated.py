@@ -2,9 +2,11 @@
 
 from typing import NamedTuple
 
+from psph.acts import FLOWING
 from psph.fields import PRESSURE
 from psph.physics.facts import Facts
 from psph.physics.motion import is_prescribed
+from psph.physics.walls.conditions import EXTRAPOLATED
 from psph.physics.walls.slip import NO_FLUID
 from psph.vectors import along, dot
 
@@ -17,6 +19,8 @@ class ExtrapolatedWall(NamedTuple):
     of a wall that moves g − a_w stands for g.  It is gathered before the forces, from the pressures of the
     same step: one of the step before would feed the waves that a wall reflects.
     """
+
+    acts = (*FLOWING, EXTRAPOLATED)
 
     writes = PRESSURE
     tells = "extrapolated"

@@ -4,8 +4,10 @@ import math
 from itertools import product
 from typing import NamedTuple
 
+from psph.acts import FLOWING
 from psph.formula import where
 from psph.physics.facts import Facts
+from psph.physics.walls.conditions import PENALTY
 from psph.physics.walls.slip import NO_FLUID
 from psph.smoothing import weight
 from psph.vectors import add, dot, scale, zero_like
@@ -23,6 +25,8 @@ class PenaltyWall(NamedTuple):
     stiffness by depth along the normal, and a damper.  The wall fills the fluid's support at its rest
     density, without pressure.
     """
+
+    acts = (*FLOWING, PENALTY)
 
     def in_scene(self, scene: Facts):
         """The spring that fits the scene's sound, spacing and kernel."""

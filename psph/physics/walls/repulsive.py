@@ -2,7 +2,9 @@
 
 from typing import NamedTuple
 
+from psph.acts import FLOWING
 from psph.physics.facts import SOUND_OVER_SPEED, Facts
+from psph.physics.walls.conditions import REPULSIVE
 
 CORE = 1.0 / 3.0
 """Distance Δ over the spacing at which the repulsion would be infinite."""
@@ -21,6 +23,8 @@ class RepulsiveWall(NamedTuple):
     the lattice of the fluid, keeps their Δ = dx/3, r − Δ is at least 0.1 dx, and it fills the fluid's support
     at its rest density, without pressure.
     """
+
+    acts = (*FLOWING, REPULSIVE)
 
     def in_scene(self, scene: Facts):
         """The repulsion that fits the scene's speed and spacing."""

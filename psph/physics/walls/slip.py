@@ -7,6 +7,7 @@ from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.physics.fluid.apparent import rub, rub_of
 from psph.physics.fluid.viscosity import corrected_friction, friction, newtonian
+from psph.physics.walls.conditions import CONDITIONS, STICKING
 from psph.vectors import add, scale, subtract, zero_like
 
 MIRRORED = Field(
@@ -45,6 +46,9 @@ def _finish_value(self, total, i, kernel):
     return scale(subtract(scale(i.velocity, total[0]), total[1]), share)
 
 
+KNOWN = " or ".join(f'"{one}"' for one in STICKING)
+
+
 class NoSlip(NamedTuple):
     """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
 
@@ -54,6 +58,12 @@ class NoSlip(NamedTuple):
     (2012), J. Comput. Phys. 231, 7057, eqs. (22), (23).  ṽ is gathered in the same pass as the
     forces, so it is that of the step before.
     """
+
+    refuses = {
+        one: f'does nothing where condition = "{one}"; take {KNOWN}, or remove no_slip'
+        for one in CONDITIONS
+        if one not in STICKING
+    }
 
     writes = MIRRORED
     lagged = True

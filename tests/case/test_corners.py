@@ -1,0 +1,258 @@
+"""The table of what acts on what: what is refused is refused, and what acts is seen to."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from drafts import refusal
+from jobs import clean_environment
+from long import LONG
+
+from psph.acts import (
+    BODIES,
+    DIMENSIONS,
+    FLUIDS,
+    FRAME,
+    MATTER,
+    MIXED,
+    SEAM,
+    SOILS,
+    SOLIDS,
+    SYMMETRY,
+    UPDATED,
+    refusals,
+    refusals_of_effect,
+)
+from psph.case import CaseError, load
+from psph.case.acts import gauge_kinds, page
+from psph.case.corners import (
+    ACTS,
+    IRRELEVANT,
+    KINDS,
+    REFUSED,
+    answer,
+    between,
+    rows_of_effects,
+    rows_of_gauges,
+)
+from psph.physics.catalogue import BUILT_IN, Catalogue, Entry
+from psph.physics.fluid.gravity import Gravity
+from psph.physics.walls.conditions import CONDITIONS, CORNERS
+
+NAMES = dict(zip(MATTER, ("water", "sand", "block", "plate", "brick")))
+"""What is made of each kind of matter in the scenes below."""
+
+HOOKE = "density = 1500.0, young = 1e6, poisson = 0.3"
+MOVES = "velocity_gradient = [[-0.3, 0.4], [0.1, -0.2]], jitter = 0.2, seed = 3"
+MADE_OF = {
+    FLUIDS: "fluids.water = { shape.box = { lower = LOW, upper = HIGH }, MOVES }",
+    SOILS: f"soils.sand = {{ shape.box = {{ lower = LOW, upper = HIGH }}, {HOOKE}, friction_angle = 30.0, cohesion = 1e6, MOVES }}",
+    UPDATED: f"solids.block = {{ shape.box = {{ lower = LOW, upper = HIGH }}, {HOOKE}, "
+    'description = "updated", MOVES }',
+    SOLIDS: f"solids.plate = {{ shape.box = {{ lower = LOW, upper = HIGH }}, {HOOKE}, MOVES }}",
+    BODIES: "bodies.brick = { shape.box = { lower = LOW, upper = HIGH }, density = 800.0 }",
+}
+
+
+def boxes(text: str, number: int, dimensions: int) -> str:
+    """The text with the corners of a box of its own, apart from those of other numbers."""
+    low = [1.2 * number, *[0.0] * (dimensions - 1)]
+    high = [1.2 * number + 0.6, *[0.6] * (dimensions - 1)]
+    return text.replace("LOW", str(low)).replace("HIGH", str(high))
+
+
+def scene(*corners: str, more: str = "", moves: str = MOVES) -> str:
+    """A case that has some corners; water where nothing else is asked for."""
+    dimensions = next((1 + DIMENSIONS.index(one) for one in corners if one in DIMENSIONS), 2)
+    matter = [one for one in MATTER if one in corners] or [FLUIDS]
+    if matter == [BODIES]:
+        matter.append(FLUIDS)
+    lines = ["time.end = 1.0", "physics.sound_speed = 30.0"] if {FLUIDS} & set(matter) else ["time.end = 1.0"]
+    space = [f"dimensions = {dimensions}", "spacing = 0.1"]
+    lower, upper = [-1.0] * dimensions, [8.0, *[1.0] * (dimensions - 1)]
+    space += [f"lower = {lower}", f"upper = {upper}"]
+    space += ['periodic = ["x"]'] * (SEAM in corners) + ['symmetry = ["x.lower"]'] * (SYMMETRY in corners)
+    lines.append(f"space = {{ {', '.join(space)} }}")
+    if "scheme" not in more:
+        lines.append('scheme = "solid"' if matter == [UPDATED] else 'scheme = "sph"')
+    lines += ['precision = "mixed"'] * (MIXED in corners)
+    lines += [f"frame.motion.translation = {[0.5] * dimensions}"] * (FRAME in corners)
+    for number, one in enumerate(matter):
+        lines.append(
+            boxes(MADE_OF[one].replace(", MOVES", f", {moves}" if moves else ""), number, dimensions)
+        )
+    for condition in set(corners) & set(CONDITIONS):
+        low, high = [-1.0] * dimensions, [8.0] * dimensions
+        low[-1], high[-1] = -1.0, 0.0
+        shape = f"{{ lower = {low}, upper = {high} }}"
+        lines.append(f'walls.floor = {{ shape.box = {shape}, condition = "{condition}" }}')
+    return "\n".join([*lines, more]) + "\n"
+
+
+def value_of(effect, dimensions: int = 2) -> str:
+    """Values for the parameters of an effect that have no default."""
+    own = {"center": [0.1] * dimensions, "acceleration": [0.3] * dimensions, "begin": -1.0, "end": 8.0}
+    own |= {"threshold": 0.9, "frequency": 2.0}
+    needed = {name: own.get(name, 0.1) for name in effect._fields if name not in effect._field_defaults}
+    return f"{{ {', '.join(f'{name} = {value}' for name, value in needed.items())} }}"
+
+
+ASKED = {entry.effect.__name__: entry for entry in BUILT_IN.effects if entry.key.startswith("physics.")}
+"""The effects that a key of ``physics`` asks for."""
+
+
+def key_of(name: str, dimensions: int = 2) -> str:
+    """What a case says to have an effect."""
+    key, _, choice = ASKED[name].key.partition("=")
+    return f'{key} = "{choice}"' if choice else f"{key} = {value_of(ASKED[name].effect, dimensions)}"
+
+
+def test_the_page_is_current():
+    text = (Path(__file__).parents[2] / "docs" / "acts.md").read_text(encoding="utf-8")
+    assert text == page(), "docs/acts.md is out of date: python -m psph.case.acts > docs/acts.md"
+
+
+def test_every_sentence_is_a_line_that_says_what_to_do():
+    askers = [*KINDS.values(), *gauge_kinds().values(), *(entry.effect for entry in BUILT_IN.effects)]
+    for asker in askers:
+        for corner, says in refusals(asker).items():
+            assert corner in CORNERS and "\n" not in says
+            assert ";" in says or "need" in says, says
+        assert set(getattr(asker, "acts", ())) <= set(CORNERS)
+
+
+@pytest.mark.parametrize(
+    ("name", "corner", "kind"),
+    [
+        ("Gravity", BODIES, ACTS),
+        ("CentralForce", SOLIDS, ACTS),
+        ("CentralForce", SEAM, REFUSED),
+        ("DampingZone", SOLIDS, IRRELEVANT),
+        ("DampingZone", UPDATED, REFUSED),
+        ("Anvils", SYMMETRY, REFUSED),
+        ("Strength", FLUIDS, IRRELEVANT),
+        ("Strength", MIXED, REFUSED),
+        ("ExtrapolatedWall", "dynamic", IRRELEVANT),
+        ("MovingFrame", SOILS, REFUSED),
+        ("MovingFrame", "mirror", REFUSED),
+        ("MinimumPressure", BODIES, REFUSED),
+        ("gauges.force", "repulsive", REFUSED),
+        ("gauges.motion", BODIES, ACTS),
+        ("gauges.motion", FLUIDS, IRRELEVANT),
+        ("gauges.displacement", UPDATED, REFUSED),
+    ],
+)
+def test_the_table_has_what_each_says_and_what_follows(name, corner, kind):
+    kinds = {f"gauges.{key}": table for key, table in gauge_kinds().items()}
+    rows = {row.name: row for row in (*rows_of_effects(BUILT_IN), *rows_of_gauges(kinds))}
+    assert rows[name].answers[CORNERS.index(corner)].kind == kind
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_what_an_effect_refuses_is_refused(name, tmp_path):
+    for corner, says in refusals_of_effect(ASKED[name].effect).items():
+        corners = (FLUIDS, corner) if corner in (SOLIDS, BODIES, *CONDITIONS) else (corner,)
+        lines = refusal(tmp_path, scene(*corners, more=key_of(name)))
+        assert any(says in line and "physics." in line for line in lines), (corner, lines)
+
+
+@pytest.mark.parametrize(
+    ("one", "corner"), [(one, corner) for one in KINDS for corner in CORNERS if between(one, corner)]
+)
+def test_kinds_that_do_not_go_together_are_refused(one, corner, tmp_path):
+    lines = refusal(tmp_path, scene(one, corner))
+    assert any(between(one, corner) in line for line in lines), lines
+
+
+def test_a_gauge_refuses_what_it_cannot_measure(tmp_path):
+    force = gauge_kinds()["force"]
+    for condition, says in refusals(force).items():
+        [line] = refusal(tmp_path, scene(condition, more='gauges.push.force.on = ["floor"]'))
+        assert says in line
+    more = 'gauges.moved.displacement = { of = "block", at = [0.3, 0.3] }'
+    [line] = refusal(tmp_path, scene(UPDATED, more=more))
+    assert refusals(gauge_kinds()["displacement"])[UPDATED] in line
+    [line] = refusal(tmp_path, scene(SOLIDS, more='gauges.top.highest.axis = "y"'))
+    assert "measures fluids, soils and updated Lagrangian solids alone, and the case has none" in line
+
+
+class Sideways(Gravity):
+    """An effect of one's own that says a word that is none."""
+
+    acts = ("fluid",)
+
+
+def test_a_word_that_says_nothing_is_refused(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(scene(FLUIDS))
+    with pytest.raises(CaseError, match="Sideways.acts: 'fluid' is no word of docs/acts.md; did you mean"):
+        load(path, given=Catalogue(effects=(Entry("physics.sideways", Sideways),)))
+
+
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory):
+    """A function: the text of a case → a digest of each of its groups after some steps, in plain Python."""
+    folder = tmp_path_factory.mktemp("walk")
+    process = subprocess.Popen(
+        [sys.executable, Path(__file__).parents[1] / "walking.py"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=clean_environment() | {"NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    known = {}
+
+    def digests(text):
+        if text not in known:
+            path = folder / "case.toml"
+            path.write_text(text)
+            process.stdin.write(json.dumps({"path": str(path), "sets": []}) + "\n")
+            process.stdin.flush()
+            known[text] = json.loads(process.stdout.readline())
+            assert "trouble" not in known[text], known[text]["trouble"]
+        return known[text]
+
+    yield digests
+    process.stdin.close()
+    process.wait(10)
+
+
+PULLS = [name for name in ("Gravity", "CentralForce", "DampingZone", "OtherDampingZone") if name in ASKED]
+
+
+@pytest.mark.parametrize("beside", [SOILS, SOLIDS, BODIES])
+@pytest.mark.parametrize("name", PULLS)
+def test_a_body_force_pulls_what_the_table_says_and_no_more(name, beside, walk):
+    """Of water and other matter far from it: each is where it would be without, or it is not."""
+    with_it, without = (walk(scene(FLUIDS, beside, more=more)) for more in (key_of(name), ""))
+    for kind in (FLUIDS, beside):
+        effect = ASKED[name].effect
+        acts = answer(effect, kind, refusals_of_effect(effect)).kind == ACTS
+        assert (with_it[NAMES[kind]] != without[NAMES[kind]]) == acts, kind
+
+
+NEEDS = {
+    "ReconstructedDamping": "physics.gradient_correction = 0.7",
+    "FourthOrderDiffusion": "physics.gradient_correction = 0.7",
+    "CentralFriction": "fluids.water.viscosity = 0.05",
+}
+"""What a case has besides, with and without the effect."""
+
+CELLS = [
+    (row.name, corner)
+    for row in rows_of_effects(BUILT_IN)
+    if row.name in ASKED
+    for corner, one in zip(CORNERS, row.answers)
+    if one.kind == ACTS and corner in MATTER
+]
+
+
+@LONG
+@pytest.mark.parametrize(("name", "corner"), CELLS)
+def test_what_acts_is_seen(name, corner, walk):
+    needs = NEEDS.get(name, "")
+    text = scene(corner, more=needs)
+    assert walk(scene(corner, more=f"{needs}\n{key_of(name)}"))[NAMES[corner]] != walk(text)[NAMES[corner]]
