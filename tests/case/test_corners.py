@@ -46,7 +46,8 @@ NAMES = dict(zip(MATTER, ("water", "sand", "block", "plate", "brick")))
 """What is made of each kind of matter in the scenes below."""
 
 HOOKE = "density = 1500.0, young = 1e6, poisson = 0.3"
-MOVES = "velocity_gradient = [[-0.3, 0.4], [0.1, -0.2]], jitter = 0.2, seed = 3"
+MOVES = "velocity_gradient = [[30.0, 40.0], [10.0, -50.0]], jitter = 0.2, seed = 3"
+"""Fast enough for what acts on impacts alone."""
 MADE_OF = {
     FLUIDS: "fluids.water = { shape.box = { lower = LOW, upper = HIGH }, MOVES }",
     SOILS: f"soils.sand = {{ shape.box = {{ lower = LOW, upper = HIGH }}, {HOOKE}, friction_angle = 30.0, cohesion = 1e6, MOVES }}",
@@ -234,17 +235,25 @@ def test_a_body_force_pulls_what_the_table_says_and_no_more(name, beside, walk):
         assert (with_it[NAMES[kind]] != without[NAMES[kind]]) == acts, kind
 
 
+CORRECTED = "physics.gradient_correction = 0.7"
+
 NEEDS = {
-    "ReconstructedDamping": "physics.gradient_correction = 0.7",
-    "FourthOrderDiffusion": "physics.gradient_correction = 0.7",
-    "CentralFriction": "fluids.water.viscosity = 0.05",
+    "ReconstructedDamping": (CORRECTED, ""),
+    "FourthOrderDiffusion": (CORRECTED, ""),
+    "LocalPotential": (CORRECTED, ""),
+    "ArtificialStress": ("physics.artificial_stress = OFF", "physics.artificial_stress = 0.3"),
+    "SolidContact": (boxes(MADE_OF[SOLIDS].replace("plate", "other").replace(", MOVES", ""), 0.5, 2), ""),
 }
-"""What a case has besides, with and without the effect."""
+"""What a case has besides, without and with the effect in the place of its own key; where nothing, its key."""
+
+APART = {"TensionFloor": "velocity_gradient = [[30.0, 0.0], [0.0, 20.0]]"}
+"""How it moves where another motion shows an effect."""
 
 CELLS = [
     (row.name, corner)
     for row in rows_of_effects(BUILT_IN)
     if row.name in ASKED
+    and ASKED[row.name].effect is not BUILT_IN.effects[1].effect  # the default, without which there is none
     for corner, one in zip(CORNERS, row.answers)
     if one.kind == ACTS and corner in MATTER
 ]
@@ -253,6 +262,10 @@ CELLS = [
 @LONG
 @pytest.mark.parametrize(("name", "corner"), CELLS)
 def test_what_acts_is_seen(name, corner, walk):
-    needs = NEEDS.get(name, "")
-    text = scene(corner, more=needs)
-    assert walk(scene(corner, more=f"{needs}\n{key_of(name)}"))[NAMES[corner]] != walk(text)[NAMES[corner]]
+    without, instead = NEEDS.get(name, ("", ""))
+    with_it = instead or f"{without}\n{key_of(name)}"
+    moves = APART.get(name, MOVES)
+    found = (
+        walk(scene(corner, more=more.replace("OFF", '"off"'), moves=moves)) for more in (without, with_it)
+    )
+    assert next(found)[NAMES[corner]] != next(found)[NAMES[corner]]
