@@ -255,7 +255,9 @@ CELLS = [
     if row.name in ASKED
     and ASKED[row.name].effect is not BUILT_IN.effects[1].effect  # the default, without which there is none
     for corner, one in zip(CORNERS, row.answers)
-    if one.kind == ACTS and corner in MATTER
+    if one.kind == ACTS
+    and corner in MATTER
+    and (row.name, corner) != ("SolidContact", BODIES)  # impacts: tests/simulation/test_impacts.py
 ]
 
 
