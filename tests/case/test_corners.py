@@ -257,7 +257,7 @@ CELLS = [
     for corner, one in zip(CORNERS, row.answers)
     if one.kind == ACTS
     and corner in MATTER
-    and (row.name, corner) != ("SolidContact", BODIES)  # impacts: tests/simulation/test_impacts.py
+    and (row.name, corner) != ("SolidContact", BODIES)  # impacts: tests/simulation/test_touching.py
 ]
 
 
