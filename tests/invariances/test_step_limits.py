@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from invariances.amplification import amplification
 from invariances.running import begun, by_id
-from invariances.scenes import DX
+from invariances.scenes import BLOCK, DX, scene, tank
 from long import LONG
 
 from psph.errors import Failed
@@ -108,3 +108,22 @@ def test_noise_fades_at_the_limit_and_blows_up_beyond(tmp_path, name):
     tables, beyond = NOISE[name]
     assert noise_after(tables, tmp_path, 1.0) < 1.0
     assert noise_after(tables, tmp_path, beyond) > 10.0
+
+
+def test_penalty_walls_hold_still_water_at_the_limit_and_not_beyond(tmp_path):
+    """With a wide kernel, whose steps by sound are longer than such a wall stands."""
+    water = {"shape": BLOCK, "density": 1000.0, "pressure": "hydrostatic"}
+    tables = scene(
+        space={"smoothing": 2.4},
+        fluids={"water": water},
+        walls={"tank": tank(layers=8, condition="penalty")},
+        physics={"gravity": [0.0, -9.0]},
+    )
+    still = begun(tables, tmp_path)
+    for _ in range(100):
+        still.step()
+    assert still.limited_by == "penalty wall" and still.fluid_speed < 0.5
+    wild = begun({**tables, "time": {**tables["time"], "step": 1.5 * still.dt}}, tmp_path)
+    with pytest.raises(Failed, match="blew up"):
+        for _ in range(100):
+            wild.step()

@@ -222,7 +222,7 @@ def test_the_particles_of_a_repulsive_wall_repel_the_fluid(dim):
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_a_penalty_wall_pushes_back_along_its_normal_what_is_too_near(dim):
-    effect = Spring(stiffness=900.0, damping=30.0, rest=10.0 * H)
+    effect = Spring(stiffness=900.0, damping=30.0, rest=10.0 * H, onset=0.1 * H)
     p = view(n=4, dim=dim)
     p = p._replace(is_fluid=np.array([1.0, 0.0, 0.0, 1.0]), penalty=np.array([0.0, 1.0, 1.0, 0.0]))
 
@@ -237,6 +237,8 @@ def test_a_penalty_wall_pushes_back_along_its_normal_what_is_too_near(dim):
     d = np.sqrt(away @ away)
     expected = (900.0 * (10.0 * H - d) - 30.0 * motion @ away / d) * away / d
     assert pushed(effect, 0, 1, 2, 3) == pytest.approx(expected)  # 3 is fluid
+    half = (900.0 * 0.05 * H - 0.5 * 30.0 * motion @ away / d) * away / d  # the damper has half set in
+    assert pushed(effect._replace(rest=d + 0.05 * H), 0, 1, 2, 3) == pytest.approx(half)
     assert not pushed(effect._replace(rest=0.9 * d), 0, 1, 2).any()  # far enough
     assert not pushed(effect, 0, 3).any()  # no wall in reach
     assert not pushed(effect, 1, 2).any()  # a wall is not pushed
