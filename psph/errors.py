@@ -1,6 +1,7 @@
 """Errors that a person can do something about: they end the command with one plain message."""
 
 import re
+import shlex
 
 UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 """What breaks a line, steers a terminal or is no character: control codes and half characters."""
@@ -18,6 +19,11 @@ def one_line(text: str) -> str:
 def shortened(text: str, longest: int) -> str:
     """A text of no more than so many characters; dots stand for the rest."""
     return text if len(text) <= longest else f"{text[: longest - 4]} ..."
+
+
+def typed(*words: object) -> str:
+    """A command of psph as a person types it, whatever is in its words: a path with a blank is quoted."""
+    return f"`python -m psph {shlex.join(map(str, words))}`"
 
 
 class Foreseen(Exception):

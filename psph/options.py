@@ -118,7 +118,9 @@ def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
     verb["run"].add_argument("--overwrite", action="store_true", help="replace an earlier run there")
     verb["resume"].add_argument("folder", action=_Folder, help="the folder of the run")
     verb["resume"].add_argument(
+        "--set",
         "--extend",
+        dest="extend",
         action="append",
         default=[],
         metavar="KEY=VALUE",

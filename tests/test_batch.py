@@ -151,7 +151,7 @@ def test_a_finished_run_rests_until_it_shall_go_further(home, queue):
     for again in (case, ("resume", "results/box-5")):
         assert turn(home, queue, *again, turn=1, number=5) == rests
     assert {path.name: path.stat().st_mtime_ns for path in folder.iterdir()} == left
-    further = ("resume", "results/box-5", "--extend", "time.end=0.02")
+    further = ("resume", "results/box-5", "--set", "time.end=0.02")
     code, out, _ = turn(home, queue, *further, number=6)
     assert code == 0 and "resuming from" in out
     assert turn(home, queue, *further, turn=1, number=6) == rests

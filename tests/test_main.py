@@ -31,7 +31,7 @@ def test_a_run_leaves_its_files(tmp_path):
     job = psph(CASE, "--out", tmp_path / "run", "--set", "time.end=1e-3")
     assert job.returncode == 0, job.stderr
     left = {path.name for path in (tmp_path / "run").iterdir()}
-    assert left == {"negative_pressure.h5", "negative_pressure.xmf", "log.csv", "summary.json", "case.toml"}
+    assert left == {"negative_pressure.h5", "negative_pressure.xdmf", "log.csv", "summary.json", "case.toml"}
     assert "441 particles" in job.stdout and "particle-steps/s" in job.stdout
 
 

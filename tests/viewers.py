@@ -1,4 +1,4 @@
-"""The frames of a run as other programs see them through the .xmf file."""
+"""The frames of a run as other programs see them through the .xdmf file."""
 
 import meshio
 import numpy as np

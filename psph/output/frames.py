@@ -126,7 +126,7 @@ class FrameFile:
         return rows
 
     def _create(self, attributes: dict) -> None:
-        self._index.path.unlink(missing_ok=True)
+        self._index.remove()
         # A new file takes the place of an old one, which may be open in a viewer: leave it that.
         fresh = self.path.with_name(self.path.name + ".new")
         fresh.touch()

@@ -11,6 +11,7 @@ import numpy as np
 from psph.errors import one_line
 from psph.output.errors import NotThere, cause
 from psph.output.tables import ERRORS, GAUGE, LOG, PROBES
+from psph.output.xdmf import index_of
 
 T = TypeVar("T")
 
@@ -25,7 +26,7 @@ class Run:
     def __init__(self, folder: Path, name: str | None = None):
         self.folder = Path(folder)
         found = sorted(self.folder.glob("*.h5" if name is None else f"{name}.h5"))
-        found = [path for path in found if path.with_suffix(".xmf").exists()] or found
+        found = [path for path in found if index_of(path)] or found
         if len(found) != 1:
             names = ", ".join(path.name for path in found) or "none"
             raise NotThere(

@@ -2,9 +2,10 @@
 
 import csv
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from psph.output.errors import OutputError, cause, together
 
@@ -13,6 +14,12 @@ LOG, PROBES, ERRORS = "log.csv", "probes.csv", "errors.csv"
 
 GAUGE = "gauge-{}.csv"
 """The table of a gauge of that name."""
+
+
+def tables_of(case: Mapping[str, Any]) -> list[str]:
+    """Names of the files of all tables that a run may have, from the keys of its ``case``."""
+    gauges = (GAUGE.format(name) for name in case.get("gauges", {}))
+    return [LOG, PROBES, ERRORS, *gauges, *(f"{name}.csv" for name in case.get("tables", {}))]
 
 
 class CsvTable:

@@ -47,8 +47,17 @@ _ITEM = (
 
 PARTICLES = "particles"
 
+ENDING, EARLIER = ".xdmf", ".xmf"
+"""Of the file's name.  PyVista knows the first alone; runs of earlier versions have the second."""
+
 Kind = tuple[tuple[int, ...], np.dtype]
 """Shape and type of a dataset."""
+
+
+def index_of(frames: Path) -> Path | None:
+    """The file that lists the ``frames`` of a run for viewers, by this or an earlier version, if any."""
+    found = (frames.with_suffix(ending) for ending in (ENDING, EARLIER))
+    return next((path for path in found if path.exists()), None)
 
 
 def item(file: Path, name: str, kind: Kind) -> str:
@@ -70,7 +79,7 @@ class _Frame(NamedTuple):
 
 
 class XdmfIndex:
-    """The ``.xmf`` beside the HDF5 file ``frames``; it lists the frames that are whole.
+    """The ``.xdmf`` beside the HDF5 file ``frames``; it lists the frames that are whole.
 
     It is rewritten whenever the frames have grown by its own size since it was last: so all its
     writings together are no more than the frames, however many.  Where frames are larger than
@@ -78,7 +87,7 @@ class XdmfIndex:
     """
 
     def __init__(self, frames: Path):
-        self.path = frames.with_suffix(".xmf")
+        self.path = frames.with_suffix(ENDING)
         self._frames = frames
         self._forget()
 
@@ -88,12 +97,18 @@ class XdmfIndex:
         if self._frames.stat().st_size - self._seen >= self._size:
             self._write()
 
+    def remove(self) -> None:
+        """Take the file away, also one of an earlier version."""
+        for ending in (ENDING, EARLIER):
+            self._frames.with_suffix(ending).unlink(missing_ok=True)
+
     def restore(self, frames: list[tuple[str, float, dict[str, Kind]]]) -> None:
         """List these frames and no others: (frame, time, kinds) as in :meth:`add`."""
         self._forget()
         for frame, time, kinds in frames:
             self._list(frame, time, kinds)
         self._write()
+        self._frames.with_suffix(EARLIER).unlink(missing_ok=True)  # it would list frames of no more
 
     def complete(self) -> None:
         """Add the frames to the file that it does not list yet."""

@@ -4,17 +4,20 @@ import fcntl
 import os
 import platform
 import time
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
 from psph.case.files import files_of
-from psph.errors import LONGEST_QUOTE, one_line, shortened
+from psph.errors import LONGEST_QUOTE, one_line, shortened, typed
 from psph.output.checkpoint import COPY, Saved, checkpoints, half_written, remove_checkpoints
 from psph.output.errors import OutputError, together
-from psph.output.gauges import gauges_of
 from psph.output.pictures.names import remove_pictures
-from psph.output.tables import ERRORS, LOG, PROBES
+from psph.output.rows import open_file
+from psph.output.tables import tables_of
+from psph.output.xdmf import ENDING, XdmfIndex
 from psph.runs.post_mortem import PICTURE, REPORT, remove_post_mortem
 from psph.runs.summary import SUMMARY
 
@@ -129,9 +132,11 @@ def _agreed(comm, folder: Path, do) -> None:
 def _clear(case, folder: Path) -> None:
     """Remove what an earlier run has left, and write the case and the files that it uses."""
     # What has such a name in a folder without a run is none of ours.
-    if (folder / f"{case.name}.h5").exists():
-        for name in (LOG, PROBES, ERRORS, SUMMARY):
+    for run, earlier in _runs_in(folder, case.name):
+        for name in (*tables_of(earlier), SUMMARY):
             (folder / name).unlink(missing_ok=True)
+        XdmfIndex(run).remove()
+        run.unlink()
         remove_pictures(folder)
     remove_checkpoints(folder)
     remove_post_mortem(folder)
@@ -139,6 +144,17 @@ def _clear(case, folder: Path) -> None:
     for path, content in _used(case, folder):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)  # a resumed run needs it
+
+
+def _runs_in(folder: Path, own: str) -> list[tuple[Path, dict[str, Any]]]:
+    """The frames of each run in a folder, and the keys of its case; none of a run of the ``own`` case that
+    was killed as it changed the file."""
+    found = {path: {} for path in (folder / f"{own}.h5",) if path.exists()}
+    for path in folder.glob("*.h5"):
+        with suppress(OSError, KeyError, ValueError), open_file(path, "r") as file:
+            if "frames" in file:
+                found[path] = tomllib.loads(file.attrs["case"])
+    return sorted(found.items())
 
 
 def _used(case, folder: Path) -> list[tuple[Path, bytes]]:
@@ -150,7 +166,7 @@ def _in_the_way(scene, folder: Path) -> str | None:
     """What a run would replace in a folder, in words; None where that is nothing."""
     case, copy = scene.case, folder / COPY
     if (folder / f"{case.name}.h5").exists():
-        resume = f", or go on with it: `python -m psph resume {folder}`" if checkpoints(folder) else ""
+        resume = f", or go on with it: {typed('resume', folder)}" if checkpoints(folder) else ""
         return f"{folder} holds a run of {case.name}: give --out or --overwrite{resume}"
     if copy.exists() and copy.read_bytes() != case.to_toml().encode():
         return f"{copy} holds another case, which would be lost: give --out or --overwrite"
@@ -170,6 +186,6 @@ def _files_of_a_run(scene, folder: Path) -> Iterator[Path]:
     yield from checkpoints(folder)
     yield from half_written(folder)
     frames = scene.case.name
-    tables = (*(f"{name}.csv" for name in scene.tables), *gauges_of(scene))
-    for name in (f"{frames}.xmf", f"{frames}.h5.new", LOG, PROBES, ERRORS, SUMMARY, *tables, REPORT, PICTURE):
+    tables = tables_of(scene.case.as_tables())
+    for name in (f"{frames}{ENDING}", f"{frames}.h5.new", SUMMARY, *tables, REPORT, PICTURE):
         yield folder / name

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from psph.composition.mirrors import BELOW
+from psph.errors import typed
 from psph.fields import FLUID, WALL
 from psph.output.diagnostics import moving_mass, total_energy, work_done
 from psph.output.errors import OutputError
@@ -227,7 +228,7 @@ class Guards:
 
     def _keep_state(self, guard: str) -> str:
         """A checkpoint and a frame of the state, where it is finite; words of what there is."""
-        case, again = self.scene.case, f"python -m psph resume {self.folder}"
+        case, again = self.scene.case, ("resume", self.folder)
         if not self.simulation.strain < np.inf:
             kept = newest_checkpoint(self.folder, self.simulation.comm)
             if kept is None:
@@ -235,13 +236,13 @@ class Guards:
                     "The state is not finite, so there is no checkpoint of it; `checkpoint.every` "
                     "leaves some on the way."
                 )
-            return f"The state is not finite: `{kept}` is the last good one, `{again}` goes on there."
+            return f"The state is not finite: `{kept}` is the last good one, {typed(*again)} goes on there."
         path = write_checkpoint(self.simulation, self.record, case, self.folder)
         self.record.write_last()
         kept = f"`{path.name}` holds this state, and so does the last frame."
         if guard == CLOCK:
             return kept
-        return f"{kept} `{again} --extend guards.on_trouble=warn` goes on from it."
+        return f"{kept} {typed(*again, '--set', 'guards.on_trouble=warn')} goes on from it."
 
     def _find(self, guard: str) -> Suspect:
         return find(self.simulation, self.scene, getattr(self, f"_worst_by_{guard}")())

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from psph.case import CaseError, load
-from psph.errors import LONGEST_QUOTE, shortened
+from psph.errors import LONGEST_QUOTE, shortened, typed
 from psph.output import checkpoint
 from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path, checkpoints
 from psph.particles.store import Store
@@ -81,7 +81,7 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
         lacks = "is a file" if folder.is_file() else "there is no such folder"
         lacks = "holds no run" if folder.is_dir() else lacks
         raise CheckpointError(f"{folder}: {lacks}: give the folder that a run has written")
-    case = load(folder / COPY, _allowed(extend), "--extend", given)
+    case = load(folder / COPY, _allowed(extend), "--set", given)
     found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
     if not found:
         raise CheckpointError(
@@ -104,7 +104,7 @@ def _allowed(extend: Sequence[str]) -> Sequence[str]:
         if not name or (keys is not True and name not in keys):
             raise CaseError(
                 [
-                    f"--extend {shortened(text, LONGEST_QUOTE)}: would make it another run; give time.end, "
+                    f"--set {shortened(text, LONGEST_QUOTE)}: would make it another run; give time.end, "
                     "a key of output, checkpoint or guards, or start the case again"
                 ]
             )
@@ -120,7 +120,7 @@ def _open(path: Path, found: list[Path], comm, case: str) -> Saved:
             if other != path and (whole := _whole(other, comm, case)):
                 raise CheckpointError(
                     f"{error}; {other.name}, at {whole.state['time']:.6g} s, is whole: go on from "
-                    f"it with `python -m psph resume {path.parent} --from {other.name}`"
+                    f"it with {typed('resume', path.parent, '--from', other.name)}"
                 ) from None
         raise CheckpointError(f"{error}; no other checkpoint there is whole") from None
 

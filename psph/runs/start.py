@@ -9,10 +9,12 @@ from typing import NamedTuple
 
 from psph.case.running import Checkpoint
 from psph.engine.jit import CACHE, is_kept
+from psph.errors import typed
 from psph.output.checkpoint import Saved
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
 from psph.output.progress import Progress
+from psph.output.xdmf import ENDING
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
 from psph.runs.cost import cost_lines
@@ -175,7 +177,7 @@ def _simulate(
     if steps:
         summary = _summary(scene, simulation, record, particles, whole, steps)
     else:
-        summary = ["no step was left to the end: for a later one, resume with --extend time.end=..."]
+        summary = ["no step was left to the end: for a later one, resume with --set time.end=..."]
     for line in summary:
         say(line)
     said = [*guards.summary(), *record.dry_probes()]
@@ -183,7 +185,7 @@ def _simulate(
         say(line)
     if comm.rank == 0 and steps:
         write_summary(folder, scene, simulation, whole, steps, said)
-    say(f"wrote {folder}/{case.name}.h5 and .xmf ({record.written} frames), {_tables(record)}")
+    say(f"wrote {folder}/{case.name}.h5 and {ENDING} ({record.written} frames), {_tables(record)}")
     output = simulation.ledger.seconds["output"]
     took = comm.bcast((compiling, starting - compiling, whole - output, output))
     return Finished(simulation, particles, *took)
@@ -210,7 +212,7 @@ def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: 
     if call.ends:
         by = "checkpoint.wall_clock" if call is Call.WALL_CLOCK else call.name
         raise Stopped(
-            f"stopped by {by} at t = {simulation.time:.6g} s: resume with `python -m psph resume {folder}`"
+            f"stopped by {by} at t = {simulation.time:.6g} s: resume with {typed('resume', folder)}"
         )
 
 

@@ -301,7 +301,7 @@ def test_overrides(examples, tmp_path):
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("examples", (50, pytest.param(1000, marks=LONG)))
 def test_extensions(examples, tmp_path):
-    """``resume --extend`` of a folder without a checkpoint: refused, in one way or the other."""
+    """``resume --set`` of a folder without a checkpoint: refused, in one way or the other."""
     (tmp_path / "case.toml").write_bytes((CASES / "dam_break.toml").read_bytes())
     tally = Tally()
     fit = ("time.end", "output.", "guards.", "checkpoint.")
@@ -309,13 +309,13 @@ def test_extensions(examples, tmp_path):
     further = st.builds("{}={}".format, keys, st.one_of(SIZES, WRITTEN))
 
     @thorough(examples)
-    @given(st.one_of(OVERRIDES, further, further))
+    @given(st.one_of(OVERRIDES, further, further, st.just("time.end=3.0")))
     def run(text):
         with pytest.raises(Foreseen) as caught:
-            main(["resume", str(tmp_path), "--extend", text])
+            main(["resume", str(tmp_path), "--set", text])
         end = "refused" if isinstance(caught.value, CaseError) else "without a checkpoint"
         said = str(caught.value)
-        plain(said.split("\n"), "--extend " if "another run" in said else tmp_path)
+        plain(said.split("\n"), "--set " if "another run" in said else tmp_path)
         tally[end] += 1
 
     run()

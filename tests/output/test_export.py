@@ -249,7 +249,7 @@ def test_paraview_gets_the_runs_colours(folder, dimensions, monkeypatch):
     monkeypatch.setitem(sys.modules, "paraview.simple", made)
     monkeypatch.setattr(sys, "argv", [str(script)])
     known = runpy.run_path(str(script))
-    assert known["frames"] == str(folder / "tank.xmf")
+    assert known["frames"] == str(folder / "tank.xdmf")
     assert [name for name, *_ in known["PARTS"]] == ["water", "oil", "tank", "block"][
         : len(PARTS[dimensions])
     ]
@@ -288,7 +288,7 @@ def test_exports_go_with_the_run_that_they_show(folder, dimensions):
     for to in PROGRAMS:
         export(folder, to)
     remove_pictures(folder)
-    assert sorted(path.name for path in folder.iterdir()) == ["case.toml", "tank.h5", "tank.xmf"]
+    assert sorted(path.name for path in folder.iterdir()) == ["case.toml", "tank.h5", "tank.xdmf"]
 
 
 @pytest.mark.parametrize("dimensions", [2], indirect=True)

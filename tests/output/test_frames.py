@@ -67,7 +67,7 @@ def test_viewers_see_every_frame(tmp_path, alone, dimensions, name):
     written = [cloud(20 + k, dimensions, k) for k in range(2)]  # the number may change
     for k, arrays in enumerate(written):
         frames.write(k, 0.25 * k, k, arrays)
-    seen = seen_by_vtk(frames.path.with_suffix(".xmf"))
+    seen = seen_by_vtk(frames.path.with_suffix(".xdmf"))
     assert len(seen) == 2
     for k, (time, points, fields) in enumerate(seen):
         arrays = written[k]
@@ -79,13 +79,23 @@ def test_viewers_see_every_frame(tmp_path, alone, dimensions, name):
             assert np.array_equal(fields[scalar], arrays[scalar])
 
 
+def test_pyvista_opens_the_file_by_its_name(tmp_path, alone):
+    """Of one called ``.xmf`` it ends Python."""
+    pyvista = pytest.importorskip("pyvista")
+    frames = FrameFile(tmp_path / "tank.h5", alone, {})
+    frames.write(0, 0.0, 0, cloud(20, 3, 0))
+    [index] = {path for path in tmp_path.iterdir() if path.name != "tank.h5"}
+    seen = pyvista.read(index)
+    assert seen.n_points == 20 and "pressure" in seen.point_data
+
+
 @pytest.mark.parametrize("dimensions", [1, 2, 3])
 def test_meshio_sees_every_frame(tmp_path, alone, dimensions):
     frames = FrameFile(tmp_path / "tank.h5", alone, {})
     written = [cloud(20, dimensions, k) for k in range(2)]
     for k, arrays in enumerate(written):
         frames.write(k, 0.25 * k, k, arrays)
-    seen = seen_by_meshio(tmp_path / "tank.xmf")
+    seen = seen_by_meshio(tmp_path / "tank.xdmf")
     assert len(seen) == 2
     for k, (time, points, fields) in enumerate(seen):
         assert time == 0.25 * k
@@ -127,7 +137,7 @@ def test_interrupted_frame_does_not_count(tmp_path, alone, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         frames.write(1, 0.1, 1, cloud(5, 2))
     assert Run(tmp_path).times.tolist() == [0.0]
-    assert len(seen_by_vtk(tmp_path / "tank.xmf")) == 1
+    assert len(seen_by_vtk(tmp_path / "tank.xdmf")) == 1
 
 
 def test_missing_folder_is_one_line(tmp_path, alone):

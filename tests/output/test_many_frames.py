@@ -41,7 +41,7 @@ def replaced(monkeypatch):
     sizes, replace = [], os.replace
 
     def counted(fresh, path):
-        if Path(path).suffix == ".xmf":
+        if Path(path).suffix == ".xdmf":
             sizes.append(os.path.getsize(fresh))
         replace(fresh, path)
 
@@ -62,7 +62,7 @@ def test_the_work_grows_with_the_frames_and_not_faster(tmp_path, alone, replaced
         write(frames, part * count // 3, (part + 1) * count // 3)
         seconds.append(time.process_time() - begun)
     frames.complete_index()
-    index = frames.path.with_suffix(".xmf")
+    index = frames.path.with_suffix(".xdmf")
     assert sum(replaced) < frames.path.stat().st_size + replaced[-1]
     assert sum(replaced) < 12 * replaced[-1]  # at each frame it would be count/2 times
     assert seconds[2] < 2.0 * seconds[0]
@@ -77,7 +77,7 @@ def test_large_frames_are_seen_at_once(tmp_path, alone):
     frames = FrameFile(tmp_path / "tank.h5", alone, {})
     for k in range(20):
         frames.write(k, 0.5 * k, k, cloud(k, count=500))
-        assert listed(tmp_path / "tank.xmf") == k + 1
+        assert listed(tmp_path / "tank.xdmf") == k + 1
 
 
 def test_tiny_frames_are_seen_after_a_while_and_at_the_end(tmp_path, alone):
@@ -85,10 +85,10 @@ def test_tiny_frames_are_seen_after_a_while_and_at_the_end(tmp_path, alone):
     behind = []
     for k in range(100):
         write(frames, k, k + 1)
-        behind.append(1.0 - listed(tmp_path / "tank.xmf") / (k + 1))
+        behind.append(1.0 - listed(tmp_path / "tank.xdmf") / (k + 1))
     assert 0.0 < max(behind) < 0.25
     frames.close()
-    assert listed(tmp_path / "tank.xmf") == 100
+    assert listed(tmp_path / "tank.xdmf") == 100
 
 
 READER = """
@@ -107,7 +107,7 @@ def test_a_reader_sees_a_whole_file_at_any_moment(tmp_path, alone):
     frames = FrameFile(tmp_path / "tank.h5", alone, {})
     write(frames, 0, 1)
     reader = subprocess.Popen(
-        [sys.executable, "-c", READER, tmp_path / "tank.xmf", "80"],
+        [sys.executable, "-c", READER, tmp_path / "tank.xdmf", "80"],
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -127,7 +127,7 @@ def test_a_kill_leaves_an_index_that_resume_mends(tmp_path):
     whole = FrameFile(tmp_path / "unbroken/tank.h5", alone, {})
     write(whole, 0, 60)
     whole.complete_index()
-    killed, index = FrameFile(tmp_path / "killed/tank.h5", alone, {}), tmp_path / "killed/tank.xmf"
+    killed, index = FrameFile(tmp_path / "killed/tank.h5", alone, {}), tmp_path / "killed/tank.xdmf"
     write(killed, 0, 40)
     for kept in range(40, 60):
         checkpoint = killed.structure()
@@ -140,16 +140,16 @@ def test_a_kill_leaves_an_index_that_resume_mends(tmp_path):
     assert listed(index) == kept
     write(again, kept, 60)
     again.complete_index()
-    assert index.read_bytes() == (tmp_path / "unbroken/tank.xmf").read_bytes()
+    assert index.read_bytes() == (tmp_path / "unbroken/tank.xdmf").read_bytes()
 
 
 def test_a_lost_index_is_written_again(tmp_path, alone):
     frames = FrameFile(tmp_path / "tank.h5", alone, {})
     write(frames, 0, 30)
-    (tmp_path / "tank.xmf").unlink()
+    (tmp_path / "tank.xdmf").unlink()
     write(frames, 30, 31)
     frames.close()
-    assert listed(tmp_path / "tank.xmf") == 31
+    assert listed(tmp_path / "tank.xdmf") == 31
 
 
 def test_numbers_past_32_bits(tmp_path, alone):
@@ -157,6 +157,6 @@ def test_numbers_past_32_bits(tmp_path, alone):
     frames.write(99_999, 1.0, 2**31 - 1, cloud(1))
     frames.write(2**31 + 7, 2.0, 2**40, cloud(2))
     assert Run(tmp_path).frame(-1)["pressure"][0] == 2.0
-    assert [t for t, _, _ in seen_by_vtk(tmp_path / "tank.xmf")] == [1.0, 2.0]
+    assert [t for t, _, _ in seen_by_vtk(tmp_path / "tank.xdmf")] == [1.0, 2.0]
     with h5py.File(tmp_path / "tank.h5") as file:
         assert file[f"frames/{2**31 + 7}"].attrs["step"] == 2**40

@@ -45,6 +45,14 @@ def test_other_hdf5_files_beside_the_frames_do_not_matter(tmp_path, alone):
     assert one_frame(tmp_path, alone).path.name == "tank.h5"
 
 
+def test_runs_of_earlier_versions_are_told_by_their_index(tmp_path, alone):
+    FrameFile(tmp_path / "tank.h5", alone, {}).complete_index()
+    (tmp_path / "tank.xdmf").unlink(missing_ok=True)
+    (tmp_path / "tank.xmf").write_text("", encoding="utf-8")
+    (tmp_path / "other.h5").write_bytes((tmp_path / "tank.h5").read_bytes())
+    assert Run(tmp_path).path == tmp_path / "tank.h5"
+
+
 @pytest.mark.parametrize(
     ("files", "message"),
     [

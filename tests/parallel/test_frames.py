@@ -82,7 +82,7 @@ def test_viewers_see_every_frame(comm, mpi_tmp_path, way, dimensions):
     for k, arrays in enumerate(written):
         frames.write(k, 0.5 * k, k, share(arrays, comm, (7, 13)))
     if comm.rank == 0:
-        index = mpi_tmp_path / "tank.xmf"
+        index = mpi_tmp_path / "tank.xdmf"
         for arrays, (time, points, fields), (_, _, again) in zip(
             written, seen_by_vtk(index), seen_by_meshio(index), strict=True
         ):

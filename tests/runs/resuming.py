@@ -167,7 +167,7 @@ def go_on_elsewhere(case, before, after, folder):
 
 def same_files(folder, other):
     """Whether two runs left the same tables and XDMF to the byte, and the same frames."""
-    for name in ("log.csv", "probes.csv", "box.xmf"):
+    for name in ("log.csv", "probes.csv", "box.xdmf"):
         if (folder / name).read_bytes() != (other / name).read_bytes():
             return False
     with h5py.File(folder / "box.h5") as one, h5py.File(other / "box.h5") as two:

@@ -1,6 +1,8 @@
 """The folder of a run: what is not a run's own stays, and one psph at a time is at work in it."""
 
 import os
+import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -63,7 +65,7 @@ def contents(folder):
         "log.csv",
         "probes.csv",
         "errors.csv",
-        "box.xmf",
+        "box.xdmf",
         "box.h5.new",
         "checkpoint-10.h5",
         "checkpoint-10.h5.new",
@@ -98,11 +100,39 @@ def test_a_table_of_the_case_s_own_is_not_lost_unasked(tmp_path):
         run(load(tmp_path / "box.toml", [SHORT]), tmp_path / "run", COMM, **QUIET)
 
 
+def test_overwriting_leaves_nothing_of_an_older_run_and_all_that_is_not_a_run_s(tmp_path):
+    """Also where the older one was of another case, with tables that the new one has not."""
+    (tmp_path / "count.py").write_text(COUNT, encoding="utf-8")
+    gauged = BOX + '[gauges.old]\nhighest = { axis = "x" }\n[tables]\ncount = 0.1\n'
+    (tmp_path / "first.toml").write_text('use = ["count.py"]\n' + gauged, encoding="utf-8")
+    folder = tmp_path / "a run"
+    run(load(tmp_path / "first.toml", [SHORT]), folder, COMM, **QUIET)
+    written = {path.name for path in folder.iterdir()}
+    assert written > {"first.h5", "first.xdmf", "gauge-old.csv", "count.csv", "log.csv"}
+    for name in ("first.xmf", "report.html", "gauge-old.png"):
+        (folder / name).write_text("of the older run", encoding="utf-8")
+    mine = {"notes.txt", "gauge-mine.csv", "mine.h5", "mine.xmf", "count.txt"}
+    for name in mine:
+        (folder / name).write_text("mine", encoding="utf-8")
+    run(boxed(tmp_path, COMM, SHORT), folder, COMM, overwrite=True, **QUIET)
+    own = {"box.h5", "box.xdmf", "log.csv", "summary.json", "case.toml"}
+    assert {path.name for path in folder.iterdir()} == own | mine | {"count.py"}  # files that it used stay
+
+
+def test_commands_in_hints_are_quoted(tmp_path):
+    folder = tmp_path / "it's a run"
+    run(boxed(tmp_path, COMM, SHORT, "checkpoint.every=1"), folder, COMM, **QUIET)
+    with pytest.raises(OutputError) as refused:
+        run(boxed(tmp_path, COMM, SHORT), folder, COMM, **QUIET)
+    command = re.search("`(.*)`", str(refused.value))[1]
+    assert shlex.split(command) == ["python", "-m", "psph", "resume", str(folder)]
+
+
 def test_what_is_nobody_s_trouble_stays_and_the_same_files_are_taken(tmp_path):
     """A copy of a used file with the same bytes is what the run would write."""
     (tmp_path / "slope.py").write_text(SLOPE, encoding="utf-8")
     (tmp_path / "box.toml").write_text('use = ["slope.py"]\n' + BOX, encoding="utf-8")
-    for name in ("notes.txt", "other.h5", "other.xmf", "other.csv", "checkpoint-old.h5", "picture.png"):
+    for name in ("notes.txt", "other.h5", "other.xdmf", "other.csv", "checkpoint-old.h5", "picture.png"):
         (tmp_path / name).write_text(name, encoding="utf-8")
     before = contents(tmp_path)
     run(load(tmp_path / "box.toml", [SHORT]), tmp_path, COMM, **QUIET)

@@ -64,7 +64,7 @@ def test_a_million_particles_come_back(tmp_path):
     assert np.allclose(x, sites, atol=1e-4) and not np.array_equal(x, sites)
     calm = np.all(np.abs(sites - 0.5) < 0.45, axis=1)  # no surface near
     assert np.allclose(v[calm], np.stack([-sites[:, 1], sites[:, 0]], axis=1)[calm], atol=1e-3)
-    [(_, points, fields)] = seen_by_vtk(tmp_path / "million.xmf")
+    [(_, points, fields)] = seen_by_vtk(tmp_path / "million.xdmf")
     assert np.array_equal(points[:, :2], frame["position"])
     assert np.array_equal(fields["pressure"], frame["pressure"])
     tell("particles written in one frame and read back", SIDE**2)

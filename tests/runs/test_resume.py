@@ -237,7 +237,7 @@ def test_a_folder_without_any_says_so(whole, tmp_path):
 def test_a_run_at_its_end_has_no_step_left(whole, tmp_path):
     folder, said = copy(whole, tmp_path / "run"), []
     resume(folder, COMM, say=lambda line, where=None: said.append(line))
-    assert "no step was left to the end: for a later one, resume with --extend time.end=..." in said
+    assert "no step was left to the end: for a later one, resume with --set time.end=..." in said
     assert not any("particle-steps" in line for line in said) and same_files(folder, whole)
 
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from psph.lab.battery.picture import COLOURS, PICTURE
 from psph.lab.battery.tables import CSV, PAGE
 from psph.lab.battery.verdicts import VERDICTS
-from psph.lab.report.sheet import REPORT, Told, first_run
+from psph.lab.report.sheet import Told, first_run
+from psph.output.pictures.names import REPORT
 
 KINDS = {
     CSV: (PAGE, "Hard cases under every scheme", "what each scheme does in cases in which plain SPH fails"),

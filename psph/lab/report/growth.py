@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from psph.lab.report.sheet import REPORT, Told
+from psph.lab.report.sheet import Told
+from psph.output.pictures.names import REPORT
 
 STABLE, GROWS = "#56b4e9", [[0.0, "#fff3e0"], [0.4, "#f5b041"], [0.7, "#d55e00"], [1.0, "#5b1a00"]]
 

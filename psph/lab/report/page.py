@@ -10,11 +10,12 @@ from psph.case import CaseError
 from psph.case.loader import load_to_read
 from psph.errors import Refused
 from psph.lab.report.results import report_of_results
-from psph.lab.report.sheet import REPORT, embedded, interactive, refuse_without_packages, written
+from psph.lab.report.sheet import embedded, interactive, refuse_without_packages, written
 from psph.lab.report.turning import turning
 from psph.lab.study.beside import Beside, beside
 from psph.output.checkpoint import COPY
 from psph.output.pictures import names
+from psph.output.pictures.names import REPORT
 from psph.output.pictures.plot import plot
 from psph.output.reader import Run
 from psph.runs.explain import explain

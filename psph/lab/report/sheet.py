@@ -12,7 +12,6 @@ from psph.output.checkpoint import COPY
 from psph.output.errors import OutputError
 from psph.runs.summary import read_summary
 
-REPORT = "report.html"
 NEEDS = ("jinja2", "plotly")
 """What the extra ``report`` installs."""
 

@@ -3,10 +3,11 @@
 import json
 from pathlib import Path
 
-from psph.lab.report.sheet import REPORT, Told, first_run
+from psph.lab.report.sheet import Told, first_run
 from psph.lab.study.ladder import name_of
 from psph.lab.study.report import percent
 from psph.lab.study.study import KEPT, PAGE, PICTURE, ladders_of
+from psph.output.pictures.names import REPORT
 
 
 def told(folder: Path) -> Told | None:

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
-from psph.errors import LONGEST_QUOTE, one_line, shortened
+from psph.errors import LONGEST_QUOTE, one_line, shortened, typed
 from psph.lab.errors import StudyError
 from psph.lab.study import report, words
 from psph.lab.study.fit import Ladder
@@ -77,7 +77,7 @@ def _ladder_of(folder: Path, kept: dict, case) -> tuple[dict, Ladder | None]:
     raise StudyError(
         f"explain --study {folder}: holds a study of {kept['case']}, not of {case.file}: {key} is "
         f"{_written(studied, key)} there and {_written(own, key)} here{more}; give the folder of a study "
-        f"of {case.file}, which `python -m psph study {case.file}` makes"
+        f"of {case.file}, which {typed('study', case.file)} makes"
     )
 
 

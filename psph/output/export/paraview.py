@@ -17,6 +17,7 @@ from psph.output.pictures import style
 from psph.output.pictures.names import PARAVIEW
 from psph.output.pictures.quantities import SPEED, quantity
 from psph.output.pictures.scale import scale_of
+from psph.output.xdmf import ENDING, index_of
 
 _SCRIPT = '''"""Shows {name} in ParaView 5.10 or newer: paraview --script={script}
 
@@ -85,12 +86,13 @@ _PLAIN = {parts.WALL: style.WALLS, parts.BODY: style.BODIES}
 
 
 def write_paraview(exported: Exported, folder: Path) -> Path:
-    """Write ``paraview.py`` for the run's ``.xmf`` into ``folder``; its path.
+    """Write ``paraview.py`` for the run's XDMF file into ``folder``; its path.
 
     Fluids and elastic solids by speed, with the colours of the pictures of ``plot``, walls half
     transparent, bodies in one colour.
     """
-    frames = Path(os.path.relpath(exported.run.path.with_suffix(".xmf"), folder)).as_posix()
+    index = index_of(exported.run.path) or exported.run.path.with_suffix(ENDING)
+    frames = Path(os.path.relpath(index, folder)).as_posix()
     of_group = exported.parts(np.arange(len(exported.names)))
     shown = [
         (name, k, k, _rgb(_PLAIN[part]) if part in _PLAIN else None, _OPACITY[part])

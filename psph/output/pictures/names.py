@@ -1,4 +1,4 @@
-"""Names of what ``plot`` and ``export`` make in the folder of a run."""
+"""Names of what ``plot``, ``export`` and ``report`` make in the folder of a run."""
 
 import re
 from pathlib import Path
@@ -13,6 +13,7 @@ from psph.physics.solid.plastic import OF_PLASTIC
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
+REPORT = "report.html"
 SOLIDS = "solids"
 """The folder of walls and bodies as triangles."""
 PARAVIEW = "paraview.py"
@@ -44,10 +45,10 @@ def stem_of(field: str, variant: str) -> str:
 
 
 def remove_pictures(folder: Path) -> None:
-    """Remove what ``plot`` and ``export`` have made of an earlier run; other files are not psph's."""
+    """Remove what these have made of an earlier run; other files are not psph's."""
     for path in folder.iterdir():
         if (
-            path.name in (OVERVIEW, PROBES, LOG, PARAVIEW)
+            path.name in (OVERVIEW, PROBES, LOG, PARAVIEW, REPORT)
             or _DRAWN.fullmatch(path.name)
             or _GAUGED.fullmatch(path.name)
         ):

@@ -14,7 +14,7 @@ from psph.output.pictures.bodies import Body, bodies_of
 from psph.output.pictures.walls import Triangles
 from psph.output.progress import told
 from psph.output.reader import Run
-from psph.output.xdmf import HEAD, TAIL, item
+from psph.output.xdmf import ENDING, HEAD, TAIL, item
 
 _GRID = """      <Grid Name="{name}" GridType="Uniform">
         <Time Value="{time!r}"/>
@@ -56,7 +56,7 @@ def solids(folder: Path) -> Path:
             _grid(file, path, bodies, run, k) for k in told(range(len(run.times)), "moving walls", "frames")
         ]
     os.replace(fresh, path)
-    index = path.with_suffix(".xmf")
+    index = path.with_suffix(ENDING)
     index.write_text(HEAD.format(name=names.SOLIDS) + "".join(grids) + TAIL, encoding="utf-8")
     return index
 
