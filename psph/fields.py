@@ -158,6 +158,8 @@ DENSITY_RATE_2 = Field("density_rate_2", "kg/(m3 s)", "rate of density two steps
 PRESSURE = Field("pressure", "Pa", "pressure by the equation of state", saved=True, image=StillPressure)
 SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces read it", image=StillVolume)
 
+CROSSED = Field("crossed", "1", "periods by which a particle has been taken back into the domain", VECTOR)
+
 OF_EVERY_SCENE = (
     POSITION,
     VELOCITY,

@@ -1,6 +1,7 @@
 """A rank's part of the domain: rebuild it (wrap, balance, migrate, sort, halo, list), refresh it."""
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ from mpi4py import MPI
 
 from psph.composition.space import Metres
 from psph.engine.settled import settled
+from psph.fields import CROSSED
 from psph.parallel.halo import Halo
 from psph.parallel.migration import migrate
 from psph.parallel.slabs import Prices, rebalanced
@@ -149,18 +151,25 @@ class Domain:
         """
         if any(self.periods):
             position = position.copy()
-            self._fold(position.T)
+            for _ in self._folded(position.T):
+                pass
         return position
 
     def _wrap(self) -> None:
-        inner = self.store.inner
-        self._fold([x[inner] for x in self.store["position"]])
+        store, inner = self.store, self.store.inner
+        for d, periods in self._folded([x[inner] for x in store["position"]]):
+            if CROSSED.name in store:
+                store[CROSSED.name][d][inner] += periods
 
-    def _fold(self, components) -> None:
-        for x, low, period in zip(components, self.lower, self.periods):
+    def _folded(self, components) -> Iterator[tuple[int, np.ndarray]]:
+        """Take components back into the domain; along each axis that repeats, how many periods each went."""
+        for d, (x, low, period) in enumerate(zip(components, self.lower, self.periods)):
             if period is not None:
-                x -= period * np.floor((x - low) / period)
-                x[x >= low + period] = low  # rounding may land on the upper edge
+                periods = np.floor((x - low) / period)
+                x -= period * periods
+                over = x >= low + period  # rounding may land on the upper edge
+                x[over] = low
+                yield d, periods + over
 
     def _fit_grid(self) -> Grid:
         """The grid over the domain and particles outside it; the same on any number of ranks.

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from psph.fields import Field
+from psph.fields import CROSSED, Field
 from psph.particles.reach import Reach
 from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
@@ -119,12 +119,13 @@ def reach_of_contact(whole: Reach, spacing: float) -> Reach:
 def solid_fields(scene: "Scene") -> tuple[Field, ...]:
     """What particles carry because the scene has solids, and these yield, crack, have loads or stand in a
     fluid."""
+    followed = any(gauge.displacement for gauge in scene.case.gauges.values())
+    across = (CROSSED,) if followed and any(scene.periods) else ()
     if not scene.elastic_solids:
-        followed = any(gauge.displacement for gauge in scene.case.gauges.values())
-        return (REFERENCE,) if followed else ()
+        return (REFERENCE, *across) if followed else ()
     loaded = any(table.loads for table in scene.case.solids.values())
     lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
     lasting += OF_HEAT if is_heated(scene.elastic_solids) else ()
     wet = [INERTIA] if scene.case.flowing else []
     cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.elastic_solids) else ()
-    return (*OF_SOLIDS, *lasting, *cracks, *([DRAWN, WORK] if loaded else []), *wet)
+    return (*OF_SOLIDS, *across, *lasting, *cracks, *([DRAWN, WORK] if loaded else []), *wet)

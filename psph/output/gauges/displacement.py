@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.fields import CROSSED
 from psph.parallel.reductions import exact_sums
 
 REACH = 2.5
@@ -15,7 +16,7 @@ class DisplacementGauge(NamedTuple):
 
     A straight function u = a + G(X − X_p) is fitted to the displacements of the particles within ``reach`` m
     of it in the reference, with the weights (1 − (|X − X_p|/reach)²)²: so a point on the face is not half a
-    spacing off.
+    spacing off.  Where a domain repeats, each time that a particle has crossed it counts.
     """
 
     name: str
@@ -37,8 +38,8 @@ class DisplacementGauge(NamedTuple):
         away, moved = reference - np.array(self.at), store.shown("position")[own] - reference
         for axis, period in enumerate(periods):
             if period is not None:
-                for part in (away, moved):
-                    part[:, axis] -= period * np.rint(part[:, axis] / period)
+                away[:, axis] -= period * np.rint(away[:, axis] / period)
+                moved[:, axis] += period * store.shown(CROSSED.name)[own, axis]
         weight = np.maximum(1.0 - (away**2).sum(axis=1) / self.reach**2, 0.0) ** 2
         basis = np.column_stack([np.ones(len(away)), away / self.reach])
         squares = weight[:, None, None] * basis[:, :, None] * basis[:, None, :]
