@@ -35,6 +35,13 @@ class Force(Table):
     about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
 
 
+def has_a_length(line):
+    """Refuse a line that ends where it begins."""
+    if line.foot == line.top:
+        raise PydanticCustomError("psph", "has no length; let 'top' lie above 'foot'")
+    return line
+
+
 class Level(Table):
     """Water level along a straight line, as a wave gauge measures it."""
 
@@ -42,11 +49,17 @@ class Level(Table):
     top: Vector = key("its upper end", unit="m")
     moves_with: Name | None = MOVES_WITH
 
-    @model_validator(mode="after")
-    def _has_a_length(self) -> Self:
-        if self.foot == self.top:
-            raise PydanticCustomError("psph", "has no length; let 'top' lie above 'foot'")
-        return self
+    _has_a_length = model_validator(mode="after")(has_a_length)
+
+
+class RunUp(Table):
+    """How far the tongue of the fluid reaches up a slope: along the slope, and in height."""
+
+    foot: Vector = key("the lower end of a line on the slope, from which the run-up is counted", unit="m")
+    top: Vector = key("its upper end", unit="m")
+    moves_with: Name | None = MOVES_WITH
+
+    _has_a_length = model_validator(mode="after")(has_a_length)
 
 
 class Highest(Table):
@@ -120,10 +133,21 @@ ANOTHER_KIND = "one kind of gauge is required"
 class Gauge(Table):
     """A gauge: exactly one of these kinds, and how often it is read."""
 
-    KINDS: ClassVar = ("force", "level", "highest", "point", "sensor", "flow", "motion", "displacement")
+    KINDS: ClassVar = (
+        "force",
+        "level",
+        "run_up",
+        "highest",
+        "point",
+        "sensor",
+        "flow",
+        "motion",
+        "displacement",
+    )
 
     force: Force | None = key("force and moment of the fluid", None, otherwise=ANOTHER_KIND)
     level: Level | None = key("water level along a line", None, otherwise=ANOTHER_KIND)
+    run_up: RunUp | None = key("run-up along a slope", None, otherwise=ANOTHER_KIND)
     highest: Highest | None = key("largest coordinate of the fluid", None, otherwise=ANOTHER_KIND)
     point: Point | None = key("fields at a point", None, otherwise=ANOTHER_KIND)
     sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise=ANOTHER_KIND)

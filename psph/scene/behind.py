@@ -27,6 +27,11 @@ class Solid:
         for number, one in enumerate(scene.species):
             self._still[number] = one.motion == motion and type(one.motion) is type(motion)
 
+    @property
+    def groups(self) -> tuple[int, ...]:
+        """The numbers of these walls."""
+        return tuple(number for number, _ in enumerate(self.scene.species) if self._still[number])
+
     def deep(self, position: np.ndarray, depth: float, once: Container[int] = frozenset()) -> np.ndarray:
         """True where a point of ``position`` (n, dim) lies ``depth`` spacings behind every face.
 

@@ -87,14 +87,16 @@ def misread(scene: "Scene") -> Iterator[str]:
 
 
 def _upside_down(scene: "Scene") -> Iterator[str]:
-    """A line for each line of a level that goes down: its level is the distance to its lowest wet point."""
+    """A line for each line of a level or a run-up that goes down: its level is the distance to its lowest wet
+    point."""
     for name, gauge in scene.case.gauges.items():
-        if (line := gauge.level) is None:
+        if (line := gauge.level or gauge.run_up) is None:
             continue
         if sum(g * (top - foot) for g, foot, top in zip(scene.gravity, line.foot, line.top)) > 0.0:
             yield (
-                f"gauges.{name}.level: its foot {shown(line.foot)} is above its top {shown(line.top)}, and "
-                "the level counts from the foot to the farthest point in the fluid; exchange the two"
+                f"gauges.{name}.{gauge.kind}: its foot {shown(line.foot)} is above its top "
+                f"{shown(line.top)}, and the {gauge.kind.replace('_', '-')} counts from the foot to the "
+                "farthest point in the fluid; exchange the two"
             )
 
 

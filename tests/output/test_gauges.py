@@ -7,10 +7,15 @@ import pytest
 from drafts import TANK, WATER, draft, refusal
 from gauging import readings, started
 from long import LONG
+from mpi4py import MPI
 
 from psph.fields import FLUID
+from psph.output.checkpoint import checkpoints
 from psph.output.gauges.level import surfaces
 from psph.output.gauges.points import disc
+from psph.output.gauges.run_up import tongue
+from psph.output.reader import Run
+from psph.runs.start import resume, run
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 
@@ -128,6 +133,90 @@ def test_still_water_rests_on_its_tank(tmp_path):
     assert read["inside.pressure"] == pytest.approx(2450.0, rel=0.02)
     assert read["inside.velocity_x"] == 0.0
     assert read["round.pressure"] == pytest.approx(2450.0, rel=0.02)
+
+
+LINES = {
+    "corner": ((0.0, 0.0), (0.0, 0.7), 0.5),
+    "middle": ((0.05, 0.0), (0.05, 0.7), 0.5),
+    "near": ((0.1, 0.0), (0.1, 0.7), 0.5),
+    "below": ((0.53, -0.2), (0.53, 0.7), 0.7),
+    "floor": ((0.2, 0.0), (0.8, 0.0), 0.6),
+    "within": ((-0.15, 0.0), (-0.15, 0.6), 0.0),
+}
+"""Foot, top and level of lines on walls, between them and from within them."""
+
+
+def test_level_on_walls_is_that_before_them(tmp_path):
+    """Where walls take up the half of the kernel and more."""
+    lines = [
+        f"gauges.{name}.level={{foot={list(foot)}, top={list(top)}}}"
+        for name, (foot, top, _) in LINES.items()
+    ]
+    read = readings(*started(draft(tmp_path, TANK, *lines)))
+    for name, (foot, _, level) in LINES.items():
+        assert read[f"{name}.level"] == pytest.approx(level, abs=0.01), name
+        dry = -min(foot[1], 0.0)
+        assert read[f"{name}.wetted"] == pytest.approx(level - dry, abs=0.01), name
+
+
+BEACH = (
+    TANK.replace("shape.box", "shape.difference.from.box")
+    + """
+[walls.slope.shape.polygon]
+points = [[0.2, 0.0], [1.0, 0.8], [1.0, 0.0]]
+[gauges.slope.run_up]
+foot = [0.2, 0.0]
+top = [0.9, 0.7]
+[gauges.above.run_up]
+foot = [0.8, 0.6]
+top = [0.9, 0.7]
+"""
+)
+
+
+def test_run_up_ends_where_the_water_meets_the_slope(tmp_path):
+    cut = "fluids.water.shape.difference.minus=[{polygon={points=[[0.2, 0.0], [1.0, 0.8], [1.0, 0.0]]}}]"
+    read = readings(*started(draft(tmp_path, BEACH, cut)))
+    assert read["slope.height"] == pytest.approx(0.5, abs=0.5 * 0.1)  # the spacing is 0.1
+    assert read["slope.run_up"] == pytest.approx(read["slope.height"] * math.sqrt(2.0))
+    assert read["above.run_up"] == read["above.height"] == 0.0
+
+
+def test_spray_is_no_run_up():
+    nothing = -np.inf
+    assert tongue(np.array([nothing, 0.1, nothing, 0.25, nothing, 0.45]), 0.2) == 0.45
+    assert tongue(np.array([-0.02, 0.1, nothing, 0.25, nothing, nothing, 0.46]), 0.2) == 0.25
+    assert tongue(np.array([nothing, nothing, 0.21]), 0.2) == nothing
+
+
+GOING_ROUND = """
+space = { dimensions = 2, spacing = 0.1, periodic = ["x"], lower = [0, 0], upper = [2, 1] }
+time.end = 0.5
+output = { frames = 0.5, log = 0.5 }
+checkpoint.every = 40
+[solids.block]
+shape.box = { lower = [0.2, 0.2], upper = [0.8, 0.6] }
+density = 1000.0
+young = 1e5
+poisson = 0.3
+velocity = [9.0, 0.0]
+[gauges.middle]
+displacement = { of = "block", at = [0.5, 0.4] }
+every = 0.05
+"""
+
+
+def test_displacement_counts_the_periods_also_after_a_restart(tmp_path):
+    case, folder = draft(tmp_path, GOING_ROUND), tmp_path / "run"
+    quiet = {"say": lambda *_: None}
+    run(case, folder, MPI.COMM_SELF, **quiet)
+    table = Run(folder).gauges()["middle"]
+    assert table["middle.displacement_x"] == pytest.approx(9.0 * table["time"], abs=1e-9)
+    assert table["time"][-1] == 0.5
+    checkpoints(folder)[0].unlink()
+    resume(folder, MPI.COMM_SELF, **quiet)
+    again = Run(folder).gauges()["middle"]
+    assert np.array_equal(again["middle.displacement_x"], table["middle.displacement_x"])
 
 
 def test_level_counts_drops_and_wetted_length_does_not_the_air_below_them():

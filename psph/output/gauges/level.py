@@ -18,6 +18,15 @@ from psph.vectors import add, at, dot, nearest_image, scale, subtract
 SURFACE = 0.5
 """Share of the kernel that lies in the fluid at a flat surface."""
 
+LEAST_LEFT = 1.0 / 16.0
+"""Share of the kernel that walls leave, half of that in a corner: with less a point is within them."""
+
+WITHIN_WALLS = -1e12
+"""In place of a share: so the line is dry up to the last point outside."""
+
+NEITHER = -1
+"""The row of what is neither fluid nor a wall that counts."""
+
 UNIT = 2.0**40
 """Whole numbers in a share of one: the sums do not depend on the order."""
 
@@ -25,11 +34,13 @@ UNIT = 2.0**40
 class LevelGauge(NamedTuple):
     """Water level along a line from its ``foot`` to its ``top`` (dim,) m, in so many equal ``parts``.
 
-    The fluid's share of the kernel, S(x) = Σ_j V_j W(x − x_j) over the fluid, is ½ at a flat surface.
-    ``level`` is the distance from the foot to the highest point of the line where S = ½, ``wetted`` the
-    length of the line with S ≥ ½, which is what a wire in the water measures; both m, 0 where all is
-    dry.  They differ where drops or a breaking wave are above the water.  With a ``carrier`` the ends are
-    those of the start.
+    The fluid's share of the kernel, S(x) = Σ_j V_j W(x − x_j) over the fluid, is ½ at a flat surface; on the
+    face of a wall, on an edge and in a corner it is ½ of what the walls leave, 1 − Σ_w V_w W(x − x_w).
+    ``walls`` are the groups that leave less, ``buried`` (parts + 1,) says which points lie within them and
+    are dry; None: none.  ``level`` is the distance from the foot to the highest point of the line where S
+    is ½ of that, ``wetted`` the length of the line with more, which is what a wire in the water measures;
+    both m, 0 where all is dry.  They differ where drops or a breaking wave are above the water.  With a
+    ``carrier`` the ends are those of the start.
     """
 
     name: str
@@ -38,6 +49,8 @@ class LevelGauge(NamedTuple):
     top: tuple[float, ...]
     parts: int
     carrier: Carrier | None = None
+    walls: tuple[int, ...] = ()
+    buried: np.ndarray | None = None
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time."""
@@ -48,12 +61,14 @@ class LevelGauge(NamedTuple):
         return surfaces(self._shares(simulation), math.dist(self.foot, self.top) / self.parts)
 
     def _shares(self, simulation) -> np.ndarray:
-        """S at the ends of the parts of the line (parts + 1,)."""
+        """S over what the walls leave, at the ends of the parts of the line (parts + 1,)."""
         store, plan, domain = simulation.store, simulation.plan, simulation.domain
         ends = self._ends(simulation)
-        found = np.zeros(self.parts + 1, np.int64)
+        found = np.zeros((2, self.parts + 1), np.int64)
         first, last = store.low, store.low + store.owned
-        is_fluid = store.kinds[store.group] == FLUID
+        part = np.where(store.kinds == FLUID, 0, NEITHER).astype(np.int8)
+        part[list(self.walls)] = 1
+        part = part[store.group]
         for m in range(images(plan.mirrors)):
             # An image is as far from a point as the particle from the image of the point.
             seen = (plan.mirrors.reflections[m].seen(x) if m else x for x in ends)
@@ -63,8 +78,11 @@ class LevelGauge(NamedTuple):
             around = (plan.kernel, domain.periods, store.view())
             for begin, end in stretches(step, self.parts, radius, domain.periods):
                 start = add(foot, scale(step, float(begin))) if begin else foot
-                weigh_line(start, step, radius, *around, first, last, is_fluid, found[begin:end])
-        return whole_sums(simulation.comm, found).astype(np.float64) / UNIT
+                weigh_line(start, step, radius, *around, first, last, part, found[:, begin:end])
+        fluid, wall = whole_sums(simulation.comm, found).astype(np.float64) / UNIT
+        left = 1.0 - wall
+        share = np.where(left > LEAST_LEFT, fluid / np.maximum(left, LEAST_LEFT), 0.0)
+        return share if self.buried is None else np.where(self.buried, WITHIN_WALLS, share)
 
     def _ends(self, simulation) -> tuple[tuple[float, ...], ...]:
         """Foot and top as they are now, m."""
@@ -104,14 +122,14 @@ def surfaces(share: np.ndarray, step: float) -> tuple[float, float]:
 
 
 @elementwise
-def weigh_line(foot, step, radius, kernel, periods, view, first, last, is_fluid, found):
-    """Add V_j W of fluid in columns ``first`` to ``last`` to ``found`` (n,), at foot + n step, in UNITs.
+def weigh_line(foot, step, radius, kernel, periods, view, first, last, part, found):
+    """Add V_j W of columns ``first`` to ``last`` to ``found`` (parts, n), at foot + n step, in UNITs.
 
-    ``radius`` m is the support of the kernel.
+    ``radius`` m is the support of the kernel, ``part`` the row of each column, or NEITHER.
     """
     long2 = dot(step, step)
     for k in range(np.uint64(first), np.uint64(last)):
-        if is_fluid[k]:
+        if part[k] != NEITHER:
             j = take(view, k)
             from_foot = nearest_image(subtract(at(view.position, k), foot), periods)
             along = dot(from_foot, step) / long2
@@ -120,8 +138,8 @@ def weigh_line(foot, step, radius, kernel, periods, view, first, last, is_fluid,
             if left2 > 0.0:
                 reach = math.sqrt(left2 / long2)
                 begin = max(0, int(math.ceil(along - reach)))
-                end = min(len(found), int(math.floor(along + reach)) + 1)
+                end = min(found.shape[1], int(math.floor(along + reach)) + 1)
                 for n in range(begin, end):
                     x = subtract(from_foot, scale(step, float(n)))
                     share = weight(kernel, math.sqrt(dot(x, x))) * j.mass * j.specific_volume
-                    found[n] += np.int64(np.rint(share * UNIT))
+                    found[part[k], n] += np.int64(np.rint(share * UNIT))

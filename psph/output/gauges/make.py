@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from psph.case.keys import AXES
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.displacement import REACH, DisplacementGauge
@@ -12,8 +14,13 @@ from psph.output.gauges.force import ForceGauge
 from psph.output.gauges.level import LevelGauge
 from psph.output.gauges.motion import MotionGauge
 from psph.output.gauges.points import CarriedPoints, PointGauge, disc
+from psph.output.gauges.run_up import RunUpGauge
 from psph.output.probes import Front, Probe
 from psph.output.tables import GAUGE
+from psph.scene.behind import Solid
+
+DRAWN = 0.01
+"""Spacings behind a drawn face from which on a point of a line is within a wall."""
 
 PER_SPACING = 4
 """Points of the line of a level in a spacing."""
@@ -35,8 +42,17 @@ def gauge_of(scene, name: str, table, mirrors=None):
             groups = tuple(k for on in asked.on for k in _groups(scene, on))
             return ForceGauge(name, every, groups, asked.about)
         case "level":
-            parts = math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9)
-            return LevelGauge(name, every, asked.foot, asked.top, max(1, parts), _carrier(asked, names))
+            parts = max(1, math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9))
+            line = np.linspace(asked.foot, asked.top, parts + 1)
+            beside = _beside(scene, asked)
+            buried = beside.deep(line, DRAWN)
+            return LevelGauge(
+                name, every, asked.foot, asked.top, parts, _carrier(asked, names), beside.groups, buried
+            )
+        case "run_up":
+            return RunUpGauge(
+                name, every, asked.foot, asked.top, scene.spacing, _up(scene), _carrier(asked, names)
+            )
         case "flow":
             [axis] = (d for d, ends in enumerate(zip(asked.lower, asked.upper)) if ends[0] == ends[1])
             return FlowGauge(name, every, axis, asked.lower, asked.upper)
@@ -55,6 +71,19 @@ def gauge_of(scene, name: str, table, mirrors=None):
             probe = Probe(name, points, ("pressure",), mirrors)
     carrier = _carrier(asked, names)
     return CarriedPoints(probe, every, carrier, probe.points) if carrier else PointGauge(probe, every)
+
+
+def _up(scene) -> tuple[float, ...]:
+    """The direction against gravity; without it none."""
+    size = math.hypot(*scene.gravity)
+    return tuple(-g / size if size else 0.0 for g in scene.gravity)
+
+
+def _beside(scene, asked) -> Solid:
+    """The walls that a gauge stands beside for good: those that carry it along, else those at rest."""
+    if asked.moves_with is None:
+        return Solid(scene)
+    return Solid(scene, scene.species[scene.names.index(asked.moves_with)].motion)
 
 
 def _carrier(asked, names) -> Carrier | None:
