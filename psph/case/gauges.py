@@ -33,6 +33,11 @@ class Force(Table):
         "names of walls, bodies and solids in a fluid, taken together", min_length=1
     )
     about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
+    moves_with: Name | None = key(
+        "the moving wall or the body that carries this point along; it is then where it is at the start",
+        None,
+        otherwise="the point stays where it is in space",
+    )
 
 
 def has_a_length(line):

@@ -29,7 +29,7 @@ from psph.case.soils import Soil
 from psph.case.solids import Anvil, Solid
 from psph.case.study import EXACT, Experiment, Study, exact_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
-from psph.physics.walls.conditions import CONDITIONS, DYNAMIC, MIRROR
+from psph.physics.walls.conditions import BEARING, CONDITIONS, DYNAMIC, MIRROR
 from psph.smoothing import KERNELS
 
 if TYPE_CHECKING:  # made from the catalogues of effects and solutions
@@ -263,8 +263,11 @@ class Case(Table):
 
     @property
     def loaded(self) -> set[str]:
-        """Names of the walls and bodies on which the fluid's push is asked for."""
+        """Names of walls, bodies and solids on which the fluid's push is asked for; with a wall all that bear
+        it, since parts that meet share it."""
         gauged = {name for gauge in self.gauges.values() if gauge.force for name in gauge.force.on}
+        if not gauged.isdisjoint(self.boundaries):
+            gauged |= {name for name, one in self.boundaries.items() if one.condition in BEARING}
         return gauged | set(self.bodies)
 
     @property

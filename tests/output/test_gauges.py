@@ -83,14 +83,18 @@ def test_force_on_walls_is_what_the_fluid_feels_of_them_turned_round(tmp_path, c
 
 
 def test_moments_are_about_the_point_of_the_gauge(tmp_path):
-    simulation, scene = started(draft(tmp_path, STIRRED.format(condition="dynamic", every=1)), 3)
+    """On all walls, since parts share what acts where they meet (test_corners.py)."""
+    at_zero = 'gauges.zero.force={on=["sides"]}'
+    case = draft(tmp_path, STIRRED.format(condition="dynamic", every=1), at_zero)
+    simulation, scene = started(case, 3)
     read, store = readings(simulation, scene), simulation.store
-    held = store.shown("group") == 3
+    held = store.shown("group") >= 2
     force = store.shown("mass")[held, None] * store.shown("load")[held]
-    x, y = (store.shown("position")[held] - np.array([0.3, 0.7])).T
-    assert read["sides.moment_z"] == pytest.approx(float((x * force[:, 1] - y * force[:, 0]).sum()), rel=1e-9)
-    about_zero = float((x * force[:, 1] - y * force[:, 0]).sum()) + 0.3 * read["sides.force_y"]
-    assert read["sides.moment_z"] != pytest.approx(about_zero - 0.7 * read["sides.force_x"], rel=1e-3)
+    x, y = (store.shown("position")[held] - np.array([0.5, 0.2])).T
+    assert read["all.moment_z"] == pytest.approx(float((x * force[:, 1] - y * force[:, 0]).sum()), rel=1e-9)
+    about = read["zero.moment_z"] - 0.3 * read["sides.force_y"] + 0.7 * read["sides.force_x"]
+    assert read["sides.moment_z"] == pytest.approx(about, rel=1e-9)
+    assert read["sides.moment_z"] != pytest.approx(read["zero.moment_z"], rel=1e-3)
 
 
 AT_REST = (

@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.output.gauges.carried import Carrier
+from psph.output.gauges.corners import Corners, axes_of
 from psph.parallel.reductions import exact_sums
 from psph.physics.motion import RIGID
 
@@ -14,15 +16,18 @@ class ForceGauge(NamedTuple):
 
     F = Σ_w m_w a_w and T = Σ_w (x_w − X) × m_w a_w over their particles, with the accelerations a_w by
     their neighbours in the fluid alone, without gravity: what the fluid feels of these particles,
-    turned round.  Those of bodies have their contacts too.  X is ``about``, m (dim,).  N and N m; per metre
-    of depth in 2D.  Where a domain repeats, what moves as a whole is where its way has led it, also beyond
-    the domain: moments have no jump there.
+    turned round.  Those of bodies have their contacts too.  Where parts meet, ``corners`` say whose face
+    bears it.  X is ``about``, m (dim,), with a ``carrier`` the place at the start of a point that goes with
+    it.  N and N m; per metre of depth in 2D.  Where a domain repeats, what moves as a whole is where its way
+    has led it, also beyond the domain: moments have no jump there.
     """
 
     name: str
     every: float
     groups: tuple[int, ...]
     about: tuple[float, ...]
+    corners: Corners
+    carrier: Carrier | None = None
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time: ``drag.force_x``, ``drag.moment_z``."""
@@ -32,22 +37,46 @@ class ForceGauge(NamedTuple):
     def row(self, simulation) -> np.ndarray:
         """The values, the same on every rank."""
         store = simulation.store
-        held = np.isin(store.shown("group"), self.groups)
+        held = np.flatnonzero(np.isin(store.shown("group"), self.groups))
         force = store.shown("mass")[held, None] * store.shown("load")[held]
-        arm = self._places(simulation, held) - np.array(self.about)
+        shared, share = self._shared(simulation)
+        held, force = np.concatenate([held, shared]), np.concatenate([force, share])
+        about = np.array([self.about])
+        if self.carrier is not None:
+            about = self.carrier.places(simulation, about)
+        arm = self._places(simulation, held) - about
         found = exact_sums(simulation.comm, np.column_stack([force, *moments(arm, force)]))
         floating = simulation.engine.poses.floating
-        return found + self._contacts(floating) if floating else found
+        return found + self._contacts(floating, about[0]) if floating else found
 
-    def _contacts(self, floating) -> np.ndarray:
-        """Force and moment of the contacts of bodies among the groups."""
-        bodies, d = floating.bodies, len(self.about)
+    def _contacts(self, floating, point: np.ndarray) -> np.ndarray:
+        """Force and moment about a ``point`` (dim,) m of the contacts of bodies among the groups."""
+        bodies, d = floating.bodies, len(point)
         own = np.isin(np.arange(len(bodies.bodies)), floating.body_of[list(self.groups)])
         about = np.zeros(3)
-        about[:d] = self.about
+        about[:d] = point
         twist = bodies.twisting + np.cross(bodies.place - about, bodies.pressing)
         turned = ["xyz".index(axis) for axis in turns(d)]
         return np.concatenate([bodies.pressing[own, :d].sum(axis=0), twist[own][:, turned].sum(axis=0)])
+
+    def _shared(self, simulation) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of the particles in whose load another part has a share, and what these parts win of it, or
+        lose where it is their own, N (n, dim)."""
+        store, shares = simulation.store, self.corners.shares(simulation)
+        group, ids = store.shown("group"), store.shown("id")
+        rows = np.flatnonzero(np.isin(group, shares.groups))
+        place = np.searchsorted(shares.ids, ids[rows]) % max(len(shares.ids), 1)
+        known = shares.ids[place] == ids[rows]
+        rows, place = rows[known], place[known]
+        force = store.shown("mass")[rows, None] * store.shown("load")[rows]
+        axes = axes_of(simulation)[group[rows]]
+        own, share = np.isin(group[rows], self.groups), np.zeros_like(force)
+        for axis in range(store.dimensions):
+            along = (force * axes[:, :, axis]).sum(axis=1)
+            bearer = shares.bearers[place, axis, (along < 0.0).astype(int)]
+            won = np.isin(bearer, self.groups).astype(float) - own
+            share += (won * along)[:, None] * axes[:, :, axis]
+        return rows, share
 
     def _places(self, simulation, held: np.ndarray) -> np.ndarray:
         """Where the particles ``held`` are, m (n, dim): those that move as one beside each other."""

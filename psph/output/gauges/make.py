@@ -8,6 +8,7 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.output.gauges.carried import Carrier
+from psph.output.gauges.corners import Corners
 from psph.output.gauges.displacement import REACH, DisplacementGauge
 from psph.output.gauges.flow import FlowGauge
 from psph.output.gauges.force import ForceGauge
@@ -40,7 +41,7 @@ def gauge_of(scene, name: str, table, mirrors=None):
     match table.kind:
         case "force":
             groups = tuple(k for on in asked.on for k in _groups(scene, on))
-            return ForceGauge(name, every, groups, asked.about)
+            return ForceGauge(name, every, groups, asked.about, _corners(scene), _carrier(asked, names))
         case "level":
             parts = max(1, math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9))
             line = np.linspace(asked.foot, asked.top, parts + 1)
@@ -71,6 +72,13 @@ def gauge_of(scene, name: str, table, mirrors=None):
             probe = Probe(name, points, ("pressure",), mirrors)
     carrier = _carrier(asked, names)
     return CarriedPoints(probe, every, carrier, probe.points) if carrier else PointGauge(probe, every)
+
+
+def _corners(scene) -> Corners:
+    """Where parts meet on which forces are measured."""
+    names = {name for gauge in scene.case.gauges.values() if gauge.force for name in gauge.force.on}
+    gauged = [group for group, one in enumerate(scene.species) if one.name in names]
+    return Corners(gauged, scene.spacing, scene.kernel.support / scene.kernel.inverse_h)
 
 
 def _up(scene) -> tuple[float, ...]:
