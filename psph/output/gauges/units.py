@@ -2,7 +2,7 @@
 
 from psph.output.probes import FRONT, MEASURED
 
-LENGTHS = ("level", "wetted", FRONT, "centre", "displacement")
+LENGTHS = ("level", "wetted", "run_up", "height", FRONT, "centre", "displacement")
 
 PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m", "reaction": "N", "reaction_moment": "N m"}
 """In 2D per metre of depth."""
@@ -10,7 +10,7 @@ PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m", "reaction": "N", "re
 FLOWS = {"flow": ("m/s", "m²/s", "m³/s"), "mass_flow": ("kg/(m² s)", "kg/(m s)", "kg/s")}
 """By the number of dimensions: per square metre of area in 1D, per metre of depth in 2D."""
 
-OF_TWO_WORDS = ("mass_flow", "reaction_moment")
+OF_TWO_WORDS = ("mass_flow", "reaction_moment", "run_up")
 """Quantities whose name is not the first word of their column."""
 
 

@@ -17,6 +17,10 @@ from psph.output.pictures.moorings import Moorings
 from psph.output.pictures.scale import Scale
 from psph.output.pictures.view import Room
 
+THICK = 0.6
+"""Spacings from a slice within which particles are in it: half-way between two layers both are, also where
+they have moved apart a little."""
+
 TELLING = 4.0
 """Size in points (1/72 inch) above which single particles are visible."""
 
@@ -42,7 +46,7 @@ def slice_of(text: str) -> Slice:
 
 
 class Flat:
-    """The particles of a room in a plane; of a room in 3D those within half a spacing of ``cut``.
+    """The particles of a room in a plane; of a room in 3D those at ``cut``.
 
     ``mirrors`` (axis and place, m) are lines.  Particles of the group ``first_body`` and later are of rigid
     bodies; None: there are none.  ``moorings`` are theirs, or None.  Raises NotThere if the room does not
@@ -86,10 +90,7 @@ class Flat:
         """The visible particles of ``frame``."""
         if self.cut is None:
             return frame
-        half = self.room.spacing / 2
-        # Of a lattice with a plane half-way between two of its layers, the upper one alone is seen.
-        off = (frame["position"][:, self.cut.axis] - self.cut.place) / half
-        seen = (off > -1 + 1e-6) & (off <= 1 + 1e-6)
+        seen = np.abs(frame["position"][:, self.cut.axis] - self.cut.place) < THICK * self.room.spacing
         return {name: rows[seen] for name, rows in frame.items()}
 
     def draw(self, axes: Axes, frame: dict, scale: Scale, first: bool, last: bool) -> None:

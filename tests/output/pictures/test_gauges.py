@@ -94,6 +94,8 @@ def test_an_experiment_that_is_gone_is_left_out(gauged, tmp_path):
         ("sluice.flow", ("flow", ""), "m²/s"),
         ("in.pressure", ("pressure", ""), "Pa"),
         ("box.spin_z", ("spin", "z"), "rad/s"),
+        ("slope.run_up", ("run_up", ""), "m"),
+        ("slope.height", ("height", ""), "m"),
         ("box.reaction_y", ("reaction", "y"), "N/m"),
         ("box.reaction_moment_z", ("reaction_moment", "z"), "N m/m"),
     ],
