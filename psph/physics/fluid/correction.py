@@ -9,6 +9,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.moments import first_moment
 from psph.physics.facts import Facts
+from psph.physics.fluid.parting import Hold, Holding, felt, hold_of
 from psph.vectors import (
     add,
     adjugate,
@@ -72,7 +73,7 @@ class GradientCorrection(NamedTuple):
         if all(one.is_fluid for one in scene.species):
             return self
         full = -first_moment(scene.kernel, scene.spacing, scene.dimensions) / scene.dimensions
-        return CorrectionBesideWalls(self.least, scene.spacing**scene.dimensions / full)
+        return CorrectionBesideWalls(self.least, scene.spacing**scene.dimensions / full, hold_of(scene))
 
     def start(self, i):
         """No neighbour yet."""
@@ -92,12 +93,7 @@ class GradientCorrection(NamedTuple):
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
-        v_i, v_j = i.specific_volume, j.specific_volume
-        both = add(
-            scale(i.gradient_correction, i.pressure * v_i * v_i),
-            scale(j.gradient_correction, j.pressure * v_j * v_j),
-        )
-        return scale(times(both, pair.x_ij), -pair.m_dw_r)
+        return _corrected_push(i.pressure, j.pressure, i, j, pair)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -115,13 +111,15 @@ class CorrectionBesideWalls(NamedTuple):
     As :class:`GradientCorrection`, but in a wall L is that of a whole lattice of its density, whose sum is
     1·(m/ρ)/``volume``: behind a wall there is nothing, and an L of what is there would push the fluid in
     front of it, under a pressure that is the same everywhere.  ``volume`` is dx^d over the mean of the
-    lattice's −Σ_j dx^d x_ij ∇W_ijᵀ, m^d.
+    lattice's −Σ_j dx^d x_ij ∇W_ijᵀ, m^d.  ``walls`` say what stands for p beside them
+    (psph.physics.fluid.parting).
     """
 
     conserves = ("momentum",)
 
     least: float
     volume: float
+    walls: Hold = Holding()
 
     writes = CORRECTION
     lagged = True
@@ -137,7 +135,11 @@ class CorrectionBesideWalls(NamedTuple):
         return _correction(add(scale(total, i.is_fluid), behind), self.least, i.position)
 
     density_rate = GradientCorrection.density_rate
-    push = GradientCorrection.push
+
+    def push(self, i, j, pair):
+        """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
+        p_i, p_j = felt(self.walls, i, j)
+        return _corrected_push(p_i, p_j, i, j, pair)
 
 
 class DifferenceCorrection(NamedTuple):
@@ -172,6 +174,17 @@ def needs_correction(physics):
             "takes corrected gradients; set physics.gradient_correction, and physics.pressure_gradient = "
             '"symmetric"'
         )
+
+
+@helper
+def _corrected_push(p_i, p_j, i, j, pair):
+    """−m_j (p_i (L_i − 1)/ρ_i² + p_j (L_j − 1)/ρ_j²) ∇W_ij, m/s²."""
+    v_i, v_j = i.specific_volume, j.specific_volume
+    both = add(
+        scale(i.gradient_correction, p_i * v_i * v_i),
+        scale(j.gradient_correction, p_j * v_j * v_j),
+    )
+    return scale(times(both, pair.x_ij), -pair.m_dw_r)
 
 
 @helper

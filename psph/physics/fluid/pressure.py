@@ -9,6 +9,7 @@ from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.formula import where
 from psph.physics.facts import Facts
+from psph.physics.fluid.parting import Hold, Holding, felt, hold_of
 from psph.smoothing import KERNELS, weight
 from psph.theory.stability import parts
 from psph.vectors import add, scale, times, zero_like
@@ -33,14 +34,22 @@ class SymmetricPressure(NamedTuple):
     """Pressure gradient, symmetric in the pair: conserves momentum exactly.
 
     a_i = −Σ_j m_j (p_i/ρ_i² + p_j/ρ_j²) ∇W_ij.  SSPH paper, eq. (6); Monaghan (1992), eq. (3.3).
+    ``walls`` say what stands for p beside them (psph.physics.fluid.parting).
     """
 
     conserves = ("momentum", "angular momentum")
 
+    walls: Hold = Holding()
+
+    def in_scene(self, scene: Facts):
+        """The form that knows whether walls hold the fluid."""
+        return SymmetricPressure(hold_of(scene))
+
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        return -(i.pressure * v_i * v_i + j.pressure * v_j * v_j) * pair.m_dw_r
+        p_i, p_j = felt(self.walls, i, j)
+        return -(p_i * v_i * v_i + p_j * v_j * v_j) * pair.m_dw_r
 
     def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
