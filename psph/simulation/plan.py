@@ -342,7 +342,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         seen=seen,
         arrays=stored,
         passes=passes,
-        refreshed=tuple(n for n in stored if n in fresh and n in computed),
+        refreshed=tuple(n for n in stored if n in fresh and n in (*computed, APPARENT.name)),
         ghost_fields=tuple(
             n for n in stored if n in varying and n in neighbour | told_by or n in neighbour and n in brought
         ),

@@ -22,6 +22,7 @@ from psph.physics.fluid.absorbing import Absorbing, DampingZone
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import CorrectionBesideWalls, DifferenceCorrection, GradientCorrection
 from psph.physics.fluid.gravity import CentralForce, Gravity
+from psph.physics.fluid.parting import Parting, PartingBesideSoils
 from psph.physics.fluid.pressure import (
     BackgroundPressure,
     DifferencePressure,
@@ -37,6 +38,7 @@ from psph.physics.fluid.viscosity import (
     LaminarViscosity,
     PairDamping,
 )
+from psph.physics.fluid.weight import InFrame, Steady
 from psph.physics.motion import Fixed
 from psph.physics.order.potential import neutral_potential
 from psph.physics.order.shifting import LatticeShift, ParticleShifting, lattice_shift
@@ -404,7 +406,7 @@ def test_density_diffusion(dim):
     found = DensityDiffusion(0.3).density_rate(*pair_of(p, 0, 1))
     assert found == pytest.approx(rate)
     assert found * (excess[1] - excess[0]) > 0.0
-    pulled = TankDiffusion(0.3, (0.3, -9.8, 1.0)[:dim])
+    pulled = TankDiffusion(0.3, Steady((0.3, -9.8, 1.0)[:dim]))
     for effect, q in ((DensityDiffusion(0.3), p), (pulled, p._replace(is_fluid=np.ones(2)))):
         there, back = (effect.density_rate(*pair_of(q, *ends)) for ends in ((0, 1), (1, 0)))
         assert (p.mass / rho) @ (there, back) == pytest.approx(0.0, abs=1e-12 * abs(there))
@@ -427,15 +429,15 @@ def test_hydrostatic_diffusion_leaves_a_still_column_alone(dim):
     p = p._replace(specific_volume=1 / (p.rest_density + excess), is_fluid=np.ones(2))
     pair = pair_of(p, 0, 1)
     plain = DensityDiffusion(0.1).density_rate(*pair)
-    still = TankDiffusion(0.1, g).density_rate(*pair)
+    still = TankDiffusion(0.1, Steady(g)).density_rate(*pair)
     assert abs(still) < 1e-9 * abs(plain)
     for none in (0.0, None):
-        assert TankDiffusion(0.1, (none,) * dim).density_rate(*pair) == pytest.approx(plain)
+        assert TankDiffusion(0.1, Steady((none,) * dim)).density_rate(*pair) == pytest.approx(plain)
 
 
 def test_walls_take_density_over_and_give_none():
     """A wall without pressure gives none to another either, and draws none off."""
-    tank, (i, j, pair) = TankDiffusion(0.1, (0.0, 0.0)), pair_of(view(), 0, 1)
+    tank, (i, j, pair) = TankDiffusion(0.1, Steady((0.0, 0.0))), pair_of(view(), 0, 1)
     for own, other, pressure in product((0.0, 1.0), (0.0, 1.0), (-70.0, 0.0, 70.0)):
         neighbour = j._replace(is_fluid=other, pressure=pressure)
         rate = tank.density_rate(i._replace(is_fluid=own), neighbour, pair)
@@ -638,14 +640,24 @@ def test_corrected_viscosity_is_exact_on_a_lattice(dim):
     assert abs(plain - exact) > 0.005 * exact
 
 
+def pulled(delta, gravity):
+    """With gravity along all axes."""
+    return TankDiffusion(delta, Steady(gravity))
+
+
+def in_a_frame(delta, gravity):
+    """In a frame that moves."""
+    return TankDiffusion(delta, InFrame(gravity))
+
+
 def pulled_down(delta, gravity):
     """With gravity along some of the axes."""
-    return TankDiffusion(delta, (None, *gravity[1:]))
+    return TankDiffusion(delta, Steady((None, *gravity[1:])))
 
 
 def beside_others(delta, gravity):
     """Among several matters."""
-    return TankDiffusion(delta, gravity, SeveralMatters())
+    return TankDiffusion(delta, Steady(gravity), SeveralMatters())
 
 
 @pytest.mark.parametrize("dim", long_but_for((2, 3), DIMENSIONS, int))
@@ -656,8 +668,12 @@ def beside_others(delta, gravity):
         CorrectionBesideWalls(0.5, 1e-4),
         CorrectedViscosity(),
         CorrectedNoSlip(),
-        TankDiffusion,
+        SymmetricPressure(Parting()),
+        SymmetricPressure(PartingBesideSoils()),
+        CorrectionBesideWalls(0.5, 1e-4, Parting()),
+        pulled,
         pulled_down,
+        in_a_frame,
         beside_others,
         NeighbourStress(0.2, 1e-4),
     ],
@@ -671,7 +687,7 @@ def test_forms_for_a_scene_are_the_same_compiled(one, dim):
 def test_in_a_wall_the_correction_is_that_of_a_whole_lattice(dim):
     """Whatever is missing behind it; in a fluid it is that of the neighbours."""
     scene = SimpleNamespace(
-        physics=SimpleNamespace(pressure_gradient="symmetric"),
+        physics=SimpleNamespace(pressure_gradient="symmetric", tension_floor=None),
         species=[SimpleNamespace(is_fluid=True), SimpleNamespace(is_fluid=False)],
         kernel=kernel("wendland-c2", H, dim),
         spacing=H / 1.3,

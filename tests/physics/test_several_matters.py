@@ -6,6 +6,7 @@ from physics.pairs import pair_of, view
 
 from psph.physics.damping.diffusion import BesideSmoothDensity, TankDiffusion
 from psph.physics.damping.matter import OneMatter, SeveralMatters
+from psph.physics.fluid.weight import Steady
 from psph.physics.stress.deviator import spread
 
 PULL = (0.4, -9.8)
@@ -22,7 +23,7 @@ def beside(**fields):
 @pytest.mark.parametrize("effect", SPREADING)
 def test_density_spreads_within_a_matter_alone_and_what_one_gains_the_other_loses(effect):
     apart, within = beside(wave_speed=(60.0, 45.0)), beside(wave_speed=(45.0, 45.0))
-    several, one = effect(0.1, PULL, SeveralMatters()), effect(0.1, PULL, OneMatter())
+    several, one = effect(0.1, Steady(PULL), SeveralMatters()), effect(0.1, Steady(PULL), OneMatter())
     assert several.density_rate(*pair_of(apart, 0, 1)) == 0.0
     assert one.density_rate(*pair_of(apart, 0, 1)) != 0.0  # the control: as in a fluid
     gained = [several.density_rate(*pair_of(within, *ends)) for ends in ((0, 1), (1, 0))]
@@ -41,8 +42,8 @@ def test_a_still_column_keeps_the_slope_of_its_own_matter(effect):
         specific_volume=1.0 / (900.0 + slope @ x), density_gradient=tuple(np.full(2, g) for g in slope)
     )
     i, j, pair = pair_of(level, 0, 1)
-    still = effect(0.1, PULL, SeveralMatters()).density_rate(i, j, pair)
-    assert abs(still) < 1e-9 * abs(effect(0.1, PULL, OneMatter()).density_rate(i, j, pair))
+    still = effect(0.1, Steady(PULL), SeveralMatters()).density_rate(i, j, pair)
+    assert abs(still) < 1e-9 * abs(effect(0.1, Steady(PULL), OneMatter()).density_rate(i, j, pair))
 
 
 def test_stress_spreads_within_a_soil_alone_and_what_one_gains_the_other_loses():

@@ -14,6 +14,7 @@ from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
 from psph.physics.fluid.viscosity import PairDamping
+from psph.physics.fluid.weight import Steady
 from psph.physics.order.potential import LocalPotential, UnequalPotential, neutral_potential
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -32,7 +33,7 @@ def crowd(dim, n=12, seed=5):
 
 def fourth(dim):
     """Diffusion of fourth order in a scene without gravity."""
-    return BesideSmoothDensity(0.1, (None,) * dim)
+    return BesideSmoothDensity(0.1, Steady((None,) * dim))
 
 
 def linear_flow(p, dim, seed=2):
@@ -160,8 +161,8 @@ def test_density_never_flows_to_where_there_is_more(dim):
         p = view(dim=dim, seed=int(rng.integers(1000)))._replace(is_fluid=np.ones(2))
         gradient = tuple(rng.normal(size=2) * 3e4 for _ in range(dim))
         pair = pair_of(p._replace(density_gradient=gradient), 0, 1)
-        second = TankDiffusion(0.1, pull).density_rate(*pair)
-        share = BesideSmoothDensity(0.1, pull).density_rate(*pair) / second
+        second = TankDiffusion(0.1, Steady(pull)).density_rate(*pair)
+        share = BesideSmoothDensity(0.1, Steady(pull)).density_rate(*pair) / second
         assert -1e-9 <= share <= 1.0 + 1e-9
         some += 0.01 < share < 0.99
     assert some > 20

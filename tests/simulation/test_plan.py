@@ -12,6 +12,7 @@ from psph.composition.trial import UnknownField
 from psph.output.ledger import Ledger
 from psph.physics.catalogue import BUILT_IN, Entry
 from psph.physics.damping.diffusion import TankDiffusion
+from psph.physics.fluid.weight import Steady
 from psph.physics.order.shifting import LatticeShift
 from psph.runs.absent import absent
 from psph.runs.explain import explain
@@ -128,10 +129,10 @@ def test_memory_and_steps_are_predicted(planned):
 def test_diffusion_under_gravity_knows_of_weight(planned):
     _, plan = planned("physics.density_diffusion=0.2", "physics.gravity=[0.0,-9.8]")
     [diffusion] = (e for e in plan.effects if hasattr(e, "delta"))
-    assert diffusion == TankDiffusion(0.2, (None, -9.8))
+    assert diffusion == TankDiffusion(0.2, Steady((None, -9.8)))
     walls = "walls.floor.shape.box={lower=[0.0,-0.2],upper=[1.0,0.0]}"
     _, plan = planned("physics.density_diffusion=0.2", walls)
-    assert TankDiffusion(0.2, (None, None)) in plan.effects and "is_fluid" in plan.ghost_fields
+    assert TankDiffusion(0.2, Steady((None, None))) in plan.effects and "is_fluid" in plan.ghost_fields
     assert "DensityDiffusion" in names(planned("physics.density_diffusion=0.2")[1])
 
 

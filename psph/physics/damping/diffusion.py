@@ -12,8 +12,9 @@ from psph.physics.damping.matter import OneMatter, SeveralMatters, alike, matter
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square
+from psph.physics.fluid.weight import Gravitation, down, gravitation_of
 from psph.theory.stability import parts
-from psph.vectors import add, along, dot, scale, times, zero_like
+from psph.vectors import add, dot, scale, times, zero_like
 
 STABLE = 0.15
 """S h δ c Δt must stay below; S is the fastest smoothing of the kernel on the lattice (psph.smoothing), 1/m²,
@@ -38,7 +39,8 @@ class DensityDiffusion(NamedTuple):
     def in_scene(self, scene: Facts):
         """Under gravity, beside walls or where matters differ, the form that knows of them."""
         held = any(scene.gravity) or not all(one.is_fluid for one in scene.species)
-        pull, matter = tuple(g or None for g in scene.gravity), matter_of(scene)
+        held = held or scene.frame is not None
+        pull, matter = gravitation_of(scene), matter_of(scene)
         return TankDiffusion(self.delta, pull, matter) if held or isinstance(matter, SeveralMatters) else self
 
     def density_rate(self, i, j, pair):
@@ -61,11 +63,11 @@ class TankDiffusion(NamedTuple):
     mean of the pair's two rest densities: the slope of density in a fluid at rest, linear in the
     depth, stays, and what one particle gains in volume the other loses.  Antuono, Colagrossi,
     Marrone & Molteni (2010), Comput. Phys. Commun. 181, 532, with the exact slope for theirs.
-    ``gravity`` in m/s², None on an axis without; ``matter`` by :func:`matter_of`.
+    ``gravity`` is what is felt as such; ``matter`` by :func:`matter_of`.
     """
 
     delta: float
-    gravity: tuple[float | None, ...]
+    gravity: Gravitation
     matter: OneMatter | SeveralMatters = OneMatter()
 
     def density_rate(self, i, j, pair):
@@ -100,7 +102,7 @@ class FourthOrderDiffusion(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """The form that knows gravity."""
-        return BesideSmoothDensity(self.delta, tuple(g or None for g in scene.gravity), matter_of(scene))
+        return BesideSmoothDensity(self.delta, gravitation_of(scene), matter_of(scene))
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -113,12 +115,12 @@ class FourthOrderDiffusion(NamedTuple):
 class BesideSmoothDensity(NamedTuple):
     """Density diffuses between neighbours, except for the part of a smooth field: this damps noise alone.
 
-    The form of :class:`FourthOrderDiffusion` in a scene; ``gravity`` in m/s², None on an axis without;
+    The form of :class:`FourthOrderDiffusion` in a scene; ``gravity`` is what is felt as such;
     ``matter`` by :func:`matter_of`.
     """
 
     delta: float
-    gravity: tuple[float | None, ...]
+    gravity: Gravitation
     matter: OneMatter | SeveralMatters = OneMatter()
 
     writes = Declared(
@@ -166,7 +168,7 @@ def _weight(effect, i, j, pair):
     """ρ̄₀ g·x_ij/c², kg/m^d: what the weight of a still column asks for."""
     mean = 0.5 * (i.rest_density + j.rest_density)
     c = speed(effect.matter, i)
-    return mean / (c * c) * along(pair.x_ij, effect.gravity)
+    return mean / (c * c) * down(effect.gravity, i, j, pair)
 
 
 @helper
