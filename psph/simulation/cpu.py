@@ -146,14 +146,16 @@ class Engine:
         if self.immersion:
             self.immersion.begin()
 
-    def sum(self, steps: int, time: float, dt: float, ghosts_are_fresh: bool) -> None:
+    def sum(self, steps: int, time: float, dt: float, ghosts_are_fresh: bool, at_once: bool = False) -> None:
         """Every pass that is due in the step of ``dt`` s after ``steps``, which ends at ``time``, s.
+
+        Slow ones too where they are asked for ``at_once``.
 
         The first of them brings ghosts up to date unless they are; each then what was written before it.
         """
         stale, written = () if ghosts_are_fresh else self.plan.refreshed, set()
         for one in self.plan.passes:
-            if not one.due(steps):
+            if not (one.due(steps) or at_once and one.slow):
                 continue
             if fields := stale + tuple(name for name in one.brought if name in written):
                 self._sum_while_refreshing(one, fields)

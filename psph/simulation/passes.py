@@ -16,7 +16,8 @@ class Pass(NamedTuple):
     that gathers sums alone; ``reductions`` have sums of their own; ``stores`` names the field, or the
     several fields, that each of these fills, or None.  ``neighbour_fields`` are what it reads of a
     neighbour, ``brought`` those among them that an earlier pass writes: ghosts need them again whenever that
-    one has run.  It runs in every ``every``-th step.  A pass that fills the pressure of some particles
+    one has run.  It runs in every ``every``-th step, and more often after an impact
+    (psph.simulation.impacts) where its sums are ``slow``.  A pass that fills the pressure of some particles
     ``settles`` their density too.
     """
 
@@ -27,6 +28,7 @@ class Pass(NamedTuple):
     neighbour_fields: tuple[str, ...]
     brought: tuple[str, ...]
     every: int
+    slow: bool = False
 
     @property
     def settles(self) -> bool:
@@ -71,7 +73,8 @@ def make_passes(
     for level, every in order:
         own = [call for call, *at in early if at == [level, every]]
         sums = [call.effect for call in own]
-        passes.append(_pass(len(passes), (), sums, own, before, stored, seen_as, every))
+        made = _pass(len(passes), (), sums, own, before, stored, seen_as, every)
+        passes.append(made._replace(slow=any(getattr(effect, "slow", False) for effect in sums)))
         before |= passes[-1].written
     done = {id(call) for call, *_ in early}
     reductions = [

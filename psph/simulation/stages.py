@@ -50,8 +50,8 @@ def renew_lists(simulation) -> None:
 
 def sum_over_pairs(simulation) -> None:
     """Every pass over the neighbours that is due."""
-    fresh = not simulation.listed
-    simulation.engine.sum(simulation.steps, simulation.then, simulation.dt, ghosts_are_fresh=fresh)
+    at = simulation.steps, simulation.then, simulation.dt
+    simulation.engine.sum(*at, ghosts_are_fresh=not simulation.listed, at_once=simulation.impacts.lasts)
 
 
 def push_bodies(simulation) -> None:
@@ -88,3 +88,4 @@ def find_limits(simulation) -> None:
     simulation.shift = float(np.sqrt(found[4]) if displaces else 0.0)
     walls = float(np.sqrt(found[-1]) if moves else 0.0)
     simulation.speed = max(simulation.fluid_speed, walls)
+    simulation.impacts.see(simulation.acceleration)

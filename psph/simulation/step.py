@@ -9,6 +9,7 @@ from psph.errors import Failed
 from psph.output.ledger import Ledger
 from psph.particles.store import Store
 from psph.simulation.cpu import Engine
+from psph.simulation.impacts import Impacts
 from psph.simulation.plan import Plan
 from psph.simulation.population import Population
 from psph.simulation.stages import find_limits, kick, measure_levels, push_bodies, stages_of
@@ -64,6 +65,7 @@ class Simulation:
         self.engine = self.engine_type(scene, plan, store, comm, ledger)
         self.domain, self.skin = self.engine.domain, self.engine.skin
         self.population = Population(scene, plan, self.domain)
+        self.impacts = Impacts(plan.constants["sound_speed"] ** 2 / plan.smoothing_length)
         self.stages = tuple(stages_of(plan))
         self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
         self.listed = False
@@ -103,6 +105,7 @@ class Simulation:
         rest = {
             "skin": self.skin.state(),
             "population": self.population.state(),
+            "impacts": self.impacts.state(),
             "poses": self.engine.poses.state(),
         }
         return numbers | corners | rest
@@ -143,6 +146,7 @@ class Simulation:
         for name in CLOCK:
             setattr(self, name, saved.state[name])
         self.population.restore(saved.state["population"])
+        self.impacts.restore(saved.state["impacts"])
 
     def _next_step(self, end: float) -> tuple[float, str, float]:
         """Δt in s, the name of the limit that sets it, and the time after the step.
