@@ -83,6 +83,8 @@ scheme = "sph"
 space = { dimensions = 3, spacing = 0.1 }
 time.end = 0.02
 physics.gravity = [0.0, 0.0, -9.8]
+[fluids.water]
+pressure = "hydrostatic"
 [fluids.water.shape.difference]
 from.box = { lower = [0.0, 0.0, 0.0], upper = [1.5, 1.0, 0.5] }
 minus = [{ mesh = { file = "parts/post.stl", scale = 0.001, move = [0.5, 0.3, 0.0] } }]

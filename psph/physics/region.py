@@ -19,6 +19,11 @@ def is_source(region: Any) -> bool:
     return hasattr(region, "appear")
 
 
+def is_sink(region: Any) -> bool:
+    """Whether particles vanish in a region."""
+    return hasattr(region, "vanish")
+
+
 def next_time(regions, time: float) -> float:
     """When the first of some regions has to be asked again, s; infinite where none says."""
     times = (region.next_time(time) for region in regions if hasattr(region, "next_time"))

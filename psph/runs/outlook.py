@@ -103,11 +103,8 @@ def _extremes(scene) -> Iterator[tuple[float, Start]]:
     both signs that c is made for: ρc²/100.
     """
     found: dict[bool, tuple[float, Start]] = {}
-    fluids = range(scene.layout.fluids)
-    for index, start in zip(fluids, scene.starts):
-        own = start.pressure
-        if start.weight:
-            own = start.above + start.weight * (start.surface - float(scene.census.bottom[index]))
+    for start in scene.starts[: scene.layout.fluids]:
+        own = start.layer.highest if start.layer else start.pressure
         expected = start.rest_density * (scene.sound_speed / STIFF) ** 2
         for pressure in (own,) if own else (expected, -expected):
             sign = pressure > 0.0

@@ -11,7 +11,6 @@ from psph.case import CaseError
 from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
 from psph.physics.facts import SOUND_OVER_SPEED
-from psph.physics.fluid.pressure import AUTO
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.driven import driven_flow
 from psph.scene.gauging import astray, buried, misplaced, misread, shown
@@ -19,12 +18,14 @@ from psph.scene.lattice import TOLERANCE
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings, overshoots
 from psph.scene.multiples import misfits
+from psph.scene.opening import surface_warnings
 from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
 from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
 from psph.scene.soils import soil_warnings
 from psph.scene.solid_checks import solid_faults, solid_warnings
+from psph.scene.still import start_warnings
 from psph.scene.unbearing import unbearing_warnings
 from psph.scene.units import in_degrees, in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
@@ -251,7 +252,7 @@ def _state_faults(scene: Scene) -> Iterator[str]:
         )
     for name, start in zip(scene.case.flowing, scene.starts):
         density = float(start.density(np.array([[0.0] * scene.dimensions]))[0])
-        if not start.weight and not start.exact and not density > 0.0:
+        if not start.layer and not start.exact and not density > 0.0:
             yield (
                 f"fluids.{name}.pressure: {start.pressure:g} Pa leaves no density at a speed of "
                 f"sound of {speed:g} m/s; raise the pressure or physics.sound_speed"
@@ -299,14 +300,6 @@ def _surface_threshold(scene: Scene) -> Iterator[str]:
         )
 
 
-def _minimum_at_surface(scene: Scene) -> Iterator[str]:
-    if scene.case.physics.pressure_gradient == "minimum" and scene.has_free_surface:
-        yield (
-            'physics.pressure_gradient: "minimum" is unstable at a free surface, where it only pushes '
-            'outward, and the fluid has one; use "symmetric", or enclose the fluid'
-        )
-
-
 def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
     physics = scene.case.physics
     rubs = (
@@ -321,23 +314,6 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
             'physics.pressure_gradient: "minimum" does not restore order, and the fluid starts '
             "disordered and without friction: its particles will speed up; give a viscosity, "
             'physics.artificial_viscosity, or scheme = "stable"'
-        )
-
-
-def _background_at_surface(scene: Scene) -> Iterator[str]:
-    given = scene.case.physics.background_pressure
-    if given is not None and given.pressure != AUTO and scene.has_free_surface:
-        yield (
-            "physics.background_pressure: blows a free surface apart, and the fluid has one; "
-            "leave it out, or enclose the fluid"
-        )
-
-
-def _transport_at_surface(scene: Scene) -> Iterator[str]:
-    if scene.case.physics.transport_velocity is not None and scene.has_free_surface:
-        yield (
-            "physics.transport_velocity: moves a free surface outwards, and the fluid has one; use "
-            "physics.generalised_transport_velocity, or enclose the fluid"
         )
 
 
@@ -383,10 +359,9 @@ OF_FLUIDS = (
     wave_warnings,
     _thin_walls,
     _surface_threshold,
-    _minimum_at_surface,
+    surface_warnings,
+    start_warnings,
     _minimum_in_disorder,
-    _background_at_surface,
-    _transport_at_surface,
     _slow_sound,
     driven_flow,
     unbearing_warnings,

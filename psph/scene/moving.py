@@ -210,7 +210,7 @@ def motion_warnings(scene) -> Iterator[str]:
                 f"fluid before it; give physics.sound_speed = {10.0 * found.speed:.3g} or more"
             )
         yield from _leaving(scene, key, found)
-        if met := None if _is_free(scene.species_in_motion[number]) else _first_met(scene, number):
+        if met := None if goes_free(scene.species_in_motion[number]) else _first_met(scene, number):
             time, other, place = met
             yield (
                 f"{key}: at {time:.3g} s it is in {other}, near "
@@ -251,12 +251,12 @@ def _first_met(scene, number: int) -> tuple[float, str, np.ndarray] | None:
     and where."""
     sites = _sites(scene, number)
     motions, dimensions = scene.species_in_motion, scene.dimensions
-    known = (n for n in range(scene.layout.fluids, len(motions)) if not _is_free(motions[n]))
+    known = (n for n in range(scene.layout.fluids, len(motions)) if not goes_free(motions[n]))
     others = [n for n in known if motions[n] != motions[number]]
     for time in np.sort(moments(scene.case.time.end, LOOKS)):
-        places = _moved(motions[number], sites, time, dimensions)
+        places = moved_on(motions[number], sites, time, dimensions)
         for rest in {id(motions[n]): motions[n] for n in others}.values():
-            back = _taken_back(rest, places, time, dimensions) if is_rigid(rest) else places
+            back = taken_back(rest, places, time, dimensions) if is_rigid(rest) else places
             grid = [scene.folded(d, x) for d, x in enumerate(back.T)]
             held = scene.layout.held(grid, grid[0].shape)
             for n in (n for n in others if motions[n] is rest or motions[n] == rest):
@@ -265,7 +265,7 @@ def _first_met(scene, number: int) -> tuple[float, str, np.ndarray] | None:
     return None
 
 
-def _is_free(motion) -> bool:
+def goes_free(motion) -> bool:
     """Whether forces say where a part goes, at least along an axis."""
     if isinstance(motion, Body):
         return any((*motion.slides, *motion.turns))
@@ -283,11 +283,13 @@ def _sites(scene, number: int) -> np.ndarray:
     return sites[:: max(1, len(sites) // LOOKED_AT)]
 
 
-def _moved(motion, points: np.ndarray, time: float, dimensions: int) -> np.ndarray:
+def moved_on(motion, points: np.ndarray, time: float, dimensions: int) -> np.ndarray:
+    """Where ``points`` (n, dim), m, of something rigid have come at ``time``."""
     place = maps(motion.pose(time), dimensions)[PLACE]
     return place[:, 0] + points @ place[:, 1:].T
 
 
-def _taken_back(motion, points: np.ndarray, time: float, dimensions: int) -> np.ndarray:
+def taken_back(motion, points: np.ndarray, time: float, dimensions: int) -> np.ndarray:
+    """Where ``points`` (n, dim), m, of something rigid at ``time`` were before it moved."""
     place = maps(motion.pose(time), dimensions)[PLACE]
     return (points - place[:, 0]) @ place[:, 1:]

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.random import Generator, Philox
 
 from psph.case.study import EXACT
+from psph.scene.immersed import shown_by
 from psph.scene.species import NONE
 
 NUMBERS_PER_COUNT = 4
@@ -86,9 +87,9 @@ def _dry(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> 
 
     It would push away the water that comes to it later.
     """
-    for index, fluid in scene.hydrostatic_walls:
+    for index, fluid in enumerate(shown_by(scene)):
         rows = chunk.material == index
-        if rows.any():
+        if index >= scene.layout.fluids and scene.starts[fluid].layer and rows.any():
             wet = scene.layout.near(fluid, begin, end, scene.wall_reach).ravel()[sites]
             chunk.density[rows & ~wet] = scene.species[index].density
 

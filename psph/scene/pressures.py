@@ -10,9 +10,8 @@ from psph.scene.lattice import TOLERANCE
 def range_of_pressure(scene, fluid: int) -> tuple[float, float]:
     """The lowest and the highest pressure of a fluid at the start, Pa."""
     start = scene.starts[fluid]
-    if start.weight:
-        depth = start.surface - float(scene.census.bottom[fluid])
-        return start.pressure, start.above + start.weight * max(depth, 0.0)
+    if start.layer:
+        return start.pressure, start.layer.highest
     if not start.exact:
         return start.pressure, start.pressure
     found = []

@@ -26,6 +26,7 @@ from psph.scene.lattice import lattice_around
 from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.moving import falling_speed, fastest_corner, largest_speed
+from psph.scene.opening import has_free_surface
 from psph.scene.particles import ParticleSet, fill
 from psph.scene.pressures import range_of_pressure, starting_fullness
 from psph.scene.rheologies import laws_of, number_of
@@ -33,8 +34,8 @@ from psph.scene.shapes import bounds
 from psph.scene.solids import anvils_of, grips_of, modulus_shown, reach_of_contact, solids_of
 from psph.scene.species import Census, Layout, Species, Start, take_census
 from psph.scene.starts import start_of
+from psph.scene.still import HYDROSTATIC, Still, stills_of
 from psph.scene.stressed import Stressed
-from psph.scene.walls import has_free_surface
 from psph.smoothing import kernel
 from psph.theory.solutions.catalogue import SOLUTIONS
 from psph.theory.solutions.setting import Setting
@@ -187,7 +188,7 @@ class Scene:
 
     @cached_property
     def has_free_surface(self) -> bool:
-        """Whether a fluid site has an empty site beside it at the start."""
+        """Whether a fluid has a free surface at the start, or can have one (psph.scene.opening)."""
         return has_free_surface(self)
 
     @cached_property
@@ -376,11 +377,11 @@ class Scene:
         to its position, m (2, dim)."""
         return kicks_of(self)
 
-    @property
-    def hydrostatic_walls(self) -> list[tuple[int, int]]:
-        """(index of the wall, index of its fluid) where a wall, or a solid, continues a still column."""
-        walls = list(enumerate(shown_by(self)))[self.layout.fluids :]
-        return [(wall, fluid) for wall, fluid in walls if self.starts[fluid].weight]
+    @cached_property
+    def stills(self) -> dict[int, Still]:
+        """How each fluid starts that is under its own weight, by its number."""
+        flowing = enumerate(self.case.flowing.values())
+        return stills_of(self, [n for n, one in flowing if getattr(one, "pressure", None) == HYDROSTATIC])
 
     @property
     def wall_reach(self) -> int:

@@ -11,7 +11,6 @@ from psph.case.shapes import Shape
 from psph.fields import FLUID
 from psph.physics.motion import is_free
 from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
-from psph.rows import projected
 from psph.scene.lattice import TOLERANCE, Lattice
 from psph.scene.shapes import Grid, inside
 
@@ -100,20 +99,14 @@ class Species(NamedTuple):
 class Start(NamedTuple):
     """State of a material before the first step.
 
-    p = ``pressure`` everywhere, or, with a ``weight`` = ρ₀|g| in Pa/m, p = above + weight (surface −
-    height) below the surface and 0 over it; ``surface`` in m along ``up``, the unit vector against
-    gravity, ``above`` the weight of the fluids that rest on it, Pa.  Or p =
-    ``exact`` of the positions (n, dim), or that of a ``layer`` of soil.  ``law`` is the equation of state.
+    p = ``pressure`` everywhere, or ``exact`` of the positions (n, dim), or that of a ``layer`` under its own
+    weight, of a fluid (psph.scene.still) or a soil (psph.scene.stressed).  ``law`` is the equation of state.
     """
 
     law: Any
     rest_density: float
     sound_speed: float
     pressure: float
-    weight: float
-    up: tuple[float, ...]
-    surface: float
-    above: float = 0.0
     exact: Callable[[np.ndarray], np.ndarray] | None = None
     layer: Any = None
 
@@ -123,10 +116,7 @@ class Start(NamedTuple):
             return self._density(self.exact(position))
         if self.layer:
             return self._density(self.layer.pressure(position))
-        if not self.weight:
-            return np.full(len(position), self._density(np.float64(self.pressure)))
-        depth = self.surface - projected(position, self.up)
-        return self._density(np.where(depth > 0.0, self.above + self.weight * depth, 0.0))
+        return np.full(len(position), self._density(np.float64(self.pressure)))
 
     def mass(self, volume: float) -> float:
         """Mass in kg of a particle of ``volume`` = dx^d.
@@ -134,7 +124,7 @@ class Start(NamedTuple):
         ρ(p) dx^d under a uniform pressure.  Where pressure differs from place to place ρ₀ dx^d:
         equal masses are what a fluid keeps when it moves.
         """
-        if self.weight or self.exact:
+        if self.layer or self.exact:
             return self.rest_density * volume
         return float(self._density(np.float64(self.pressure))) * volume
 

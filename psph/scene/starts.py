@@ -1,13 +1,12 @@
 """The state in which the materials of a scene start."""
 
-import math
 from typing import TYPE_CHECKING
 
 from psph.case.parameters import last_part
 from psph.case.study import EXACT
 from psph.physics.stress.bulk import Hooke
-from psph.scene.pressures import weight_above
 from psph.scene.species import Start
+from psph.scene.still import HYDROSTATIC
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -26,17 +25,12 @@ def start_of(scene: "Scene", index: int) -> Start:
     """The state of a material before the first step."""
     part = scene.parts[index]
     pressure = getattr(part, "pressure", 0.0)
-    hydrostatic, exact = (pressure == word for word in ("hydrostatic", EXACT))
-    layer = scene.stressed.layers.get(index)
+    hydrostatic, exact = (pressure == word for word in (HYDROSTATIC, EXACT))
     return Start(
         law=law_of(scene, part),
         rest_density=part.density,
         sound_speed=scene.sound_speed,
         pressure=0.0 if hydrostatic or exact else pressure,
-        weight=part.density * math.hypot(*scene.height_gravity) if hydrostatic or layer else 0.0,
-        up=scene.up,
-        surface=scene.surface_of(index),
-        above=weight_above(scene, index) if hydrostatic else 0.0,
         exact=(lambda x: scene.exact.pressure(x, 0.0, scene.setting)) if exact else None,
-        layer=layer,
+        layer=scene.stills.get(index) if hydrostatic else scene.stressed.layers.get(index),
     )

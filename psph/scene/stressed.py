@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from psph.case.soils import Soil
+from psph.scene.columns import columns
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -23,7 +24,7 @@ class Layer(NamedTuple):
     ``spacing``, m; ``top`` of the soil over each place of the level lattice, m along ``sign`` · axis;
     ``burden`` in Pa at each place and height of the lattice: what other soils above weigh, less what this
     one would where they lie in it; ``weight`` of the soil and ``pores`` of the water in it, Pa/m, 0 where it
-    is dry, up to ``level`` m; ``at_rest`` is K₀.
+    is dry, up to ``level`` m; ``at_rest`` is K₀; ``highest`` Pa the weight of the whole soil.
     """
 
     axis: int
@@ -36,6 +37,7 @@ class Layer(NamedTuple):
     pores: float
     level: float
     at_rest: float
+    highest: float
 
     def stress(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressure of the water in the pores, and what the grains bear along gravity, Pa (n,) at ``position``
@@ -151,15 +153,9 @@ def layer_of(scene: "Scene", number: int, soil: Soil, held) -> Layer:
         replaced = np.where(height < top[..., None], weight, np.where(height < level, pores, 0.0))
         loads = scene.spacing * burden(held, above, replaced, upwards=sign > 0.0)[nearest]
     first = np.array([scene.lattice.coordinates(d)[0] for d in range(scene.dimensions)])
-    return Layer(axis, sign, first, scene.spacing, top, loads, weight, pores, level, soil.at_rest)
-
-
-def columns(scene: "Scene", axis: int) -> np.ndarray:
-    """Material of each site of the lattice, uint8, in the order x, y, z but for ``axis``, which is last."""
-    lattice = scene.lattice
-    held = np.concatenate([scene.layout.materials(*chunk) for chunk in lattice.chunks()])
-    others = [d for d in range(scene.dimensions) if d != axis]
-    return held.transpose([lattice.axes.index(d) for d in (*others, axis)])
+    depth = max(scene.surface_of(number) - float(scene.census.bottom[number]), 0.0)
+    highest = soil.density * math.hypot(*scene.height_gravity) * depth
+    return Layer(axis, sign, first, scene.spacing, top, loads, weight, pores, level, soil.at_rest, highest)
 
 
 def ground(held: np.ndarray, height: np.ndarray, spacing: float) -> tuple[np.ndarray, tuple]:

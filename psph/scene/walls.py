@@ -19,8 +19,8 @@ def layers_needed(scene) -> int:
     return math.ceil(reach - TOLERANCE)
 
 
-def has_free_surface(scene) -> bool:
-    """Whether a fluid site has an empty site beside it, walls and periodic images counted."""
+def touches_air(scene) -> bool:
+    """Whether a fluid site has an empty site beside it at the start, walls and periodic images counted."""
     for first, last in scene.lattice.chunks():
         held = with_surroundings(scene, first, last, 1)
         inner = (slice(1, -1),) * held.ndim

@@ -75,8 +75,9 @@ def test_a_wall_that_touches_two_fluids_is_warned_of(tmp_path):
 
 def test_the_height_of_a_surface_is_half_a_spacing_above_its_particles(tmp_path):
     starts = Scene(draft(tmp_path, LAYERS)).starts
-    assert [s.surface for s in starts] == pytest.approx([0.3, 0.6, 0.3])
-    assert [s.above for s in starts] == pytest.approx([9.8 * 800.0 * 0.3, 0.0, 9.8 * 800.0 * 0.3])
+    assert all(s.layer.level for s in starts)
+    assert [s.layer.surface for s in starts] == pytest.approx([0.3, 0.6, 0.3])
+    assert [s.layer.above for s in starts] == pytest.approx([9.8 * 800.0 * 0.3, 0.0, 9.8 * 800.0 * 0.3])
     assert np.isfinite(starts[0].density(np.array([[0.1, 0.9]]))).all()
 
 

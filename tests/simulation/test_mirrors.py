@@ -30,7 +30,7 @@ from psph.output.probes import Probe
 from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.scene.checks import faults
-from psph.scene.walls import has_free_surface
+from psph.scene.walls import touches_air
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 
@@ -318,8 +318,8 @@ def test_mirrors_within_reach_of_each_other_are_refused(tmp_path):
 def test_fluid_at_a_mirror_has_no_free_surface_there(tmp_path):
     box = ("fluids.water.shape.box.lower=[0.0, 0.0]", "space.lower=[0.0, 0.0]", "space.upper=[0.5, 0.5]")
     sides = 'space.symmetry=["x.lower", "x.upper", "y.lower", "y.upper"]'
-    assert not has_free_surface(Scene(draft(tmp_path, CROSS, *box, sides)))
-    assert has_free_surface(Scene(draft(tmp_path, CROSS, *box, sides.replace(', "y.upper"', ""))))
+    assert not touches_air(Scene(draft(tmp_path, CROSS, *box, sides)))
+    assert touches_air(Scene(draft(tmp_path, CROSS, *box, sides.replace(', "y.upper"', ""))))
 
 
 def test_lists_last_shorter_where_particles_move_across_a_mirror(tmp_path):
