@@ -154,8 +154,8 @@ def _add_plot_options(plot: argparse.ArgumentParser) -> None:
     plot.add_argument("folder", action=_Folder, help="the folder of a run")
     plot.add_argument(
         "--field",
-        default="pressure",
-        help="a field of the frames, speed, vorticity, or group for the fluids by name (default: pressure)",
+        help="a field of the frames, speed, vorticity, or group for the fluids by name (default: pressure, "
+        "of elastic solids alone von_mises)",
     )
     plot.add_argument("--times", type=float, nargs="+", help="times to show, s; of a film its first and last")
     plot.add_argument(

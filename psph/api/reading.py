@@ -194,7 +194,7 @@ class Results:
 
     def plot(
         self,
-        field: str = "pressure",
+        field: str | None = None,
         times: Sequence[float] | None = None,
         slice: str | None = None,
         surface: bool = False,

@@ -13,12 +13,13 @@ from psph.output.reader import Run
 def plot(
     folder: Path,
     times: Sequence[float] | None = None,
-    field: str = "pressure",
+    field: str | None = None,
     cut: Slice | None = None,
     smooth: bool = False,
     experiments: Sequence = (),
 ) -> list[Path]:
-    """Draw ``field`` at ``times`` (s; four over the run), probes, gauges, log and overview as PNG files.
+    """Draw ``field`` (default: psph.output.pictures.quantities.usual) at ``times`` (s; four over the run),
+    probes, gauges, log and overview as PNG files.
 
     They stand in ``folder``; their paths are returned.  ``cut`` and ``smooth``: see :class:`Show`;
     ``experiments`` (psph.lab.study.beside) are drawn beside gauges.  Raises Refused if there is nothing
@@ -40,7 +41,7 @@ def plot(
     return [style.save(figure, show.run.folder / name) for name, figure in made.items()]
 
 
-def overview(folder: Path, times: Sequence[float] | None = None, field: str = "pressure") -> Path:
+def overview(folder: Path, times: Sequence[float] | None = None, field: str | None = None) -> Path:
     """Draw ``overview.png``: ``field`` at ``times`` side by side, below what probes read of it."""
     show = Show(Run(folder), times, field)
     return style.save(show.overview(), show.run.folder / names.OVERVIEW)
@@ -50,7 +51,7 @@ def film(
     folder: Path,
     path: Path | None,
     times: Sequence[float] | None = None,
-    field: str = "pressure",
+    field: str | None = None,
     cut: Slice | None = None,
     smooth: bool = False,
 ) -> str:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.fields import FLUID
+from psph.fields import FLUID, PRESSURE
 from psph.output.errors import NotThere
 from psph.output.pictures.vorticity import vorticity
 from psph.output.reader import Run
@@ -63,6 +63,12 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
         known = ", ".join([*saved, SPEED, VORTICITY])
         raise NotThere(f"{run.path}: field: {field} is not saved; choose one of {known}")
     return Quantity(field, field.replace("_", " "), run.unit(field), (field,), _size_of(field))
+
+
+def usual(run: Run, case: dict) -> str:
+    """The field to be seen where none is asked for: the pressure, and of a run of elastic solids alone, whose
+    particles have none, the von Mises stress."""
+    return PRESSURE.name if case.get("fluids") or VON_MISES not in run.fields else VON_MISES
 
 
 def _size_of(field: str) -> Callable[[dict], np.ndarray]:

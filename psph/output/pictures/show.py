@@ -17,7 +17,7 @@ from psph.output.pictures.flat import Flat, Slice
 from psph.output.pictures.groups import first_body
 from psph.output.pictures.mirrors import mirrors_of, with_mirrors
 from psph.output.pictures.moorings import has_moorings, moorings_of
-from psph.output.pictures.quantities import quantity
+from psph.output.pictures.quantities import quantity, usual
 from psph.output.pictures.scale import Scale, scale_of
 from psph.output.pictures.view import Panel, around_most, box_around, room_of, spread
 from psph.output.progress import told
@@ -56,7 +56,7 @@ class Show:
         self,
         run: Run,
         times: Sequence[float] | None,
-        field: str,
+        field: str | None,
         cut: Slice | None = None,
         smooth: bool = False,
     ):
@@ -66,7 +66,7 @@ class Show:
         self.case = tomllib.loads(run.case_text)
         self.title = self.case.get("title") or run.path.stem
         self._solid = _refuse_in_a_plane(self.case["space"]["dimensions"], cut, smooth)
-        self.quantity = quantity(run, self.case, field)
+        self.quantity = quantity(run, self.case, field or usual(run, self.case))
         self.chosen = self._chosen(times)
         self.frame = lru_cache(maxsize=1)(self._frame)
         self.panel, self.scale = self._panel_and_scale(cut, smooth)

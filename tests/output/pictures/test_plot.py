@@ -4,14 +4,17 @@ import matplotlib.image
 import numpy as np
 import pytest
 
+from psph.fields import SAVED
 from psph.output.errors import NotThere
 from psph.output.frames import FrameFile
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Slice
 from psph.output.pictures.plot import overview, plot
+from psph.output.pictures.quantities import usual
 from psph.output.pictures.show import Show
 from psph.output.reader import Run
 from psph.output.tables import CsvTable
+from psph.physics.solid.deformation import VON_MISES
 
 CASE = """
 scheme = "sph"
@@ -48,7 +51,8 @@ def run_with(tmp_path, alone):
         dimensions = arrays["position"].shape[1]
         gravity = gravity or [0.0] * (dimensions - 1) + [-9.8]
         case = CASE.format(dimensions=dimensions, gravity=gravity, spacing=spacing)
-        frames = FrameFile(tmp_path / "tank.h5", alone, {"case": case})
+        fields = (*SAVED, VON_MISES)
+        frames = FrameFile(tmp_path / "tank.h5", alone, {"case": case}, None, fields)
         for k, pressure in enumerate(pressures):
             velocity = np.ones_like(arrays["position"])
             frames.write(k, 0.25 * k, k, arrays | {"pressure": pressure, "velocity": velocity})
@@ -236,6 +240,15 @@ def test_planes_of_symmetry_and_mirrors_are_lines(run_with, alone):
         }
         assert drawn == lines
         assert show.panel.upper[0] == pytest.approx(1.45 if lines else 1.0)
+
+
+def test_of_solids_alone_stress_is_seen_first_and_not_a_pressure_of_zero(run_with):
+    arrays = box(4, 4)
+    frames = arrays | {"von_mises": np.arange(16.0)}
+    stressed = run_with(frames, np.zeros(16))
+    assert usual(stressed, {"solids": {"strip": {}}}) == "von_mises"
+    assert usual(stressed, {"solids": {"strip": {}}, "fluids": {"water": {}}}) == "pressure"
+    assert usual(run_with(arrays, np.zeros(16)), {"soils": {"sand": {}}}) == "pressure"
 
 
 def test_slice_is_the_layer_at_its_place_seen_against_gravity(run_with):
