@@ -14,7 +14,7 @@ def matter_lines(case, plan: Plan) -> Iterator[str]:
     here = matter_in(case)
     if len(here) < 2:
         return
-    yield "What acts on what (docs/acts.md)"
+    yield "What acts on what, beside the pushes of neighbours (docs/acts.md)"
     for kind in (one for one in MATTER if one in here):
         own = [call.name for call in plan.called if kind in call.acts]
         others = [call.name for call in plan.called if kind not in call.acts]

@@ -22,6 +22,7 @@ from psph.acts import (
     SOILS,
     SOLIDS,
     SYMMETRY,
+    TWO,
     UPDATED,
     refusals,
     refusals_of_effect,
@@ -235,6 +236,9 @@ def test_a_body_force_pulls_what_the_table_says_and_no_more(name, beside, walk):
         assert (with_it[NAMES[kind]] != without[NAMES[kind]]) == acts, kind
 
 
+DEFAULT = "SymmetricPressure"
+"""There is no case without it or another in its place."""
+
 CORRECTED = "physics.gradient_correction = 0.7"
 
 NEEDS = {
@@ -246,14 +250,19 @@ NEEDS = {
 }
 """What a case has besides, without and with the effect in the place of its own key; where nothing, its key."""
 
-APART = {"TensionFloor": "velocity_gradient = [[30.0, 0.0], [0.0, 20.0]]"}
+APART = {
+    "TensionFloor": {
+        1: [[30.0]],
+        2: [[30.0, 0.0], [0.0, 20.0]],
+        3: [[20.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0] * 3],
+    }
+}
 """How it moves where another motion shows an effect."""
 
 CELLS = [
     (row.name, corner)
     for row in rows_of_effects(BUILT_IN)
-    if row.name in ASKED
-    and ASKED[row.name].effect is not BUILT_IN.effects[1].effect  # the default, without which there is none
+    if row.name in ASKED and row.name != DEFAULT
     for corner, one in zip(CORNERS, row.answers)
     if one.kind == ACTS
     and corner in MATTER
@@ -261,13 +270,42 @@ CELLS = [
 ]
 
 
+AROUND = [
+    (row.name, corner)
+    for row in rows_of_effects(BUILT_IN)
+    if row.name in ASKED and row.name != DEFAULT and row.answers[0].kind == ACTS
+    for corner, one in zip(CORNERS, row.answers)
+    if one.kind == ACTS and corner not in (*MATTER, TWO)
+]
+"""Effects on fluids, each in the surroundings in which the table says that it acts."""
+
+
+def seen(walk, name, *corners):
+    """Whether particles of the matter that comes first in ``corners`` are elsewhere with an effect than
+    without."""
+    without, instead = NEEDS.get(name, ("", ""))
+    dimensions = next((1 + DIMENSIONS.index(one) for one in corners if one in DIMENSIONS), 2)
+    with_it = instead or f"{without}\n{key_of(name, dimensions)}"
+    flow = {
+        1: [[-50.0]],
+        2: [[30.0, 40.0], [10.0, -50.0]],
+        3: [[30.0, 40.0, 0.0], [10.0, -50.0, 0.0], [0.0] * 3],
+    }
+    moves = f"velocity_gradient = {APART.get(name, flow)[dimensions]}, jitter = 0.2, seed = 3"
+    found = [
+        walk(scene(*corners, more=more.replace("OFF", '"off"'), moves=moves))[NAMES[corners[0]]]
+        for more in (without, with_it)
+    ]
+    return found[0] != found[1]
+
+
 @LONG
 @pytest.mark.parametrize(("name", "corner"), CELLS)
 def test_what_acts_is_seen(name, corner, walk):
-    without, instead = NEEDS.get(name, ("", ""))
-    with_it = instead or f"{without}\n{key_of(name)}"
-    moves = APART.get(name, MOVES)
-    found = (
-        walk(scene(corner, more=more.replace("OFF", '"off"'), moves=moves)) for more in (without, with_it)
-    )
-    assert next(found)[NAMES[corner]] != next(found)[NAMES[corner]]
+    assert seen(walk, name, corner)
+
+
+@LONG
+@pytest.mark.parametrize(("name", "corner"), AROUND)
+def test_what_acts_in_surroundings_is_seen_there(name, corner, walk):
+    assert seen(walk, name, FLUIDS, corner)
