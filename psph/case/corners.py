@@ -137,7 +137,7 @@ def cornered(case) -> Iterator[Finding]:
                 yield from ((loc, ..., says) for loc, _ in here[kind])
             yield from ((loc, value, says) for loc, value in here.get(corner, ()))
     for name, value, effect in asked_of(case):
-        acts = acts_on(effect)
+        acts = [kind for kind in acts_on(effect) if kind in MATTER]
         idle = here.keys().isdisjoint(acts)
         refused = refusals(effect) if idle else refusals_of_effect(effect)
         found = [says for corner, says in refused.items() if corner in here or corner == dimension]

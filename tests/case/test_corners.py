@@ -236,8 +236,9 @@ def test_a_body_force_pulls_what_the_table_says_and_no_more(name, beside, walk):
         assert (with_it[NAMES[kind]] != without[NAMES[kind]]) == acts, kind
 
 
-DEFAULT = "SymmetricPressure"
-"""There is no case without it or another in its place."""
+ELSEWHERE = ("SymmetricPressure", "CentralFriction")
+"""The default, without which there is another in its place; and what acts in viscous fluids alone, which
+tests/physics has."""
 
 CORRECTED = "physics.gradient_correction = 0.7"
 
@@ -262,7 +263,7 @@ APART = {
 CELLS = [
     (row.name, corner)
     for row in rows_of_effects(BUILT_IN)
-    if row.name in ASKED and row.name != DEFAULT
+    if row.name in ASKED and row.name not in ELSEWHERE
     for corner, one in zip(CORNERS, row.answers)
     if one.kind == ACTS
     and corner in MATTER
@@ -276,7 +277,7 @@ def around():
     turn = 0
     for row in rows_of_effects(BUILT_IN):
         acting = [corner for corner, one in zip(CORNERS, row.answers) if one.kind == ACTS]
-        if row.name in ASKED and row.name != DEFAULT and FLUIDS in acting:
+        if row.name in ASKED and row.name not in ELSEWHERE and FLUIDS in acting:
             there = [corner for corner in acting if corner not in (*MATTER, TWO)]
             yield row.name, there[turn % len(there)]
             turn += 1

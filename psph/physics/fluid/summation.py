@@ -10,6 +10,7 @@ from psph.fields import Same
 from psph.formula import helper, where
 from psph.moments import moments_below_a_surface
 from psph.physics.facts import Facts
+from psph.physics.walls.conditions import BEARING, MIRROR
 
 SPARSE, NEARLY_FULL = 0.97, 0.99
 """Fullness below which a particle is near a surface, at least; and from which a row below a plane surface is
@@ -35,7 +36,7 @@ class SummationDensity(NamedTuple):
     pressure, whose rows are not full, and beside matter with an evolved stress.
     """
 
-    acts = (FLUIDS,)
+    acts = (FLUIDS, *BEARING, MIRROR)
     refuses = MADE_FOR_FLUIDS
 
     rate: Annotated[

@@ -5,13 +5,14 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from psph.acts import MADE_FOR_FLUIDS
+from psph.acts import FLUIDS, MADE_FOR_FLUIDS, SOILS
 from psph.fields import VECTOR, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.moments import first_moment
 from psph.physics.facts import Facts
 from psph.physics.roles import ORDER
+from psph.physics.walls.conditions import BEARING, MIRROR
 from psph.smoothing import slope_over_r, weight
 from psph.vectors import add, dot, scale, zero_like
 
@@ -113,6 +114,7 @@ class PositionShift(NamedTuple):
     Mech. Eng. 315, 25.
     """
 
+    acts = (FLUIDS, SOILS, *BEARING, MIRROR)
     refuses = MADE_FOR_FLUIDS
 
     roles = (ORDER,)
