@@ -196,6 +196,7 @@ OF_MATERIAL = (
     _fixed("is_fluid", "1", "1 in a fluid, else 0"),
     _fixed("mobile", "1", "1 where forces move the particle, else 0"),
     _fixed("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
+    _fixed("rubs", "1", "1 in a viscous fluid and in a wall that it rubs on, else 0"),
     _fixed("extrapolated", "1", "1 in a wall whose pressure is that of the fluid before it, else 0"),
     _fixed("repulsive", "1", "1 in a wall whose particles repel the fluid, else 0"),
     _fixed("rheology", "1", "number of the law of a fluid's viscosity, 0 where that is constant"),

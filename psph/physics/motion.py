@@ -15,7 +15,7 @@ Neither is integrated, so that particles never drift from where they belong, how
 
 from typing import Any, NamedTuple
 
-from psph.fields import FLUID, SOLID, VECTOR, WALL, Field, Turned
+from psph.fields import FLUID, MATRIX, SOLID, VECTOR, WALL, Field, Turned, VelocityGradient
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
 
@@ -31,7 +31,15 @@ WORK = Field("work", "J", "energy that a moving wall, a load or the force of an 
 
 LOAD = Field("load", "m/s2", "acceleration by the fluid alone, of particles whose load is asked for", VECTOR)
 
-OF_MOTION = (ANCHOR, APPARENT, LOAD, WORK)
+WHIRL = Field(
+    "whirl",
+    "1/s",
+    "[ω] of what moves as a whole: the velocity of one that is r away differs by [ω] r",
+    MATRIX,
+    image=VelocityGradient,
+)
+
+OF_MOTION = (ANCHOR, APPARENT, LOAD, WORK, WHIRL)
 """What particles carry only where something moves as it is told, or its load is asked for."""
 
 

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from psph.physics.fluid.friction import friction_step
 from psph.physics.fluid.rheology import Granular, HerschelBulkley
-from psph.physics.fluid.viscosity import friction_step
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -127,7 +127,7 @@ def rheology_lines(scene: "Scene") -> Iterator[str]:
     for name, fluid in scene.case.flowing.items():
         if fluid.rheology:
             cap = fluid.rheology.law.largest
-            times = sound / friction_step(scene.smoothing_length, cap / fluid.density)
+            times = sound / friction_step(scene, cap / fluid.density)
             longer = (
                 f"steps {times:.2g} times shorter than sound allows" if times > 1.0 else "no shorter steps"
             )

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.case.shapes import Shape
-from psph.fields import FLUID
+from psph.fields import FLUID, WALL
 from psph.physics.motion import is_free
 from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.scene.lattice import TOLERANCE, Lattice
@@ -69,6 +69,12 @@ class Species(NamedTuple):
     def is_fluid(self) -> bool:
         """Whether it is a fluid."""
         return self.kind == FLUID
+
+    @property
+    def rubs(self) -> bool:
+        """Whether it takes part in the friction of fluids: one with a viscosity, or a wall, which has that of
+        the fluid before it.  On elastic solids, and on soils, a fluid slips."""
+        return bool(self.viscosity or self.rheology) if self.is_fluid else self.kind == WALL
 
     @property
     def bearing(self) -> bool:

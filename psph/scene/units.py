@@ -8,7 +8,7 @@ import numpy as np
 
 from psph.case.errors import dotted
 from psph.case.keys import AXES
-from psph.physics.fluid.viscosity import FRICTION_STEP
+from psph.physics.fluid.friction import friction_step
 from psph.scene.shapes import bounds
 from psph.scene.walls import unheld
 
@@ -82,8 +82,8 @@ def _densities(scene: "Scene") -> Iterator[str]:
 def _viscosities(scene: "Scene") -> Iterator[str]:
     """A viscosity that shortens the time step far below what sound allows."""
     for name, fluid in scene.case.fluids.items():
-        h = scene.smoothing_length
-        times = fluid.viscosity * scene.case.time.cfl / (FRICTION_STEP * h * scene.sound_speed)
+        sound = scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
+        times = sound / friction_step(scene, fluid.viscosity) if fluid.viscosity else 0.0
         if times > MOST_SHORTER:
             yield (
                 f"fluids.{name}.viscosity: {fluid.viscosity:g} m²/s makes time steps {times:.2g} times "

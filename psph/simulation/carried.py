@@ -10,7 +10,7 @@ from psph.composition import terms
 from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
-from psph.vectors import add, affine, at, dot, nearest_to, put, scale, subtract, zero_like
+from psph.vectors import add, affine, at, dot, nearest_to, onto, put, scale, subtract, zero_like
 
 place = call_by_number("place")
 """(motions, number, anchor, time) → x, m."""
@@ -76,6 +76,7 @@ def _carry_pose(poses, pose_of, number, group, k, periods, columns):
         anchor, row = at(columns.anchor, k), pose_of[group]
         x, v = affine(poses[row], PLACE, anchor), affine(poses[row], VELOCITY, anchor)
         settle(columns, k, x, v, periods)
+        _whirl(columns.whirl, poses[row], x, k)
 
 
 @overload_inside(_carry_by_pose)
@@ -83,6 +84,23 @@ def _typed_carry_by_pose(poses, pose_of, number, group, k, periods, columns):
     if isinstance(poses, types.NoneType):
         return lambda poses, pose_of, number, group, k, periods, columns: None
     return _carry_pose
+
+
+def _whirl(whirl, maps, x, k):
+    if whirl is not None:
+        _whirl_it(whirl, maps, x, k)
+
+
+def _whirl_it(whirl, maps, x, k):
+    """[ω] of what moves as a whole: between two points velocities differ by [ω] R x₀, places by R x₀."""
+    put(whirl, k, onto(maps, VELOCITY, PLACE, x))
+
+
+@overload_inside(_whirl)
+def _typed_whirl(whirl, maps, x, k):
+    if isinstance(whirl, types.NoneType):
+        return lambda whirl, maps, x, k: None
+    return _whirl_it
 
 
 @inside

@@ -11,6 +11,7 @@ from psph.physics.motion import (
     FREE,
     PRESCRIBED,
     RIGID,
+    WHIRL,
     WORK,
     Clamped,
     Fixed,
@@ -48,7 +49,8 @@ def carried_fields(movement: Movement, frame) -> tuple[str, ...]:
     moves = bool(movement.motions or movement.rigid)
     if not moves and frame is None:
         return ()
-    return (*([ANCHOR.name] if moves else ()), WORK.name, APPARENT.name)
+    whirl = [WHIRL.name] if movement.rigid else []
+    return (*([ANCHOR.name] if moves else ()), WORK.name, APPARENT.name, *whirl)
 
 
 def _distinct(species, one_of) -> tuple:

@@ -25,7 +25,7 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WORK, MovingClamp, is_prescribed
+from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WHIRL, WORK, MovingClamp, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import SMOOTHING
@@ -61,6 +61,9 @@ ALWAYS_READ = (
 
 LOADED_READ = ("is_fluid",)
 """What a pass of loads reads of a neighbour, beside what its effects read."""
+
+ONLY_READ = (APPARENT.name, WHIRL.name)
+"""What particles carry of their motion only where a formula reads it."""
 
 OF_SCENE = ("sound_speed", "smoothing_length", "kernel", "spacing", "dimensions")
 
@@ -300,7 +303,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     imaged = by_name(OF_EVERY_SCENE, seen).values()
     if scene.mirror_planes:
         refuse_without_image(scene, called, fields)
-    told = {name for name in told if name in own or name != APPARENT.name}
+    told = {name for name in told if name in own or name not in ONLY_READ}
     told |= {LOAD.name} if loaded.any() else set()
     told |= {WORK.name} if pulls.booked or pulls.booked_in_solids else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)

@@ -55,6 +55,7 @@ class Columns(NamedTuple):
     apparent: Any = None
     load: Any = None
     work: Any = None
+    whirl: Any = None
 
 
 @register_jitable

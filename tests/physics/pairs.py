@@ -32,6 +32,7 @@ def view(n=2, dim=2, seed=3):
         is_fluid=np.resize((1.0, 0.0, 1.0), n),
         mobile=np.resize((0.0, 1.0, 1.0), n),
         no_slip=np.resize((0.0, 1.0), n),
+        rubs=np.resize((1.0, 0.0, 1.0), n),
         extrapolated=np.resize((0.0, 1.0, 1.0), n),
         repulsive=np.resize((0.0, 1.0), n),
         penalty=np.resize((0.0, 1.0), n),
@@ -60,6 +61,8 @@ def view(n=2, dim=2, seed=3):
         stress_diffusion=np.resize((0.1, 0.0, 0.3), n),
         rest_coefficient=np.resize((0.4, 1.0, 0.6), n),
         cone_tip=np.resize((3e3, 0.0, 0.0), n),
+        velocity_gradient=tuple(rng.normal(size=n) * 30 for _ in range(dim * dim)),
+        whirl=tuple(rng.normal(size=n) * 30 for _ in range(dim * dim)),
         deviator=tuple(rng.normal(size=n) * 500 for _ in range(dim * (dim + 1) // 2)),
     )
 

@@ -20,9 +20,15 @@ from psph.fields import filled
 from psph.physics.catalogue import CATALOGUE
 from psph.physics.damping.acoustic import CorrectedDamper
 from psph.physics.damping.reconstructed import BesideLinearFlow
-from psph.physics.fluid.apparent import ApparentFriction, CentralApparentFriction, FluidAlone, Rub
+from psph.physics.fluid.apparent import ApparentFriction, CentralApparentFriction, FluidAlone
+from psph.physics.fluid.friction import Apparent, CorrectedRub, Rub
 from psph.physics.fluid.rheology import Granular, HerschelBulkley, Newtonian
-from psph.physics.fluid.viscosity import CorrectedViscosity, ImpactDamping, PairDamping
+from psph.physics.fluid.viscosity import (
+    CentralNewtonianFriction,
+    ImpactDamping,
+    NewtonianFriction,
+    PairDamping,
+)
 from psph.physics.order.potential import InDisorder, PairPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
@@ -47,7 +53,10 @@ def claiming(what):
 def in_a_scene(effect, dim):
     """The form that acts in a scene: some effects of the catalogue are but their parameters."""
     forms = {
-        "ApparentViscosity": lambda: ApparentFriction(LAWS, 1.0, FluidAlone(), Rub()),
+        "ApparentViscosity": lambda: ApparentFriction(LAWS, 1.0, FluidAlone(), Rub(Apparent())),
+        "CentralFriction": CentralNewtonianFriction,
+        "CorrectedRub": lambda: NewtonianFriction(CorrectedRub()),
+        "LaminarViscosity": NewtonianFriction,
         "PairPotential": lambda: neutral_potential(0.5, 50.0, 0.01, dim, alike=False),
         "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
         "CentralApparentFriction": lambda: CentralApparentFriction(LAWS, 1.0, FluidAlone()),
@@ -70,7 +79,7 @@ def crowd(dim):
     """Three fluid particles that differ in everything and run into each other."""
     p = view(n=3, dim=dim)
     inward = tuple(u - 3000.0 * x for u, x in zip(p.velocity, p.position))
-    return p._replace(is_fluid=np.ones(3), mobile=np.ones(3), velocity=inward)
+    return p._replace(is_fluid=np.ones(3), rubs=np.ones(3), mobile=np.ones(3), velocity=inward)
 
 
 def rates(effect, p):
@@ -95,7 +104,7 @@ def rates(effect, p):
 
 
 @pytest.mark.parametrize("dim", (1, 2, 3))
-@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedViscosity, CorrectedDamper])
+@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper])
 def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
     forces, moves = rates(in_a_scene(effect, dim), crowd(dim))
     assert np.abs(forces).max() + np.abs(moves).max() > 0.0

@@ -30,14 +30,7 @@ from psph.physics.fluid.pressure import (
     SymmetricPressure,
     TensileControl,
 )
-from psph.physics.fluid.viscosity import (
-    ArtificialViscosity,
-    CentralFriction,
-    CorrectedViscosity,
-    ImpactDamping,
-    LaminarViscosity,
-    PairDamping,
-)
+from psph.physics.fluid.viscosity import ArtificialViscosity, ImpactDamping, PairDamping
 from psph.physics.fluid.weight import InFrame, Steady
 from psph.physics.motion import Fixed
 from psph.physics.order.potential import neutral_potential
@@ -51,7 +44,6 @@ from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
 from psph.physics.walls.penalty import PenaltyWall, Spring, mean_distance
 from psph.physics.walls.repulsive import RepulsiveWall
-from psph.physics.walls.slip import CorrectedNoSlip, NoSlip
 from psph.smoothing import kernel
 
 DIMENSIONS = (1, 2, 3)
@@ -139,30 +131,6 @@ def test_minimum_pressure_ignores_what_is_out_of_reach():
     assert alone == (0.0, 0.0)
 
 
-@pytest.mark.parametrize("dim", DIMENSIONS)
-def test_laminar_viscosity(dim):
-    p = view(dim=dim)
-    x, u, r, _, grad_w = written_out(p, 0, 1)
-    rho = 1 / p.specific_volume
-    mu = p.viscosity * rho
-    a = 4 * p.mass[1] * (mu[0] + mu[1]) * (x @ grad_w) * u
-    a /= (rho[0] + rho[1]) ** 2 * (r * r + 0.01 * H * H)
-    assert LaminarViscosity().shear(*pair_of(p, 0, 1)) * u == pytest.approx(a)
-    assert a @ u < 0  # friction
-
-
-@pytest.mark.parametrize("dim", DIMENSIONS)
-def test_central_friction_pulls_along_the_line_of_a_pair(dim):
-    p = view(dim=dim)
-    x, u, r, _, grad_w = written_out(p, 0, 1)
-    rho = 1 / p.specific_volume
-    mu = p.viscosity * rho
-    a = (dim + 2) * 4 * p.mass[1] * (mu[0] + mu[1]) * (u @ x) * grad_w
-    a /= (rho[0] + rho[1]) ** 2 * (r * r + 0.01 * H * H)
-    assert CentralFriction().radial(*pair_of(p, 0, 1)) * x == pytest.approx(a)
-    assert a @ u < 0  # friction
-
-
 def gathered(effect, particles, i, *others):
     """The effect's sum at particle ``i`` over the others, finished."""
     one = pair_of(particles, i, others[0])[0]
@@ -170,20 +138,6 @@ def gathered(effect, particles, i, *others):
     for b in others:
         total = effect.gather(total, *pair_of(particles, i, b))
     return effect.finish_value(total, one, kernel("hyperbolic", H, len(particles.position)))
-
-
-@pytest.mark.parametrize("dim", DIMENSIONS)
-def test_a_wall_without_slip_mirrors_the_mean_of_the_fluid_around_it(dim):
-    p = view(n=5, dim=dim)
-    p = p._replace(is_fluid=np.array([1, 0, 1, 1, 0.0]), no_slip=np.array([0, 1, 0, 0, 0.0]))
-    w = np.array([written_out(p, 1, b)[3] for b in (0, 2, 3)])
-    u = np.array([[v[b] for v in p.velocity] for b in (0, 2, 3)])
-    own = np.array([v[1] for v in p.velocity])
-    found = gathered(NoSlip(), p, 1, 0, 2, 3, 4)
-    assert found == pytest.approx(own - w @ u / w.sum())  # the other wall, 4, is left out
-    assert gathered(NoSlip(), p, 4, 0, 1, 2, 3) == (0.0,) * dim  # a wall that does not ask
-    assert gathered(NoSlip(), p, 0, 1, 2, 3, 4) == (0.0,) * dim  # fluid
-    assert gathered(NoSlip(), p, 1, 4) == (0.0,) * dim  # no fluid in reach
 
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
@@ -257,25 +211,6 @@ def test_half_a_spacing_before_a_flat_penalty_wall_nothing_pushes(dim):
     assert mean_distance(kernel("wendland-c2", 0.28, dim), 2 * dx, dim) == pytest.approx(2 * rest)
 
 
-@pytest.mark.parametrize("dim", DIMENSIONS)
-@pytest.mark.parametrize("correction", (None, GradientCorrection(0.5)))
-def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(dim, correction):
-    """Whichever form of friction the scene takes, no-slip takes the same."""
-    physics = SimpleNamespace(gradient_correction=correction, central_friction=None)
-    scene = SimpleNamespace(
-        physics=physics, species=(SimpleNamespace(no_slip=True, viscosity=1.0),), rheologies=()
-    )
-    viscosity, no_slip = LaminarViscosity().in_scene(scene), NoSlip().in_scene(scene)
-    p = view(dim=dim)
-    mean, slip = np.full(dim, 0.3), [v[1] for v in p.velocity] - np.full(dim, 0.3)
-    p = p._replace(slip=tuple(np.array([0.0, s]) for s in slip))
-    i, j, pair = pair_of(p, 0, 1)
-    mirrored = p._replace(velocity=tuple(np.array([v[0], 2.0 * v[1] - m]) for v, m in zip(p.velocity, mean)))
-    expected = viscosity.shear(i, j, pair) * np.array(pair_of(mirrored, 0, 1)[2].u_ij)
-    found = viscosity.shear(i, j, pair) * np.array(pair.u_ij) + no_slip.push(i, j, pair)
-    assert found == pytest.approx(expected)
-
-
 @pytest.mark.parametrize("approaching", (True, False))
 def test_artificial_viscosity(approaching):
     p = view()
@@ -340,8 +275,6 @@ OFTEN_USED = {
     "Continuity",
     "SymmetricPressure",
     "MinimumPressure",
-    "LaminarViscosity",
-    "NoSlip",
     "FreeSurface",
     "ArtificialViscosity",
     "PairDamping",
@@ -619,27 +552,6 @@ def test_corrected_differences_are_exact_for_linear_pressure(dim):
     assert found == pytest.approx(-slope / 1000.0, rel=1e-10)
 
 
-@pytest.mark.parametrize("dim", DIMENSIONS)
-def test_corrected_viscosity_is_exact_on_a_lattice(dim):
-    """u = (|x|², 0, ...) has the Laplacian 2d everywhere; the plain form falls short of it."""
-    p = patch(dim)
-    p = p._replace(
-        velocity=(sum(x * x for x in p.position), *[0 * x for x in p.position[1:]]),
-        viscosity=np.full(len(p.mass), 0.3),
-    )
-    stored = sums_of(GradientCorrection(), p, 0)  # the same all over a lattice
-    i = pair_of(p, 0, 0)[0]._replace(gradient_correction=stored)
-    corrected = plain = 0.0
-    for b in range(1, len(p.mass)):
-        _, j, pair = pair_of(p, 0, b, "wendland-c2")
-        j = j._replace(gradient_correction=stored)
-        corrected += CorrectedViscosity().shear(i, j, pair) * pair.u_ij[0]
-        plain += LaminarViscosity().shear(i, j, pair) * pair.u_ij[0]
-    exact = 0.3 * 2 * dim
-    assert corrected == pytest.approx(exact, rel=1e-10)
-    assert abs(plain - exact) > 0.005 * exact
-
-
 def pulled(delta, gravity):
     """With gravity along all axes."""
     return TankDiffusion(delta, Steady(gravity))
@@ -666,8 +578,6 @@ def beside_others(delta, gravity):
     [
         DifferenceCorrection(0.5),
         CorrectionBesideWalls(0.5, 1e-4),
-        CorrectedViscosity(),
-        CorrectedNoSlip(),
         SymmetricPressure(Parting()),
         SymmetricPressure(PartingBesideSoils()),
         CorrectionBesideWalls(0.5, 1e-4, Parting()),
@@ -756,10 +666,10 @@ def test_pressure_work_is_what_continuity_says():
 
 
 def test_reads_are_found_by_a_trial_call():
-    found = reads(LaminarViscosity(), 2, kernel("cubic", H, 2), BUILT_IN.fields)
-    assert found.neighbour == {"mass", "specific_volume", "viscosity"}
-    assert found.own == {"specific_volume", "viscosity", "smoothing_length"}
-    assert found.pair == {"r2", "m_dw_r"}
+    found = reads(PairDamping(), 2, kernel("cubic", H, 2), BUILT_IN.fields)
+    assert found.neighbour == {"specific_volume", "rest_density"}
+    assert found.own == {"specific_volume", "rest_density", "smoothing_length", "sound_speed"}
+    assert found.pair == {"inverse_r", "u_dot_x", "m_dw_r"}
 
 
 def test_both_sides_of_a_comparison_are_tried():

@@ -6,22 +6,15 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 import pytest
-from physics.pairs import H, pair_of, sums_of, view
-from physics.test_effects import written_out
+from physics.pairs import H, sums_of, view
 
-from psph.physics.fluid.apparent import (
-    ApparentFriction,
-    ApparentViscosity,
-    CentralApparentFriction,
-    CorrectedRub,
-    FluidAlone,
-    Rub,
-    StickingWalls,
-)
+from psph.physics.fluid.apparent import ApparentFriction, ApparentViscosity, FluidAlone, StickingWalls
 from psph.physics.fluid.correction import GradientCorrection
+from psph.physics.fluid.friction import Apparent, CorrectedRub, Rub
 from psph.physics.fluid.rheology import Cross, Granular, HerschelBulkley, Newtonian, apparent_viscosity
-from psph.physics.fluid.viscosity import CorrectedViscosity, LaminarViscosity
-from psph.physics.walls.slip import ApparentNoSlip, NoSlip
+from psph.physics.fluid.viscosity import LaminarViscosity
+from psph.physics.motion import Fixed
+from psph.physics.walls.slip import GrippedFlow, NoSlip
 
 PASTE = HerschelBulkley(10.0, 2.0, 0.5, 30.0, 1e6)
 POWER = HerschelBulkley(0.0, 2.0, 1.5, 0.0, 1e6)
@@ -97,7 +90,7 @@ def crowd(dim, n=14, seed=5):
     gradient = rng.normal(size=(dim, dim))
     velocity = tuple(gradient @ np.array(p.position) + 0.3)
     fluid = np.array([1.0] * (n - 2) + [0.0] * 2)
-    return p._replace(velocity=velocity, is_fluid=fluid, rheology=np.ones(n)), gradient
+    return p._replace(velocity=velocity, is_fluid=fluid, rubs=np.ones(n), rheology=np.ones(n)), gradient
 
 
 def strain_rate(gradient):
@@ -110,12 +103,13 @@ def strain_rate(gradient):
 def test_the_rate_of_strain_is_exact_in_a_linear_flow_in_disorder_and_on_one_side(dim):
     p, gradient = crowd(dim)
     p = p._replace(mass=p.mass * 1e4)  # a dense crowd: its determinant is above where the rate fades
-    effect = ApparentFriction((Newtonian(), PASTE), 1.0, FluidAlone(), Rub())
+    effect = ApparentFriction((Newtonian(), PASTE), 1.0, FluidAlone(), Rub(Apparent()))
     for k in range(3):
-        rate, eta = sums_of(effect, p, k)
+        rate, eta, *found = sums_of(effect, p, k)
         assert rate == pytest.approx(strain_rate(gradient), rel=1e-9)
+        assert found == pytest.approx(gradient.ravel(), rel=1e-9)
         assert eta == pytest.approx(PASTE.viscosity(rate, 0.0, 0.0))
-    assert sums_of(effect, p, len(p.mass) - 1) == (0.0, 0.0)  # a wall has none
+    assert not np.any(sums_of(effect, p, len(p.mass) - 1))  # a wall has none
     turning = np.triu(gradient, 1) - np.triu(gradient, 1).T
     turned = p._replace(velocity=tuple(turning @ np.array(p.position)))
     assert sums_of(effect, turned, 0)[0] == pytest.approx(0.0, abs=1e-9)
@@ -128,7 +122,7 @@ def test_a_wall_counts_by_its_grip_with_what_it_mirrors():
     shown, still = np.array(p.velocity), np.array(p.velocity)
     still[:, p.is_fluid == 0] = 0.0
     right = p._replace(velocity=tuple(still), slip=tuple(np.where(p.is_fluid > 0, 0.0, shown)))
-    effect = ApparentFriction((Newtonian(), PASTE), 1.0, StickingWalls(), Rub())
+    effect = ApparentFriction((Newtonian(), PASTE), 1.0, StickingWalls(), Rub(Apparent()))
     assert sums_of(effect, right, 0)[0] == pytest.approx(strain_rate(gradient), rel=1e-9)
     wrong = right._replace(slip=tuple(np.zeros_like(shown)))
     assert sums_of(effect, wrong, 0)[0] != pytest.approx(strain_rate(gradient), rel=1e-3)
@@ -136,60 +130,16 @@ def test_a_wall_counts_by_its_grip_with_what_it_mirrors():
     assert sums_of(effect, loose, 0)[0] == pytest.approx(strain_rate(gradient), rel=1e-9)
 
 
-@pytest.mark.parametrize("dim", (1, 2, 3))
-def test_friction_takes_the_harmonic_mean(dim):
-    p = view(dim=dim)._replace(is_fluid=np.ones(2))
-    x, u, r, _, grad_w = written_out(p, 0, 1)
-    rho, (one, two) = 1 / p.specific_volume, p.apparent_viscosity
-    mean = 2 * one * two / (one + two)
-    over = (rho.sum()) ** 2 * (r * r + 0.01 * H * H)
-    expected = 4 * p.mass[1] * 2 * mean * (x @ grad_w) / over
-    effect = ApparentFriction(LAWS, 1.0, FluidAlone(), Rub())
-    assert effect.shear(*pair_of(p, 0, 1)) == pytest.approx(expected)
-    central = CentralApparentFriction(LAWS, 1.0, FluidAlone())
-    along = (dim + 2) * expected * (u @ x) / (r * r)
-    assert central.radial(*pair_of(p, 0, 1)) == pytest.approx(along)
-
-
-@pytest.mark.parametrize(
-    "rub, constant", ((Rub(), LaminarViscosity()), (CorrectedRub(), CorrectedViscosity()))
-)
-@pytest.mark.parametrize("wall", (0, 1))
-def test_between_equals_it_is_newtons_friction_and_a_wall_takes_the_fluids_viscosity(rub, constant, wall):
-    p = view()
-    rho, eta = 1 / p.specific_volume, 3.0
-    alike = p._replace(viscosity=eta / rho, apparent_viscosity=np.full(2, eta), is_fluid=np.ones(2))
-    effect = ApparentFriction(LAWS, 1.0, FluidAlone(), rub)
-    expected = constant.shear(*pair_of(alike, 0, 1))
-    assert effect.shear(*pair_of(alike, 0, 1)) == pytest.approx(expected)
-    beside = np.array([eta, eta])
-    beside[wall] = 0.0
-    fluid = np.array([1.0, 1.0])
-    fluid[wall] = 0.0
-    at_wall = alike._replace(apparent_viscosity=beside, is_fluid=fluid)
-    assert effect.shear(*pair_of(at_wall, 0, 1)) == pytest.approx(expected)
-
-
-def test_what_flows_is_not_held_by_what_stands():
-    """The control: an arithmetic mean would be fifty times that of the thin one."""
-    p = view()._replace(is_fluid=np.ones(2), apparent_viscosity=np.array([1.0, 100.0]))
-    thin = p._replace(apparent_viscosity=np.ones(2))
-    effect = ApparentFriction(LAWS, 1.0, FluidAlone(), Rub())
-    times = effect.shear(*pair_of(p, 0, 1)) / effect.shear(*pair_of(thin, 0, 1))
-    assert times == pytest.approx(2 * 100 / 101)
-
-
 @pytest.mark.parametrize("correction", (None, GradientCorrection(0.5)))
 def test_no_slip_rubs_as_the_fluid_does(correction):
-    p = view()
     physics = SimpleNamespace(gradient_correction=correction, central_friction=None)
-    mud = SimpleNamespace(no_slip=True, rheology=1, density=1000.0, viscosity=0.0)
+    mud = SimpleNamespace(no_slip=True, rheology=1, density=1000.0, viscosity=0.0, rubs=True, motion=Fixed())
     scene = SimpleNamespace(physics=physics, species=(mud,), rheologies=(PASTE,))
     friction, sticking = ApparentViscosity().in_scene(scene), NoSlip().in_scene(scene)
-    assert isinstance(sticking, ApparentNoSlip) and friction.largest == PASTE.largest / 1000.0
-    i, j, pair = pair_of(p, 0, 1)
-    expected = friction.shear(i, j, pair) * (np.array(i.slip) - np.array(j.slip))
-    assert sticking.push(i, j, pair) == pytest.approx(expected)
+    assert isinstance(sticking, GrippedFlow) and friction.largest == PASTE.largest / 1000.0
+    for one in (friction, sticking):
+        assert isinstance(one.friction.of, Apparent)
+        assert isinstance(one.friction, CorrectedRub if correction else Rub)
     assert LaminarViscosity().in_scene(scene) is None
 
 
@@ -205,7 +155,7 @@ def test_the_grip_is_one_at_the_face_and_fades_behind_it():
         mass=np.full(n, 1000.0 * dx * dx),
         specific_volume=np.full(n, 1e-3),
     )
-    effect = ApparentNoSlip(Rub())
+    effect = GrippedFlow(Rub())
     grips = [sums_of(effect, p, np.argmin(abs(x) + abs(y - level * dx)))[-1] for level in (-0.5, -1.5, -2.5)]
     assert grips[0] > 0.9 and 0.0 < grips[1] < 0.1 and grips[2] == 0.0
     assert sums_of(effect, p, np.argmin(abs(x) + abs(y - 0.5 * dx)))[-1] == 0.0  # fluid

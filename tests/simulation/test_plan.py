@@ -52,9 +52,9 @@ def test_a_plain_scene_has_nothing_but_density_and_pressure(planned):
 
 def test_a_viscosity_switches_viscosity_on(planned):
     _, plan = planned("fluids.water.viscosity=1e-3")
-    assert names(plan) == {"Continuity", "SymmetricPressure", "LaminarViscosity"}
+    assert names(plan) == {"Continuity", "SymmetricPressure", "NewtonianFriction"}
     assert plan.constants["viscosity"] == 1e-3
-    [call] = (c for c in plan.called if type(c.effect).__name__ == "LaminarViscosity")
+    [call] = (c for c in plan.called if c.name == "LaminarViscosity")
     assert call.reason == "fluids.water.viscosity = 0.001"
     limits = {name: step for step, name in plan.step_limits(1.0, 0.0)}
     assert limits["laminar viscosity"] == pytest.approx(0.125 * 0.12**2 / 1e-3)

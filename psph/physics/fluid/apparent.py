@@ -8,10 +8,23 @@ from psph.engine.jit import call_by_type
 from psph.fields import Field, Same
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.physics.fluid.rheology import STILL, Granular, Newtonian, apparent_viscosity
-from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
-from psph.physics.fluid.viscosity import corrected_friction, friction, friction_step
-from psph.vectors import norm_squared, subtract
+from psph.physics.fluid.friction import (
+    STEP_ALONG_LINES,
+    VELOCITY_GRADIENT,
+    Apparent,
+    Arithmetic,
+    Harmonic,
+    Rub,
+    along_lines,
+    friction_step,
+    rub,
+    rub_of,
+    sheared,
+    viscous,
+)
+from psph.physics.fluid.rheology import Granular, Newtonian, apparent_viscosity
+from psph.physics.fluid.strain import linear_gradient, no_rate, rate_weight, take_rate
+from psph.vectors import norm_squared, scale, subtract, symmetric_part
 
 STRAIN_RATE = Field(
     "strain_rate", "1/s", "rate of strain, the root of 2 D:D; 0 in a wall", saved=True, image=Same
@@ -21,73 +34,12 @@ APPARENT_VISCOSITY = Field(
 )
 
 
-class Harmonic(NamedTuple):
-    """Twice the harmonic mean: what flows beside what stands is not held by it."""
-
-    def twice(self, one, two):
-        """4ab/(a + b)."""
-        return 4.0 * one * two / (one + two + STILL)
-
-
-class Arithmetic(NamedTuple):
-    """Twice the arithmetic mean, the better one where a viscosity varies smoothly: for grains alone."""
-
-    def twice(self, one, two):
-        """a + b."""
-        return one + two
-
-
-twice = call_by_type("twice")
-"""(mean, a, b) → twice the mean of a and b."""
-
-
-def mean_of(scene: Facts):
-    """The mean of viscosities that a scene needs."""
+def rub_beside(scene: Facts):
+    """The form of the friction that a scene with such fluids needs; between grains alone with the arithmetic
+    mean of their viscosities."""
     smooth = all(isinstance(law, Granular) for law in scene.rheologies)
-    return Arithmetic() if smooth and all(one.rheology for one in scene.species) else Harmonic()
-
-
-@helper
-def apparent(mean, i, j):
-    """(μ_i + μ_j)/(ρ_i ρ_j)² with the ``mean`` of the two apparent viscosities for each.
-
-    A wall has none of its own and takes that of the fluid before it.
-    """
-    own, other = i.apparent_viscosity, j.apparent_viscosity
-    one = own + (1.0 - i.is_fluid) * other
-    two = other + (1.0 - j.is_fluid) * own
-    volumes = i.specific_volume * j.specific_volume
-    return twice(mean, one, two) * (volumes * volumes)
-
-
-class Rub(NamedTuple):
-    """The friction of :class:`psph.physics.fluid.viscosity.LaminarViscosity` between apparent viscosities."""
-
-    mean: Any = Harmonic()
-
-    def rub(self, i, j, pair):
-        """Coefficient of a difference of velocities in the acceleration, 1/s."""
-        return friction(apparent(self.mean, i, j), i, j, pair, pair.r2)
-
-
-class CorrectedRub(NamedTuple):
-    """That of :class:`psph.physics.fluid.viscosity.CorrectedViscosity` between apparent viscosities."""
-
-    mean: Any = Harmonic()
-
-    def rub(self, i, j, pair):
-        """Coefficient of a difference of velocities in the acceleration, 1/s."""
-        return corrected_friction(apparent(self.mean, i, j), i, j, pair)
-
-
-rub = call_by_type("rub")
-"""(form of the friction, i, j, pair) → coefficient of a difference of velocities, 1/s."""
-
-
-def rub_of(scene: Facts):
-    """The form of the friction that a scene needs: with corrected gradients where it has them."""
-    form = Rub if scene.physics.gradient_correction is None else CorrectedRub
-    return form(mean_of(scene))
+    grains = smooth and all(one.rheology and one.rubs for one in scene.species)
+    return rub_of(scene, Apparent(), Arithmetic() if grains else Harmonic())
 
 
 class FluidAlone(NamedTuple):
@@ -95,7 +47,7 @@ class FluidAlone(NamedTuple):
 
     def part(self, j):
         """How much a neighbour counts."""
-        return j.is_fluid
+        return viscous(j)
 
     def difference(self, j, pair):
         """Of the velocities, m/s."""
@@ -107,7 +59,7 @@ class StickingWalls(NamedTuple):
 
     def part(self, j):
         """How much a neighbour counts."""
-        return j.is_fluid + j.grip
+        return viscous(j) + j.grip
 
     def difference(self, j, pair):
         """Of the velocities, m/s: a wall shows v + s."""
@@ -123,13 +75,13 @@ difference = call_by_type("difference")
 class ApparentViscosity(NamedTuple):
     """Friction of fluids whose viscosity depends on their rate of strain: mud, paste, grains.
 
-    a_i as by :class:`psph.physics.fluid.viscosity.LaminarViscosity`, with 2η_iη_j/(η_i + η_j) for the
-    viscosity of each of a pair, or with (η_i + η_j)/2 where all fluids are grains.  η_i = η(γ̇_i, p_i) by the
+    a_i as by :class:`psph.physics.fluid.viscosity.LaminarViscosity` of the η_i, or with (η_i + η_j)/2 for μ̄
+    where all fluids are grains.  η_i = η(γ̇_i, p_i) by the
     law of its fluid (psph.physics.fluid.rheology), γ̇ = √(2D:D), D = sym(−Σ_j V_j u_ij ∇W_ijᵀ M⁻¹) and
     M = −Σ_j V_j x_ij ∇W_ijᵀ over the fluid neighbours and, by their grip, what walls without slip mirror:
-    exact for a linear flow up to a free surface, nearly so up to a wall.  η is that of the step before.  The
-    harmonic mean: Cleary & Monaghan (1999), J. Comput. Phys. 148, 227.  Beside ``physics.central_friction``
-    it acts along the line of each pair.
+    exact for a linear flow up to a free surface, nearly so up to a wall; this is the G of the friction too.
+    Both are those of the step before.  Beside ``physics.central_friction`` it acts along the line of each
+    pair.
     """
 
     conserves = ("momentum",)
@@ -141,10 +93,11 @@ class ApparentViscosity(NamedTuple):
             laws[one.rheology].largest / one.density if one.rheology else one.viscosity
             for one in scene.species
         )
+        friction = rub_beside(scene)
         if scene.physics.central_friction is not None:
-            return CentralApparentFriction(laws, largest, FluidAlone(), mean_of(scene))
+            return CentralApparentFriction(laws, largest, FluidAlone(), friction)
         beside = StickingWalls() if any(one.no_slip for one in scene.species) else FluidAlone()
-        return ApparentFriction(laws, largest, beside, rub_of(scene))
+        return ApparentFriction(laws, largest, beside, friction)
 
 
 def _start(self, i):
@@ -158,17 +111,13 @@ def _gather(self, total, i, j, pair):
     return take_rate(total, pair, difference(self.beside, j, pair), weight, weight)
 
 
-def _finish_value(self, total, i, kernel):
-    """γ̇ in 1/s and η in Pa s of a fluid particle; zeros in a wall."""
-    pressure, own = i.pressure, i.viscosity / i.specific_volume
-    rate = np.sqrt(2.0 * norm_squared(linear_rate(total, i), i.position))
-    found = apparent_viscosity(self.laws, i.rheology, rate, pressure, own)
+@helper
+def _found(self, gradient, i):
+    """γ̇ in 1/s and η in Pa s of a fluid particle by G; zeros in a wall."""
+    own = i.viscosity / i.specific_volume
+    rate = np.sqrt(2.0 * norm_squared(symmetric_part(gradient, i.position), i.position))
+    found = apparent_viscosity(self.laws, i.rheology, rate, i.pressure, own)
     return i.is_fluid * rate, i.is_fluid * found
-
-
-def _longest_step(self, scene):
-    """Δt ≤ 0.125 h²/ν with the largest ν that a law gives, s."""
-    return friction_step(scene.smoothing_length, self.largest)
 
 
 class ApparentFriction(NamedTuple):
@@ -186,14 +135,23 @@ class ApparentFriction(NamedTuple):
     beside: Any
     friction: Any
 
-    writes = (STRAIN_RATE, APPARENT_VISCOSITY)
+    writes = (STRAIN_RATE, APPARENT_VISCOSITY, VELOCITY_GRADIENT)
     lagged = True
 
-    def shear(self, i, j, pair):
-        """Coefficient of u_ij in the acceleration, 1/s."""
-        return rub(self.friction, i, j, pair)
+    def push(self, i, j, pair):
+        """F_ij (u_ij + Gᵀx_ij), m/s²."""
+        return scale(sheared(i, j, pair), rub(self.friction, i, j, pair))
 
-    start, gather, finish_value, longest_step = _start, _gather, _finish_value, _longest_step
+    def finish_value(self, total, i, kernel):
+        """γ̇ in 1/s and η in Pa s of a fluid particle, and the components of its G; zeros in a wall."""
+        gradient = linear_gradient(total, i)
+        return _found(self, gradient, i) + scale(gradient, i.is_fluid)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h²/ν with the largest ν that a law gives, s."""
+        return friction_step(scene, self.largest)
+
+    start, gather = _start, _gather
 
 
 class CentralApparentFriction(NamedTuple):
@@ -208,13 +166,21 @@ class CentralApparentFriction(NamedTuple):
     laws: tuple
     largest: float
     beside: Any
-    mean: Any = Harmonic()
+    friction: Any = Rub(Apparent())
 
     writes = (STRAIN_RATE, APPARENT_VISCOSITY)
     lagged = True
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        return (2.0 + len(pair.x_ij)) * friction(apparent(self.mean, i, j), i, j, pair, pair.u_dot_x)
+        return along_lines(self.friction, i, j, pair)
 
-    start, gather, finish_value, longest_step = _start, _gather, _finish_value, _longest_step
+    def finish_value(self, total, i, kernel):
+        """γ̇ in 1/s and η in Pa s of a fluid particle; zeros in a wall."""
+        return _found(self, linear_gradient(total, i), i)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.05 h²/ν with the largest ν that a law gives, s."""
+        return STEP_ALONG_LINES * friction_step(scene, self.largest)
+
+    start, gather = _start, _gather

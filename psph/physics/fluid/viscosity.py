@@ -1,17 +1,28 @@
 """Friction between particles: the fluid's own, and a numerical one."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field
 
 from psph.formula import helper
 from psph.moments import fastest_braking
 from psph.physics.facts import Facts
+from psph.physics.fluid.friction import (
+    SINGULARITY,
+    STEP_ALONG_LINES,
+    VELOCITY_GRADIENT,
+    Rub,
+    along_lines,
+    finish_gradient,
+    friction_step,
+    gather_gradient,
+    rub,
+    rub_of,
+    sheared,
+    start_gradient,
+)
 from psph.theory.stability import parts
-from psph.vectors import add, dot, times
-
-SINGULARITY = 0.01
-"""η² = 0.01 h² keeps r² + η² away from zero."""
+from psph.vectors import scale
 
 NEGLIGIBLE = 0.01
 """A fluid's viscosity below this part of the numerical one is negligible."""
@@ -39,61 +50,51 @@ def lighter(i, j):
     return min(i.rest_density, j.rest_density)
 
 
-@helper
-def newtonian(i, j):
-    """(μ_i + μ_j)/(ρ_i ρ_j)² of the fluids' own viscosities μ = ρν; in specific volumes, one division in
-    :func:`friction` in place of three."""
-    v_i, v_j = i.specific_volume, j.specific_volume
-    return (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
-
-
-@helper
-def friction(both, i, j, pair, numerator):
-    """4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² W′/r ``numerator``/(r² + 0.01 h²), ``both`` as in :func:`newtonian`.
-
-    With r² for the ``numerator`` the coefficient of a difference of velocities in the acceleration, 1/s.
-    """
-    v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
-    under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
-    return 4.0 * pair.m_dw_r * (both * numerator) / under
-
-
-@helper
-def corrected_friction(both, i, j, pair):
-    """The same with corrected gradients, 1/s."""
-    v_i, v_j = i.specific_volume, j.specific_volume
-    stretch = add(i.gradient_correction, j.gradient_correction)
-    stretch = 1.0 + 0.5 * dot(times(stretch, pair.x_ij), pair.x_ij) / pair.r2
-    return 4.0 * pair.m_dw_r * both * stretch / ((v_i + v_j) * (v_i + v_j))
-
-
 class LaminarViscosity(NamedTuple):
-    """Newtonian friction of the fluid's own viscosity.
+    """Newtonian friction of the fluids' own viscosities: the divergence of μ(∇u + ∇uᵀ).
 
-    a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·∇W_ij / [(ρ_i + ρ_j)² (r² + 0.01 h²)] u_ij, μ = ρν.
-    SSPH paper, eq. (6); Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
+    a_i = Σ_j F_ij (u_ij + Gᵀx_ij), F_ij = m_j 2μ̄/(ρ_iρ_j) x_ij·∇W_ij/(r² + 0.01 h²): see
+    psph.physics.fluid.friction.  G = ½(G_i + G_j) between fluids, beside a wall that of the fluid;
+    G_i = −Σ_j V_j u_ij ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ over viscous neighbours, exact for a linear flow
+    up to a surface.  The part of u_ij: SSPH paper, eq. (6); Morris, Fox & Zhu (1997), J. Comput. Phys. 136,
+    214.  That of G is psph's own: without it what turns as a whole is braked at a surface, and at a wall it
+    lacks a moment of 2μωV.
     """
 
     conserves = ("momentum",)
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form that takes them; beside central friction, or where the viscosity
-        depends on the rate of strain, nothing."""
-        physics = scene.physics
-        if physics.central_friction is not None or scene.rheologies:
+        """The form that knows of corrected gradients; nothing beside central friction, or where the viscosity
+        depends on the rate of strain."""
+        if scene.physics.central_friction is not None or scene.rheologies:
             return None
-        return self if physics.gradient_correction is None else CorrectedViscosity()
+        return NewtonianFriction(rub_of(scene))
 
     def why_absent(self, scene: Facts):
         """What takes its place."""
         return TAKEN_OVER if scene.rheologies else "physics.central_friction takes its place"
 
-    def shear(self, i, j, pair):
-        """Coefficient of u_ij in the acceleration, 1/s."""
-        return friction(newtonian(i, j), i, j, pair, pair.r2)
+
+class NewtonianFriction(NamedTuple):
+    """Newtonian friction of the fluids' own viscosities: the divergence of μ(∇u + ∇uᵀ).
+
+    The form of :class:`LaminarViscosity` in a scene; ``friction`` is that of F_ij.
+    """
+
+    conserves = ("momentum",)
+
+    friction: Any = Rub()
+
+    writes = VELOCITY_GRADIENT
+    lagged = True
+    slow = True
+
+    def push(self, i, j, pair):
+        """F_ij (u_ij + Gᵀx_ij), m/s²."""
+        return scale(sheared(i, j, pair), rub(self.friction, i, j, pair))
 
     def longest_step(self, scene):
-        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
+        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22), or less."""
         return _longest_step(scene)
 
     def idle(self, scene: Facts, effects):
@@ -110,67 +111,49 @@ class LaminarViscosity(NamedTuple):
             "physics.artificial_viscosity (alpha c h/8); remove fluids.*.viscosity, or lower alpha"
         )
 
-
-class CorrectedViscosity(NamedTuple):
-    """Newtonian friction of the fluid's own viscosity, with corrected gradients.
-
-    a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·(L_i + L_j)/2 ∇W_ij / [(ρ_i + ρ_j)² r²] u_ij.  As
-    :class:`LaminarViscosity`, less what makes it weak: on a lattice −Σ V x_ij·∇W_ij misses the
-    number of dimensions by some percent, and 0.01 h² takes another.  Both stay however fine the
-    spacing.
-    """
-
-    conserves = ("momentum",)
-
-    def shear(self, i, j, pair):
-        """Coefficient of u_ij in the acceleration, 1/s."""
-        return corrected_friction(newtonian(i, j), i, j, pair)
-
-    def longest_step(self, scene):
-        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
-        return _longest_step(scene)
+    start, gather, finish_value = start_gradient, gather_gradient, finish_gradient
 
 
 class CentralFriction(NamedTuple):
     """The fluids' viscosity acts along the line of each pair: a free surface bears no shear stress.
 
-    a_i = (d + 2) Σ_j 4 m_j (μ_i + μ_j)/(ρ_i + ρ_j)² (u_ij·x_ij)/(r² + 0.01 h²) ∇W_ij, in place of
-    :class:`LaminarViscosity`.  Monaghan & Gingold (1983), J. Comput. Phys. 52, 374; as a
-    viscosity, Monaghan (2005), Rep. Prog. Phys. 68, 1703.  It conserves angular momentum too.  At
-    a free surface that other one lets ∂u/∂n vanish in place of the stress, and takes half of what
-    a wave loses: Colagrossi, Antuono, Souto-Iglesias & Le Touzé (2011), Phys. Rev. E 84, 026705.
+    a_i = (d + 2) Σ_j F_ij (u_ij·x_ij)/r² x_ij, in place of :class:`LaminarViscosity`, with its F_ij.
+    Monaghan & Gingold (1983), J. Comput. Phys. 52, 374; as a viscosity, Monaghan (2005), Rep. Prog. Phys. 68,
+    1703.  It conserves angular momentum to rounding.
     """
 
     conserves = ("momentum", "angular momentum")
 
     def in_scene(self, scene: Facts):
         """Nothing where the viscosity depends on the rate of strain."""
-        return None if scene.rheologies else self
+        return None if scene.rheologies else CentralNewtonianFriction()
 
     def why_absent(self, scene: Facts):
         """What takes its place."""
         return TAKEN_OVER
 
+
+class CentralNewtonianFriction(NamedTuple):
+    """The fluids' viscosity acts along the line of each pair: a free surface bears no shear stress.
+
+    The form of :class:`CentralFriction` in a scene.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    friction: Any = Rub()
+
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        return (2.0 + len(pair.x_ij)) * friction(newtonian(i, j), i, j, pair, pair.u_dot_x)
+        return along_lines(self.friction, i, j, pair)
 
     def longest_step(self, scene):
-        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22)."""
-        return _longest_step(scene)
-
-
-FRICTION_STEP = 0.125
-"""Largest ν Δt/h² (Morris, Fox & Zhu 1997)."""
-
-
-def friction_step(smoothing_length: float, viscosity: float) -> float:
-    """Δt ≤ 0.125 h²/ν, s, of the largest kinematic ``viscosity`` (Morris, Fox & Zhu 1997, eq. 22)."""
-    return FRICTION_STEP * smoothing_length**2 / viscosity
+        """Δt ≤ 0.05 h²/ν with the largest ν of the scene, s, or less where the kernel asks for it."""
+        return STEP_ALONG_LINES * _longest_step(scene)
 
 
 def _longest_step(scene) -> float:
-    return friction_step(scene.smoothing_length, scene.viscosity)
+    return friction_step(scene, scene.viscosity)
 
 
 def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:

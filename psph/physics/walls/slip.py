@@ -2,13 +2,15 @@
 
 from typing import Any, NamedTuple
 
+from psph.engine.jit import call_by_type
 from psph.fields import VECTOR, Drifting, Field, Same
 from psph.formula import helper
 from psph.physics.facts import Facts
-from psph.physics.fluid.apparent import rub, rub_of
-from psph.physics.fluid.viscosity import corrected_friction, friction, newtonian
+from psph.physics.fluid.apparent import rub_beside
+from psph.physics.fluid.friction import Rub, rub, rub_of
+from psph.physics.motion import is_rigid
 from psph.physics.walls.conditions import CONDITIONS, STICKING
-from psph.vectors import add, scale, subtract, zero_like
+from psph.vectors import add, applied, scale, subtract, zero_like
 
 MIRRORED = Field(
     "slip",
@@ -28,6 +30,26 @@ NO_FLUID = 1e-300
 """Keeps a kernel sum without any fluid from dividing by zero, 1/m^d."""
 
 
+class Straight(NamedTuple):
+    """No wall without slip turns."""
+
+    def carried(self, i, j, pair):
+        """The velocity of fluid j, m/s."""
+        return j.velocity
+
+
+class Turning(NamedTuple):
+    """Walls without slip turn as they move as a whole."""
+
+    def carried(self, i, j, pair):
+        """The velocity of fluid j less what the turn of wall i makes of it between them, m/s."""
+        return add(j.velocity, applied(i.whirl, pair.x_ij))
+
+
+carried = call_by_type("carried")
+"""(how walls move, i, j, pair) → the velocity of fluid j as a turn of wall i carries it to i, m/s."""
+
+
 def _start(self, i):
     """No fluid yet: Σ W and Σ u W."""
     return 0.0, zero_like(i.position)
@@ -36,14 +58,19 @@ def _start(self, i):
 def _gather(self, total, i, j, pair):
     """Take a fluid neighbour j into both."""
     w = j.is_fluid * pair.w
-    return total[0] + w, add(total[1], scale(j.velocity, w))
+    return total[0] + w, add(total[1], scale(carried(self.walls, i, j, pair), w))
 
 
 @helper
-def _finish_value(self, total, i, kernel):
+def _missing(total, i):
     """v_wall − ṽ in a wall without slip, 0 elsewhere and out of reach of the fluid, m/s."""
     share = i.no_slip / max(total[0], NO_FLUID)
     return scale(subtract(scale(i.velocity, total[0]), total[1]), share)
+
+
+def _push(self, i, j, pair):
+    """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
+    return scale(subtract(i.slip, j.slip), rub(self.friction, i, j, pair))
 
 
 KNOWN = " or ".join(f'"{one}"' for one in STICKING)
@@ -52,11 +79,12 @@ KNOWN = " or ".join(f'"{one}"' for one in STICKING)
 class NoSlip(NamedTuple):
     """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
 
-    A wall particle shows the velocity 2 v_wall − ṽ, ṽ = Σ_f u_f W_wf / Σ_f W_wf over the fluid, in
-    the viscous force alone: beside that of :class:`LaminarViscosity`, a_i = Σ_j F_ij (s_i − s_j)
-    with its coefficient F_ij, s = v_wall − ṽ in such a wall and 0 elsewhere.  Adami, Hu & Adams
-    (2012), J. Comput. Phys. 231, 7057, eqs. (22), (23).  ṽ is gathered in the same pass as the
-    forces, so it is that of the step before.
+    A wall particle shows the velocity 2 v_wall − ṽ, ṽ = Σ_f (u_f + [ω] x_wf) W_wf / Σ_f W_wf over the fluid,
+    in the viscous force alone: beside that of :class:`LaminarViscosity
+    <psph.physics.fluid.viscosity.LaminarViscosity>`, a_i = Σ_j F_ij (s_i − s_j) with its coefficient F_ij,
+    s = v_wall − ṽ in such a wall and 0 elsewhere.  Adami, Hu & Adams (2012), J. Comput. Phys. 231, 7057,
+    eqs. (22), (23), but for [ω], the turn of a wall that moves as a whole: fluid that turns with it has
+    s = 0.  ṽ is gathered in the same pass as the forces, so it is that of the step before.
     """
 
     refuses = {
@@ -65,20 +93,17 @@ class NoSlip(NamedTuple):
         if one not in STICKING
     }
 
-    writes = MIRRORED
-    lagged = True
-
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form whose friction has them too, and that whose viscosity depends on
-        the rate of strain; nothing where the fluid sticks to mirrors alone, which show it a velocity
-        themselves, or where no viscosity pulls."""
-        if not any(one.no_slip for one in scene.species):
+        """The form with the friction of the fluids, and that whose viscosity depends on the rate of strain;
+        nothing where the fluid sticks to mirrors alone, which show it a velocity themselves, or where no
+        viscosity pulls."""
+        sticking = [one for one in scene.species if one.no_slip]
+        if not sticking or not (scene.rheologies or any(one.viscosity for one in scene.species)):
             return None
-        if not scene.rheologies and not any(one.viscosity for one in scene.species):
-            return None
+        walls = Turning() if any(is_rigid(one.motion) for one in sticking) else Straight()
         if scene.rheologies:
-            return ApparentNoSlip(rub_of(scene))
-        return self if scene.physics.gradient_correction is None else CorrectedNoSlip()
+            return GrippedFlow(rub_beside(scene), walls)
+        return MirroredFlow(rub_of(scene), walls)
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
@@ -86,50 +111,43 @@ class NoSlip(NamedTuple):
             return "nothing has a viscosity, and the stress of what resists shear knows such walls itself"
         return "the fluid sticks to mirrors alone"
 
-    def push(self, i, j, pair):
-        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
-        return scale(subtract(i.slip, j.slip), friction(newtonian(i, j), i, j, pair, pair.r2))
 
-    start, gather, finish_value = _start, _gather, _finish_value
-
-
-class CorrectedNoSlip(NamedTuple):
+class MirroredFlow(NamedTuple):
     """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
 
-    As :class:`NoSlip` beside :class:`psph.physics.fluid.viscosity.CorrectedViscosity`, with its coefficient
-    F_ij: both see one velocity of the wall, 2 v_wall − ṽ.
+    The form of :class:`NoSlip` in a scene: the ``friction`` of F_ij, and how the ``walls`` move.
     """
+
+    friction: Any = Rub()
+    walls: Any = Straight()
 
     writes = MIRRORED
     lagged = True
 
-    def push(self, i, j, pair):
-        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
-        return scale(subtract(i.slip, j.slip), corrected_friction(newtonian(i, j), i, j, pair))
+    def finish_value(self, total, i, kernel):
+        """v_wall − ṽ, m/s."""
+        return _missing(total, i)
 
-    start, gather, finish_value = _start, _gather, _finish_value
+    start, gather, push = _start, _gather, _push
 
 
-class ApparentNoSlip(NamedTuple):
+class GrippedFlow(NamedTuple):
     """Fluid sticks to a wall: for friction the wall mirrors the flow beside it.
 
-    As :class:`NoSlip` beside :class:`psph.physics.fluid.apparent.ApparentViscosity`, with the coefficient
-    F_ij of its form ``friction``.  The grip of a wall particle, min(4 Σ_f V W_wf, 1), says how much of its
-    mirrored flow counts in a rate of strain: from the second layer on ṽ is still the flow beside the face.
+    As :class:`MirroredFlow` beside :class:`psph.physics.fluid.apparent.ApparentViscosity`.  The grip of a
+    wall particle, min(4 Σ_f V W_wf, 1), says how much of its mirrored flow counts in a rate of strain: from
+    the second layer on ṽ is still the flow beside the face.
     """
 
-    friction: Any
+    friction: Any = Rub()
+    walls: Any = Straight()
 
     writes = (MIRRORED, GRIP)
     lagged = True
 
-    def push(self, i, j, pair):
-        """Friction with the mirrored flow, beyond that with the wall itself, m/s²."""
-        return scale(subtract(i.slip, j.slip), rub(self.friction, i, j, pair))
-
     def finish_value(self, total, i, kernel):
         """The components of v_wall − ṽ, m/s, and the grip."""
         grip = i.no_slip * min(FULL_GRIP * total[0] * i.mass * i.specific_volume, 1.0)
-        return _finish_value(self, total, i, kernel) + (grip,)
+        return _missing(total, i) + (grip,)
 
-    start, gather = _start, _gather
+    start, gather, push = _start, _gather, _push
