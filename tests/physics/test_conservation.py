@@ -87,10 +87,9 @@ def rates(effect, p):
     n, dim = len(p.mass), len(p.position)
     if fields := filled(effect):
         values = np.array([sums_of(effect, p, k) for k in range(n)]).T
-        if len(fields) > 1:
-            p = p._replace(**{field.name: each for field, each in zip(fields, values, strict=True)})
-        else:
-            p = p._replace(**{fields[0].name: tuple(values) if values.ndim > 1 else values})
+        ends = np.cumsum([field.width(dim) for field in fields])
+        for field, rows in zip(fields, np.split(values.reshape(ends[-1], n), ends[:-1])):
+            p = p._replace(**{field.name: tuple(rows) if field.composed else rows[0]})
     forces, moves = np.zeros((n, dim)), np.zeros((n, dim))
     for a in range(n):
         for b in set(range(n)) - {a}:
