@@ -25,6 +25,7 @@ from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
 from psph.scene.soils import soil_warnings
 from psph.scene.solid_checks import solid_faults, solid_warnings
+from psph.scene.solved import exact_faults
 from psph.scene.still import start_warnings
 from psph.scene.unbearing import unbearing_warnings
 from psph.scene.units import in_degrees, in_millimetres, slips
@@ -66,7 +67,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *misplaced(scene),
         *astray(scene),
         *body_faults(scene),
-        *_exact_faults(scene),
+        *exact_faults(scene),
     ]
     places = places or [
         *period_faults(scene),
@@ -227,12 +228,6 @@ def _particles_outside(scene: Scene) -> Iterator[str]:
                     f"the domain from {scene.lower[d]:.6g} to {scene.upper[d]:.6g}; make the "
                     f"shape smaller, or change space.lower and space.upper{in_millimetres(scene, material)}"
                 )
-
-
-def _exact_faults(scene: Scene) -> Iterator[str]:
-    for name, table in scene.case.exact:
-        if table is not None and (unfit := scene.exact.unfit(scene.unheard_setting)):
-            yield f"exact.{name}: {unfit}"
 
 
 def _state_faults(scene: Scene) -> Iterator[str]:

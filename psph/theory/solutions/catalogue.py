@@ -6,6 +6,8 @@ in s and a :class:`~psph.theory.solutions.setting.Setting`: ``velocity`` (n, dim
 what sound has to be faster than, ``up_to_a_constant`` which fields a case may raise by any number.
 """
 
+import numpy as np
+
 from psph.theory.solutions.channel import Couette, Poiseuille
 from psph.theory.solutions.drop import EllipticDrop
 from psph.theory.solutions.still import Hydrostatic
@@ -31,3 +33,26 @@ FIELDS = ("velocity", "pressure")
 def known(solution) -> tuple[str, ...]:
     """The fields that a solution has."""
     return tuple(name for name in FIELDS if hasattr(solution, name))
+
+
+OF_A_FLUID = ("density", "viscosity")
+"""What of a setting belongs to its fluid."""
+
+
+class _Listener:
+    """Answers as a setting does, and remembers what it was asked for."""
+
+    def __init__(self, setting):
+        self._setting, self.asked = setting, set()
+
+    def __getattr__(self, name: str):
+        self.asked.add(name)
+        return getattr(self._setting, name)
+
+
+def asked_of_fluid(solution, setting) -> tuple[str, ...]:
+    """What a solution asks of the fluid: those of its density and viscosity on which its fields depend."""
+    listener = _Listener(setting)
+    for name in known(solution):
+        getattr(solution, name)(np.zeros((1, setting.dimensions)), 1.0, listener)
+    return tuple(name for name in OF_A_FLUID if name in listener.asked)
