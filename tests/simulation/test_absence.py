@@ -201,7 +201,8 @@ def test_an_effect_of_its_own_costs_what_it_reads(footprint, loop):
     [there], [here] = absent.calls, before.calls
     assert Loop().instructions(there) == loop.instructions(here)
     assert absent.sent == before.sent and absent.arrays == before.arrays
-    on, off = footprint(longer, oil), footprint(CATALOGUE[:3], oil)
+    plain = CATALOGUE[:3]
+    on, off = footprint([*plain, longer[-1]], oil), footprint(plain, oil)
     assert instructions(loop, on) > instructions(loop, off)
     assert set(on.arrays) - set(off.arrays) == {"viscosity"}
     assert set(on.halo) - set(off.halo) == {"viscosity"}

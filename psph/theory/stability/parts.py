@@ -104,7 +104,11 @@ class PairDamping(NamedTuple):
 
 
 class Viscosity(NamedTuple):
-    """The fluid's own kinematic viscosity ν, m²/s, in the form of Morris, Fox & Zhu (1997)."""
+    """The fluid's own kinematic viscosity ν, m²/s, in the form of Morris, Fox & Zhu (1997).
+
+    What psph adds to it, F_ij Gᵀx_ij (psph.physics.fluid.friction), is not in it: that damps waves of
+    compression once more, and nothing at the shortest.
+    """
 
     viscosity: float
 

@@ -12,6 +12,7 @@ from psph.composition.pair import Pair
 from psph.fields import FLUID
 from psph.output.ledger import Ledger
 from psph.physics.damping.filtering import ConservativeSmoothing
+from psph.physics.fluid.friction import Rub, rub
 from psph.runs.setup import lattice_particles, store_of
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -113,7 +114,6 @@ MORE = (
     "physics.density_diffusion=0.2",
     "physics.artificial_viscosity=0.3",
     "physics.pair_damping=0.2",
-    "fluids.fluid.viscosity=1e-4",
 )
 
 
@@ -131,7 +131,6 @@ MORE = (
                     parts.DensityDiffusion(0.2),
                     parts.ArtificialViscosity(0.3),
                     parts.PairDamping(0.4),
-                    parts.Viscosity(2e-4),
                 ),
             ),
             MORE,
@@ -153,8 +152,7 @@ MORE = (
 def test_the_box_meets_the_forces_of_psph(settings, sets):
     """The numerical Jacobian of the solver's own loops, along random disturbances of all kinds.
 
-    Twice viscosity and pair damping, once the artificial one: of a(u) and −a(−u) each pair's comes
-    once.
+    Twice pair damping, once the artificial viscosity: of a(u) and −a(−u) each pair's comes once.
     """
     case = load("run/cases/negative_pressure_traditional.toml", ["perturbations=off", *sets])
     system, _ = box_of(couplings(Uniform(settings)), 15, LAYERS)
@@ -191,6 +189,23 @@ def test_walls_beyond_the_reach_change_nothing():
     pairs = couplings(Uniform(TENSION))
     rates = [box_of(pairs, 4, layers)[0].urge() for layers in (2, 3, 4)]
     assert rates[1:] == pytest.approx(rates[:1] * 2) and rates[0] > 0.0
+
+
+def test_viscosity_is_that_of_the_effect():
+    """Of a pair in one fluid; the effect's part with the gradient of the velocity is left out."""
+    uniform, r = Uniform(TENSION), np.array([0.7e-3, 1.6e-3])
+    along, anyhow = parts.Viscosity(0.3).damping(uniform, r)
+    particle = seen(
+        mass=900.0 * uniform.volume,
+        specific_volume=1 / 900.0,
+        is_fluid=1.0,
+        rubs=1.0,
+        viscosity=0.3,
+        smoothing_length=uniform.smoothing_length,
+    )
+    slopes = particle.mass * uniform.slope(r) / r
+    pairs = [Pair(r2=x * x, m_dw_r=slope) for x, slope in zip(r, slopes)]
+    assert along == 0.0 and [rub(Rub(), particle, particle, pair) for pair in pairs] == pytest.approx(-anyhow)
 
 
 def test_smoothing_is_that_of_the_effect():
