@@ -36,6 +36,8 @@ LIMITS = {
     "sound": (lattice(scheme="stable", physics={"fourth_order_diffusion": "off"}), 1.6),
     "sound of steep kernels": (lattice({}, kernel="wendland-c6", smoothing=2.0), 3.1),
     "laminar viscosity": (lattice(viscosity=5.0), 1.6),
+    "laminar viscosity of steep kernels": (lattice(viscosity=5.0, kernel="wendland-c6", smoothing=2.0), 1.6),
+    "central friction": (lattice({"central_friction": {}}, viscosity=5.0), 1.5),
     "apparent viscosity": (
         lattice(
             rheology={"bingham": {"yield_stress": 9.0, "plastic_viscosity": 2.0, "largest_viscosity": 5e3}}

@@ -9,13 +9,13 @@ from psph.fields import Field, Same
 from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.physics.fluid.friction import (
-    STEP_ALONG_LINES,
     VELOCITY_GRADIENT,
     Apparent,
     Arithmetic,
     Harmonic,
     Rub,
     along_lines,
+    central_step,
     friction_step,
     rub,
     rub_of,
@@ -181,6 +181,6 @@ class CentralApparentFriction(NamedTuple):
 
     def longest_step(self, scene):
         """Δt ≤ 0.05 h²/ν with the largest ν that a law gives, s."""
-        return STEP_ALONG_LINES * friction_step(scene, self.largest)
+        return central_step(scene, self.largest)
 
     start, gather = _start, _gather

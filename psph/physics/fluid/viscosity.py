@@ -9,10 +9,10 @@ from psph.moments import fastest_braking
 from psph.physics.facts import Facts
 from psph.physics.fluid.friction import (
     SINGULARITY,
-    STEP_ALONG_LINES,
     VELOCITY_GRADIENT,
     Rub,
     along_lines,
+    central_step,
     finish_gradient,
     friction_step,
     gather_gradient,
@@ -95,7 +95,7 @@ class NewtonianFriction(NamedTuple):
 
     def longest_step(self, scene):
         """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22), or less."""
-        return _longest_step(scene)
+        return friction_step(scene, scene.viscosity)
 
     def idle(self, scene: Facts, effects):
         """Why it has no influence, or None."""
@@ -149,11 +149,7 @@ class CentralNewtonianFriction(NamedTuple):
 
     def longest_step(self, scene):
         """Δt ≤ 0.05 h²/ν with the largest ν of the scene, s, or less where the kernel asks for it."""
-        return STEP_ALONG_LINES * _longest_step(scene)
-
-
-def _longest_step(scene) -> float:
-    return friction_step(scene, scene.viscosity)
+        return central_step(scene, scene.viscosity)
 
 
 def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:
