@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from psph.acts import FLUIDS
 from psph.engine.jit import call_by_type
 from psph.fields import Field, Same
 from psph.formula import helper
@@ -84,6 +85,7 @@ class ApparentViscosity(NamedTuple):
     pair.
     """
 
+    acts = (FLUIDS,)
     conserves = ("momentum",)
 
     def in_scene(self, scene: Facts):

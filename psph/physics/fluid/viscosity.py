@@ -4,6 +4,7 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field
 
+from psph.acts import FLUIDS
 from psph.formula import helper
 from psph.moments import fastest_braking
 from psph.physics.facts import Facts
@@ -61,6 +62,7 @@ class LaminarViscosity(NamedTuple):
     lacks a moment of 2μωV.
     """
 
+    acts = (FLUIDS,)
     conserves = ("momentum",)
 
     def in_scene(self, scene: Facts):
@@ -122,6 +124,7 @@ class CentralFriction(NamedTuple):
     1703.  It conserves angular momentum to rounding.
     """
 
+    acts = (FLUIDS,)
     conserves = ("momentum", "angular momentum")
 
     def in_scene(self, scene: Facts):
