@@ -9,7 +9,6 @@ from psph.case.keys import AXES
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import inside
 from psph.scene.solids import across, anvils_of, calming, impedance, thinnest
-from psph.scene.species import NONE
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -61,8 +60,6 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
             f"solids: {', '.join(case.referred)} do not feel each other, and run through each other where "
             "they meet; give physics.contact = {}"
         )
-    if case.physics.contact is not None:
-        yield from _pushed_apart(scene)
     if case.referred and not case.flowing:
         yield from fast_start(scene)
     for number, name in _elastic(scene):
@@ -154,31 +151,6 @@ def _behind_anvils(scene: "Scene", number: int, key: str) -> Iterator[str]:
                 f"anvils.{name}: {key} reaches {0.5 * scene.spacing - nearest:.3g} m behind it at the start, "
                 "and will fly off; move one of the two"
             )
-
-
-def _pushed_apart(scene: "Scene") -> Iterator[str]:
-    """A line for each two solids, or solid and wall, that are so near each other that contact pushes them
-    apart from the start."""
-    layout, found = scene.layout, {}
-    for number in range(layout.fluids, layout.first_wall):
-        for first, last in scene.lattice.chunks():
-            held = layout.materials(first, last)
-            for other in set(held[layout.touching(number, first, last)].tolist()) - {NONE}:
-                pair = layout.solid_of(number), layout.solid_of(other)
-                found.setdefault((max(pair), min(pair)), (number, other))
-    for pair, (number, other) in found.items():
-        if pair[0] != pair[1]:
-            yield (
-                f"{_whole_key(scene, number)}.shape: touches {_whole_key(scene, other)} at the start, and "
-                "contact pushes apart what is nearer than two spacings: they will fly off; leave a gap of a "
-                f"spacing, {scene.spacing:.6g} m"
-            )
-
-
-def _whole_key(scene: "Scene", material: int) -> str:
-    """The key of a wall, or of the solid that a material is of."""
-    elastic = scene.layout.elastic_of(material)
-    return scene.key_of(material if elastic is None else scene.layout.fluids + elastic)
 
 
 def _answers(scene: "Scene", number: int, key: str, table) -> Iterator[str]:

@@ -9,12 +9,16 @@ from psph.fields import CROSSED, Field
 from psph.particles.reach import Reach
 from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
-from psph.physics.solid.contact import REACH
+from psph.physics.solid.contact import OF_CONTACT, REACH, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
 from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING
 from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, is_heated, remembers, solid_of
 from psph.physics.solid.plastic import OF_PLASTIC
+from psph.scene.distance import faces_of
 from psph.scene.lattice import TOLERANCE
+
+FLAT = 0.95
+"""Length of the mean of the normals half a spacing around a particle from which no edge is near."""
 
 if TYPE_CHECKING:
     from psph.case.solids import Clamp
@@ -128,4 +132,44 @@ def solid_fields(scene: "Scene") -> tuple[Field, ...]:
     lasting += OF_HEAT if is_heated(scene.elastic_solids) else ()
     wet = [INERTIA] if scene.case.flowing else []
     cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.elastic_solids) else ()
-    return (*OF_SOLIDS, *across, *lasting, *cracks, *([DRAWN, WORK] if loaded else []), *wet)
+    meeting = OF_CONTACT if meets(scene) else ()
+    return (*OF_SOLIDS, *across, *lasting, *cracks, *meeting, *([DRAWN, WORK] if loaded else []), *wet)
+
+
+def meets(scene: "Scene") -> bool:
+    """Whether elastic solids of a scene feel each other or walls."""
+    return scene.physics.contact is not None and SolidContact().in_scene(scene) is not None
+
+
+def drawn_faces(scene: "Scene", species: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of particles of these ``species`` (n,) that begin at ``position`` (n, dim) the normals (n, dim) of the
+    drawn faces nearest to them, zeros within half a spacing of an edge, and their depths (n,) below, in
+    spacings.
+
+    What cracks gets new faces: its particles have none, and half a spacing of depth.
+    """
+    normal, depth = np.zeros_like(position), np.full(len(position), 0.5)
+    for number in np.unique(species):
+        own = scene.layout.elastic_of(int(number))
+        if scene.layout.solid_of(int(number)) == 0 or own is not None and may_crack(scene, own):
+            continue
+        shape = scene.parts[number if own is None else scene.layout.fluids + own].shape
+        rows = species == number
+        found = faces_of(shape, position[rows])
+        mean = np.zeros_like(found.normal)
+        for d in range(scene.dimensions):
+            for way in (-0.5, 0.5):
+                beside = position[rows].copy()
+                beside[:, d] += way * scene.spacing
+                mean += faces_of(shape, beside).normal / (2.0 * scene.dimensions)
+        alike = np.sqrt((mean**2).sum(axis=1))
+        normal[rows], depth[rows] = (
+            np.where(alike[:, None] > FLAT, found.normal, 0.0),
+            -found.away / scene.spacing,
+        )
+    return normal, depth
+
+
+def may_crack(scene: "Scene", number: int) -> bool:
+    """Whether bonds of an elastic solid may be cut."""
+    return scene.elastic_solids[number].critical_stretch < math.inf

@@ -5,8 +5,10 @@ import numpy as np
 from psph.fields import OF_MATERIAL, OF_SITE
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
+from psph.physics.solid.contact import COVER, FACE
 from psph.physics.solid.deformation import REFERENCE
 from psph.physics.stress.deviator import DEVIATOR
+from psph.scene.solids import drawn_faces
 from psph.simulation.groups import material_value
 
 
@@ -20,6 +22,9 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
     if DEVIATOR.name in store:
         for name in (DEVIATOR.name, f"predicted_{DEVIATOR.name}"):
             block[list(store.rows[name])] = scene.stressed.deviator(species, position).T
+    if FACE.name in store:
+        normal, depth = drawn_faces(scene, species, position)
+        block[list(store.rows[FACE.name])], block[store.rows[COVER.name].start] = normal.T, depth
     known = {"density": density}
     known |= {
         field.name: np.array([material_value(s, field.name) for s in scene.species])[species]

@@ -309,7 +309,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     paired = shares_loop(called, bool(case.flowing))
     passes = make_passes(
-        paired if case.flowing or any(hasattr(c.effect, "radial") for c in paired) else (),
+        paired if case.flowing or any(hasattr(c.effect, "push") for c in paired) else (),
         stored,
         lambda name: _array_of(name, stored),
         case.time.gather_every,

@@ -13,7 +13,7 @@ from psph.parallel.reference import reference_rows
 from psph.particles.partners import ReferenceRows, padded_lists
 from psph.particles.records import record_width
 from psph.physics.solid.compression import OF_HEAT, Heat
-from psph.physics.solid.contact import CONTACT_ENERGY
+from psph.physics.solid.contact import CONTACT_ENERGY, FACE
 from psph.physics.solid.deformation import (
     DRAWN,
     KERNEL,
@@ -87,6 +87,7 @@ class Solids:
         self._cracks = self._made_to_crack() if plan.cracks else None
         if self._cracks:
             self._widths[1].update({LOOSENED: 1, STRENGTH: 1})
+        self._faces = self._made_to_meet() if FACE.name in store else None
         self._solid_of = plan.solid_of
         self._rows = self.halo = None
         self.clamps = self._made_to_move() if plan.grips else None
@@ -107,6 +108,12 @@ class Solids:
         from psph.simulation.solid_loads import SolidLoads  # late: most solids have no loads
 
         return SolidLoads(self.scene, self.store, self.comm)
+
+    def _made_to_meet(self):
+        """What carries the faces that touch."""
+        from psph.simulation.solid_faces import SolidFaces  # late: most solids meet nothing
+
+        return SolidFaces(self.scene, self.store)
 
     def _made_to_crack(self):
         """What cuts bonds."""
@@ -158,6 +165,8 @@ class Solids:
         self._matter = self._matter._replace(number=self._solid_of[store.group[columns[order]]])
         density = self._matter.density[self._matter.number]
         self._inverse_density, self._masses = 1.0 / density, density * self._volume
+        if self._faces:
+            self._faces.settle(self._columns)
         if self.clamps:
             self.clamps.settle(self._columns, self._masses)
         self._make_tables(store.id[columns[order]], np.unique(partners[abroad]))
@@ -248,6 +257,10 @@ class Solids:
                 loads.book(time, dt, self._columns, number, self._masses)
             if self.clamps:
                 self.clamps.book(dt)
+            if self._faces:
+                self._faces.carry(
+                    self._each, self._matter.sums[:1], self._weights, self._around[0], self._moment
+                )
             self._crack()
 
     def _crack(self) -> None:

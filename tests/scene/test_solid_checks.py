@@ -151,17 +151,6 @@ def test_a_sound_beam_is_good(tmp_path):
             "solids: beam, end do not feel each other, and run through each other where they meet; give phys",
         ),
         (
-            ["physics.contact={}", "walls.floor={shape={box={lower=[-0.1,-0.05],upper=[0.4,0.0]}}}"],
-            "solids.beam.shape: touches walls.floor at the start, and contact pushes apart what is nearer than two",
-        ),
-        (
-            [
-                "physics.contact={}",
-                "solids.end={shape={box={lower=[0.4,0.0],upper=[0.9,0.05]}},density=1e3,young=1e6,poisson=0.3}",
-            ],
-            "solids.beam.shape: touches solids.end at the start",
-        ),
-        (
             ["solids.beam.continues=water"],
             'solids.beam.continues: "water": there is no fluid to see the solid',
         ),

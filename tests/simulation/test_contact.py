@@ -1,5 +1,7 @@
 """Contact of solids in a simulation: what it keeps, what it costs where it is, and that else it is not there."""
 
+import math
+
 import numpy as np
 import pytest
 from drafts import draft
@@ -64,13 +66,14 @@ def gap(simulation):
     return x[group == 1].mean() - x[group == 0].mean()
 
 
-def test_a_bounce_keeps_energy_and_both_momenta(tmp_path):
+def test_a_bounce_keeps_momentum_and_nearly_energy_and_spin(tmp_path):
     simulation, ((momentum, spin, size), whole), most = bounced(draft(tmp_path, BLOCKS))
     after, turned, _ = motion(simulation)
     assert most > 0.02 * whole and simulation.store.shown("contact_energy").max() == 0.0  # met, and parted
-    assert np.abs(after - momentum).max() < 1e-14 * size and abs(turned - spin) < 1e-13 * size
-    assert energy(simulation) == pytest.approx(whole, rel=2e-3)
-    assert gap(simulation) > 1.05
+    assert np.abs(after - momentum).max() < 1e-14 * size
+    assert abs(turned - spin) < 3e-3 * size  # pairs push along the normals of faces, and not along x_ij
+    assert energy(simulation) == pytest.approx(whole, rel=1e-2)
+    assert gap(simulation) > 0.85
 
 
 def test_without_contact_they_run_through_each_other_and_nobody_looks_for_neighbours(tmp_path):
@@ -96,3 +99,82 @@ def test_damping_and_friction_take_energy_and_keep_the_momentum(tmp_path):
     damped, ((momentum, _, size), whole), _ = bounced(draft(tmp_path, BLOCKS, *keys))
     assert np.abs(motion(damped)[0] - momentum).max() < 1e-14 * size
     assert energy(damped) < 0.97 * whole
+
+
+BARS = """
+[space]
+dimensions = 2
+spacing = 0.005
+[time]
+end = 1.0
+[physics]
+contact = {}
+[solids.short]
+shape.box = { lower = [-0.101, 0.0], upper = [-0.001, 0.02] }
+velocity = [0.5, 0.0]
+density = 1000.0
+young = 1.0e6
+poisson = 0.0
+[solids.long]
+shape.box = { lower = [0.0, 0.0], upper = [0.2, 0.02] }
+density = 1000.0
+young = 1.0e6
+poisson = 0.0
+"""
+"""A short bar hits one twice as long at rest (Saint-Venant 1867)."""
+
+
+def test_a_short_bar_that_hits_a_long_one_stays_there(tmp_path):
+    simulation = start(draft(tmp_path, BARS))
+    while simulation.time < 0.012:
+        simulation.step()
+    v, group = simulation.store.shown("velocity")[:, 0], simulation.store.shown("group")
+    assert simulation.store.shown("contact_energy").max() == 0.0  # they have parted
+    assert v[group == 0].mean() == pytest.approx(0.0, abs=0.025)
+    assert v[group == 1].mean() == pytest.approx(0.25, abs=0.0125)
+
+
+SLOPE = """
+[space]
+dimensions = 2
+spacing = 0.02
+[time]
+end = 1.0
+[physics]
+gravity = [0.0, -9.81]
+contact = {{ friction = {friction}, damping = 0.3 }}
+[walls.floor]
+shape.polygon.points = {floor}
+[solids.block]
+shape.polygon.points = {block}
+density = 1000.0
+young = 2.0e5
+poisson = 0.3
+"""
+
+
+@pytest.mark.parametrize(("degrees", "friction"), [(25.0, 0.0), (38.0, 0.3)])
+def test_a_block_slides_down_a_drawn_slope(tmp_path, degrees, friction):
+    """Whatever its angle to the lattice: the faces are plane, and the lattice makes no steps of them."""
+    down, up = (
+        np.array([f(math.radians(degrees)) for f in of])
+        for of in ((math.cos, math.sin), (math.sin, math.cos))
+    )
+    down[1] *= -1.0
+    floor, block = (
+        [np.round(a * down + b * up, 9).tolist() for a, b in corners]
+        for corners in (
+            [(-0.1, -0.07), (0.7, -0.07), (0.7, 0.0), (-0.1, 0.0)],
+            [(0.0, 0.0), (0.2, 0.0), (0.2, 0.1), (0.0, 0.1)],
+        )
+    )
+    simulation = start(draft(tmp_path, SLOPE.format(friction=friction, floor=floor, block=block)))
+    own = simulation.store.shown("group") == 0
+    begun = simulation.store.shown("position")[own].mean(axis=0)
+    while simulation.time < 0.2:
+        simulation.step()
+    own = simulation.store.shown("group") == 0
+    way = simulation.store.shown("position")[own].mean(axis=0) - begun
+    pull = 9.81 * (math.sin(math.radians(degrees)) - friction * math.cos(math.radians(degrees)))
+    assert way @ down == pytest.approx(0.5 * pull * simulation.time**2, rel=0.03)
+    assert abs(way @ up) < 0.1 * 0.02

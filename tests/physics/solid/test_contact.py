@@ -1,4 +1,4 @@
-"""Contact of solids, a pair at a time: a push that is the derivative of an energy, damping and friction."""
+"""Contact of solids, a pair at a time: a push along the normal of drawn faces that has no bound, with an energy."""
 
 from typing import Any, NamedTuple
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from psph.composition.pair import Pair
-from psph.physics.solid.contact import Rubbing, Touching, dashpot, pressing, spring
+from psph.physics.solid.contact import SHARES, Rubbing, Touching, dashpot, meeting, modulus
 
 DX = 0.01
 
@@ -17,9 +17,17 @@ class Particle(NamedTuple):
     solid: Any
     mass: Any
     wave_modulus: Any
+    face: Any
+    cover: Any
 
 
-RUBBER, STEEL = Particle(2.0, 0.12, 2e7), Particle(3.0, 0.79, 3e11)
+def normal(degrees, length=1.0):
+    return length * np.cos(np.radians(degrees)), length * np.sin(np.radians(degrees))
+
+
+RUBBER = Particle(2.0, 0.12, 2e7, normal(205.0), 0.4)
+STEEL = Particle(3.0, 0.79, 3e11, normal(25.0), 0.6)
+"""Two flat faces aslant to the lattice, on each other."""
 
 
 def pair_of(x, u=(0.0, 0.0)):
@@ -28,61 +36,87 @@ def pair_of(x, u=(0.0, 0.0)):
     return Pair(x_ij=tuple(x), u_ij=tuple(u), r2=r * r, r=r, inverse_r=1.0 / r, u_dot_x=float(u @ x))
 
 
+def at(gap, aside=0.0):
+    """Where the rubber is whose face is so far from that of the steel, in spacings."""
+    out, along = np.array(normal(25.0)), np.array(normal(115.0))
+    return (gap + RUBBER.cover + STEEL.cover) * DX * out + aside * DX * along
+
+
 def contact(kind=Touching, damping=0.0, friction=0.0):
-    return kind(1.0, damping, friction, DX, 0.0)
+    return kind(1.0, damping, friction, DX, 1.0 / SHARES[1], 0.0)
 
 
 def force(effect, i, j, x, u=(0.0, 0.0)):
     """On i, N."""
-    pair = pair_of(x, u)
-    found = effect.radial(i, j, pair) * np.array(x)
-    if hasattr(effect, "shear"):
-        found = found + effect.shear(i, j, pair) * np.array(u)
-    return i.mass * found
+    return i.mass * np.array(effect.push(i, j, pair_of(x, u)))
+
+
+@pytest.mark.parametrize("kind", [Touching, Rubbing])
+def test_a_face_aslant_pushes_along_its_normal_and_without_bound(kind):
+    effect, out = contact(kind), np.array(normal(25.0))
+    shallow, deep = (force(effect, RUBBER, STEEL, at(-gap)) for gap in (0.1, 0.9))
+    assert shallow / np.linalg.norm(shallow) == pytest.approx(out)
+    stiff = modulus(effect, RUBBER, STEEL)
+    assert stiff == pytest.approx(2.0 * 2e7, rel=1e-3)  # as soft as the softer one
+    share = meeting(effect, RUBBER, STEEL, pair_of(at(-0.1))).share
+    assert np.linalg.norm(shallow) == pytest.approx(share * stiff * 0.1 * DX * 1.04)
+    assert np.linalg.norm(deep) == pytest.approx(share * stiff * 0.9 * DX * 4.24)
+    assert not force(effect, RUBBER, STEEL, at(0.001)).any()
+    # Beside each other on the face, a pair pushes less, by the same overlap; far beside not at all.
+    beside = meeting(effect, RUBBER, STEEL, pair_of(at(-0.1, 0.8)))
+    assert beside.overlap == pytest.approx(0.1 * DX) and 0.0 < beside.share < share
+    assert not force(effect, RUBBER, STEEL, at(-0.1, 1.6)).any()
 
 
 def test_the_push_is_the_derivative_of_the_energy_and_that_of_both_the_same():
     effect, step = contact(), 1e-7
-    for x in ((0.7 * DX, 0.2 * DX), (1.1 * DX, -1.2 * DX), (0.0, 1.9 * DX)):
-        found = force(effect, RUBBER, STEEL, x)
+    bare = RUBBER._replace(face=(0.0, 0.0))
+    for one, x in ((RUBBER, at(-0.3, 0.4)), (RUBBER, at(-0.1, -0.9)), (bare, at(-0.2, 0.3))):
+        found = force(effect, one, STEEL, x)
         for d in (0, 1):
             ends = []
             for sign in (1.0, -1.0):
                 moved = np.array(x)
                 moved[d] += sign * step
-                pair = pair_of(moved)
-                both = ((RUBBER, STEEL), (STEEL, RUBBER))
-                ends.append(sum(effect.gather(0.0, i, j, pair) for i, j in both))
+                both = ((one, STEEL, moved), (STEEL, one, -moved))
+                ends.append(sum(effect.gather(0.0, i, j, pair_of(x)) for i, j, x in both))
             assert found[d] == pytest.approx(-(ends[0] - ends[1]) / (2.0 * step), rel=1e-5, abs=1e-4)
-        assert force(effect, STEEL, RUBBER, -np.array(x)) == pytest.approx(-found, rel=1e-14)
-        assert pressing(effect, RUBBER, STEEL, pair_of(x)) == pressing(
-            effect, STEEL, RUBBER, pair_of(-np.array(x))
-        )
-    assert spring(effect, RUBBER, STEEL) == pytest.approx(2.0 * 2e7, rel=1e-3)  # as soft as the softer one
+        assert force(effect, STEEL, one, -np.array(x)) == pytest.approx(-found, rel=1e-13)
 
 
-def test_beyond_two_spacings_and_within_one_solid_nothing_is_felt():
+def test_an_edge_takes_the_normal_of_the_face_that_it_meets():
+    edge = RUBBER._replace(face=(0.0, 0.0))
+    out = meeting(contact(), edge, STEEL, pair_of(at(-0.1, 0.5))).out
+    assert out == pytest.approx(normal(25.0))
+    both = meeting(contact(), edge, STEEL._replace(face=(0.0, 0.0)), pair_of((0.3 * DX, 0.4 * DX))).out
+    assert both == pytest.approx((0.6, 0.8))
+
+
+def test_within_one_solid_and_between_faces_that_look_the_same_way_nothing_is_felt():
     effect = contact(Rubbing, 0.5, 0.3)
-    apart = force(effect, RUBBER, STEEL, (2.001 * DX, 0.0), (-3.0, 5.0))
-    within = force(effect, RUBBER, RUBBER._replace(mass=0.2), (0.5 * DX, 0.0), (-3.0, 5.0))
-    assert not apart.any() and not within.any()
+    within = force(effect, RUBBER, STEEL._replace(solid=2.0), at(-0.5), (-3.0, 5.0))
+    alike = force(effect, RUBBER, STEEL._replace(face=RUBBER.face), at(-0.5), (-3.0, 5.0))
+    deep = force(effect, RUBBER, STEEL._replace(cover=1.5), at(-0.5), (-3.0, 5.0))
+    assert not within.any() and not alike.any() and not deep.any()
 
 
 def test_damping_slows_what_comes_and_never_holds_what_goes():
-    calm, damped = contact(), contact(damping=0.5)
-    x = (DX, 0.0)
-    still, coming, going = (force(damped, RUBBER, STEEL, x, (u, 0.0))[0] for u in (0.0, -2.0, 2.0))
-    assert still == force(calm, RUBBER, STEEL, x)[0] and coming > still > going >= 0.0
-    assert coming - still == pytest.approx(dashpot(calm, RUBBER, STEEL) * 0.5 * 1.0 * 2.0)
-    assert force(damped, RUBBER, STEEL, x, (1e6, 0.0))[0] == 0.0
+    calm, damped, out = contact(), contact(damping=0.5), np.array(normal(25.0))
+    x = at(-0.2)
+    still, coming, going = (force(damped, RUBBER, STEEL, x, u * out) @ out for u in (0.0, -2.0, 2.0))
+    assert still == pytest.approx(force(calm, RUBBER, STEEL, x) @ out) and coming > still > going >= 0.0
+    share = meeting(calm, RUBBER, STEEL, pair_of(x)).share
+    assert coming - still == pytest.approx(share * dashpot(calm, RUBBER, STEEL) * 0.5 * 2.0)
+    assert force(damped, RUBBER, STEEL, x, 1e6 * out) == pytest.approx((0.0, 0.0), abs=1e-6)
 
 
 def test_friction_is_coulombs_and_stops_what_slides_slowly():
-    effect = contact(Rubbing, friction=0.3)
-    x = (1.2 * DX, 0.0)
-    push = force(effect, RUBBER, STEEL, x)[0]
-    fast, reverse, slow = (force(effect, RUBBER, STEEL, x, (0.0, u)) for u in (50.0, -50.0, 1e-6))
-    assert fast == pytest.approx([push, -0.3 * push]) and reverse == pytest.approx([push, 0.3 * push])
-    assert slow == pytest.approx([push, -dashpot(effect, RUBBER, STEEL) * 1e-6])
-    coming = force(effect, RUBBER, STEEL, x, (-5.0, 0.0))  # no part of u along x_ij rubs
-    assert coming == pytest.approx([push, 0.0])
+    effect, out, along = contact(Rubbing, friction=0.3), np.array(normal(25.0)), np.array(normal(115.0))
+    x = at(-0.2)
+    push = force(effect, RUBBER, STEEL, x) @ out
+    fast, slow = (force(effect, RUBBER, STEEL, x, u * along) for u in (50.0, 1e-6))
+    assert fast == pytest.approx(push * (out - 0.3 * along))
+    share = meeting(effect, RUBBER, STEEL, pair_of(x)).share
+    assert slow @ along == pytest.approx(-share * dashpot(effect, RUBBER, STEEL) * 1e-6)
+    coming = force(effect, RUBBER, STEEL, x, -5.0 * out)  # no part of u along the normal rubs
+    assert coming == pytest.approx(push * out)
