@@ -64,3 +64,31 @@ def test_a_thin_body_is_told_both_cures(tmp_path):
     assert "bodies.board.shape: 2 layers of particles" in line
     assert line.endswith("make the body at least 3 spacings (0.3 m) thick, or space.spacing smaller")
     assert check(Scene(draft(tmp_path, TANK + THIN.format(0.5)))) == []
+
+
+@pytest.mark.parametrize(
+    ("shape", "says"),
+    [
+        (
+            "box={lower=[0.2,0.5],upper=[0.53,0.83]}",
+            "bodies.brick is 0.33 m wide along x, which is 6.6 spacings",
+        ),
+        ("disc={center=[0.52,0.52],radius=0.11}", "its particles fill 0.0425 m2 of the 0.038"),
+        ("box={lower=[0.2,0.5],upper=[0.5,0.8]}", None),
+    ],
+)
+def test_check_tells_of_bodies_that_the_lattice_makes_larger_or_smaller(tmp_path, shape, says):
+    text = """
+[space]
+dimensions = 2
+spacing = 0.05
+[time]
+end = 1.0
+[physics]
+sound_speed = 20.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.4] }
+"""
+    lines = check(Scene(draft(tmp_path, text, f"bodies.brick={{shape={{{shape}}},density=500.0}}")))
+    found = [line for line in lines if "bodies.brick" in line and ("wide along x" in line or "fill" in line)]
+    assert len(found) == (says is not None) and all(says in line for line in found), lines
