@@ -181,17 +181,25 @@ SCENES = {
         },
     ),
     "soil": scene(
-        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, **SAND}},
+        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
         walls={"floor": {"shape": box((-0.5, -0.5), (2.0, 0.0)), "no_slip": True}},
         physics={"gravity": PULL},
     ),
     "smooth soil": scene(
-        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, **SAND}},
+        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
         walls={"tank": tank()},
         physics={"gravity": PULL},
     ),
     "falling sand": scene(
-        soils={"sand": {"shape": BLOCK, "geostatic": False, "velocity_gradient": STIR, **SAND}},
+        soils={
+            "sand": {
+                "shape": BLOCK,
+                "geostatic": False,
+                "velocity_gradient": STIR,
+                "velocity_center": [0.7, 0.4],
+                **SAND,
+            }
+        },
         physics={"gravity": PULL},
     ),
 }

@@ -14,8 +14,8 @@ class DryWall(NamedTuple):
     step decide which those are, and the pair loop knows nothing of it (psph.particles.wetting.mark_wet).
     A wall that was dry becomes wet where fluid comes within 0.95 of the support: were it one distance, still
     water would tremble, for a wall at the edge of reach would lose its pressure again and again.  Without
-    it a wall would keep for ever the pressure that it had when the fluid left.  Where no fluid is even
-    listed, nothing is summed for such a wall (psph.simulation.wetting).
+    it a wall would keep for ever the pressure that it had when the fluid left.  Nothing is summed for a wall
+    that is dry (psph.simulation.wetting).
     A wall whose condition bears no pressure (psph.physics.walls.conditions) is always dry.
     """
 

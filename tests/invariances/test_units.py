@@ -1,0 +1,37 @@
+"""A scene in units that are powers of two of others gives the same bits; lengths are multiplied by powers of four,
+since some constants are roots of a length."""
+
+import numpy as np
+import pytest
+from invariances.running import after, matched
+from invariances.scenes import SCENES
+from invariances.transforms import Units
+from long import LONG
+
+SHORT = ("drop", "tank")
+"""The rest is long."""
+
+UNLIKE = ("solids that meet",)
+"""Their friction knows a speed of 1e-12 m/s."""
+
+OTHER = Units(length=16.0, mass=2.0**-5, time=4.0)
+
+
+@pytest.mark.parametrize(
+    "name", [n if n in SHORT else pytest.param(n, marks=LONG) for n in SCENES if n not in UNLIKE]
+)
+def test_other_units_change_no_bit(tmp_path, name):
+    one, other = (after(tables, tmp_path, 30) for tables in (SCENES[name], OTHER.of(SCENES[name])))
+    rows = matched(one, other, OTHER.length * one.start)
+    units = {"position": "m", "velocity": "m/s", "pressure": "Pa", "density": "kg/m3"}
+    for what, unit in units.items():
+        assert np.array_equal(getattr(one, what) * OTHER.factor(unit), getattr(other, what)[rows]), what
+    assert one.time * OTHER.time == other.time
+
+
+def test_a_length_in_another_unit_alone_is_seen(tmp_path):
+    """The control: of a number that is forgotten."""
+    tables = OTHER.of(SCENES["drop"])
+    tables["fluids"]["water"]["density"] *= 2.0
+    one, other = after(SCENES["drop"], tmp_path, 3), after(tables, tmp_path, 3)
+    assert not np.array_equal(one.pressure * OTHER.factor("Pa"), other.pressure)

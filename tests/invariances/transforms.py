@@ -1,0 +1,170 @@
+"""Scenes that are turned, mirrored, moved, or told in other units: functions of the tables of a case."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from invariances.units import exponents
+
+POINTS = ("center", "position", "pivot", "at", "anchor", "velocity_center", "about", "centre", "foot", "top")
+DIRECTIONS = (
+    "velocity",
+    "acceleration",
+    "gravity",
+    "amplitude",
+    "shift",
+    "normal",
+    "direction",
+    "translation",
+    "force",
+)
+TURNS = ("spin", "angle", "rotation", "speed")
+AXES = "xyz"
+
+
+class Turn(NamedTuple):
+    """An orthogonal ``matrix`` (dim, dim) of zeros and signs: x → matrix x."""
+
+    matrix: np.ndarray
+
+    @property
+    def handed(self) -> float:
+        """−1 where it mirrors."""
+        return float(np.linalg.det(self.matrix))
+
+    def points(self, x):
+        """Where points (n, dim) come to lie."""
+        return x @ self.matrix.T
+
+    directions = points
+    """Where vectors (n, dim) then point."""
+
+    def of(self, table: Any, key: str = "") -> Any:
+        """A table of a case, turned."""
+        if isinstance(table, dict):
+            found = {name: self.of(value, name) for name, value in table.items()}
+            if key in ("box", "space") and "lower" in table:
+                ends = np.array([found["lower"], found["upper"]])
+                found |= {"lower": ends.min(axis=0).tolist(), "upper": ends.max(axis=0).tolist()}
+            return found
+        if key in TURNS and np.ndim(table) == 0:
+            return self.handed * table
+        if key in (*POINTS, *DIRECTIONS, "lower", "upper", "origin"):
+            return _clean(self.points(np.array([table]))[0])
+        if key == "points":
+            return [_clean(point) for point in self.points(np.array(table))]
+        if key == "velocity_gradient":
+            return [_clean(row) for row in self.matrix @ np.array(table) @ self.matrix.T]
+        if key in ("periodic", "symmetry", "axis"):
+            return self._sides(table)
+        if isinstance(table, list):
+            return [self.of(one, key) for one in table]
+        return table
+
+    def _sides(self, names):
+        """Axes and sides, by their names."""
+        if isinstance(names, list):
+            return [self._sides(name) for name in names]
+        axis, _, side = names.partition(".")
+        column = self.matrix[:, AXES.index(axis)]
+        to = int(np.abs(column).argmax())
+        if side and column[to] < 0.0:
+            side = {"lower": "upper", "upper": "lower"}[side]
+        return AXES[to] + (f".{side}" if side else "")
+
+
+def _clean(row) -> list[float]:
+    return [float(x) + 0.0 for x in row]
+
+
+QUARTER = Turn(np.array([[0.0, -1.0], [1.0, 0.0]]))
+LEFT_RIGHT = Turn(np.array([[-1.0, 0.0], [0.0, 1.0]]))
+UP_DOWN = Turn(np.array([[1.0, 0.0], [0.0, -1.0]]))
+EXCHANGE = Turn(np.array([[0.0, 1.0], [1.0, 0.0]]))
+TURNS_OF_A_SCENE = {"a quarter": QUARTER, "left-right": LEFT_RIGHT, "up-down": UP_DOWN, "exchanged": EXCHANGE}
+
+
+class Shift(NamedTuple):
+    """All moved by ``way`` (dim,), m, and drifting at ``drift`` (dim,), m/s."""
+
+    way: tuple[float, ...] = (0.0, 0.0)
+    drift: tuple[float, ...] = (0.0, 0.0)
+
+    def of(self, table: Any, key: str = "") -> Any:
+        """A table of a case, moved; all that is in it drifts."""
+        if isinstance(table, dict):
+            return {name: self._of_table(name, value, key) for name, value in table.items()}
+        if key in (*POINTS, "lower", "upper"):
+            return _clean(np.add(table, self.way))
+        if key == "points":
+            return [_clean(np.add(point, self.way)) for point in table]
+        if isinstance(table, list):
+            return [self.of(one, key) for one in table]
+        return table
+
+    def _of_table(self, name, value, key):
+        found = self.of(value, name)
+        if any(self.drift) and key in ("fluids", "soils", "solids", "bodies"):
+            found["velocity"] = _clean(
+                np.add(found.get("velocity", self.way and [0.0] * len(self.way)), self.drift)
+            )
+        if any(self.drift) and key in ("walls", "clamps"):
+            own = found.get("motion", [])
+            found["motion"] = [*(own if isinstance(own, list) else [own]), {"translation": list(self.drift)}]
+        return found
+
+    def points(self, x, time=0.0):
+        """Where points (n, dim) are after ``time``, s."""
+        return x + np.array(self.way) + time * np.array(self.drift)
+
+
+NO_UNIT = (
+    "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction",
+    "exponent", "friction", "fast_friction", "inertial_number", "damping_ratio", "angle", "phase", "cfl",
+    "gather_every", "hourglass", "alpha", "skin", "rate", "epsilon", "delta", "beta", "contact",
+)  # fmt: skip
+UNIT_OF = {
+    **dict.fromkeys(("spacing", "radius", "shift", "diameter", "amplitude", "lower", "upper", *POINTS), "m"),
+    **dict.fromkeys(("velocity", "sound_speed", "translation"), "m/s"),
+    **dict.fromkeys(("end", "step", "ramp", "start", "time", "regularisation"), "s"),
+    **dict.fromkeys(("frequency", "spin", "velocity_gradient", "speed", "least_rate", "strength"), "1/s"),
+    **dict.fromkeys(("gravity", "acceleration"), "m/s2"),
+    **dict.fromkeys(("density", "grain_density"), "kg/m3"),
+    **dict.fromkeys(("young", "cohesion", "yield_stress", "hardening", "pressure", "tension"), "Pa"),
+    **dict.fromkeys(
+        ("largest_viscosity", "plastic_viscosity", "viscosity_at_rest", "viscosity_in_shear", "damping"),
+        "Pa s",
+    ),
+    "viscosity": "m2/s",
+}
+
+
+class Units(NamedTuple):
+    """Other units: numbers of length, mass and time are so many times as large."""
+
+    length: float
+    mass: float
+    time: float
+
+    def factor(self, unit: str, dimensions: int = 3) -> float:
+        """What multiplies a number with this unit."""
+        powers = exponents(unit, dimensions)
+        return float(np.prod([base**power for base, power in zip(self, powers)]))
+
+    def of(self, table: Any, key: str = "", within: str = "") -> Any:
+        """A table of a case, in these units."""
+        if isinstance(table, dict):
+            return {name: self._of_entry(name, value, key, table) for name, value in table.items()}
+        if isinstance(table, list) and not np.ndim(table):
+            return table
+        if isinstance(table, list):
+            return [self.of(one, key, within) for one in table]
+        if isinstance(table, (str, bool)) or key in NO_UNIT:
+            return table
+        return table * self.factor(UNIT_OF[key])
+
+    def _of_entry(self, name, value, key, table):
+        if name == "consistency":
+            return value * self.factor("Pa") * self.time ** table["exponent"]
+        if name == "damping" and key == "contact":
+            return value
+        return self.of(value, name, key)
