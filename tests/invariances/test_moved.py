@@ -12,7 +12,7 @@ from long import LONG
 SHORT = ("plain",)
 """The rest is long."""
 
-MOVED = ("plain", "solid", "rubber", "metal", "updated", "solids that meet", "soil")
+MOVED = ("plain", "solid", "rubber", "metal", "updated", "solids that meet", "soil", "mud by bingham")
 """A scene of each kind of matter."""
 
 NO_SHIFT = {"position_shift": "off"}
