@@ -8,7 +8,7 @@ from psph.acts import BODIES, FRAME, MIXED, ONE, SOLIDS, UPDATED
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
-from psph.physics.stress.strength import DruckerPrager, cone
+from psph.physics.stress.strength import DruckerPrager, Hexagon, Round, cone
 
 
 class Soil(Hookean):
@@ -78,11 +78,13 @@ class Soil(Hookean):
     def cone(self, dimensions: int) -> tuple[float, ...]:
         """3α, k in Pa and 3α_ψ of its yield surface, its strength reduced."""
         by = self.strength_reduction
-        angles = (
-            math.atan(math.tan(math.radians(angle)) / by) for angle in (self.friction_angle, self.dilatancy)
+        return cone(
+            self._reduced(self.friction_angle), self.cohesion / by, self._reduced(self.dilatancy), dimensions
         )
-        friction, dilatancy = angles
-        return cone(friction, self.cohesion / by, dilatancy, dimensions)
+
+    def _reduced(self, angle: float) -> float:
+        """An angle in degrees with its tangent reduced, rad."""
+        return math.atan(math.tan(math.radians(angle)) / self.strength_reduction)
 
     def tip(self, dimensions: int) -> float:
         """The largest mean tension, Pa; without friction k itself where none is given."""
@@ -105,6 +107,7 @@ class Soil(Hookean):
             self.water_density * pull if wet else 0.0,
             self.water_level if wet else 0.0,
             up,
+            Hexagon(math.sin(self._reduced(self.friction_angle))) if dimensions == 3 else Round(),
         )
 
 

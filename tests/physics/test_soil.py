@@ -75,9 +75,28 @@ def test_with_dilatancy_of_the_angle_of_friction_the_cone_is_the_usual_one():
         friction, _, flow = soil(friction_angle=angle, dilatancy=angle).cone(2)
         assert friction / 3.0 == pytest.approx(alpha, abs=5e-5)
         assert flow == pytest.approx(friction, rel=1e-12)
-    friction, k, _ = soil(friction_angle=30.0, cohesion=10.0).cone(3)
-    assert friction == pytest.approx(6.0 * 0.5 / (math.sqrt(3.0) * 2.5), rel=1e-12)
-    assert k == pytest.approx(60.0 * math.cos(math.pi / 6.0) / (math.sqrt(3.0) * 2.5), rel=1e-12)
+
+
+@pytest.mark.parametrize("way", (1.0, -1.0))
+def test_pressed_and_stretched_along_one_axis_it_has_the_strength_of_mohr_and_coulomb(way):
+    """Principal stresses a ≥ b ≥ c of soil in 3D: ½(a − c) = ½(a + c) sin φ + c cos φ, whatever b."""
+    one = soil(cohesion=1e3, young=5e8)
+    point = Point(one, 3, pressure=2e4).strained(np.diag([0.5, 0.5, -1.0]) * way * 1e-5, 300)
+    along, across = point.p - point.s[5], point.p - point.s[0]
+    phi = math.radians(25.0)
+    expected = 0.5 * (along + across) * math.sin(phi) + 1e3 * math.cos(phi)
+    assert 0.5 * abs(along - across) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("dilatancy", (0.0, 10.0))
+def test_in_plane_strain_soil_is_as_strong_in_3d_as_in_2d(dilatancy):
+    """The cone of the edges of compression was 1.39 times as strong at 30°."""
+    one = soil(friction_angle=30.0, dilatancy=dilatancy, cohesion=1e3, young=5e8)
+    open_up = 1e-5 * math.sin(math.radians(dilatancy))
+    gradient = np.diag([1e-5 + open_up, -1e-5 + open_up, 0.0])
+    plane = Point(one, 2, pressure=2e4).strained(gradient[:2, :2], 400)
+    whole = Point(one, 3, pressure=2e4).strained(gradient, 400)
+    assert (whole.s[0] - whole.s[3]) / whole.p == pytest.approx((plane.s[0] - plane.s[2]) / plane.p, rel=1e-4)
 
 
 def test_confined_soil_that_dilates_gains_pressure_in_shear_and_other_soil_does_not():
