@@ -69,6 +69,13 @@ class Stress(NamedTuple):
     shapes = (SYMMETRIC,)
 
 
+class StressUnderWeight(NamedTuple):
+    """As :class:`Stress`, Pa; behind a plane that sticks it grows with the pressure of a still column, both
+    from the tip of a cone on: friction is that at the plane, not that half a spacing before it."""
+
+    shapes = (SYMMETRIC,)
+
+
 class StillPressure(NamedTuple):
     """p′ = p + ρ₀g·(x′ − x), Pa: a still column goes on behind the plane."""
 
@@ -94,7 +101,7 @@ class StillSlope(NamedTuple):
 
 
 class Numbered(NamedTuple):
-    """The number of a rigid body: its image is another one, −n, which it may touch."""
+    """The number of what acts on its like in another way than on others: an image is another one, −n."""
 
     shapes = (SCALAR,)
 
@@ -213,7 +220,7 @@ OF_MATERIAL = (
     _fixed("wave_speed", "m/s", "speed of pressure waves in the matter itself; the numerical one in a fluid"),
     _fixed("stress_diffusion", "1", "strength of the spreading of an evolved stress"),
     _fixed("rest_coefficient", "1", "stress across over that along gravity, in level ground at rest"),
-    _fixed("strength", "1", "number of the law that bounds an evolved stress, 0 where none does"),
+    _fixed("strength", "1", "number of the law that bounds an evolved stress, 0 where none does", Numbered),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""
 

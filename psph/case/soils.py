@@ -9,6 +9,7 @@ from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
 from psph.physics.stress.strength import DruckerPrager, Hexagon, Round, cone
+from psph.physics.walls.conditions import PENALTY, REPULSIVE
 
 
 class Soil(Hookean):
@@ -67,6 +68,9 @@ class Soil(Hookean):
         ),
         MIXED: 'soils are computed in double precision, since strains are small; use "double"',
         FRAME: "soils know of no frame that moves; remove one of the two",
+        **dict.fromkeys(
+            (REPULSIVE, PENALTY), 'bears no stress of soil; take "dynamic", "extrapolated" or "mirror"'
+        ),
     }
 
     @property

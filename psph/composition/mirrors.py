@@ -28,6 +28,7 @@ from psph.fields import (
     StillVolume,
     StrainRate,
     Stress,
+    StressUnderWeight,
     Turned,
     VelocityGradient,
     view_of,
@@ -59,7 +60,8 @@ ABSENT = -1
 class Reflection(NamedTuple):
     """An image of a particle stands at ``turn`` x + ``shift``, m, and moves with ``turn_velocity`` v +
     ``shift_velocity``, m/s.  ``turn_strain`` are the signs that the components of a rate of strain take,
-    upper triangle by rows, ``turn_stress`` those of a stress.  ``gravity`` in m/s², None on an axis without:
+    upper triangle by rows, ``turn_stress`` those of a stress.  ``sticks``: 1 where a plane
+    does, else 0.  ``gravity`` in m/s², None on an axis without:
     a still column goes on behind the plane.  ``rules``: how each field is turned, by its name (psph.fields),
     None where it does not say."""
 
@@ -69,6 +71,7 @@ class Reflection(NamedTuple):
     shift_velocity: tuple[float, ...]
     turn_strain: tuple[float, ...]
     turn_stress: tuple[float, ...]
+    sticks: float
     gravity: tuple[float | None, ...]
     rules: Any
 
@@ -123,7 +126,7 @@ def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...], rules) -
     sliding = np.where(np.isin(np.arange(dimensions), sticking), 1.0, turn)
     stress = np.outer(sliding, sliding)[np.triu_indices(dimensions)]
     rows = (turn, shift, turn_velocity, shift_velocity, strain, stress)
-    return Reflection(*(tuple(row.tolist()) for row in rows), gravity, rules)
+    return Reflection(*(tuple(row.tolist()) for row in rows), float(bool(sticking)), gravity, rules)
 
 
 def _strain_turned(sticking: list[int], turn: np.ndarray, turn_velocity: np.ndarray) -> np.ndarray:
@@ -277,6 +280,7 @@ def _seen(view, widths: tuple[int, ...], rules: dict[str, type]):
         View=view,
         weight=weight_behind,
         slope=slope_behind,
+        steeper=steeper_behind,
     )
 
 
@@ -300,6 +304,7 @@ OF_COMPONENTS = {
     VelocityGradient: "reflection.turn_velocity[{d}] * reflection.turn[{e}] * j.{name}[{n}]",
     StrainRate: "reflection.turn_strain[{n}] * j.{name}[{n}]",
     Stress: "reflection.turn_stress[{n}] * j.{name}[{n}]",
+    StressUnderWeight: "steeper(reflection, i, j) * (reflection.turn_stress[{n}] * j.{name}[{n}])",
     StillSlope: "reflection.turn[{d}] * j.{name}[{n}] + slope(reflection, i)[{d}]",
 }
 """How it has component n of a vector along axis d, or of a matrix of axes d and e."""
@@ -331,6 +336,24 @@ def _text(name: str, rule: type, width: int, dimensions: int) -> str:
 def weight_behind(reflection, i, j):
     """By how much the pressure of a still column is higher at the image than at j itself, Pa."""
     return i.rest_density * along(_way(reflection, j), reflection.gravity)
+
+
+STEEPEST = 3.0
+"""Most by which a stress at an image may exceed that of the particle, as at walls of particles."""
+
+NO_PRESSURE = 1e-30
+"""Keeps no pressure from dividing by zero, Pa."""
+
+
+@register_jitable
+def steeper_behind(reflection, i, j):
+    """By what a stress grows from j to its image with the weight of a still column, where a plane sticks.
+
+    (p′ + T)/(p + T) of pressures above 0, T the mean tension at which there is no strength left.
+    """
+    own = max(j.pressure, 0.0) + j.cone_tip
+    seen = max(j.pressure + weight_behind(reflection, i, j), 0.0) + j.cone_tip
+    return 1.0 + reflection.sticks * (min(seen / (own + NO_PRESSURE), STEEPEST) - 1.0)
 
 
 def slope_behind(reflection, i):

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from psph.composition.mirrors import Plane
-from psph.fields import MATRIX, SYMMETRIC, VECTOR, Place, Stress
+from psph.fields import MATRIX, SYMMETRIC, VECTOR, Place, Stress, StressUnderWeight
 
 
 def bring_back(store, planes: Iterable[Plane], free: int) -> None:
@@ -29,7 +29,7 @@ def _odd_rows(store, plane: Plane) -> Iterable[int]:
     shapes = {VECTOR: [(d,) for d in range(dimensions)], MATRIX: full}
     shapes[SYMMETRIC] = [(d, e) for d, e in full if d <= e]
     for name, field in store.fields.items():
-        goes_on = field.image is Place or field.image is Stress and plane.sticks
+        goes_on = field.image is Place or field.image in (Stress, StressUnderWeight) and plane.sticks
         if field.composed and not goes_on:
             for row, axes in zip(store.rows[name], shapes[field.shape]):
                 if axes.count(plane.axis) == 1:

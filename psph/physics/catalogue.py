@@ -41,6 +41,7 @@ from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, Tra
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.contact import SolidContact
 from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
+from psph.physics.stress.faces import SmoothFace
 from psph.physics.stress.strength import Strength
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
@@ -119,6 +120,7 @@ CATALOGUE = (
     Entry("physics.artificial_stress", ArtificialStress),
     Entry("soils.*|solids.*.description=updated", DeviatorRate),
     Entry("soils.*|solids.*.description=updated", DeviatoricForce),
+    Entry("soils.*|solids.*.description=updated", SmoothFace),
     Entry("soils.*", Strength),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.central_friction", CentralFriction),

@@ -4,17 +4,18 @@ The stress is σ = s − p1, tension positive, with p from the density as that o
 plane strain, and s_zz = −(s_xx + s_yy).  A fluid beside it has G = 0 and s = 0.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from psph.acts import SOILS, UPDATED
-from psph.fields import SYMMETRIC, Stress
+from psph.fields import SYMMETRIC, StressUnderWeight
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.physics.damping.diffusion import diffusion_step
 from psph.physics.facts import Facts
 from psph.physics.fluid.strain import FEWEST, linear_gradient, no_rate, rate_weight, take_rate
+from psph.physics.stress.faces import Sticking, across, counts, faces_of, steepness
 from psph.vectors import (
     add,
     dot,
@@ -31,7 +32,13 @@ from psph.vectors import (
 )
 
 DEVIATOR = Declared(
-    "deviator", "Pa", "deviatoric stress, tension positive", SYMMETRIC, saved=True, evolves=True, image=Stress
+    "deviator",
+    "Pa",
+    "deviatoric stress, tension positive",
+    SYMMETRIC,
+    saved=True,
+    evolves=True,
+    image=StressUnderWeight,
 )
 
 FEWEST_OF_ELASTIC = 0.45
@@ -51,16 +58,10 @@ def jaumann_rate(gradient, s, shear_modulus, like):
 
 
 @helper
-def holds(j):
-    """1 where neighbour j counts in a velocity gradient: it resists shear, or is a wall without slip."""
-    return max(where(j.shear_modulus > 0.0, 1.0, 0.0), j.no_slip)
-
-
-@helper
-def take_neighbour(total, j, pair):
-    """Take a neighbour that :func:`holds` into the sums of a velocity gradient."""
-    weight = rate_weight(j, pair) * holds(j)
-    return take_rate(total, pair, pair.u_ij, weight, weight)
+def take_neighbour(faces, total, j, pair):
+    """Take what counts of a neighbour into the sums of a velocity gradient."""
+    weight = rate_weight(j, pair)
+    return take_rate(total, pair, across(faces, j, pair.u_ij), weight, weight * counts(faces, j))
 
 
 class DeviatorRate(NamedTuple):
@@ -68,13 +69,15 @@ class DeviatorRate(NamedTuple):
 
     ds_i/dt = 2G (D − ⅓ tr D 1) + Ωs + sΩᵀ, D and Ω the symmetric and the skew part of
     ∇v_i = −Σ_j V_j u_ij ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ, over neighbours that resist shear and walls
-    without slip: exact for a linear flow up to a surface.  Gray, Monaghan & Swift (2001), Comput. Methods
-    Appl. Mech. Eng. 190, 6641; corrected, Randles & Libersky (1996), 139, 375.
+    without slip, of other walls with n(n·u_ij) for u_ij (:class:`psph.physics.stress.faces.SmoothFace`):
+    exact for a linear flow up to a surface.  Gray, Monaghan & Swift (2001), Comput. Methods Appl. Mech. Eng.
+    190, 6641; corrected, Randles & Libersky (1996), 139, 375.
     """
 
     acts = (SOILS, UPDATED)
 
     least: float = FEWEST
+    faces: Any = Sticking()
 
     writes = DEVIATOR
 
@@ -82,10 +85,10 @@ class DeviatorRate(NamedTuple):
         """Where soils ask for it, the form whose stress spreads between neighbours too; in matter that never
         yields the correction fades sooner: else particles with few neighbours, at an edge, tear out."""
         if not scene.stressed.laws:
-            return DeviatorRate(FEWEST_OF_ELASTIC)
+            return DeviatorRate(FEWEST_OF_ELASTIC, faces_of(scene))
         if not scene.stressed.diffusion:
-            return self
-        return DiffusedDeviatorRate(scene.stressed.diffusion, levelled(scene))
+            return DeviatorRate(self.least, faces_of(scene))
+        return DiffusedDeviatorRate(scene.stressed.diffusion, levelled(scene), faces_of(scene))
 
     def start(self, i):
         """No neighbour yet."""
@@ -93,7 +96,7 @@ class DeviatorRate(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take a neighbour that holds."""
-        return take_neighbour(total, j, pair)
+        return take_neighbour(self.faces, total, j, pair)
 
     def finish_value(self, total, i, kernel):
         """ds/dt, Pa/s; 0 in what does not resist shear."""
@@ -132,6 +135,7 @@ class DiffusedDeviatorRate(NamedTuple):
 
     largest: float
     level: tuple
+    faces: Any = Sticking()
 
     writes = DEVIATOR
 
@@ -141,7 +145,7 @@ class DiffusedDeviatorRate(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take a neighbour that holds, and what it spreads."""
-        flow = take_neighbour(total[0], j, pair)
+        flow = take_neighbour(self.faces, total[0], j, pair)
         return flow, add(total[1], spread(self.level, i, j, pair))
 
     def finish_value(self, total, i, kernel):
@@ -158,7 +162,8 @@ class DeviatoricForce(NamedTuple):
     """The divergence of the deviatoric stress, symmetric in the pair.
 
     a_i = Σ_j m_j (s_i/ρ_i² + s_j/ρ_j²) ∇W_ij; a wall without slip shows the particle before it s_j/ρ_j² =
-    s_i/ρ_i², of soil in proportion to the pressure (:func:`shown`), others show none.  Gray, Monaghan & Swift
+    s_i/ρ_i², of soil in proportion to the pressure (:func:`shown`), others what
+    :class:`psph.physics.stress.faces.SmoothFace` says.  Gray, Monaghan & Swift
     (2001); with the pressure of :class:`psph.physics.fluid.pressure.SymmetricPressure` it is the force of the
     whole stress.
     """
@@ -196,24 +201,12 @@ class CorrectedDeviatoricForce(NamedTuple):
         return scale(add(scale(at_i, own), scale(at_j, other)), pair.m_dw_r)
 
 
-STEEPEST = 3.0
-"""Most by which the stress of a wall without slip may exceed that of the soil before it: of a layer one row
-thick the weight on the first row of the wall over that on its own."""
-
-
 @helper
 def shown(i, j):
     """1/ρ_i² and 1/ρ_j² as factors of s_i and s_j; a wall without slip shows what is before it that one's s.
 
-    Of soil in proportion to the pressure of the wall over that of the soil, both from the tip of its cone on:
-    so friction is that at the face, not that half a spacing before it.  What does not resist shear has s = 0.
+    In proportion to the pressure (:func:`steepness`).  What does not resist shear has s = 0.
     """
-    tip = i.cone_tip + j.cone_tip
-    at_i, at_j = max(i.pressure, 0.0) + tip, max(j.pressure, 0.0) + tip
-    steep_j, steep_i = min(at_j / (at_i + NO_PRESSURE), STEEPEST), min(at_i / (at_j + NO_PRESSURE), STEEPEST)
+    steep_i, steep_j = steepness(i, j)
     own, other = i.specific_volume * i.specific_volume, j.specific_volume * j.specific_volume
     return own * (1.0 + j.no_slip * steep_j), other * (1.0 + i.no_slip * steep_i)
-
-
-NO_PRESSURE = 1e-30
-"""Keeps no pressure from dividing by zero, Pa."""
