@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 MOST_CREEP = 0.05
 """Rate of the creep below the yield, over that of the flow, above which the cap hides the yield."""
 
+MOST_OF_GRAINS = 1.0
+"""The same of grains on a slope, which all flow and have no plug: above it the cap sets the flow."""
+
 MOST_STRAIN = 0.1
 """By which a paste that is to stand may creep until the end of a run."""
 
@@ -30,32 +33,35 @@ def number_of(fluid, laws: tuple[Any, ...]) -> int:
 
 
 class Paste(NamedTuple):
-    """A fluid with a yield stress in its scene.
+    """A fluid that yields in its scene: a paste, or grains under their weight.
 
-    Its ``law``, its ``thickness`` in m, the ``pull`` of its weight in Pa/m, the largest ``stress`` in Pa that
-    weight or speed bring about over this thickness, and the ``rate`` of strain under that, 1/s.
+    Its ``law``, what it ``bears`` by (its yield, or friction) and the ``limit`` of that in Pa; its
+    ``thickness`` in m, the ``pull`` of its weight in Pa/m, the largest ``stress`` in Pa that weight or speed
+    bring about over this thickness, and the ``rate`` of strain under that, 1/s; the part ``most`` of it by
+    which it may creep below the limit.
     """
 
     key: str
-    law: HerschelBulkley
+    law: HerschelBulkley | Granular
+    bears: str
+    limit: float
     thickness: float
     pull: float
     stress: float
     rate: float
+    most: float = MOST_CREEP
 
     @property
     def creep(self) -> float:
-        """The largest rate of strain below its yield, 1/s."""
-        return self.law.yield_stress / self.law.largest
+        """The largest rate of strain below its limit, 1/s."""
+        return self.limit / self.law.largest
 
     @property
     def sag(self) -> float:
-        """The rate at which it creeps under ``stress`` below its yield, −ln(1 − τ/τ_y)/m and no less than by
-        the cap, 1/s."""
-        part = self.stress / self.law.yield_stress
-        if part >= 1.0:
+        """The rate at which it creeps under ``stress`` below its limit, no less than by the cap, 1/s."""
+        if self.stress >= self.limit:
             return math.inf
-        return max(self.stress / self.law.largest, -math.log1p(-part) / self.law.regularisation)
+        return max(self.stress / self.law.largest, self.law.creep_under(self.stress, self.limit))
 
 
 def pastes(scene: "Scene") -> Iterator[Paste]:
@@ -69,7 +75,33 @@ def pastes(scene: "Scene") -> Iterator[Paste]:
         rate = scene.starting_speed / thickness
         by_weight = fluid.density * _shearing(scene, place) * thickness
         stress = max(by_weight, law.viscosity(rate, 0.0, 0.0) * rate)
-        yield Paste(f"fluids.{name}.rheology", law, thickness, pull, stress, law.rate_under(stress))
+        limit = law.yield_stress
+        yield Paste(
+            f"fluids.{name}.rheology", law, "yield", limit, thickness, pull, stress, law.rate_under(stress)
+        )
+
+
+def grains(scene: "Scene") -> Iterator[Paste]:
+    """The grains that weigh on what is below them, at their floor."""
+    for place, (name, fluid) in enumerate(scene.case.flowing.items()):
+        law, thickness = fluid.rheology and fluid.rheology.law, _thickness(scene, place)
+        pull = fluid.density * abs(scene.gravity[_across(scene, _sizes(scene, place))])
+        if not isinstance(law, Granular) or not pull:
+            continue
+        pressure, rate = pull * thickness, scene.starting_speed / thickness
+        by_weight = fluid.density * _shearing(scene, place) * thickness
+        stress = max(by_weight, law.viscosity(rate, pressure, 0.0) * rate)
+        yield Paste(
+            f"fluids.{name}.rheology",
+            law,
+            "friction",
+            law.friction * pressure,
+            thickness,
+            pull,
+            stress,
+            law.rate_under(stress, pressure),
+            MOST_OF_GRAINS,
+        )
 
 
 def held_speeds(scene: "Scene", pull: float, gap: float, depth: float) -> Iterator[float]:
@@ -153,18 +185,18 @@ def _paste_lines(paste: Paste) -> Iterator[str]:
 
 def rheology_warnings(scene: "Scene") -> Iterator[str]:
     """Lines for laws whose cap hides what they are for."""
-    for paste in pastes(scene):
-        if paste.rate and paste.creep > MOST_CREEP * paste.rate:
-            least = paste.law.yield_stress / (MOST_CREEP * paste.rate)
+    for paste in (*pastes(scene), *grains(scene)):
+        if paste.rate and paste.creep > paste.most * paste.rate:
+            least = paste.limit / (paste.most * paste.rate)
             yield (
-                f"{paste.key}: the largest viscosity, {paste.law.largest:.3g} Pa s, hides the yield: below "
-                f"that the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of the rate "
-                f"of its flow; give largest_viscosity = {least:.2g} or more"
+                f"{paste.key}: the largest viscosity, {paste.law.largest:.3g} Pa s, hides the {paste.bears}: "
+                f"below that the fluid creeps at {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of "
+                f"the rate of its flow; give largest_viscosity = {least:.2g} or more"
             )
         if not paste.rate and (strain := paste.sag * scene.case.time.end) > MOST_STRAIN:
             least = paste.law.largest * strain / MOST_STRAIN
             yield (
-                f"{paste.key}: it is to stand, but by its largest viscosity, {paste.law.largest:.3g} Pa s, "
-                f"it creeps by a strain of {strain:.2g} until time.end; "
+                f"{paste.key}: it is to stand, but its largest viscosity, {paste.law.largest:.3g} Pa s, "
+                f"hides the {paste.bears}: it creeps by a strain of {strain:.2g} until time.end; "
                 f"give largest_viscosity = {least:.2g} or more"
             )

@@ -50,7 +50,7 @@ def test_a_cap_by_which_standing_mud_creeps_is_warned_of(tmp_path):
     """4900 Pa under 1e5 Pa: −ln(1 − 0.049) 1e5/1e5 = 0.0502 1/s, a strain of 0.1 in 2 s; the advice is quiet."""
     [line] = checked(tmp_path, TANK, MUD % (1e5, 2e4))
     assert line.endswith(
-        "it is to stand, but by its largest viscosity, 2e+04 Pa s, it creeps by a strain of 0.5 until time.end; "
+        "it is to stand, but its largest viscosity, 2e+04 Pa s, hides the yield: it creeps by a strain of 0.5 until time.end; "
         "give largest_viscosity = 1e+05 or more"
     )
     assert checked(tmp_path, TANK, MUD % (1e5, 1.01e5)) == []
@@ -85,6 +85,40 @@ def test_the_cap_advised_is_that_of_the_stress_along_the_slope_or_the_channel(tm
     assert list(map(len, told.values())) == [0, 1]
     [line] = told[hidden * 1.01]
     assert line.endswith(f"give largest_viscosity = {40.0 / (0.05 * (stress - 40.0)):.2g} or more")
+
+
+GRAINS = """
+space = { dimensions = 2, spacing = 0.001, periodic = ["x"], lower = [0.0, -0.003], upper = [0.01, 0.03] }
+time.end = 0.5
+physics.gravity = [%r, -9.0]
+[fluids.grains]
+shape.box = { lower = [0.0, 0.0], upper = [0.01, 0.01] }
+density = 1500.0
+[fluids.grains.rheology.granular]
+friction = 0.4
+fast_friction = 0.6
+inertial_number = 0.3
+diameter = 0.001
+grain_density = 2500.0
+largest_viscosity = %r
+[walls.floor]
+shape.box = { lower = [0.0, -0.003], upper = [0.01, 0.0] }
+no_slip = true
+"""
+
+
+def test_a_cap_that_hides_the_friction_of_grains_is_warned_of(tmp_path):
+    """Under 135 Pa they bear 54 Pa: 40 Pa let them creep by 40/100 0.5 = 0.2 of strain at a cap of 100 Pa s,
+    and 67 Pa flow at I√(p/ρ_s)/d = 65.7 1/s, I = 0.283."""
+    [line] = checked(tmp_path, GRAINS % (8.0 / 3.0, 100.0))
+    assert (
+        "hides the friction: it creeps by a strain of 0.2 until time.end; give largest_viscosity = 2e+02"
+        in line
+    )
+    assert checked(tmp_path, GRAINS % (8.0 / 3.0, 210.0)) == []
+    [line] = checked(tmp_path, GRAINS % (4.5, 0.5))
+    assert "hides the friction: below that the fluid creeps at 1.1e+02 1/s" in line
+    assert checked(tmp_path, GRAINS % (4.5, 2.0)) == []
 
 
 def test_a_layer_of_some_length_on_a_slope_is_sheared_by_its_front_too(tmp_path):

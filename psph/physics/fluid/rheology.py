@@ -61,6 +61,10 @@ class HerschelBulkley(NamedTuple):
         yield."""
         return power(max(stress - self.yield_stress, 0.0) / self.consistency, 1.0 / self.exponent)
 
+    def creep_under(self, stress: float, limit: float) -> float:
+        """The rate at which it creeps under a stress below its ``limit`` τ_y, Pa: −ln(1 − τ/τ_y)/m, 1/s."""
+        return -math.log1p(-stress / limit) / self.regularisation
+
     def speed_between(self, pull: float, half: float) -> float:
         """The speed in the middle between plates 2 ``half`` m apart under ``pull`` Pa/m along them, m/s: with
         the rate γ̇ at the plates, γ̇ (half − τ_y/pull) n/(n + 1), and 0 without a flow."""
@@ -112,8 +116,25 @@ class Granular(NamedTuple):
         Pa/m across it.  u = (2I/3d)√(weight/ρ_s) depth^(3/2), Bagnold's profile; without end from μ₂ on."""
         if slope >= self.fast_friction:
             return math.inf
-        inertial = self.inertial_number * max(slope - self.friction, 0.0) / (self.fast_friction - slope)
+        inertial = self.inertial_on(slope)
         return 2.0 / 3.0 * inertial / self.diameter * math.sqrt(weight / self.grain_density) * depth**1.5
+
+    def inertial_on(self, slope: float) -> float:
+        """I under a shear stress of ``slope`` times the pressure, below μ₂; 0 up to μ_s."""
+        return self.inertial_number * max(slope - self.friction, 0.0) / (self.fast_friction - slope)
+
+    def rate_under(self, stress: float, pressure: float) -> float:
+        """The rate at which it flows under a shear stress and a pressure in Pa, I√(p/ρ_s)/d in 1/s, without
+        cap and creep; 0 up to a friction of μ_s, without end from μ₂ on."""
+        slope = stress / pressure
+        if slope >= self.fast_friction:
+            return math.inf
+        return self.inertial_on(slope) / self.diameter * math.sqrt(pressure / self.grain_density)
+
+    def creep_under(self, stress: float, limit: float) -> float:
+        """The rate at which γ₀ lets it creep under a stress below its ``limit`` μ_s p, Pa, 1/s."""
+        part = stress / limit
+        return self.least_rate * part / math.sqrt(1.0 - part * part)
 
     def viscosity(self, rate, pressure, own):
         """η, Pa s."""
