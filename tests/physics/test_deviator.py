@@ -5,6 +5,7 @@ import pytest
 from physics.pairs import pair_of, sums_of, view
 
 from psph.physics.stress.deviator import CorrectedDeviatoricForce, DeviatoricForce, DeviatorRate, jaumann_rate
+from psph.physics.stress.faces import CorrectedSmoothFace, SmoothFace
 
 UPPER = {2: ((0, 0), (0, 1), (1, 1)), 3: ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))}
 
@@ -86,3 +87,32 @@ def test_a_rough_wall_shows_what_stands_before_it_its_own_stress():
     for wall, steep in ((4500.0, 2.0), (-900.0, 0.2), (9e4, 3.0)):  # (p + tip) of the wall over that of soil
         other = DeviatoricForce().push(*pair_of(rough._replace(pressure=np.array([2e3, wall])), 0, 1))
         assert other == pytest.approx((1.0 + steep) * np.array(one), rel=1e-12)
+
+
+@pytest.mark.parametrize("dim", (2, 3))
+@pytest.mark.parametrize("effect", (SmoothFace(), CorrectedSmoothFace()))
+def test_a_smooth_wall_bears_the_stress_across_its_face_and_no_shear_along_it(effect, dim):
+    """s + R s R has no components n, t; the wall is pushed back as hard as it pushes."""
+    p, n = view(dim=dim), np.array([0.6, 0.8, 0.0][:dim])
+    s = tuple(np.array([v[0], 0.0]) for v in p.deviator)
+    none = tuple(np.zeros(2) for _ in p.deviator)
+    p = p._replace(deviator=s, pressure=np.array([2e3, 3e3]), cone_tip=np.array([500.0, 0.0]))
+    p = p._replace(normal=tuple(np.array([0.0, one]) for one in n), gradient_correction=none)
+    i, j, pair = pair_of(p, 0, 1)
+    stress, turn = full([v[0] for v in s], dim), np.eye(dim) - 2.0 * np.outer(n, n)
+    shown = turn @ stress @ turn * i.specific_volume**2 * 3.5 / 2.5  # (p + tip) of the wall over that of soil
+    assert effect.push(i, j, pair) == pytest.approx(shown @ np.array(pair.x_ij) * pair.m_dw_r, rel=1e-12)
+    back = np.array(effect.push(*pair_of(p, 1, 0)))
+    assert p.mass[1] * back == pytest.approx(-p.mass[0] * np.array(effect.push(i, j, pair)), rel=1e-12)
+    free = p._replace(normal=tuple(np.zeros(2) for _ in n))
+    assert not np.any(effect.push(*pair_of(free, 0, 1)))
+
+
+def test_the_normal_of_a_wall_points_at_the_soil_before_it_and_others_have_none():
+    p = view(n=3)
+    x = (np.array([0.0, 0.3, 0.3]) * p.smoothing_length, np.array([0.0, 0.4, 0.4]) * p.smoothing_length)
+    wall = p._replace(position=x, is_fluid=np.array([0.0, 1.0, 1.0]), no_slip=np.zeros(3))
+    wall = wall._replace(shear_modulus=np.array([0.0, 4e4, 0.0]))  # the last is water
+    assert np.abs(sums_of(SmoothFace(), wall, 0)) == pytest.approx([0.6, 0.8], rel=1e-12)
+    assert not np.any(sums_of(SmoothFace(), wall._replace(no_slip=np.ones(3)), 0))
+    assert not np.any(sums_of(SmoothFace(), wall, 1))

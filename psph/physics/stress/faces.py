@@ -116,8 +116,6 @@ class SmoothFace(NamedTuple):
     109, 67, have it in mirrors.
     """
 
-    conserves = ("momentum",)
-
     acts = (SOILS, UPDATED)
 
     writes = NORMAL
@@ -148,8 +146,6 @@ class CorrectedSmoothFace(NamedTuple):
     As :class:`SmoothFace`, with the corrected gradients of
     :class:`psph.physics.stress.deviator.CorrectedDeviatoricForce`.
     """
-
-    conserves = ("momentum",)
 
     writes = NORMAL
     lagged = True
