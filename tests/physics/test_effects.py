@@ -667,7 +667,7 @@ def test_pressure_work_is_what_continuity_says():
 
 def test_reads_are_found_by_a_trial_call():
     found = reads(PairDamping(), 2, kernel("cubic", H, 2), BUILT_IN.fields)
-    assert found.neighbour == {"specific_volume", "rest_density"}
+    assert found.neighbour == {"mass", "specific_volume", "rest_density"}
     assert found.own == {"specific_volume", "rest_density", "smoothing_length", "sound_speed"}
     assert found.pair == {"inverse_r", "u_dot_x", "m_dw_r"}
 
