@@ -157,7 +157,10 @@ def name_of(entry):
 SHORT = ("FreeSurface", "ArtificialViscosity", "PairPotential")
 WET = [one for one in CATALOGUE if not one.key.startswith("anvils.") and one.effect is not SolidContact]
 """Anvils and contact are there for scenes of solids alone: tests/simulation/test_contact.py."""
-KEYED, ALL = (long_but_for(SHORT, entries, name_of) for entries in ([e for e in CATALOGUE if e.key], WET))
+ALONE = [entry for entry in WET if entry.effect.__name__ != "SmoothFace"]
+"""Without that one, whose normal the rate of a stress reads, and which reads that stress: neither can be alone."""
+
+KEYED, ALL = (long_but_for(SHORT, entries, name_of) for entries in ([e for e in CATALOGUE if e.key], ALONE))
 
 
 @pytest.mark.parametrize("entry", KEYED, ids=name_of)
