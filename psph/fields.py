@@ -162,7 +162,13 @@ DENSITY = Field("density", "kg/m3", "density", saved=True, image=StillDensity)
 DENSITY_RATE = Field("density_rate", "kg/(m3 s)", "rate of density of the last pass", image=Same)
 DENSITY_RATE_1 = Field("density_rate_1", "kg/(m3 s)", "rate of density one step before", image=Same)
 DENSITY_RATE_2 = Field("density_rate_2", "kg/(m3 s)", "rate of density two steps before", image=Same)
-PRESSURE = Field("pressure", "Pa", "pressure by the equation of state", saved=True, image=StillPressure)
+PRESSURE = Field(
+    "pressure",
+    "Pa",
+    "pressure: by the equation of state, of an elastic solid by its stress",
+    saved=True,
+    image=StillPressure,
+)
 SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces read it", image=StillVolume)
 
 CROSSED = Field("crossed", "1", "periods by which a particle has been taken back into the domain", VECTOR)

@@ -167,6 +167,7 @@ class Record:
         sim = self.simulation
         arrays = {field.name: sim.store.shown(field.name) for field in sim.plan.saved}
         arrays["position"] = sim.domain.inside(arrays["position"])
+        arrays["pressure"] = sim.engine.shown_pressure()
         self.frames.write(self.written, sim.time, sim.steps, arrays)
         self.written += 1
 

@@ -11,7 +11,7 @@ from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import OF_CONTACT, REACH, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
-from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING
+from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING, STRESS_ZZ
 from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, is_heated, remembers, solid_of
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.scene.distance import faces_of
@@ -130,10 +130,12 @@ def solid_fields(scene: "Scene") -> tuple[Field, ...]:
     loaded = any(table.loads for table in scene.case.solids.values())
     lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
     lasting += OF_HEAT if is_heated(scene.elastic_solids) else ()
+    plane = [STRESS_ZZ] if scene.dimensions == 2 else []
     wet = [INERTIA] if scene.case.flowing else []
     cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.elastic_solids) else ()
     meeting = OF_CONTACT if meets(scene) else ()
-    return (*OF_SOLIDS, *across, *lasting, *cracks, *meeting, *([DRAWN, WORK] if loaded else []), *wet)
+    own = (*OF_SOLIDS, *plane, *across, *lasting, *cracks, *meeting)
+    return (*own, *([DRAWN, WORK] if loaded else []), *wet)
 
 
 def meets(scene: "Scene") -> bool:

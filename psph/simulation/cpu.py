@@ -188,6 +188,12 @@ class Engine:
         if self.solids:
             self.solids.measure()
 
+    def shown_pressure(self) -> np.ndarray:
+        """The pressure of this rank's particles, Pa (n,), as :meth:`settle_pressure` has left it; of elastic
+        solids that of their stress."""
+        pressure = self.store.shown("pressure")
+        return self.solids.with_pressure(pressure) if self.solids else pressure
+
     def potential(self) -> np.ndarray:
         """Potential energy by mass of this rank's particles, J/kg (n,), but for that of uniform pulls."""
         found = np.zeros(self.store.total)

@@ -195,7 +195,8 @@ def sum_inner_forces(first, last, matter, weights, rows, force):
 def measure(first, last, matter, weights, rows, moment, memory, found):
     """Energy in J and Cauchy stress in Pa of the rows ``first`` to ``last``.
 
-    ``found``: arrays of the energy, the components of the stress, and the von Mises stress.
+    ``found``: arrays of the energy, the components of the stress, the von Mises stress, and σ_zz of plane
+    strain.
     """
     records, lists = rows.records, rows.lists
     for k in range(np.uint64(first), np.uint64(last)):
@@ -222,7 +223,7 @@ def measure(first, last, matter, weights, rows, moment, memory, found):
         if dilated == 0.0:  # its neighbours do not span space
             found[0][k] = i.volume * held
             put(found[1], k, scale(outer(a), 0.0))
-            found[2][k] = 0.0
+            found[2][k] = found[3][k] = 0.0
             continue
         stored = weakened((energy(matter.laws, number, memory, k, f, a),), matter.intact, k)
         found[0][k] = i.volume * (stored[0] + held)
@@ -231,6 +232,7 @@ def measure(first, last, matter, weights, rows, moment, memory, found):
         put(found[1], k, cauchy)
         sigma_zz = weakened((across(matter.laws, number, memory, k, f, a) / dilated,), matter.intact, k)
         found[2][k] = mises(cauchy, sigma_zz[0], a)
+        found[3][k] = sigma_zz[0]
 
 
 def mises(cauchy, sigma_zz, a):

@@ -20,9 +20,11 @@ from psph.physics.solid.deformation import (
     MOMENT,
     STORED,
     STRESS,
+    STRESS_ZZ,
     VON_MISES,
     Gradient,
     GradientRate,
+    pressure_of,
     support_of,
 )
 from psph.physics.solid.material import is_damped, remembers
@@ -276,7 +278,7 @@ class Solids:
         self._put(self._tables[1], PLACES, 0, n)
         self._bring(self._places)
         stress = tuple(np.zeros(n) for _ in store.rows[STRESS.name])
-        found = (np.zeros(n), stress, np.zeros(n))
+        found = (np.zeros(n), stress, np.zeros(n), np.zeros(n))
         matter = self._matter._replace(sums=self._matter.sums[:1])
         seen = (matter, self._weights, self._around[1], self._moment, self._memory(0.0))
         self._each(self._measure, 0, n, *seen, found)
@@ -284,8 +286,19 @@ class Solids:
             self._cracks.measure(self._columns)
         store[STORED.name][self._columns] = found[0]
         store[VON_MISES.name][self._columns] = found[2]
+        if STRESS_ZZ.name in store:
+            store[STRESS_ZZ.name][self._columns] = found[3]
         for of, values in zip(store[STRESS.name], stress):
             of[self._columns] = values
+
+    def with_pressure(self, pressure: np.ndarray) -> np.ndarray:
+        """The ``pressure`` (owned,) of this rank's particles, Pa, with −tr σ/3 of the last
+        :meth:`measure` for those of solids: what these carry themselves is what they show a fluid."""
+        store, rows = self.store, self._columns.astype(np.int64) - self.store.low
+        across = store.shown(STRESS_ZZ.name)[rows] if STRESS_ZZ.name in store else None
+        found = pressure.copy()
+        found[rows] = pressure_of(store.shown(STRESS.name)[rows], across, store.dimensions)
+        return found
 
     def energy(self) -> float:
         """Stored energy of all solids and their contacts, J; the same bits on any number of ranks,

@@ -81,7 +81,7 @@ def passes(of: Lattice, places, law="saint-venant-kirchhoff", hourglass=0.1):
     force = tuple(np.zeros(n) for _ in range(d))
     sum_inner_forces(0, n, matter, weights, rows, force)
     stress = tuple(np.zeros(n) for _ in moment)
-    found = (np.zeros(n), stress, np.zeros(n))
+    found = (np.zeros(n), stress, np.zeros(n), np.zeros(n))
     measure(0, n, matter, weights, rows, moment, None, found)
     return Found(
         gradients(of, places), of.volume[:, None] * np.array(force).T, found[0], np.array(stress).T, found[2]

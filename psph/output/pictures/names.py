@@ -8,7 +8,7 @@ from psph.fields import SAVED
 from psph.physics.catalogue import BUILT_IN
 from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.cracks import OF_CRACKS
-from psph.physics.solid.deformation import OF_SOLIDS
+from psph.physics.solid.deformation import OF_SOLIDS, STRESS_ZZ
 from psph.physics.solid.plastic import OF_PLASTIC
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
@@ -26,7 +26,7 @@ DERIVED = ("vorticity",)
 VARIANTS = ("surface", "slice")
 """Other ways to show a field than the usual one."""
 
-_FIELDS_OF_SOME = (*OF_SOLIDS, *OF_PLASTIC, *OF_HEAT, *OF_CRACKS, *BUILT_IN.fields.values())
+_FIELDS_OF_SOME = (*OF_SOLIDS, STRESS_ZZ, *OF_PLASTIC, *OF_HEAT, *OF_CRACKS, *BUILT_IN.fields.values())
 _WRITTEN = (field.name for field in _FIELDS_OF_SOME if field.saved and field not in SAVED)
 _FIELDS = "|".join([*(field.name for field in SAVED), *_WRITTEN, *DERIVED])
 _DRAWN = re.compile(rf"(?:{_FIELDS})(?:_(?:{'|'.join(VARIANTS)}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")

@@ -25,7 +25,8 @@ class Quantity(NamedTuple):
 
     ``name`` stands in the names of files.  ``signed``: its sign matters as much as its size: zero is in the
     middle of its colours.  ``names`` has those of the fluids where it counts them, ``bodies``
-    those of the rigid bodies, which share a colour.
+    those of the rigid bodies, which share a colour.  ``of_fluids``: where there are any, the limits of the
+    colours are theirs, since stresses of solids beside them are of another size.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Quantity(NamedTuple):
     names: tuple[str, ...] = ()
     bodies: tuple[str, ...] = ()
     samples: int = SAMPLES
+    of_fluids: bool = False
 
 
 def quantity(run: Run, case: dict, field: str) -> Quantity:
@@ -62,12 +64,14 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
     if field not in saved:
         known = ", ".join([*saved, SPEED, VORTICITY])
         raise NotThere(f"{run.path}: field: {field} is not saved; choose one of {known}")
-    return Quantity(field, field.replace("_", " "), run.unit(field), (field,), _size_of(field))
+    fluid = field == PRESSURE.name
+    title, unit = field.replace("_", " "), run.unit(field)
+    return Quantity(field, title, unit, (field,), _size_of(field), of_fluids=fluid)
 
 
 def usual(run: Run, case: dict) -> str:
-    """The field to be seen where none is asked for: the pressure, and of a run of elastic solids alone, whose
-    particles have none, the von Mises stress."""
+    """The field to be seen where none is asked for: the pressure, and of a run of elastic solids alone the
+    von Mises stress."""
     return PRESSURE.name if case.get("fluids") or VON_MISES not in run.fields else VON_MISES
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from psph.case.keys import AXES
 from psph.errors import Refused
-from psph.fields import WALL
+from psph.fields import FLUID, WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
@@ -108,10 +108,15 @@ class Show:
 
     def _glance(self, k: int) -> Glance:
         frame = self._whole(k)
-        places, values = frame["position"], frame["values"][frame["kind"] != WALL]
+        places, values = frame["position"], frame["values"][self._counts(frame["kind"])]
         groups = np.unique(frame["group"]).tolist() if self._solid else []
         boxes = {group: box_around(places[frame["group"] == group]) for group in groups}
         return Glance(box_around(places), around_most(places), boxes, values[:: len(values) // VALUES + 1])
+
+    def _counts(self, kind: np.ndarray) -> np.ndarray:
+        """Which particles of a ``kind`` (n,) each the limits of the colours are taken from: (n,)."""
+        fluid = kind == FLUID
+        return fluid if self.quantity.of_fluids and fluid.any() else kind != WALL
 
     def _chosen(self, times: Sequence[float] | None) -> list[int]:
         """The frames nearest to ``times`` s, or to four over the run."""

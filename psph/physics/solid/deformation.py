@@ -25,6 +25,7 @@ from psph.vectors import add, dyad, nearest_image, scale, subtract, zero_like
 REFERENCE = Field("reference", "m", "place in the undeformed solid", VECTOR)
 MOMENT = Field("moment", "1", "(Σ_j V_j g_ij X_ij X_ijᵀ)⁻¹ over the neighbours in the reference", SYMMETRIC)
 STRESS = Field("stress", "Pa", "Cauchy stress of a solid, tension positive", SYMMETRIC, saved=True)
+STRESS_ZZ = Field("stress_zz", "Pa", "Cauchy stress of a solid across the plane of 2D", saved=True)
 VON_MISES = Field("von_mises", "Pa", "von Mises stress of a solid", saved=True)
 STORED = Field("stored_energy", "J", "energy of deformation, with that of the hourglass control")
 DRAWN = Field("drawn", "m/s2", "acceleration by the loads of a case at their full size", VECTOR)
@@ -33,7 +34,7 @@ INERTIA = Field("inertia", "kg", "true mass of a particle; of a solid in a fluid
 
 OF_SOLIDS = (REFERENCE, MOMENT, STRESS, VON_MISES, STORED)
 """What particles carry only where a scene has solids; DRAWN where these have loads, INERTIA where
-these are in a fluid."""
+these are in a fluid, STRESS_ZZ in plane strain."""
 
 KERNEL, SMOOTHING = "wendland-c2", 2.0**0.5
 """A solid's own kernel and its h/dx: its lists have no part in those of fluids."""
@@ -72,6 +73,13 @@ class GradientRate(NamedTuple):
         """With neighbour j, by rows."""
         v_ij = subtract(i.predicted_velocity, j.predicted_velocity)
         return add(total, dyad(scale(v_ij, pair.weight), pair.apart))
+
+
+def pressure_of(stress, across, dimensions: int):
+    """−tr σ/3, Pa (n,), of the components of a Cauchy stress (n, dim(dim + 1)/2) by rows from the diagonal on
+    and, in plane strain, σ_zz ``across`` (n,); in 3D that is among them."""
+    diagonal = [0, 2] if dimensions == 2 else [0, 3, 5]
+    return -(stress[:, diagonal].sum(axis=1) + (across if dimensions == 2 else 0.0)) / 3.0
 
 
 def support_of(smoothing_length: float) -> float:

@@ -251,6 +251,17 @@ def test_of_solids_alone_stress_is_seen_first_and_not_a_pressure_of_zero(run_wit
     assert usual(run_with(arrays, np.zeros(16)), {"soils": {"sand": {}}}) == "pressure"
 
 
+@pytest.mark.parametrize("kinds, most", [((0, 2), 100.0), ((2, 2), 1e6)], ids=["beside a fluid", "alone"])
+def test_the_colours_of_a_pressure_are_those_of_the_fluid_where_there_is_one(run_with, kinds, most):
+    arrays = box(4, 4)
+    kind, pressure = (
+        np.repeat(np.array(kinds, np.uint8), 8),
+        np.concatenate([np.linspace(0.0, top, 8) for top in (100.0, 1e6)]),
+    )
+    show = Show(run_with(arrays | {"kind": kind}, pressure), None, "pressure")
+    assert show.scale.norm.vmax / show.scale.factor == pytest.approx(most, rel=0.3)
+
+
 def test_slice_is_the_layer_at_its_place_seen_against_gravity(run_with):
     arrays = box(10, 4, 3)
     run = run_with(arrays, arrays["position"][:, 0])
