@@ -6,7 +6,7 @@ from pydantic import Strict, model_validator
 from pydantic_core import PydanticCustomError
 
 from psph.acts import BODIES, MATTER, SOLIDS, UPDATED
-from psph.case.keys import Axis, Name, Table, Vector, key
+from psph.case.keys import Axis, Name, Table, Text, Vector, key
 from psph.physics.walls.conditions import BEARING, CONDITIONS
 
 MOVES_WITH = key(
@@ -131,6 +131,23 @@ class Displacement(Table):
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")
 
 
+class Reaction(Table):
+    """Force and moment that the supports of solids bear: clamps and anvils."""
+
+    acts: ClassVar = (SOLIDS,)
+    refuses: ClassVar = {
+        UPDATED: "of the clamps of an updated Lagrangian solid no force is summed; give it "
+        'description = "total"'
+    }
+
+    of: Annotated[tuple[Text, ...], Strict(False)] = key(
+        "the keys of clamps and anvils, taken together, such as solids.beam.clamped, "
+        "solids.beam.clamps.root or anvils.floor",
+        min_length=1,
+    )
+    about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
+
+
 ANOTHER_KIND = "one kind of gauge is required"
 """The default of a gauge's kinds, of which one is given."""
 
@@ -148,6 +165,7 @@ class Gauge(Table):
         "flow",
         "motion",
         "displacement",
+        "reaction",
     )
 
     force: Force | None = key("force and moment of the fluid", None, otherwise=ANOTHER_KIND)
@@ -159,6 +177,7 @@ class Gauge(Table):
     flow: Flow | None = key("flow through a section", None, otherwise=ANOTHER_KIND)
     motion: MotionOf | None = key("motion of a rigid body", None, otherwise=ANOTHER_KIND)
     displacement: Displacement | None = key("how far a point of a solid moves", None, otherwise=ANOTHER_KIND)
+    reaction: Reaction | None = key("what clamps and anvils bear", None, otherwise=ANOTHER_KIND)
     every: float | None = key("time between rows", None, unit="s", otherwise="output.probes", gt=0)
 
     @property

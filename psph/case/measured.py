@@ -6,6 +6,7 @@ from psph.acts import UPDATED, refusals
 from psph.case.errors import advise
 from psph.case.findings import Finding, keys_one_sided
 from psph.case.keys import AXES
+from psph.case.solids import anvils_of, clamps_of
 
 MOST_MOMENTS = 1e9
 """Moments of one cadence: far below 1e12, where rounding would shift them."""
@@ -39,6 +40,9 @@ def gauged(case) -> Iterator[Finding]:
         elif gauge.displacement and gauge.displacement.of in case.updated:
             says = refusals(gauge.displacement)[UPDATED]
             yield ("gauges", name, "displacement", "of"), gauge.displacement.of, says
+        for place, support in enumerate(gauge.reaction.of if gauge.reaction else ()):
+            if says := _bears_nothing(case, gauge.reaction, support):
+                yield ("gauges", name, "reaction", "of", place), support, says
         for key in keys_one_sided(case) if gauge.force else ():
             says = f"{key} does not push back what pushes, so that no force on a wall is known; take another"
             yield ("gauges", name, "force"), ..., says
@@ -51,6 +55,14 @@ def gauged(case) -> Iterator[Finding]:
                 yield loc, wall, f"no wall or body has this name; {advise(wall, known)}"
             elif says := refusals(gauge.force).get(case.boundaries[wall].condition):
                 yield loc, wall, says
+
+
+def _bears_nothing(case, asked, support: str) -> str | None:
+    """Why no force on the ``support`` of a key is known, in words; None where it is."""
+    if support in clamps_of(case.updated):
+        return refusals(asked)[UPDATED]
+    known = [*clamps_of(case.referred), *anvils_of(case)]
+    return None if support in known else f"no clamp or anvil has this key; {advise(support, known)}"
 
 
 def _cannot_carry(case, name: str | None) -> str | None:

@@ -378,8 +378,8 @@ class Case(Table):
             _fill(solid, continues=next(iter(self.fluids), None))
         for gauge in self.gauges.values():
             _fill(gauge, every=self.output.probes)
-            if gauge.force:
-                _fill(gauge.force, about=zeros)
+            if turned := gauge.force or gauge.reaction:
+                _fill(turned, about=zeros)
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
         for solid in self.boundaries.values():

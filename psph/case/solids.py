@@ -158,6 +158,16 @@ class Solid(Hookean):
         )
 
 
+def clamps_of(solids: dict[str, Solid]) -> list[str]:
+    """The keys of the clamps of some solids, in their order: ``solids.beam.clamps.root``."""
+    return [f"solids.{name}.{key}" for name, solid in solids.items() for key in solid.grips]
+
+
+def anvils_of(case) -> list[str]:
+    """The keys of the anvils of a case, in their order: ``anvils.floor``."""
+    return [f"anvils.{name}" for name in case.anvils]
+
+
 OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
 
 CONTACT = "physics", "contact"
@@ -220,7 +230,8 @@ def _meeting(case) -> Iterator[Finding]:
                 )
     for name, gauge in case.gauges.items():
         if gauge.kind == "force":
-            yield ("gauges", name, "force"), ..., "knows of forces by fluids alone, and there are none"
+            says = "knows of forces by fluids alone, and there are none; give gauges.NAME.reaction"
+            yield ("gauges", name, "force"), ..., says
     for name in case.probes:
         says = "measures fluids, and there are none; give gauges.NAME.displacement, or plot the frames"
         yield ("probes", name), ..., says

@@ -145,6 +145,7 @@ def test_every_sentence_is_a_line_that_says_what_to_do():
         ("gauges.motion", BODIES, ACTS),
         ("gauges.motion", FLUIDS, IRRELEVANT),
         ("gauges.displacement", UPDATED, REFUSED),
+        ("gauges.reaction", BODIES, REFUSED),
     ],
 )
 def test_the_table_has_what_each_says_and_what_follows(name, corner, kind):
@@ -177,6 +178,10 @@ def test_a_gauge_refuses_what_it_cannot_measure(tmp_path):
     more = 'gauges.moved.displacement = { of = "block", at = [0.3, 0.3] }'
     [line] = refusal(tmp_path, scene(UPDATED, more=more))
     assert refusals(gauge_kinds()["displacement"])[UPDATED] in line
+    text = scene(UPDATED, more='gauges.held.reaction.of = ["solids.block.clamped"]')
+    clamped = "solids.block.clamped={box={lower=[0.0,0.0],upper=[0.2,0.2]}}"
+    [line] = refusal(tmp_path, text, clamped)
+    assert refusals(gauge_kinds()["reaction"])[UPDATED] in line
     [line] = refusal(tmp_path, scene(SOLIDS, more='gauges.top.highest.axis = "y"'))
     assert "measures fluids, soils and updated Lagrangian solids alone, and the case has none" in line
 

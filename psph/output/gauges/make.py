@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.case.solids import anvils_of, clamps_of
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.corners import Corners
 from psph.output.gauges.displacement import REACH, DisplacementGauge
@@ -15,6 +16,7 @@ from psph.output.gauges.force import ForceGauge
 from psph.output.gauges.level import LevelGauge
 from psph.output.gauges.motion import MotionGauge
 from psph.output.gauges.points import CarriedPoints, PointGauge, disc
+from psph.output.gauges.reaction import ReactionGauge
 from psph.output.gauges.run_up import RunUpGauge
 from psph.output.probes import Front, Probe
 from psph.output.tables import GAUGE
@@ -42,6 +44,8 @@ def gauge_of(scene, name: str, table, mirrors=None):
         case "force":
             groups = tuple(k for on in asked.on for k in _groups(scene, on))
             return ForceGauge(name, every, groups, asked.about, _corners(scene), _carrier(asked, names))
+        case "reaction":
+            return ReactionGauge(name, every, *_supports(scene, asked.of), asked.about)
         case "level":
             parts = max(1, math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9))
             line = np.linspace(asked.foot, asked.top, parts + 1)
@@ -97,6 +101,13 @@ def _beside(scene, asked) -> Solid:
 def _carrier(asked, names) -> Carrier | None:
     """What carries a gauge along, among the ``names`` of all groups."""
     return None if asked.moves_with is None else Carrier(names.index(asked.moves_with))
+
+
+def _supports(scene, keys) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """The groups of the clamps and the numbers of the anvils with these ``keys``."""
+    clamps, anvils = clamps_of(scene.case.referred), anvils_of(scene.case)
+    held = (scene.layout.movers + k for k, key in enumerate(clamps) if key in keys)
+    return tuple(held), tuple(k for k, key in enumerate(anvils) if key in keys)
 
 
 def _groups(scene, name: str) -> Iterator[int]:

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from psph.acts import SOLIDS
 from psph.formula import helper
 from psph.physics.facts import Facts
@@ -46,4 +48,4 @@ class Anvils(NamedTuple):
 @helper
 def pressed(half, position, place, normal):
     """How far a particle is nearer than ``half`` to a plane through ``place``, m."""
-    return max(half - dot(subtract(position, place), normal), 0.0)
+    return np.maximum(half - dot(subtract(position, place), normal), 0.0)
