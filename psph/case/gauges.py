@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import Strict, model_validator
 from pydantic_core import PydanticCustomError
 
-from psph.acts import BODIES, MATTER, SOLIDS, UPDATED
+from psph.acts import BODIES, MATTER, SOILS, SOLIDS, UPDATED
 from psph.case.keys import Axis, Name, Table, Text, Vector, key
 from psph.physics.walls.conditions import BEARING, CONDITIONS
 
@@ -131,6 +131,19 @@ class Displacement(Table):
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")
 
 
+class StressAt(Table):
+    """Stress at a point of a solid or a soil, by the straight function fitted to the particles around it."""
+
+    acts: ClassVar = (SOILS, UPDATED, SOLIDS)
+
+    of: Name = key("the name of the solid or the soil")
+    at: Vector = key(
+        "the point: of a solid where it is at the start, and it moves with that; of a soil or an updated "
+        "Lagrangian solid it stays in space",
+        unit="m",
+    )
+
+
 class Reaction(Table):
     """Force and moment that the supports of solids bear: clamps and anvils."""
 
@@ -166,6 +179,7 @@ class Gauge(Table):
         "motion",
         "displacement",
         "reaction",
+        "stress",
     )
 
     force: Force | None = key("force and moment of the fluid", None, otherwise=ANOTHER_KIND)
@@ -178,6 +192,7 @@ class Gauge(Table):
     motion: MotionOf | None = key("motion of a rigid body", None, otherwise=ANOTHER_KIND)
     displacement: Displacement | None = key("how far a point of a solid moves", None, otherwise=ANOTHER_KIND)
     reaction: Reaction | None = key("what clamps and anvils bear", None, otherwise=ANOTHER_KIND)
+    stress: StressAt | None = key("stress at a point of a solid or a soil", None, otherwise=ANOTHER_KIND)
     every: float | None = key("time between rows", None, unit="s", otherwise="output.probes", gt=0)
 
     @property

@@ -40,6 +40,9 @@ def gauged(case) -> Iterator[Finding]:
         elif gauge.displacement and gauge.displacement.of in case.updated:
             says = refusals(gauge.displacement)[UPDATED]
             yield ("gauges", name, "displacement", "of"), gauge.displacement.of, says
+        if gauge.stress and gauge.stress.of not in (known := case.soils | case.solids):
+            says = f"no solid or soil has this name; {advise(gauge.stress.of, known)}"
+            yield ("gauges", name, "stress", "of"), gauge.stress.of, says
         for place, support in enumerate(gauge.reaction.of if gauge.reaction else ()):
             if says := _bears_nothing(case, gauge.reaction, support):
                 yield ("gauges", name, "reaction", "of", place), support, says

@@ -26,13 +26,8 @@ BESIDE = 1.0
 
 def misplaced(scene: "Scene") -> Iterator[str]:
     """A line for each point of a probe or a gauge, and each whole section, outside the domain."""
-    off = TRIFLE * scene.spacing
     for key, point, _ in _points(scene, "position", "foot", "top"):
-        if not all(low - off <= x <= up + off for low, x, up in zip(scene.lower, point, scene.upper)):
-            yield (
-                f"{key}: {shown(point)} lies outside the domain {shown(scene.lower)} to "
-                f"{shown(scene.upper)}; move it inside"
-            )
+        yield from _outside(scene, key, point)
     for name, section in ((name, one.flow) for name, one in scene.case.gauges.items() if one.flow):
         below = any(up < low for up, low in zip(section.upper, scene.lower))
         if below or any(low > up for low, up in zip(section.lower, scene.upper)):
@@ -42,17 +37,31 @@ def misplaced(scene: "Scene") -> Iterator[str]:
             )
 
 
+def _outside(scene: "Scene", key: str, point: tuple[float, ...]) -> Iterator[str]:
+    """A line for a point that lies outside the domain."""
+    off = TRIFLE * scene.spacing
+    if not all(low - off <= x <= up + off for low, x, up in zip(scene.lower, point, scene.upper)):
+        yield (
+            f"{key}: {shown(point)} lies outside the domain {shown(scene.lower)} to "
+            f"{shown(scene.upper)}; move it inside"
+        )
+
+
 def astray(scene: "Scene") -> Iterator[str]:
-    """A line for each point whose displacement is asked for and that is neither in nor on its solid."""
+    """A line for each point whose displacement or stress is asked for and that lies off its solid; of what
+    keeps no neighbours of the start, for each outside the domain."""
     around = np.linspace(-BESIDE, BESIDE, 7) * scene.spacing
     for name, gauge in scene.case.gauges.items():
-        if (asked := gauge.displacement) is None:
+        if (asked := gauge.displacement or gauge.stress) is None:
+            continue
+        if asked.of not in scene.case.referred:
+            yield from _outside(scene, f"gauges.{name}.{gauge.kind}.at", asked.at)
             continue
         places = np.meshgrid(*(x + around for x in asked.at), indexing="ij")
         grid = [scene.folded(d, place) for d, place in enumerate(places)]
         if not inside(scene.case.solids[asked.of].shape, grid, TOLERANCE * scene.spacing).any():
             yield (
-                f"gauges.{name}.displacement.at: {shown(asked.at)} lies off solids.{asked.of}; give a point "
+                f"gauges.{name}.{gauge.kind}.at: {shown(asked.at)} lies off solids.{asked.of}; give a point "
                 "in it or on its face"
             )
 

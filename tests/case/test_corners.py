@@ -146,6 +146,8 @@ def test_every_sentence_is_a_line_that_says_what_to_do():
         ("gauges.motion", FLUIDS, IRRELEVANT),
         ("gauges.displacement", UPDATED, REFUSED),
         ("gauges.reaction", BODIES, REFUSED),
+        ("gauges.stress", SOILS, ACTS),
+        ("gauges.stress", FLUIDS, IRRELEVANT),
     ],
 )
 def test_the_table_has_what_each_says_and_what_follows(name, corner, kind):

@@ -10,7 +10,8 @@ from psph.case.keys import AXES
 from psph.case.solids import anvils_of, clamps_of
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.corners import Corners
-from psph.output.gauges.displacement import REACH, DisplacementGauge
+from psph.output.gauges.displacement import DisplacementGauge
+from psph.output.gauges.fit import REACH
 from psph.output.gauges.flow import FlowGauge
 from psph.output.gauges.force import ForceGauge
 from psph.output.gauges.level import LevelGauge
@@ -18,6 +19,7 @@ from psph.output.gauges.motion import MotionGauge
 from psph.output.gauges.points import CarriedPoints, PointGauge, disc
 from psph.output.gauges.reaction import ReactionGauge
 from psph.output.gauges.run_up import RunUpGauge
+from psph.output.gauges.stress import StressGauge
 from psph.output.probes import Front, Probe
 from psph.output.tables import GAUGE
 from psph.scene.behind import Solid
@@ -67,6 +69,9 @@ def gauge_of(scene, name: str, table, mirrors=None):
         case "displacement":
             groups = tuple(_groups(scene, asked.of))
             return DisplacementGauge(name, every, groups, asked.at, REACH * scene.spacing)
+        case "stress":
+            groups, keeps = tuple(_groups(scene, asked.of)), asked.of in scene.case.referred
+            return StressGauge(name, every, groups, asked.at, REACH * scene.spacing, keeps)
         case "highest":
             return PointGauge(Front(name, AXES.index(asked.axis)), every)
         case "point":

@@ -10,7 +10,9 @@ PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m", "reaction": "N", "re
 FLOWS = {"flow": ("m/s", "m²/s", "m³/s"), "mass_flow": ("kg/(m² s)", "kg/(m s)", "kg/s")}
 """By the number of dimensions: per square metre of area in 1D, per metre of depth in 2D."""
 
-OF_TWO_WORDS = ("mass_flow", "reaction_moment", "run_up")
+STRESSES = ("stress", "mean_stress", "von_mises")
+
+OF_TWO_WORDS = ("mass_flow", "mean_stress", "reaction_moment", "run_up", "von_mises")
 """Quantities whose name is not the first word of their column."""
 
 
@@ -28,6 +30,8 @@ def unit_of(field: str, dimensions: int) -> str:
     """The unit of a quantity."""
     if field in LENGTHS:
         return "m"
+    if field in STRESSES:
+        return "Pa"
     if field in PER_DEPTH:
         return PER_DEPTH[field] + ("/m" if dimensions == 2 else "")
     if field in MEASURED:
