@@ -249,14 +249,16 @@ def test_a_damping_zone_takes_speed_within_it_alone(begin, end, axis):
     assert isinstance(zone, Absorbing) and zone.longest_step(None) == pytest.approx(0.2 / 8.0)
     d, v = "xy".index(axis), (0.3, -0.7)
 
-    def at(s, velocity=v):
+    def at(s, velocity=v, shear_modulus=0.0):
         x = [5.0, 7.0]
         x[d] = begin + s * (end - begin)
-        return zone.body(view()._replace(position=tuple(x), velocity=velocity))
+        one = view()._replace(position=tuple(x), velocity=velocity, shear_modulus=shear_modulus)
+        return zone.body(one)
 
     assert at(0.5) == pytest.approx((-0.6, 1.4)) and at(0.999) == pytest.approx((-2.4, 5.6), rel=3e-3)
     assert at(-0.01) == at(1.01) == at(-3.0) == at(4.0) == (0.0, 0.0)
     assert at(0.7, (0.0, 0.0)) == (0.0, 0.0)
+    assert at(0.7, shear_modulus=2e6) == (0.0, 0.0)  # in a soil
 
 
 def test_free_surface():
