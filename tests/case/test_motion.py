@@ -193,7 +193,7 @@ def test_check_warns_of_a_series_whose_smooth_curve_leaves_its_rows(tmp_path, pa
         "1.2,0.1,0.0,0.002",
     ]
     path(rows)
-    [line] = (line for line in check(Scene(draft(tmp_path, told))) if "series" in line)
+    [line] = (line for line in check(Scene(draft(tmp_path, told))) if "motion.series" in line)
     assert "walls.floor.motion.series: between its rows at 0.01 and 0.8 s the smooth curve" in line
     path([*rows[:2], *(f"{0.01 + 0.02 * k},0.1,0.0,0.001" for k in range(1, 40))])  # what the line asks for
     near = check(Scene(draft(tmp_path, told)))

@@ -94,6 +94,7 @@ physics.gravity = [%r, -9.0]
 [fluids.grains]
 shape.box = { lower = [0.0, 0.0], upper = [0.01, 0.01] }
 density = 1500.0
+pressure = "hydrostatic"
 [fluids.grains.rheology.granular]
 friction = 0.4
 fast_friction = 0.6

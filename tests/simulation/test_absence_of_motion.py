@@ -77,12 +77,12 @@ def test_where_nothing_moves_the_loops_over_columns_know_nothing_of_it(loop, beg
 
 def test_arrays_and_stages_come_with_what_needs_them(begun):
     plain, gauged, paddled, floating = (begun(*more) for more in ((), GAUGES, (PADDLE,), (LOG,)))
-    brought = {"anchor", "work", "load", "apparent", "solid"}
+    brought = {"anchor", "work", "load", "apparent"}
     assert not brought & set(plain.plan.arrays)
     assert brought & set(gauged.plan.arrays) == {"load"}
     assert brought & set(paddled.plan.arrays) == {"anchor", "work", "load"}
-    assert brought & set(floating.plan.arrays) == {"anchor", "work", "load", "solid"}
+    assert brought & set(floating.plan.arrays) == {"anchor", "work", "load"}
     assert [push_bodies in one.stages for one in (plain, gauged, paddled, floating)] == [False] * 3 + [True]
     assert plain.plan.loaded is None and plain.engine.poses.maps is None
     halos = [one.plan.refreshed + one.plan.ghost_fields for one in (plain, gauged, paddled, floating)]
-    assert halos[1:3] == halos[:1] * 2 and set(halos[3]) - set(halos[0]) == {"solid"}
+    assert halos[1:] == halos[:1] * 3

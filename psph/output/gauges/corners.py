@@ -1,6 +1,7 @@
 """What a part of the walls bears where parts meet: on edges and in corners."""
 
 from collections.abc import Sequence
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,9 @@ OPEN = 0.8
 
 MOST = 64
 """Faces, the nearest ones, among which that of a particle is looked for."""
+
+TOUCH = 1.5
+"""Spacings within which particles of two parts touch: what is farther apart shares no edge."""
 
 TIE = 1e-6
 """Spacings by which the face of another part must be nearer than that of the particle's own."""
@@ -37,8 +41,9 @@ class Corners:
     A face bears, across it, what the fluid before it does to all that lies beyond its plane.  A part that
     summed over its own particles alone would miss what lies beyond its end: on a gate that stands on a floor,
     the last half row of the pressure, which the particles of the floor behind the edge have.  So each
-    component of the load of a particle goes to the part with the nearest face across it that the particle
-    lies beyond, within the ``support`` of the kernel, m.  Sums over all parts stay what they are.
+    component of the load of a particle goes to its own part, or one that touches it, with the nearest face
+    across it that the particle lies beyond, within the ``support`` of the kernel, m.  Sums over all parts
+    stay what they are.
     Faces are those of the particles, a ``spacing`` in m apart, that have no neighbour at the next site.
     """
 
@@ -67,8 +72,8 @@ class Corners:
             for axis in range(places.shape[1])
             for way in (-1.0, 1.0)
         ]
-        own = groups[meeting]
-        bearers = np.stack([self._bearer(space, places[meeting], own, *one) for one in faces], axis=1)
+        own, touch = groups[meeting], self._touch(space, places, groups, len(kinds))
+        bearers = np.stack([self._bearer(space, places[meeting], own, touch, *one) for one in faces], axis=1)
         shared = (bearers != own[:, None]).any(axis=1)
         return Shares(ids[meeting][shared], own[shared], bearers[shared].reshape(-1, places.shape[1], 2))
 
@@ -93,6 +98,14 @@ class Corners:
         order = np.argsort(ids)
         return ids[order], groups[order], places[order], meets[order]
 
+    def _touch(self, space: "_Torus", places: np.ndarray, groups: np.ndarray, count: int) -> np.ndarray:
+        """Whether two of the ``count`` groups touch (count, count); each touches itself."""
+        touch = np.eye(count, dtype=bool)
+        for one, other in combinations(np.unique(groups), 2):
+            pair = places[groups == one], places[groups == other]
+            touch[one, other] = touch[other, one] = space.near(*pair, TOUCH * self.spacing).any()
+        return touch
+
     def _faces(self, space: "_Torus", places: np.ndarray, groups: np.ndarray, outward: np.ndarray):
         """Middles (n, dim), outward normals and groups of the faces that look in the direction ``outward``
         (groups, dim) of their group."""
@@ -102,7 +115,7 @@ class Corners:
         middle = space.wrapped(places + 0.5 * self.spacing * normal)
         return middle[bare], normal[bare], groups[bare]
 
-    def _bearer(self, space: "_Torus", places, own, middle, normal, groups) -> np.ndarray:
+    def _bearer(self, space: "_Torus", places, own, touch, middle, normal, groups) -> np.ndarray:
         """The group whose face bears what presses particles at ``places`` (n, dim) inwards from there."""
         if not len(middle) or not len(places):
             return own
@@ -111,6 +124,7 @@ class Corners:
         face = np.where(found, face, 0)
         depth = -(space.apart(places[:, None], middle[face]) * normal[face]).sum(axis=2)
         beyond = found & (depth > 0.0) & (depth < self.support - 0.5 * self.spacing)
+        beyond &= touch[own[:, None], groups[face]]
         distance = distance + np.where(groups[face] == own[:, None], 0.0, TIE * self.spacing)
         best = np.where(beyond, distance, np.inf).argmin(axis=1)
         rows = np.arange(len(places))
