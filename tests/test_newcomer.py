@@ -44,8 +44,8 @@ IN_THE_CASE = {
     "no gravity": (
         "physics.gravity = [0.0, -9.8]\n",
         "",
-        "drop.toml: physics.sound_speed: missing, and it cannot be derived since nothing moves at the start and "
-        "there is no gravity; give ten times the largest speed that you expect",
+        'drop.toml: fluids.pool.pressure: "hydrostatic": there is no gravity; give physics.gravity, or a pressure '
+        "in Pa",
     ),
     "a slip of the pen": (
         "radius",
