@@ -8,6 +8,7 @@ from psph.case.model import Fluid
 from psph.physics.fluid.state import Linear, Tait
 from psph.rows import projected
 from psph.scene.species import Start
+from psph.scene.still import Still
 
 N = 103
 
@@ -41,8 +42,8 @@ def test_a_sheared_start_is_the_same_in_however_many_rows():
 
 @pytest.mark.parametrize("law", (Linear(), Tait()))
 def test_the_density_of_a_still_column_is_the_same_in_however_many_rows(law):
-    up = (0.6, 0.64, 0.48)
-    column = Start(law, 1000.0, 50.0, 0.0, 9800.0, up, 5.0)
+    layer = Still(up=(0.6, 0.64, 0.48), surface=5.0, above=0.0, weight=9800.0, highest=0.0)
+    column = Start(law, 1000.0, 50.0, 0.0, layer=layer)
     assert same_in_parts(column.density, drawn(3))
 
 

@@ -91,10 +91,13 @@ class Catalogue(NamedTuple):
 
 @cache
 def methods_of_effects() -> frozenset[str]:
-    """Names of the methods that effects have: those of psph's own, in all of their forms."""
+    """Names of the methods that effects have: those of psph's own, and of their forms in the same rooms,
+    which share a method with one of them."""
     rooms = {entry.effect.__module__ for entry in CATALOGUE}
+    known = {name for entry in CATALOGUE for name in methods(entry.effect)}
     kinds = (kind for room in rooms for kind in vars(sys.modules[room]).values() if isinstance(kind, type))
-    return frozenset(name for kind in kinds if kind.__module__ in rooms for name in methods(kind))
+    forms = (methods(kind) for kind in kinds if kind.__module__ in rooms)
+    return frozenset(known.union(*(own for own in forms if known.intersection(own))))
 
 
 def methods(kind: type) -> list[str]:

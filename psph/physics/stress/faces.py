@@ -10,7 +10,7 @@ from psph.physics.facts import Facts
 from psph.vectors import add, dot, scale, times, zero_like
 
 NORMAL = Field(
-    "normal",
+    "face_normal",
     "1",
     "unit vector across the face of a wall without friction, beside what resists shear; else 0",
     VECTOR,
@@ -61,11 +61,11 @@ class Sliding(NamedTuple):
 
     def across(self, j, u):
         """What counts of a velocity relative to a neighbour, m/s."""
-        return add(scale(u, holds(j)), scale(j.normal, dot(j.normal, u)))
+        return add(scale(u, holds(j)), scale(j.face_normal, dot(j.face_normal, u)))
 
     def counts(self, j):
         """Whether a neighbour counts in a velocity gradient, 1 or 0."""
-        return holds(j) + dot(j.normal, j.normal)
+        return holds(j) + dot(j.face_normal, j.face_normal)
 
 
 across, counts = call_by_type("across"), call_by_type("counts")
@@ -164,7 +164,7 @@ class CorrectedSmoothFace(NamedTuple):
 @helper
 def faced(i, j):
     """The normal of the face between i and j, and the factors of s_i and s_j, m⁶/kg²; 0 without a face."""
-    n = add(i.normal, j.normal)
+    n = add(i.face_normal, j.face_normal)
     face = dot(n, n)
     steep_i, steep_j = steepness(i, j)
     own, other = i.specific_volume * i.specific_volume, j.specific_volume * j.specific_volume
