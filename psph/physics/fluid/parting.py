@@ -14,8 +14,8 @@ class Holding(NamedTuple):
     """Walls pull the fluid as the fluid pulls itself: it cannot leave them."""
 
     def felt(self, i, j):
-        """p_i and p_j, Pa, as the pair feels them."""
-        return i.pressure, j.pressure
+        """The part of p_i that the pair feels, and p_j as it feels it, Pa."""
+        return 1.0, j.pressure
 
 
 class Parting(NamedTuple):
@@ -26,9 +26,10 @@ class Parting(NamedTuple):
     """
 
     def felt(self, i, j):
-        """p_i and p_j, Pa, as the pair feels them."""
+        """The part of p_i that the pair feels, and p_j as it feels it, Pa."""
+        pulls = where(i.pressure < 0.0, 1.0, 0.0)
         lowest = (-WHATEVER * i.is_fluid) * j.is_fluid
-        return max(i.pressure, lowest), max(j.pressure, lowest)
+        return (1.0 - pulls) + (pulls * i.is_fluid) * j.is_fluid, max(j.pressure, lowest)
 
 
 class PartingBesideSoils(NamedTuple):
@@ -38,16 +39,17 @@ class PartingBesideSoils(NamedTuple):
     """
 
     def felt(self, i, j):
-        """p_i and p_j, Pa, as the pair feels them."""
+        """The part of p_i that the pair feels, and p_j as it feels it, Pa."""
+        pulls = where(i.pressure < 0.0, 1.0, 0.0)
         clings = where(i.strength + j.strength > 0.0, 1.0, i.is_fluid * j.is_fluid)
-        lowest = -WHATEVER * clings
-        return max(i.pressure, lowest), max(j.pressure, lowest)
+        return (1.0 - pulls) + pulls * clings, max(j.pressure, -WHATEVER * clings)
 
 
 Hold = Holding | Parting | PartingBesideSoils
 
 felt = call_by_type("felt")
-"""(hold, i, j) → p_i and p_j, Pa, as the pair feels them: see :class:`Parting`."""
+"""(hold, i, j) → the part of p_i that the pair feels, 0 or 1, and p_j as it feels it, Pa: see :class:`Parting`.
+A part and not a pressure, so that what p_i makes of i alone is known before the loop over j."""
 
 
 def hold_of(scene: Facts) -> Hold:
