@@ -121,11 +121,7 @@ class MotionOf(Table):
 class Displacement(Table):
     """How far a point of a solid has moved, by the straight line fitted to the particles around it."""
 
-    acts: ClassVar = (SOLIDS,)
-    refuses: ClassVar = {
-        UPDATED: "an updated Lagrangian solid keeps no place of the start; plot the frames, or give it "
-        'description = "total"'
-    }
+    acts: ClassVar = (UPDATED, SOLIDS)
 
     of: Name = key("the name of the solid")
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")

@@ -37,9 +37,6 @@ def gauged(case) -> Iterator[Finding]:
         if gauge.displacement and gauge.displacement.of not in case.solids:
             says = f"no solid has this name; {advise(gauge.displacement.of, case.solids)}"
             yield ("gauges", name, "displacement", "of"), gauge.displacement.of, says
-        elif gauge.displacement and gauge.displacement.of in case.updated:
-            says = refusals(gauge.displacement)[UPDATED]
-            yield ("gauges", name, "displacement", "of"), gauge.displacement.of, says
         if gauge.stress and gauge.stress.of not in (known := case.soils | case.solids):
             says = f"no solid or soil has this name; {advise(gauge.stress.of, known)}"
             yield ("gauges", name, "stress", "of"), gauge.stress.of, says

@@ -144,7 +144,7 @@ def test_every_sentence_is_a_line_that_says_what_to_do():
         ("gauges.force", "repulsive", REFUSED),
         ("gauges.motion", BODIES, ACTS),
         ("gauges.motion", FLUIDS, IRRELEVANT),
-        ("gauges.displacement", UPDATED, REFUSED),
+        ("gauges.reaction", UPDATED, REFUSED),
         ("gauges.reaction", BODIES, REFUSED),
         ("gauges.stress", SOILS, ACTS),
         ("gauges.stress", FLUIDS, IRRELEVANT),
@@ -177,9 +177,6 @@ def test_a_gauge_refuses_what_it_cannot_measure(tmp_path):
     for condition, says in refusals(force).items():
         [line] = refusal(tmp_path, scene(condition, more='gauges.push.force.on = ["floor"]'))
         assert says in line
-    more = 'gauges.moved.displacement = { of = "block", at = [0.3, 0.3] }'
-    [line] = refusal(tmp_path, scene(UPDATED, more=more))
-    assert refusals(gauge_kinds()["displacement"])[UPDATED] in line
     text = scene(UPDATED, more='gauges.held.reaction.of = ["solids.block.clamped"]')
     clamped = "solids.block.clamped={box={lower=[0.0,0.0],upper=[0.2,0.2]}}"
     [line] = refusal(tmp_path, text, clamped)

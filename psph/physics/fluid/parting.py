@@ -48,7 +48,7 @@ class PartingBesideSoils(NamedTuple):
 Hold = Holding | Parting | PartingBesideSoils
 
 felt = call_by_type("felt")
-"""(hold, i, j) → the part of p_i that the pair feels, 0 or 1, and p_j as it feels it, Pa: see :class:`Parting`.
+"""(hold, i, j) → the part of p_i that the pair feels, 0 or 1, and p_j as it feels it, Pa (:class:`Parting`).
 A part and not a pressure, so that what p_i makes of i alone is known before the loop over j."""
 
 
