@@ -199,7 +199,7 @@ def test_check_warns_of_a_series_whose_smooth_curve_leaves_its_rows(tmp_path, pa
     near = check(Scene(draft(tmp_path, told)))
     times = np.arange(0.0, 2.01, 0.25)
     path(["time,x,y,angle", *(f"{t},{0.1 * np.sin(np.pi * (2.0 * t - 0.25))},0,0" for t in times)])
-    assert not any("series" in line for line in near + check(Scene(draft(tmp_path, told))))
+    assert not any("motion.series" in line for line in near + check(Scene(draft(tmp_path, told))))
 
 
 BRICK = """
