@@ -30,7 +30,9 @@ class Wetting:
         safe, wet = self.reach.support - self.reach.skin, s[self.effect.marks.name]
         self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
-        self._each(find_resting, s.group, plan.free, self._rows.rest)
+        loaded = np.zeros(len(plan.kinds), bool) if plan.loaded is None else plan.loaded
+        told_by = s[self.effect.told_by]
+        self._each(find_resting, s.group, plan.free, loaded, told_by, self._rows.rest)
         lists.lengths[: s.owned][self._rows.rest & (wet[s.inner] == 0.0)] = 0
 
     def begin(self) -> None:

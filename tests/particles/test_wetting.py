@@ -72,12 +72,19 @@ def test_fluid_does_not_wet_a_wall_that_bears_nothing():
     assert wet_at(0.5, 1.0, bearing=False) == 0.0
 
 
-def resting(group):
+def resting(group, loaded=False, is_fluid=(0.0, 0.0, 0.0)):
     """Which of three particles rest while they are dry, each beside the next one."""
-    found = np.zeros(3, bool)
-    find_resting(0, 3, 0, lists_of(1, 2, 0), np.array(group, np.uint8), np.uint8(1), found)
+    found, lists = np.zeros(3, bool), lists_of(1, 2, 0)
+    groups, asked = np.array(group, np.uint8), np.array([False, loaded])
+    find_resting(0, 3, 0, lists, groups, np.uint8(1), asked, np.array(is_fluid), found)
     return found.tolist()
 
 
 def test_walls_rest_and_what_moves_freely_does_not():
     assert resting(group=[1, 0, 1]) == [True, False, True]
+
+
+def test_walls_whose_load_is_asked_for_rest_where_no_fluid_is_listed():
+    beside = (0.0, 1.0, 0.0)
+    assert resting(group=[1, 0, 1], loaded=True, is_fluid=beside) == [False, False, True]
+    assert resting(group=[1, 0, 1], loaded=False, is_fluid=beside) == [True, False, True]
