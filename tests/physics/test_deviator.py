@@ -97,14 +97,14 @@ def test_a_smooth_wall_bears_the_stress_across_its_face_and_no_shear_along_it(ef
     s = tuple(np.array([v[0], 0.0]) for v in p.deviator)
     none = tuple(np.zeros(2) for _ in p.deviator)
     p = p._replace(deviator=s, pressure=np.array([2e3, 3e3]), cone_tip=np.array([500.0, 0.0]))
-    p = p._replace(normal=tuple(np.array([0.0, one]) for one in n), gradient_correction=none)
+    p = p._replace(face_normal=tuple(np.array([0.0, one]) for one in n), gradient_correction=none)
     i, j, pair = pair_of(p, 0, 1)
     stress, turn = full([v[0] for v in s], dim), np.eye(dim) - 2.0 * np.outer(n, n)
     shown = turn @ stress @ turn * i.specific_volume**2 * 3.5 / 2.5  # (p + tip) of the wall over that of soil
     assert effect.push(i, j, pair) == pytest.approx(shown @ np.array(pair.x_ij) * pair.m_dw_r, rel=1e-12)
     back = np.array(effect.push(*pair_of(p, 1, 0)))
     assert p.mass[1] * back == pytest.approx(-p.mass[0] * np.array(effect.push(i, j, pair)), rel=1e-12)
-    free = p._replace(normal=tuple(np.zeros(2) for _ in n))
+    free = p._replace(face_normal=tuple(np.zeros(2) for _ in n))
     assert not np.any(effect.push(*pair_of(free, 0, 1)))
 
 
