@@ -4,8 +4,6 @@ import math
 
 import numpy as np
 
-from psph.scene.lattice import TOLERANCE
-
 
 def range_of_pressure(scene, fluid: int) -> tuple[float, float]:
     """The lowest and the highest pressure of a fluid at the start, Pa."""
@@ -37,18 +35,21 @@ def starting_fullness(scene) -> tuple[float, float]:
     return min(filled), max(filled)
 
 
-def weight_above(scene, fluid: int) -> float:
-    """Pressure of the still fluids that rest on this one, Pa: those that begin where it ends, or
-    higher, over some of its ground."""
-    census, total = scene.census, 0.0
-    level = [d for d, u in enumerate(scene.up) if abs(u) < 0.5]
+def weight_above(scene, fluid: int, gravity, census) -> float:
+    """Pressure of the still fluids that rest on this one, Pa, where ``gravity`` (dim,) m/s² is oblique to the
+    axes: those that begin where it ends, or higher, over some of its ground.
+
+    ``census`` has their ends against this gravity.  Where layers that are drawn along a slope meet, these are
+    within half a spacing of the slope: the steps of the lattice fit into each other.
+    """
+    total, pull = 0.0, math.hypot(*gravity)
+    level = [d for d, g in enumerate(gravity) if abs(g) < 0.5 * pull]
     for other in range(scene.layout.fluids):
-        bottom = float(census.bottom[other]) - 0.5 * scene.spacing
         apart = (census.lowest[other] > census.highest[fluid]) | (
             census.highest[other] < census.lowest[fluid]
         )
-        resting = bottom > scene.surface_of(fluid) - TOLERANCE * scene.spacing and not apart[level].any()
-        if resting and scene.parts[other].pressure == "hydrostatic":
-            thickness = scene.surface_of(other) - bottom
-            total += scene.parts[other].density * math.hypot(*scene.height_gravity) * thickness
+        bottom = float(census.bottom[other])
+        higher = bottom > float(census.top[fluid]) - 0.5 * scene.spacing and other != fluid
+        if higher and not apart[level].any() and scene.parts[other].pressure == "hydrostatic":
+            total += scene.parts[other].density * pull * (float(census.top[other]) - bottom)
     return total

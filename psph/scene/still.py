@@ -12,7 +12,7 @@ from psph.physics.rigid.pose import in_space, inertia
 from psph.rows import projected
 from psph.scene.columns import columns, connected, order_of
 from psph.scene.pressures import weight_above
-from psph.scene.species import NONE
+from psph.scene.species import NONE, Census, take_census
 from psph.scene.walls import with_surroundings
 
 if TYPE_CHECKING:
@@ -85,21 +85,38 @@ def stills_of(scene: "Scene", resting: list[int]) -> dict[int, Still]:
     gravity = felt_gravity(scene)
     axes = [d for d, g in enumerate(gravity) if g]
     if not resting or not axes:
-        return {n: _one_level(scene, n, gravity, 0.0) for n in resting}
+        return {n: _one_level(scene, n, gravity) for n in resting}
     if len(axes) > 1:
-        return {n: _one_level(scene, n, gravity, weight_above(scene, n)) for n in resting}
+        return _oblique(scene, resting, gravity)
     if _is_level(scene, axes[0], gravity[axes[0]]):
-        return {0: _one_level(scene, 0, gravity, 0.0)}
+        return {0: _one_level(scene, 0, gravity)}
     return _Columns(scene, axes[0], gravity[axes[0]], resting).stills()
 
 
-def _one_level(scene: "Scene", number: int, gravity, above: float) -> Still:
-    """A fluid whose surface is at its highest point, with ``above`` Pa on it."""
+def _oblique(scene: "Scene", resting: list[int], gravity) -> dict[int, Still]:
+    """Each fluid with one surface, and with the weight of those above it."""
+    up = _against(gravity)
+    census = scene.census if up == scene.up else take_census(scene.layout, up)
+    above = {n: weight_above(scene, n, gravity, census) for n in resting}
+    return {n: _one_level(scene, n, gravity, above[n], census) for n in resting}
+
+
+def _against(gravity) -> tuple[float, ...]:
+    """The unit vector against ``gravity``, m/s²; zeros without."""
     pull = math.hypot(*gravity)
-    up = tuple(-g / pull if pull else 0.0 for g in gravity)
-    weight, surface = scene.parts[number].density * pull, scene.surface_of(number)
-    highest = above + weight * max(surface - float(scene.census.bottom[number]), 0.0)
-    return Still(up, surface, above, weight, highest)
+    return tuple(-g / pull if pull else 0.0 for g in gravity)
+
+
+def _one_level(scene: "Scene", number: int, gravity, above=0.0, census: Census | None = None) -> Still:
+    """A fluid whose surface is at its highest point, with ``above`` Pa on it.
+
+    ``census`` has its ends against this gravity; without it that of the scene does.
+    """
+    census = census or scene.census
+    weight = scene.parts[number].density * math.hypot(*gravity)
+    surface = float(census.top[number]) + 0.5 * scene.spacing
+    highest = above + weight * max(surface - float(census.bottom[number]), 0.0)
+    return Still(_against(gravity), surface, above, weight, highest)
 
 
 def _is_level(scene: "Scene", axis: int, pull: float) -> bool:

@@ -153,6 +153,32 @@ def test_levels_follow_gravity_along_any_axis(tmp_path):
     assert p == pytest.approx(1000.0 * 5.0 * (height.max() + 0.025 - height), rel=1e-9)
 
 
+SLANTED = """
+[fluids.water]
+pressure = "hydrostatic"
+shape.polygon.points = [[0.0, 0.0], [2.0, 0.0], [2.0, 0.9], [0.0, 0.4]]
+[fluids.oil]
+density = 800.0
+pressure = "hydrostatic"
+shape.polygon.points = [[0.0, 0.4], [2.0, 0.9], [2.0, 1.3], [0.0, 0.8]]
+"""
+
+
+@pytest.mark.parametrize("frame", [False, True])
+def test_slanted_layers_weigh_on_each_other_under_slanted_gravity(tmp_path, frame):
+    """The steps of the lattice took the load of the oil away: 4000 Pa at the floor for 7000; in a frame that is
+    accelerated heights were taken against the gravity of the case: 9100 Pa."""
+    text, gravity = SLANTED + BASIN, (2.5, -10.0)
+    if frame:
+        text, gravity = text + "[frame]\nmotion = { acceleration = [-2.5, 0.0] }\n", (0.0, -10.0)
+    found = Pressures(tmp_path, text, gravity=gravity)
+    for x, y, density in ((0.025, 0.025, 1000.0), (1.975, 0.025, 1000.0), (0.975, 0.675, 800.0)):
+        depth = 0.4 + 0.25 * x - y
+        right = 800.0 * 10.0 * 0.4 + density * 10.0 * depth
+        row = np.argmin(np.linalg.norm(found.found.position - np.array([x, y]), axis=1))
+        assert found.p[row] == pytest.approx(right, abs=1000.0 * 10.0 * 0.025)  # half a spacing
+
+
 def test_a_frame_that_falls_or_rises_changes_the_weight_from_the_start(tmp_path):
     water = (
         '[fluids.water]\npressure = "hydrostatic"\nshape.box = { lower = [0.0, 0.0], upper = [2.0, 0.5] }\n'
