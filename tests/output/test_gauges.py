@@ -279,6 +279,14 @@ def test_flow_through_a_section_is_speed_times_area(tmp_path):
     assert read["along.flow"] == 0.0
 
 
+def test_flow_through_a_section_across_a_seam_counts_both_sides_of_it(tmp_path):
+    """Only what is before the seam counted: half of it."""
+    keys = [f"fluids.{name}.velocity=[0.0,0.4]" for name in ("upper", "lower")]
+    keys += ["gauges.along.flow.lower=[2.5,0.5]", "gauges.along.flow.upper=[3.5,0.5]"]
+    read = readings(*started(draft(tmp_path, STREAM, *keys)))
+    assert read["along.flow"] == pytest.approx(0.4 * 1.0, rel=0.01)
+
+
 def test_a_disc_has_points_a_spacing_apart_at_most():
     assert disc((1.0, 2.0), 0, 0.1, 0.1).tolist() == [[1.0, 2.0]]
     assert disc((1.0, 2.0), 0, 0.2, 0.1) == pytest.approx(np.array([[1.0, 1.95], [1.0, 2.05]]))

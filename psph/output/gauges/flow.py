@@ -14,8 +14,8 @@ class FlowGauge(NamedTuple):
 
     Q = Σ_j V_j u_j W(d_j) over the fluid particles j before and behind the section, with the velocity
     u_j along the axis, the distance d_j from the section and the kernel W of one dimension, ∫W dd = 1;
-    Q_m the same with masses.  ``lower`` and ``upper`` (dim,) m are its corners.  m³/s and kg/s; per
-    metre of depth in 2D.
+    Q_m the same with masses.  ``lower`` and ``upper`` (dim,) m are its corners, also across a seam.
+    m³/s and kg/s; per metre of depth in 2D.
     """
 
     name: str
@@ -40,7 +40,10 @@ class FlowGauge(NamedTuple):
         others = [d for d in range(x.shape[1]) if d != self.axis]
         within = np.abs(away) < across.support * plan.smoothing_length
         for d in others:
-            within &= (x[:, d] >= self.lower[d]) & (x[:, d] < self.upper[d])
+            past = x[:, d] - self.lower[d]
+            if (repeats := simulation.domain.periods[d]) is not None:
+                past -= repeats * np.floor(past / repeats)
+            within &= (past >= 0.0) & (past < self.upper[d] - self.lower[d])
         within &= store.shown("kind") == FLUID
         shares = np.array([weight(across, abs(d)) for d in away[within].tolist()])
         mass = store.shown("mass")[within] * store.shown("velocity")[within, self.axis] * shares
