@@ -75,12 +75,13 @@ def stills_of(scene: "Scene", resting: list[int]) -> dict[int, Still]:
     """How the ``resting`` fluids start, under their own weight, by their numbers.
 
     Along gravity, a column of fluid bears what stands over it up to the air: its own weight, that of the
-    fluids on it, and the pressure of one whose pressure is given.  What hangs within a connected fluid, with
+    fluids on it, and the pressure of one whose pressure is given. What hangs within a connected fluid, with
     that above and below, has the pressure of this fluid around it, be it a drop, a bubble or a solid: it
-    will rise or sink, and does not rest on what is below.  Under a roof, of a wall or of what floats, the
-    surface is that of the nearest open column of the same connected fluid; where all of it is closed in, its
-    highest point.  A fluid that nothing solid bears from below falls, and has no pressure.  Where gravity is
-    oblique to the axes each fluid has one surface, its highest point.
+    will rise or sink, and does not rest on what is below. Under a roof, of a wall or of what floats, the
+    surface is that of the nearest open column of the same connected fluid; where all of it is closed in, it
+    has the pressure of another fluid that it meets, or none at its highest point. A fluid that nothing
+    solid bears from below falls, and has no pressure. Where gravity is oblique to the axes each fluid has
+    one surface, its highest point.
     """
     gravity = felt_gravity(scene)
     axes = [d for d, g in enumerate(gravity) if g]
@@ -206,7 +207,7 @@ class _Columns:
             before = np.count_nonzero(known)
             self._walk_down(around, surface, above, known)
             self._spread(around, surface, above, known)
-            if np.count_nonzero(known) == before:
+            if np.count_nonzero(known) == before and not self._meet(around, surface, above, known):
                 self._close(around, surface, above, known)
         self._walk_down(around, surface, above, known)
         return surface, np.where(inside, above, 0.0)
@@ -220,7 +221,7 @@ class _Columns:
         for k, height in enumerate(self.heights):
             here = around[..., k]
             begins, top = (here > 0) & (here != before), height + 0.5 * self.spacing
-            roofed = begins & ~open_air & (before == 0) & np.isnan(given)
+            roofed = begins & ~open_air & (before == 0) & np.isnan(given) | begins & (before > 0) & ~told
             on_it = np.where(before > 0, load + self.weights[before] * (level - top), 0.0)
             on_it = np.where(np.isnan(given), on_it, given)
             load = np.where(begins, np.where(roofed, above[..., k], on_it), load)
@@ -251,6 +252,26 @@ class _Columns:
                 for array in (surface, above):
                     array[place][own] = array[place][nearest][own]
                 known[place] |= own
+
+    def _meet(self, around, surface, above, known) -> bool:
+        """What is closed in beside another fluid that is known has its pressure where they meet, below it or
+        else at its side; False where nothing is so."""
+        for place in reversed(range(around.ndim)):
+            low, high = ([slice(None)] * around.ndim for _ in range(2))
+            low[place], high[place] = slice(None, -1), slice(1, None)
+            for here, there in ((tuple(low), tuple(high)), (tuple(high), tuple(low))):
+                meets = (around[here] > 0) & ~known[here] & known[there]
+                if meets.any():
+                    site = np.unravel_index(meets.argmax(), meets.shape)
+                    own = around == around[here][site]
+                    beside = around[there][site]
+                    face = 0.5 * (self.heights[here[-1]][site[-1]] + self.heights[there[-1]][site[-1]])
+                    top = self.heights[own.any(axis=tuple(range(own.ndim - 1))).argmax()] + 0.5 * self.spacing
+                    met = above[there][site] + self.weights[beside] * (surface[there][site] - face)
+                    weight = self.weights[around[here][site]]
+                    surface[own], above[own], known[own] = top, met - weight * (top - face), True
+                    return True
+        return False
 
     def _close(self, around, surface, above, known) -> None:
         """What is closed in all around has no pressure at its highest point: of the parts that are not known

@@ -153,6 +153,36 @@ def test_levels_follow_gravity_along_any_axis(tmp_path):
     assert p == pytest.approx(1000.0 * 5.0 * (height.max() + 0.025 - height), rel=1e-9)
 
 
+BELL = f"""
+[walls.basin.shape.difference]
+from = {box((-0.2, -0.2), (2.2, 2.0))}
+minus = [{box((0.0, 0.0), (1.0, 2.0))}, {box((1.0, 0.0), (2.0, 1.0))}]
+"""
+
+
+@pytest.mark.parametrize("below", [True, False])
+def test_oil_that_water_closes_in_under_a_roof_has_the_pressure_of_the_water(tmp_path, below):
+    """It had none at its highest point, and with it the water below: 8600 Pa at the floor for 14700.
+
+    Closed in by water below it, and at its side alone.
+    """
+    text = (
+        '[fluids.water]\npressure = "hydrostatic"\nshape.union = ['
+        f"{box((0.0, 0.0), (1.0, 1.5))}, {box((0.0, 0.0), (2.0 if below else 1.0, 0.5))}]\n"
+        '[fluids.oil]\ndensity = 800.0\npressure = "hydrostatic"\n'
+        f"shape = {box((1.0, 0.5 if below else 0.0), (2.0, 1.0))}\n"
+    )
+    found = Pressures(tmp_path, text + BELL)
+    assert found.at(0.525, 0.0) == pytest.approx(1000.0 * G * 1.5)
+    if below:
+        assert found.at(1.525, 0.0) == pytest.approx(1000.0 * G * 1.5)
+    oil = found.found.material == 1
+    y = found.found.position[oil][:, 1]
+    met = 0.5 if below else 0.975  # m, where they meet: side by side all along, so at the first place
+    right = 1000.0 * G * (1.5 - met) + 800.0 * G * (met - y)
+    assert found.p[oil] == pytest.approx(right, rel=1e-6)
+
+
 SLANTED = """
 [fluids.water]
 pressure = "hydrostatic"
