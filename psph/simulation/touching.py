@@ -26,6 +26,14 @@ AHEAD = 0.1
 ON_FACE = 1e-6
 """Of a spacing: so far from the face a drawn corner still is one of the body."""
 
+NEARBY, TOUCH = 1e-3, 0.1
+"""Of a spacing: so far beside and before a place on a face it is looked whether another wall hides that; and
+of this, how near two are that touch."""
+
+SLANT, ASKEW = 0.5, 1e-4
+"""Part of an axis that lies along a face, from which on it leads to a place beside; and one minus the cosine
+of the angle from which on two normals are not the same."""
+
 MOST = 8
 """Points of contact of two bodies, or of a body and a wall, that are kept in 2D; half as many more in 3D."""
 
@@ -37,13 +45,15 @@ class Obstacle(NamedTuple):
     """What a body may meet: a ``shape``, or the plane of a mirror, in its place at the start.
 
     ``key`` is its key in the case; ``body`` the row of a body, −1 of others; ``pose`` that of the map that
-    places it, −1 where it stays.
+    places it, −1 where it stays; ``beside`` are the shapes of walls that move as it does,
+    and how far off, m: their images and its own among them, where the domain repeats.
     """
 
     key: str
     shape: Any
     body: int = -1
     pose: int = -1
+    beside: tuple[tuple[Any, np.ndarray], ...] = ()
 
     @property
     def corners(self) -> np.ndarray | None:
@@ -53,6 +63,37 @@ class Obstacle(NamedTuple):
     def faces(self, points: np.ndarray) -> Faces:
         """How far ``points`` (n, dim) are before its faces at the start, m, and the way out."""
         return self.shape.faces(points) if isinstance(self.shape, Plane) else faces_of(self.shape, points)
+
+    def hidden(self, points: np.ndarray, faces: Faces, step: float) -> np.ndarray:
+        """Whether walls beside it hide its ``faces`` from ``points`` (n, dim), m.
+
+        So where another wall touches the place on the face and is before it, a ``step`` in m along the
+        normal, unless the face goes on bare as far aside: a floor that is drawn in two parts has no edge
+        where these meet, and a wall that stands on a floor keeps its foot.
+        """
+        if not self.beside:
+            return np.zeros(len(points), bool)
+        away, normal = faces
+        feet, least = points - away[:, None] * normal, TOUCH * step
+        found = (np.abs(self._others(feet)) < least) & ~self._bare(feet, normal, step)
+        for axis in range(points.shape[1]):
+            aside = np.eye(points.shape[1])[axis] - normal[:, axis, None] * normal
+            size = np.sqrt((aside**2).sum(axis=1))
+            aside /= np.where(size > SLANT, size, np.inf)[:, None]
+            for way in (-step, step):
+                there = feet + way * aside
+                beside = self.faces(there)
+                same = (np.abs(beside.away) < least) & ((beside.normal * normal).sum(axis=1) > 1.0 - ASKEW)
+                found &= ~(same & self._bare(there, normal, step))
+        return found
+
+    def _bare(self, feet: np.ndarray, normal: np.ndarray, step: float) -> np.ndarray:
+        """Whether no wall beside it is before its faces at ``feet``."""
+        return self._others(feet + step * normal) > (1.0 - ASKEW) * step
+
+    def _others(self, points: np.ndarray) -> np.ndarray:
+        """How far points are before the nearest wall beside it, m."""
+        return np.min([faces_of(shape, points - off).away for shape, off in self.beside], axis=0)
 
 
 class Plane(NamedTuple):
@@ -95,12 +136,12 @@ class Contacts:
         bodies = range(scene.layout.first_body, len(scene.parts))
         self._row_of = {part: rows.index(int(plan.pose_of[part])) for part in bodies}
         self._own = [on_faces(scene, part) for part, _ in sorted(self._row_of.items(), key=itemgetter(1))]
-        self._obstacles = [*self._all_obstacles(scene, plan)]
-        self._reach = np.array([one.reach(one.middle) for one in self._own])
-        self._size = np.array([one.reach(at[None]) for one, at in zip(self._own, places)])
         self._shifts = [
             np.array(one) for one in product(*((0.0,) if p is None else (-p, 0.0, p) for p in scene.periods))
         ]
+        self._obstacles = [*self._all_obstacles(scene, plan)]
+        self._reach = np.array([one.reach(one.middle) for one in self._own])
+        self._size = np.array([one.reach(at[None]) for one, at in zip(self._own, places)])
         self._touching: Touching | None = None
         self._extra: tuple[np.ndarray, np.ndarray] | None = None
 
@@ -186,6 +227,8 @@ class Contacts:
         away, normal = obstacle.faces(then)
         gap = away - own.radius
         chosen = spread_out(then, gap, normal, ahead, MOST * self._d // 2)
+        seen = Faces(away[chosen], normal[chosen])
+        chosen = chosen[~obstacle.hidden(then[chosen], seen, NEARBY * self._spacing)]
         if not len(chosen):
             return None
         out = self._turned(obstacle.pose, normal[chosen])
@@ -249,13 +292,19 @@ class Contacts:
 
     def _all_obstacles(self, scene, plan) -> Iterator[Obstacle]:
         """Bodies, walls that stay or move as a whole, and mirrors."""
+        walls: list[Obstacle] = []
         for part in range(scene.layout.first_wall, len(scene.parts)):
             key, motion, shape = scene.key_of(part), scene.species_in_motion[part], scene.parts[part].shape
             if isinstance(motion, Body):
                 row = self._row_of[part]
                 yield Obstacle(key, shape, row, self._rows[row])
             elif isinstance(motion, Fixed) or is_rigid(motion):
-                yield Obstacle(key, shape, -1, int(plan.pose_of[part]) if is_rigid(motion) else -1)
+                walls.append(Obstacle(key, shape, -1, int(plan.pose_of[part]) if is_rigid(motion) else -1))
+        for one in walls:
+            around = ((k, off) for k in walls if k.pose == one.pose for off in self._shifts)
+            beside = ((k.shape, off) for k, off in around if k is not one or off.any())
+            near = (pair for pair in beside if touch(one.shape, *pair, scene.spacing))
+            yield one._replace(beside=tuple(near))
         for one in scene.mirror_planes:
             yield Obstacle("a mirror", Plane(one.axis, one.at, 1 if one.side == BELOW else -1))
 
@@ -263,6 +312,12 @@ class Contacts:
 NONE, NOWHERE = np.empty(0, np.int64), np.empty((0, 3))
 NOTHING = Touching(NONE, NONE, NOWHERE, NOWHERE, NOWHERE, np.empty(0), NOWHERE)
 """No contact."""
+
+
+def touch(one, other, off: np.ndarray, near: float) -> bool:
+    """Whether boxes around two shapes, the other ``off`` m away, are no farther apart than ``near``, m."""
+    (low, high), (lowest, highest) = (np.array(bounds(shape)) for shape in (one, other))
+    return bool((low - near <= highest + off).all() and (lowest + off - near <= high).all())
 
 
 def _sums(touching: Touching, impulse: np.ndarray, bodies: Bodies) -> tuple[np.ndarray, np.ndarray]:

@@ -259,3 +259,66 @@ def test_what_is_forced_into_another_is_told(tmp_path):
     told = [dry.floating.contacts.deepest(dry.to(time)) for time in (0.09, 0.2)]
     assert told[0].depth == 0.0
     assert told[1].depth == pytest.approx(0.1, abs=1e-9) and told[1].other == "walls.post"
+
+
+SLIDER = """
+[bodies.block]
+shape.box = { lower = [1.5, 0.0], upper = [1.7, 0.2] }
+density = 1000.0
+velocity = [1.0, 0.0]
+"""
+
+
+def parts(*ends, bottom=-0.3, height=0.0):
+    """A floor of a box between each two of some ``ends``, m."""
+    return "".join(
+        f"[walls.floor{n}.shape.box]\nlower = [{low}, {bottom}]\nupper = [{up}, {height}]\n"
+        for n, (low, up) in enumerate(zip(ends, ends[1:]))
+    )
+
+
+@pytest.mark.parametrize("degrees", [0.0, 25.0])
+def test_a_floor_in_two_parts_has_no_edge_where_they_meet(tmp_path, degrees):
+    """A block met the end of the second part, under the floor, and turned back."""
+    two = [(-1.0, 1.9), (1.9, 9.0)]
+    boxes = [turned(-degrees, [(a, -0.3), (b, -0.3), (b, 0.0), (a, 0.0)]) for a, b in two]
+    floor = "".join(f"[walls.floor{n}]\nshape.polygon.points = {box}\n" for n, box in enumerate(boxes))
+    way = turned(-degrees, [(1.0, 0.0)])[0]
+    moving = turned(-degrees, [(1.5, 0.0), (1.7, 0.0), (1.7, 0.2), (1.5, 0.2)])
+    body = SLIDER.replace("box = { lower = [1.5, 0.0], upper = [1.7, 0.2] }", f"polygon.points = {moving}")
+    text = FLAT.format(dx=0.05, friction=0.0, restitution=0.0) + floor
+    bodies = Dry(draft(tmp_path, text + body.replace("[1.0, 0.0]", f"{way}"))).to(0.6)
+    pull = 9.81 * math.sin(math.radians(degrees))
+    assert (bodies.place - bodies.reference)[0, :2] @ way == pytest.approx(0.6 + 0.18 * pull, rel=1e-3)
+    assert bodies.velocity[0, :2] @ way == pytest.approx(1.0 + 0.6 * pull, rel=1e-3)
+
+
+def test_a_floor_that_repeats_has_no_edge_at_the_seam(tmp_path):
+    """The block met the end of the floor's next image."""
+    text = FLAT.format(dx=0.05, friction=0.0, restitution=0.0)
+    seam = 'spacing = 0.05\nperiodic = ["x"]\nlower = [0.0, -0.3]\nupper = [2.0, 3.3]'
+    text = text.replace("spacing = 0.05", seam).replace("[-3.0, 3.0]", "[0.1, 3.0]").replace("-2.8", "0.3")
+    bodies = Dry(draft(tmp_path, text + parts(0.0, 2.0) + SLIDER)).to(0.6)
+    assert (bodies.place - bodies.reference)[0, 0] == pytest.approx(0.6, abs=1e-6)
+
+
+@pytest.mark.parametrize("upper", [1.0, 0.1])
+def test_a_wall_that_stands_on_such_a_floor_still_stops(tmp_path, upper):
+    """And a step in it."""
+    post = f"[walls.post.shape.box]\nlower = [2.1, 0.0]\nupper = [2.4, {upper}]\n"
+    text = FLAT.format(dx=0.05, friction=0.0, restitution=0.0)
+    bodies = Dry(draft(tmp_path, text + parts(0.0, 1.9, 3.0) + post + SLIDER)).to(0.6)
+    assert (bodies.place - bodies.reference)[0, 0] == pytest.approx(0.4, abs=2e-2)
+    assert bodies.velocity[0, 0] < 0.05
+
+
+def test_a_cube_slides_over_the_joint_of_a_floor_in_3d(tmp_path):
+    text = SOLID.replace("friction = 0.7", "friction = 0.0").replace("0.02]", "0.0]").replace("0.42]", "0.4]")
+    text = text.replace("spin = [0.0, 0.0, 3.0]", "").replace("y = [2.0, 1.0, 0.0]", "y = [1.0, 0.1, 0.0]")
+    text = text.replace("upper = [2.0, 1.0, 0.0]", "upper = [0.5, 1.0, 0.0]").replace(
+        "[bodies.cube]",
+        "[walls.other]\nshape.box = { lower = [0.5, -1.0, -0.3], upper = [3.0, 1.0, 0.0] }\n[bodies.cube]",
+    )
+    bodies = Dry(draft(tmp_path, text)).to(1.0)
+    assert bodies.velocity[0] == pytest.approx([1.0, 0.1, 0.0], abs=1e-6)
+    assert np.abs(bodies.spin).max() < 1e-6
