@@ -9,7 +9,7 @@ from psph.fields import CROSSED, Field
 from psph.particles.reach import Reach
 from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
-from psph.physics.solid.contact import OF_CONTACT, REACH, SolidContact
+from psph.physics.solid.contact import OF_CONTACT, OF_FRICTION, REACH, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
 from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING, STRESS_ZZ
 from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, is_heated, remembers, solid_of
@@ -134,6 +134,7 @@ def solid_fields(scene: "Scene") -> tuple[Field, ...]:
     wet = [INERTIA] if scene.case.flowing else []
     cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.elastic_solids) else ()
     meeting = OF_CONTACT if meets(scene) else ()
+    meeting += OF_FRICTION if meeting and scene.physics.contact.friction else ()
     own = (*OF_SOLIDS, *plane, *across, *lasting, *cracks, *meeting)
     return (*own, *([DRAWN, WORK] if loaded else []), *wet)
 

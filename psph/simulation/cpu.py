@@ -153,7 +153,10 @@ class Engine:
 
         The first of them brings ghosts up to date unless they are; each then what was written before it.
         """
-        stale, written = () if ghosts_are_fresh else self.plan.refreshed, set()
+        if self.plan.touching:
+            self.solids.strain(dt)
+        stale = self.plan.faced if ghosts_are_fresh else self.plan.refreshed
+        written: set[str] = set()
         for one in self.plan.passes:
             if not (one.due(steps) or at_once and one.slow):
                 continue
@@ -166,7 +169,9 @@ class Engine:
             stale, written = (), written | one.written
         for wetting in self.wetting:
             wetting.mark()
-        if self.solids and not self.immersion:
+        if self.plan.touching:
+            self.solids.push(time, dt)
+        elif self.solids and not self.immersion:
             self.solids.sum(time, dt)
 
     def push_bodies(self, time: float, dt: float) -> None:

@@ -27,6 +27,7 @@ from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WHIRL, WORK, MovingClamp, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
+from psph.physics.solid.contact import FACE, OF_FRICTION
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import SMOOTHING
 from psph.physics.solid.material import remembers
@@ -196,6 +197,12 @@ class Plan:
     def touching(self) -> bool:
         """Whether elastic solids look for each other: a pass then begins the sums of their forces."""
         return bool(self.solids and self.passes) and not self.immersed
+
+    @cached_property
+    def faced(self) -> tuple[str, ...]:
+        """What contacts read of a ghost that is found anew just before they are summed."""
+        renewed = {field.name for field in (FACE, *OF_FRICTION)}
+        return tuple(name for name in self.refreshed if self.touching and name in renewed)
 
     @property
     def floats(self) -> bool:

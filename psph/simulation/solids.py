@@ -213,7 +213,12 @@ class Solids:
     def sum(self, time: float, dt: float) -> None:
         """The acceleration of all particles of solids at ``time``, s, where they stand ``dt`` s after the
         last sum; collective."""
-        store, rows, inner = self.store, self.rows, self._inner
+        self.strain(dt)
+        self.push(time, dt)
+
+    def strain(self, dt: float) -> None:
+        """The stress of all particles of solids, and their faces, ``dt`` s after the last; collective."""
+        rows, inner = self.rows, self._inner
         memory = self._memory(dt)
         first, second = self._tables
         with self.ledger("records"):
@@ -233,6 +238,17 @@ class Solids:
             second.records[rows:, to : to + end - place] = first.records[rows:, place:end]
         with self.ledger("solids"):
             self._sum_gradients(inner, rows, memory)
+            if self._faces:
+                seen = self._matter.sums[:1], self._weights, self._around[0], self._moment
+                self._faces.carry(self._each, dt, *seen)
+
+    def push(self, time: float, dt: float) -> None:
+        """The acceleration by the stress, and by what contacts do to the faces; collective."""
+        store, rows, inner = self.store, self.rows, self._inner
+        if self._faces:
+            with self.ledger("solids"):
+                flux = getattr(self._tables[1].view, FLUX)
+                self._faces.turn(self._each, self._moment, self._volume, flux)
         with self.ledger("halo"):
             self._start(self._to_second)
         with self.ledger("solids"):
@@ -259,10 +275,6 @@ class Solids:
                 loads.book(time, dt, self._columns, number, self._masses)
             if self.clamps:
                 self.clamps.book(dt)
-            if self._faces:
-                self._faces.carry(
-                    self._each, self._matter.sums[:1], self._weights, self._around[0], self._moment
-                )
             self._crack()
 
     def _crack(self) -> None:

@@ -67,7 +67,7 @@ def test_rings_bounce_and_part_in_one_piece_each(tmp_path):
     run, (x, v), (x_m, v_m) = rings(tmp_path, "space.spacing=0.002")
     log = run.log()
     energy = log["kinetic_energy"] + log["stored_energy"]
-    assert np.abs(energy / energy[0] - 1.0).max() < 1e-2 and log["stored_energy"].max() > 0.8 * energy[0]
+    assert np.abs(energy / energy[0] - 1.0).max() < 2e-3 and log["stored_energy"].max() > 0.8 * energy[0]
     size = np.sqrt(2.0 * energy[0] * 0.002**2 * 1200.0 * 2 * len(x))
     assert max(np.abs(log[f"momentum_{axis}"]).max() for axis in "xy") < 1e-13 * size
     assert np.abs(x - x_m).max() < 0.1 * 0.002 and v[:, 0].mean() == pytest.approx(v_m[:, 0].mean(), rel=1e-9)

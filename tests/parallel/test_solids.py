@@ -103,7 +103,7 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
     begun, _ = rows(single)
     assert len(together.engine.solids.halo.ids) > 0  # the beam goes on behind the slab's end
-    for step in range(60):
+    for step in range(90):
         single.step()
         together.step()
         if step % 10 == 9:  # at the same steps: contacts are summed in the order of the lists

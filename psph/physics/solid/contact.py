@@ -11,7 +11,7 @@ from psph.acts import BODIES, SOLIDS, UPDATED
 from psph.fields import VECTOR, WALL, Field
 from psph.formula import helper, where
 from psph.physics.facts import Facts
-from psph.vectors import add, dot, scale, subtract
+from psph.vectors import add, dot, scale, subtract, zero_like
 
 CONTACT_ENERGY = Field("contact_energy", "J", "energy of a particle's contacts with other solids")
 
@@ -19,9 +19,19 @@ FACE = Field(
     "face", "1", "normal of the face nearest to a particle of a solid or a wall, zeros at an edge", VECTOR
 )
 COVER = Field("cover", "1", "how far below that face the particle was drawn, in spacings")
+TURNING = Field("turning", "J", "−∂/∂N of the energy of its contacts, N the normal of its face", VECTOR)
 
 OF_CONTACT = (FACE, COVER)
 """What particles carry where elastic solids meet."""
+
+FACE_RATE = Field("face_rate", "1/s", "rate of the normal of the face", VECTOR)
+SLIP = Field("slip", "m", "by how much the contacts of a particle are sheared", VECTOR)
+SLIDING = Field("sliding", "N/s", "Σ k u_t of its contacts: how fast what it touches slides", VECTOR)
+HOLD = Field("hold", "N/m", "Σ k of its contacts")
+BORNE = Field("borne", "N", "Σ f of its contacts: what they press")
+
+OF_FRICTION = (FACE_RATE, SLIP)
+"""What they carry beside where contacts rub."""
 
 REACH = 2.5
 """Spacings within which particles of two solids may push each other."""
@@ -44,11 +54,15 @@ HARDENING = 0.5
 FIRM = 50.0
 """Over the overlap in half spacings: where this is 1, damping is full."""
 
-STEP = 0.6
-"""Δt ≤ 0.6 √(m/k): with the waves of the solid ωΔt is about 1.1; 2 is the limit."""
+STEP = 0.4
+"""Δt ≤ 0.4 √(m/k): ωΔt = 0.57 of two like particles whose faces touch, and 1.5 where these overlap by 0.7
+spacings; 2 is the limit.  A touch begins within a step: by that, energy is wrong by a part of (ωΔt)²."""
 
-AT_REST = 1e-12
-"""m/s; slower than this nothing slides."""
+CALMING = 0.5
+"""Over critical damping: that of what sticks.  The slip lags half a step, which feeds it by 0.2."""
+
+NO_FORCE = 1e-300
+"""N."""
 
 NO_WAY = 1e-12
 """Of a direction, below which it is none."""
@@ -64,10 +78,11 @@ class SolidContact(NamedTuple):
     ``stiffness`` s and the P-wave moduli M = λ + 2μ (of a wall, the largest of all solids): that of the two
     half rows of matter before the faces, so that a contact is no softer than the solid.  The share of a pair
     in the pressure on a face is b_ib_j (1 − t²/(1.5dx)²)², b = 1.5 − s/dx, with t its distance along the
-    face; the push has −∂/∂x of that too, so that energy is kept but for the turn of normals.  A plane face
-    at any angle to the lattice pushes along its normal.  ``damping`` ζ: less 2ζ√(k m) u_ij·n, but no pull,
-    m = m_im_j/(m_i + m_j).  ``friction`` is Coulomb's: a force μ f_ij against the sliding u_t, but never more
-    than 2√(k m) |u_t|: so slowly solids creep where they would stick.
+    face.  The energy of a pair depends on x_ij, N_i and N_j, and these on the places around i and j: the
+    push is −∂/∂x of it and the stress has −∂/∂N of it, so that energy and both momenta are kept.  A plane
+    face at any angle to the lattice pushes along its normal.  ``damping`` ζ: less 2ζ√(k m) u_ij·n, but no
+    pull, m = m_im_j/(m_i + m_j).  ``friction`` is Coulomb's: a spring as stiff as the contact, sheared by
+    the slip, with a dashpot, whose force ends at μ f_ij; so solids stick, and slide.
     Penalties: Belytschko & Neal (1991), Int. J. Numer. Methods Eng. 31, 547; in SPH Campbell, Vignjevic &
     Libersky (2000), Comput. Methods Appl. Mech. Eng. 184, 49; by normals of surfaces Vignjevic, De Vuyst &
     Campbell (2006), CMES 13, 35.
@@ -138,13 +153,23 @@ def dashpot(contact, i, j):
 
 
 class Meeting(NamedTuple):
-    """How a pair meets: the unit vector ``out`` of j towards i, the ``overlap`` δ in m of their faces, the
-    ``share`` of the pair, and −∂/∂x_i of this along the face, ``fading`` 1/m."""
+    """How a pair meets: the unit vector ``out`` of j towards i; how far they are ``apart`` along it in m, and
+    the rest of x_ij ``beside`` it, m; the ``overlap`` δ in m of their faces; the ``share`` S of the pair.
+
+    What S changes by: ``sink`` ∂S/∂(x_ij·n) in 1/m, ``fade`` −∂S/∂t/t and ``rim`` −∂S/∂r/r in 1/m², ``lean``
+    −∂S/∂(N_i·N_j).  ``turn`` is 1/|N_j − N_i|: by how much n turns with the normals.
+    """
 
     out: tuple
+    apart: float
+    beside: tuple
     overlap: float
     share: float
-    fading: tuple
+    sink: float
+    fade: float
+    rim: float
+    lean: float
+    turn: float
 
 
 @helper
@@ -154,27 +179,59 @@ def bearing(contact, i):
 
 
 @helper
+def known(i):
+    """1 where a particle has a face, 0 where not."""
+    return min(dot(i.face, i.face), 1.0)  # but for rounding
+
+
+@helper
+def ramp(value):
+    """``value`` within 0 and 1."""
+    return min(max(value, 0.0), 1.0)
+
+
+@helper
+def ramps(value):
+    """Its derivative: 1 between 0 and 1."""
+    return where(value > 0.0, where(value < 1.0, 1.0, 0.0), 0.0)
+
+
+@helper
 def meeting(contact, i, j, pair):
     """Of particles of different solids; a share of 0 within one solid."""
-    known, its = min(dot(i.face, i.face), 1.0), min(dot(j.face, j.face), 1.0)  # 1 or 0, but for rounding
-    bare = (1.0 - known) * (1.0 - its)
+    per = 1.0 / contact.spacing
+    own, its = known(i), known(j)
+    bare = (1.0 - own) * (1.0 - its)
     way = add(subtract(j.face, i.face), scale(pair.x_ij, bare * pair.inverse_r))
-    length = np.sqrt(dot(way, way)) + NO_WAY
-    out = scale(way, 1.0 / length)
+    turn = 1.0 / (np.sqrt(dot(way, way)) + NO_WAY)
+    out = scale(way, turn)
     apart = dot(pair.x_ij, out)
-    aside = max(pair.r2 - apart * apart, 0.0) * (1.0 / (ALONG * ALONG)) / (contact.spacing * contact.spacing)
-    beside = max(1.0 - aside, 0.0)
-    facing = min(max(1.0 - known * its - dot(i.face, j.face), 0.0), 1.0)  # 0 from a right angle on
-    other = j.solid - i.solid
+    beside = subtract(pair.x_ij, scale(out, apart))
+    steep = per * per / (ALONG * ALONG)
+    layer = max(1.0 - max(pair.r2 - apart * apart, 0.0) * steep, 0.0)
+    facing = 1.0 - own * its - dot(i.face, j.face)  # 0 from a right angle on
     # From far behind its face a particle is not met: there is the other face of what is thin.
-    facing = facing * min(max(BEHIND + apart / contact.spacing, 0.0), 1.0)
-    facing = facing * min(max(2.0 * (REACH - pair.r / contact.spacing), 0.0), 1.0)
-    part = bearing(contact, i) * bearing(contact, j) * facing * contact.part
-    part = where(other * other > 0.0, part * beside, 0.0)
-    along = subtract(pair.x_ij, scale(out, apart))
-    steep = 4.0 / (ALONG * ALONG) / (contact.spacing * contact.spacing)
+    before = BEHIND + apart * per
+    reached = 2.0 * (REACH - pair.r * per)
+    other = j.solid - i.solid
+    part = bearing(contact, i) * bearing(contact, j) * contact.part
+    part = where(other * other > 0.0, part, 0.0)
+    at_angle = part * ramp(before) * ramp(reached) * (layer * layer)
+    faced = part * ramp(facing)
+    share = at_angle * ramp(facing)
     overlap = max((i.cover + j.cover) * contact.spacing - apart, 0.0)
-    return Meeting(out, overlap, part * beside, scale(along, steep * part))
+    return Meeting(
+        out,
+        apart,
+        beside,
+        overlap,
+        share,
+        faced * ramps(before) * per * ramp(reached) * (layer * layer),
+        faced * ramp(before) * ramp(reached) * (4.0 * steep * layer),
+        faced * ramp(before) * ramps(reached) * (2.0 * per) * pair.inverse_r * (layer * layer),
+        at_angle * ramps(facing) * own * its,
+        turn,
+    )
 
 
 @helper
@@ -182,13 +239,6 @@ def energy(contact, i, j, met):
     """The energy of a pair with a share of 1, J."""
     part = met.overlap / contact.spacing * (1.0 / HARDENING)
     return modulus(contact, i, j) * (met.overlap * met.overlap) * (0.5 + 0.25 * (part * part))
-
-
-@helper
-def pushed(contact, i, j, met, pressed):
-    """The force of a pair that is ``pressed`` with so many N, N: with that by which its energy fades along
-    the face."""
-    return add(scale(met.out, pressed), scale(met.fading, energy(contact, i, j, met)))
 
 
 @helper
@@ -200,6 +250,49 @@ def pressing(contact, i, j, pair, met):
     return met.share * max(push - apart * min(part * FIRM, 1.0), 0.0)
 
 
+@helper
+def pushed(contact, i, j, pair, met):
+    """The force of a pair, N: with that by which its energy changes with its share."""
+    stored = energy(contact, i, j, met)
+    along = pressing(contact, i, j, pair, met) - met.sink * stored
+    force = add(scale(met.out, along), scale(met.beside, met.fade * stored))
+    return add(force, scale(pair.x_ij, met.rim * stored))
+
+
+@helper
+def turning(contact, i, j, pair, met):
+    """What it does to N_i, J: −∂/∂N_i of the energy, and of the damped overlap alike."""
+    stored = energy(contact, i, j, met)
+    along = pressing(contact, i, j, pair, met) - met.sink * stored
+    by_out = (along - met.apart * (met.fade * stored)) * met.turn
+    return subtract(scale(j.face, met.lean * stored), scale(met.beside, by_out))
+
+
+@helper
+def arm(met):
+    """How far before a particle, along its normal, friction acts, m: with those of both it has no moment."""
+    return met.apart * met.turn
+
+
+@helper
+def slipping(i, j, pair, met):
+    """The velocity along the face of i relative to j where they meet, m/s: none where all turns as one."""
+    whole = add(pair.u_ij, scale(subtract(i.face_rate, j.face_rate), arm(met)))
+    return subtract(whole, scale(met.out, dot(whole, met.out)))
+
+
+@helper
+def rubbing(contact, i, j, pair, met):
+    """The friction of a pair, N: a spring that slips and a dashpot, μ f_ij at most."""
+    slip = scale(subtract(i.slip, j.slip), 0.5)
+    slip = subtract(slip, scale(met.out, dot(slip, met.out)))
+    spring = scale(slip, met.share * modulus(contact, i, j))
+    drag = scale(slipping(i, j, pair, met), met.share * CALMING * dashpot(contact, i, j))
+    held = add(spring, drag)
+    size = np.sqrt(dot(held, held)) + NO_FORCE
+    return scale(held, -min(1.0, contact.friction * pressing(contact, i, j, pair, met) / size))
+
+
 class Touching(NamedTuple):
     """The faces of two solids, or of a solid and a wall, repel each other where they overlap.
 
@@ -207,7 +300,7 @@ class Touching(NamedTuple):
     ``spacing`` dx in m, the ``part`` of a pair in the sum over a face, and the longest ``step`` in s.
     """
 
-    writes = CONTACT_ENERGY
+    writes = (CONTACT_ENERGY, TURNING)
 
     stiffness: float
     damping: float
@@ -219,33 +312,36 @@ class Touching(NamedTuple):
     def push(self, i, j, pair):
         """The push of a neighbour, m/s²."""
         met = meeting(self, i, j, pair)
-        return scale(pushed(self, i, j, met, pressing(self, i, j, pair, met)), 1.0 / i.mass)
+        return scale(pushed(self, i, j, pair, met), 1.0 / i.mass)
 
     def start(self, i):
-        """No energy yet."""
-        return 0.0
+        """No energy yet, and nothing that turns."""
+        return (0.0,) + zero_like(i.face)  # noqa: RUF005 - compiled code adds tuples
 
     def gather(self, total, i, j, pair):
-        """With the particle's half of the pair's energy."""
+        """With the particle's half of the pair's energy, and what turns its normal."""
         met = meeting(self, i, j, pair)
-        return total + 0.5 * met.share * energy(self, i, j, met)
+        half = 0.5 * met.share * energy(self, i, j, met)
+        return add(total, (half,) + turning(self, i, j, pair, met))  # noqa: RUF005
 
     def finish_value(self, total, i, kernel):
-        """The energy of its contacts, J."""
+        """The sums as they are."""
         return total
 
     def longest_step(self, scene):
-        """Δt ≤ 0.6 √(m/k)/(1 + ζ), s, of the stiffest contact and its lighter particle."""
+        """Δt ≤ 0.4 √(m/k)/(1 + ζ), s, of the stiffest contact and its lighter particle."""
         return self.step
 
 
 class Rubbing(NamedTuple):
     """The faces of two solids, or of a solid and a wall, push and rub each other where they overlap.
 
-    :class:`Touching`, with friction.
+    :class:`Touching`, with friction.  Each particle carries the slip of its contacts (Cundall & Strack 1979,
+    Géotechnique 29, 47, there of each pair): half the difference of those of a pair is the stretch of its
+    spring.
     """
 
-    writes = CONTACT_ENERGY
+    writes = (CONTACT_ENERGY, TURNING, SLIDING, HOLD, BORNE)
 
     stiffness: float
     damping: float
@@ -257,14 +353,23 @@ class Rubbing(NamedTuple):
     def push(self, i, j, pair):
         """The push and the friction of a neighbour, m/s²."""
         met = meeting(self, i, j, pair)
-        pressed = pressing(self, i, j, pair, met)
-        slip = subtract(pair.u_ij, scale(met.out, dot(pair.u_ij, met.out)))
-        speed = np.sqrt(dot(slip, slip)) + AT_REST
-        held = met.share * dashpot(self, i, j)
-        rubbed = min(self.friction * pressed / speed, held)
-        return scale(subtract(pushed(self, i, j, met, pressed), scale(slip, rubbed)), 1.0 / i.mass)
+        force = add(pushed(self, i, j, pair, met), rubbing(self, i, j, pair, met))
+        return scale(force, 1.0 / i.mass)
 
-    start = Touching.start
-    gather = Touching.gather
+    def start(self, i):
+        """Nothing yet: as for :class:`Touching`, then Σ k u_t in N/s, Σ k in N/m and Σ f in N."""
+        return (0.0,) + zero_like(i.face) + zero_like(i.face) + (0.0, 0.0)  # noqa: RUF005
+
+    def gather(self, total, i, j, pair):
+        """With a neighbour."""
+        met = meeting(self, i, j, pair)
+        rubbed = scale(rubbing(self, i, j, pair, met), arm(met))
+        stiff = met.share * modulus(self, i, j)
+        slid = scale(slipping(i, j, pair, met), stiff)
+        turned = add(turning(self, i, j, pair, met), rubbed)
+        half = 0.5 * met.share * energy(self, i, j, met)
+        pressed = pressing(self, i, j, pair, met)
+        return add(total, (half,) + turned + slid + (stiff, pressed))  # noqa: RUF005
+
     finish_value = Touching.finish_value
     longest_step = Touching.longest_step

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from psph.composition.pair import Pair
-from psph.physics.solid.contact import SHARES, Rubbing, Touching, dashpot, meeting, modulus
+from psph.physics.solid.contact import CALMING, SHARES, Rubbing, Touching, dashpot, meeting, modulus
 
 DX = 0.01
 
@@ -19,6 +19,8 @@ class Particle(NamedTuple):
     wave_modulus: Any
     face: Any
     cover: Any
+    face_rate: Any = (0.0, 0.0)
+    slip: Any = (0.0, 0.0)
 
 
 def normal(degrees, length=1.0):
@@ -51,6 +53,15 @@ def force(effect, i, j, x, u=(0.0, 0.0)):
     return i.mass * np.array(effect.push(i, j, pair_of(x, u)))
 
 
+def turning(effect, i, j, x, u=(0.0, 0.0)):
+    """What turns the normal of i, J."""
+    return np.array(effect.gather(effect.start(i), i, j, pair_of(x, u))[1:3])
+
+
+def cross(a, b):
+    return a[0] * b[1] - a[1] * b[0]
+
+
 @pytest.mark.parametrize("kind", [Touching, Rubbing])
 def test_a_face_aslant_pushes_along_its_normal_and_without_bound(kind):
     effect, out = contact(kind), np.array(normal(25.0))
@@ -68,20 +79,52 @@ def test_a_face_aslant_pushes_along_its_normal_and_without_bound(kind):
     assert not force(effect, RUBBER, STEEL, at(-0.1, 1.6)).any()
 
 
-def test_the_push_is_the_derivative_of_the_energy_and_that_of_both_the_same():
+BARE = RUBBER._replace(face=(0.0, 0.0))
+ASLANT = RUBBER._replace(face=normal(190.0))
+STEEP = RUBBER._replace(face=normal(125.0))
+MET = (
+    (RUBBER, STEEL, at(-0.3, 0.4)),
+    (ASLANT, STEEL, at(-0.4, -0.5)),
+    (STEEP, STEEL, at(-0.3, 0.3)),
+    (ASLANT, STEEL, at(-1.9, 0.3)),
+    (ASLANT._replace(cover=1.3), STEEL._replace(cover=1.3), at(1.1, 0.7)),
+    (BARE, STEEL, at(-0.2, 0.3)),
+)
+"""A particle of rubber and one of steel, and where it is: faces that fit, aslant, at a wide angle, far behind,
+at the end of their reach; one at an edge."""
+
+
+def whole_energy(effect, i, j, x):
+    """Of both particles, J."""
+    halves = ((i, j, x), (j, i, -x))
+    return sum(effect.gather(effect.start(i), i, j, pair_of(x))[0] for i, j, x in halves)
+
+
+@pytest.mark.parametrize(("one", "other", "x"), MET)
+def test_the_push_and_what_turns_normals_are_the_derivatives_of_the_energy(one, other, x):
     effect, step = contact(), 1e-7
-    bare = RUBBER._replace(face=(0.0, 0.0))
-    for one, x in ((RUBBER, at(-0.3, 0.4)), (RUBBER, at(-0.1, -0.9)), (bare, at(-0.2, 0.3))):
-        found = force(effect, one, STEEL, x)
-        for d in (0, 1):
-            ends = []
-            for sign in (1.0, -1.0):
-                moved = np.array(x)
-                moved[d] += sign * step
-                both = ((one, STEEL, moved), (STEEL, one, -moved))
-                ends.append(sum(effect.gather(0.0, i, j, pair_of(x)) for i, j, x in both))
-            assert found[d] == pytest.approx(-(ends[0] - ends[1]) / (2.0 * step), rel=1e-5, abs=1e-4)
-        assert force(effect, STEEL, one, -np.array(x)) == pytest.approx(-found, rel=1e-13)
+    push, turned = force(effect, one, other, x), turning(effect, one, other, x)
+    assert np.abs(push).max() > 0.0
+    for d, way in enumerate(np.eye(2)):
+        up, down = (whole_energy(effect, one, other, x + sign * step * DX * way) for sign in (1.0, -1.0))
+        assert push[d] == pytest.approx(-(up - down) / (2.0 * step * DX), rel=1e-5, abs=1e-4)
+    across = np.array([-one.face[1], one.face[0]])
+    ends = [one._replace(face=tuple(one.face + sign * step * across)) for sign in (1.0, -1.0)]
+    up, down = (whole_energy(effect, end, other, x) for end in ends)
+    assert turned @ across == pytest.approx(-(up - down) / (2.0 * step), rel=1e-5, abs=1e-6)
+    assert force(effect, other, one, -x) == pytest.approx(-push, rel=1e-13)
+
+
+@pytest.mark.parametrize(("one", "other", "x"), MET[:5])
+@pytest.mark.parametrize("kind", [Touching, Rubbing])
+def test_no_moment_is_left_with_that_on_the_normals(kind, one, other, x):
+    """x_ij × f + N_i × T_i + N_j × T_j = 0, with damping and friction."""
+    effect, u, slipped = contact(kind, 0.5, 0.3), (-3.0, 5.0), one._replace(slip=(1e-5, 2e-5))
+    moments = [cross(x, force(effect, slipped, other, x, u))]
+    moments += [cross(slipped.face, turning(effect, slipped, other, x, u))]
+    moments += [cross(other.face, turning(effect, other, slipped, -x, tuple(-np.array(u))))]
+    assert np.abs(moments).min() > 0.0
+    assert sum(moments) == pytest.approx(0.0, abs=1e-12 * np.abs(moments).max())
 
 
 def test_an_edge_takes_the_normal_of_the_face_that_it_meets():
@@ -110,13 +153,30 @@ def test_damping_slows_what_comes_and_never_holds_what_goes():
     assert force(damped, RUBBER, STEEL, x, 1e6 * out) == pytest.approx((0.0, 0.0), abs=1e-6)
 
 
-def test_friction_is_coulombs_and_stops_what_slides_slowly():
+def test_friction_is_coulombs_and_holds_what_has_slipped_little():
     effect, out, along = contact(Rubbing, friction=0.3), np.array(normal(25.0)), np.array(normal(115.0))
     x = at(-0.2)
     push = force(effect, RUBBER, STEEL, x) @ out
     fast, slow = (force(effect, RUBBER, STEEL, x, u * along) for u in (50.0, 1e-6))
     assert fast == pytest.approx(push * (out - 0.3 * along))
     share = meeting(effect, RUBBER, STEEL, pair_of(x)).share
-    assert slow @ along == pytest.approx(-share * dashpot(effect, RUBBER, STEEL) * 1e-6)
+    assert slow @ along == pytest.approx(-share * CALMING * dashpot(effect, RUBBER, STEEL) * 1e-6)
     coming = force(effect, RUBBER, STEEL, x, -5.0 * out)  # no part of u along the normal rubs
     assert coming == pytest.approx(push * out)
+    little, much = (RUBBER._replace(slip=tuple(s * along)) for s in (1e-7, 1.0))
+    held = force(effect, little, STEEL, x) @ along
+    assert held == pytest.approx(-share * modulus(effect, RUBBER, STEEL) * 0.5e-7)
+    assert force(effect, much, STEEL, x) == pytest.approx(push * (out - 0.3 * along))
+
+
+def test_what_turns_as_one_does_not_rub():
+    effect, spin = contact(Rubbing, friction=0.3), 7.0
+    x = at(-0.2)
+
+    def turned(a):
+        return -spin * a[1], spin * a[0]
+
+    one, other = (i._replace(face_rate=turned(i.face)) for i in (RUBBER, STEEL))
+    still = force(effect, RUBBER, STEEL, x)
+    assert force(effect, one, other, x, turned(x)) == pytest.approx(still, rel=1e-12)
+    assert force(effect, RUBBER, STEEL, x, turned(x)) != pytest.approx(still, rel=1e-6)
