@@ -1,6 +1,7 @@
 """How far points are from the faces that a case draws, and which way out."""
 
 from collections.abc import Sequence
+from itertools import groupby, product
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,12 @@ from psph.scene.shapes import bounds, inside
 BESIDE = 1e-6
 """Of the size of a shape: so far before a face a point lies outside of it."""
 
+SQUARE = 1e-9
+"""Cosine of the angle between faces that meet at a right angle."""
+
+Room = tuple[np.ndarray, np.ndarray]
+"""Corners of a box beyond which a shape has no faces: it goes on there."""
+
 
 class Faces(NamedTuple):
     """The signed distance φ of points from the faces of a shape, ``away`` (n,) m, below zero inside, and its
@@ -22,24 +29,25 @@ class Faces(NamedTuple):
     normal: np.ndarray
 
 
-def faces_of(shape: Shape, points: np.ndarray) -> Faces:
-    """φ and ∇φ of ``shape`` at ``points`` (n, dim), m; exact before and behind a plane face."""
+def faces_of(shape: Shape, points: np.ndarray, room: Room | None = None) -> Faces:
+    """φ and ∇φ of ``shape`` at ``points`` (n, dim), m; exact before and behind a plane face.
+
+    Faces at the border of ``room`` or beyond it are none.
+    """
     match shape.form:
         case tuple() as shapes:
-            return _joined(shapes, points)
+            return _joined(shapes, points, room)
         case Difference(base=base, minus=minus):
-            taken = [faces_of(one, points) for one in minus]
-            left = [Faces(-one.away, -one.normal) for one in taken]
-            return _chosen([faces_of(base, points), *left], np.argmax)
+            return _less(faces_of(base, points, room), [faces_of(one, points, _room(base)) for one in minus])
         case Box(lower=lower, upper=upper):
-            return _of_box(points, np.array(lower), np.array(upper))
+            return _of_box(points, *_opened(np.array(lower), np.array(upper), room))
         case Disc(center=center, radius=radius) | Ball(center=center, radius=radius):
             away, normal = _radial(points - np.array(center))
             return Faces(away - radius, normal)
         case Cylinder() as cylinder:
-            return _of_cylinder(points, cylinder)
+            return _of_cylinder(points, cylinder, room)
         case Polygon(points=corners):
-            return _of_polygon(points, np.array(corners))
+            return _of_polygon(points, _bulged(np.array(corners), room))
         case Mesh() as mesh:
             from psph.scene.meshes.surface import surface_of
 
@@ -74,9 +82,33 @@ def _chosen(found: Sequence[Faces], choose) -> Faces:
     return Faces(away[which, row], normal[which, row])
 
 
-def _joined(shapes: Sequence[Shape], points: np.ndarray) -> Faces:
+def _less(base: Faces, taken: Sequence[Faces]) -> Faces:
+    """Of a shape less others, which have no faces beyond it; before a rim the edge is nearest."""
+    hole = _chosen([Faces(-one.away, -one.normal) for one in taken], np.argmax)
+    found = _chosen([base, hole], np.argmax)
+    at_right_angles = np.abs((base.normal * hole.normal).sum(axis=1)) < SQUARE
+    rim = np.flatnonzero((base.away > 0.0) & (hole.away > 0.0) & at_right_angles)
+    arm = base.away[rim, None] * base.normal[rim] + hole.away[rim, None] * hole.normal[rim]
+    found.away[rim], found.normal[rim] = _radial(arm)
+    return found
+
+
+def _room(shape: Shape) -> Room:
+    lower, upper = map(np.array, bounds(shape))
+    inwards = BESIDE * np.max(upper - lower)
+    return lower + inwards, upper - inwards
+
+
+def _opened(lower: np.ndarray, upper: np.ndarray, room: Room | None) -> Room:
+    """Corners of a box that goes on beyond a room."""
+    if room is None:
+        return lower, upper
+    return np.where(lower < room[0], -np.inf, lower), np.where(upper > room[1], np.inf, upper)
+
+
+def _joined(shapes: Sequence[Shape], points: np.ndarray, room: Room | None) -> Faces:
     """Of a union: faces that lie within other parts are none."""
-    found = [faces_of(one, points) for one in shapes]
+    found = [faces_of(one, points, room) for one in shapes]
     if len(shapes) == 1:
         return found[0]
     whole = _chosen(found, np.argmin)
@@ -107,11 +139,10 @@ def _radial(arm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _of_box(points: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> Faces:
-    arm = points - 0.5 * (lower + upper)
-    beyond = np.abs(arm) - 0.5 * (upper - lower)
-    sign, row = np.where(arm < 0.0, -1.0, 1.0), np.arange(len(points))
-    nearest = beyond.argmax(axis=1)
-    flat = np.zeros_like(arm)
+    below, above = lower - points, points - upper
+    beyond, row = np.maximum(below, above), np.arange(len(points))
+    sign, nearest = np.where(below > above, -1.0, 1.0), beyond.argmax(axis=1)
+    flat = np.zeros_like(points)
     flat[row, nearest] = sign[row, nearest]
     outer = np.maximum(beyond, 0.0)
     aslant = np.count_nonzero(outer, axis=1) > 1
@@ -122,17 +153,37 @@ def _of_box(points: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> Faces:
     )
 
 
-def _of_cylinder(points: np.ndarray, cylinder: Cylinder) -> Faces:
+def _of_cylinder(points: np.ndarray, cylinder: Cylinder, room: Room | None) -> Faces:
     along = AXES.index(cylinder.axis)
     across = [d for d in range(len(AXES)) if d != along]
-    arm = points - np.array(cylinder.center)
-    length, out = _radial(arm[:, across])
-    flat = np.column_stack([length, arm[:, along]])
-    half = np.array([cylinder.radius, 0.5 * cylinder.height])
-    found = _of_box(flat, -half, half)
+    length, out = _radial((points - np.array(cylinder.center))[:, across])
+    flat, half = np.column_stack([length, points[:, along]]), np.full(len(AXES), 0.5 * cylinder.height)
+    lower, upper = _opened(np.array(cylinder.center) - half, np.array(cylinder.center) + half, room)
+    ends = np.array([[-np.inf, lower[along]], [cylinder.radius, upper[along]]])
+    found = _of_box(flat, *ends)
     normal = np.empty_like(points)
     normal[:, across], normal[:, along] = found.normal[:, :1] * out, found.normal[:, 1]
     return Faces(found.away, normal)
+
+
+def _bulged(corners: np.ndarray, room: Room | None) -> np.ndarray:
+    """Corners of a polygon that goes on where several in a row lie at the border of a room, or beyond it."""
+    if room is None:
+        return corners
+    far = 2.0 * (np.ptp(corners, axis=0) + (room[1] - room[0]))
+    for d, side in product(range(2), (-1.0, 1.0)):
+        beyond = side * corners[:, d] > side * room[int(side > 0.0)][d]
+        if not beyond.any() or beyond.all():
+            continue
+        first = int(beyond.argmin())  # one within the room
+        corners, beyond = np.roll(corners, -first, axis=0), np.roll(beyond, -first)
+        bulge, found = side * far * np.eye(2)[d], []
+        for out, run in groupby(range(len(corners)), key=beyond.__getitem__):
+            rows = list(run)
+            ends = corners[[rows[0], rows[-1]]]
+            found.append([ends[0], *(ends + bulge), ends[1]] if out and len(rows) > 1 else corners[rows])
+        corners = np.concatenate(found)
+    return corners
 
 
 def _of_polygon(points: np.ndarray, corners: np.ndarray) -> Faces:

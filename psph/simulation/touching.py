@@ -46,7 +46,8 @@ class Obstacle(NamedTuple):
 
     ``key`` is its key in the case; ``body`` the row of a body, −1 of others; ``pose`` that of the map that
     places it, −1 where it stays; ``beside`` are the shapes of walls that move as it does,
-    and how far off, m: their images and its own among them, where the domain repeats.
+    and how far off, m: their images and its own among them, where the domain repeats; ``cuts`` are the rows
+    of bodies that it cuts in two, and does not meet.
     """
 
     key: str
@@ -54,6 +55,7 @@ class Obstacle(NamedTuple):
     body: int = -1
     pose: int = -1
     beside: tuple[tuple[Any, np.ndarray], ...] = ()
+    cuts: tuple[int, ...] = ()
 
     @property
     def corners(self) -> np.ndarray | None:
@@ -211,7 +213,8 @@ class Contacts:
             for shift in self._shifts:
                 there = centre + shift + home
                 near = ((there + reach[:, None] >= low) & (there - reach[:, None] <= high)).all(axis=1)
-                rows = np.flatnonzero(near & (np.arange(len(reach)) != obstacle.body))
+                near[[*obstacle.cuts, *([obstacle.body] if obstacle.body >= 0 else [])]] = False
+                rows = np.flatnonzero(near)
                 if len(rows):  # φ grows by no more than the way
                     away = obstacle.faces(self._taken_back(obstacle.pose, there[rows])).away
                     rows = rows[away < reach[rows]]
@@ -306,7 +309,11 @@ class Contacts:
             near = (pair for pair in beside if touch(one.shape, *pair, scene.spacing))
             yield one._replace(beside=tuple(near))
         for one in scene.mirror_planes:
-            yield Obstacle("a mirror", Plane(one.axis, one.at, 1 if one.side == BELOW else -1))
+            ends = {row: bounds(scene.parts[part].shape) for part, row in self._row_of.items()}
+            cut = [row for row, (low, up) in ends.items() if low[one.axis] < one.at < up[one.axis]]
+            yield Obstacle(
+                "a mirror", Plane(one.axis, one.at, 1 if one.side == BELOW else -1), cuts=tuple(cut)
+            )
 
 
 NONE, NOWHERE = np.empty(0, np.int64), np.empty((0, 3))

@@ -7,6 +7,7 @@ import pytest
 from drafts import draft
 
 from psph.scene import Scene
+from psph.scene.distance import faces_of
 from psph.simulation.floating import Floating
 from psph.simulation.plan import make_plan
 from psph.simulation.poses import Poses, corners_of
@@ -322,3 +323,51 @@ def test_a_cube_slides_over_the_joint_of_a_floor_in_3d(tmp_path):
     bodies = Dry(draft(tmp_path, text)).to(1.0)
     assert bodies.velocity[0] == pytest.approx([1.0, 0.1, 0.0], abs=1e-6)
     assert np.abs(bodies.spin).max() < 1e-6
+
+
+TANKS = {
+    "box": "{ box = { lower = [0.0, 0.0], upper = [1.0, 0.6] } }",
+    "polygon": "{ polygon = { points = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.6], [0.5, 0.7], [0.0, 0.6]] } }",
+    "two": "{ box = { lower = [0.0, 0.0], upper = [0.9, 0.6] } },"
+    "{ box = { lower = [0.0, 0.0], upper = [1.0, 0.6] } }",
+}
+RIM = """
+[walls.tank.shape.difference]
+from.box = { lower = [-0.3, -0.3], upper = [1.3, 0.6] }
+"""
+DISC = """
+[bodies.disc]
+shape.disc = { center = [0.5, 0.9], radius = 0.2 }
+density = 2500.0
+"""
+
+
+@pytest.mark.parametrize("taken", TANKS)
+def test_a_tank_is_open_where_what_is_taken_out_ends_with_it(tmp_path, taken):
+    """The control: one whose opening is drawn lower than its rim has a lid, on which the disc lands."""
+    flat = FLAT.format(dx=0.05, friction=0.0, restitution=0.0)
+    found = []
+    for minus in (TANKS[taken], TANKS["box"].replace("0.6", "0.5")):
+        dry = Dry(draft(tmp_path, flat + RIM + f"minus = [{minus}]\n" + DISC), dt=1e-3)
+        found.append([dry.to(time).place[0, 1] for time in (0.3, 1.0)])
+    assert found[0] == pytest.approx([0.9 - 0.5 * 9.81 * 0.09, 0.2], abs=3e-3)
+    assert found[1] == pytest.approx([0.8, 0.8], abs=1e-3)
+
+
+def test_before_a_rim_the_distance_is_that_of_its_edge(tmp_path):
+    flat = FLAT.format(dx=0.05, friction=0.0, restitution=0.0)
+    case = draft(tmp_path, flat + RIM + f"minus = [{TANKS['box']}]\n" + DISC)
+    found = faces_of(
+        case.walls["tank"].shape, np.array([[0.03, 0.64], [0.5, 0.55], [1.31, 0.3], [-0.1, 0.3]])
+    )
+    assert found.away == pytest.approx([0.05, 0.5, 0.01, -0.1])
+    assert found.normal[0] == pytest.approx([0.6, 0.8]) and found.normal[2] == pytest.approx([1.0, 0.0])
+
+
+def test_a_body_does_not_meet_the_plane_that_cuts_it(tmp_path):
+    plane = 'symmetry = ["x.lower"]\nlower = [0.0, -1.0]\nupper = [3.0, 4.0]\n[time]'
+    text = FLAT.format(dx=0.05, friction=0.3, restitution=0.0).replace("[time]", plane)
+    text = text.replace("[-3.0, 3.0]", "[2.0, 3.0]").replace("[-2.8, 3.2]", "[2.2, 3.2]")
+    dry = Dry(draft(tmp_path, text + DISC.replace("[0.5, 0.9]", "[0.0, 0.9]") + 'free = ["y"]\n'), dt=1e-3)
+    assert dry.to(0.3).place[0, 1] == pytest.approx(0.9 - 0.5 * 9.81 * 0.09, abs=3e-3)
+    assert dry.floating.contacts.deepest(dry.bodies).depth == 0.0
