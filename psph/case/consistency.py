@@ -18,7 +18,7 @@ from psph.case.schemes import STABLE
 from psph.case.soils import earthen
 from psph.case.solids import elastic
 from psph.case.study import EXACT
-from psph.physics.roles import ROLES
+from psph.physics.roles import FRICTION, ROLES
 from psph.physics.walls.slip import NoSlip
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 
@@ -287,10 +287,10 @@ def _regions(case) -> Iterator[Finding]:
 
 def _friction(case) -> Iterator[Finding]:
     rubs = any(fluid.rubs for fluid in case.flowing.values())
-    central = case.physics.central_friction is not None
-    if central and not rubs:
+    named = [name for name, _, effect in asked_of(case) if FRICTION in getattr(effect, "roles", ())]
+    for name in () if rubs else named:
         yield (
-            ("physics", "central_friction"),
+            ("physics", name),
             ...,
             ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove this key"),
         )
@@ -303,11 +303,11 @@ def _friction(case) -> Iterator[Finding]:
             )
         elif wall.no_slip and (says := refusals(NoSlip).get(wall.condition)):
             yield (case.table_of(name), name, "no_slip"), True, says
-        elif wall.no_slip and central:
+        elif wall.no_slip and named:
             yield (
                 (case.table_of(name), name, "no_slip"),
                 True,
-                ("does not work with physics.central_friction; remove one of the two"),
+                (f"does not work with physics.{named[0]}; remove one of the two"),
             )
 
 
@@ -315,6 +315,12 @@ def _rheologies(case) -> Iterator[Finding]:
     for name, fluid in case.fluids.items():
         if fluid.rheology is None:
             continue
+        if case.physics.laplacian_friction is not None:
+            yield (
+                ("physics", "laplacian_friction"),
+                ...,
+                f"is for constant viscosities; remove it, or fluids.{name}.rheology",
+            )
         if fluid.viscosity:
             yield (
                 ("fluids", name, "viscosity"),

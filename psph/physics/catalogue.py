@@ -32,6 +32,7 @@ from psph.physics.fluid.viscosity import (
     CentralFriction,
     ImpactDamping,
     LaminarViscosity,
+    LaplacianFriction,
     PairDamping,
 )
 from psph.physics.order.potential import LocalPotential, PairPotential
@@ -127,6 +128,7 @@ CATALOGUE = (
     Entry("soils.*", Strength),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.central_friction", CentralFriction),
+    Entry("physics.laplacian_friction", LaplacianFriction),
     Entry("fluids.*.rheology", ApparentViscosity),
     Entry("walls.*.no_slip", NoSlip),
     Entry("walls.*.continues", DryWall),

@@ -16,4 +16,7 @@ ORDER = Role("order", "shifts particles too")
 CARRIER = Role("carrier", "moves particles too")
 """Moves particles with another velocity than that of the fluid."""
 
-ROLES = (ORDER, CARRIER)
+FRICTION = Role("friction", "takes the place of the viscous stress too")
+"""Takes the place of the viscous stress of fluids."""
+
+ROLES = (ORDER, CARRIER, FRICTION)

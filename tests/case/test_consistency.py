@@ -112,6 +112,15 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             "walls.floor.no_slip: true: does not work with physics.central_friction; remove one of the two",
         ),
         (
+            WATER.replace("[physics]", CENTRAL + "\nlaplacian_friction = {}") + "viscosity = 1e-3",
+            "physics.central_friction: physics.laplacian_friction takes the place of the viscous stress too; set",
+        ),
+        (
+            WATER.replace("[physics]", "[physics]\nlaplacian_friction = {}")
+            + "rheology.bingham = { yield_stress = 1.0, plastic_viscosity = 1.0 }",
+            "physics.laplacian_friction: is for constant viscosities; remove it, or fluids.water.rheology",
+        ),
+        (
             WATER + "viscosity = 1e-3" + WALL + 'no_slip = true\ncondition = "penalty"',
             'walls.floor.no_slip: true: does nothing where condition = "penalty"; take "dynamic" or',
         ),

@@ -240,7 +240,7 @@ def test_a_body_force_pulls_what_the_table_says_and_no_more(name, beside, walk):
         assert (with_it[NAMES[kind]] != without[NAMES[kind]]) == acts, kind
 
 
-ELSEWHERE = ("SymmetricPressure", "CentralFriction")
+ELSEWHERE = ("SymmetricPressure", "CentralFriction", "LaplacianFriction")
 """The default, without which there is another in its place; and what acts in viscous fluids alone, which
 tests/physics has."""
 

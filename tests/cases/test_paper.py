@@ -3,10 +3,16 @@
 Bounds: what a prototype of the same equations found (docs/theory.md).
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from cases.measures import by_id, checkerboard, finished, growth_rate, window
+from cases.measures import CASES, by_id, checkerboard, finished, growth_rate, window
 
+from psph.case import load
+from psph.physics.fluid.viscosity import LaplacianFriction
+from psph.scene import Scene
+from psph.simulation.plan import make_plan
 from psph.theory.stability.couplings import couplings
 from psph.theory.stability.growth import box_growth, box_of
 from psph.theory.stability.uniform import Settings, Uniform
@@ -107,6 +113,14 @@ def predicted(kernel):
         "time": time,
         "largest_speed": np.linalg.norm(speeds.reshape(BOX**2, 2, -1), axis=1).max(axis=0),
     }
+
+
+@pytest.mark.parametrize("name", ["hydrostatic", "hydrostatic_traditional"])
+def test_the_viscosity_of_the_paper_s_tank_is_that_of_the_paper(name):
+    """Its eq. (6), where the viscous stress of psph is another term."""
+    effects = make_plan(Scene(load(Path(CASES) / f"{name}.toml"))).effects
+    rubs = [one for one in effects if type(one).__module__ == LaplacianFriction.__module__]
+    assert rubs == [LaplacianFriction()]
 
 
 SHORT_TANK = (

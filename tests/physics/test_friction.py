@@ -11,7 +11,12 @@ from physics.test_effects import DIMENSIONS, agree_compiled, gathered, patch, wr
 from psph.moments import fastest_smoothing
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.friction import Apparent, Arithmetic, CorrectedRub, Harmonic, Rub, friction_step, rub
-from psph.physics.fluid.viscosity import CentralNewtonianFriction, LaminarViscosity, NewtonianFriction
+from psph.physics.fluid.viscosity import (
+    CentralNewtonianFriction,
+    LaminarViscosity,
+    LaplacianFriction,
+    NewtonianFriction,
+)
 from psph.physics.motion import Fixed
 from psph.physics.rigid.motion import Rigid
 from psph.physics.walls.slip import MirroredFlow, NoSlip, Straight, Turning
@@ -49,6 +54,18 @@ def test_of_one_viscosity_it_is_that_of_the_paper():
     mu, rho = 0.3 / p.specific_volume, 1 / p.specific_volume
     a = 4 * p.mass[1] * mu.sum() * (x @ grad_w) / rho.sum() ** 2 / (r * r + 0.01 * H * H)
     assert rub(Rub(), *pair_of(p, 0, 1)) == pytest.approx(a, rel=1e-13)
+
+
+def test_the_laplacian_is_the_formula_of_the_paper_and_acts_where_fluids_rub():
+    """Of two fluids, and in a flow that turns as a whole too: there it is the friction that is too much."""
+    p = fluids()
+    x, _, r, _, grad_w = written_out(p, 0, 1)
+    rho = 1 / p.specific_volume
+    a = 4 * p.mass[1] * (p.viscosity * rho).sum() / rho.sum() ** 2 * (x @ grad_w) / (r * r + 0.01 * H * H)
+    found = LaplacianFriction().shear(*pair_of(p, 0, 1))
+    assert found == pytest.approx(a) and found < 0.0
+    beside = p._replace(rubs=np.array([1.0, 0.0]))
+    assert LaplacianFriction().shear(*pair_of(beside, 0, 1)) == 0.0
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -160,7 +177,7 @@ def test_a_wall_mirrors_fluid_that_turns_with_it_as_itself(dim):
 @pytest.mark.parametrize("correction", (None, GradientCorrection(0.5)))
 def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(correction):
     """Whichever form of friction the scene takes, no-slip takes the same, and knows whether walls turn."""
-    physics = SimpleNamespace(gradient_correction=correction, central_friction=None)
+    physics = SimpleNamespace(gradient_correction=correction, central_friction=None, laplacian_friction=None)
 
     def forms(*motions):
         species = [SimpleNamespace(no_slip=n < 1, viscosity=1.0, motion=one) for n, one in enumerate(motions)]

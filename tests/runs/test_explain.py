@@ -123,6 +123,8 @@ def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
     assert closed["XSPH"] == "the case does not say physics.xsph"
     rubbed = not_simulated(tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.central_friction={}")
     assert rubbed["LaminarViscosity"].endswith(": physics.central_friction takes its place")
+    rubbed = not_simulated(tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.laplacian_friction={}")
+    assert rubbed["LaminarViscosity"].endswith(": physics.laplacian_friction takes its place")
 
 
 def test_names_and_what_is_said_of_them_stand_in_two_columns(tmp_path):

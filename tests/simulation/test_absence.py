@@ -111,6 +111,7 @@ CORRECTED = ("physics.gradient_correction=0.5",)
 
 BESIDE = {
     "physics.central_friction": (VISCOUS,),
+    "physics.laplacian_friction": (VISCOUS,),
     "physics.reconstructed_damping": CORRECTED,
     "physics.local_potential": CORRECTED,
     "physics.fourth_order_diffusion": CORRECTED,

@@ -22,6 +22,7 @@ from psph.physics.fluid.friction import (
     sheared,
     start_gradient,
 )
+from psph.physics.roles import FRICTION
 from psph.theory.stability import parts
 from psph.vectors import scale
 
@@ -66,15 +67,22 @@ class LaminarViscosity(NamedTuple):
     conserves = ("momentum",)
 
     def in_scene(self, scene: Facts):
-        """The form that knows of corrected gradients; nothing beside central friction, or where the viscosity
-        depends on the rate of strain."""
-        if scene.physics.central_friction is not None or scene.rheologies:
+        """The form that knows of corrected gradients; nothing where the case names another friction, or where
+        the viscosity depends on the rate of strain."""
+        if _named(scene) or scene.rheologies:
             return None
         return NewtonianFriction(rub_of(scene))
 
     def why_absent(self, scene: Facts):
         """What takes its place."""
-        return TAKEN_OVER if scene.rheologies else "physics.central_friction takes its place"
+        return TAKEN_OVER if scene.rheologies else f"physics.{_named(scene)} takes its place"
+
+
+def _named(scene: Facts) -> str:
+    """The key of the friction that a case names in place of the viscous stress; empty where it names none."""
+    if scene.physics.central_friction is not None:
+        return "central_friction"
+    return "laplacian_friction" if scene.physics.laplacian_friction is not None else ""
 
 
 class NewtonianFriction(NamedTuple):
@@ -125,6 +133,7 @@ class CentralFriction(NamedTuple):
     """
 
     acts = (FLUIDS,)
+    roles = (FRICTION,)
     conserves = ("momentum", "angular momentum")
 
     def in_scene(self, scene: Facts):
@@ -153,6 +162,31 @@ class CentralNewtonianFriction(NamedTuple):
     def longest_step(self, scene):
         """Δt ≤ 0.05 h²/ν with the largest ν of the scene, s, or less where the kernel asks for it."""
         return central_step(scene, scene.viscosity)
+
+
+class LaplacianFriction(NamedTuple):
+    """The viscosity of fluids acts on the Laplacian of the velocity, as in the paper: it brakes what turns.
+
+    a_i = Σ_j 4 m_j (μ_i + μ_j) x_ij·∇W_ij / [(ρ_i + ρ_j)² (r² + 0.01 h²)] u_ij, μ = ρν, in place of
+    :class:`LaminarViscosity`.  SSPH paper, eqs. (2), (6); Morris, Fox & Zhu (1997), J. Comput. Phys. 136,
+    214.  It is the same in the bulk of a fluid of one viscosity.  At its ends it lacks μ(∇u)ᵀ: a drop that
+    turns is braked as exp(−4νt/R²), a body lacks a moment of 2μωV, a wave loses half of what it should.
+    """
+
+    acts = (FLUIDS,)
+    roles = (FRICTION,)
+    conserves = ("momentum",)
+
+    def shear(self, i, j, pair):
+        """Coefficient of u_ij in the acceleration, 1/s."""
+        v_i, v_j, h = i.specific_volume, j.specific_volume, i.smoothing_length
+        both = (i.viscosity * v_j + j.viscosity * v_i) * v_i * v_j
+        under = (v_i + v_j) * (v_i + v_j) * (pair.r2 + SINGULARITY * h * h)
+        return 4.0 * pair.m_dw_r * (both * pair.r2) / under * (i.rubs * j.rubs)
+
+    def longest_step(self, scene):
+        """Δt ≤ 0.125 h²/ν with the largest ν of the scene, s (Morris, Fox & Zhu 1997, eq. 22), or less."""
+        return friction_step(scene, scene.viscosity)
 
 
 def _viscosity_of_pairs(alpha: float, scene: Facts) -> float:
