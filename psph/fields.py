@@ -8,9 +8,9 @@ from collections.abc import Iterable
 from functools import cache
 from typing import Any, NamedTuple
 
-SCALAR, VECTOR, SYMMETRIC, MATRIX = "scalar", "vector", "symmetric", "matrix"
+SCALAR, VECTOR, SYMMETRIC, MATRIX, AXIAL = "scalar", "vector", "symmetric", "matrix", "axial"
 """Shapes of a field: a number, one number per axis, a symmetric matrix (its rows from the diagonal
-on), a full matrix by rows."""
+on), a full matrix by rows, one number per axis of rotation (in 2D z, in 3D x, y, z)."""
 
 FLUID, WALL, SOLID = 0, 1, 2
 """Values of ``kind``: a fluid particle moves freely, a wall particle does not, a solid one is held by its
@@ -146,6 +146,7 @@ class Field(NamedTuple):
             VECTOR: dimensions,
             SYMMETRIC: dimensions * (dimensions + 1) // 2,
             MATRIX: dimensions**2,
+            AXIAL: dimensions * (dimensions - 1) // 2,
         }[self.shape]
 
 

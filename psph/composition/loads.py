@@ -6,7 +6,18 @@ from numba.core import types
 
 from psph.composition import terms
 from psph.engine.jit import overload
-from psph.vectors import add, scale
+from psph.vectors import add, by_dimension, scale, zero_like
+
+cross = by_dimension(
+    lambda a, b, like: (),
+    lambda a, b, like: (a[0] * b[1] - a[1] * b[0],),
+    lambda a, b, like: (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ),
+)
+"""(a, b, like) → a × b, about each axis of rotation that the dimension of the vector ``like`` has."""
 
 
 class Loads(NamedTuple):
@@ -24,6 +35,31 @@ class Unloaded(NamedTuple):
 
     loaded: Any
     group: Any
+
+
+class Couple(NamedTuple):
+    """A sum of a pass of loads: the moment of the load about the particle's own place.
+
+    Σ_j (x_j − x_i)/2 × f_ij, f_ij what ``effects`` give of a fluid neighbour j that is not along the line of
+    the pair.  What two particles exchange passes between them, on average halfway: a wall that turns has its
+    moment at its face, and not where its particles are.  By mass, m²/s².
+    """
+
+    effects: tuple
+
+    def start(self, i):
+        """No neighbour yet."""
+        return cross(i.position, i.position, i.position)
+
+    def gather(self, total, i, j, pair):
+        """Take the push of neighbour j at half the way to it."""
+        across = terms.pushed(zero_like(pair.x_ij), pair.u_ij, terms.shear(self.effects, i, j, pair))
+        force = terms.added(across, terms.push(self.effects, i, j, pair))
+        return add(total, scale(cross(pair.x_ij, force, pair.x_ij), -0.5 * j.is_fluid))
+
+    def finish_value(self, total, i, kernel):
+        """The couple, m²/s²."""
+        return total
 
 
 def _is(kind, loads) -> bool:

@@ -15,7 +15,7 @@ Neither is integrated, so that particles never drift from where they belong, how
 
 from typing import Any, NamedTuple
 
-from psph.fields import FLUID, MATRIX, SOLID, VECTOR, WALL, Field, Turned, VelocityGradient
+from psph.fields import AXIAL, FLUID, MATRIX, SOLID, VECTOR, WALL, Field, Turned, VelocityGradient
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
 
@@ -31,6 +31,13 @@ WORK = Field("work", "J", "energy that a moving wall, a load or the force of an 
 
 LOAD = Field("load", "m/s2", "acceleration by the fluid alone, of particles whose load is asked for", VECTOR)
 
+COUPLE = Field(
+    "couple",
+    "m2/s2",
+    "moment of the load by its mass about the particle's own place: each pair pushes halfway between its two",
+    AXIAL,
+)
+
 WHIRL = Field(
     "whirl",
     "1/s",
@@ -39,7 +46,7 @@ WHIRL = Field(
     image=VelocityGradient,
 )
 
-OF_MOTION = (ANCHOR, APPARENT, LOAD, WORK, WHIRL)
+OF_MOTION = (ANCHOR, APPARENT, LOAD, COUPLE, WORK, WHIRL)
 """What particles carry only where something moves as it is told, or its load is asked for."""
 
 

@@ -5,7 +5,7 @@ All that depends on how sums are computed on a processor lies behind these few m
 
 import numpy as np
 
-from psph.composition.loads import Loads, Unloaded
+from psph.composition.loads import Couple, Loads, Unloaded
 from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
 from psph.engine.settled import settled
@@ -18,7 +18,7 @@ from psph.particles.others import keep_others
 from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.physics.motion import LOAD
+from psph.physics.motion import COUPLE, LOAD
 from psph.physics.rigid.pushes import add_pushes
 from psph.simulation.bounded import admit_kicked, admit_predicted
 from psph.simulation.floating import Floating
@@ -311,9 +311,12 @@ class Engine:
         rest = None
         if one.gives_rates and plan.loaded is not None:
             rest = Unloaded(plan.loaded, s.group)
-            loads = Loads(plan.loaded, s.group)
-            summed = Summed(one.effects, one.reductions, loads)
-            in_threads(self._load, first, last, summed, *seen, sums._replace(acceleration=s[LOAD.name]))
+            reductions, written = one.reductions, sums.written
+            if COUPLE.name in s:
+                reductions, written = (*reductions, Couple(one.effects)), (*written, s[COUPLE.name])
+            summed = Summed(one.effects, reductions, Loads(plan.loaded, s.group))
+            told = sums._replace(acceleration=s[LOAD.name], written=written)
+            in_threads(self._load, first, last, summed, *seen, told)
         summed = Summed(one.effects, one.reductions, rest)
         in_threads(self._sums[one.place], first, last, summed, *seen, sums)
 

@@ -25,7 +25,7 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, LOAD, OF_MOTION, WHIRL, WORK, MovingClamp, is_prescribed
+from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK, MovingClamp, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.solid.contact import FACE, OF_FRICTION
 from psph.physics.solid.cracks import CUT
@@ -278,6 +278,12 @@ class Plan:
         return step_limits(self, speed, acceleration)
 
 
+def has_couples(scene) -> bool:
+    """Whether the push of a viscous fluid on a wall or a body is asked for, and what has a moment."""
+    rubbed = any(one.loaded and one.rubs for one in scene.species if not one.is_fluid)
+    return scene.dimensions > 1 and rubbed and any(one.rubs for one in scene.species if one.is_fluid)
+
+
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     """The plan of a scene (psph.scene.Scene), with what its case or another catalogue offers."""
     case, catalogue = scene.case, catalogue or scene.case.catalogue
@@ -312,6 +318,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         refuse_without_image(scene, called, fields)
     told = {name for name in told if name in own or name not in ONLY_READ}
     told |= {LOAD.name} if loaded.any() else set()
+    told |= {COUPLE.name} if has_couples(scene) else set()
     told |= {WORK.name} if pulls.booked or pulls.booked_in_solids else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     paired = shares_loop(called, bool(case.flowing))

@@ -54,6 +54,7 @@ class Columns(NamedTuple):
     pressure: Any
     apparent: Any = None
     load: Any = None
+    couple: Any = None
     work: Any = None
     whirl: Any = None
 

@@ -8,9 +8,11 @@ import pytest
 from physics.pairs import H, pair_of, sums_of, view
 from physics.test_effects import DIMENSIONS, agree_compiled, gathered, patch, written_out
 
+from psph.composition.loads import Couple
 from psph.moments import fastest_smoothing
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.friction import Apparent, Arithmetic, CorrectedRub, Harmonic, Rub, friction_step, rub
+from psph.physics.fluid.pressure import SymmetricPressure
 from psph.physics.fluid.viscosity import (
     CentralNewtonianFriction,
     LaminarViscosity,
@@ -172,6 +174,24 @@ def test_a_wall_mirrors_fluid_that_turns_with_it_as_itself(dim):
     )
     assert gathered(MirroredFlow(Rub(), Turning()), p, 1, 0, 2, 3) == pytest.approx([0.0] * dim, abs=1e-14)
     assert np.abs(gathered(MirroredFlow(), p, 1, 0, 2, 3)).max() > 1e-4
+
+
+@pytest.mark.parametrize("dim", DIMENSIONS)
+def test_a_couple_has_each_force_of_a_fluid_halfway_between_the_pair(dim):
+    """Of a wall beside two fluid particles and a wall; what acts along the line of a pair has none."""
+    p = view(n=4, dim=dim)._replace(is_fluid=np.array([0, 1, 1, 0.0]), rubs=np.ones(4))
+    effects = (LaplacianFriction(), NewtonianFriction(), SymmetricPressure())
+    expected = np.zeros(3)
+    for b in (1, 2):
+        i, j, pair = pair_of(p, 0, b, "wendland-c2")
+        x, u, *_ = written_out(p, 0, b)
+        force = effects[0].shear(i, j, pair) * u + effects[1].push(i, j, pair)
+        arm, force = (np.pad(one, (0, 3 - dim)) for one in (-0.5 * x, force))
+        expected += np.cross(arm, force)
+    first = {1: 3, 2: 2, 3: 0}[dim]  # in 2D about z alone
+    assert sums_of(Couple(effects), p, 0) == pytest.approx(expected[first:])
+    assert np.abs(expected).max() > 0.0 or dim == 1
+    assert sums_of(Couple(effects[2:]), p, 0) == (0.0,) * (3 - first)
 
 
 @pytest.mark.parametrize("correction", (None, GradientCorrection(0.5)))

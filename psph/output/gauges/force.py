@@ -8,18 +8,19 @@ import numpy as np
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.corners import Corners, axes_of
 from psph.parallel.reductions import exact_sums
-from psph.physics.motion import RIGID
+from psph.physics.motion import COUPLE, RIGID
 
 
 class ForceGauge(NamedTuple):
     """Force and moment of the fluid on the walls of some ``groups``.
 
-    F = Σ_w m_w a_w and T = Σ_w (x_w − X) × m_w a_w over their particles, with the accelerations a_w by
-    their neighbours in the fluid alone, without gravity: what the fluid feels of these particles,
-    turned round.  Those of bodies have their contacts too.  Where parts meet, ``corners`` say whose face
-    bears it.  X is ``about``, m (dim,), with a ``carrier`` the place at the start of a point that goes with
-    it.  N and N m; per metre of depth in 2D.  Where a domain repeats, what moves as a whole is where its way
-    has led it, also beyond the domain: moments have no jump there.
+    F = Σ_w m_w a_w and T = Σ_w m_w [(x_w − X) × a_w + c_w] over their particles, with the accelerations a_w
+    by their neighbours in the fluid alone, without gravity, and the couples c_w of a viscous fluid
+    (psph.composition.loads): what the fluid feels of these particles, turned round.  Those of bodies have
+    their contacts too.  Where parts meet, ``corners`` say whose face bears it.  X is ``about``, m (dim,),
+    with a ``carrier`` the place at the start of a point that goes with it.  N and N m; per metre of depth in
+    2D.  Where a domain repeats, what moves as a whole is where its way has led it, also beyond the domain:
+    moments have no jump there.
     """
 
     name: str
@@ -40,12 +41,16 @@ class ForceGauge(NamedTuple):
         held = np.flatnonzero(np.isin(store.shown("group"), self.groups))
         force = store.shown("mass")[held, None] * store.shown("load")[held]
         shared, share = self._shared(simulation)
-        held, force = np.concatenate([held, shared]), np.concatenate([force, share])
+        bearing, held, force = held, np.concatenate([held, shared]), np.concatenate([force, share])
         about = np.array([self.about])
         if self.carrier is not None:
             about = self.carrier.places(simulation, about)
-        arm = self._places(simulation, held) - about
-        found = exact_sums(simulation.comm, np.column_stack([force, *moments(arm, force)]))
+        twist = [*moments(self._places(simulation, held) - about, force)]
+        if COUPLE.name in store:
+            couples = store.shown("mass")[bearing, None] * store.shown(COUPLE.name)[bearing]
+            for of_all, own in zip(twist, couples.T):
+                of_all[: len(bearing)] += own
+        found = exact_sums(simulation.comm, np.column_stack([force, *twist]))
         floating = simulation.engine.poses.floating
         return found + self._contacts(floating, about[0]) if floating else found
 

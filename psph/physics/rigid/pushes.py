@@ -1,22 +1,24 @@
 """What pushes and pulls rigid bodies: the loads of their particles, added as whole numbers."""
 
 import numpy as np
+from numba.core import types
 
 from psph.composition import terms
 from psph.composition.pair import take
-from psph.engine.jit import elementwise, overload, unrolled
+from psph.engine.jit import elementwise, overload, tuple_of, unrolled
 from psph.vectors import Vector, add, at, nearest_image, scale, subtract, zero_like
 
 
 @elementwise
 def add_pushes(first, last, body_of, places, units, periods, pulls, masses, view, columns):
-    """F = Σ f_w and T = Σ (x_w − X) × f_w of each body, f_w = m_w a_w + M_w b_w.
+    """F = Σ f_w and T = Σ (x_w − X) × f_w + m_w c_w of each body, f_w = m_w a_w + M_w b_w.
 
     Over the columns ``first`` to ``last``; ``body_of`` has the row of each group's body, −1 without one,
     and ``places`` X, m, the point about which each turns.  a_w is the acceleration by the fluid alone of a
-    particle with the mass m_w that it shows, b_w that by the effects ``pulls`` on its part M_w of the body's
-    mass, by ``masses`` (psph.scene.bodies.shares_of).  Returns whole numbers (bodies, 6) of the ``units``
-    of force, N, and of torque, N m, so that the sums do not depend on the order of particles.
+    particle with the mass m_w that it shows, c_w its couple (psph.composition.loads), b_w that by
+    the effects ``pulls`` on its part M_w of the body's mass, by ``masses`` (psph.scene.bodies.shares_of).
+    Returns whole numbers (bodies, 6) of the ``units`` of force, N, and of torque, N m, so that
+    the sums do not depend on the order of particles.
     """
     found = np.zeros((len(places), 6), np.int64)
     per_force, per_torque = 1.0 / units[0], 1.0 / units[1]
@@ -28,7 +30,8 @@ def add_pushes(first, last, body_of, places, units, periods, pulls, masses, view
         if force == zero_like(force):
             continue
         arm = nearest_image(subtract(at(columns.position, k), point(places, body, force)), periods)
-        _book(found, body, force, moment(arm, force), per_force, per_torque)
+        torque = twisted(moment(arm, force), columns.couple, k, take(view, k).mass)
+        _book(found, body, force, torque, per_force, per_torque)
     return found
 
 
@@ -79,6 +82,23 @@ def _moment(arm, force):
         return unrolled("arm, force", f"return 0.0, 0.0, {about_z}")
     about_x, about_y = (f"arm[{e}] * force[{f}] - arm[{f}] * force[{e}]" for e, f in ((1, 2), (2, 0)))
     return unrolled("arm, force", f"return {about_x}, {about_y}, {about_z}")
+
+
+def twisted(torque, couple, k, mass):
+    """A torque and the couple of particle ``k``, N m; the torque where nothing has couples."""
+    if couple is None:
+        return torque
+    own = scale(at(couple, k), mass)
+    return add(torque, (0.0,) * (3 - len(own)) + own)
+
+
+@overload(twisted)
+def _typed_twisted(torque, couple, k, mass):
+    if isinstance(couple, types.NoneType):
+        return lambda torque, couple, k, mass: torque
+    first = 3 - len(couple)
+    parts = (f"torque[{d}]" + f" + couple[{d - first}][k] * mass" * (d >= first) for d in range(3))
+    return unrolled("torque, couple, k, mass", f"return {tuple_of(parts)}")
 
 
 def _book(found, body, force, torque, per_force, per_torque):
