@@ -93,7 +93,7 @@ class GradientCorrection(NamedTuple):
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
-        return _corrected_push(1.0, j.pressure, i, j, pair)
+        return _corrected_push(felt(Holding(), i, j), i, j, pair)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -138,8 +138,7 @@ class CorrectionBesideWalls(NamedTuple):
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
-        part, p_j = felt(self.walls, i, j)
-        return _corrected_push(part, p_j, i, j, pair)
+        return _corrected_push(felt(self.walls, i, j), i, j, pair)
 
 
 class DifferenceCorrection(NamedTuple):
@@ -177,13 +176,10 @@ def needs_correction(physics):
 
 
 @helper
-def _corrected_push(part, p_j, i, j, pair):
-    """−m_j (p_i (L_i − 1)/ρ_i² + p_j (L_j − 1)/ρ_j²) ∇W_ij, m/s², with a ``part`` of p_i."""
-    v_i, v_j = i.specific_volume, j.specific_volume
-    both = add(
-        scale(scale(i.gradient_correction, i.pressure * v_i * v_i), part),
-        scale(j.gradient_correction, p_j * v_j * v_j),
-    )
+def _corrected_push(felt_by_both, i, j, pair):
+    """−m_j (p_i (L_i − 1)/ρ_i² + p_j (L_j − 1)/ρ_j²) ∇W_ij, m/s², with what both feel of p/ρ²."""
+    own, other = felt_by_both
+    both = add(scale(i.gradient_correction, own), scale(j.gradient_correction, other))
     return scale(times(both, pair.x_ij), -pair.m_dw_r)
 
 

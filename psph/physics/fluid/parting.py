@@ -3,19 +3,25 @@
 from typing import NamedTuple
 
 from psph.engine.jit import call_by_type
-from psph.formula import where
+from psph.formula import helper, where
 from psph.physics.facts import Facts
 
 WHATEVER = 1e30
-"""A tension that nothing reaches, Pa."""
+"""A tension that nothing reaches, Pa m⁶/kg²."""
+
+
+@helper
+def over_square(one):
+    """p/ρ² of a particle."""
+    return one.pressure * one.specific_volume * one.specific_volume
 
 
 class Holding(NamedTuple):
     """Walls pull the fluid as the fluid pulls itself: it cannot leave them."""
 
     def felt(self, i, j):
-        """The part of p_i that the pair feels, and p_j as it feels it, Pa."""
-        return 1.0, j.pressure
+        """p/ρ² of both as the pair feels them."""
+        return over_square(i), over_square(j)
 
 
 class Parting(NamedTuple):
@@ -26,10 +32,10 @@ class Parting(NamedTuple):
     """
 
     def felt(self, i, j):
-        """The part of p_i that the pair feels, and p_j as it feels it, Pa."""
-        pulls = where(i.pressure < 0.0, 1.0, 0.0)
+        """p/ρ² of both as the pair feels them."""
+        own = over_square(i)
         lowest = (-WHATEVER * i.is_fluid) * j.is_fluid
-        return (1.0 - pulls) + (pulls * i.is_fluid) * j.is_fluid, max(j.pressure, lowest)
+        return max(own, 0.0) + (min(own, 0.0) * i.is_fluid) * j.is_fluid, max(over_square(j), lowest)
 
 
 class PartingBesideSoils(NamedTuple):
@@ -39,17 +45,16 @@ class PartingBesideSoils(NamedTuple):
     """
 
     def felt(self, i, j):
-        """The part of p_i that the pair feels, and p_j as it feels it, Pa."""
-        pulls = where(i.pressure < 0.0, 1.0, 0.0)
+        """p/ρ² of both as the pair feels them."""
+        own = over_square(i)
         clings = where(i.strength + j.strength > 0.0, 1.0, i.is_fluid * j.is_fluid)
-        return (1.0 - pulls) + pulls * clings, max(j.pressure, -WHATEVER * clings)
+        return max(own, 0.0) + min(own, 0.0) * clings, max(over_square(j), -WHATEVER * clings)
 
 
 Hold = Holding | Parting | PartingBesideSoils
 
 felt = call_by_type("felt")
-"""(hold, i, j) → the part of p_i that the pair feels, 0 or 1, and p_j as it feels it, Pa (:class:`Parting`).
-A part and not a pressure, so that what p_i makes of i alone is known before the loop over j."""
+"""(hold, i, j) → p_i/ρ_i² and p_j/ρ_j² as the pair feels them, m⁵/(kg s²) in 3D (:class:`Parting`)."""
 
 
 def hold_of(scene: Facts) -> Hold:

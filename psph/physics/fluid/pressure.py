@@ -47,9 +47,8 @@ class SymmetricPressure(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        v_i, v_j = i.specific_volume, j.specific_volume
-        part, p_j = felt(self.walls, i, j)
-        return -(i.pressure * v_i * v_i * part + p_j * v_j * v_j) * pair.m_dw_r
+        own, other = felt(self.walls, i, j)
+        return -(own + other) * pair.m_dw_r
 
     def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
