@@ -1,5 +1,6 @@
 """Fluids under their own weight at the start, column by column."""
 
+import functools
 import math
 from collections.abc import Iterator
 from functools import cached_property
@@ -11,8 +12,7 @@ from psph.composition.mirrors import ABOVE, BELOW
 from psph.physics.rigid.pose import in_space, inertia
 from psph.rows import projected
 from psph.scene.columns import columns, connected, order_of
-from psph.scene.pressures import weight_above
-from psph.scene.species import NONE, Census, take_census
+from psph.scene.species import NONE
 from psph.scene.walls import with_surroundings
 
 if TYPE_CHECKING:
@@ -80,26 +80,18 @@ def stills_of(scene: "Scene", resting: list[int]) -> dict[int, Still]:
     will rise or sink, and does not rest on what is below. Under a roof, of a wall or of what floats, the
     surface is that of the nearest open column of the same connected fluid; where all of it is closed in, it
     has the pressure of another fluid that it meets, or none at its highest point. A fluid that nothing
-    solid bears from below falls, and has no pressure. Where gravity is oblique to the axes each fluid has
-    one surface, its highest point.
+    solid bears from below falls, and has no pressure. Where gravity is oblique to the axes each connected
+    part of a fluid has one surface, its highest point, and bears those that are above all of it.
     """
     gravity = felt_gravity(scene)
     axes = [d for d, g in enumerate(gravity) if g]
     if not resting or not axes:
         return {n: _one_level(scene, n, gravity) for n in resting}
     if len(axes) > 1:
-        return _oblique(scene, resting, gravity)
+        return _Slanted(scene, gravity, resting).stills()
     if _is_level(scene, axes[0], gravity[axes[0]]):
         return {0: _one_level(scene, 0, gravity)}
     return _Columns(scene, axes[0], gravity[axes[0]], resting).stills()
-
-
-def _oblique(scene: "Scene", resting: list[int], gravity) -> dict[int, Still]:
-    """Each fluid with one surface, and with the weight of those above it."""
-    up = _against(gravity)
-    census = scene.census if up == scene.up else take_census(scene.layout, up)
-    above = {n: weight_above(scene, n, gravity, census) for n in resting}
-    return {n: _one_level(scene, n, gravity, above[n], census) for n in resting}
 
 
 def _against(gravity) -> tuple[float, ...]:
@@ -108,16 +100,12 @@ def _against(gravity) -> tuple[float, ...]:
     return tuple(-g / pull if pull else 0.0 for g in gravity)
 
 
-def _one_level(scene: "Scene", number: int, gravity, above=0.0, census: Census | None = None) -> Still:
-    """A fluid whose surface is at its highest point, with ``above`` Pa on it.
-
-    ``census`` has its ends against this gravity; without it that of the scene does.
-    """
-    census = census or scene.census
+def _one_level(scene: "Scene", number: int, gravity) -> Still:
+    """A fluid whose surface is at its highest point, with nothing on it."""
     weight = scene.parts[number].density * math.hypot(*gravity)
-    surface = float(census.top[number]) + 0.5 * scene.spacing
-    highest = above + weight * max(surface - float(census.bottom[number]), 0.0)
-    return Still(_against(gravity), surface, above, weight, highest)
+    surface = float(scene.census.top[number]) + 0.5 * scene.spacing
+    highest = weight * max(surface - float(scene.census.bottom[number]), 0.0)
+    return Still(_against(gravity), surface, 0.0, weight, highest)
 
 
 def _is_level(scene: "Scene", axis: int, pull: float) -> bool:
@@ -309,6 +297,45 @@ class _Columns:
         lattice = self.scene.lattice
         first = np.array([lattice.coordinates(d)[0] for d in range(self.scene.dimensions)])
         return Still(self.up, *found, highest, first, self.spacing, self.order)
+
+
+class _Slanted(_Columns):
+    """The same where gravity, m/s², is oblique to the axes: columns are along the axis nearest to it.
+
+    They tell what is within what, and what falls; steps of the lattice along a slope are no surface.
+    """
+
+    def __init__(self, scene: "Scene", gravity: tuple[float, ...], resting: list[int]):
+        axis = max(range(scene.dimensions), key=lambda d: abs(gravity[d]))
+        super().__init__(scene, axis, gravity[axis], resting)
+        pull = math.hypot(*gravity)
+        self.level = [place for place, d in enumerate(self.order) if abs(gravity[d]) < 0.5 * pull]
+        self.weights *= pull / abs(gravity[axis])
+        self.up = _against(gravity)
+        grid = np.ix_(*(self.up[d] * scene.lattice.coordinates(d) for d in self.order))
+        self.heights = functools.reduce(np.add, grid)[..., self.downwards]
+
+    def _bearing(self, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The highest point of the part at each site, m, and the weight of those above it, Pa."""
+        from scipy.ndimage import extrema, find_objects  # late, as above
+
+        numbers = np.arange(1, self.count + 1)
+        low, high = (np.append(0.0, one) for one in extrema(self.heights, self.part, numbers)[:2])
+        falls = np.append(True, [self._falling[self.part == n].any() for n in numbers])
+        places = [None, *find_objects(self.part)]
+        load = np.zeros(self.count + 1)
+        for one in numbers[~falls[1:]]:
+            for other in numbers[~falls[1:]]:
+                # layers that are drawn along a slope are half a spacing into each other: steps fit into steps
+                higher = other != one and low[other] > high[one] - 0.5 * self.spacing
+                if higher and all(_overlap(places[one][k], places[other][k]) for k in self.level):
+                    load[one] += self.weights[other] * (high[other] - low[other])
+        return (high + 0.5 * self.spacing)[around], load[around]
+
+
+def _overlap(one: slice, other: slice) -> bool:
+    """Whether two ranges of sites have one in common."""
+    return one.start < other.stop and other.start < one.stop
 
 
 def start_warnings(scene: "Scene") -> Iterator[str]:
