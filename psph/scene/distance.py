@@ -60,6 +60,28 @@ def faces_of(shape: Shape, points: np.ndarray, room: Room | None = None) -> Face
             return Faces(side * (away - middle) - 0.5 * mesh.shell, side[:, None] * normal)
 
 
+def endless(shape: Shape, *where) -> Shape:
+    """A shape where some axes repeat: boxes that fill a period go on on both sides.
+
+    ``where`` are the domain's lower and upper corner, m (dim,), and its periods, m, None where it is open.
+    """
+    match shape.form:
+        case tuple() as shapes:
+            return shape.model_copy(update={"union": tuple(endless(one, *where) for one in shapes)})
+        case Difference(base=base, minus=minus) as difference:
+            parts = {"base": endless(base, *where), "minus": tuple(endless(one, *where) for one in minus)}
+            return shape.model_copy(update={"difference": difference.model_copy(update=parts)})
+        case Box() as box:
+            first, last, low, up = (np.array(of) for of in (*where[:2], box.lower, box.upper))
+            most = float((last - first).max())
+            fills = (low < first + BESIDE * most) & (up > last - BESIDE * most)
+            more = most * (fills & [period is not None for period in where[2]])
+            ends = {"lower": tuple(low - more), "upper": tuple(up + more)}
+            return shape.model_copy(update={"box": box.model_copy(update=ends)})
+        case _:
+            return shape
+
+
 def corners_of(shape: Shape) -> np.ndarray:
     """The corners (n, dim) that a shape draws, m; those inside its own parts among them."""
     match shape.form:

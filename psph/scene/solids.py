@@ -14,7 +14,7 @@ from psph.physics.solid.cracks import OF_CRACKS
 from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING, STRESS_ZZ
 from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, is_heated, remembers, solid_of
 from psph.physics.solid.plastic import OF_PLASTIC
-from psph.scene.distance import faces_of
+from psph.scene.distance import endless, faces_of
 from psph.scene.lattice import TOLERANCE
 
 FLAT = 0.95
@@ -156,7 +156,8 @@ def drawn_faces(scene: "Scene", species: np.ndarray, position: np.ndarray) -> tu
         own = scene.layout.elastic_of(int(number))
         if scene.layout.solid_of(int(number)) == 0 or own is not None and may_crack(scene, own):
             continue
-        shape = scene.parts[number if own is None else scene.layout.fluids + own].shape
+        drawn = scene.parts[number if own is None else scene.layout.fluids + own].shape
+        shape = endless(drawn, scene.lower, scene.upper, scene.periods)
         rows = species == number
         found = faces_of(shape, position[rows])
         mean = np.zeros_like(found.normal)

@@ -152,6 +152,24 @@ def test_the_limit_of_the_step_keeps_energy_and_half_more_does_not(tmp_path):
     assert wrong(1.0) < 2e-3 < 3e-3 < wrong(1.5) and wrong(2.0 / (STEP * math.sqrt(2.0))) > 0.1
 
 
+SEAM = BARS.replace(
+    "spacing = 0.005", 'spacing = 0.005\nperiodic = ["y"]\nlower = [-0.2, 0.0]\nupper = [0.3, 0.02]'
+).replace(
+    "shape.box = { lower = [-0.101, 0.0], upper = [-0.001, 0.02] }",
+    "shape.difference.from.box = { lower = [-0.101, 0.0], upper = [-0.001, 0.02] }\n"
+    "shape.difference.minus = [{ box = { lower = [-0.07, 0.0], upper = [-0.05, 0.02] } }]",
+)
+
+
+def test_plates_that_repeat_have_no_edge_at_the_seam(tmp_path):
+    """Else their faces part there under a strong pressure, and pass through each other."""
+    store = start(draft(tmp_path, SEAM)).store
+    x, face = store.shown("reference")[:, 0], store.shown("face")
+    inner = np.minimum(np.abs(x + 0.001), np.abs(x)) < 0.01
+    assert inner.sum() == 16 and np.abs(face[inner, 0]).min() == 1.0
+    assert np.abs(face[:, 1]).max() < 1e-12
+
+
 CUBES = """
 [space]
 dimensions = 3
