@@ -92,7 +92,10 @@ class Guards(Table):
         gt=0,
     )
     overlap: float = key(
-        "how far a rigid body may get inside another or a wall, in spacings", 1.0, unit="1", gt=0
+        "how far a body or an elastic solid may get inside another or a wall, in spacings",
+        1.0,
+        unit="1",
+        gt=0,
     )
     energy: float = key(
         "energy that all particles may gain, in units of their kinetic energy at a tenth of the "

@@ -21,6 +21,7 @@ from psph.runs.record import Record
 from psph.runs.resume import newest_checkpoint, write_checkpoint
 from psph.runs.suspect import Suspect, find
 from psph.scene.behind import Solid
+from psph.simulation.solid_overlap import inside_others
 from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
 from psph.simulation.touching import Overlap
 
@@ -144,7 +145,7 @@ class Guards:
             with simulation.ledger("guards"):
                 slow = [
                     (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
-                    (OVERLAP, self._overlap().depth > bounds.overlap * self.scene.spacing),
+                    (OVERLAP, self._overlaps()),
                     ("energy", self._books and self._gain() > bounds.energy),
                 ]
             yield from (name for name, passed in slow if passed)
@@ -153,6 +154,15 @@ class Guards:
         """Where a rigid body is deepest inside another or a wall; the same on every rank."""
         floating = self.simulation.engine.poses.floating
         return floating.contacts.deepest(floating.bodies) if floating else Overlap(0.0, -1, "")
+
+    def _overlaps(self) -> bool:
+        """Whether a rigid body or an elastic solid is too deep inside another or a wall."""
+        deep = self._overlap().depth > self.bounds.overlap * self.scene.spacing
+        return deep or largest(self.simulation.comm, [self._inside().any()])[0] > 0.0
+
+    def _inside(self) -> np.ndarray:
+        """True for each particle of an elastic solid of this rank that is too deep inside what it touches."""
+        return inside_others(self.simulation.engine, self.scene.spacing, self.bounds.overlap)
 
     def _hidden(self) -> np.ndarray:
         """True for each particle of this rank that is fluid and too deep behind a wall's face."""
@@ -273,6 +283,8 @@ class Guards:
 
     def _worst_by_overlap(self) -> np.ndarray:
         floating = self.simulation.engine.poses.floating
+        if not floating:
+            return self._inside().astype(float)
         return (floating.body_of[self.simulation.store.shown("group")] == self._overlap().body).astype(float)
 
     def _moving(self) -> np.ndarray:
@@ -309,6 +321,9 @@ class Guards:
             case "density":
                 part = suspect.value("density") / suspect.value("rest_density")
                 return f"{who} has {part:.3g} of its rest density{bound}"
+            case _ if guard == OVERLAP and self.simulation.plan.touching:
+                name = self.scene.key_of(int(suspect.value("group")))
+                return f"{who} of {name} is inside another solid or a wall{bound}"
             case _ if guard == OVERLAP:
                 found = self._overlap()
                 inner = self.simulation.engine.poses.floating.bodies.bodies[found.body].name

@@ -1,8 +1,14 @@
-"""A rigid body that is forced into another ends the run, in one line."""
+"""A rigid body that is forced into another ends the run, in one line; so do elastic solids."""
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 from runs.guarded import boxed, started
+
+from psph.case import load
+from psph.output.errors import together
+from psph.physics.solid.contact import REACH
+from psph.simulation.solid_overlap import filled, whole
 
 RAM = (
     "bodies.ram={shape={box={lower=[1.2,1.2],upper=[1.5,1.5]}},density=2000.0,free=[],"
@@ -23,3 +29,55 @@ def test_one_that_is_meant_to_goes_on(tmp_path, key):
     )
     trouble, said = started(case, tmp_path / "run", MPI.COMM_WORLD)
     assert trouble is None and any("guards.overlap was exceeded" in line for line in said) == ("warn" in key)
+
+
+BLOCKS = """
+title = "Two blocks"
+time.end = 0.15
+output = { frames = 0.15, log = 0.05 }
+[space]
+dimensions = 2
+spacing = 0.1
+[physics]
+contact = { stiffness = 1e-3 }
+[solids.left]
+shape.box = { lower = [0.0, 0.0], upper = [0.8, 0.8] }
+density = 1200.0
+young = 2.0e6
+poisson = 0.3
+velocity = [5.0, 0.0]
+[solids.right]
+shape.box = { lower = [0.9, 0.05], upper = [1.7, 0.85] }
+density = 900.0
+young = 3.0e6
+poisson = 0.3
+"""
+
+
+def meeting(folder, *sets):
+    path = folder / "blocks.toml"
+    with together(MPI.COMM_WORLD, path):
+        path.write_text(BLOCKS)
+    return started(load(path, sets), folder / "run", MPI.COMM_WORLD)
+
+
+def test_elastic_solids_inside_each_other_end_the_run(tmp_path):
+    trouble, _ = meeting(tmp_path)
+    assert "the run has a body inside another at step 100" in str(trouble)
+    assert "is inside another solid or a wall (guards.overlap = 1)" in str(trouble)
+    assert "of solids.left" in str(trouble) or "of solids.right" in str(trouble)
+
+
+def test_those_that_bounce_go_on(tmp_path):
+    assert meeting(tmp_path, "physics.contact.stiffness=1.0")[0] is None
+
+
+def test_a_lattice_before_a_plane_is_that_part_of_a_whole_one():
+    for dimensions in (2, 3):
+        axis = np.arange(-4, 5) + 0.3
+        sites = np.stack(np.meshgrid(*[axis] * dimensions), axis=-1).reshape(-1, dimensions)
+        weight = np.maximum(1.0 - (sites**2).sum(axis=1) / REACH**2, 0.0)
+        assert weight.sum() == pytest.approx(whole(dimensions), rel=0.03)
+        for depth in (0.2, 1.2):  # the face is half a spacing before a row
+            seen = weight[sites[:, 0] > -depth].sum() / weight.sum()
+            assert seen == pytest.approx(filled(depth / REACH, dimensions), abs=0.05)
