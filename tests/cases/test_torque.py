@@ -3,6 +3,7 @@
 Spins stay within 1e-3 where all turns as one; moments of a stirrer are within 3 % at 12 spacings a radius.
 """
 
+import cmath
 import math
 
 import numpy as np
@@ -10,6 +11,8 @@ import pytest
 from drafts import draft
 from long import LONG
 from mpi4py import MPI
+from scipy.optimize import curve_fit, root
+from scipy.special import iv, ivp
 
 from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
@@ -75,6 +78,19 @@ shape.difference.minus = [{ disc = { center = [0.0, 0.0], radius = 0.8 } }]
 force = { on = ["inner"], about = [0.0, 0.0] }
 [gauges.outer]
 force = { on = ["outer"], about = [0.0, 0.0] }
+"""
+
+
+ELLIPSE = """
+time.end = 100.0
+space = { dimensions = 2, spacing = 0.1 }
+[physics]
+sound_speed = 15.0
+central_force = { frequency = 1.0, center = [0.0, 0.0] }
+[fluids.oil]
+shape.disc = { center = [0.0, 0.0], radius = 1.0 }
+viscosity = 0.03
+velocity_gradient = [[0.1, 0.0], [0.0, -0.1]]
 """
 
 
@@ -171,3 +187,52 @@ def test_a_rheometer_has_the_moments_of_taylor_and_couette(tmp_path):
     assert -inner == pytest.approx(1.0, abs=0.02) and outer == pytest.approx(1.0, abs=0.02)
     assert inner + outer == pytest.approx(0.0, abs=4e-3)
     assert abs(inner - within + outer - without) > 0.02
+
+
+def surface_stresses(s, nu, n=2):
+    """The determinant that is zero for a mode e^(inθ + st) of a viscous drop of unit radius under a unit force.
+
+    ψ = A rⁿ + C I_n(qr), q² = s/ν, u = (inψ/r, −ψ′): neither shear stress nor −p′ + 2ν ∂u_r/∂r + u_r/s at r = 1.
+    """
+    q = cmath.sqrt(s / nu)
+    modes = (1.0, n, n * (n - 1), -1j * s), (iv(n, q), q * ivp(n, q), q * q * ivp(n, q, 2), 0.0)
+    found = []
+    for f, slope, bend, pressure in modes:
+        u, stretch = 1j * n * f, 1j * n * (slope - f)
+        found.append((-bend + slope + 1j * n * u, -pressure + 2.0 * nu * stretch + u / s))
+    (a, b), (c, d) = found
+    return a * d - b * c
+
+
+def swing(folder, *keys):
+    """Decay, 1/s, and frequency, rad/s, of Σ(x² − y²) from 2 to 13 s."""
+    drop, told = started(folder, ELLIPSE, *keys), []
+    while drop.time < 13.0:
+        drop.step(13.0)
+        x = drop.store.shown("position")
+        told.append((drop.time, (x[:, 0] ** 2 - x[:, 1] ** 2).mean()))
+    time, width = np.array([one for one in told if one[0] > 2.0]).T
+
+    def wave(t, size, phase, decay, frequency):
+        return size * np.exp(-decay * t) * np.cos(frequency * t + phase)
+
+    return curve_fit(wave, time, width, p0=[0.1, -1.57, 0.05, 1.4])[0][2:]
+
+
+@LONG
+@pytest.mark.timeout(900)
+def test_a_drop_s_swing_decays_by_linear_theory(tmp_path):
+    """Ten spacings a radius, less what it loses without viscosity; half of it by the Laplacian of the velocity."""
+
+    def apart(x):
+        size = surface_stresses(complex(*x), 0.03)
+        return [size.real, size.imag]
+
+    decay, frequency = root(apart, [-0.1, 1.4], tol=1e-10).x
+    assert (decay, frequency) == pytest.approx((-0.10608, 1.39976), rel=1e-4)
+    own = swing(tmp_path, "fluids.oil.viscosity=0.0")[0]
+    found = swing(tmp_path)
+    assert found[0] - own == pytest.approx(-decay, rel=0.03) and found[1] == pytest.approx(
+        frequency, rel=5e-3
+    )
+    assert swing(tmp_path, "physics.laplacian_friction={}")[0] - own < -0.7 * decay
