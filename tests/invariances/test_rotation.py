@@ -3,39 +3,78 @@
 import numpy as np
 import pytest
 from invariances.running import begun, by_id
-from invariances.scenes import DX, RUBBER, less, scene
-from long import LONG
+from invariances.scenes import DX, LAWS, RUBBER, SAND, less, scene
+from long import LONG, long_but_for
 
 SPIN, CENTRE, RADIUS = 1.0, np.array([0.5, -0.25]), 1.0
 """rad/s, and m."""
 
 FLOW = {"velocity_gradient": [[0.0, -SPIN], [SPIN, 0.0]], "velocity_center": CENTRE.tolist()}
 
+BOUND = {"sound_speed": 15.0, "central_force": {"frequency": SPIN, "center": CENTRE.tolist()}}
+"""A force that bends the way of each particle to its circle: nothing presses or pulls."""
 
-def disc(radius):
-    """A shape about the centre."""
-    return {"disc": {"center": CENTRE.tolist(), "radius": radius}}
-
-
-def turning(**keys):
-    """A fluid, or a solid, that fills the drum, and turns."""
-    return {"shape": disc(RADIUS), "density": 1000.0, **FLOW, **keys}
+SEAT = np.array([0.375, 0.125])
+"""m; where a body is, seen from the centre."""
 
 
-def drum(fluids):
-    """A drum with all that is in it."""
+def disc(radius, centre=CENTRE):
+    """A shape."""
+    return {"disc": {"center": np.asarray(centre).tolist(), "radius": radius}}
+
+
+def turning(radius=RADIUS, **keys):
+    """A matter that turns."""
+    return {"shape": disc(radius), "density": 1000.0, **FLOW, **keys}
+
+
+def free(physics=BOUND, **tables):
+    """A scene without walls."""
+    return scene(physics=physics, **tables)
+
+
+def drum(fluids, physics=BOUND, **tables):
+    """A drum that turns with all that is in it."""
     wall = {
         "shape": less(disc(RADIUS + 4 * DX), disc(RADIUS)),
         "motion": {"rotation": {"speed": SPIN, "center": CENTRE.tolist()}},
+        "no_slip": any({"viscosity", "rheology"} & {*one} for one in fluids.values()),
     }
-    return scene(fluids=fluids, walls={"drum": wall}, physics={"sound_speed": 15.0})
+    return scene(fluids=fluids, walls={"drum": wall}, physics=physics, **tables)
 
+
+OIL = turning(viscosity=0.05)
+TWO = {
+    "oil": turning(0.6, viscosity=0.05, density=600.0),
+    "water": turning(shape=less(disc(RADIUS), disc(0.6)), viscosity=0.01),
+}
+BODY = {
+    "shape": disc(0.35, CENTRE + SEAT),
+    "density": 700.0,
+    "no_slip": True,
+    "velocity": [-SPIN * SEAT[1], SPIN * SEAT[0]],
+    "spin": SPIN,
+}
+MUD, GRAINS = (turning(density=1500.0, rheology={law: LAWS[law]}) for law in ("bingham", "granular"))
+NO_SOUND = {"central_force": BOUND["central_force"]}
 
 SCENES = {
-    "water": drum({"water": turning()}),
-    "solid": scene(solids={"disc": turning(**RUBBER)}),
-    "damped solid": scene(solids={"disc": turning(**RUBBER, damping=200.0, law="neo-hookean")}),
-    "updated": scene(scheme="solid", solids={"disc": turning(**RUBBER, description="updated")}),
+    "water": drum({"water": turning()}, {"sound_speed": 15.0}),
+    "drop": free(fluids={"water": turning()}),
+    "plain drop": free(fluids={"water": turning()}, scheme="sph"),
+    "viscous drop": free(fluids={"oil": OIL}),
+    "drop of mud": free(fluids={"mud": MUD}),
+    "drop of two fluids": free(fluids=TWO),
+    "grains": drum({"grains": GRAINS}),
+    "body": drum({"oil": OIL}, bodies={"disc": BODY}),
+    "solid": free({}, solids={"disc": turning(**RUBBER)}),
+    "damped solid": free({}, solids={"disc": turning(**RUBBER, damping=200.0, law="neo-hookean")}),
+    "bound solid": free(NO_SOUND, solids={"disc": turning(**RUBBER)}),
+    "updated": free({}, scheme="solid", solids={"disc": turning(**RUBBER, description="updated")}),
+    "bound updated": free(
+        NO_SOUND, scheme="solid", solids={"disc": turning(**RUBBER, description="updated")}
+    ),
+    "soil": free(NO_SOUND, soils={"sand": turning(**SAND, geostatic=False)}),
 }
 
 
@@ -50,7 +89,8 @@ def turned(name, folder, angle):
     """Of a scene that has turned by ``angle``: the largest motion relative to the turn over that of the rim, and the
     change of the angular momentum of what flows."""
     simulation = begun(SCENES[name], folder)
-    flows = by_id(simulation, "group") < len(SCENES[name].get("fluids", SCENES[name].get("solids")))
+    matters = sum(len(SCENES[name].get(kind, ())) for kind in ("fluids", "solids", "soils"))
+    flows = by_id(simulation, "group") < matters
     before = momentum(simulation, flows)
     end = angle / SPIN
     while simulation.time < end:
@@ -63,15 +103,39 @@ def turned(name, folder, angle):
 SHORT = ("solid",)
 """The rest is long."""
 
+WHOLE = [name for name in SCENES if name not in ("water", "solid", "damped solid", "updated")]
+"""What nothing presses or pulls."""
+
 STILL = 0.02
-"""Relative speed over that of the rim: the start lacks the pressure that holds what turns together, and sound
-goes to and fro; measured 0.002 to 0.008."""
+"""Relative speed over that of the rim: without the force that binds, the start lacks the pressure that holds
+what turns together, and sound goes to and fro; measured 0.002 to 0.008."""
+
+KEPT = dict.fromkeys(SCENES, 1e-3) | {
+    "drop": 5e-3,
+    "viscous drop": 6e-3,
+    "drop of mud": 6e-3,
+    "drop of two fluids": 7e-3,
+    "soil": 1e-2,
+    "body": 2e-3,
+    "grains": 3e-3,
+}
+"""Change of the angular momentum of what flows in a whole turn that is allowed.  Corrected gradients do not keep
+it at a free surface, where the forces that keep order make 18 Pa: it changes by 4e-3 as these begin, with 8
+spacings a radius; soils by 7e-3.  In a drum particles slide past each other after half a turn, and its wall
+takes and gives a part.  The plain scheme, and solids, keep it to rounding."""
 
 
-@pytest.mark.parametrize("name", [n if n in SHORT else pytest.param(n, marks=LONG) for n in SCENES])
+@pytest.mark.parametrize("name", long_but_for(SHORT, SCENES))
 def test_a_quarter_turn_of_everything_moves_nothing_and_keeps_the_angular_momentum(tmp_path, name):
     relative, change = turned(name, tmp_path, 0.5 * np.pi)
-    assert relative < STILL and abs(change) < 1e-3
+    assert relative < STILL and abs(change) < KEPT[name]
+
+
+@LONG
+@pytest.mark.parametrize("name", WHOLE)
+def test_a_whole_turn_of_everything_moves_nothing_and_keeps_the_angular_momentum(tmp_path, name):
+    relative, change = turned(name, tmp_path, 2.0 * np.pi)
+    assert relative < STILL and abs(change) < KEPT[name]
 
 
 def test_a_flow_that_is_no_turn_is_seen(tmp_path):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from invariances.amplification import amplification
 from invariances.running import begun, by_id
-from invariances.scenes import BLOCK, DX, scene, tank
-from long import LONG
+from invariances.scenes import BLOCK, DX, SAND, SCENES, scene, stirred_solid, tank
+from long import LONG, long_but_for
 
 from psph.errors import Failed
 
@@ -17,20 +17,36 @@ GROWS = 1e-3
 
 
 def lattice(
-    physics=None, scheme="sph", kernel="wendland-c2", smoothing=1.4, support=2.0, gather_every=1, **fluid
+    physics=None,
+    scheme="sph",
+    kernel="wendland-c2",
+    smoothing=1.4,
+    support=2.0,
+    gather_every=1,
+    dimensions=2,
+    **fluid,
 ):
     """A fluid at rest without ends, as small as its kernel allows."""
     n = 2 * math.ceil(0.5 * max(10.0, 3.3 * support * smoothing))
-    ends = {"lower": [0.0, 0.0], "upper": [n * DX, n * DX]}
-    space = {"kernel": kernel, "smoothing": smoothing, "periodic": ["x", "y"], **ends}
+    ends = {"lower": [0.0] * dimensions, "upper": [n * DX] * dimensions}
+    space = {"kernel": kernel, "smoothing": smoothing, "periodic": [*"xyz"[:dimensions]], **ends}
     return {
         "scheme": scheme,
-        "space": {"dimensions": 2, "spacing": DX, **space},
+        "space": {"dimensions": dimensions, "spacing": DX, **space},
         "time": {"end": 10.0, "gather_every": gather_every},
         "physics": {"sound_speed": 20.0, **(physics or {})},
         "fluids": {"water": {"shape": {"box": ends}, **fluid}},
     }
 
+
+def soil(**keys):
+    """A soil at rest without ends."""
+    tables = lattice(**SAND | {"cohesion": 1e6}, **keys, geostatic=False)
+    del tables["scheme"], tables["physics"]["sound_speed"]
+    return {("soils" if name == "fluids" else name): table for name, table in tables.items()}
+
+
+FOURTH_ORDER = {"kernel": "fourth-order", "support": 3.0 * math.sqrt(2.0)}
 
 LIMITS = {
     "sound": (lattice(scheme="stable", physics={"fourth_order_diffusion": "off"}), 1.6),
@@ -57,6 +73,16 @@ LIMITS = {
     "Riemann dissipation": (lattice({"riemann_dissipation": 3.0}), 2.0),
     "conservative smoothing": (lattice({"conservative_smoothing": 20.0}), 4.5),
     "stress points": (lattice({"pressure_gradient": "stress_points"}), 3.0),
+    "pair damping of the fourth-order kernel": (lattice({"pair_damping": 20.0}, **FOURTH_ORDER), 1.6),
+    "laminar viscosity of the fourth-order kernel": (lattice(viscosity=5.0, **FOURTH_ORDER), 1.6),
+    "density diffusion of the fourth-order kernel": (
+        lattice({"density_diffusion": 5.0}, **FOURTH_ORDER),
+        1.3,
+    ),
+    "acoustic damper of the fourth-order kernel": (lattice({"acoustic_damper": 20.0}, **FOURTH_ORDER), 1.6),
+    "pair damping in 3D": (lattice({"pair_damping": 20.0}, dimensions=3), 1.6),
+    "spreading of the stress of soils": (soil(stress_diffusion=3.0), 1.3),
+    "density diffusion in 3D": (lattice({"density_diffusion": 5.0}, dimensions=3), 1.3),
 }
 """A lattice where this is the shortest limit, or that of sound, and how many times the step is unstable."""
 
@@ -69,7 +95,7 @@ def limit_of(tables, folder) -> float:
     return begun(tables, folder).plan.longest_step(0.0, 0.0)[0]
 
 
-@pytest.mark.parametrize("name", [n if n in ALWAYS else pytest.param(n, marks=LONG) for n in LIMITS])
+@pytest.mark.parametrize("name", long_but_for(ALWAYS, LIMITS))
 def test_no_wave_grows_at_the_limit_and_one_does_beyond(tmp_path, name):
     tables, beyond = LIMITS[name]
     step = limit_of(tables, tmp_path)
@@ -110,6 +136,37 @@ def test_noise_fades_at_the_limit_and_blows_up_beyond(tmp_path, name):
     tables, beyond = NOISE[name]
     assert noise_after(tables, tmp_path, 1.0) < 1.0
     assert noise_after(tables, tmp_path, beyond) > 10.0
+
+
+SOLIDS = {
+    "solid": (SCENES["solid"], 2.0),
+    "damped solid": (scene(solids={"block": stirred_solid(damping=3e4)}), 3.5),
+    "updated": (SCENES["updated"], 2.0),
+}
+"""A solid that starts with a flow in it, and how many times the step is unstable."""
+
+
+def energy_after(tables, folder, times, steps=400) -> float:
+    """The largest kinetic energy of a solid in some steps ``times`` as long as its limit, over that at the start;
+    infinite where it blew up."""
+    ran = begun(tables, folder)
+    step, _ = ran.plan.longest_step(ran.speed, 0.0)
+    ran = begun({**tables, "time": {**tables["time"], "step": step * times}}, folder)
+    found = [np.square(by_id(ran, "velocity")).sum()]
+    try:
+        for _ in range(steps):
+            ran.step()
+            found.append(np.square(by_id(ran, "velocity")).sum())
+    except Failed:
+        return math.inf
+    return float(max(found[1:]) / found[0])
+
+
+@pytest.mark.parametrize("name", long_but_for(("solid",), SOLIDS))
+def test_a_solid_wins_no_energy_at_the_limit_and_blows_up_beyond(tmp_path, name):
+    tables, beyond = SOLIDS[name]
+    assert energy_after(tables, tmp_path, 1.0) < 1.0
+    assert energy_after(tables, tmp_path, beyond) > 10.0
 
 
 def test_penalty_walls_hold_still_water_at_the_limit_and_not_beyond(tmp_path):

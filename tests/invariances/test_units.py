@@ -6,25 +6,20 @@ import pytest
 from invariances.running import after, matched
 from invariances.scenes import SCENES
 from invariances.transforms import Units
-from long import LONG
+from long import long_but_for
 
-SHORT = ("drop", "tank")
+SHORT = ("tank",)
 """The rest is long."""
-
-UNLIKE = ("solids that meet",)
-"""Their friction knows a speed of 1e-12 m/s."""
 
 OTHER = Units(length=16.0, mass=2.0**-5, time=4.0)
 
 
-@pytest.mark.parametrize(
-    "name", [n if n in SHORT else pytest.param(n, marks=LONG) for n in SCENES if n not in UNLIKE]
-)
+@pytest.mark.parametrize("name", long_but_for(SHORT, SCENES))
 def test_other_units_change_no_bit(tmp_path, name):
     one, other = (after(tables, tmp_path, 30) for tables in (SCENES[name], OTHER.of(SCENES[name])))
     rows = matched(one, other, OTHER.length * one.start)
-    units = {"position": "m", "velocity": "m/s", "pressure": "Pa", "density": "kg/m3"}
-    for what, unit in units.items():
+    told = {"position": "m", "velocity": "m/s", "pressure": "Pa", "density": "kg/m3"}
+    for what, unit in told.items():
         assert np.array_equal(getattr(one, what) * OTHER.factor(unit), getattr(other, what)[rows]), what
     assert one.time * OTHER.time == other.time
 

@@ -83,6 +83,35 @@ EXCHANGE = Turn(np.array([[0.0, 1.0], [1.0, 0.0]]))
 TURNS_OF_A_SCENE = {"a quarter": QUARTER, "left-right": LEFT_RIGHT, "up-down": UP_DOWN, "exchanged": EXCHANGE}
 
 
+class Extruded(NamedTuple):
+    """A scene in 2D, drawn out along z and repeating after ``depth``, m; what is turned turns about z."""
+
+    depth: float
+
+    def of(self, table: Any, key: str = "") -> Any:
+        """A table of a case, in 3D."""
+        if isinstance(table, dict) and key == "shape" and "disc" in table:
+            return {"cylinder": self._cylinder(**table["disc"])}
+        if isinstance(table, dict):
+            found = {name: self.of(value, name) for name, value in table.items()}
+            turns = key == "rotation" or (key == "sinusoid" and "angle" in table)
+            return found | ({"axis": [0.0, 0.0, 1.0]} if turns else {})
+        if key in ("lower", "upper"):
+            return [*table, self.depth if key == "upper" else 0.0]
+        if key == "spin":
+            return [0.0, 0.0, table]
+        if key == "velocity_gradient":
+            return [*([*row, 0.0] for row in table), [0.0] * 3]
+        if key in (*POINTS, *DIRECTIONS) and isinstance(table, list):
+            return [*table, 0.0]
+        if isinstance(table, list):
+            return [self.of(one, key) for one in table]
+        return table
+
+    def _cylinder(self, center, radius):
+        return {"center": [*center, 0.5 * self.depth], "axis": "z", "radius": radius, "height": self.depth}
+
+
 class Shift(NamedTuple):
     """All moved by ``way`` (dim,), m, and drifting at ``drift`` (dim,), m/s."""
 
