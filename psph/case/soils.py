@@ -8,7 +8,7 @@ from psph.acts import BODIES, FRAME, MIXED, ONE, SOLIDS, UPDATED
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
-from psph.physics.stress.strength import DruckerPrager, Hexagon, Round, cone
+from psph.physics.stress.strength import MohrCoulomb, pyramid
 from psph.physics.walls.conditions import PENALTY, REPULSIVE
 
 
@@ -26,7 +26,7 @@ class Soil(Hookean):
         "largest mean tension that it bears",
         None,
         unit="Pa",
-        otherwise="at the tip of its yield cone: c/tan φ in plane strain; c without friction",
+        otherwise="c/tan φ, at the tip of its yield surface; c without friction",
         ge=0,
     )
     geostatic: bool = key(
@@ -79,39 +79,38 @@ class Soil(Hookean):
         given = self.rest_coefficient
         return self.poisson / (1.0 - self.poisson) if given is None else given
 
-    def cone(self, dimensions: int) -> tuple[float, ...]:
+    @property
+    def pyramid(self) -> tuple[float, float, float]:
         """3α, k in Pa and 3α_ψ of its yield surface, its strength reduced."""
         by = self.strength_reduction
-        return cone(
-            self._reduced(self.friction_angle), self.cohesion / by, self._reduced(self.dilatancy), dimensions
-        )
+        return pyramid(self._reduced(self.friction_angle), self.cohesion / by, self._reduced(self.dilatancy))
 
     def _reduced(self, angle: float) -> float:
         """An angle in degrees with its tangent reduced, rad."""
         return math.atan(math.tan(math.radians(angle)) / self.strength_reduction)
 
-    def tip(self, dimensions: int) -> float:
+    @property
+    def tip(self) -> float:
         """The largest mean tension, Pa; without friction k itself where none is given."""
-        friction, cohesion, _ = self.cone(dimensions)
+        friction, cohesion, _ = self.pyramid
         if not friction:
             return cohesion if self.tension is None else self.tension
         return min(cohesion / friction, math.inf if self.tension is None else self.tension)
 
-    def law(self, dimensions: int, up: tuple[float, ...], pull: float) -> DruckerPrager:
+    def law(self, up: tuple[float, ...], pull: float) -> MohrCoulomb:
         """What bounds its stress, under gravity of ``pull`` m/s² against ``up``."""
-        friction, cohesion, dilation = self.cone(dimensions)
+        friction, cohesion, dilation = self.pyramid
         wet = self.water_level is not None
-        return DruckerPrager(
+        return MohrCoulomb(
             friction,
             cohesion,
             dilation,
-            self.tip(dimensions),
+            self.tip,
             self.shear_modulus,
             self.bulk_modulus,
             self.water_density * pull if wet else 0.0,
             self.water_level if wet else 0.0,
             up,
-            Hexagon(math.sin(self._reduced(self.friction_angle))) if dimensions == 3 else Round(),
         )
 
 

@@ -82,6 +82,11 @@ def endless(shape: Shape, *where) -> Shape:
             return shape
 
 
+def nearest_faces(shapes: Sequence[Shape], points: np.ndarray) -> Faces:
+    """Those of the nearest of some ``shapes`` at ``points`` (n, dim) outside of all, m; within, the deepest."""
+    return _chosen([faces_of(one, points) for one in shapes], np.argmin)
+
+
 def corners_of(shape: Shape) -> np.ndarray:
     """The corners (n, dim) that a shape draws, m; those inside its own parts among them."""
     match shape.form:

@@ -23,8 +23,8 @@ def soil_lines(scene: "Scene") -> Iterator[str]:
         says = f"φ {soil.friction_angle:g}°, c {soil.cohesion:g} Pa, ψ {soil.dilatancy:g}°"
         if soil.strength_reduction != 1.0:
             says += f", strength divided by {soil.strength_reduction:g}"
-        bears = soil.tip(scene.dimensions)
-        slides = math.degrees(math.atan(soil.cone(scene.dimensions)[0]))
+        bears = soil.tip
+        slides = math.degrees(math.atan(soil.pyramid[0]))
         yield (
             f"  soil        {scene.names[number]}: {says}; slides on planes of {slides:.3g}°, "
             f"bears {bears:.3g} Pa of mean tension; waves of {soil.wave_speed:.4g} m/s"

@@ -95,15 +95,13 @@ class Stressed:
 
     def tension_of(self, table) -> float:
         """The largest mean tension that matter of a table bears, Pa."""
-        return table.tip(self._scene.dimensions) if isinstance(table, Soil) else math.inf
+        return table.tip if isinstance(table, Soil) else math.inf
 
     def cone_tip_of(self, part: int) -> float:
         """The mean tension at which the shear strength of a part is gone, Pa; 0 of what bears no shear."""
         if part not in self.tables:
             return 0.0
-        friction, cohesion, _ = (
-            self.soils[part].cone(self._scene.dimensions) if part in self.soils else (0, 0, 0)
-        )
+        friction, cohesion, _ = self.soils[part].pyramid if part in self.soils else (0, 0, 0)
         return cohesion / friction if friction else NEVER
 
     @property
@@ -133,7 +131,7 @@ class Stressed:
         scene = self._scene
         pull = math.hypot(*scene.gravity)
         up = tuple(-g / pull if pull else 0.0 for g in scene.gravity)
-        return self.soils[part].law(scene.dimensions, up, pull)
+        return self.soils[part].law(up, pull)
 
 
 def layer_of(scene: "Scene", number: int, soil: Soil, held) -> Layer:

@@ -10,7 +10,7 @@ from psph.composition import terms
 from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
-from psph.vectors import add, affine, at, dot, nearest_to, onto, put, scale, subtract, zero_like
+from psph.vectors import add, affine, at, dot, linear, nearest_to, onto, put, scale, subtract, zero_like
 
 place = call_by_number("place")
 """(motions, number, anchor, time) → x, m."""
@@ -77,6 +77,7 @@ def _carry_pose(poses, pose_of, number, group, k, periods, columns):
         x, v = affine(poses[row], PLACE, anchor), affine(poses[row], VELOCITY, anchor)
         settle(columns, k, x, v, periods)
         _whirl(columns.whirl, poses[row], x, k)
+        _face(columns.drawn_normal, columns.face_normal, poses[row], k)
 
 
 @overload_inside(_carry_by_pose)
@@ -101,6 +102,23 @@ def _typed_whirl(whirl, maps, x, k):
     if isinstance(whirl, types.NoneType):
         return lambda whirl, maps, x, k: None
     return _whirl_it
+
+
+def _face(drawn, normal, maps, k):
+    if drawn is not None:
+        _face_it(drawn, normal, maps, k)
+
+
+def _face_it(drawn, normal, maps, k):
+    """R N of the normal N of what moves as a whole."""
+    put(normal, k, linear(maps, PLACE, at(drawn, k)))
+
+
+@overload_inside(_face)
+def _typed_face(drawn, normal, maps, k):
+    if isinstance(drawn, types.NoneType):
+        return lambda drawn, normal, maps, k: None
+    return _face_it
 
 
 @inside

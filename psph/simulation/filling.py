@@ -8,6 +8,8 @@ from psph.physics.motion import ANCHOR
 from psph.physics.solid.contact import COVER, FACE
 from psph.physics.solid.deformation import REFERENCE
 from psph.physics.stress.deviator import DEVIATOR
+from psph.physics.stress.faces import OF_FACES
+from psph.scene.smooth import smooth_faces
 from psph.scene.solids import drawn_faces
 from psph.simulation.groups import material_value
 
@@ -25,6 +27,11 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
     if FACE.name in store:
         normal, depth = drawn_faces(scene, species, position)
         block[list(store.rows[FACE.name])], block[store.rows[COVER.name].start] = normal.T, depth
+    if any(field.name in store for field in OF_FACES):
+        normal = smooth_faces(scene, species, position)
+        for field in OF_FACES:
+            if field.name in store:
+                block[list(store.rows[field.name])] = normal.T
     known = {"density": density}
     known |= {
         field.name: np.array([material_value(s, field.name) for s in scene.species])[species]

@@ -295,6 +295,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     written = tuple(field for _, effect, _ in fitted for field in filled(effect))
     written += tuple(effect.marks for effect in marking)
     written += tuple(effect.remembers for _, effect, _ in fitted if hasattr(effect, "remembers"))
+    written += tuple(field for _, effect, _ in fitted for field in getattr(effect, "drawn", ()))
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
     movement = movement_of(scene.species)

@@ -57,6 +57,8 @@ class Columns(NamedTuple):
     couple: Any = None
     work: Any = None
     whirl: Any = None
+    face_normal: Any = None
+    drawn_normal: Any = None
 
 
 @register_jitable

@@ -10,7 +10,7 @@ from numpy.polynomial import polynomial
 
 from psph.case import soils
 from psph.physics.stress.invariants import j2
-from psph.physics.stress.strength import NO_STRESS, DruckerPrager
+from psph.physics.stress.strength import NO_STRESS, MohrCoulomb
 from psph.vectors import scale
 
 pytestmark = pytest.mark.timeout(900)
@@ -124,7 +124,7 @@ def test_without_stress_diffusion_the_stress_of_standing_soil_is_noise(tmp_path)
     assert creep[0.1] < 0.01 < 0.02 < creep[0.0]
 
 
-class Untorn(DruckerPrager):
+class Untorn(MohrCoulomb):
     """Soil without a limit of tension: beyond the tip of its cone it bears no shear, and any tension."""
 
     def returned(self, i, s, rho):
@@ -147,8 +147,8 @@ def run_out(folder):
 def test_sand_that_bears_tension_hangs_together_and_stops_short(tmp_path, monkeypatch):
     """The control of the tension cut-off: 1.2 by experiments, ± 15 %."""
     found, lowest = run_out(tmp_path / "torn")
-    monkeypatch.setattr(soils, "DruckerPrager", Untorn)
-    monkeypatch.setattr(soils.Soil, "tip", lambda soil, dimensions: 1e30)
+    monkeypatch.setattr(soils, "MohrCoulomb", Untorn)
+    monkeypatch.setattr(soils.Soil, "tip", property(lambda soil: 1e30))
     without, pulled = run_out(tmp_path / "untorn")
     tell(f"run-out of a column with and without the tension cut-off: {found:.2f}, {without:.2f}")
     assert lowest > -1.0 and pulled < -0.05 * 1800.0 * G * 0.1

@@ -12,11 +12,11 @@ class Point:
 
     def __init__(self, soil, dimensions, pressure=0.0, position=None):
         up = (0.0,) * (dimensions - 1) + (1.0,)
-        self.soil, self.law = soil, soil.law(dimensions, up, 9.81)
+        self.soil, self.law = soil, soil.law(up, 9.81)
         self.like = (0.0,) * dimensions
         self.position = position or self.like
         self.rest_density = soil.density
-        self.state = Hooke(soil.bulk_modulus, soil.tip(dimensions))
+        self.state = Hooke(soil.bulk_modulus, soil.tip)
         self.s = (0.0,) * (dimensions * (dimensions + 1) // 2)
         self.rho = self.state.density(pressure, soil.density, 0.0)
         self.plastic = 0.0

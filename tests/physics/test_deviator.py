@@ -106,13 +106,3 @@ def test_a_smooth_wall_bears_the_stress_across_its_face_and_no_shear_along_it(ef
     assert p.mass[1] * back == pytest.approx(-p.mass[0] * np.array(effect.push(i, j, pair)), rel=1e-12)
     free = p._replace(face_normal=tuple(np.zeros(2) for _ in n))
     assert not np.any(effect.push(*pair_of(free, 0, 1)))
-
-
-def test_the_normal_of_a_wall_points_at_the_soil_before_it_and_others_have_none():
-    p = view(n=3)
-    x = (np.array([0.0, 0.3, 0.3]) * p.smoothing_length, np.array([0.0, 0.4, 0.4]) * p.smoothing_length)
-    wall = p._replace(position=x, is_fluid=np.array([0.0, 1.0, 1.0]), no_slip=np.zeros(3))
-    wall = wall._replace(shear_modulus=np.array([0.0, 4e4, 0.0]))  # the last is water
-    assert np.abs(sums_of(SmoothFace(), wall, 0)) == pytest.approx([0.6, 0.8], rel=1e-12)
-    assert not np.any(sums_of(SmoothFace(), wall._replace(no_slip=np.ones(3)), 0))
-    assert not np.any(sums_of(SmoothFace(), wall, 1))

@@ -48,7 +48,7 @@ def test_in_an_oedometer_the_stress_across_is_nu_over_one_less_nu(dim, poisson):
 def test_sheared_at_constant_pressure_it_flows_on_its_cone(dim, angle, cohesion):
     one = soil(friction_angle=angle, cohesion=cohesion)
     point = Point(one, dim, pressure=9e3).strained(sheared(dim, 1e-4), 400)
-    friction, k, _ = one.cone(dim)
+    friction, k, _ = one.pyramid
     assert point.p == pytest.approx(9e3, rel=1e-10)
     assert point.root == pytest.approx(k + friction * 9e3, rel=1e-10)  # k − αI₁ with I₁ = −3p
     unbounded = Point(one, dim, pressure=9e3).strained(sheared(dim, 1e-4), 400, bounded=False)
@@ -70,11 +70,10 @@ def test_in_plane_strain_its_strength_is_that_of_mohr_and_coulomb(dilatancy):
     assert 0.5 * abs(a - b) == pytest.approx(expected, rel=1e-6)
 
 
-def test_with_dilatancy_of_the_angle_of_friction_the_cone_is_the_usual_one():
+def test_the_potential_of_its_flow_is_the_usual_cone():
     for angle, alpha in ((19.8, 0.1108), (21.9, 0.1215), (30.0, 0.1601)):
-        friction, _, flow = soil(friction_angle=angle, dilatancy=angle).cone(2)
-        assert friction / 3.0 == pytest.approx(alpha, abs=5e-5)
-        assert flow == pytest.approx(friction, rel=1e-12)
+        _, _, flow = soil(friction_angle=angle, dilatancy=angle).pyramid
+        assert flow / 3.0 == pytest.approx(alpha, abs=5e-5)
 
 
 @pytest.mark.parametrize("way", (1.0, -1.0))
@@ -114,7 +113,7 @@ def test_pulled_apart_it_bears_no_tension_and_has_to_close_its_crack(dim):
     assert sand.strained(squeezed(dim, 1e-3), 2).p > 1e3
     clay = soil(cohesion=3e3)
     torn = Point(clay, dim).strained(np.eye(dim) * 1e-3, 50)
-    friction, k, _ = clay.cone(dim)
+    friction, k, _ = clay.pyramid
     assert torn.p == pytest.approx(-k / friction, rel=1e-10) and torn.root == pytest.approx(0.0, abs=1e-6)
     weak = Point(soil(cohesion=3e3, tension=500.0), dim).strained(np.eye(dim) * 1e-3, 50)
     assert weak.p == pytest.approx(-500.0, rel=1e-10)
@@ -140,5 +139,5 @@ def test_an_admissible_stress_stays_to_the_last_bit():
 def test_the_strength_is_reduced_in_all_its_parts():
     half, whole = soil(cohesion=2e3, strength_reduction=2.0), soil(cohesion=2e3)
     angle = math.degrees(math.atan(math.tan(math.radians(25.0)) / 2.0))
-    assert half.cone(2) == pytest.approx(soil(friction_angle=angle, cohesion=1e3).cone(2), rel=1e-12)
-    assert half.cone(2)[0] < whole.cone(2)[0]
+    assert half.pyramid == pytest.approx(soil(friction_angle=angle, cohesion=1e3).pyramid, rel=1e-12)
+    assert half.pyramid[0] < whole.pyramid[0]

@@ -7,15 +7,19 @@ from psph.engine.jit import call_by_type
 from psph.fields import VECTOR, Field, Turned
 from psph.formula import helper, where
 from psph.physics.facts import Facts
-from psph.vectors import add, dot, scale, times, zero_like
+from psph.physics.motion import is_rigid
+from psph.vectors import add, dot, scale, times
 
 NORMAL = Field(
     "face_normal",
     "1",
-    "unit vector across the face of a wall without friction, beside what resists shear; else 0",
+    "unit vector across the nearest face of a wall without friction, beside what resists shear; else 0",
     VECTOR,
     image=Turned,
 )
+DRAWN = Field("drawn_normal", "1", "the same at time zero, of a wall that moves as a whole", VECTOR)
+
+OF_FACES = (NORMAL, DRAWN)
 
 STEEPEST = 3.0
 """Most by which the stress of a wall without slip may exceed that of the soil before it: of a layer one row
@@ -72,31 +76,14 @@ across, counts = call_by_type("across"), call_by_type("counts")
 """(faces, j, u) → m/s; (faces, j) → 1 or 0: see :class:`Sliding`."""
 
 
+def is_smooth(one) -> bool:
+    """Whether a species is a wall along which what resists shear slides."""
+    return one.bearing and not one.is_fluid and not one.no_slip
+
+
 def faces_of(scene: Facts):
     """How walls hold what resists shear: by the type of its answer the loops are compiled."""
-    slides = any(one.bearing and not one.is_fluid and not one.no_slip for one in scene.species)
-    return Sliding() if slides else Sticking()
-
-
-NOTHING = 1e-300
-"""Keeps a wall with nothing before it from dividing by zero."""
-
-
-def _start(self, i):
-    """Nothing before it yet."""
-    return zero_like(i.position)
-
-
-def _gather(self, total, i, j, pair):
-    """Take a neighbour that resists shear; the nearest count most: others are before another face."""
-    weight = where(j.shear_modulus > 0.0, 1.0, 0.0) * j.specific_volume
-    return add(total, scale(pair.x_ij, weight * pair.w * pair.m_dw_r))
-
-
-def _finish_value(self, total, i, kernel):
-    """n in a wall that does not stick, 0 elsewhere."""
-    slides = (1.0 - i.is_fluid) * (1.0 - i.no_slip)
-    return scale(total, slides / max(dot(total, total) ** 0.5, NOTHING))
+    return Sliding() if any(map(is_smooth, scene.species)) else Sticking()
 
 
 @helper
@@ -111,21 +98,27 @@ class SmoothFace(NamedTuple):
 
     Beside :class:`psph.physics.stress.deviator.DeviatoricForce`, a_i += Σ_w m_w R_w s_i R_w/ρ_i² ∇W_iw of
     walls that do not stick, in proportion to the pressure (:func:`steepness`), and the reaction on them.
-    R_w = 1 − 2nnᵀ, n along Σ_f V_f W_wf ∇W_wf over what resists shear before the wall, of the pass before:
-    the image of a stress in a plane along which nothing rubs, as Libersky et al. (1993), J. Comput. Phys.
-    109, 67, have it in mirrors.
+    R_w = 1 − 2nnᵀ with the normal n of the drawn face nearest to w, as it has turned: the image of a stress in
+    a plane along which nothing rubs, as Libersky et al. (1993), J. Comput. Phys. 109, 67, have it in mirrors.
+    Behind a corner any of its faces serves where they are at right angles: the shear in the frame of both is
+    what is left out.  ``turns`` where such a wall moves.
     """
 
     acts = (SOILS, UPDATED)
 
-    writes = NORMAL
-    lagged = True
+    turns: bool = False
 
     def in_scene(self, scene: Facts):
         """With corrected gradients, the form that has them; None where no wall is smooth."""
         if isinstance(faces_of(scene), Sticking):
             return None
-        return self if scene.physics.gradient_correction is None else CorrectedSmoothFace()
+        turns = any(is_smooth(one) and is_rigid(one.motion) for one in scene.species)
+        return (SmoothFace if scene.physics.gradient_correction is None else CorrectedSmoothFace)(turns)
+
+    @property
+    def drawn(self) -> tuple[Field, ...]:
+        """The fields that come from the shapes of the case."""
+        return OF_FACES if self.turns else OF_FACES[:1]
 
     def why_absent(self, scene: Facts):
         """What it lacks."""
@@ -137,8 +130,6 @@ class SmoothFace(NamedTuple):
         both = add(scale(i.deviator, at_i), scale(j.deviator, at_j))
         return scale(mirrored(n, both, pair.x_ij), pair.m_dw_r)
 
-    start, gather, finish_value = _start, _gather, _finish_value
-
 
 class CorrectedSmoothFace(NamedTuple):
     """A wall without friction bears the stress across its face of what resists shear, and none along it.
@@ -147,8 +138,9 @@ class CorrectedSmoothFace(NamedTuple):
     :class:`psph.physics.stress.deviator.CorrectedDeviatoricForce`.
     """
 
-    writes = NORMAL
-    lagged = True
+    turns: bool = False
+
+    drawn = SmoothFace.drawn
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
@@ -157,8 +149,6 @@ class CorrectedSmoothFace(NamedTuple):
         own = mirrored(n, i.deviator, add(x, times(i.gradient_correction, x)))
         other = mirrored(n, j.deviator, add(x, times(j.gradient_correction, x)))
         return scale(add(scale(own, at_i), scale(other, at_j)), pair.m_dw_r)
-
-    start, gather, finish_value = _start, _gather, _finish_value
 
 
 @helper

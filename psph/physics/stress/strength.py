@@ -1,17 +1,18 @@
 """What a stress cannot exceed: soils yield by friction and cohesion, and tear where they are pulled."""
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from psph.acts import SOILS
 from psph.engine.jit import call_by_number, call_by_type
+from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.physics.solid.plastic import PLASTIC_STRAIN
 from psph.physics.stress.deviator import DEVIATOR
-from psph.physics.stress.invariants import j2
-from psph.vectors import determinant, dot, scale
+from psph.physics.stress.invariants import j2, j3
+from psph.vectors import dot, scale
 
 NO_STRESS = 1e-300
 """Keeps √J₂ = 0 from dividing by zero, Pa."""
@@ -31,44 +32,29 @@ class Unbounded(NamedTuple):
         return s, rho, 0.0
 
 
-class Round(NamedTuple):
-    """The section of a cone: the same strength whatever the middle one of the principal stresses."""
+@helper
+def narrowed(sine, i, s, q):
+    """m = cos θ − sin θ sin φ/√3, by what √J₂ = ``q`` counts in the pyramid of Mohr and Coulomb.
 
-    def narrowed(self, i, s, q):
-        """1, by what √J₂ counts."""
-        return 1.0
-
-
-class Hexagon(NamedTuple):
-    """The section of the pyramid of Mohr and Coulomb: most strength in compression, least in extension.
-
-    cos θ − sin θ sin φ/√3 with the angle of Lode, sin 3θ = −3√3 J₃/(2 J₂^(3/2)): θ = 30° where one stress
-    presses most, 0 in plane strain that flows without dilatancy.  Zienkiewicz & Pande (1977), in Finite
-    Elements in Geomechanics, Wiley, 179.  ``sine`` is sin φ.
+    θ is the angle of Lode, sin 3θ = −3√3 J₃/(2 J₂^(3/2)): 30° where one stress presses most, 0 in plane strain
+    that flows without dilatancy.  Zienkiewicz & Pande (1977), in Finite Elements in Geomechanics, Wiley, 179.
     """
-
-    sine: float
-
-    def narrowed(self, i, s, q):
-        """By what √J₂ counts."""
-        cube = max(q * q * q, NO_STRESS)
-        triple = min(max(-1.5 * math.sqrt(3.0) * determinant(s, i.position) / cube, -1.0), 1.0)
-        angle = np.arcsin(triple) / 3.0
-        return np.cos(angle) - np.sin(angle) * self.sine / math.sqrt(3.0)
+    cube = max(q * q * q, NO_STRESS)
+    triple = min(max(-1.5 * math.sqrt(3.0) * j3(s, i.position) / cube, -1.0), 1.0)
+    angle = np.arcsin(triple) / 3.0
+    return np.cos(angle) - np.sin(angle) * sine / math.sqrt(3.0)
 
 
-narrowed = call_by_type("narrowed")
-"""(section, i, s, √J₂) → by what √J₂ counts against the strength: see :class:`Hexagon`."""
-
-
-class DruckerPrager(NamedTuple):
+class MohrCoulomb(NamedTuple):
     """Soil: it yields where m√J₂ > k − αI₁, and bears no more tension than it is told.
 
-    Drucker & Prager (1952), Q. Appl. Math. 10, 157; the way back as in Bui, Fukagawa, Sako & Ohno (2008),
-    Int. J. Numer. Anal. Meth. Geomech. 32, 1537, along the gradient of √J₂ + α_ψI₁: with p = −I₁/3 less
-    the pressure of the water in its pores, first p ≥ −T, then Δλ = max(m√J₂ − k − 3αp, 0)/(mG + 9Kαα_ψ),
-    √J₂ −= GΔλ, p += 3Kα_ψΔλ.  The plastic strain is Δλ/√3, as that of von Mises.  m is 1 on a cone; in 3D it
-    makes the section of the pyramid of Mohr and Coulomb, which needs no rounding as s keeps its direction.
+    With α = sin φ/3, k = c cos φ and m by :func:`narrowed` that is ½(σ₁ − σ₃) > c cos φ − ½(σ₁ + σ₃) sin φ of
+    the largest and the smallest principal stress: Coulomb (1776), Mohr (1900).  In plane strain σ_zz counts
+    as in 3D.  The way back is that of Bui, Fukagawa, Sako & Ohno (2008), Int. J. Numer. Anal. Meth. Geomech.
+    32, 1537, along the gradient of √J₂ + α_ψI₁: with p = −I₁/3 less the pressure of the water in its pores,
+    first p ≥ −T, then Δλ = max(m√J₂ − k − 3αp, 0)/(mG + 9Kαα_ψ), √J₂ −= GΔλ, p += 3Kα_ψΔλ.  s keeps its
+    direction, so the edges of the pyramid need no rounding.  The plastic strain is Δλ/√3, as that of von
+    Mises.
 
     ``friction`` 3α; ``cohesion`` k in Pa; ``dilation`` 3α_ψ; ``tension`` T ≤ k/3α in Pa; ``shear`` G
     and ``bulk`` K in Pa.  Pores hold still water of ``pores`` = ρ_w|g| in Pa/m up to ``level`` in m along
@@ -84,7 +70,6 @@ class DruckerPrager(NamedTuple):
     pores: float
     level: float
     up: tuple[float, ...]
-    section: Any = Round()
 
     def returned(self, i, s, rho):
         """s in Pa and ρ in kg/m^d on or within the yield surface, and the plastic strain of the way there."""
@@ -92,7 +77,7 @@ class DruckerPrager(NamedTuple):
         water = self.pores * max(self.level - dot(i.position, self.up), 0.0)
         p = max(trial - water, -self.tension)
         q = np.sqrt(j2(s, i.position))
-        m = narrowed(self.section, i, s, q)
+        m = narrowed(self.friction, i, s, q)
         beyond = max(m * q - self.cohesion - self.friction * p, 0.0)
         slip = beyond / (m * self.shear + self.bulk * self.friction * self.dilation)
         p += self.bulk * self.dilation * slip
@@ -100,24 +85,20 @@ class DruckerPrager(NamedTuple):
         return scale(s, left), rho * np.exp((p + water - trial) / self.bulk), slip / math.sqrt(3.0)
 
 
-def cone(friction_angle: float, cohesion: float, dilatancy: float, dimensions: int) -> tuple[float, ...]:
-    """3α, k in Pa and 3α_ψ of soil with these angles in rad and this cohesion in Pa.
+def pyramid(friction_angle: float, cohesion: float, dilatancy: float) -> tuple[float, float, float]:
+    """3α = sin φ, k = c cos φ in Pa and 3α_ψ of soil with these angles in rad and this cohesion in Pa.
 
-    In 3D those of the pyramid of Mohr and Coulomb (:class:`Hexagon`): α = sin φ/3, k = c cos φ.  In plane
-    strain soil that flows has s_zz = −2α_ψ√J₂, and its strength is the same for any ψ with α = sin φ/(3n),
-    k = c cos φ/n, n = √(1 − 3α_ψ²) + α_ψ sin φ and α_ψ = tan ψ/√(9 + 12 tan²ψ); with ψ = φ that is the usual
-    α = tan φ/√(9 + 12 tan²φ).
+    α_ψ = tan ψ/√(9 + 12 tan²ψ): then soil that flows in plane strain gains volume by sin ψ times its shear.
     """
     sine, cosine = math.sin(friction_angle), math.cos(friction_angle)
-    of_flow = math.tan(dilatancy) / math.sqrt(9.0 + 12.0 * math.tan(dilatancy) ** 2)
-    n = 1.0 if dimensions == 3 else math.sqrt(1.0 - 3.0 * of_flow**2) + of_flow * sine
-    return sine / n, cohesion * cosine / n, 3.0 * of_flow
+    flow = math.tan(dilatancy) / math.sqrt(9.0 + 12.0 * math.tan(dilatancy) ** 2)
+    return sine, cohesion * cosine, 3.0 * flow
 
 
 class Strength(NamedTuple):
-    """Soil yields by friction and cohesion, and tears: its stress stays within a cone.
+    """Soil yields by friction and cohesion, and tears: its stress stays within a pyramid.
 
-    By the law of its soil (:class:`DruckerPrager`), where the stress is predicted and after each kick.  The
+    By the law of its soil (:class:`MohrCoulomb`), where the stress is predicted and after each kick.  The
     density that goes with the pressure is that of the volume less what dilatancy has opened; a crack stays in
     it, and has to close before the soil is pressed again (:class:`psph.physics.stress.bulk.Hooke`).
     """

@@ -1,0 +1,65 @@
+"""The drawn faces of walls along which soils and updated Lagrangian solids slide."""
+
+from collections.abc import Sequence
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from psph.fields import WALL
+from psph.physics.stress.faces import is_smooth
+from psph.scene.distance import nearest_faces
+
+if TYPE_CHECKING:
+    from psph.scene.scene import Scene
+
+HALVINGS = 12
+"""Of the way out of a wall, until its face is known."""
+
+
+def smooth_faces(scene: "Scene", species: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Of particles of these ``species`` (n,) that begin at ``position`` (n, dim) the unit normals (n, dim) of
+    the faces before them, in walls without friction, and zeros in all else.
+
+    That face is the one that the way to the nearest site outside of all walls that move alike goes through:
+    where walls touch, and at the ends of a period, there is none.
+    """
+    normal, walls = np.zeros_like(position), {n for n, one in enumerate(scene.species) if one.kind == WALL}
+    for motion in {scene.species[n].motion for n in walls}:
+        alike = sorted(n for n in walls if scene.species[n].motion == motion)
+        smooth = [n for n in alike if is_smooth(scene.species[n])]
+        rows = np.flatnonzero(np.isin(species, smooth))
+        if len(rows):
+            normal[rows] = _before(scene, alike, position[rows])
+    return normal
+
+
+def _before(scene: "Scene", alike: Sequence[int], place: np.ndarray) -> np.ndarray:
+    """The normals (n, dim) of the faces before particles at ``place`` (n, dim) of the walls ``alike``."""
+    shapes = [scene.parts[n].shape for n in alike]
+    way = _way_out(scene, alike, place)
+    inner, outer = np.zeros((len(place), 1)), np.ones((len(place), 1))
+    for _ in range(HALVINGS):
+        middle = 0.5 * (inner + outer)
+        within = nearest_faces(shapes, place + middle * way).away[:, None] <= 0.0
+        inner, outer = np.where(within, middle, inner), np.where(within, outer, middle)
+    return nearest_faces(shapes, place + outer * way).normal
+
+
+def _way_out(scene: "Scene", alike: Sequence[int], place: np.ndarray) -> np.ndarray:
+    """From each of ``place`` (n, dim) to the nearest site without a wall ``alike`` within reach, m (n, dim);
+    zeros where there is none."""
+    most = int(scene.wall_reach / scene.spacing)
+    offsets = np.array(list(product(range(-most, most + 1), repeat=scene.dimensions)))
+    length = (offsets**2).sum(axis=1)
+    offsets = offsets[np.argsort(length, kind="stable")]
+    way, left = np.zeros_like(place), np.arange(len(place))
+    for offset in offsets[np.sort(length) <= most**2]:
+        sites = place[left] + scene.spacing * offset
+        grid = [scene.folded(d, x.copy()) for d, x in enumerate(sites.T)]
+        free = ~np.isin(scene.layout.held(grid, grid[0].shape), alike)
+        way[left[free]] = scene.spacing * offset
+        left = left[~free]
+        if not len(left):
+            break
+    return way
