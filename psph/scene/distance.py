@@ -83,7 +83,7 @@ def endless(shape: Shape, *where) -> Shape:
 
 
 def nearest_faces(shapes: Sequence[Shape], points: np.ndarray) -> Faces:
-    """Those of the nearest of some ``shapes`` at ``points`` (n, dim) outside of all, m; within, the deepest."""
+    """Those of the nearest of some ``shapes`` at ``points`` (n, dim), m, outside of all."""
     return _chosen([faces_of(one, points) for one in shapes], np.argmin)
 
 

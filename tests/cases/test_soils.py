@@ -58,14 +58,19 @@ def test_a_column_runs_out_as_in_experiments_and_rests_whatever_the_spacing(spac
 
 
 @LONG
-def test_a_round_column_runs_out_as_in_experiments(tmp_path):
-    """1.24 times its height, Lube and others (2004)."""
+def test_a_round_column_runs_out_and_its_heap_rests(tmp_path):
+    """1.24 times its height, Lube and others (2004): 98 % of the sand, with single particles that find no friction
+    on the floor.  The heap, thicker than half a row, stops at 0.9, too near: docs/soils.md."""
     run = finished("soils/round_column", tmp_path, "output.frames=0.1")
-    x = sand(run, "position")
+    x, v = sand(run, "position"), sand(run, "velocity")
     radius = np.hypot(x[:, 0], x[:, 1])
-    tell(f"round column: run-out {(np.quantile(radius, 0.98) - 0.1) / 0.1:.2f}, top {x[:, 2].max():.3f} m")
-    assert (np.quantile(radius, 0.98) - 0.1) / 0.1 == pytest.approx(1.24, rel=0.15)
-    assert np.sqrt((sand(run, "velocity") ** 2).sum(axis=1).mean()) < 0.03
+    rings = np.arange(0.0, 0.4, 0.01)
+    thick = np.histogram(radius, [*rings, 0.4])[0] * 0.01**3 / (np.pi * ((rings + 0.01) ** 2 - rings**2))
+    foot = rings[thick > 0.005].max() + 0.01
+    out = (np.quantile(radius, 0.98) - 0.1) / 0.1
+    tell(f"round column: run-out {out:.2f}, of the heap {foot / 0.1 - 1.0:.2f}, top {x[:, 2].max():.3f} m")
+    assert out == pytest.approx(1.24, rel=0.15) and 0.75 < foot / 0.1 - 1.0 < 1.24
+    assert np.sqrt((v[radius < np.quantile(radius, 0.8)] ** 2).sum(axis=1).mean()) < 0.02
     assert np.abs(x[:, :2].mean(axis=0)).max() < 1e-3  # round still
     around = radius[np.abs(np.arctan2(x[:, 1], x[:, 0]) % (np.pi / 4.0) - np.pi / 8.0) < np.pi / 16.0]
     assert np.quantile(around, 0.98) == pytest.approx(np.quantile(radius, 0.98), rel=0.05)

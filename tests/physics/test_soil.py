@@ -44,6 +44,18 @@ def test_in_an_oedometer_the_stress_across_is_nu_over_one_less_nu(dim, poisson):
 
 
 @pytest.mark.parametrize("dim", (2, 3))
+def test_level_ground_at_rest_is_elastic_in_plane_strain_too(dim):
+    """By Mohr and Coulomb (1 − K₀)/(1 + K₀) < sin φ; √J₂ > p sin φ, beyond the cone of plane strain."""
+    one, k = soil(friction_angle=30.0), 0.3 / 0.7
+    point = Point(one, dim, pressure=(1.0 + 2.0 * k) / 3.0 * 1e4)
+    shape = np.eye(dim) / 3.0
+    shape[-1, -1] -= 1.0
+    point.s = tuple((1.0 - k) * 1e4 * shape[np.triu_indices(dim)])
+    assert point.root > 0.5 * point.p * 1.05
+    assert point.law.returned(point, point.s, point.rho) == (point.s, point.rho, 0.0)
+
+
+@pytest.mark.parametrize("dim", (2, 3))
 @pytest.mark.parametrize("angle, cohesion", ((0.0, 2e3), (19.8, 0.0), (30.0, 1e3)))
 def test_sheared_at_constant_pressure_it_flows_on_its_cone(dim, angle, cohesion):
     one = soil(friction_angle=angle, cohesion=cohesion)

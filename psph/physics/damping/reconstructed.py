@@ -1,9 +1,10 @@
 """Friction along pairs that a smooth flow does not feel."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field
 
+from psph.engine.jit import call_by_type
 from psph.fields import SYMMETRIC, StrainRate
 from psph.fields import Field as Declared
 from psph.formula import where
@@ -18,6 +19,29 @@ NEAR = 0.7
 
 AT_WALLS = 0.02
 """Speed of approach over the speed of sound that a wall does not damp."""
+
+
+class Whole(NamedTuple):
+    """All that flows is seen in a mirror as what goes on behind the plane."""
+
+    def flows(self, i, j):
+        """1 where j flows on with i, else 0."""
+        return j.is_fluid
+
+
+class EndingAtPlanes(NamedTuple):
+    """Soil ends at a mirror as at a wall: where it slides on one that holds it, that is no disorder.
+
+    Its image moves the other way there; the number of its law is negative (psph.fields.Numbered).
+    """
+
+    def flows(self, i, j):
+        """1 where j flows on with i, else 0."""
+        return where(i.strength * j.strength < 0.0, 0.0, j.is_fluid)
+
+
+flows = call_by_type("flows")
+"""(images, i, j) → 1 or 0: see :class:`Whole`."""
 
 
 class ReconstructedDamping(NamedTuple):
@@ -48,7 +72,8 @@ class ReconstructedDamping(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows the spacing."""
         more = max(self.in_disorder - self.alpha, 0.0)
-        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2, more)
+        images = EndingAtPlanes() if scene.stressed.laws else Whole()
+        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2, more, images)
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -60,7 +85,7 @@ class BesideLinearFlow(NamedTuple):
     """Numerical friction along a pair, on its motion relative to the linear flow around: it damps disorder.
 
     The form of :class:`ReconstructedDamping` in a scene; ``near2`` is (0.7 dx)², m², ``more`` what α gains
-    in disorder.
+    in disorder; ``images`` say what a mirror shows.
     """
 
     conserves = ("momentum", "angular momentum")
@@ -68,6 +93,7 @@ class BesideLinearFlow(NamedTuple):
     alpha: float
     near2: float
     more: float = 0.0
+    images: Any = Whole()
 
     writes = Declared("strain", "1/s", "rate of strain of the fluid", SYMMETRIC, image=StrainRate)
     lagged = True
@@ -80,7 +106,7 @@ class BesideLinearFlow(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take the velocity of a fluid neighbour, and the place of any."""
         weight = rate_weight(j, pair)
-        return take_rate(total, pair, pair.u_ij, weight * j.is_fluid, weight)
+        return take_rate(total, pair, pair.u_ij, weight * flows(self.images, i, j), weight)
 
     def finish_value(self, total, i, kernel):
         """E_i, 1/s."""
@@ -94,7 +120,7 @@ class BesideLinearFlow(NamedTuple):
         g = min(max(g, min(s, 0.0)), max(s, 0.0))
         rest = s - where(pair.r2 > self.near2, g, 0.0)
         approach = min(s + (AT_WALLS * i.sound_speed) * pair.r, 0.0)
-        felt = where(i.is_fluid * j.is_fluid > 0.0, rest, approach)
+        felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, rest, approach)
         alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
         strength = alpha * h * i.sound_speed * (v_i * lighter(i, j))
         return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r

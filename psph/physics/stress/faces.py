@@ -98,8 +98,8 @@ class SmoothFace(NamedTuple):
 
     Beside :class:`psph.physics.stress.deviator.DeviatoricForce`, a_i += Σ_w m_w R_w s_i R_w/ρ_i² ∇W_iw of
     walls that do not stick, in proportion to the pressure (:func:`steepness`), and the reaction on them.
-    R_w = 1 − 2nnᵀ with the normal n of the drawn face nearest to w, as it has turned: the image of a stress in
-    a plane along which nothing rubs, as Libersky et al. (1993), J. Comput. Phys. 109, 67, have it in mirrors.
+    R_w = 1 − 2nnᵀ with the normal n of the drawn face before w, as it has turned: the image of a stress in a
+    plane along which nothing rubs, as Libersky et al. (1993), J. Comput. Phys. 109, 67, have it in mirrors.
     Behind a corner any of its faces serves where they are at right angles: the shear in the frame of both is
     what is left out.  ``turns`` where such a wall moves.
     """

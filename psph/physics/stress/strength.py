@@ -36,8 +36,9 @@ class Unbounded(NamedTuple):
 def narrowed(sine, i, s, q):
     """m = cos θ − sin θ sin φ/√3, by what √J₂ = ``q`` counts in the pyramid of Mohr and Coulomb.
 
-    θ is the angle of Lode, sin 3θ = −3√3 J₃/(2 J₂^(3/2)): 30° where one stress presses most, 0 in plane strain
-    that flows without dilatancy.  Zienkiewicz & Pande (1977), in Finite Elements in Geomechanics, Wiley, 179.
+    θ is the angle of Lode, sin 3θ = −3√3 J₃/(2 J₂^(3/2)): 30° where one stress presses most, 0 in plane
+    strain that flows without dilatancy.  Zienkiewicz & Pande (1977), in Finite Elements in Geomechanics,
+    Wiley, 179.
     """
     cube = max(q * q * q, NO_STRESS)
     triple = min(max(-1.5 * math.sqrt(3.0) * j3(s, i.position) / cube, -1.0), 1.0)
