@@ -154,18 +154,6 @@ def _nearest_to(a, b, periods):
     return unrolled("a, b, periods", f"return {tuple_of(parts)}", moved=_moved)
 
 
-def linear(maps, which: int, a: Vector) -> Vector:
-    """M a of the affine map ``which`` of some, as :func:`affine` has them."""
-    return tuple(dot(tuple(m[1:]), a) for m in maps[which])
-
-
-@overload(linear)
-def _linear(maps, which, a):
-    n = range(len(a))
-    sums = (" + ".join(f"maps[which, {d}, {1 + e}] * a[{e}]" for e in n) for d in n)
-    return unrolled("maps, which, a", f"return {tuple_of(sums)}")
-
-
 def affine(maps, which: int, a: Vector) -> Vector:
     """m₀ + M a of the affine map ``which`` of some (n, dim, 1 + dim), each component m₀ and its row of M."""
     return tuple(m[0] + dot(tuple(m[1:]), a) for m in maps[which])
