@@ -22,7 +22,11 @@ and what is refused.*
 
 ✓ acts: on that matter, or beside it. A number: refused, in the words below. Empty: it leaves that matter as
 it is. Walls are in columns by their `condition`. A *solid* keeps its neighbours of the start (total
-Lagrangian), an *updated* one does not.
+Lagrangian), an *updated* one does not. A *frame* is one that moves, a *seam* is that of a periodic axis,
+*symmetry* a plane of symmetry. `explain` names the effects of a case as here, each with its key.
+
+The page is about pairs. Three together may be refused too: solids have no contact with each other in a
+fluid. `check` says so.
 
 An effect of your own says the same of itself: `acts` names the matter on which it acts, `refuses` has a
 sentence for each word beside which it does not work, both in the words of `psph/acts.py`. Without `acts` a
