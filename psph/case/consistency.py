@@ -63,7 +63,16 @@ def contradictions(case) -> list[InitErrorDetails]:
 
 
 def _without_matter(case) -> InitErrorDetails:
-    """A case must have fluids, or solids."""
+    """A case must have fluids, or solids; rigid bodies alone are told that they need a fluid."""
+    if case.bodies:
+        says = (
+            "rigid bodies need a fluid; add a table [fluids.NAME], small and out of their way if they are dry"
+        )
+        return {
+            "type": PydanticCustomError("psph", "{says}", {"says": says}),
+            "loc": ("bodies",),
+            "input": {},
+        }
     if "fluids" not in case.model_fields_set:
         return {"type": "missing", "loc": ("fluids",), "input": {}}
     lengths = {"field_type": "Dictionary", "min_length": 1, "actual_length": 0}
@@ -141,14 +150,18 @@ def _dimensions(case) -> Iterator[Finding]:
 
 
 def _with_points(value: tuple[float, ...], dimensions: int) -> str:
-    """The guess that decimal commas have made too many numbers of a list; empty where they can not have."""
-    words, spare = [f"{x:g}" for x in value], len(value) - dimensions
+    """The guess that decimal commas have made too many numbers of a list; empty where they can not have.
+
+    Without digits other than 0 behind such a comma it is rather a vector of three dimensions.
+    """
+    words, spare, seen = [f"{x:g}" for x in value], len(value) - dimensions, False
     for place in range(len(words) - 2, -1, -1):
         whole, part = words[place : place + 2]
         if spare > 0 and whole.lstrip("-").isdigit() and part.isdigit():
             words[place : place + 2] = [f"{whole}.{part}"]
             spare -= 1
-    return f"; a decimal comma? [{', '.join(words)}]" if spare == 0 < len(value) - dimensions else ""
+            seen = seen or part != "0"
+    return f"; a decimal comma? [{', '.join(words)}]" if seen and spare == 0 else ""
 
 
 def _is_vector(value: Any) -> bool:

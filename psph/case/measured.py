@@ -52,7 +52,8 @@ def gauged(case) -> Iterator[Finding]:
                 continue
             if wall not in case.boundaries:
                 known = {**case.boundaries, **(case.solids if case.fluids else {})}
-                yield loc, wall, f"no wall or body has this name; {advise(wall, known)}"
+                what = "no wall or body" if not case.solids else "no wall, body or solid in a fluid"
+                yield loc, wall, f"{what} has this name; {advise(wall, known)}"
             elif says := refusals(gauge.force).get(case.boundaries[wall].condition):
                 yield loc, wall, says
 

@@ -192,8 +192,9 @@ def _site_faults(scene: Scene) -> Iterator[str]:
             )
     for (one, other), site in sorted(census.clashes.items()):
         if one < scene.layout.first_wall or other >= scene.layout.first_body:
+            move = "move one, or " if one >= scene.layout.fluids else ""
             yield (
-                f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; subtract "
+                f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; {move}subtract "
                 "one from the other: shape = { difference = { from = ..., minus = [...] } }"
                 f"{_or_displace(scene, one, other)}{meshes.sizes_of(scene, one, other)}"
                 f"{in_millimetres(scene, one, other)}"

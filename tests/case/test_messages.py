@@ -74,6 +74,11 @@ FAULTS = {
         WATER[: WATER.index("[fluids")],
         "fluids: missing; add a table [fluids.NAME] (the fluids by name",
     ),
+    "a body without a fluid": (
+        WATER[: WATER.index("[fluids")]
+        + "[bodies.box]\nshape.box = { lower = [0.0], upper = [1.0] }\nmass = 1.0",
+        "bodies: rigid bodies need a fluid; add a table [fluids.NAME]",
+    ),
     "an empty table of fluids": (
         WATER[: WATER.index("[fluids")] + "[fluids]",
         "fluids: empty; add a table [fluids.NAME]",
