@@ -146,7 +146,7 @@ def held_together(case) -> Iterator[Finding]:
             yield (
                 (*here, "motion"),
                 ...,
-                "the body is free to do everything; leave out of free what moves so",
+                "the body is free to do everything; give free = [...] without what moves so",
             )
         elif body.motion:
             yield from _moved_and_free(here, body, freed)

@@ -28,7 +28,7 @@ def several_fluids(scene) -> Iterator[str]:
 
 
 def _walls_of_another_fluid(scene) -> Iterator[str]:
-    """A wall or a solid has the density of one fluid: beside another one pressures do not balance."""
+    """A wall, a body or a solid has the density of one fluid: beside another one pressures do not balance."""
     names, found = list(scene.case.flowing), set()
     for first, last in scene.lattice.chunks():
         held = scene.layout.materials(first, last)
@@ -43,7 +43,7 @@ def _walls_of_another_fluid(scene) -> Iterator[str]:
             if beside and abs(density / own.density - 1.0) > ALIKE:
                 other = f"{scene.case.table_of(name)}.{name}"
                 cure = f'make the part there a wall of its own with continues = "{name}"'
-                if key.startswith("solids."):
+                if key.startswith(("solids.", "bodies.")):
                     cure = "let it continue the fluid that it touches most"
                 yield (
                     f'{key}.continues: "{continued}", but it touches {other} of {density:g} kg/m3 too, and '

@@ -73,6 +73,12 @@ def test_a_wall_that_touches_two_fluids_is_warned_of(tmp_path):
     assert not any("continues" in x for x in alike)
 
 
+def test_a_body_between_two_fluids_is_told_to_continue_one(tmp_path):
+    body = "bodies.box={density=900.0,shape={box={lower=[0.2,0.2],upper=[0.3,0.4]}}}"
+    (line,) = [x for x in check(Scene(draft(tmp_path, LAYERS, body))) if "continues" in x]
+    assert line.endswith("currents arise along it; let it continue the fluid that it touches most")
+
+
 def test_the_height_of_a_surface_is_half_a_spacing_above_its_particles(tmp_path):
     starts = Scene(draft(tmp_path, LAYERS)).starts
     assert all(s.layer.level for s in starts)
