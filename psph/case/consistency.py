@@ -8,7 +8,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from psph.acts import refusals
 from psph.case.bodies import held_together
 from psph.case.corners import cornered
-from psph.case.errors import advise
+from psph.case.errors import advise, with_points
 from psph.case.findings import Finding, Location, asked_of, not_of
 from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
@@ -144,24 +144,9 @@ def _dimensions(case) -> Iterator[Finding]:
                 value,
                 (
                     f"{len(value)} number{'s' * (len(value) > 1)} in a case with "
-                    f"space.dimensions = {dimensions}; give {dimensions}{_with_points(value, dimensions)}"
+                    f"space.dimensions = {dimensions}; give {dimensions}{with_points(value, dimensions)}"
                 ),
             )
-
-
-def _with_points(value: tuple[float, ...], dimensions: int) -> str:
-    """The guess that decimal commas have made too many numbers of a list; empty where they can not have.
-
-    Without digits other than 0 behind such a comma it is rather a vector of three dimensions.
-    """
-    words, spare, seen = [f"{x:g}" for x in value], len(value) - dimensions, False
-    for place in range(len(words) - 2, -1, -1):
-        whole, part = words[place : place + 2]
-        if spare > 0 and whole.lstrip("-").isdigit() and part.isdigit():
-            words[place : place + 2] = [f"{whole}.{part}"]
-            spare -= 1
-            seen = seen or part != "0"
-    return f"; a decimal comma? [{', '.join(words)}]" if seen and spare == 0 else ""
 
 
 def _is_vector(value: Any) -> bool:

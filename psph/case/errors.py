@@ -56,3 +56,18 @@ def dotted(keys: Iterable[str | int]) -> str:
     for key in keys:
         text += f"[{key}]" if isinstance(key, int) else f".{shortened(key, LONGEST_KEY)}"
     return text.removeprefix(".")
+
+
+def with_points(value: tuple[float, ...], dimensions: int) -> str:
+    """The guess that decimal commas have made too many numbers of a list; empty where they can not have.
+
+    Without digits other than 0 behind such a comma it is rather a vector of three dimensions.
+    """
+    words, spare, seen = [f"{x:g}" for x in value], len(value) - dimensions, False
+    for place in range(len(words) - 2, -1, -1):
+        whole, part = words[place : place + 2]
+        if spare > 0 and whole.lstrip("-").isdigit() and part.isdigit():
+            words[place : place + 2] = [f"{whole}.{part}"]
+            spare -= 1
+            seen = seen or part != "0"
+    return f"; a decimal comma? [{', '.join(words)}]" if seen and spare == 0 else ""
