@@ -87,19 +87,36 @@ def nearest_faces(shapes: Sequence[Shape], points: np.ndarray) -> Faces:
     return _chosen([faces_of(one, points) for one in shapes], np.argmin)
 
 
-def corners_of(shape: Shape) -> np.ndarray:
-    """The corners (n, dim) that a shape draws, m; those inside its own parts among them."""
+def corners_of(shape: Shape, apart: float) -> np.ndarray:
+    """The corners (n, dim) that a shape draws, m; those inside its own parts among them.  In 3D also points
+    on its straight edges, no more than ``apart`` m from each other."""
     match shape.form:
         case tuple() as shapes:
-            return np.concatenate([corners_of(one) for one in shapes])
+            return np.concatenate([corners_of(one, apart) for one in shapes])
         case Difference(base=base, minus=minus):
-            return np.concatenate([corners_of(one) for one in (base, *minus)])
+            return np.concatenate([corners_of(one, apart) for one in (base, *minus)])
         case Box(lower=lower, upper=upper):
-            return np.stack(np.meshgrid(*zip(lower, upper), indexing="ij"), axis=-1).reshape(-1, len(lower))
+            ends = np.array([*product(*zip(lower, upper))])
+            if len(lower) < len(AXES):
+                return ends
+            pairs = (np.flatnonzero(np.count_nonzero(ends != one, axis=1) == 1) for one in ends)
+            sides = [(n, m) for n, others in enumerate(pairs) for m in others if n < m]
+            return np.concatenate([ends, *(between(ends[n], ends[m], apart) for n, m in sides)])
         case Polygon(points=points):
             return np.array(points)
+        case Mesh() as mesh:
+            from psph.scene.meshes.surface import surface_of
+
+            ends, sides = surface_of(mesh).sharp
+            return np.concatenate([ends, *(between(*side, apart) for side in sides)])
         case _:
             return np.empty((0, len(bounds(shape)[0])))
+
+
+def between(one: np.ndarray, other: np.ndarray, apart: float) -> np.ndarray:
+    """Points (n, dim) between two, no more than ``apart`` m from each other and from those."""
+    pieces = int(np.ceil(np.sqrt(((other - one) ** 2).sum()) / apart))
+    return one + np.arange(1, pieces)[:, None] * ((other - one) / max(pieces, 1))
 
 
 def _chosen(found: Sequence[Faces], choose) -> Faces:

@@ -5,56 +5,9 @@ import math
 import numpy as np
 import pytest
 from drafts import draft
+from dry import FLAT, SOLID, Dry, parts, turned
 
-from psph.scene import Scene
 from psph.scene.distance import faces_of
-from psph.simulation.floating import Floating
-from psph.simulation.plan import make_plan
-from psph.simulation.poses import Poses, corners_of
-
-FLAT = """
-[space]
-dimensions = 2
-spacing = {dx}
-[time]
-end = 10.0
-[physics]
-sound_speed = 100.0
-gravity = [0.0, -9.81]
-contact = {{ friction = {friction}, restitution = {restitution} }}
-[fluids.drop]
-shape.box = {{ lower = [-3.0, 3.0], upper = [-2.8, 3.2] }}
-"""
-
-
-class Dry:
-    """The bodies of a case without their fluid, in steps of ``dt`` s."""
-
-    def __init__(self, case, dt=2e-3):
-        self.scene, self.dt, self.time = Scene(case), dt, 0.0
-        plan = make_plan(self.scene)
-        self.floating = Floating(self.scene, plan)
-        corners = corners_of(self.scene, plan)
-        self.poses = Poses(plan.rigid, corners, None, self.scene.gravity, self.floating)
-        self.bodies = self.floating.bodies
-        self.bodies.load(np.zeros_like(self.bodies.force), np.zeros_like(self.bodies.force))
-
-    def step(self):
-        self.time += self.dt
-        self.poses.advance(self.time, self.dt)
-        self.bodies.load(np.zeros_like(self.bodies.force), np.zeros_like(self.bodies.force))
-        self.floating.kick(self.time, self.dt)
-        self.poses.turn_to(self.time)
-
-    def to(self, time):
-        while self.time < time - 0.5 * self.dt:
-            self.step()
-        return self.bodies
-
-
-def turned(degrees, points, about=(0.0, 0.0)):
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return [[round(about[0] + c * x - s * y, 12), round(about[1] + s * x + c * y, 12)] for x, y in points]
 
 
 def slope(degrees, shape, dx=0.05, friction=0.0, restitution=0.0):
@@ -209,28 +162,6 @@ def test_bodies_meet_across_the_seam_of_a_period(tmp_path, speed):
     assert dry.bodies.velocity[one, 0] == pytest.approx(-0.5 * float(speed))
 
 
-SOLID = """
-[space]
-dimensions = 3
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-sound_speed = 100.0
-gravity = [0.0, 0.0, -9.81]
-contact = { friction = 0.7, restitution = 0.0 }
-[fluids.drop]
-shape.box = { lower = [-3.0, 0.0, 3.0], upper = [-2.8, 0.2, 3.2] }
-[walls.floor]
-shape.box = { lower = [-1.0, -1.0, -0.3], upper = [2.0, 1.0, 0.0] }
-[bodies.cube]
-shape.box = { lower = [0.0, 0.0, 0.02], upper = [0.4, 0.4, 0.42] }
-density = 2000.0
-velocity = [2.0, 1.0, 0.0]
-spin = [0.0, 0.0, 3.0]
-"""
-
-
 def test_a_cube_slides_turns_and_comes_to_rest_on_a_floor(tmp_path):
     dry = Dry(draft(tmp_path, SOLID), dt=4e-3)
     bodies = dry.to(0.2)
@@ -268,14 +199,6 @@ shape.box = { lower = [1.5, 0.0], upper = [1.7, 0.2] }
 density = 1000.0
 velocity = [1.0, 0.0]
 """
-
-
-def parts(*ends, bottom=-0.3, height=0.0):
-    """A floor of a box between each two of some ``ends``, m."""
-    return "".join(
-        f"[walls.floor{n}.shape.box]\nlower = [{low}, {bottom}]\nupper = [{up}, {height}]\n"
-        for n, (low, up) in enumerate(zip(ends, ends[1:]))
-    )
 
 
 @pytest.mark.parametrize("degrees", [0.0, 25.0])

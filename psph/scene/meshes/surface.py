@@ -16,6 +16,9 @@ from psph.scene.meshes.tree import Tree, tree_of
 ASKEW = np.array([1.0, 0.5 * np.sqrt(2.0), np.sqrt(3.0) / 3.0])
 """Towards where points are moved by the tolerance: along no face that a person would draw."""
 
+BEND = np.radians(25.0)
+"""The angle between two faces from which on they meet in an edge; less is a round face in pieces."""
+
 ALL_OPEN = 0.8
 """Area of the triangles that close a surface, over its own: above, it encloses nothing."""
 
@@ -101,6 +104,18 @@ class Surface:
         flat = (part == 0) | (length == 0.0)
         out = sign[:, None] * away / np.where(flat, 1.0, length)[:, None]
         return sign * length, np.where(flat[:, None], normals[triangle, 0], out)
+
+    @cached_property
+    def sharp(self) -> tuple[np.ndarray, np.ndarray]:
+        """The corners (n, 3), m, and the ends of the edges (m, 2, 3), m, of the closed surface where its
+        faces bend by more than :data:`BEND`."""
+        whole, sides = self.whole, np.array([[0, 1], [1, 2], [2, 0]])
+        normals = _normals(whole)
+        length = np.sqrt((normals**2).sum(axis=2))
+        bends = (normals * normals[:, :1]).sum(axis=2) < np.cos(0.5 * BEND) * length * length[:, :1]
+        corners = np.unique(whole.faces[bends[:, 1:4]])
+        ends = np.unique(np.sort(whole.faces[:, sides][bends[:, 4:]], axis=1), axis=0)
+        return whole.vertices[corners], whole.vertices[ends]
 
     def _off_the_faces(self, grid: Sequence[np.ndarray], tolerance: float) -> list[np.ndarray]:
         """The coordinates moved by a trifle, so that the low side of a face is inside and no point on it.

@@ -1,0 +1,124 @@
+"""What rigid bodies may meet, and with which points: bodies, walls and mirrors as they are drawn."""
+
+from collections.abc import Iterator
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from psph.case.shapes import Ball, Disc, Shape
+from psph.composition.mirrors import BELOW
+from psph.physics.motion import Fixed, is_rigid
+from psph.physics.rigid.bodies import Body
+from psph.scene.distance import Faces, corners_of, faces_of
+from psph.scene.shapes import bounds
+
+LAYER = 1.0
+"""Spacings below the face to which sites of a body give a point on the face."""
+
+ON_FACE = 1e-6
+"""Of a spacing: so far from the face a drawn corner still is one of the shape."""
+
+SHARP, ROUND = 1.0 - 1e-4, 0.5
+"""How fast a corner, and a point on a face that may be round, leave their shape on the way to what they may
+meet, at least: the cosine of the angle to the nearest way out."""
+
+
+class Tips(NamedTuple):
+    """With what a shape meets the faces of others: balls of a ``radius`` (n,) m around ``points`` (n, dim) at
+    the start, on ways that lead out of it at the cosine ``out`` (n,) at least."""
+
+    points: np.ndarray
+    radius: np.ndarray
+    out: np.ndarray
+
+    @property
+    def middle(self) -> np.ndarray:
+        """Of a box around the points, m (1, dim)."""
+        return 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))[None]
+
+    def reach(self, point: np.ndarray) -> float:
+        """How far they reach from a point (1, dim), m."""
+        return float((np.sqrt(((self.points - point) ** 2).sum(axis=1)) + self.radius).max())
+
+
+class Obstacle(NamedTuple):
+    """What a body may meet: a ``shape``, or the plane of a mirror, in its place at the start.
+
+    ``key`` is its key in the case; ``tips`` are what it meets the faces of bodies with, None of a mirror;
+    ``body`` is the row of a body, −1 of others; ``pose`` that of the map that places it, −1 where it stays;
+    ``cuts`` are the rows of bodies that it cuts in two, and does not meet.
+    """
+
+    key: str
+    shape: Any
+    tips: Tips | None
+    body: int = -1
+    pose: int = -1
+    cuts: tuple[int, ...] = ()
+
+    @property
+    def corners(self) -> np.ndarray | None:
+        """Those of a box around it at the start, m; None where it has no end."""
+        return None if isinstance(self.shape, Plane) else np.array([*product(*zip(*bounds(self.shape)))])
+
+    def faces(self, points: np.ndarray) -> Faces:
+        """How far ``points`` (n, dim) are before its faces at the start, m, and the way out."""
+        return self.shape.faces(points) if isinstance(self.shape, Plane) else faces_of(self.shape, points)
+
+
+class Plane(NamedTuple):
+    """The plane across ``axis`` at ``at`` m of a mirror; ``side`` −1 where bodies are below it, else 1."""
+
+    axis: int
+    at: float
+    side: int
+
+    def faces(self, points: np.ndarray) -> Faces:
+        """How far points are before it, m, and the way out."""
+        normal = np.zeros_like(points)
+        normal[:, self.axis] = self.side
+        return Faces(self.side * (points[:, self.axis] - self.at), normal)
+
+
+def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
+    """Bodies, walls that stay or move as a whole, and mirrors; ``rows`` are the poses of the bodies."""
+    ends = {}
+    for part in range(scene.layout.first_wall, len(scene.parts)):
+        key, motion, shape = scene.key_of(part), scene.species_in_motion[part], scene.parts[part].shape
+        pose = int(plan.pose_of[part]) if is_rigid(motion) else -1
+        if isinstance(motion, Body):
+            ends[row := rows.index(pose)] = bounds(shape)
+            yield Obstacle(key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose)
+        elif isinstance(motion, Fixed) or is_rigid(motion):
+            yield Obstacle(key, shape, tips_of(shape, scene.spacing), -1, pose)
+    for one in scene.mirror_planes:
+        cut = [row for row, (low, up) in ends.items() if low[one.axis] < one.at < up[one.axis]]
+        plane = Plane(one.axis, one.at, 1 if one.side == BELOW else -1)
+        yield Obstacle("a mirror", plane, None, cuts=tuple(cut))
+
+
+def tips_of(shape: Shape, spacing: float, on_faces=()) -> Tips:
+    """A disc or a ball as a whole; else the drawn corners, and points ``on_faces``, arrays (n, dim) in m."""
+    match shape.form:
+        case Disc(center=center, radius=radius) | Ball(center=center, radius=radius):
+            return Tips(np.array([center]), np.array([radius]), np.array([ROUND]))
+    corners = corners_of(shape, spacing)
+    if len(corners):
+        corners = corners[np.abs(faces_of(shape, corners).away) < ON_FACE * spacing]
+    points = np.concatenate([*on_faces, corners])
+    out = np.full(len(points), ROUND)
+    out[len(points) - len(corners) :] = SHARP
+    return Tips(points, np.zeros(len(points)), out)
+
+
+def under_faces(scene, part: int) -> Iterator[np.ndarray]:
+    """Points on the faces of a body, under its outer particles, m (n, dim), by chunks."""
+    shape = scene.parts[part].shape
+    for begin, end in scene.lattice.chunks():
+        held = scene.layout.materials(begin, end) == part
+        grid = scene.lattice.grid(begin, end)
+        sites = np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1)
+        away, normal = faces_of(shape, sites)
+        outer = away > -LAYER * scene.spacing
+        yield sites[outer] - away[outer, None] * normal[outer]
