@@ -12,9 +12,9 @@ from psph.physics.rigid.pose import PLACE, VELOCITY
 from psph.scene.distance import Faces
 from psph.simulation.obstacles import Obstacle, Tips, obstacles_of
 
-NEARBY, TOUCH = 1e-3, 0.1
+NEARBY, TOUCH, FAR = 1e-3, 0.1, 3.0
 """Of a spacing: so far beside and before a place on a face it is looked whether something else covers it;
-and of this, how near two are that touch."""
+and of this, how near two are that touch, and how far off nothing matters any more."""
 
 SLANT, ASKEW = 0.5, 1e-4
 """Part of an axis that lies along a face, from which on it leads to a place beside; and one minus the cosine
@@ -151,19 +151,29 @@ class Meetings:
         face goes on bare as far aside: a floor that is drawn in two parts has no edge where these meet, and a
         wall that stands on a floor keeps its foot.
         """
-        step, goes_on = NEARBY * self._spacing, np.zeros(len(feet), bool)
-        if not others or not len(feet):
-            return goes_on, goes_on
-        found = (np.abs(self._nearest(others, feet)) < TOUCH * step) & ~self._bare(others, feet, normal)
-        for axis, way in product(range(self._d), (-step, step)) if found.any() else ():
-            aside = np.eye(self._d)[axis] - normal[:, axis, None] * normal
-            size = np.sqrt((aside**2).sum(axis=1))
-            there = feet + way * aside / np.where(size > SLANT, size, np.inf)[:, None]
-            beside = self._faces(face, there)
-            same = (np.abs(beside.away) < TOUCH * step) & (size > SLANT)
-            same &= (beside.normal * normal).sum(axis=1) > 1.0 - ASKEW
-            found &= ~(same & self._bare(others, there, normal))
-            goes_on |= same
+        step, found, goes_on = NEARBY * self._spacing, *np.zeros((2, len(feet)), bool)
+        away = [self._faces(one, feet).away for one in others] if len(feet) else []
+        others = [one for one, far in zip(others, away) if far.min() < FAR * step]
+        if not others:
+            return found, goes_on
+        found = (np.abs(np.min(away, axis=0)) < TOUCH * step) & ~self._bare(others, feet, normal)
+        which = np.flatnonzero(found)
+        if not len(which):
+            return found, goes_on
+        feet, normal = feet[which], normal[which]
+        along = np.eye(self._d)[:, None] - normal.T[:, :, None] * normal  # (axis, n, dim)
+        size = np.sqrt((along**2).sum(axis=2, keepdims=True))
+        aside = step * along / np.where(size > SLANT, size, np.inf)
+        there, out = np.concatenate([feet + aside, feet - aside]), np.tile(normal, (2 * self._d, 1, 1))
+        flat, ways = there.reshape(-1, self._d), out.reshape(-1, self._d)
+        beside = self._faces(face, flat)
+        same = np.tile(size[:, :, 0] > SLANT, (2, 1)).ravel() & (np.abs(beside.away) < TOUCH * step)
+        same &= (beside.normal * ways).sum(axis=1) > 1.0 - ASKEW
+        bare = same & self._bare(others, flat, ways)
+        found[which], goes_on[which] = (
+            ~bare.reshape(there.shape[:2]).any(axis=0),
+            same.reshape(there.shape[:2]).any(axis=0),
+        )
         return found, goes_on
 
     def _bare(self, others: Sequence[Seen], feet: np.ndarray, normal: np.ndarray) -> np.ndarray:

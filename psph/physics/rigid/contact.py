@@ -79,7 +79,7 @@ def solve(touching, yielding, wanted, friction, velocity, spin):
                 along[c] = pushed
                 _push(touching, yielding, c, scale(normal, step), impulse, velocity, spin)
                 changed, largest = max(changed, abs(step)), max(largest, pushed)
-            if friction > 0.0 and along[c] > 0.0:
+            if friction > 0.0:  # also of one that is let go: its friction goes with its push
                 rubbed = _rub(touching, yielding, c, friction * along[c], impulse, velocity, spin)
                 changed = max(changed, rubbed)
         if changed <= ENOUGH * largest:
