@@ -20,9 +20,10 @@ def inside_others(engine, spacing: float, depth: float) -> np.ndarray:
     """
     store, low = engine.store, engine.store.low
     found = np.zeros(store.owned)
-    if engine.plan.touching:
-        seen = engine.domain.lists, store["position"], engine.domain.periods, REACH * spacing
-        in_threads(settled(crowd), low, low + store.owned, low, *seen, found)
+    if not engine.plan.touching:
+        return found > 0.0
+    seen = engine.domain.lists, store["position"], engine.domain.periods, REACH * spacing
+    in_threads(settled(crowd), low, low + store.owned, low, *seen, found)
     return found > filled(depth / REACH, store.dimensions) * whole(store.dimensions)
 
 

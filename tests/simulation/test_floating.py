@@ -11,6 +11,7 @@ from psph.case import CaseError
 from psph.fields import FLUID
 from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
+from psph.physics.motion import COUPLE
 from psph.physics.rigid.pose import rotation
 from psph.runs.setup import create_particles
 from psph.scene import Scene, check
@@ -418,6 +419,8 @@ def test_the_moment_on_a_body_has_no_jump_at_the_seam(tmp_path):
     group = list(scene.species).index(next(one for one in scene.species if one.name == "other"))
     own = np.flatnonzero(store.shown("group") == group)
     anchors, load = store.shown("anchor")[own], np.random.default_rng(5).normal(size=(len(own), 2))
+    couple = np.linspace(-1.0, 2.0, len(own))  # of a viscous fluid, m²/s²
+    store[COUPLE.name][0][store.low + own] = couple
     row = [one.name for one in bodies.bodies].index("other")
     for way in (0.0, 0.075, 1.05):  # 1.3 would be inside of the other body
         bodies.place[row, 0] = bodies.reference[row, 0] + way
@@ -429,6 +432,7 @@ def test_the_moment_on_a_body_has_no_jump_at_the_seam(tmp_path):
         assert way == 0.0 or (store.shown("position")[own, 0] < 0.5).any()
         force = store.shown("mass")[own, None] * load
         wanted = ((x[:, 0] - 0.4) * force[:, 1] - (x[:, 1] - 0.1) * force[:, 0]).sum()
+        wanted += (store.shown("mass")[own] * couple).sum()
         [gauge] = gauges_of(scene).values()
         assert gauge.row(simulation)[2] == pytest.approx(wanted, rel=1e-9)
 
