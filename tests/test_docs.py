@@ -273,7 +273,7 @@ def test_every_option_is_in_the_table_of_commands():
     table = text("docs/running.md").split("## Commands")[1].split("##")[0]
     [verbs] = [a.choices for a in parser(VERBS)._actions if isinstance(a.choices, dict)]
     for verb, own in verbs.items():
-        head = "CASE.toml" if verb == "run" else verb
+        head = "[run] CASE.toml" if verb == "run" else verb
         [row] = [r for r in table.splitlines() if r.startswith(f"| `python -m psph {head}")]
         options = {o for a in own._actions for o in a.option_strings if o.startswith("--")}
         assert options - {"--help"} == set(re.findall(r"--[a-z-]+", row)), verb
