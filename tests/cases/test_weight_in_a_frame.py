@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from drafts import draft
+from long import long_but_for
 from mpi4py import MPI
 
 from psph.output.ledger import Ledger
@@ -44,7 +45,7 @@ def after(folder, text, gravity, keys, steps=40):
     return simulation.store.shown("density")[order]
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", long_but_for(["default"], FORMS))
 def test_a_frame_that_rises_makes_the_water_heavier(tmp_path, monkeypatch, form):
     """The control is the density diffusion that knew the case's gravity alone: floor 19,205 for 19,620 Pa."""
     keys = FORMS[form]

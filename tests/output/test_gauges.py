@@ -64,7 +64,7 @@ about = [0.5, 0.2]
 """Two fluids in disorder between two walls."""
 
 
-@pytest.mark.parametrize("condition", ["dynamic", "extrapolated"])
+@pytest.mark.parametrize("condition", ["dynamic", pytest.param("extrapolated", marks=LONG)])
 @pytest.mark.parametrize("every", [4, pytest.param(1, marks=LONG)])
 def test_force_on_walls_is_what_the_fluid_feels_of_them_turned_round(tmp_path, condition, every):
     case = draft(tmp_path, STIRRED.format(condition=condition, every=every))

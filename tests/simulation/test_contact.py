@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from drafts import draft
+from long import LONG
 from simulation.test_immersion import start
 
 from psph.physics.solid.contact import STEP
@@ -196,6 +197,7 @@ velocity = [-585.0, 0.0, 0.0]
 """Cubes of steel at ±0.1 of the speed of its waves."""
 
 
+@LONG
 def test_cubes_of_steel_bounce_alike_at_every_spacing(tmp_path):
     speeds = []
     for count in (4, 6):
