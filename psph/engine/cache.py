@@ -1,23 +1,25 @@
-"""The folder of compiled loops: in use by whoever runs, pruned when newer ones have come."""
+"""The folder of compiled loops: a file for each, named by what it was made of (psph.engine.contents)."""
 
-import fcntl
 import os
-import re
-import shutil
+import pickle
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
-KEPT = 8
-"""Cache folders that stay beside those in use: the ones used last."""
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
 
-IN_USE = "in-use"
-"""A file of a cache folder that every process which uses it holds a shared lock on."""
+MOST_BYTES = 4 * 2**30
+"""What the folder may hold, bytes: some two hundred scenes."""
 
-DIGEST = re.compile("[0-9a-f]{16}")
-"""The name of a cache folder."""
+LOOP, READY = ".loop", ".ready"
+"""Endings of its files: a compiled loop, and the word that all loops of a plan are there."""
 
 
 class Cache:
-    """The cache folder of this process, as ``folder``, or None where it cannot be written.
+    """The folder of compiled loops of this process, as ``folder``, or None where it cannot be written.
 
     ``trouble`` then says so in one line; else it is empty.
     """
@@ -26,7 +28,10 @@ class Cache:
         self.folder: Path | None = folder
         self.trouble = ""
         try:
-            self._lock = _hold(folder)
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / f"{uuid.uuid4().hex}.try").touch()
+            for left in folder.glob("*.try"):
+                left.unlink(missing_ok=True)
         except OSError as error:
             self.folder = None
             self.trouble = (
@@ -34,73 +39,70 @@ class Cache:
                 f"({error.strerror}); set PSPH_CACHE to a folder that can"
             )
 
-    def close(self) -> None:
-        """Let go of the folder; at the end of the process this happens by itself."""
-        os.close(self._lock)
+    def load(self, name: str) -> Any:
+        """What was kept by this name, or None; its file counts as used just now."""
+        path = self.folder / f"{name}{LOOP}"
+        try:
+            kept = pickle.loads(path.read_bytes())
+        except Exception:  # no such file, half a file, or a class that is nowhere now
+            return None
+        with suppress(OSError):
+            os.utime(path)
+        return kept
+
+    def save(self, name: str, kept: Any) -> None:
+        """Keep something by a name; where that cannot be, it is not kept."""
+        path = self.folder / f"{name}{LOOP}"
+        fresh = path.with_suffix(f".{uuid.uuid4().hex}")
+        try:
+            fresh.write_bytes(dumps(kept))
+            fresh.replace(path)
+        except Exception:  # a full disk, or a class that has no name: no reason to end a run
+            with suppress(OSError):
+                fresh.unlink()
 
     def prune(self) -> None:
-        """Remove older folders beside this one, but for the ``KEPT`` used last and any in use.
+        """Remove the files that were used longest ago, until no more than ``MOST_BYTES`` stand here.
 
-        For one process of a run.
+        For one process of a run.  Whoever reads one meanwhile keeps it.
         """
         if self.folder is None:
             return
-        others = [
-            path
-            for path in self.folder.parent.iterdir()
-            if DIGEST.fullmatch(path.name) and path != self.folder
-        ]
-        for path in sorted(others, key=_last_used, reverse=True)[KEPT:]:
-            _remove_unused(path)
+        files = sorted(_files(self.folder.parent), reverse=True)
+        held = 0
+        for _, size, path in files:
+            held += size
+            if held > MOST_BYTES:
+                with suppress(OSError):
+                    path.unlink()
 
 
-def _hold(folder: Path) -> int:
-    """A descriptor with a shared lock on the folder, which is made where there is none."""
-    while True:
-        folder.mkdir(parents=True, exist_ok=True)
-        file = os.open(folder / IN_USE, os.O_RDWR | os.O_CREAT, 0o666)
-        _lock(file, fcntl.LOCK_SH)
-        try:
-            os.utime(folder / IN_USE)
-            if os.path.samestat(os.fstat(file), os.stat(folder / IN_USE)):
-                return file
-        except FileNotFoundError:
-            pass  # another process was about to remove it
-        os.close(file)
+def _files(root: Path) -> Iterator[tuple[float, int, Path]]:
+    """When each was used last, s since the epoch, its bytes and its place; of all builds."""
+    for path in root.glob(f"*/*{LOOP}"):
+        with suppress(OSError):
+            status = path.stat()
+            yield status.st_mtime, status.st_size, path
 
 
-def _lock(file: int, kind: int) -> bool:
-    """Whether a lock could be had; a file system without locks has none."""
-    try:
-        fcntl.flock(file, kind)
-    except OSError:
-        return False
-    return True
+class LoopCache:
+    """What numba asks for a loop before it compiles it: the loop of the same contents, from the folder.
 
+    ``name`` gives the file of a signature.
+    """
 
-def _last_used(folder: Path) -> float:
-    """When a process last began to use a cache folder, s since the epoch."""
-    for path in (folder / IN_USE, folder):
-        try:
-            return path.stat().st_mtime
-        except OSError:
-            continue
-    return 0.0
+    cache_path = None
 
+    def __init__(self, cache: Cache, name: Callable[[Any], str]):
+        self.cache, self.name = cache, name
 
-def _remove_unused(folder: Path) -> None:
-    """Remove a cache folder unless a process holds it; its lock goes last."""
-    try:
-        file = os.open(folder / IN_USE, os.O_RDWR | os.O_CREAT, 0o666)
-    except OSError:
-        return
-    try:
-        if _lock(file, fcntl.LOCK_EX | fcntl.LOCK_NB):
-            for path in folder.iterdir():
-                if path.name != IN_USE:
-                    shutil.rmtree(path) if path.is_dir() else path.unlink()
-            shutil.rmtree(folder)
-    except OSError:
-        pass  # what is left is removed the next time
-    finally:
-        os.close(file)
+    def load_overload(self, signature, target):
+        """The compiled loop for a signature, or None."""
+        target.refresh()
+        kept = self.cache.load(self.name(signature))
+        return kept and CompileResult._rebuild(target, *kept)
+
+    def save_overload(self, signature, loop):
+        """Keep a compiled loop."""
+        if not loop.library.has_dynamic_globals:
+            self.cache.save(self.name(signature), loop._reduce())

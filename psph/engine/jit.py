@@ -10,33 +10,32 @@ import gc
 import hashlib
 import os
 import sys
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
+import llvmlite
 import llvmlite.binding as llvm
 import numba
+import numpy as np
 from numba import extending
-from numba.core.caching import FunctionCache
 from numba.core.sigutils import normalize_signature
 
-from psph.engine.cache import Cache
+from psph.engine.cache import READY, Cache, LoopCache
+from psph.engine.contents import HOW, STAND_INS, contents
 
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
 """Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
 no ``ninf``): a run that blows up must be seen to do so."""
 
 
-def source_digest() -> str:
-    """Fingerprint of psph's own sources, the key of the compile cache.
+PACKAGE = Path(__file__).parents[1]
 
-    numba looks only at the file of the function it caches.  An effect lives in another file than
-    the pair loop that it is compiled into, so without this key an edited effect would go on
-    running as it was before.
-    """
-    package = Path(__file__).parents[1]
+
+def source_digest(*folders: str) -> str:
+    """Fingerprint of psph's own sources, all or those in some of its folders: who wrote a checkpoint."""
     digest = hashlib.sha256()
-    for path in sorted(package.rglob("*.py")):
-        digest.update(str(path.relative_to(package)).encode())
+    for path in sorted(path for folder in folders or ("",) for path in (PACKAGE / folder).rglob("*.py")):
+        digest.update(str(path.relative_to(PACKAGE)).encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -45,25 +44,13 @@ SOURCES = source_digest()
 """That of the sources which this process has read, whatever is written into them meanwhile."""
 
 
-def cache_folder() -> Path:
-    """Folder of the compiled loops: ``$PSPH_CACHE`` or the user's cache folder, one per digest."""
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    root = Path(os.environ.get("PSPH_CACHE") or Path(home) / "psph")
-    return root / SOURCES
-
-
 ALLOCATOR = "--regalloc=pbqp"
 """How LLVM hands out registers: its own choice copies a third of the pair loop's numbers from one
 register to another, or spills them.  It changes no result."""
 
 
-CACHE = Cache(cache_folder())
-"""This process's compiled loops on disk."""
-
-
 def _configure() -> None:
     llvm.set_option("psph", ALLOCATOR)
-    numba.config.CACHE_DIR = str(cache_folder())
     numba.config.CPU_NAME = numba.config.CPU_NAME or llvm.get_host_cpu_name()
     if not numba.config.CPU_FEATURES:
         # 512-bit vectors where the processor has them: LLVM would prefer 256.
@@ -72,6 +59,20 @@ def _configure() -> None:
 
 
 _configure()
+
+
+def cache_folder() -> Path:
+    """Folder of the compiled loops: ``$PSPH_CACHE`` or the user's cache folder, one per way of compiling."""
+    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    root = Path(os.environ.get("PSPH_CACHE") or Path(home) / "psph")
+    processor = (numba.config.CPU_NAME, numba.config.CPU_FEATURES)
+    versions = (sys.version, numba.__version__, np.__version__, llvmlite.__version__)
+    build = f"{source_digest('engine')} {processor} {versions}"
+    return root / hashlib.sha256(build.encode()).hexdigest()[:16]
+
+
+CACHE = Cache(cache_folder())
+"""This process's compiled loops on disk."""
 
 
 def processor() -> str:
@@ -92,9 +93,8 @@ def marker(loops: str, *examples) -> Path | None:
     """
     if CACHE.folder is None:
         return None
-    build = (numba.__version__, sys.version, numba.config.CPU_NAME, numba.config.CPU_FEATURES)
-    selected = (build, numba.config.DISABLE_JIT, loops, *map(numba.typeof, examples))
-    return CACHE.folder / f"{hashlib.sha256(str(selected).encode()).hexdigest()[:16]}.ready"
+    selected = (SOURCES, numba.config.DISABLE_JIT, loops, *map(numba.typeof, examples))
+    return CACHE.folder / f"{hashlib.sha256(str(selected).encode()).hexdigest()[:16]}{READY}"
 
 
 @contextmanager
@@ -110,34 +110,6 @@ def many_loops():
     finally:
         if used:
             gc.enable()
-
-
-class OwnCache(FunctionCache):
-    """Keeps the loops of psph's own effects on disk.
-
-    A loop with an effect from a script or a test is compiled in each process: on disk its type
-    would be the name of a module that the next process cannot import, and it would break the
-    loading of all others.
-    """
-
-    def save_overload(self, sig, data):
-        """Keep a compiled loop unless a foreign class stands in its types."""
-        arguments, _ = normalize_signature(sig)
-        if not any(_is_foreign(kind) for kind in arguments):
-            with suppress(OSError):  # a full disk is no reason to end a run
-                super().save_overload(sig, data)
-
-
-def is_kept(*examples) -> bool:
-    """Whether loops for the types of these examples stay in the cache: not with foreign classes."""
-    return not any(_is_foreign(numba.typeof(example)) for example in examples)
-
-
-def _is_foreign(kind) -> bool:
-    own = getattr(kind, "instance_class", tuple)
-    if own is not tuple and own.__module__.partition(".")[0] != __name__.partition(".")[0]:
-        return True
-    return any(_is_foreign(part) for part in getattr(kind, "types", ()))
 
 
 def compiled(function):
@@ -160,8 +132,13 @@ def elementwise(function):
 
 def _kept(loop):
     """The loop, in the cache where there is one."""
+
+    def name(signature) -> str:
+        arguments, _ = normalize_signature(signature)
+        return f"{loop.__name__}-{contents(loop, arguments)}"
+
     if CACHE.folder is not None and not numba.config.DISABLE_JIT:
-        loop._cache = OwnCache(loop.py_func)
+        loop._cache = LoopCache(CACHE, name)
     return loop
 
 
@@ -182,16 +159,23 @@ it in a process that loads the loop from the cache: the two may round differentl
 
 def overload(function, jit_options=INNER, **options):
     """Decorator: what compiled code has in the place of ``function`` (numba.extending.overload)."""
-    return extending.overload(function, jit_options=jit_options, **options)
+
+    def stand_in(gives):
+        STAND_INS.setdefault(function, []).append((gives, tuple(jit_options)))
+        return extending.overload(function, jit_options=jit_options, **options)(gives)
+
+    return stand_in
 
 
 def register_jitable(function):
     """Let compiled code call a plain function (numba.extending.register_jitable)."""
+    setattr(function, HOW, "register_jitable")
     return extending.register_jitable(**INNER)(function)
 
 
 def inside(function):
     """The same, for a part of a loop that takes all of the loop's arrays: see INSIDE."""
+    setattr(function, HOW, "inside")
     return extending.register_jitable(**INSIDE)(function)
 
 

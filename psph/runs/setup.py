@@ -5,7 +5,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from psph.engine.jit import CACHE, is_kept, many_loops, marker
+from psph.engine.jit import CACHE, many_loops, marker
 from psph.output.checkpoint import checksum
 from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
@@ -50,8 +50,8 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     """Every loop of the plan, ready to run: compiled, or loaded from the cache.
 
     Where the cache holds them all, the ranks load together; else rank 0 compiles while the others
-    wait, and they load when they need one.  Without a cache, and with loops of a file that the case
-    uses, all compile.  Returns the seconds it took.  Collective.
+    wait, and they load when they need one.  Without a cache all compile.  Returns the seconds it took.
+    Collective.
     """
     begun = time.perf_counter()
     store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
@@ -76,7 +76,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     )
     measured = "step and probes" if scene.case.probes or scene.case.gauges else "step"
     ready = marker(measured, *examples)
-    together = comm.bcast(ready is None or not is_kept(*examples) or ready.exists())
+    together = comm.bcast(ready is None or ready.exists())
     if together or comm.rank == 0:
         with many_loops():
             _rehearse(scene, plan, store)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from psph.case.running import Checkpoint
-from psph.engine.jit import CACHE, is_kept
+from psph.engine.jit import CACHE
 from psph.errors import typed
 from psph.output.checkpoint import Saved
 from psph.output.frames import funnel_notice
@@ -140,8 +140,7 @@ def _simulate(
         say(line)
     compiling = compile_ahead(scene, plan, comm)
     if compiling > WORTH_SAYING:
-        own = is_kept(plan.effects, plan.motions, plan.laws, plan.kernel)
-        kept = " (kept for the next run)" if own and not CACHE.trouble else ""
+        kept = "" if CACHE.trouble else " (kept for the next run)"
         say(f"compiled in {compiling:.1f} s{kept}")
     simulation, record = _begin(scene, plan, comm, folder, saved)
     if saved:
