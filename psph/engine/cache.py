@@ -11,8 +11,8 @@ from typing import Any
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
-MOST_BYTES = 4 * 2**30
-"""What the folder may hold, bytes: some two hundred scenes."""
+MOST_BYTES = 2 * 2**30
+"""What the folder may hold, bytes: some five hundred kinds of scene."""
 
 LOOP, READY = ".loop", ".ready"
 """Endings of its files: a compiled loop, and the word that all loops of a plan are there."""

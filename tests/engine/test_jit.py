@@ -1,4 +1,4 @@
-"""The compile cache: it cannot go stale, and nothing foreign gets into it."""
+"""The compile cache: it cannot go stale, and keeps what nothing has changed."""
 
 import os
 import subprocess
@@ -9,8 +9,8 @@ import numpy as np
 from jobs import clean_environment
 from long import LONG
 
-from psph.engine import jit
-from psph.engine.cache import IN_USE, KEPT, Cache
+from psph.engine import cache
+from psph.engine.cache import LOOP, Cache
 from psph.output.reader import Run
 
 SCRIPT = """
@@ -42,10 +42,10 @@ print(sum(state_of.stats.cache_hits.values()), "from the cache")
 """
 
 
-def script(folder, *arguments, cache="cache"):
-    """What the script prints, with its compiled loops in ``folder``."""
+def script(folder, *arguments, cache="cache", edit=("", "")):
+    """What the script prints, with its compiled loops in ``folder``; ``edit``: words, and others for them."""
     path = folder / "script.py"
-    path.write_text(SCRIPT)
+    path.write_text(SCRIPT.replace(*edit) if edit[0] else SCRIPT)
     job = subprocess.run(
         [sys.executable, path, *arguments],
         capture_output=True,
@@ -61,73 +61,43 @@ def test_a_second_process_compiles_nothing(tmp_path):
     assert script(tmp_path) == ["1.0", "1 from the cache"]
 
 
-def test_an_effect_of_a_script_leaves_the_cache_as_it_is(tmp_path):
+def test_an_effect_of_a_script_is_compiled_once(tmp_path):
     assert script(tmp_path, "foreign") == ["1.0", "14.0", "0 from the cache"]
+    assert script(tmp_path, "foreign") == ["1.0", "14.0", "2 from the cache"]
     assert script(tmp_path) == ["1.0", "1 from the cache"]
-    assert script(tmp_path, "foreign")[:2] == ["1.0", "14.0"]
 
 
-def test_the_cache_follows_the_sources(tmp_path, monkeypatch):
-    """An edit in any file gives another folder, and so compiles anew."""
-    package = tmp_path / "psph"
-    (package / "physics").mkdir(parents=True)
-    (package / "jit.py").write_text("a = 1\n")
-    effect = package / "physics" / "effect.py"
-    effect.write_text("b = 1\n")
-    monkeypatch.setattr(jit, "__file__", str(package / "jit.py"))
-    before = jit.source_digest()
-    assert jit.source_digest() == before
-    effect.write_text("b = 2\n")
-    assert jit.source_digest() != before
-    effect.write_text("b = 1\n")
-    assert jit.source_digest() == before
-    effect.rename(Path(effect).with_name("other.py"))
-    assert jit.source_digest() != before
+def test_an_edited_effect_of_a_script_is_compiled_anew(tmp_path):
+    assert script(tmp_path, "foreign")[1] == "14.0"
+    assert script(tmp_path, "foreign", edit=("7.0", "9.0")) == ["1.0", "18.0", "1 from the cache"]
+
+
+def test_a_loop_that_cannot_be_read_is_compiled_anew(tmp_path):
+    script(tmp_path)
+    for kept in (tmp_path / "cache").rglob(f"*{LOOP}"):
+        kept.write_bytes(kept.read_bytes()[:-100])
+    assert script(tmp_path) == ["1.0", "0 from the cache"]
+    assert script(tmp_path) == ["1.0", "1 from the cache"]
 
 
 def test_without_a_writable_cache_loops_are_compiled_for_this_process(tmp_path):
     (tmp_path / "file").touch()
     assert script(tmp_path, cache="file/cache") == ["1.0", "0 from the cache"]
-    trouble = jit.Cache(tmp_path / "file/cache" / jit.SOURCES).trouble
+    trouble = Cache(tmp_path / "file/cache/build").trouble
     assert "PSPH_CACHE" in trouble and str(tmp_path / "file/cache") in trouble and "\n" not in trouble
 
 
-HOLD = """
-import sys
-from pathlib import Path
-from psph.engine.cache import Cache
-cache = Cache(Path(sys.argv[1]))
-print("held", flush=True)
-sys.stdin.read()
-"""
-
-
-def test_older_folders_are_removed_unless_in_use(tmp_path):
-    names = [f"{n:016x}" for n in range(KEPT + 5)]
-    for age, name in enumerate(reversed(names)):
-        Cache(tmp_path / name).close()
-        (tmp_path / name / "loop.nbc").touch()
-        os.utime(tmp_path / name / IN_USE, (1e9 - age, 1e9 - age))
-    (tmp_path / "mine").mkdir()
-    holder = subprocess.Popen(
-        [sys.executable, "-c", HOLD, tmp_path / names[0]],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-        env=clean_environment(),
-    )
-    with holder:
-        assert holder.stdout.readline() == "held\n"
-        os.utime(tmp_path / names[0] / IN_USE, (1e8, 1e8))  # the oldest, but in use
-        own = Cache(tmp_path / ("f" * 16))
-        own.prune()
-        left = {path.name for path in tmp_path.iterdir()}
-        assert left == {"mine", "f" * 16, names[0], *names[-KEPT:]}
-        assert (tmp_path / names[0] / "loop.nbc").exists()
-        holder.stdin.close()
+def test_what_was_used_longest_ago_makes_room(tmp_path, monkeypatch):
+    monkeypatch.setattr(cache, "MOST_BYTES", 250)
+    own, other = Cache(tmp_path / "own"), Cache(tmp_path / "other")
+    for age, (where, name) in enumerate(((other, "oldest"), (own, "used"), (own, "newer"))):
+        where.save(name, b"x" * 80)
+        os.utime(where.folder / f"{name}{LOOP}", (1e9 + age, 1e9 + age))
+    assert own.load("used") == b"x" * 80
+    (tmp_path / "mine.txt").touch()
     own.prune()
-    assert not (tmp_path / names[0]).exists()
-    own.close()
+    left = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*")}
+    assert left == {"mine.txt", f"own/used{LOOP}", f"own/newer{LOOP}"}
 
 
 @LONG

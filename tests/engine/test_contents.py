@@ -1,0 +1,188 @@
+"""What a compiled loop is keyed by: all that it is made of, and nothing else."""
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import pytest
+from jobs import clean_environment
+from long import LONG
+
+from psph.engine.contents import UnknownContent, contents
+
+MODULE = '''
+"""A module with a loop and an effect."""
+from typing import NamedTuple
+import numpy as np
+from psph.engine.jit import call_by_type, compiled, elementwise, inside, overload, register_jitable
+
+STRENGTH = 2.0
+TABLE = {"b": np.array([1.0, 2.0])}
+pull = call_by_type("pull")
+
+class Effect(NamedTuple):
+    """Pulls."""
+    strength: float
+
+    SCALE = 3.0
+
+    def pull(self, x):
+        """How it pulls."""
+        return self.strength * half(x)
+
+    def why_absent(self, scene):
+        return "no use for it"
+
+@register_jitable
+def half(x):
+    """Half of it."""
+    return 0.5 * x
+
+def picked(x):
+    return x
+
+@overload(picked)
+def _picked(x):
+    return lambda x: STRENGTH * x
+
+def unused(x):
+    return 7.0 * x
+
+@compiled
+def loop(effect, x):
+    return pull(effect, x) + picked(x) + table(x)
+
+def table(x):
+    return TABLE["b"][0] * x
+'''
+
+
+@pytest.fixture
+def digest(tmp_path):
+    """The digest of the loop of the module, after an edit: some words for others."""
+    count = iter(range(100))
+
+    def of(old="", new=""):
+        assert old in MODULE
+        path = tmp_path / f"edited_{next(count)}.py"
+        path.write_text(MODULE.replace(old, new))
+        spec = importlib.util.spec_from_file_location("edited", path)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        effect = module.Effect(1.0)
+        return contents(module.loop, (numba.typeof(effect), numba.float64))
+
+    return of
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("return 0.5 * x", "return 0.25 * x"),
+        ("STRENGTH = 2.0", "STRENGTH = 4.0"),
+        ("[1.0, 2.0]", "[1.0, 3.0]"),
+        ("self.strength * half(x)", "self.strength + half(x)"),
+        ("lambda x: STRENGTH * x", "lambda x: STRENGTH + x"),
+        ("pull(effect, x) + picked(x)", "picked(x) + pull(effect, x)"),
+        ("    strength: float\n", "    strength: float\n    more: float = 0.0\n"),
+        ("@compiled\ndef loop", "@elementwise\ndef loop"),
+        ("@register_jitable\ndef half", "@inside\ndef half"),
+    ],
+)
+def test_what_changes_the_loop_changes_its_key(digest, old, new):
+    assert digest() != digest(old, new)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"no use for it"', '"nothing here calls for it"'),
+        ('"""How it pulls."""', '"""The way it pulls."""'),
+        ('"""Half of it."""', '"""One half of it."""\n    # and a comment'),
+        ("return 7.0 * x", "return 8.0 * x"),
+        ("SCALE = 3.0", "SCALE = 4.0"),
+        ("STRENGTH = 2.0\n", "\n\nSTRENGTH = 2.0\n"),
+    ],
+)
+def test_what_does_not_change_the_loop_leaves_its_key(digest, old, new):
+    assert digest() == digest(old, new)
+
+
+def test_the_key_tells_types_apart(digest):
+    from psph.particles.cells import number_cells
+
+    kinds = [(numba.float64,), (numba.float32,), (numba.float64[::1],)]
+    assert len({contents(number_cells, kind) for kind in kinds}) == 3
+
+
+def test_what_nobody_knows_is_said():
+    class Odd:
+        pass
+
+    odd = Odd()
+
+    def loop():
+        return odd
+
+    with pytest.raises(UnknownContent, match="Odd"):
+        contents(loop, ())
+
+
+WATCH = """
+import sys, types
+from numba.core import bytecode
+from numba.core.dispatcher import _FunctionCompiler
+from psph.engine import contents
+from psph.__main__ import main
+
+ran, compile_it, identify = set(), _FunctionCompiler.compile, bytecode.FunctionIdentity.from_function.__func__
+
+def is_ours(code):
+    return "/psph/" in code.co_filename and "/psph/engine/" not in code.co_filename
+
+def called(frame, event, argument):
+    if event == "call" and is_ours(frame.f_code):
+        ran.add(frame.f_code)
+
+def watched(self, arguments, returns):
+    before = sys.getprofile()
+    sys.setprofile(called)
+    try:
+        return compile_it(self, arguments, returns)
+    finally:
+        sys.setprofile(before)
+
+def identified(cls, function):
+    if is_ours(function.__code__):
+        ran.add(function.__code__)
+    return identify(cls, function)
+
+_FunctionCompiler.compile = watched
+bytecode.FunctionIdentity.from_function = classmethod(identified)
+main(sys.argv[1:])
+known = [one for one, _ in contents._seen.values() if isinstance(one, types.FunctionType)]
+seen = {code for one in known for code in contents._codes(one.__code__)}
+print(f"{len(ran)} parts;", *(f"{code.co_filename}:{code.co_firstlineno}" for code in ran - seen))
+"""
+
+
+@LONG
+@pytest.mark.parametrize(
+    "case",
+    ["dam_break_3d", "floating_box", "solids/taylor_bar", "soils/column_collapse", "mud/grains_on_slope"],
+)
+def test_the_key_has_all_that_numba_compiles_or_asks(case, tmp_path):
+    """Every line of psph that runs while numba compiles a scene's loops stands in some loop's contents."""
+    path = Path(__file__).parents[2] / f"run/cases/{case}.toml"
+    job = subprocess.run(
+        [sys.executable, "-c", WATCH, path, "--out", tmp_path / "out", "--set", "time.end=1e-6"],
+        env=clean_environment() | {"PSPH_CACHE": str(tmp_path / "cache")},
+        capture_output=True,
+        text=True,
+        timeout=400,
+    )
+    assert job.returncode == 0, job.stderr
+    parts, _, missing = job.stdout.splitlines()[-1].partition(" parts;")
+    assert int(parts) > 80 and not missing.strip(), missing
