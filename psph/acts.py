@@ -49,6 +49,11 @@ def acts_on(asker) -> tuple[str, ...]:
     return getattr(asker, "acts", MATTER if hasattr(asker, "body") else FLOWING)
 
 
+def keys_of_matter(effect) -> Mapping[str, tuple[str, str]]:
+    """The keys of an effect that speak of one kind of matter alone: that kind, and what to do without it."""
+    return getattr(effect, "keys_of", {})
+
+
 def one_sided(effect) -> bool:
     """Whether an effect pushes without being pushed back."""
     pushes = any(hasattr(effect, method) for method in OF_PAIRS)

@@ -16,6 +16,7 @@ from psph.acts import (
     SYMMETRY,
     UPDATED,
     acts_on,
+    keys_of_matter,
     refusals,
     refusals_of_effect,
 )
@@ -131,21 +132,37 @@ def cornered(case) -> Iterator[Finding]:
     """What a case asks for and what does not go together, as the table has it."""
     here = present(case)
     dimension = DIMENSIONS[case.space.dimensions - 1]
+    apart: set[str] = set()  # what does not go together: a scheme's effects need not say so too
     for kind in (one for one in KINDS if one in here):
         for corner, says in refusals(KINDS[kind]).items():
             if corner == dimension:
                 yield from ((loc, ..., says) for loc, _ in here[kind])
+            if corner in here:
+                apart |= {kind, corner}
             yield from ((loc, value, says) for loc, value in here.get(corner, ()))
     for name, value, effect in asked_of(case):
         acts = [kind for kind in acts_on(effect) if kind in MATTER]
         idle = here.keys().isdisjoint(acts)
         refused = refusals(effect) if idle else refusals_of_effect(effect)
-        found = [says for corner, says in refused.items() if corner in here or corner == dimension]
+        told = apart if case.preset(f"physics.{name}") else ()
+        met = {*here, dimension}.difference(told)
+        found = [says for corner, says in refused.items() if corner in met]
         if idle and not found and not case.preset(f"physics.{name}"):  # what a scheme sets asks for nothing
             found = [f"acts on {listed(acts)} alone, and the case has none; remove this key"]
         yield from ((("physics", name), value, says) for says in found)
+        if not found:
+            yield from _of_other_matter(case, name, effect, here)
     for name, gauge in case.gauges.items():
         asked = getattr(gauge, gauge.kind)
-        if not hasattr(asked, "of") and here.keys().isdisjoint(acts := acts_on(asked)):
+        if getattr(asked, "of", None) is None and here.keys().isdisjoint(acts := acts_on(asked)):
             says = f"measures {listed(acts)} alone, and the case has none; remove this gauge"
             yield ("gauges", name, gauge.kind), ..., says
+
+
+def _of_other_matter(case, name: str, effect, here) -> Iterator[Finding]:
+    """Keys of an effect that speak of matter that is not there, and have another value than their default."""
+    table = getattr(case.physics, name)
+    for key, (kind, cure) in keys_of_matter(effect).items():
+        value = getattr(table, key)
+        if kind not in here and value != effect._field_defaults[key]:
+            yield ("physics", name, key), value, f"is of {kind}, and the case has none: {cure}"

@@ -11,6 +11,9 @@ from psph.case.keys import Vector, key
 from psph.physics.stress.strength import MohrCoulomb, pyramid
 from psph.physics.walls.conditions import PENALTY, REPULSIVE
 
+ALONE = "soils push no {} and feel none; remove one of the two, or draw it as a wall, which may move"
+"""What soils say beside what is rigid or elastic."""
+
 
 class Soil(Hookean):
     """Soil: elastic until it yields by friction and cohesion."""
@@ -63,9 +66,7 @@ class Soil(Hookean):
     rubs: ClassVar = True
     refuses: ClassVar = {
         ONE: "soils need two or three dimensions",
-        **dict.fromkeys(
-            (SOLIDS, UPDATED, BODIES), "nothing is known of what these do in soil; remove one of the two"
-        ),
+        **{one: ALONE.format(one) for one in (SOLIDS, UPDATED, BODIES)},
         MIXED: 'soils are computed in double precision, since strains are small; use "double"',
         FRAME: "soils know of no frame that moves; remove one of the two",
         **dict.fromkeys(
@@ -121,7 +122,7 @@ def earthen(case) -> Iterator[Finding]:
     for name in case.soils.keys() & (case.fluids.keys() | case.walls.keys()):
         yield ("soils", name), ..., "a fluid or a wall has this name too; give the soil another"
     if getattr(case, "regions", None):
-        yield ("regions",), ..., "nothing is known of what these do in soil; remove one of the two"
+        yield ("regions",), ..., "nothing is known of regions in soil; remove the regions or the soils"
     if case.physics.sound_speed is not None and not case.fluids:
         says = "soils have waves of their own, by young and poisson; remove this key"
         yield ("physics", "sound_speed"), case.physics.sound_speed, says

@@ -185,6 +185,19 @@ def test_a_gauge_refuses_what_it_cannot_measure(tmp_path):
     assert "measures fluids, soils and updated Lagrangian solids alone, and the case has none" in line
 
 
+@pytest.mark.parametrize(
+    ("beside", "key", "cure"),
+    [
+        (BODIES, "damping", "rigid bodies meet by impulses"),
+        (BODIES, "stiffness", "rigid bodies do not give way"),
+        (SOLIDS, "restitution", "elastic solids swing back by themselves"),
+    ],
+)
+def test_a_key_of_other_matter_is_refused(beside, key, cure, tmp_path):
+    [line] = refusal(tmp_path, scene(beside, more=f"physics.contact = {{ friction = 0.2, {key} = 0.5 }}"))
+    assert f"physics.contact.{key}" in line and cure in line
+
+
 class Sideways(Gravity):
     """An effect of one's own that says a word that is none."""
 

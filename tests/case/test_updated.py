@@ -51,6 +51,14 @@ def test_what_is_refused(more, says, tmp_path):
     assert any(says in line for line in refusal(tmp_path, BLOCK, more))
 
 
+def test_beside_water_its_scheme_says_nothing_more(tmp_path):
+    water = "fluids.water={shape={box={lower=[2.0, 0.0], upper=[3.0, 1.0]}}}"
+    [line] = refusal(tmp_path, BLOCK, water, "scheme=stable")
+    assert "fluids: nothing is known" in line
+    lines = refusal(tmp_path, BLOCK, water, "scheme=stable", "physics.xsph=0.3", "physics.position_shift=0.2")
+    assert len(lines) == 2 and "physics.position_shift" in lines[1]
+
+
 def test_both_descriptions_in_one_case_are_refused(tmp_path):
     both = BLOCK + BLOCK[BLOCK.index("[solids.block]") :].replace("solids.block", "solids.other").replace(
         "updated", "total"

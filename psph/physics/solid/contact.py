@@ -92,6 +92,11 @@ class SolidContact(NamedTuple):
     refuses = {
         UPDATED: 'updated Lagrangian solids feel each other without; remove it, or give description = "total"'
     }
+    keys_of = {
+        "stiffness": (SOLIDS, "rigid bodies do not give way; remove this key"),
+        "damping": (SOLIDS, "rigid bodies meet by impulses; remove this key, or give restitution"),
+        "restitution": (BODIES, "elastic solids swing back by themselves; remove this key, or give damping"),
+    }
 
     stiffness: Annotated[
         float,
