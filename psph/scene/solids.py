@@ -123,8 +123,10 @@ def reach_of_contact(whole: Reach, spacing: float) -> Reach:
 def solid_fields(scene: "Scene") -> tuple[Field, ...]:
     """What particles carry because the scene has solids, and these yield, crack, have loads or stand in a
     fluid."""
-    followed = any(gauge.displacement for gauge in scene.case.gauges.values())
-    across = (CROSSED,) if followed and any(scene.periods) else ()
+    gauges = scene.case.gauges.values()
+    followed = any(gauge.displacement for gauge in gauges)
+    counted = followed or any(gauge.reaction or gauge.force for gauge in gauges)
+    across = (CROSSED,) if counted and any(scene.periods) else ()
     if not scene.elastic_solids:
         return (REFERENCE, *across) if followed else ()
     loaded = any(table.loads for table in scene.case.solids.values())

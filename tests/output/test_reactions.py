@@ -77,6 +77,19 @@ def test_clamps_bear_the_weight_of_a_bar_and_its_load(tmp_path):
         assert found[f"both.reaction_{axis}"] == pytest.approx(parts, rel=1e-12, abs=1e-9)
 
 
+def test_moments_do_not_jump_where_clamps_cross_a_seam(tmp_path):
+    """A bar under way, with the domain ending before it and without an end."""
+    on_way = "{translation={velocity=[2.0,0.0]}}"
+    sets = (
+        *(f"solids.bar.clamps.{end}.motion={on_way}" for end in ("left", "right")),
+        "solids.bar.velocity=[2.0,0.0]",
+        "solids.bar.loads=off",
+    )
+    seam = ("space.periodic=['x']", "space.lower=[-0.25,-0.5]", "space.upper=[0.75,0.5]")
+    found, whole = settled(tmp_path, BAR, 200, *sets, *seam), settled(tmp_path, BAR, 200, *sets)
+    assert found == pytest.approx(whole, rel=1e-6, abs=1e-6)
+
+
 def test_an_anvil_bears_what_presses_a_block_on_it(tmp_path):
     found = settled(tmp_path, BLOCK, 3000)
     assert found["floor.reaction_y"] == pytest.approx(-300.0, rel=5e-3)

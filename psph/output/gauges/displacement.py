@@ -28,12 +28,22 @@ class DisplacementGauge(NamedTuple):
 
     def row(self, simulation) -> list[float]:
         """The values, the same on every rank."""
-        store, periods = simulation.store, simulation.domain.periods
-        own = np.isin(store.shown("group"), self.groups)
+        store = simulation.store
+        own = np.flatnonzero(np.isin(store.shown("group"), self.groups))
         reference = store.shown("reference")[own]
-        away = nearest(reference - np.array(self.at), periods)
-        moved = store.shown("position")[own] - reference
-        for axis, period in enumerate(periods):
-            if period is not None:
-                moved[:, axis] += period * store.shown(CROSSED.name)[own, axis]
+        away = nearest(reference - np.array(self.at), simulation.domain.periods)
+        moved = gone(simulation, own) - reference
         return fitted(simulation.comm, away, self.reach, moved).tolist()
+
+
+def gone(simulation, rows: np.ndarray) -> np.ndarray:
+    """Where the particles of these ``rows`` have gone from the start, m (n, dim).
+
+    Where the domain repeats also beyond it, if the particles count how often they crossed it.
+    """
+    store = simulation.store
+    places = store.shown("position")[rows].copy()
+    for axis, period in enumerate(simulation.domain.periods):
+        if period is not None and CROSSED.name in store:
+            places[:, axis] += period * store.shown(CROSSED.name)[rows, axis]
+    return places

@@ -7,6 +7,7 @@ import numpy as np
 
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.corners import Corners, axes_of
+from psph.output.gauges.displacement import gone
 from psph.parallel.reductions import exact_sums
 from psph.physics.motion import COUPLE, RIGID
 
@@ -19,8 +20,8 @@ class ForceGauge(NamedTuple):
     (psph.composition.loads): what the fluid feels of these particles, turned round.  Those of bodies have
     their contacts too.  Where parts meet, ``corners`` say whose face bears it.  X is ``about``, m (dim,),
     with a ``carrier`` the place at the start of a point that goes with it.  N and N m; per metre of depth in
-    2D.  Where a domain repeats, what moves as a whole is where its way has led it, also beyond the domain:
-    moments have no jump there.
+    2D.  Where a domain repeats, what moves is where its way has led it, also beyond the domain: moments have
+    no jump there.
     """
 
     name: str
@@ -86,7 +87,7 @@ class ForceGauge(NamedTuple):
     def _places(self, simulation, held: np.ndarray) -> np.ndarray:
         """Where the particles ``held`` are, m (n, dim): those that move as one beside each other."""
         store, domain = simulation.store, simulation.domain
-        places = domain.inside(store.shown("position")[held])
+        places = gone(simulation, held)
         groups, plan = store.shown("group")[held], simulation.plan
         rigid = plan.motion_of[groups] == RIGID
         for row in np.unique(plan.pose_of[groups[rigid]]):

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.fields import SOLID
+from psph.output.gauges.displacement import gone
 from psph.output.gauges.force import moments, turns
 from psph.parallel.reductions import exact_sums
 from psph.physics.motion import ANCHOR, LOAD, RIGID
@@ -20,7 +21,8 @@ class ReactionGauge(NamedTuple):
     A clamp bears all that pulls on its particles, their weight, loads and a fluid among it, less what moves
     them: F = Σ m (a − A), with the acceleration a that they would have if they were free and A that of the
     clamp.  An anvil bears −Σ m a of what it does to particles (:class:`psph.physics.solid.anvil.Anvils`).
-    Moments are about the point ``about``, m (dim,).  N and N m; per metre of depth in 2D.
+    Moments are about the point ``about``, m (dim,), of particles where their way has led them, also beyond a
+    domain that repeats.  N and N m; per metre of depth in 2D.
     """
 
     name: str
@@ -40,8 +42,7 @@ class ReactionGauge(NamedTuple):
         """The values, the same on every rank."""
         parts = [self._on_clamps(simulation), *(self._on_anvil(simulation, k) for k in self.planes)]
         rows, force = (np.concatenate(of) for of in zip(*parts))
-        place = simulation.domain.inside(simulation.store.shown("position")[rows])
-        arm = place - np.array(self.about)
+        arm = gone(simulation, rows) - np.array(self.about)
         return exact_sums(simulation.comm, np.column_stack([force, *moments(arm, force)]))
 
     def _on_clamps(self, simulation) -> tuple[np.ndarray, np.ndarray]:
