@@ -15,6 +15,8 @@ MOVES_WITH = key(
     otherwise="it stays where it is in space",
 )
 
+OF = key("the fluid or the soil that counts, by its name", None, otherwise="all that flows")
+
 
 KNOWN = " or ".join(f'"{one}"' for one in BEARING)
 
@@ -52,6 +54,7 @@ class Level(Table):
 
     foot: Vector = key("the lower end of the line, from which the level is counted", unit="m")
     top: Vector = key("its upper end", unit="m")
+    of: Name | None = OF
     moves_with: Name | None = MOVES_WITH
 
     _has_a_length = model_validator(mode="after")(has_a_length)
@@ -62,6 +65,7 @@ class RunUp(Table):
 
     foot: Vector = key("the lower end of a line on the slope, from which the run-up is counted", unit="m")
     top: Vector = key("its upper end", unit="m")
+    of: Name | None = OF
     moves_with: Name | None = MOVES_WITH
 
     _has_a_length = model_validator(mode="after")(has_a_length)
@@ -71,6 +75,7 @@ class Highest(Table):
     """The largest coordinate of the fluid along an axis: its front, or its highest drop."""
 
     axis: Axis = key("the axis")
+    of: Name | None = OF
 
 
 class Point(Table):
@@ -97,6 +102,7 @@ class Flow(Table):
 
     lower: Vector = key("lowest corner of the section; along one axis equal to 'upper'", unit="m")
     upper: Vector = key("its highest corner", unit="m")
+    of: Name | None = OF
 
     @model_validator(mode="after")
     def _is_a_section(self) -> Self:

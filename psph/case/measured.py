@@ -31,6 +31,10 @@ def gauged(case) -> Iterator[Finding]:
             yield ("gauges", name, gauge.kind, "axis"), asked.axis, where
         if says := _cannot_carry(case, getattr(asked, "moves_with", None)):
             yield ("gauges", name, gauge.kind, "moves_with"), asked.moves_with, says
+        counts = gauge.level or gauge.run_up or gauge.highest or gauge.flow
+        if counts and counts.of is not None and counts.of not in case.flowing:
+            says = f"no fluid or soil has this name; {advise(counts.of, case.flowing)}"
+            yield ("gauges", name, gauge.kind, "of"), counts.of, says
         if gauge.motion and gauge.motion.of not in case.bodies:
             says = f"no body has this name; {advise(gauge.motion.of, case.bodies)}"
             yield ("gauges", name, "motion", "of"), gauge.motion.of, says

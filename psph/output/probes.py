@@ -9,6 +9,7 @@ from psph.composition.mirrors import image, images
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.fields import FLUID, PRESSURE, SAVED, by_name, view_of
+from psph.output.flowing import ALL, counted
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
 from psph.physics.walls.dry import DryWall
@@ -115,10 +116,11 @@ def sensor(position, extent, spacing: float) -> np.ndarray:
 
 
 class Front:
-    """How far the fluid reaches along an ``axis`` (0, 1 or 2): its largest coordinate, m."""
+    """How far the fluids of the groups ``of`` reach along an ``axis`` (0, 1 or 2): their largest coordinate,
+    m."""
 
-    def __init__(self, name: str, axis: int):
-        self.name, self.axis = name, axis
+    def __init__(self, name: str, axis: int, of: tuple[int, ...] = ALL):
+        self.name, self.axis, self.of = name, axis, of
 
     def columns(self, dimensions: int) -> list[str]:
         """The name of the value: ``tip.front``."""
@@ -127,7 +129,7 @@ class Front:
     def sample(self, domain: Domain, kernel) -> np.ndarray:
         """The value on every rank; collective."""
         store = domain.store
-        fluid = store.owned_rows("kind") == FLUID
+        fluid = counted(store.kinds, self.of)[store.owned_rows("group")]
         reach = store.owned_rows("position")[fluid, self.axis].max(initial=-np.inf)
         return np.array(largest(domain.comm, [float(reach)]))
 

@@ -64,6 +64,39 @@ about = [0.5, 0.2]
 """Two fluids in disorder between two walls."""
 
 
+OF_EACH = """
+[gauges.{name}_level]
+level = {{ foot = [0.5, 0.0], top = [0.5, 1.2] {of} }}
+[gauges.{name}_run_up]
+run_up = {{ foot = [0.5, 0.0], top = [0.5, 1.2] {of} }}
+[gauges.{name}_end]
+highest = {{ axis = "y" {of} }}
+[gauges.{name}_flow]
+flow = {{ lower = [0.5, 0.0], upper = [0.5, 0.8] {of} }}
+"""
+
+
+def test_gauges_of_one_of_two_fluids_leave_out_the_other(tmp_path):
+    asked = (("all", ""), ("heavy", ', of = "heavy"'), ("light", ', of = "light"'))
+    text = STIRRED.format(every=4, condition="dynamic").replace("jitter", "#")
+    text += "".join(OF_EACH.format(name=name, of=of) for name, of in asked)
+    found = readings(*started(draft(tmp_path, text)))
+    for name, top in (("all", 0.8), ("heavy", 0.4), ("light", 0.8)):
+        assert found[f"{name}_level.level"] == pytest.approx(top, abs=0.02)
+        assert found[f"{name}_end.front"] == pytest.approx(top - 0.05)
+    assert found["light_level.wetted"] == pytest.approx(0.4, abs=0.02)
+    assert found["heavy_run_up.run_up"] == pytest.approx(0.4) and found["light_run_up.run_up"] == 0.0
+    parts = {"heavy": 0.5 * 0.4, "light": -0.8 * 0.4}
+    for name, flow in {**parts, "all": sum(parts.values())}.items():
+        assert found[f"{name}_flow.flow"] == pytest.approx(flow, rel=2e-3)
+
+
+def test_a_fluid_that_is_not_there_has_no_level(tmp_path):
+    text = STIRRED.format(every=4, condition="dynamic") + OF_EACH.format(name="x", of=', of = "hevy"')
+    lines = refusal(tmp_path, text)
+    assert len(lines) == 4 and all("did you mean 'heavy'?" in line for line in lines)
+
+
 @pytest.mark.parametrize("condition", ["dynamic", pytest.param("extrapolated", marks=LONG)])
 @pytest.mark.parametrize("every", [4, pytest.param(1, marks=LONG)])
 def test_force_on_walls_is_what_the_fluid_feels_of_them_turned_round(tmp_path, condition, every):

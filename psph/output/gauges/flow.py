@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.fields import FLUID
+from psph.output.flowing import ALL, counted
 from psph.parallel.reductions import exact_sums
 from psph.smoothing import kernel, weight
 
@@ -15,7 +15,7 @@ class FlowGauge(NamedTuple):
     Q = Σ_j V_j u_j W(d_j) over the fluid particles j before and behind the section, with the velocity
     u_j along the axis, the distance d_j from the section and the kernel W of one dimension, ∫W dd = 1;
     Q_m the same with masses.  ``lower`` and ``upper`` (dim,) m are its corners, also across a seam.
-    m³/s and kg/s; per metre of depth in 2D.
+    Fluids are those of the groups ``of``.  m³/s and kg/s; per metre of depth in 2D.
     """
 
     name: str
@@ -23,6 +23,7 @@ class FlowGauge(NamedTuple):
     axis: int
     lower: tuple[float, ...]
     upper: tuple[float, ...]
+    of: tuple[int, ...] = ALL
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time."""
@@ -44,7 +45,7 @@ class FlowGauge(NamedTuple):
             if (repeats := simulation.domain.periods[d]) is not None:
                 past -= repeats * np.floor(past / repeats)
             within &= (past >= 0.0) & (past < self.upper[d] - self.lower[d])
-        within &= store.shown("kind") == FLUID
+        within &= counted(store.kinds, self.of)[store.shown("group")]
         shares = np.array([weight(across, abs(d)) for d in away[within].tolist()])
         mass = store.shown("mass")[within] * store.shown("velocity")[within, self.axis] * shares
         return exact_sums(simulation.comm, np.column_stack([mass / store.shown("density")[within], mass]))

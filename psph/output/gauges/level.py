@@ -9,7 +9,7 @@ import numpy as np
 from psph.composition.mirrors import images
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
-from psph.fields import FLUID
+from psph.output.flowing import ALL, counted
 from psph.output.gauges.carried import Carrier
 from psph.parallel.reductions import whole_sums
 from psph.smoothing import weight
@@ -39,8 +39,8 @@ class LevelGauge(NamedTuple):
     ``walls`` are the groups that leave less, ``buried`` (parts + 1,) says which points lie within them and
     are dry; None: none.  ``level`` is the distance from the foot to the highest point of the line where S
     is ½ of that, ``wetted`` the length of the line with more, which is what a wire in the water measures;
-    both m, 0 where all is dry.  They differ where drops or a breaking wave are above the water.  With a
-    ``carrier`` the ends are those of the start.
+    both m, 0 where all is dry.  They differ where drops or a breaking wave are above the water.  Fluids
+    are those of the groups ``of``.  With a ``carrier`` the ends are those of the start.
     """
 
     name: str
@@ -51,6 +51,7 @@ class LevelGauge(NamedTuple):
     carrier: Carrier | None = None
     walls: tuple[int, ...] = ()
     buried: np.ndarray | None = None
+    of: tuple[int, ...] = ALL
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time."""
@@ -66,7 +67,7 @@ class LevelGauge(NamedTuple):
         ends = self._ends(simulation)
         found = np.zeros((2, self.parts + 1), np.int64)
         first, last = store.low, store.low + store.owned
-        part = np.where(store.kinds == FLUID, 0, NEITHER).astype(np.int8)
+        part = np.where(counted(store.kinds, self.of), 0, NEITHER).astype(np.int8)
         part[list(self.walls)] = 1
         part = part[store.group]
         for m in range(images(plan.mirrors)):

@@ -8,6 +8,7 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.case.solids import anvils_of, clamps_of
+from psph.output.flowing import ALL
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.corners import Corners
 from psph.output.gauges.displacement import DisplacementGauge
@@ -50,19 +51,16 @@ def gauge_of(scene, name: str, table, mirrors=None):
             return ReactionGauge(name, every, *_supports(scene, asked.of), asked.about)
         case "level":
             parts = max(1, math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9))
-            line = np.linspace(asked.foot, asked.top, parts + 1)
             beside = _beside(scene, asked)
-            buried = beside.deep(line, DRAWN)
-            return LevelGauge(
-                name, every, asked.foot, asked.top, parts, _carrier(asked, names), beside.groups, buried
-            )
+            buried = beside.deep(np.linspace(asked.foot, asked.top, parts + 1), DRAWN)
+            line = asked.foot, asked.top, parts, _carrier(asked, names)
+            return LevelGauge(name, every, *line, beside.groups, buried, _of(scene, asked))
         case "run_up":
-            return RunUpGauge(
-                name, every, asked.foot, asked.top, scene.spacing, _up(scene), _carrier(asked, names)
-            )
+            line = asked.foot, asked.top, scene.spacing, _up(scene), _carrier(asked, names)
+            return RunUpGauge(name, every, *line, _of(scene, asked))
         case "flow":
             [axis] = (d for d, ends in enumerate(zip(asked.lower, asked.upper)) if ends[0] == ends[1])
-            return FlowGauge(name, every, axis, asked.lower, asked.upper)
+            return FlowGauge(name, every, axis, asked.lower, asked.upper, _of(scene, asked))
         case "motion":
             restrained = scene.case.bodies[asked.of].restrained(scene.dimensions)
             return MotionGauge(name, every, asked.of, restrained)
@@ -73,7 +71,7 @@ def gauge_of(scene, name: str, table, mirrors=None):
             groups, keeps = tuple(_groups(scene, asked.of)), asked.of in scene.case.referred
             return StressGauge(name, every, groups, asked.at, REACH * scene.spacing, keeps)
         case "highest":
-            return PointGauge(Front(name, AXES.index(asked.axis)), every)
+            return PointGauge(Front(name, AXES.index(asked.axis), _of(scene, asked)), every)
         case "point":
             probe = Probe(name, asked.position, asked.fields, mirrors)
         case _:
@@ -115,8 +113,13 @@ def _supports(scene, keys) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return tuple(held), tuple(k for k, key in enumerate(anvils) if key in keys)
 
 
+def _of(scene, asked) -> tuple[int, ...]:
+    """The groups that a gauge of what flows counts."""
+    return ALL if asked.of is None else tuple(_groups(scene, asked.of))
+
+
 def _groups(scene, name: str) -> Iterator[int]:
-    """The groups of a wall, a body or an elastic solid, its clamped part among them."""
+    """The groups of what has a name; of an elastic solid its clamped part among them."""
     solids = list(scene.case.referred)
     for group, one in enumerate(scene.species):
         if name in (one.name, None if one.elastic is None else solids[one.elastic]):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.fields import FLUID
+from psph.output.flowing import ALL, counted
 from psph.output.gauges.carried import Carrier
 from psph.parallel.reductions import largest
 
@@ -22,7 +22,8 @@ class RunUpGauge(NamedTuple):
     ``run_up`` is the distance along the line, m, from the foot to the last particle of the fluid beside the
     line, without a gap below it, and the half of its cell, a cube with the ``spacing``, m, as its edge: a
     film of one layer counts, spray does not.  0 where the foot is dry.  ``height`` is that of this place
-    above the foot, m, along the unit vector ``up``.  With a ``carrier`` the ends are those of the start.
+    above the foot, m, along the unit vector ``up``.  Fluids are those of the groups ``of``.  With a
+    ``carrier`` the ends are those of the start.
     """
 
     name: str
@@ -32,6 +33,7 @@ class RunUpGauge(NamedTuple):
     spacing: float
     up: tuple[float, ...]
     carrier: Carrier | None = None
+    of: tuple[int, ...] = ALL
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time."""
@@ -44,7 +46,8 @@ class RunUpGauge(NamedTuple):
         length = math.dist(self.foot, self.top)
         along = (top - foot) / length
         store = simulation.store
-        away = store.shown("position")[store.shown("kind") == FLUID] - 0.5 * (foot + top)
+        own = counted(store.kinds, self.of)[store.shown("group")]
+        away = store.shown("position")[own] - 0.5 * (foot + top)
         for axis, period in enumerate(simulation.domain.periods):
             if period is not None:
                 away[:, axis] -= period * np.rint(away[:, axis] / period)
