@@ -1,4 +1,4 @@
-"""The documentation site: `./run/site` builds it from README.md, CHANGELOG.md and docs/."""
+"""The documentation site: `./run/site` builds it from the pages of docs/site/tree.py."""
 
 import sys
 from pathlib import Path
@@ -16,7 +16,7 @@ release = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "navigation", "catalogued", "plain"]
 root_doc = "docs/index"
 include_patterns = ["README.md", "CHANGELOG.md", "docs/**"]
-exclude_patterns = ["docs/images", "docs/site", "docs/gallery/images", ".*", "build", "dist", "results"]
+exclude_patterns = ["docs/images", "docs/gallery/images", "psph", "run", "tests"]
 
 myst_heading_anchors = 4
 suppress_warnings = ["misc.highlighting_failure"]  # outputs stand in blocks that no language reads

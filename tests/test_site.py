@@ -1,7 +1,6 @@
 """The documentation site: it builds without a warning, and no link in it leads nowhere."""
 
 import re
-import shutil
 import subprocess
 import sys
 from html import unescape
@@ -16,6 +15,7 @@ sys.path.insert(0, str(ROOT / "docs/site"))
 
 import navigation  # noqa: E402
 import plain  # noqa: E402
+import tree  # noqa: E402
 
 
 def build(source, out):
@@ -26,7 +26,7 @@ def build(source, out):
             "-m",
             "sphinx",
             "-c",
-            "docs",
+            str(ROOT / "docs"),
             "-b",
             "html",
             "-W",
@@ -45,18 +45,37 @@ def build(source, out):
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory):
-    out = tmp_path_factory.mktemp("site")
-    job = build(ROOT, out)
+def pages(tmp_path_factory):
+    """The committed pages and the generated ones."""
+    folder = tmp_path_factory.mktemp("site") / "pages"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT)
+        tree.make(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def site(pages):
+    out = pages.parent / "out"
+    job = build(pages, out)
     assert job.returncode == 0, job.stderr
     return out
 
 
-def test_every_page_is_there_and_is_found(site):
-    pages = navigation.pages_of(ROOT)
-    assert all((site / f"{page}.html").exists() for page in pages) and len(pages) > 30
+def test_generated_pages_stand_beside_the_committed_ones(pages):
+    for name, text in tree.GENERATED.items():
+        page = (pages / name).read_text(encoding="utf-8")
+        assert page == f"{(ROOT / name).read_text(encoding='utf-8')}\n{text()}" and len(page) > 10_000
+    cases = {path.relative_to(ROOT / "run/cases") for path in (ROOT / "run/cases").rglob("*.toml")}
+    made = {path.relative_to(pages / "docs/gallery") for path in (pages / "docs/gallery").rglob("*.md")}
+    assert made == {case.with_suffix(".md") for case in cases} | {Path("index.md")}
+
+
+def test_every_page_is_there_and_is_found(site, pages):
+    names = navigation.pages_of(pages)
+    assert all((site / f"{name}.html").exists() for name in names) and len(names) > 100
     index = (site / "searchindex.js").read_text(encoding="utf-8")
-    assert all(f'"{page}"' in index for page in pages)
+    assert all(f'"{name}"' in index for name in names)
     assert navigation.TOP in (site / "index.html").read_text(encoding="utf-8")
 
 
@@ -101,9 +120,6 @@ def test_the_reference_has_every_effect_with_its_parameters(site):
 def test_a_link_that_leads_nowhere_stops_the_build(tmp_path):
     """The control, on a site of one page."""
     (tmp_path / "docs").mkdir()
-    shutil.copytree(ROOT / "docs/site", tmp_path / "docs/site")
-    conf = (ROOT / "docs/conf.py").read_text(encoding="utf-8")
-    (tmp_path / "docs/conf.py").write_text(conf, encoding="utf-8")
     (tmp_path / "docs/index.md").write_text("# One\n\n## Part\n\n- [no](gone.md)\n", encoding="utf-8")
     job = build(tmp_path, tmp_path / "out")
     assert job.returncode != 0 and "gone" in job.stderr

@@ -1,6 +1,6 @@
-"""The page of what acts on what, docs/acts.md, from what effects, gauges and kinds of matter declare.
+"""What acts on what, from what effects, gauges and kinds of matter declare.
 
-``python -m psph.case.acts > docs/acts.md`` renews it.
+``python -m psph.case.acts`` prints the tables as Markdown; the site has them at the end of docs/acts.md.
 """
 
 from collections.abc import Iterable, Iterator
@@ -15,23 +15,7 @@ from psph.physics.walls.conditions import CONDITIONS, CORNERS
 HEAD = """\
 # What acts on what
 
-*For whoever combines parts of psph: on which matter each effect and each gauge acts, beside what it works,
-and what is refused.*
-
-<!-- Written by `python -m psph.case.acts > docs/acts.md`; change what the effects declare instead. -->
-
-✓ acts: on that matter, or beside it. A number: refused, in the words below. Empty: it leaves that matter as
-it is. Walls are in columns by their `condition`. A *solid* keeps its neighbours of the start (total
-Lagrangian), an *updated* one does not. A *frame* is one that moves, a *seam* is that of a periodic axis,
-*symmetry* a plane of symmetry. `explain` names the effects of a case as here, each with its key.
-
-The page is about pairs. Three together may be refused too: solids have no contact with each other in a
-fluid. `check` says so.
-
-An effect of your own says the same of itself: `acts` names the matter on which it acts, `refuses` has a
-sentence for each word beside which it does not work, both in the words of `psph/acts.py`. Without `acts` a
-body force pulls all matter, and any other effect acts on what flows: fluids, soils, updated solids. Fluids
-and soils share one loop: an effect that names one of them has to give 0 on the other (`of_fluids`).
+*For whoever combines parts of psph: all tables. docs/acts.md says how to read them.*
 """
 
 TITLES = dict(zip(MATTER, ("fluid", "soil", "updated", "solid", "body")))
@@ -46,14 +30,14 @@ def gauge_kinds() -> dict[str, type]:
 
 
 def page() -> str:
-    """docs/acts.md."""
+    """The tables of effects, gauges and matter, and a list of what is refused, in Markdown."""
     said: dict[str, int] = {}
     tables = (
         ("Effects", rows_of_effects(BUILT_IN)),
         ("Gauges", rows_of_gauges({f"gauges.*.{name}": table for name, table in gauge_kinds().items()})),
         ("Matter and surroundings", rows_of_kinds()),
     )
-    lines = [HEAD]
+    lines: list[str] = []
     for title, rows in tables:
         lines += [f"## {title}\n", *_table(rows, said), ""]
     lines += ["## What is refused\n", *(f"{number}. {says}" for says, number in said.items())]
@@ -74,4 +58,4 @@ def _cell(one: Answer, said: dict[str, int]) -> str:
 
 
 if __name__ == "__main__":
-    print(page(), end="")
+    print(HEAD, page(), sep="\n", end="")

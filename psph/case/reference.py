@@ -1,6 +1,6 @@
-"""The case reference, docs/case.md, from the schema.
+"""Every key of a case, from the schema: ``python -m psph.case.reference`` prints it as Markdown.
 
-``python -m psph.case.reference > docs/case.md`` renews it.
+The site has it at the end of docs/case.md.
 """
 
 from collections.abc import Iterator
@@ -14,61 +14,17 @@ from psph.case.schemes import by_default
 from psph.case.structure import Node, alternatives
 
 HEAD = """\
-# The case file
+# Every key of a case
 
-*For whoever writes a case file: every key, with its unit, its default and its bounds.*
-
-<!-- Written by `python -m psph.case.reference > docs/case.md`; change the models instead. -->
-
-A case is a TOML file. It holds the keys that differ from the defaults. `run/cases/` has examples. Units are
-SI. A length, a point or a velocity is a list with one number per dimension. psph refuses unknown keys,
-texts in place of numbers, `nan` and `inf`, and numbers other than 0 whose size is not between 1e-30 and
-1e30.
-
-`python -m psph check case.toml` checks a case without running it. `--set time.end=0.5` changes a key for
-one run.
-
-An effect is on when its key is in the case. `{}` gives it its default parameters. A value without braces
-sets the first parameter: `free_surface = 0.9` is short for `free_surface = { threshold = 0.9 }`.
-
-A `scheme` is a set of such keys: it sets those that the case does not give. The default is `"stable"`
-([scheme.md](scheme.md)). A `profile` changes a few keys of the default scheme, either for speed or for
-accuracy ([accuracy.md](accuracy.md#profiles)). The value `"off"` switches off an effect that a scheme or a
-profile has switched on. A scheme or profile that is given by `--set` also replaces the keys that the file
-gives itself.
-
-## Files that a case names
-
-A case without `use` is data: reading it executes nothing. `use` names Python files, and `run`, `resume`,
-`check`, `explain` and `study` execute them with all your rights. **Read the files of a stranger before you
-even check their case.** Measurements, motions and [geometry files](geometry.md) are read as numbers. All
-files must be in the folder of the case or below it, also after symbolic links are followed. `study --files
-DIR` allows another folder for measurements.
-
-## In an editor
-
-Editors complete keys, show their meaning and mark mistakes when they know the schema of a case. Write it
-beside the case, and name it in the first line of the case:
-
-```sh
-python -m psph schema > case.schema.json
-```
-
-```text
-#:schema ./case.schema.json
-```
-
-Taplo reads this line, and so do the editors that build on Taplo: VS Code with the extension *Even Better
-TOML*, Neovim, Helix, Emacs. `taplo lint case.toml` does the same without an editor. An editor does not read
-`use`: it marks keys that a Python file brings as unknown.
+*For whoever writes a case file: each key with its unit, default and bounds. docs/case.md has the rules.*
 """
 
 COLUMNS = ("key", "value", "default", "unit", "meaning")
 
 
 def reference() -> str:
-    """The case reference in Markdown."""
-    return "\n".join([HEAD, *_document()])
+    """All keys in Markdown, table by table."""
+    return "\n".join(_document())
 
 
 def _document() -> Iterator[str]:
@@ -258,4 +214,4 @@ def _sentence(text: str) -> str:
 
 
 if __name__ == "__main__":
-    print(reference(), end="")
+    print(HEAD, reference(), sep="\n", end="")

@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -27,7 +29,7 @@ from psph.acts import (
     refusals,
     refusals_of_effect,
 )
-from psph.case import CaseError, load
+from psph.case import CaseError, acts, load
 from psph.case.acts import gauge_kinds, page
 from psph.case.corners import (
     ACTS,
@@ -112,9 +114,13 @@ def key_of(name: str, dimensions: int = 2) -> str:
     return f'{key} = "{choice}"' if choice else f"{key} = {value_of(ASKED[name].effect, dimensions)}"
 
 
-def test_the_page_is_current():
-    text = (Path(__file__).parents[2] / "docs" / "acts.md").read_text(encoding="utf-8")
-    assert text == page(), "docs/acts.md is out of date: python -m psph.case.acts > docs/acts.md"
+def test_the_page_has_every_effect_and_gauge_and_numbers_what_is_refused(capsys):
+    runpy.run_path(acts.__file__, run_name="__main__")
+    text = page()
+    assert capsys.readouterr().out == f"{acts.HEAD}\n{text}"
+    assert all(f"| {name} |" in text for name in ASKED) and "| gauges.*.force |" in text.replace("`", "")
+    listed = re.findall(r"^(\d+)\. .+$", text, re.MULTILINE)
+    assert listed == [str(k + 1) for k in range(len(listed))] and f"| {listed[-1]} |" in text
 
 
 def test_every_sentence_is_a_line_that_says_what_to_do():

@@ -1,7 +1,7 @@
-"""``python -m psph.lab.gallery [CASE ...]``: run, draw and describe shipped cases, from the root of psph.
+"""``python -m psph.lab.gallery [CASE ...]``: run, draw and list shipped cases, from the root of psph.
 
 CASE is a name such as ``mud/bingham_slump``; without one all are drawn.  ``--missing``: those without a
-picture.  ``--pages``: only the pages are written.
+picture.  ``--pages``: only the page docs/gallery/index.md is written.
 """
 
 import sys
@@ -44,7 +44,7 @@ def main(words: Sequence[str]) -> int:
             failures += 1
             print(f"{one.name}: {error}", file=sys.stderr, flush=True)
     pages.write(shown)
-    print(f"wrote {pages.INDEX} and {len(shown)} pages")
+    print(f"wrote {pages.INDEX}")
     return 2 if failures else 0
 
 

@@ -1,4 +1,4 @@
-"""The pages of the gallery: a list with small pictures, and one page for each case."""
+"""The pages of the gallery: all cases with small pictures, and, on the site, one page for each case."""
 
 import os
 import shlex
@@ -14,12 +14,12 @@ HEAD = """\
 
 <!-- Written by `./run/gallery --pages`; change the heads of the cases instead. -->
 
-*For whoever looks for a case to start from: a picture of each case of `run/cases/`, its text, and the command
-that runs it.*
+*For whoever looks for a case to start from: a picture of each case of `run/cases/`.*
 
-{drawn} of {all} cases have a picture{films}. A picture comes from the case as it stands, or from a coarser or
-shorter run: the page of the case has the commands. `./run/gallery` draws all of them again, `./run/gallery
-dam_break` one, `./run/gallery --missing` those without a picture.
+The head of each case file says what is simulated, where the case comes from, what to expect, and the command
+that runs it. On the site each case has a page with its film. {drawn} of {all} cases have a picture; some show
+a coarser or shorter run. `./run/gallery` draws all of them again, `./run/gallery dam_break` only one,
+`./run/gallery --missing` those without a picture.
 """
 ACROSS = 3
 """Pictures beside each other."""
@@ -27,28 +27,30 @@ TITLES = {"": "Flows", "hard": "Hard cases of the [battery](../stability.md#the-
 """Headings for folders of cases; another has its name."""
 
 
-def index(shown: list[Shown]) -> str:
-    """The list of all cases."""
-    drawn, films = (
-        sum(path.exists() for path in paths) for paths in zip(*((s.still, s.film) for s in shown))
-    )
-    said = f", {films} of them a film" if films else ""
-    return "\n".join([HEAD.format(drawn=drawn, all=len(shown), films=said), *_groups(shown)])
+def index(shown: list[Shown], *, site: bool = False) -> str:
+    """All cases with pictures; each leads to its file, or on the site, with its sentence, to its page."""
+    drawn = sum(one.still.exists() for one in shown)
+    return "\n".join([HEAD.format(drawn=drawn, all=len(shown)), *_groups(shown, site)])
 
 
-def _groups(shown: list[Shown]) -> Iterator[str]:
+def _groups(shown: list[Shown], site: bool) -> Iterator[str]:
     for folder, group in groupby(shown, key=lambda s: s.path.parent.relative_to(CASES).as_posix()):
         title = TITLES.get(folder.removeprefix("."), folder.capitalize())
         yield f"## {title}\n"
-        cells = [
-            f"{_small(s)}[{s.name.rpartition('/')[2]}]({_from(INDEX, s.page)}): {_cell(s.sentence)}"
-            for s in group
-        ]
+        cells = [_small(one) + (_told(one) if site else _named(one, one.path)) for one in group]
         yield "| | | |\n|---|---|---|"
         for k in range(0, len(cells), ACROSS):
             row = cells[k : k + ACROSS]
             yield f"| {' | '.join(row + [''] * (ACROSS - len(row)))} |"
         yield ""
+
+
+def _told(one: Shown) -> str:
+    return f"{_named(one, one.page)}: {_cell(one.sentence)}"
+
+
+def _named(one: Shown, target: Path) -> str:
+    return f"[{one.name.rpartition('/')[2]}]({_from(INDEX, target)})"
 
 
 def _small(one: Shown) -> str:
@@ -106,11 +108,14 @@ def _from(page: Path, target: Path) -> str:
 
 
 def write(shown: list[Shown]) -> None:
-    """Write the list and all pages; pages of cases that are no more go."""
-    pages = {one.page: page(one) for one in shown}
-    pages[INDEX] = index(shown)
-    for old in set(PAGES.rglob("*.md")) - set(pages):
-        old.unlink()
-    for path, text in pages.items():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+    """Write the committed page."""
+    INDEX.parent.mkdir(parents=True, exist_ok=True)
+    INDEX.write_text(index(shown), encoding="utf-8")
+
+
+def write_all(shown: list[Shown], folder: Path) -> None:
+    """Write the pages of the site below a folder: the list, and a page for each case."""
+    texts = {one.page: page(one) for one in shown} | {INDEX: index(shown, site=True)}
+    for path, text in texts.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text, encoding="utf-8")
