@@ -13,9 +13,6 @@ from psph.lab.bench.measure import AGAINST
 from psph.lab.bench.results import read_runs
 from psph.output.pages import command
 
-PHASES = ("pairs", "rebuild", "halo", "limits")
-"""Phases with a column of their own; the rest goes together."""
-
 LIKE = 0.1
 """Numbers of particles that differ by less than this part count as the same."""
 
@@ -50,22 +47,6 @@ def _tables(runs: list[dict]) -> Iterator[str]:
                 "psph/LAMMPS",
             ),
             map(_pace, here),
-        )
-        yield ""
-        yield "Where a step's time goes, and what the pair loop reaches of these two ceilings:"
-        yield ""
-        yield from _table(
-            (
-                "problem",
-                "particles",
-                "neighbours",
-                "ranks × threads",
-                *PHASES,
-                "the rest",
-                "multiply-adds",
-                "copy",
-            ),
-            map(_shares, (run for run in here if "flops_share" in run["roofline"])),
         )
         if scaled := list(_scaled(here)):
             yield ""
@@ -161,13 +142,6 @@ def _pace(run: dict) -> tuple[str, ...]:
         _percent(run["spread"]),
         *beside,
     )
-
-
-def _shares(run: dict) -> tuple[str, ...]:
-    share, roof = run["share"], run["roofline"]
-    own = [share.get(phase, 0.0) for phase in PHASES]
-    columns = [*own, 1.0 - sum(own), roof["flops_share"], roof["bytes_share"]]
-    return (*_what(run), *map(_percent, columns))
 
 
 def _against(run: dict) -> tuple[str, ...]:

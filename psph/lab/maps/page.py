@@ -1,7 +1,7 @@
 """The maps of a page: ``python -m psph.lab.maps.page PAGE FOLDER...``.
 
 Each FOLDER holds the map of a lattice.  Between the markers of the page come the h/dx that are
-stable on each, the first map in full, and the pictures of all, which go into ``images/`` beside it.
+stable on each, and the pictures of all, which go into ``images/`` beside it.
 """
 
 import csv
@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from psph.lab.maps.tables import CSV, PAGE, PICTURE
+from psph.lab.maps.tables import CSV, PICTURE
 from psph.output.pages import command, picture, results
 from psph.theory.stability import STATES
 from psph.theory.stability.windows import windows
@@ -26,11 +26,10 @@ def maps(page: Path, folders: Sequence[Path]) -> str:
         with results(folder, "map"):
             with open(folder / CSV, encoding="utf-8", newline="") as file:
                 every.append(list(csv.DictReader(file)))
-            first = (folders[0] / PAGE).read_text(encoding="utf-8")
             caption = f"Growth on the {every[-1][0]['lattice']} lattice"
             name = f"stability_{folder.name}"
             pictures.append(picture(page, folder / PICTURE, name, caption))
-    return "\n".join([*_table(every), "", first, *(f"{one}\n" for one in pictures)])
+    return "\n".join([*_table(every), "", *(f"{one}\n" for one in pictures)])
 
 
 def _table(every: Sequence[Rows]) -> Iterator[str]:

@@ -3,9 +3,12 @@
 from pathlib import Path
 
 from psph.lab.bench import PROBLEMS
-from psph.lab.bench.report import PHASES, tables
+from psph.lab.bench.report import tables
 from psph.lab.bench.results import read_runs
 from psph.lab.report.sheet import Told
+
+PHASES = ("pairs", "rebuild", "halo", "limits")
+"""Phases with a bar of their own; the rest goes together."""
 
 
 def told(path: Path) -> Told | None:

@@ -1,35 +1,75 @@
 """The measured part of a page: ``python -m psph.lab.study.page PAGE FOLDER...``.
 
-Each FOLDER holds a study; its table, its sentences and its picture come between the markers of
-the page, the pictures into ``images/`` beside it.  Two tables join the studies: what ladders
-predict for their finest run, and what the profiles cost.
+Each FOLDER holds a study.  Between the markers of the page come a row for each series of spacings, what
+series predict for their finest run, what the profiles cost, and the pictures, which go into ``images/``
+beside the page.
 """
 
 import json
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from psph.case.profiles import OFF, PROFILES
+from psph.lab.study.fit import Ladder
 from psph.lab.study.ladder import PROFILE, SPACING, toml
 from psph.lab.study.report import percent, seconds
 from psph.lab.study.runs import DONE
-from psph.lab.study.study import KEPT, PAGE, PICTURE, ladders_of
+from psph.lab.study.study import KEPT, PICTURE, ladders_of
+from psph.lab.study.words import within
 from psph.output.pages import command, picture, results
 
 
-def studies(page: Path, folders: Iterable[Path]) -> str:
+def studies(page: Path, folders: Sequence[Path]) -> str:
     """The results of the studies, for a page; their pictures are copied.  OutputError: no study there."""
     found = [(folder, _kept(folder)) for folder in folders]
     alone = [(folder, kept) for folder, kept in found if PROFILE not in kept["vary"]]
     of_profiles = [kept for _, kept in found if PROFILE in kept["vary"]]
-    lines = [line for folder, _ in alone for line in _one(page, folder)]
-    return "\n".join([*lines, *_predictions(alone), *(_profiles(of_profiles) if of_profiles else ())])
+    parts = [
+        _series(alone),
+        _predictions(alone),
+        _profiles(of_profiles),
+        _pictures(page, [folder for folder, _ in alone]),
+    ]
+    return "\n".join(line for part in parts for line in part)
 
 
 def _kept(folder: Path) -> dict:
     with results(folder, "study"):
         return json.loads((folder / KEPT).read_text(encoding="utf-8"))
+
+
+def _series(found: list[tuple[Path, dict]]) -> Iterator[str]:
+    """A row for each series of spacings: its errors, and what the finest run costs."""
+    if not found:
+        return
+    yield "## Error and seconds"
+    yield ""
+    yield "| study | error of | spacing | L2 error | finest run | order |"
+    yield "|---" * 6 + "|"
+    for folder, kept in found:
+        what = kept["error"].partition(" ")[0]
+        for shared, rows, ladder in ladders_of(kept["rows"], kept["vary"], kept["dimensions"]):
+            name = ", ".join([folder.name, *map(str, shared.values())])
+            places = ", ".join(toml(row[SPACING]) for row in rows if SPACING in row)
+            errors = ", ".join(_error(row) for row in rows)
+            cells = name, what, places, errors, _finest(rows[-1]), _order(ladder)
+            yield f"| {' | '.join(cells)} |"
+    yield ""
+
+
+def _error(row: dict) -> str:
+    return percent(row["error_l2"]) if row["status"] == DONE else "stopped"
+
+
+def _finest(row: dict) -> str:
+    return seconds(row["seconds"]) if row["status"] == DONE else "–"
+
+
+def _order(ladder: Ladder | None) -> str:
+    if ladder is None:
+        return "–"
+    return f"{ladder.order.value:.2f}{within(ladder.order, '.2f')}" if ladder.steady else "not steady"
 
 
 def _predictions(found: list[tuple[Path, dict]]) -> Iterator[str]:
@@ -56,6 +96,8 @@ def _predictions(found: list[tuple[Path, dict]]) -> Iterator[str]:
 
 def _profiles(every: list[dict]) -> Iterator[str]:
     """A line for each case and spacing: error and seconds of each profile."""
+    if not every:
+        return
     yield "## The cost of profiles"
     yield ""
     yield f"| case | error of | spacing | default scheme | {' | '.join(PROFILES)} |"
@@ -76,17 +118,11 @@ def _cell(row: dict | None) -> str:
     return f"{percent(row['error_l2'])} in {seconds(row['seconds'])}"
 
 
-def _one(page: Path, folder: Path) -> Iterator[str]:
-    shown = folder / PICTURE
-    with results(folder, "study"):
-        text = (folder / PAGE).read_text(encoding="utf-8").rstrip()
-    title, _, rest = text.partition("\n")
-    yield f"#{title.removesuffix(': what accuracy costs')}"
-    yield rest.strip("\n")
-    if shown.exists():
-        yield ""
-        yield picture(page, shown, f"accuracy_{folder.name}", "Error against seconds")
-    yield ""
+def _pictures(page: Path, folders: Iterable[Path]) -> Iterator[str]:
+    for folder in folders:
+        if (folder / PICTURE).exists():
+            yield picture(page, folder / PICTURE, f"accuracy_{folder.name}", f"{folder.name}: error, seconds")
+            yield ""
 
 
 def main(arguments: list[str]) -> int:

@@ -476,8 +476,7 @@ def test_a_study_comes_onto_a_page_with_its_picture(done, tmp_path):
     page.write_text(f"# Before\n{BEGIN}\nold\n{END}\nafter\n")
     assert on_page([str(page), str(folder / "out")]) == 0
     text = page.read_text()
-    assert "## wave" in text and "old" not in text and text.endswith(f"{END}\nafter\n")
-    assert "| space.spacing |" in text and "costs" in text
+    assert "| out | velocity | " in text and "old" not in text and text.endswith(f"{END}\nafter\n")
     assert "(images/accuracy_out.png)" in text and (tmp_path / "images/accuracy_out.png").exists()
     assert on_page([str(page), str(tmp_path)]) == 2 and on_page([]) == 2
 
@@ -498,7 +497,7 @@ def test_studies_of_profiles_come_as_one_table(done, tmp_path):
     assert on_page([str(page), str(kept), str(folder / "out")]) == 0
     text = page.read_text()
     assert "| wave | velocity | 0.02 | – | 1.23 % in 4.2 s | the run blew up at step 3 |" in text
-    assert text.index("## wave") < text.index("## The cost") and text.count("## ") == 2
+    assert text.index("## Error") < text.index("## The cost") and text.count("## ") == 2
 
 
 def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
@@ -506,7 +505,6 @@ def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
     page, kept = tmp_path / "page.md", tmp_path / "vortex"
     page.write_text(f"{BEGIN}\n{END}\n")
     kept.mkdir()
-    (kept / "study.md").write_text("# Vortex: what accuracy costs\n")
     rows = [
         {
             "space.spacing": 0.08 / 2**k,
@@ -521,7 +519,9 @@ def test_what_ladders_predicted_of_their_finest_run_is_a_table(tmp_path):
     told = {"vary": ["space.spacing"], "rows": rows, "error": "velocity", "case": "a.toml", "dimensions": 2}
     (kept / "study.json").write_text(json.dumps(told))
     assert on_page([str(page), str(kept)]) == 0
-    assert "| vortex | 0.01 | 0.25 % | 0.3 % | 51.2 | 51.2 |" in page.read_text()
+    text = page.read_text()
+    assert "| vortex | 0.01 | 0.25 % | 0.3 % | 51.2 | 51.2 |" in text
+    assert "| vortex | velocity | 0.08, 0.04, 0.02, 0.01 | 16 %, 4 %, 1 %, 0.3 % | 51 s | 1.9" in text
 
 
 def test_rows_of_a_probe_without_fluid_in_reach_are_left_out():
