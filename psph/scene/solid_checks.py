@@ -158,8 +158,8 @@ def _answers(scene: "Scene", number: int, key: str, table) -> Iterator[str]:
     share = impedance(scene, number, table)
     if share > HEAVY:
         yield (
-            f"{key}: the fluid takes {100.0 * share:.0f} % of its speed in a step, so thin and light it is: "
-            "they will shake each other; make it thicker, or give a smaller time.cfl"
+            f"{key}: the fluid takes {100.0 * share:.0f} % of its speed in a step, so light it is, or thin: "
+            "they will shake each other; give a smaller time.cfl, or make it heavier, or a thin one thicker"
         )
     needed = calming(scene, number, table)
     if table.damping is not None and table.damping < 0.5 * needed:

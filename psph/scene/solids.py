@@ -20,6 +20,10 @@ from psph.scene.lattice import TOLERANCE
 FLAT = 0.95
 """Length of the mean of the normals half a spacing around a particle from which no edge is near."""
 
+DEEPEST = 4
+"""Particles below a face that a wave along it moves, at most: the steepest ones do not reach deeper, however
+thick a solid is (docs/coupling.md)."""
+
 if TYPE_CHECKING:
     from psph.case.solids import Clamp
     from psph.scene.scene import Scene
@@ -62,10 +66,12 @@ def _damping(scene: "Scene", number: int, table) -> float:
 
 
 def impedance(scene: "Scene", number: int, table) -> float:
-    """ρ_f c Δt/(ρ_s H) of a solid in a fluid, H its thickness: the part of its speed that it loses in a step
-    Δt of the fluid to the sound that it makes."""
+    """ρ_f c Δt/(ρ_s H) of a solid in a fluid: the part of its speed that it loses in a step Δt to sound.
+
+    H is its thickness, or the depth to which waves along its face reach, 4 spacings.
+    """
     density = max(fluid.density for fluid in scene.case.fluids.values())
-    thickness = across(scene, number)[0] * scene.spacing
+    thickness = min(across(scene, number)[0], DEEPEST) * scene.spacing
     return density * scene.sound_speed * step_of_fluid(scene) / (table.density * thickness)
 
 

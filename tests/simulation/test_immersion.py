@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from drafts import draft, refusal
+from gauging import readings, started
 from long import LONG
 from mpi4py import MPI
 
@@ -230,6 +231,53 @@ young = 1.0e5
 poisson = 0.3
 """
 """A block as heavy as water in a tank of it, under 3.4 kPa, and ten times as soft as the water is for its sound."""
+
+
+DISC = """
+[space]
+dimensions = 2
+spacing = 0.025
+[time]
+end = 1.5
+[physics]
+sound_speed = 6.0
+[fluids.oil]
+viscosity = 0.02
+velocity_gradient = [[0.0, -1.0], [1.0, 0.0]]
+shape.difference.from.disc = { center = [0.0, 0.0], radius = 0.5 }
+shape.difference.minus = [{ disc = { center = [0.1, 0.0], radius = 0.15 } }]
+[walls.drum]
+no_slip = true
+motion = { rotation = { speed = 1.0, center = [0.0, 0.0] } }
+shape.difference.from.disc = { center = [0.0, 0.0], radius = 0.6 }
+shape.difference.minus = [{ disc = { center = [0.0, 0.0], radius = 0.5 } }]
+[solids.disc]
+shape.disc = { center = [0.1, 0.0], radius = 0.15 }
+density = 1000.0
+young = 1e5
+poisson = 0.3
+velocity_gradient = [[0.0, -1.0], [1.0, 0.0]]
+[gauges.disc]
+force = { on = ["disc"] }
+"""
+"""A thick disc that turns with the drum and the oil around it."""
+
+
+@LONG
+@pytest.mark.parametrize(("young", "calm"), [(1e5, True), (1e6, True), (1e5, False)])
+def test_a_thick_solid_turns_with_its_fluid_and_does_not_shake(young, calm, monkeypatch, tmp_path):
+    if not calm:  # the control: the thickness of the whole disc
+        monkeypatch.setattr("psph.scene.solids.DEEPEST", np.inf)
+    simulation, scene = started(draft(tmp_path, DISC, f"solids.disc.young={young}"))
+    while simulation.time < 1.2:
+        simulation.step()
+    borne = 0.0
+    while simulation.time < 1.3:
+        simulation.step()
+        found = readings(simulation, scene)
+        borne = max(borne, np.hypot(found["disc.force_x"], found["disc.force_y"]))
+    centripetal = 1000.0 * np.pi * 0.15**2 * 0.1
+    assert borne < 1.5 * centripetal if calm else borne > 4.0 * centripetal
 
 
 @LONG
