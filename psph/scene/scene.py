@@ -269,7 +269,7 @@ class Scene:
                 modulus_shown(self, index),
                 getattr(self.parts[source], "wave_speed", self.sound_speed),
                 getattr(self.parts[source], "stress_diffusion", 0.0),
-                getattr(self.parts[source], "at_rest", 1.0),
+                self.stressed.rest_coefficient_of(source),
             )
             for index, (name, source, start) in enumerate(zip(self.names, shown_by(self), self.starts))
         )

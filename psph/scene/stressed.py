@@ -104,6 +104,20 @@ class Stressed:
         friction, cohesion, _ = self.soils[part].pyramid if part in self.soils else (0, 0, 0)
         return cohesion / friction if friction else NEVER
 
+    def rest_coefficient_of(self, part: int) -> float:
+        """K₀ of the whole stress of a part, that of the water in the pores of a soil with it; 1 of others."""
+        if part not in self.soils:
+            return 1.0
+        soil, census = self.soils[part], self._scene.census
+        water = 0.0
+        if soil.water_level is not None:
+            up = int(np.abs(self._scene.gravity).argmax())
+            ends = np.array([census.lowest[part, up], census.highest[part, up]])
+            low, high = np.sort(-np.sign(self._scene.gravity[up]) * ends)
+            wet = np.clip((soil.water_level - low) / max(high - low, self._scene.spacing), 0.0, 1.0)
+            water = float(wet) * soil.water_density / soil.density
+        return soil.at_rest + (1.0 - soil.at_rest) * water
+
     @property
     def diffusion(self) -> float:
         """How strongly the stress of a soil spreads between neighbours at most; 0 without."""

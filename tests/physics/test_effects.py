@@ -142,17 +142,23 @@ def gathered(effect, particles, i, *others):
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 @pytest.mark.parametrize("moves", (False, True))
-def test_an_extrapolated_wall_has_the_pressure_of_the_fluid_and_its_weight(dim, moves):
-    """Of a wall that moves g − a_w is the weight."""
+@pytest.mark.parametrize("soils", (False, True))
+def test_an_extrapolated_wall_has_the_pressure_of_the_fluid_and_its_weight(dim, moves, soils):
+    """Of a wall that moves g − a_w is the weight; the mean stress of a soil takes (1 + 2K₀)/3 of it."""
     gravity = (2.0, -9.8, 0.5)[:dim]
     wall = SimpleNamespace(extrapolated=True, motion=Rigid(()) if moves else Fixed())
-    effect = ExtrapolatedWall().in_scene(SimpleNamespace(gravity=gravity, frame=None, species=(wall,)))
+    stressed = SimpleNamespace(laws=(None,) if soils else ())
+    effect = ExtrapolatedWall().in_scene(
+        SimpleNamespace(gravity=gravity, frame=None, species=(wall,), stressed=stressed)
+    )
     p = view(n=5, dim=dim)
     gravity = np.add(gravity, [x[1] for x in p.apparent]) if moves else gravity
     p = p._replace(is_fluid=np.array([1, 0, 1, 1, 0.0]), extrapolated=np.array([0, 1, 0, 0, 0.0]))
     fluid = (0, 2, 3)
     w = np.array([written_out(p, 1, b)[3] for b in fluid])
     depth = np.array([written_out(p, 1, b)[0] @ gravity for b in fluid])
+    if soils:
+        depth = depth * (1.0 + 2.0 * p.rest_coefficient[[*fluid]]) / 3.0
     told = p.pressure[[*fluid]] + depth / p.specific_volume[[*fluid]]
     assert gathered(effect, p, 1, 0, 2, 3, 4) == pytest.approx(w @ told / w.sum())  # 4 is a wall too
     assert gathered(effect, p, 1, 4) == 0.0  # no fluid in reach

@@ -1,8 +1,9 @@
 """Walls whose pressure follows from that of the fluid before them."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from psph.acts import FLOWING
+from psph.engine.jit import call_by_type
 from psph.fields import PRESSURE
 from psph.physics.facts import Facts
 from psph.physics.motion import is_prescribed
@@ -11,13 +12,34 @@ from psph.physics.walls.slip import NO_FLUID
 from psph.vectors import along, dot
 
 
+class Floating(NamedTuple):
+    """All before walls is fluid: its pressure grows by its weight."""
+
+    def share(self, j):
+        """Of its weight in the growth of its pressure."""
+        return 1.0
+
+
+class Leaning(NamedTuple):
+    """Before walls is soil: across gravity it presses by K₀, and its pressure is the mean of its stresses."""
+
+    def share(self, j):
+        """Of its weight in the growth of its pressure."""
+        return (1.0 + 2.0 * j.rest_coefficient) / 3.0
+
+
+share = call_by_type("share")
+"""(leaning, j) → the share of its weight by which the pressure of j grows downwards."""
+
+
 class ExtrapolatedWall(NamedTuple):
     """A wall bears the pressure of the fluid before it, continued into the wall by the weight of the fluid.
 
     p_w = Σ_f (p_f + ρ_f g·x_wf) W_wf / Σ_f W_wf over the fluid, 0 where none is in reach, and ρ_w = ρ(p_w)
-    by the wall's equation of state.  Adami, Hu & Adams (2012), J. Comput. Phys. 231, 7057, eqs. (27), (28);
-    of a wall that moves g − a_w stands for g.  It is gathered before the forces, from the pressures of the
-    same step: one of the step before would feed the waves that a wall reflects.
+    by the wall's equation of state; of a soil (1 + 2K₀)/3 of its weight, by which its mean stress grows, and
+    the rest of its stress in proportion.  Adami, Hu & Adams (2012), J. Comput. Phys. 231, 7057, eqs. (27) and
+    (28); of a wall that moves g − a_w stands for g.  It is gathered before the forces, from the pressures of
+    the same step: one of the step before would feed the waves that a wall reflects.
     """
 
     acts = (*FLOWING, EXTRAPOLATED)
@@ -28,10 +50,11 @@ class ExtrapolatedWall(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows gravity, and where such a wall or the frame moves its acceleration too."""
         gravity = tuple(g or None for g in scene.gravity)
+        leaning = Leaning() if scene.stressed.laws else Floating()
         moving = any(one.extrapolated and is_prescribed(one.motion) for one in scene.species)
         if moving or scene.frame is not None:
-            return ExtrapolatedInMotion(gravity)
-        return ExtrapolatedUnderGravity(gravity)
+            return ExtrapolatedInMotion(gravity, leaning)
+        return ExtrapolatedUnderGravity(gravity, leaning)
 
 
 def _has_sum(self, i):
@@ -56,6 +79,7 @@ class ExtrapolatedUnderGravity(NamedTuple):
     """
 
     gravity: tuple[float | None, ...]
+    leaning: Any = Floating()
 
     writes = PRESSURE
     """In other particles it stays as it is."""
@@ -65,7 +89,8 @@ class ExtrapolatedUnderGravity(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take a fluid neighbour j into both."""
         w = j.is_fluid * pair.w
-        p = j.pressure + along(pair.x_ij, self.gravity) / j.specific_volume
+        weight = share(self.leaning, j) * along(pair.x_ij, self.gravity)
+        p = j.pressure + weight / j.specific_volume
         return total[0] + w, total[1] + p * w
 
     def linear(self, scene: Facts):
@@ -83,6 +108,7 @@ class ExtrapolatedInMotion(NamedTuple):
     """
 
     gravity: tuple[float | None, ...]
+    leaning: Any = Floating()
 
     writes = PRESSURE
     tells = "extrapolated"
@@ -90,7 +116,8 @@ class ExtrapolatedInMotion(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take a fluid neighbour j into both."""
         w = j.is_fluid * pair.w
-        weight = along(pair.x_ij, self.gravity) + dot(pair.x_ij, i.apparent)
+        pull = along(pair.x_ij, self.gravity) + dot(pair.x_ij, i.apparent)
+        weight = share(self.leaning, j) * pull
         return total[0] + w, total[1] + (j.pressure + weight / j.specific_volume) * w
 
     has_sum, start, finish_value = _has_sum, _start, _finish_value
