@@ -1,7 +1,7 @@
 """The battery's part of a page: ``python -m psph.lab.battery.page PAGE FOLDER``.
 
-FOLDER holds a battery; its tables come between the markers of the page, its picture goes into
-``images/`` beside it.
+FOLDER holds a battery; what it tells in words comes between the markers of the page, its picture goes into
+``images/`` beside it.  The tables stay in the folder.
 """
 
 import sys
@@ -16,12 +16,13 @@ MARKER = "battery"
 
 
 def part(page: Path, folders: Sequence[Path]) -> str:
-    """What the page tells of the last battery: all but the details.  OutputError: none there."""
+    """What the page tells of the last battery: all but its tables.  OutputError: none there."""
     folder = folders[-1]
     with results(folder, "battery"):
         text = (folder / PAGE).read_text(encoding="utf-8")
         shown = picture(page, folder / PICTURE, "battery", "Verdicts of the battery")
-    return f"{text.partition(DETAILS)[0].rstrip()}\n\n{shown}\n"
+    told = [line for line in text.partition(DETAILS)[0].splitlines() if not line.startswith("|")]
+    return "\n".join([shown, "", *told]).rstrip() + "\n"
 
 
 def main(arguments: list[str]) -> int:

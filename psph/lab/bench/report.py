@@ -8,7 +8,6 @@ import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from psph.lab.bench import PROBLEMS
 from psph.lab.bench.measure import AGAINST
 from psph.lab.bench.results import read_runs
 from psph.output.pages import command
@@ -37,8 +36,8 @@ def _tables(runs: list[dict]) -> Iterator[str]:
             (
                 "problem",
                 "particles",
-                "neighbours",
-                "ranks × threads",
+                "neighbours, mean/bulk",
+                "ranks×threads",
                 "precision",
                 "M particle-steps/s a core",
                 "M pairs/s a core",
@@ -75,8 +74,8 @@ def _tables(runs: list[dict]) -> Iterator[str]:
                 (
                     "problem",
                     "particles",
-                    "neighbours",
-                    "ranks × threads",
+                    "neighbours, mean/bulk",
+                    "ranks×threads",
                     "M particle-steps/s",
                     "against",
                     "its neighbours",
@@ -98,7 +97,7 @@ def _scaled(runs: list[dict]) -> Iterator[tuple[str, ...]]:
                 pace = many["particle_steps_per_second"] / one["particle_steps_per_second"]
                 between = many["share"].get("halo", 0.0) + many["share"].get("limits", 0.0)
                 yield (
-                    f"{PROBLEMS[many['problem']]}, {many['dimensions']}D",
+                    _name(many),
                     str(many["neighbours_in_bulk"]),
                     many["precision"],
                     f"{one['particles']:,}",
@@ -119,9 +118,13 @@ def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[s
 
 
 def _what(run: dict) -> tuple[str, ...]:
-    name = f"{PROBLEMS[run['problem']]}, {run['dimensions']}D"
-    neighbours = f"{run['neighbours']:.0f} (bulk {run['neighbours_in_bulk']})"
-    return name, f"{run['particles']:,}", neighbours, f"{run['ranks']} × {run['threads']}"
+    neighbours = f"{run['neighbours']:.0f}/{run['neighbours_in_bulk']}"
+    return _name(run), f"{run['particles']:,}", neighbours, f"{run['ranks']}×{run['threads']}"
+
+
+def _name(run: dict) -> str:
+    """``falling, 3D``."""
+    return f"{run['problem']}, {run['dimensions']}D"
 
 
 def _pace(run: dict) -> tuple[str, ...]:
@@ -131,8 +134,8 @@ def _pace(run: dict) -> tuple[str, ...]:
         peer = run["peer"]
         pace = _millions(peer["particle_steps_per_second"] / cores)
         beside = (
-            f"{pace} (spread {_percent(peer['spread'])})",
-            f"{peer['ratio']:.2f} (spread {_percent(peer['ratio_spread'])})",
+            f"{pace} ± {_percent(peer['spread'])}",
+            f"{peer['ratio']:.2f} ± {_percent(peer['ratio_spread'])}",
         )
     return (
         *_what(run),

@@ -187,7 +187,8 @@ def test_files_of_the_battery(quick, tmp_path, capsys):
     (tmp_path / "images").mkdir()
     assert on_page([str(page), str(folder)]) == 0
     made = page.read_text(encoding="utf-8")
-    assert "| rotating patch, coarse |" in made and "before\n" not in made and "after\n" in made
+    assert "- `stable` holds in" in made and "| rotating" not in made
+    assert "before\n" not in made and "after\n" in made
     assert "(images/battery.png)" in made and (tmp_path / "images/battery.png").exists()
     assert on_page([str(page), str(tmp_path)]) == 2 and on_page([]) == 2
     assert "give the folder of a battery" in capsys.readouterr().err

@@ -226,7 +226,7 @@ def test_tables_stand_between_the_markers(result, tmp_path):
     assert "old" not in text and text.count(BEGIN) == 1
     pace = f"{result['particle_steps_per_second'] / 1e6:.2f}"
     [plain, beside] = [line for line in text.splitlines() if f"| {pace} |" in line]
-    assert "| – | – |" in plain and "| 1.00 (spread 10 %) | 1.75 (spread 2 %) |" in beside
+    assert "| – | – |" in plain and "| 1.00 ± 10 % | 1.75 ± 2 % |" in beside
     columns = [line.count("|") for line in text.splitlines() if line.startswith("|")]
     assert columns == [11] * 4
 
