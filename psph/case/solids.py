@@ -11,6 +11,7 @@ from psph.case.keys import Name, Table, Vector, key
 from psph.case.motion import Motions
 from psph.case.shapes import Shape
 from psph.case.updated import OF_SOLIDS, TOTAL, UPDATED, updated
+from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS
 from psph.physics.solid.laws import LAWS
 
 
@@ -114,8 +115,13 @@ class Solid(Hookean):
         None,
         otherwise="the first fluid",
     )
-    hourglass: float = key(
-        "strength α of the control of zigzag modes, which cause no stress", 1.5, unit="1", ge=0, le=10
+    hourglass: float | None = key(
+        "strength α of the control of zigzag modes, which cause no stress",
+        None,
+        unit="1",
+        otherwise=f"{HOURGLASS:g}; in 3D, where no axis repeats, {SHARED_HOURGLASS:g} and shares",
+        ge=0,
+        le=10,
     )
     critical_stretch: float | None = key(
         "strain of a bond (length over that at the start, minus 1) beyond which it is cut for good: cracks",

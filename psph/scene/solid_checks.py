@@ -65,8 +65,8 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
     for number, name in _elastic(scene):
         yield from _of_either_description(scene, number, name)
     for number, (name, table) in enumerate(scene.case.referred.items(), scene.layout.fluids):
-        if not table.hourglass:
-            yield (f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; give 1.5")
+        if table.hourglass == 0:
+            yield f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; remove it"
         yield from _numbers(f"solids.{name}", table)
         for load, pulling in table.loads.items():
             if not _pulls(scene, [number], pulling.shape):

@@ -1,7 +1,7 @@
 """What the elastic solids of a case are made of, and the planes that they may hit."""
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -11,9 +11,19 @@ from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import OF_CONTACT, OF_FRICTION, REACH, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
-from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, SMOOTHING, STRESS_ZZ
+from psph.physics.solid.deformation import (
+    DRAWN,
+    HOURGLASS,
+    INERTIA,
+    OF_SOLIDS,
+    REFERENCE,
+    SHARED_HOURGLASS,
+    SMOOTHING,
+    STRESS_ZZ,
+)
 from psph.physics.solid.material import MADE_OF, Solid, calming_viscosity, is_heated, remembers, solid_of
 from psph.physics.solid.plastic import OF_PLASTIC
+from psph.physics.solid.shares import SHARE
 from psph.scene.distance import endless, faces_of
 from psph.scene.lattice import TOLERANCE
 
@@ -49,6 +59,7 @@ def solids_of(scene: "Scene") -> tuple[Solid, ...]:
         solid_of(
             name,
             **{key: getattr(table, key) for key in MADE_OF},
+            **_control(scene, table),
             damping=_damping(scene, number, table),
             johnson_cook=table.johnson_cook and dict(table.johnson_cook),
             mie_gruneisen=table.mie_gruneisen and dict(table.mie_gruneisen),
@@ -56,6 +67,17 @@ def solids_of(scene: "Scene") -> tuple[Solid, ...]:
         )
         for number, (name, table) in enumerate(scene.case.referred.items())
     )
+
+
+def _control(scene: "Scene", table) -> dict[str, Any]:
+    """The hourglass control of a solid: as given, or by default; ``shared`` where it is the default of bars.
+
+    What is drawn out along an axis that repeats is a plate and has that of 2D, so that both do the same.
+    """
+    if table.hourglass is not None:
+        return {"hourglass": table.hourglass, "shared": False}
+    shared = scene.dimensions == 3 and not any(scene.periods)
+    return {"hourglass": SHARED_HOURGLASS if shared else HOURGLASS, "shared": shared}
 
 
 def _damping(scene: "Scene", number: int, table) -> float:
@@ -139,11 +161,12 @@ def solid_fields(scene: "Scene") -> tuple[Field, ...]:
     lasting = OF_PLASTIC if remembers(scene.elastic_solids) else ()
     lasting += OF_HEAT if is_heated(scene.elastic_solids) else ()
     plane = [STRESS_ZZ] if scene.dimensions == 2 else []
+    shares = [SHARE] if any(one.shared for one in scene.elastic_solids) else []
     wet = [INERTIA] if scene.case.flowing else []
     cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.elastic_solids) else ()
     meeting = OF_CONTACT if meets(scene) else ()
     meeting += OF_FRICTION if meeting and scene.physics.contact.friction else ()
-    own = (*OF_SOLIDS, *plane, *across, *lasting, *cracks, *meeting)
+    own = (*OF_SOLIDS, *plane, *shares, *across, *lasting, *cracks, *meeting)
     return (*own, *([DRAWN, WORK] if loaded else []), *wet)
 
 

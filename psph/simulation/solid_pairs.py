@@ -52,7 +52,8 @@ class Matter(NamedTuple):
     material, that of its law: ``stiffness`` αE_Y of the hourglass control in Pa, ``viscosity`` in Pa s,
     ``density`` in the reference in kg/m³.  ``sums`` are what the first pass gathers
     (psph.physics.solid.deformation).  Of each row ``intact`` is the part of its bonds that hold, None where
-    none can be cut: its stress and energy are so much less (psph.physics.solid.cracks).
+    none can be cut: its stress and energy are so much less (psph.physics.solid.cracks).  ``share`` is the
+    part of its volume that counts for the stress, None where all of it does (psph.physics.solid.shares).
     """
 
     laws: tuple
@@ -62,6 +63,7 @@ class Matter(NamedTuple):
     viscosity: Any
     density: Any
     intact: Any = None
+    share: Any = None
 
 
 class Weights(NamedTuple):
@@ -138,12 +140,12 @@ def sum_gradients(first, last, matter, weights, rows, moment, memory, flux):
         p = advanced(matter.laws, number, memory, k, f, a)
         p = weakened(p, matter.intact, k)
         p = added(p, drag(matter.viscosity[number], f, folded, inverse, a))
-        against = matrix_product(p, inverse, a)
+        against = matrix_product(weakened(p, matter.share, k), inverse, a)
         put(flux, k, subtract(scale(f, 0.5 * matter.stiffness[number]), against))
 
 
 def weakened(values, intact, k):
-    """What the law of row ``k`` gives, as far as its bonds hold."""
+    """What the law of row ``k`` gives, as far as its bonds hold, or as its share counts."""
     return values if intact is None else scale(values, intact[k])
 
 
@@ -226,6 +228,7 @@ def measure(first, last, matter, weights, rows, moment, memory, found):
             found[2][k] = found[3][k] = 0.0
             continue
         stored = weakened((energy(matter.laws, number, memory, k, f, a),), matter.intact, k)
+        stored = weakened(stored, matter.share, k)
         found[0][k] = i.volume * (stored[0] + held)
         p = weakened(stress(matter.laws, number, memory, k, f, a), matter.intact, k)
         cauchy = scale(product_transposed(p, f, a), 1.0 / dilated)

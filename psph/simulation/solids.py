@@ -5,13 +5,11 @@ import numpy as np
 from psph.composition.space import Metres, softening
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
-from psph.fields import view_of
 from psph.parallel.domain import Extent
 from psph.parallel.partner_halo import PartnerHalo, follow
 from psph.parallel.reductions import exact_sums
 from psph.parallel.reference import reference_rows
 from psph.particles.partners import ReferenceRows, padded_lists
-from psph.particles.records import record_width
 from psph.physics.solid.compression import OF_HEAT, Heat
 from psph.physics.solid.contact import CONTACT_ENERGY, FACE
 from psph.physics.solid.deformation import (
@@ -29,6 +27,7 @@ from psph.physics.solid.deformation import (
 )
 from psph.physics.solid.material import is_damped, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
+from psph.physics.solid.shares import SHARE
 from psph.simulation.plan import NO_SOLID
 from psph.simulation.solid_memory import Memory
 from psph.simulation.solid_pairs import (
@@ -42,6 +41,8 @@ from psph.simulation.solid_pairs import (
     sum_inner_forces,
     sum_moments,
 )
+from psph.simulation.solid_shares import shares_of
+from psph.simulation.solid_table import Table
 from psph.smoothing import kernel
 
 PLACES, FLUX = "position", "flux"
@@ -49,19 +50,6 @@ PLACES, FLUX = "position", "flux"
 
 LOOSENED, STRENGTH = "loosened", "strength"
 """What is read of partners where solids crack: whether one lets go of its last bonds, how strong it is."""
-
-
-class Table:
-    """Records of rows and partners, side by side in memory: ``names`` with the numbers that each takes."""
-
-    def __init__(self, widths: dict[str, int], capacity: int, volume: float):
-        self.width = record_width(sum(widths.values()))
-        self.records = np.zeros((capacity, self.width))
-        ends = np.cumsum([0, *widths.values()]).tolist()
-        self.places = dict(zip(widths, zip(ends, ends[1:])))
-        rows = {name: self.records.T[slice(*place)] for name, place in self.places.items()}
-        shown = {name: tuple(of) if len(of) > 1 else of[0] for name, of in rows.items()}
-        self.view = view_of((*shown, "volume"))(*shown.values(), volume)
 
 
 class Solids:
@@ -150,7 +138,8 @@ class Solids:
         """Rows and partners after particles have found new columns or ranks; the first time the reference
         lists are made, from X.  Collective."""
         store = self.store
-        if self._rows is None:
+        unknown = self._rows is None
+        if unknown:
             self._rows = self._listed()
         group = self._solid_of[store.group[store.inner]]
         columns = store.low + np.flatnonzero(group != NO_SOLID)
@@ -171,14 +160,17 @@ class Solids:
             self._faces.settle(self._columns)
         if self.clamps:
             self.clamps.settle(self._columns, self._masses)
-        self._make_tables(store.id[columns[order]], np.unique(partners[abroad]))
+        self._make_tables(store.id[columns[order]], np.unique(partners[abroad]), unknown)
+        if SHARE.name in store:
+            self._matter = self._matter._replace(share=store[SHARE.name][self._columns])
         self._moment = tuple(of[self._columns] for of in store[MOMENT.name])
         if self._cracks:
             self._cracks.weaken(self._around[1], self._moment)
             self._matter = self._matter._replace(intact=self._cracks.intact)
 
-    def _make_tables(self, ids: np.ndarray, wanted: np.ndarray) -> None:
-        """Lists in places of the tables, and the messages that fill the places of partners."""
+    def _make_tables(self, ids: np.ndarray, wanted: np.ndarray, unknown: bool) -> None:
+        """Lists in places of the tables, and the messages that fill the places of partners; where shares are
+        ``unknown`` yet, they too, from all bonds that there ever were."""
         if self.halo is not None:
             self.halo.free()
         self.halo = PartnerHalo(self.comm, ids, wanted)
@@ -186,10 +178,11 @@ class Solids:
         counts, partners = self._rows.chosen(ids)
         order = np.argsort(everyone, kind="stable")
         entries = order[np.searchsorted(everyone[order], partners)]
+        whole = counts, entries
         if self._cracks:
             counts, entries = self._cracks.left(self._columns, counts, entries, Metres.lanes)
         lists = padded_lists(counts, entries, Metres.lanes)
-        longest = int(counts.max(initial=0))
+        longest = int(whole[0].max(initial=0))
         self._weights = self._weights._replace(
             softening=softening(Metres(self.domain.periods), self._h, longest)
         )
@@ -204,11 +197,17 @@ class Solids:
         self._places = self.halo.channel(tables[1].records, *tables[1].places[PLACES])
         for table in tables:
             self._put(table, "reference", 0, self.rows)
-            self._bring(self.halo.channel(table.records, *table.places["reference"]))
+            self._bring_of(table, "reference")
+        if unknown and SHARE.name in self.store:
+            every = padded_lists(*whole, Metres.lanes)
+            held = self.store.group[self._columns] >= self.scene.layout.movers
+            found = shares_of(self._weights, tables[0], every, held, self._bring_of)
+            shared = np.array([one.shared for one in self.plan.solids])[self._matter.number]
+            self.store[SHARE.name][self._columns] = np.where(shared, found, 1.0)
         if self._cracks:
             strength = self._cracks.strengths(ids, self._matter.number)
             tables[1].records[: self.rows, tables[1].places[STRENGTH][0]] = strength
-            self._bring(self.halo.channel(tables[1].records, *tables[1].places[STRENGTH]))
+            self._bring_of(tables[1], STRENGTH)
 
     def sum(self, time: float, dt: float) -> None:
         """The acceleration of all particles of solids at ``time``, s, where they stand ``dt`` s after the
@@ -376,6 +375,9 @@ class Solids:
     def _each(self, loop, first: int, last: int, *args) -> None:
         if last > first:
             in_threads(loop, first, last, *args)
+
+    def _bring_of(self, table: Table, name: str) -> None:
+        self._bring(self.halo.channel(table.records, *table.places[name]))
 
     def _bring(self, channel) -> None:
         self._start(channel)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from long import LONG
 from mpi4py import MPI
 from parallel.test_simulation import start
 from runs.resuming import go_on_elsewhere
@@ -65,6 +66,24 @@ at = [3.0, 0.2]
 """A beam across all slabs that bends under a load and by a clamp that moves, a plate of another law, with flaws, that spins above it and falls on it,
 and a block of metal that is pressed flat on a slope, between the beam and a wall."""
 
+CHIPS = """
+time.end = 1.0
+parallel.axis = "x"
+output = { frames = 0.02, probes = 0.01, log = 0.01 }
+[space]
+dimensions = 3
+spacing = 0.1
+[solids.block]
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.6, 0.4, 0.5] }
+clamped.box = { lower = [0.0, 0.0, 0.0], upper = [0.3, 0.4, 0.5] }
+density = 1000.0
+young = 1.0e6
+poisson = 0.3
+critical_stretch = 0.01
+flaws = 3.0
+velocity_gradient = [[3.0, 1.0, 0.0], [0.0, 0.0, 4.0], [0.0, -4.0, 0.0]]
+"""
+
 
 def beams(folder):
     if COMM.rank == 0:
@@ -122,6 +141,37 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1), (2, 2)])
 def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
     go_on_elsewhere(beams(mpi_tmp_path), before, after, mpi_tmp_path)
+
+
+def chips(folder):
+    """A block in 3D, clamped at one end, that is torn by a stream through it, whose slabs cut it."""
+    if COMM.rank == 0:
+        (folder / "chips.toml").write_text(CHIPS, encoding="utf-8")
+    COMM.Barrier()
+    return load(folder / "chips.toml")
+
+
+def test_shares_in_3d_are_those_of_the_whole_on_any_number_of_ranks(mpi_tmp_path):
+    case = chips(mpi_tmp_path)
+    single, together = start(case, MPI.COMM_SELF), start(case, COMM)
+    for simulation in (single, together):
+        for _ in range(10):
+            simulation.step()
+        simulation.rebuild()
+        simulation.step()
+    assert 0 < np.count_nonzero(single.store.shown("cut").any(axis=1)) < single.store.owned
+    found = []
+    for simulation in (single, together):
+        store = simulation.store
+        own = np.column_stack([store.owned_rows(name) for name in ("id", "share", "cut", "position")])
+        every = np.concatenate(simulation.comm.allgather(own))
+        found.append(every[np.argsort(every[:, 0])])
+    assert np.array_equal(*found) and np.ptp(found[0][:, 1]) > 1.0
+
+
+@LONG
+def test_shares_in_3d_do_not_see_what_has_cracked_where_a_run_goes_on(mpi_tmp_path):
+    go_on_elsewhere(chips(mpi_tmp_path), 1, 2, mpi_tmp_path)
 
 
 def test_rows_follow_their_particles_to_other_ranks():

@@ -3,12 +3,14 @@
 With X_ij = X_i − X_j in the reference, x_ij now, g_ij = −W′(|X_ij|)/|X_ij| ≥ 0 and the volumes V,
 
     L_i = (Σ_j V_j g_ij X_ij X_ijᵀ)⁻¹,   F_i = Σ_j V_j g_ij x_ij X_ijᵀ L_i,
-    E = Σ_i V_i ψ(F_i) + ¼ α E_Y Σ_i Σ_j V_i V_j g_ij |F_i X_ij − x_ij|².
+    E = Σ_i w_i V_i ψ(F_i) + ¼ α E_Y Σ_i Σ_j V_i V_j g_ij |F_i X_ij − x_ij|².
 
 F_i is the affine map that fits x_ij best with the weights V_j g_ij.  Therefore the second sum, the hourglass
 control with Young's modulus E_Y, gives no force through F_i, and −∂E/∂x_i is
 
-    ρ₀ a_i = Σ_j V_j g_ij [(B_i + B_j) X_ij − αE_Y x_ij],   B_i = ½αE_Y F_i − P_i L_i.
+    ρ₀ a_i = Σ_j V_j g_ij [(B_i + B_j) X_ij − αE_Y x_ij],   B_i = ½αE_Y F_i − w_i P_i L_i,
+
+w_i the share of its volume that counts (psph.physics.solid.shares), or 1.
 
 E does not change when all is moved or turned: momentum and angular momentum are kept, whatever L is.
 Bonet & Lok (1999), Comput. Methods Appl. Mech. Eng. 180, 97 (L); Vignjevic, Reveles & Campbell (2006), CMES
@@ -38,6 +40,9 @@ these are in a fluid, STRESS_ZZ in plane strain."""
 
 KERNEL, SMOOTHING = "wendland-c2", 2.0**0.5
 """A solid's own kernel and its h/dx: its lists have no part in those of fluids."""
+
+HOURGLASS, SHARED_HOURGLASS = 1.5, 0.75
+"""The default α, and that beside shares, which make up for a part of what faces lose."""
 
 
 class ReferencePair(NamedTuple):

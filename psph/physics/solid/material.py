@@ -28,13 +28,12 @@ MADE_OF = (
     "young",
     "poisson",
     "law",
-    "hourglass",
     "yield_stress",
     "hardening",
     "critical_stretch",
     "flaws",
 )
-"""The keys of a case that say what a solid is made of."""
+"""The keys of a case that say what a solid is made of, as they stand."""
 
 
 class Solid(NamedTuple):
@@ -43,7 +42,8 @@ class Solid(NamedTuple):
     Pa s, and the ``stiffness`` αE of the hourglass control in Pa.
 
     Bonds are cut beyond the ``critical_stretch``, infinite where it does not crack; ``flaws`` is the Weibull
-    modulus of its scatter, 0 without (psph.physics.solid.cracks)."""
+    modulus of its scatter, 0 without (psph.physics.solid.cracks).  Its particles count by their shares where
+    it is ``shared`` (psph.physics.solid.shares)."""
 
     name: str
     law: Any
@@ -53,6 +53,7 @@ class Solid(NamedTuple):
     stiffness: float
     critical_stretch: float = math.inf
     flaws: float = 0.0
+    shared: bool = False
 
     def longest_step(self, smoothing_length: float, speed: float) -> float:
         """By waves and friction, at the largest speed in m/s, s."""
@@ -80,11 +81,13 @@ def solid_of(
     flaws: float | None = None,
     mie_gruneisen: dict[str, float] | None = None,
     length: float = 0.0,
+    shared: bool = False,
 ) -> Solid:
     """The solid of these numbers: ``young`` and ``poisson`` E in Pa and ν, ``damping`` η in Pa s; where it
     yields, ``yield_stress`` and ``hardening`` in Pa, or the numbers of a table ``johnson_cook``; where it
     cracks, ``critical_stretch`` and perhaps the Weibull modulus ``flaws``; with the numbers of a table
-    ``mie_gruneisen`` its pressure is by that law, shocks as wide as some ``length`` in m."""
+    ``mie_gruneisen`` its pressure is by that law, shocks as wide as some ``length`` in m; ``shared`` as in
+    :class:`Solid`."""
     lame, shear = moduli(young, poisson)
     bulk = lame + 2.0 * shear / 3.0
     compression: Any = EvenBulk(bulk)
@@ -99,7 +102,7 @@ def solid_of(
         yielding = LinearHardening(yield_stress, hardening)
     own = Metal(compression, shear, yielding) if yielding else LAWS[law](lame, shear)
     most = math.inf if critical_stretch is None else critical_stretch
-    return Solid(name, own, density, speed, damping, hourglass * young, most, flaws or 0.0)
+    return Solid(name, own, density, speed, damping, hourglass * young, most, flaws or 0.0, shared)
 
 
 def mie_gruneisen_of(
