@@ -15,9 +15,10 @@ USAGE = "psph.lab.battery.comparison_page NAME PAGE FOLDER"
 
 
 def part(name: str, page: Path, folders: Sequence[Path]) -> str:
-    """The table of the last folder.  OutputError: none there."""
+    """The table of the last folder, without the bounds of its trials.  OutputError: none there."""
     with results(folders[-1], f"comparison of {name}"):
-        return (folders[-1] / f"{name}.md").read_text(encoding="utf-8")
+        text = (folders[-1] / f"{name}.md").read_text(encoding="utf-8")
+    return "\n".join(line for line in text.splitlines() if not line.startswith("- ")).strip()
 
 
 def main(arguments: list[str]) -> int:

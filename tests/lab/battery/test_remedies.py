@@ -109,7 +109,8 @@ def test_files_and_page(some, tmp_path, capsys):
     cells = [cell.strip() for cell in told.strip("|").split("|")]
     assert cells[1].startswith("− 2") and len(cells) == 1 + sum(map(len, SHOWN.values()))
     assert made.index(plain) < made.index(shift) < made.index(own)
-    assert "- patch holds: `lost` ≤ 0, `near_5` ≥ 0.6" in made
+    whole = (folder / "remedies.md").read_text(encoding="utf-8")
+    assert "- patch holds: `lost` ≤ 0, `near_5` ≥ 0.6" in whole and "- patch holds" not in made
     assert on_page(["remedies", str(page), str(tmp_path)]) == 2 and on_page([]) == 2
     assert "give the folder of a comparison of remedies" in capsys.readouterr().err
 
