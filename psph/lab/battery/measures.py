@@ -37,7 +37,7 @@ MEASURES = {
     "probe_error": "probes against theory, relative",
     "probe_spread": "probes, standard deviation, Pa",
     "front_error": "front against experiment, largest relative error",
-    "front_begun_later": "the same from the later start that makes it least",
+    "front_begun_later": "front against experiment, from the later start that makes the error least",
     "swing": "speed of a drop's swing after four periods over that at the start",
     "energy_left": "energy of motion over that of the exact solution, where it differs most",
     "exact_error": "velocity against the exact solution, L2",

@@ -107,9 +107,10 @@ def test_files_and_page(some, tmp_path, capsys):
     plain, shift, own = (f"| `{one.name}` |" for one in (REMEDIES[0], SHIFT, OWN))
     [told] = [line for line in made.splitlines() if line.startswith(plain)]
     cells = [cell.strip() for cell in told.strip("|").split("|")]
-    assert cells[1].startswith("− 2") and len(cells) == 1 + sum(map(len, SHOWN.values()))
+    assert cells[1].startswith("− 2") and len(cells) == 1 + len(SHOWN)
     assert made.index(plain) < made.index(shift) < made.index(own)
     whole = (folder / "remedies.md").read_text(encoding="utf-8")
+    assert "`growth`: growth" in made and "`late_speed`" in whole and "`late_speed`" not in made
     assert "- patch holds: `lost` ≤ 0, `near_5` ≥ 0.6" in whole and "- patch holds" not in made
     assert on_page(["remedies", str(page), str(tmp_path)]) == 2 and on_page([]) == 2
     assert "give the folder of a comparison of remedies" in capsys.readouterr().err
