@@ -11,6 +11,8 @@ import time
 
 import pytest
 
+pytest_plugins = ["durations"]
+
 
 def pytest_addoption(parser):
     """Add the setting ``mpi_grace``."""

@@ -14,8 +14,9 @@ def session(tmp_path):
     """A function that runs ``source`` as a test file on two ranks and returns the finished job."""
 
     def run(source, *options):
-        shutil.copy(Path(__file__).with_name("conftest.py"), tmp_path)
-        (tmp_path / "pytest.ini").write_text("[pytest]\nmpi_grace = 1\n")
+        for name in ("conftest.py", "durations.py"):
+            shutil.copy(Path(__file__).with_name(name), tmp_path)
+        (tmp_path / "pytest.ini").write_text("[pytest]\nmpi_grace = 1\npythonpath = .\n")
         header = "import pytest\nfrom mpi4py import MPI\ncomm = MPI.COMM_WORLD\n"
         (tmp_path / "test_inner.py").write_text(header + textwrap.dedent(source))
         args = ["-m", "pytest", "--with-mpi", "--color=no", "-p", "no:cacheprovider", *options]
