@@ -35,13 +35,17 @@ def energies_and_momentum(
     ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.  Order-independent sums, the same
     bits on any number of ranks; collective.
     """
-    moved = store.owned_rows("kind") != WALL
-    mass = store.owned_rows(_inert(store))[moved]
-    velocity = store.owned_rows("velocity")[moved]
-    position = store.owned_rows("position")[moved]
-    kinetic = 0.5 * mass * (velocity**2).sum(axis=1)
-    height = mass * (np.broadcast_to(potential, moved.shape)[moved] - projected(position, gravity))
-    return exact_sums(comm, np.column_stack([kinetic, height, mass[:, None] * velocity]))
+    moved = np.flatnonzero(store.shown("kind") != WALL)
+    mass, speeds, places = (_of(store, name, moved) for name in (_inert(store), "velocity", "position"))
+    kinetic = 0.5 * mass * np.add.reduce(speeds**2, axis=0)
+    height = mass * (np.broadcast_to(potential, store.owned)[moved] - projected(places.T, gravity))
+    return exact_sums(comm, np.stack([kinetic, height, *(mass * speeds)]).T)
+
+
+def _of(store: Store, name: str, which: np.ndarray) -> np.ndarray:
+    """Values of the owned particles ``which`` (m,), a row for each component of a field with several."""
+    values = store.shown(name)
+    return values.T[..., which]
 
 
 def total_energy(
@@ -91,6 +95,6 @@ def _inert(store: Store) -> str:
 
 def density_error(comm: MPI.Comm, store: Store) -> float:
     """Largest |ρ/ρ₀ − 1| of the fluid; collective."""
-    fluid = store.owned_rows("kind") == FLUID
-    ratio = store.owned_rows("density")[fluid] / store.owned_rows("rest_density")[fluid]
+    fluid = np.flatnonzero(store.shown("kind") == FLUID)
+    ratio = _of(store, "density", fluid) / _of(store, "rest_density", fluid)
     return float(largest(comm, [np.abs(ratio - 1.0).max(initial=0.0)])[0])

@@ -36,25 +36,26 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     number of terms, and integers are added.  The error is at most n/2 units; NaN or infinity in a
     column makes its sum NaN.  Collective.
     """
-    terms = np.atleast_2d(terms)
-    extremes = np.zeros(terms.shape[1])
-    if len(terms):
+    columns = np.atleast_2d(terms).T
+    rows = columns.shape[1]
+    extremes = np.zeros(len(columns))
+    if rows:
         with np.errstate(invalid="ignore"):
-            extremes[:] = np.maximum(terms.max(axis=0), -terms.min(axis=0))
+            extremes[:] = [max(column.max(), -column.min()) for column in columns]
     extremes[np.isnan(extremes)] = np.inf
-    count = np.array(len(terms), dtype=np.int64)
+    count = np.array(rows, dtype=np.int64)
     peaks = largest(comm, extremes)
     comm.Allreduce(MPI.IN_PLACE, count, MPI.SUM)
-    finite = np.isfinite(peaks)
     room = BITS - max(int(count), 1).bit_length()
-    exponents = np.array([math.frexp(x)[1] if x > 0 and ok else 0 for x, ok in zip(peaks, finite)])
-    total = np.zeros(terms.shape[1], np.int64)
-    for first in range(0, len(terms), CHUNK):
-        part = np.where(finite, terms[first : first + CHUNK], 0.0)
-        total += np.rint(np.ldexp(part, room - exponents)).astype(np.int64).sum(axis=0)
+    exponents = [math.frexp(x)[1] if 0.0 < x < math.inf else 0 for x in peaks]
+    total = np.zeros(len(columns), np.int64)
+    for place in np.flatnonzero(np.isfinite(peaks)):
+        for first in range(0, rows, CHUNK):
+            part = np.ldexp(columns[place, first : first + CHUNK], room - exponents[place])
+            total[place] += np.rint(part, out=part).astype(np.int64).sum()
     comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
-    sums = np.array([math.ldexp(int(t), int(e) - room) for t, e in zip(total, exponents)])
-    return np.where(finite, sums, np.nan)
+    sums = np.array([math.ldexp(int(t), e - room) for t, e in zip(total, exponents)])
+    return np.where(np.isfinite(peaks), sums, np.nan)
 
 
 def whole_sums(comm: MPI.Comm, values: np.ndarray) -> np.ndarray:
