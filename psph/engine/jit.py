@@ -20,6 +20,7 @@ import numpy as np
 from numba import extending
 from numba.core.sigutils import normalize_signature
 
+from psph.engine import lean
 from psph.engine.cache import READY, Cache, LoopCache
 from psph.engine.contents import HOW, STAND_INS, contents
 
@@ -50,6 +51,7 @@ register to another, or spills them.  It changes no result."""
 
 
 def _configure() -> None:
+    lean.use()
     llvm.set_option("psph", ALLOCATOR)
     numba.config.CPU_NAME = numba.config.CPU_NAME or llvm.get_host_cpu_name()
     if not numba.config.CPU_FEATURES:
