@@ -33,6 +33,8 @@ class Library(codegen.JITCodeLibrary):
                 self._codegen.set_env(place.name, self._waiting[place.name])
 
     def _is_called(self) -> bool:
+        if self._object_caching_enabled and self._compiled_object is not None:  # it comes from the cache
+            return True
         module = self._final_module
         entries = (one.name.startswith(FROM_PYTHON) and not one.is_declaration for one in module.functions)
         return any(entries) or any(one.name.startswith(RECURSIVE) for one in module.global_variables)

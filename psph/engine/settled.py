@@ -20,8 +20,12 @@ class Settled:
 
     def __call__(self, *args):
         if self._code is None:
-            self._code = self.loop.compile(tuple(map(numba.typeof, args)))
+            self.prepare(*args)
         return self._code(*args)
+
+    def prepare(self, *args) -> None:
+        """Find the code for arguments of these types, without a call."""
+        self._code = self.loop.compile(tuple(map(numba.typeof, args)))
 
 
 def settled(loop):

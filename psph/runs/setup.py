@@ -15,6 +15,7 @@ from psph.physics.motion import OF_MOTION
 from psph.physics.solid.deformation import DRAWN
 from psph.runs.record import probes_of
 from psph.scene.particles import ParticleSet
+from psph.simulation.cpu import Engine
 from psph.simulation.filling import block_of
 from psph.simulation.plan import Plan
 from psph.simulation.step import Simulation
@@ -40,7 +41,7 @@ def lattice_particles(scene, comm) -> ParticleSet:
 
 def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
     """A store of these particles of a scene, with the arrays that its plan asks for."""
-    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    store = _empty(scene, plan)
     block = block_of(scene, store, found.material, found.position, found.velocity, found.density)
     store.append(found.id, found.material, block)
     return store
@@ -49,12 +50,12 @@ def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
 def compile_ahead(scene, plan: Plan, comm) -> float:
     """Every loop of the plan, ready to run: compiled, or loaded from the cache.
 
-    Where the cache holds them all, the ranks load together; else rank 0 compiles while the others
-    wait, and they load when they need one.  Without a cache all compile.  Returns the seconds it took.
-    Collective.
+    Where the cache holds them all, the ranks load together.  Else the others compile the loops over pairs,
+    which take longest, while rank 0 compiles the rest; then all load what they need.  Without a cache all
+    compile.  Returns the seconds it took.  Collective.
     """
     begun = time.perf_counter()
-    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    store = _empty(scene, plan)
     examples = (
         tuple((one.effects, one.reductions) for one in plan.passes),
         plan.kernel,
@@ -77,8 +78,10 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     measured = "step and probes" if scene.case.probes or scene.case.gauges else "step"
     ready = marker(measured, *examples)
     together = comm.bcast(ready is None or ready.exists())
-    if together or comm.rank == 0:
-        with many_loops():
+    with many_loops():
+        if not together and comm.size > 1:
+            _share(scene, plan, comm)
+        if together or comm.rank == 0:
             _rehearse(scene, plan, store)
     if comm.rank == 0 and not together:
         with suppress(OSError):  # the folder is gone, or full: loops are compiled once more
@@ -88,13 +91,33 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     return time.perf_counter() - begun
 
 
+class _NoSums(Engine):
+    """The engine of rank 0 while others compile the loops over pairs."""
+
+    def sum(self, *when, **how) -> None:
+        """Nothing: others are at it."""
+
+
+class _AllButSums(Simulation):
+    """A rehearsal of all other loops."""
+
+    engine_type = _NoSums
+
+
+def _share(scene, plan: Plan, comm) -> None:
+    """Compile this rank's share of the loops; collective."""
+    store = _empty(scene, plan)
+    if comm.rank == 0:
+        _two_particles(scene, plan, store)
+        _AllButSums(scene, plan, store, alone(), Ledger()).step()
+    else:
+        Engine(scene, plan, store, alone(), Ledger()).prepare_sums(comm.rank - 1, comm.size - 1)
+    comm.Barrier()
+
+
 def _rehearse(scene, plan: Plan, store: Store) -> None:
-    """One step of two particles of the first material in ``store``: it has the types of the whole run."""
-    middle = np.tile([0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)], (2, 1))
-    first = np.array([0, scene.layout.fluids if plan.immersed else 0], np.uint8)
-    density = np.full(2, scene.species[0].density)
-    block = block_of(scene, store, first, middle, np.zeros_like(middle), density)
-    store.append(np.arange(2), first, block)
+    """One step, and all that may be measured after it."""
+    _two_particles(scene, plan, store)
     rehearsal = Simulation(scene, plan, store, alone(), Ledger())
     rehearsal.step()
     rehearsal.settle_pressure()
@@ -103,3 +126,17 @@ def _rehearse(scene, plan: Plan, store: Store) -> None:
     for gauge in gauges_of(scene, plan.mirrors).values():
         gauge.row(rehearsal)
     checksum(store.id, 0)  # a run that is told to end may have a second for its checkpoint
+
+
+def _empty(scene, plan: Plan) -> Store:
+    """A store with the arrays that a plan asks for."""
+    return Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+
+
+def _two_particles(scene, plan: Plan, store: Store) -> None:
+    """Two particles of the first material in ``store``: it has the types of the whole run."""
+    middle = np.tile([0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)], (2, 1))
+    first = np.array([0, scene.layout.fluids if plan.immersed else 0], np.uint8)
+    density = np.full(2, scene.species[0].density)
+    block = block_of(scene, store, first, middle, np.zeros_like(middle), density)
+    store.append(np.arange(2), first, block)

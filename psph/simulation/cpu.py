@@ -3,12 +3,14 @@
 All that depends on how sums are computed on a processor lies behind these few methods.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from psph.composition.loads import Couple, Loads, Unloaded
 from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
-from psph.engine.settled import settled
+from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
 from psph.fields import companions, seen_at
 from psph.output.ledger import Ledger
@@ -303,6 +305,18 @@ class Engine:
         """One pass over the neighbours of the particles in some columns."""
         if first == last:
             return
+        for loop, args in self._loops_of(one):
+            in_threads(loop, first, last, *args)
+
+    def prepare_sums(self, share: int, shares: int) -> None:
+        """Compile or load one of so many ``shares`` of the passes, by their types alone."""
+        self._fit_records()
+        for one in self.plan.passes[share::shares]:
+            for loop, args in self._loops_of(one):
+                loop.prepare(self.store.low, self.store.low, *args)
+
+    def _loops_of(self, one: Pass) -> Iterator[tuple[Settled, tuple]]:
+        """The compiled loops of a pass, each with what it takes beside the columns."""
         s, plan, records = self.store, self.plan, self.records[one.place]
         around = Around(records.view(), records.table, s.low, self._lists, self._mirrors)
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
@@ -316,9 +330,9 @@ class Engine:
                 reductions, written = (*reductions, Couple(one.effects)), (*written, s[COUPLE.name])
             summed = Summed(one.effects, reductions, Loads(plan.loaded, s.group))
             told = sums._replace(acceleration=s[LOAD.name], written=written)
-            in_threads(self._load, first, last, summed, *seen, told)
+            yield self._load, (summed, *seen, told)
         summed = Summed(one.effects, one.reductions, rest)
-        in_threads(self._sums[one.place], first, last, summed, *seen, sums)
+        yield self._sums[one.place], (summed, *seen, sums)
 
     def _arrays_of(self, stored: str | tuple[str, ...] | None):
         """What takes a sum: the array of a number, those of several numbers in a row, or None."""
