@@ -140,6 +140,7 @@ def cornered(case) -> Iterator[Finding]:
             if corner in here:
                 apart |= {kind, corner}
             yield from ((loc, value, says) for loc, value in here.get(corner, ()))
+    brought: dict[tuple[str, str], list[str]] = {}
     for name, value, effect in asked_of(case):
         acts = [kind for kind in acts_on(effect) if kind in MATTER]
         idle = here.keys().isdisjoint(acts)
@@ -149,9 +150,16 @@ def cornered(case) -> Iterator[Finding]:
         found = [says for corner, says in refused.items() if corner in met]
         if idle and not found and not case.preset(f"physics.{name}"):  # what a scheme sets asks for nothing
             found = [f"acts on {listed(acts)} alone, and the case has none; remove this key"]
-        yield from ((("physics", name), value, says) for says in found)
+        if by := case.preset(f"physics.{name}"):
+            for says in found:
+                brought.setdefault((by, says), []).append(f"physics.{name}")
+        else:
+            yield from ((("physics", name), value, says) for says in found)
         if not found:
             yield from _of_other_matter(case, name, effect, here)
+    for (by, says), keys in brought.items():
+        table, name = by.split(" ", 1)
+        yield (table,), name, f"brings {listed(keys)}: {says}"
     for name, gauge in case.gauges.items():
         asked = getattr(gauge, gauge.kind)
         if getattr(asked, "of", None) is None and here.keys().isdisjoint(acts := acts_on(asked)):

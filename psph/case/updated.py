@@ -42,7 +42,6 @@ class Updated:
         other: f"nothing is known of updated Lagrangian solids beside {beside}; remove one"
         for other, beside in (
             (acts.FLUIDS, "fluids"),
-            (acts.SOILS, "soils"),
             (acts.SOLIDS, "solids that are total Lagrangian"),
         )
     }

@@ -37,7 +37,7 @@ def test_the_parts_of_such_a_solid(tmp_path):
     [
         ("solids.block.hourglass=0.1", "solids.block.hourglass"),
         ('solids.block.law="neo-hookean"', "solids.block.law"),
-        ("scheme=stable", "physics.tension_floor"),
+        ("scheme=stable", 'scheme: "stable": brings physics.local_potential, physics.tension_floor, '),
         ("physics.pressure_gradient=difference", "physics.pressure_gradient"),
         ("physics.contact={}", "physics.contact"),
         ("anvils.floor={at=[0.0, 0.0], normal=[0.0, 1.0]}", "solids.block.description"),
