@@ -240,9 +240,13 @@ def tuple_of(parts) -> str:
 
 
 def method_of(named_type, name: str):
-    """The compiled form of method ``name`` of a NamedTuple's class, or None if it has none."""
+    """The compiled form of method ``name`` of a NamedTuple's class, or None if it has none.
+
+    Where the class says ``written_in``, LLVM writes it into its caller however long it is: see INSIDE.
+    """
     formula = formula_of(named_type, name)
-    return formula and register_jitable(formula)
+    kept = inside if getattr(named_type.instance_class, "written_in", False) else register_jitable
+    return formula and kept(formula)
 
 
 def formula_of(named_type, name: str):

@@ -9,7 +9,7 @@ from pydantic import Field as Key
 
 from psph.acts import BODIES, SOLIDS, UPDATED
 from psph.fields import VECTOR, WALL, Field
-from psph.formula import helper, where
+from psph.formula import helper, long_helper, where
 from psph.physics.facts import Facts
 from psph.vectors import add, dot, scale, subtract, zero_like
 
@@ -201,7 +201,7 @@ def ramps(value):
     return where(value > 0.0, where(value < 1.0, 1.0, 0.0), 0.0)
 
 
-@helper
+@long_helper
 def meeting(contact, i, j, pair):
     """Of particles of different solids; a share of 0 within one solid."""
     per = 1.0 / contact.spacing
@@ -239,14 +239,14 @@ def meeting(contact, i, j, pair):
     )
 
 
-@helper
+@long_helper
 def energy(contact, i, j, met):
     """The energy of a pair with a share of 1, J."""
     part = met.overlap / contact.spacing * (1.0 / HARDENING)
     return modulus(contact, i, j) * (met.overlap * met.overlap) * (0.5 + 0.25 * (part * part))
 
 
-@helper
+@long_helper
 def pressing(contact, i, j, pair, met):
     """f_ij, N."""
     part = met.overlap / contact.spacing * (1.0 / HARDENING)
@@ -255,7 +255,7 @@ def pressing(contact, i, j, pair, met):
     return met.share * max(push - apart * min(part * FIRM, 1.0), 0.0)
 
 
-@helper
+@long_helper
 def pushed(contact, i, j, pair, met):
     """The force of a pair, N: with that by which its energy changes with its share."""
     stored = energy(contact, i, j, met)
@@ -264,7 +264,7 @@ def pushed(contact, i, j, pair, met):
     return add(force, scale(pair.x_ij, met.rim * stored))
 
 
-@helper
+@long_helper
 def turning(contact, i, j, pair, met):
     """What it does to N_i, J: −∂/∂N_i of the energy, and of the damped overlap alike."""
     stored = energy(contact, i, j, met)
@@ -286,7 +286,7 @@ def slipping(i, j, pair, met):
     return subtract(whole, scale(met.out, dot(whole, met.out)))
 
 
-@helper
+@long_helper
 def rubbing(contact, i, j, pair, met):
     """The friction of a pair, N: a spring that slips and a dashpot, μ f_ij at most."""
     slip = scale(subtract(i.slip, j.slip), 0.5)
@@ -306,6 +306,7 @@ class Touching(NamedTuple):
     """
 
     writes = (CONTACT_ENERGY, TURNING)
+    written_in = True
 
     stiffness: float
     damping: float
@@ -347,6 +348,7 @@ class Rubbing(NamedTuple):
     """
 
     writes = (CONTACT_ENERGY, TURNING, SLIDING, HOLD, BORNE)
+    written_in = True
 
     stiffness: float
     damping: float
