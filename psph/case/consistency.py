@@ -66,7 +66,8 @@ def _without_matter(case) -> InitErrorDetails:
     """A case must have fluids, or solids; rigid bodies alone are told that they need a fluid."""
     if case.bodies:
         says = (
-            "rigid bodies need a fluid; add a table [fluids.NAME], small and out of their way if they are dry"
+            "rigid bodies need a fluid or an elastic solid; add a table [fluids.NAME], small and out of "
+            "their way if they are dry"
         )
         return {
             "type": PydanticCustomError("psph", "{says}", {"says": says}),

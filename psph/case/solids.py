@@ -3,14 +3,15 @@
 from collections.abc import Iterator
 from typing import ClassVar, Literal
 
-from psph.acts import BODIES
+from psph.acts import BODIES, refusals
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Name, Table, Vector, key
-from psph.case.motion import Motions
+from psph.case.motion import PADDLES, Motions
 from psph.case.shapes import Shape
 from psph.case.updated import OF_SOLIDS, TOTAL, UPDATED, updated
+from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS
 from psph.physics.solid.laws import LAWS
 
@@ -178,6 +179,8 @@ OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic p
 
 CONTACT = "physics", "contact"
 
+NOT_MET = "nothing is known of contact between solids and these; remove one of the two"
+
 
 def elastic(case) -> Iterator[Finding]:
     """Solids that cannot be, in a case with space.dimensions."""
@@ -193,7 +196,7 @@ def elastic(case) -> Iterator[Finding]:
     here = ("solids",)
     for name in ("regions", *(["anvils"] if case.fluids else [])):
         if getattr(case, name, None):
-            yield (name,), ..., OF_SOLIDS[BODIES]
+            yield (name,), ..., NOT_MET
     if case.physics.sound_speed is not None and not case.fluids:
         says = "solids have waves of their own, by young and poisson; remove this key"
         yield ("physics", "sound_speed"), case.physics.sound_speed, says
@@ -216,24 +219,23 @@ def _meeting(case) -> Iterator[Finding]:
     if case.flowing:
         if contact:
             yield CONTACT, ..., "solids in a fluid do not feel each other; remove it, or the fluids"
+        if case.bodies:
+            says = "in a fluid nothing is known of contact between solids and these; remove one of the three"
+            yield ("bodies",), ..., says
         return
-    for name, wall in case.walls.items():
-        here = ("walls", name)
+    yield from _rigid(case)
+    for name, one in case.boundaries.items():
+        here = (case.table_of(name), name)
         if not contact:
-            yield here, ..., "solids do not feel walls without contact; give physics.contact = {}"
+            yield here, ..., f"solids do not feel {here[0]} without contact; give physics.contact = {{}}"
         given = {
-            "motion": wall.motion,
-            "velocity": any(wall.velocity or ()),
-            "condition": wall.condition != type(wall).model_fields["condition"].default,
-            "no_slip": wall.no_slip,
+            "velocity": name in case.walls and any(one.velocity or ()),
+            "condition": one.condition != type(one).model_fields["condition"].default,
+            "no_slip": one.no_slip,
         }
         for key_of, asks in given.items():  # the copy of a case in its run's folder names all keys
             if asks:
-                yield (
-                    (*here, key_of),
-                    ...,
-                    "a wall that solids alone meet is at rest and as they are; remove this key",
-                )
+                yield (*here, key_of), ..., "says what a fluid meets, and there is none; remove this key"
     for name, gauge in case.gauges.items():
         if gauge.kind == "force":
             says = "knows of forces by fluids alone, and there are none; give gauges.NAME.reaction"
@@ -241,6 +243,20 @@ def _meeting(case) -> Iterator[Finding]:
     for name in case.probes:
         says = "measures fluids, and there are none; give gauges.NAME.displacement, or plot the frames"
         yield ("probes", name), ..., says
+
+
+def _rigid(case) -> Iterator[Finding]:
+    """Walls and bodies that solids alone cannot meet."""
+    for name, wall in case.walls.items():
+        if not all(part.is_rigid for part in wall.motion or () if len(part.ways) == 1):
+            says = "solids meet walls that move as a whole, and this one deforms; remove this key"
+            yield ("walls", name, "motion"), ..., says
+        if any(part.way in PADDLES for part in wall.motion or () if len(part.ways) == 1):
+            yield ("walls", name, "motion"), ..., "a paddle makes waves, and there is no fluid; take another"
+    for name in case.bodies.keys() & case.solids.keys():
+        yield ("bodies", name), ..., "a solid has this name too; give the body another"
+    if case.bodies and case.anvils:
+        yield ("anvils",), ..., refusals(Anvils)[BODIES]
 
 
 def _yielding(case) -> Iterator[Finding]:

@@ -27,7 +27,6 @@ OF_REFERENCE = (
 
 OF_SOLIDS = {
     acts.ONE: "solids need two or three dimensions",
-    acts.BODIES: "nothing is known of contact between solids and these; remove one of the two",
     acts.FRAME: "solids know of no frame that moves; remove one of the two",
     acts.SYMMETRY: "mirrors know of no solids; draw the whole solid",
     acts.MIXED: 'solids are computed in double precision, since strains are small; use "double"',
@@ -42,6 +41,7 @@ class Updated:
         other: f"nothing is known of updated Lagrangian solids beside {beside}; remove one"
         for other, beside in (
             (acts.FLUIDS, "fluids"),
+            (acts.BODIES, "rigid bodies"),
             (acts.SOLIDS, "solids that are total Lagrangian"),
         )
     }

@@ -30,6 +30,13 @@ class Loads(NamedTuple):
     group: Any
 
 
+class Pushes(NamedTuple):
+    """The same where nothing flows: what it sums as acceleration is the push of all neighbours."""
+
+    loaded: Any
+    group: Any
+
+
 class Unloaded(NamedTuple):
     """The pass over all other groups.  None in its place: one over all groups."""
 
@@ -62,21 +69,25 @@ class Couple(NamedTuple):
         return total
 
 
-def _is(kind, loads) -> bool:
-    """Whether the type of ``loads`` is that of one of these passes."""
-    return getattr(loads, "instance_class", None) is kind
+ON_LOADED = (Loads, Pushes)
+"""Passes over the groups whose load is asked for: of what comes from outside they sum nothing."""
+
+
+def _is(kinds, loads) -> bool:
+    """Whether the type of ``loads`` is that of one of these ``kinds`` of passes."""
+    return getattr(loads, "instance_class", None) in kinds
 
 
 def is_due(loads, k):
     """Whether a pass has sums for the particle in column ``k``."""
-    return loads is None or bool(loads.loaded[loads.group[k]]) == isinstance(loads, Loads)
+    return loads is None or bool(loads.loaded[loads.group[k]]) == isinstance(loads, ON_LOADED)
 
 
 @overload(is_due)
 def _typed_is_due(loads, k):
-    if _is(Loads, loads):
+    if _is(ON_LOADED, loads):
         return lambda loads, k: loads.loaded[loads.group[k]]
-    if _is(Unloaded, loads):
+    if _is((Unloaded,), loads):
         return lambda loads, k: not loads.loaded[loads.group[k]]
     return lambda loads, k: True
 
@@ -90,7 +101,7 @@ def by_fluid(loads, j, coefficient):
 
 @overload(by_fluid)
 def _typed_by_fluid(loads, j, coefficient):
-    if not _is(Loads, loads) or isinstance(coefficient, types.NoneType):
+    if not _is((Loads,), loads) or isinstance(coefficient, types.NoneType):
         return lambda loads, j, coefficient: coefficient
     if isinstance(coefficient, types.BaseTuple):
         return lambda loads, j, coefficient: scale(coefficient, j.is_fluid)
@@ -99,14 +110,14 @@ def _typed_by_fluid(loads, j, coefficient):
 
 def completed(loads, effects, reductions, folded, i, force):
     """The acceleration with that by finished sums and from outside, m/s²; a load has none of these."""
-    if isinstance(loads, Loads):
+    if isinstance(loads, ON_LOADED):
         return force
     return add(add(force, terms.finish_acceleration(reductions, folded, i)), terms.body(effects, i))
 
 
 @overload(completed)
 def _typed_completed(loads, effects, reductions, folded, i, force):
-    if _is(Loads, loads):
+    if _is(ON_LOADED, loads):
         return lambda loads, effects, reductions, folded, i, force: force
     return lambda loads, effects, reductions, folded, i, force: add(
         add(force, terms.finish_acceleration(reductions, folded, i)), terms.body(effects, i)

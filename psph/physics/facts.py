@@ -48,3 +48,7 @@ class Facts(Protocol):
     """Smallest and largest m/(ρ dx^d) of a fluid at the start, with 1 among them."""
     standing_tension: float
     """What a fluid lacks to zero pressure at the start, and its flow does not explain, Pa."""
+
+    def answer(self, friction: bool) -> float:
+        """ω² over the stiffness of a particle's contact of the rigid body that answers most to contacts with
+        elastic solids, 1/kg; 0 without."""

@@ -157,11 +157,15 @@ class Guards:
 
     def _overlaps(self) -> bool:
         """Whether a rigid body or an elastic solid is too deep inside another or a wall."""
-        deep = self._overlap().depth > self.bounds.overlap * self.scene.spacing
-        return deep or largest(self.simulation.comm, [self._inside().any()])[0] > 0.0
+        return self._body_overlaps() or largest(self.simulation.comm, [self._inside().any()])[0] > 0.0
+
+    def _body_overlaps(self) -> bool:
+        """Whether a rigid body is too deep inside another or a wall; the same on every rank."""
+        return self._overlap().depth > self.bounds.overlap * self.scene.spacing
 
     def _inside(self) -> np.ndarray:
-        """True for each particle of an elastic solid of this rank that is too deep inside what it touches."""
+        """True for each particle of this rank that is too deep inside what it touches: of a solid, or of a
+        body or a wall inside one."""
         return inside_others(self.simulation.engine, self.scene.spacing, self.bounds.overlap)
 
     def _hidden(self) -> np.ndarray:
@@ -283,7 +287,7 @@ class Guards:
 
     def _worst_by_overlap(self) -> np.ndarray:
         floating = self.simulation.engine.poses.floating
-        if not floating:
+        if not self._body_overlaps():
             return self._inside().astype(float)
         return (floating.body_of[self.simulation.store.shown("group")] == self._overlap().body).astype(float)
 
@@ -321,9 +325,9 @@ class Guards:
             case "density":
                 part = suspect.value("density") / suspect.value("rest_density")
                 return f"{who} has {part:.3g} of its rest density{bound}"
-            case _ if guard == OVERLAP and self.simulation.plan.touching:
+            case _ if guard == OVERLAP and not self._body_overlaps():
                 name = self.scene.key_of(int(suspect.value("group")))
-                return f"{who} of {name} is inside another solid or a wall{bound}"
+                return f"{who} of {name} is inside another solid, a body or a wall{bound}"
             case _ if guard == OVERLAP:
                 found = self._overlap()
                 inner = self.simulation.engine.poses.floating.bodies.bodies[found.body].name

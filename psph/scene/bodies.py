@@ -135,7 +135,8 @@ def in_words(scene: "Scene", body: Body) -> str:
     freed = ", ".join(scene.case.bodies[body.name].freed(scene.dimensions)) or "nothing"
     where = ", ".join(f"{x:.4g}" for x in body.centre[: scene.dimensions])
     until = f"; held until {body.held:g} s" if body.held else ""
-    return f"{body.mass:.4g} kg, {ratio:.3g} of the fluid's density, centre ({where}) m; free: {freed}{until}"
+    beside = f"{ratio:.3g} of the fluid's density, " if scene.case.flowing else ""
+    return f"{body.mass:.4g} kg, {beside}centre ({where}) m; free: {freed}{until}"
 
 
 def lines_of(scene: "Scene", order: Sequence[str]) -> tuple[Line, ...]:
@@ -161,14 +162,15 @@ def lines_of(scene: "Scene", order: Sequence[str]) -> tuple[Line, ...]:
 def body_step(scene: "Scene") -> float:
     """The longest step that the bodies of a scene stand, s.
 
-    That of their lines; and Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within h of its
-    surface A, whose push in a step would move it too far.  Contact is hard, and asks for no step of its own.
+    That of their lines; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within
+    h of its surface A, whose push in a step would move it too far.  Contact is hard, and asks for no step of
+    its own; that with elastic solids has one (psph.physics.solid.contact).
     """
     own = scene.rigid_bodies
     bodies = Bodies(own, scene.gravity)
     shortest = longest_step(lines_of(scene, [one.name for one in own]), bodies)
     h, c, dx, d = scene.smoothing_length, scene.sound_speed, scene.spacing, scene.dimensions
-    for number, one in enumerate(own, scene.layout.first_body):
+    for number, one in enumerate(own if scene.case.flowing else (), scene.layout.first_body):
         count = float(scene.census.sizes[number])
         area = (
             2.0 * d * count ** ((d - 1.0) / d) * dx ** (d - 1)

@@ -191,10 +191,16 @@ def body_warnings(scene: "Scene") -> Iterator[str]:
     """A line for each body whose density, inertia or points are likely a slip, and for steps that bodies make
     short."""
     yield from _slight(scene)
-    yield from _lopsided(scene)
     yield from _far_points(scene)
-    yield from _crushing(scene)
     yield from _misfilled(scene)
+    if scene.case.flowing:
+        yield from _afloat(scene)
+
+
+def _afloat(scene: "Scene") -> Iterator[str]:
+    """A line for each body that will not float, or fall, as is likely meant."""
+    yield from _lopsided(scene)
+    yield from _crushing(scene)
     for one in scene.rigid_bodies:
         ratio = density_ratio(scene, one)
         if not LIGHTEST <= ratio <= HEAVIEST:

@@ -123,7 +123,7 @@ def _far_faults(scene: Scene) -> Iterator[str]:
 
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
-    for kind in (*OF_EVERY_SCENE, *(OF_FLUIDS if scene.case.flowing else ())):
+    for kind in (*OF_EVERY_SCENE, *(OF_FLUIDS if scene.case.flowing else (body_warnings,))):
         for line in kind(scene):
             yield f"{scene.case.file}: {line}"
 

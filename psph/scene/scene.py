@@ -18,6 +18,7 @@ from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed, MovingC
 from psph.physics.rigid.bodies import Body
 from psph.physics.solid.material import Solid
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
+from psph.scene.answering import answer
 from psph.scene.bodies import rigid_bodies
 from psph.scene.driven import creeping_speed, driven_speed
 from psph.scene.immersed import is_immersed, shown_by
@@ -53,8 +54,7 @@ class Scene:
     """
 
     def __init__(self, case: Case):
-        space = case.space
-        self.case = case
+        self.case, space = case, case.space
         self.meshes: tuple[Drawn, ...] = drawn(case)
         self.dimensions, self.spacing = space.dimensions, space.spacing
         self.smoothing_length = space.smoothing * space.spacing
@@ -63,8 +63,7 @@ class Scene:
             self.kernel = normalised(self.kernel, self.spacing, space.dimensions)
         self.walls = {name: wall for name, wall in case.walls.items() if wall.condition != MIRROR}
         self.boundaries: dict[str, Any] = {**self.walls, **case.bodies}
-        self.anvils = anvils_of(case)
-        self.grips = grips_of(case)
+        self.anvils, self.grips = anvils_of(case), grips_of(case)
         held = (case.solids[grip.solid].held(grip.table) for grip in self.grips)
         moving = case.flowing | case.referred
         self.parts: tuple[Any, ...] = (*moving.values(), *held, *self.boundaries.values())
@@ -332,6 +331,8 @@ class Scene:
             grip = self.grips[part - self.layout.movers]
             return f"solids.{grip.solid}.{grip.key}"
         return f"{self.case.table_of(name)}.{name}"
+
+    answer = answer
 
     @cached_property
     def elastic_solids(self) -> tuple[Solid, ...]:

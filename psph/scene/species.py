@@ -180,11 +180,16 @@ class Layout:
         return len(self.shapes) - self.bodies
 
     def solid_of(self, material: int) -> int:
-        """0 for a fluid, 1 for a wall, and another number for each elastic solid, or each body."""
+        """0 for a fluid, 1 for a wall, and another number for each elastic solid, or each body.
+
+        Beside elastic solids bodies have that of walls: what is rigid feels its like by impulses alone.
+        """
         if material < self.fluids:
             return 0
         if (elastic := self.elastic_of(material)) is not None:
             return elastic + FIRST_BODY
+        if self.solids:
+            return WALL
         return max(1, material - self.first_body + FIRST_BODY)
 
     def masks(self, grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:

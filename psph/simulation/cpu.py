@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from psph.composition.loads import Couple, Loads, Unloaded
+from psph.composition.loads import Couple, Loads, Pushes, Unloaded
 from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
@@ -83,6 +83,7 @@ class Engine:
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._load, self._push = settled(sum_over_neighbours), settled(add_pushes)
         self._potential = settled(potentials)
+        self.pressed = self._pressed(scene) if plan.pressed else None
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
         self.wetting = [Wetting(one, plan, store, self.domain, scene.reach) for one in plan.marking]
 
@@ -97,6 +98,12 @@ class Engine:
         from psph.simulation.immersion import Immersion  # late, as above
 
         return Immersion(self.solids, scene, self.plan, self.store)
+
+    def _pressed(self, scene):
+        """What solids touch that moves as a whole."""
+        from psph.simulation.pressed import Pressed  # late, as above
+
+        return Pressed(scene, self.plan, self.store, self.poses.maps)
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
@@ -135,8 +142,7 @@ class Engine:
             self._list_others()
         with self.ledger("records"):
             self._fit_records()
-        if self.solids:
-            self.solids.settle()
+        self._settle_solids()
         self.skin.renew()
 
     def begin(self) -> None:
@@ -155,6 +161,8 @@ class Engine:
 
         The first of them brings ghosts up to date unless they are; each then what was written before it.
         """
+        if self.pressed:
+            self.pressed.carry(dt)
         if self.plan.touching:
             self.solids.strain(dt)
         stale = self.plan.faced if ghosts_are_fresh else self.plan.refreshed
@@ -171,6 +179,8 @@ class Engine:
             stale, written = (), written | one.written
         for wetting in self.wetting:
             wetting.mark()
+        if self.pressed:
+            self.pressed.twist(dt)
         if self.plan.touching:
             self.solids.push(time, dt)
         elif self.solids and not self.immersion:
@@ -233,8 +243,7 @@ class Engine:
         self._fit_records()
         for records in self.records:
             records.fill(0, self.store.total)
-        if self.solids:
-            self.solids.settle()
+        self._settle_solids()
         self.skin.restore(saved.state["skin"])
 
     def bytes_held(self) -> int:
@@ -254,6 +263,13 @@ class Engine:
         """Seconds of this rank's pair loop since this was last asked."""
         paid, self._paid = self._paid, self.ledger.seconds["pairs"]
         return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
+
+    def _settle_solids(self) -> None:
+        """Solids, and what they touch, after particles have found new columns."""
+        if self.solids:
+            self.solids.settle()
+        if self.pressed:
+            self.pressed.settle()
 
     def _list_others(self) -> None:
         """Solids feel only other ones in space."""
@@ -326,9 +342,10 @@ class Engine:
         if one.gives_rates and plan.loaded is not None:
             rest = Unloaded(plan.loaded, s.group)
             reductions, written = one.reductions, sums.written
-            if COUPLE.name in s:
+            kind = Pushes if plan.touching else Loads
+            if COUPLE.name in s and kind is Loads:
                 reductions, written = (*reductions, Couple(one.effects)), (*written, s[COUPLE.name])
-            summed = Summed(one.effects, reductions, Loads(plan.loaded, s.group))
+            summed = Summed(one.effects, reductions, kind(plan.loaded, s.group))
             told = sums._replace(acceleration=s[LOAD.name], written=written)
             yield self._load, (summed, *seen, told)
         summed = Summed(one.effects, one.reductions, rest)

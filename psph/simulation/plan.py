@@ -17,6 +17,7 @@ from psph.fields import (
     IDENTITY,
     OF_EVERY_SCENE,
     OF_MATERIAL,
+    WALL,
     Field,
     by_name,
     companions,
@@ -35,7 +36,7 @@ from psph.physics.solid.plastic import Lasting
 from psph.scene.bodies import body_step
 from psph.scene.solids import solid_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
-from psph.simulation.groups import laws, material_value, split, tells
+from psph.simulation.groups import has_couples, laws, material_value, split, tells
 from psph.simulation.limits import step_limits
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
@@ -127,7 +128,8 @@ class Plan:
     pose_of: np.ndarray
     """The row of the pose of each group; 0 where it has none."""
     loaded: np.ndarray | None
-    """Whether the push of the fluid alone is summed on the particles of a group: (groups,); None: on none."""
+    """Whether the push of the fluid alone, or of elastic solids where nothing flows, is summed on the
+    particles of a group: (groups,); None: on none."""
     body_step: float | None
     """The longest step that rigid bodies stand, s; None without bodies."""
     solids: tuple[Any, ...]
@@ -197,6 +199,11 @@ class Plan:
     def touching(self) -> bool:
         """Whether elastic solids look for each other: a pass then begins the sums of their forces."""
         return bool(self.solids and self.passes) and not self.immersed
+
+    @property
+    def pressed(self) -> bool:
+        """Whether elastic solids look for what moves as a whole: bodies, and walls."""
+        return self.touching and any(one.kind == WALL for one in self.rigid)
 
     @cached_property
     def faced(self) -> tuple[str, ...]:
@@ -278,12 +285,6 @@ class Plan:
         return step_limits(self, speed, acceleration)
 
 
-def has_couples(scene) -> bool:
-    """Whether the push of a viscous fluid on a wall or a body is asked for, and what has a moment."""
-    rubbed = any(one.loaded and one.rubs for one in scene.species if not one.is_fluid)
-    return scene.dimensions > 1 and rubbed and any(one.rubs for one in scene.species if one.is_fluid)
-
-
 def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     """The plan of a scene (psph.scene.Scene), with what its case or another catalogue offers."""
     case, catalogue = scene.case, catalogue or scene.case.catalogue
@@ -304,9 +305,9 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present, pulls = {entry for entry, *_ in fitted}, pulls_of(called, scene.dimensions, bool(case.flowing))
     own_laws = laws(scene, catalogue.states)
-    led = [bool(case.flowing) and is_prescribed(one.motion) for one in scene.species]
+    led = [is_prescribed(one.motion) and (case.flowing or one.kind == WALL) for one in scene.species]
     loaded = np.array([one.loaded for one in scene.species], bool) | np.array(led, bool)
-    for_loads = LOADED_READ * bool(loaded.any())
+    for_loads = LOADED_READ * (bool(case.flowing) and bool(loaded.any()))
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
     told = carried_fields(movement, scene.frame)
     told_by = {e.told_by for e in marking}

@@ -151,7 +151,7 @@ def test_every_sentence_is_a_line_that_says_what_to_do():
         ("gauges.motion", BODIES, ACTS),
         ("gauges.motion", FLUIDS, IRRELEVANT),
         ("gauges.reaction", UPDATED, REFUSED),
-        ("gauges.reaction", BODIES, REFUSED),
+        ("gauges.reaction", BODIES, IRRELEVANT),
         ("gauges.stress", SOILS, ACTS),
         ("gauges.stress", FLUIDS, IRRELEVANT),
     ],

@@ -77,7 +77,7 @@ FAULTS = {
     "a body without a fluid": (
         WATER[: WATER.index("[fluids")]
         + "[bodies.box]\nshape.box = { lower = [0.0], upper = [1.0] }\nmass = 1.0",
-        "bodies: rigid bodies need a fluid; add a table [fluids.NAME]",
+        "bodies: rigid bodies need a fluid or an elastic solid; add a table [fluids.NAME]",
     ),
     "an empty table of fluids": (
         WATER[: WATER.index("[fluids")] + "[fluids]",

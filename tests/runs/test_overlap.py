@@ -64,12 +64,44 @@ def meeting(folder, *sets):
 def test_elastic_solids_inside_each_other_end_the_run(tmp_path):
     trouble, _ = meeting(tmp_path)
     assert "the run has a body inside another at step 100" in str(trouble)
-    assert "is inside another solid or a wall (guards.overlap = 1)" in str(trouble)
+    assert "is inside another solid, a body or a wall (guards.overlap = 1)" in str(trouble)
     assert "of solids.left" in str(trouble) or "of solids.right" in str(trouble)
 
 
 def test_those_that_bounce_go_on(tmp_path):
     assert meeting(tmp_path, "physics.contact.stiffness=1.0")[0] is None
+
+
+DROPPED = """
+title = "A small body"
+time.end = 0.25
+output = { frames = 0.25, log = 0.05 }
+[space]
+dimensions = 2
+spacing = 0.1
+[physics]
+contact = { stiffness = 1e-3 }
+[solids.block]
+shape.box = { lower = [0.0, 0.0], upper = [0.8, 0.8] }
+density = 1200.0
+young = 2.0e6
+poisson = 0.3
+[bodies.bullet]
+shape.box = { lower = [-0.4, 0.3], upper = [-0.1, 0.6] }
+density = 3000.0
+velocity = [3.0, 0.0]
+"""
+"""A body three particles wide is shot into a block: it fills no neighbourhood of that, but that its own."""
+
+
+def test_a_small_body_inside_an_elastic_solid_ends_the_run(tmp_path):
+    path = tmp_path / "bullet.toml"
+    with together(MPI.COMM_WORLD, path):
+        path.write_text(DROPPED)
+    trouble, _ = started(load(path), tmp_path / "run", MPI.COMM_WORLD)
+    assert "the run has a body inside another at step 100" in str(trouble)
+    assert "of bodies.bullet is inside another solid, a body or a wall (guards.overlap = 1)" in str(trouble)
+    assert started(load(path, ["physics.contact.stiffness=1.0"]), tmp_path / "run", MPI.COMM_WORLD)[0] is None
 
 
 def test_a_lattice_before_a_plane_is_that_part_of_a_whole_one():

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.acts import SOLIDS
+from psph.acts import BODIES, SOLIDS
 from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.vectors import add, dot, scale, subtract, zero_like
@@ -19,6 +19,7 @@ class Anvils(NamedTuple):
     """
 
     acts = (SOLIDS,)
+    refuses = {BODIES: "rigid bodies do not feel them; take a wall, or remove one of the two"}
 
     planes: tuple = ()
     half: float = 0.0

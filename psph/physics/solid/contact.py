@@ -69,20 +69,21 @@ NO_WAY = 1e-12
 
 
 class SolidContact(NamedTuple):
-    """The faces of two solids, or of a solid and a wall, repel each other where they overlap.
+    """The faces of two solids, or of a solid and a wall or a rigid body, repel each other where they overlap.
 
     A particle has the normal N of the face drawn nearest to it, as it is now (psph.simulation.solid_faces),
     and its depth s below that at the start; at edges it has no N.  A pair pushes along n, the
     direction of N_j − N_i, or, where neither has a face, of x_ij, with the overlap δ = s_i + s_j − x_ij·n
     of the faces: p = E δ/dx (1 + (δ/½dx)²), which has no bound.  E = s 2M_iM_j/(M_i + M_j) with the
-    ``stiffness`` s and the P-wave moduli M = λ + 2μ (of a wall, the largest of all solids): that of the two
-    half rows of matter before the faces, so that a contact is no softer than the solid.  The share of a pair
-    in the pressure on a face is b_ib_j (1 − t²/(1.5dx)²)², b = 1.5 − s/dx, with t its distance along the
-    face.  The energy of a pair depends on x_ij, N_i and N_j, and these on the places around i and j: the
-    push is −∂/∂x of it and the stress has −∂/∂N of it, so that energy and both momenta are kept.  A plane
-    face at any angle to the lattice pushes along its normal.  ``damping`` ζ: less 2ζ√(k m) u_ij·n, but no
-    pull, m = m_im_j/(m_i + m_j).  ``friction`` is Coulomb's: a spring as stiff as the contact, sheared by
-    the slip, with a dashpot, whose force ends at μ f_ij; so solids stick, and slide.
+    ``stiffness`` s and the P-wave moduli M = λ + 2μ (of what is rigid, the largest of all solids): that of
+    the two half rows of matter before the faces, so that a contact is no softer than the solid.  The share
+    of a pair in the pressure on a face is b_ib_j (1 − t²/(1.5dx)²)², b = 1.5 − s/dx, with t its distance
+    along the face.  The energy of a pair depends on x_ij, N_i and N_j, and these on the places around i and
+    j, or on how a body is turned: the push is −∂/∂x of it, the stress has −∂/∂N of it, and so has the moment
+    of a body, so that energy and both momenta are kept.  A plane face at any angle to the lattice pushes
+    along its normal.  ``damping`` ζ: less 2ζ√(k m) u_ij·n, but no pull, m = m_im_j/(m_i + m_j).  ``friction``
+    is Coulomb's: a spring as stiff as the contact, sheared by the slip, with a dashpot, whose force ends at
+    μ f_ij; so solids stick, and slide.
     Penalties: Belytschko & Neal (1991), Int. J. Numer. Methods Eng. 31, 547; in SPH Campbell, Vignjevic &
     Libersky (2000), Comput. Methods Appl. Mech. Eng. 184, 49; by normals of surfaces Vignjevic, De Vuyst &
     Campbell (2006), CMES 13, 35.
@@ -134,7 +135,10 @@ class SolidContact(NamedTuple):
         dx, d = scene.spacing, scene.dimensions
         shape = self.stiffness * dx ** (d - 2), self.damping, self.friction, dx, 1.0 / SHARES[d - 1]
         made = kind(*shape, 0.0)
+        stiffest = max(modulus(made, i, j) for i, j in pairs)
         hardest = max(modulus(made, i, j) / min(i.mass, j.mass) for i, j in pairs)
+        # Of a particle and a body ω² is k/m + kλ at most, and 2k/m of two like particles.
+        hardest = max(hardest, 0.5 * (hardest + stiffest * scene.answer(self.friction > 0.0)))
         return made._replace(step=STEP / (math.sqrt(hardest) * (1.0 + self.damping)))
 
     def why_absent(self, scene: Facts):

@@ -1,0 +1,87 @@
+"""What elastic solids press that moves as a whole, bodies and walls: its faces, and its moment."""
+
+import numpy as np
+
+from psph.composition.loads import cross
+from psph.composition.pair import take
+from psph.engine.jit import elementwise
+from psph.engine.settled import settled
+from psph.engine.threads import in_threads
+from psph.fields import WALL
+from psph.formula import helper
+from psph.physics.motion import ANCHOR, COUPLE, WORK, is_rigid
+from psph.physics.rigid.pose import PLACE, VELOCITY
+from psph.physics.solid.contact import FACE, FACE_RATE, TURNING
+from psph.scene.solids import drawn_faces
+from psph.vectors import affine, at, dot, put, scale, subtract, zero_like
+
+
+class Pressed:
+    """The particles near the faces of the bodies and the moving walls of a ``scene``, in a rank's ``store``.
+
+    The normal N of a face turns with it, by the ``maps`` of all rigid motions.  The energy U of contacts
+    depends on N: beside Σ f it does Σ N × T to a body, T = −∂U/∂N, so that what it turns, and what turns on
+    the other side, keep their angular momentum.
+    """
+
+    def __init__(self, scene, plan, store, maps: np.ndarray):
+        self._scene, self._plan, self._store, self._maps = scene, plan, store, maps
+        own = [one.kind == WALL and is_rigid(one.motion) for one in scene.species]
+        self._own = np.array(own, bool)
+        self._carry, self._twist = settled(carry), settled(twist)
+
+    def settle(self) -> None:
+        """Their columns, and the faces as they were drawn."""
+        s = self._store
+        columns = s.low + np.flatnonzero(self._own[s.group[s.inner]])
+        place = np.stack([of[columns] for of in s[ANCHOR.name]], axis=1)
+        normal, _ = drawn_faces(self._scene, s.group[columns], place)
+        known = (normal != 0.0).any(axis=1)
+        self._columns = columns[known].astype(np.uint64)
+        self._drawn = tuple(np.ascontiguousarray(normal[known].T))
+
+    def carry(self, dt: float) -> None:
+        """Where the faces are now, ``dt`` s after they were carried last."""
+        s = self._store
+        rate = s[FACE_RATE.name] if FACE_RATE.name in s else None
+        self._each(self._carry, s[FACE.name], rate, 1.0 / dt if dt > 0.0 else 0.0)
+
+    def twist(self, dt: float) -> None:
+        """The moment of contacts by the normals, and the work that they do so in a step of ``dt`` s."""
+        s = self._store
+        couple = s[COUPLE.name] if COUPLE.name in s else None
+        self._each(self._twist, s[FACE.name], s[TURNING.name], s.view(), couple, s[WORK.name], dt)
+
+    def _each(self, loop, *args) -> None:
+        told = self._columns, self._store.group, self._plan.pose_of, self._maps, self._drawn
+        in_threads(loop, 0, len(self._columns), *told, *args)
+
+
+@helper
+def turned(maps, which, a):
+    """What becomes of a direction by the affine map ``which``: what leads from the place of 0 to its."""
+    return subtract(affine(maps, which, a), affine(maps, which, zero_like(a)))
+
+
+@elementwise
+def carry(first, last, columns, group, pose_of, maps, drawn, now, rate, per):
+    """The normals R N₀ of the rows ``first`` to ``last``, ``drawn`` N₀, as they are ``now``; their ``rate``
+    in 1/s, if it is asked for, with the time 1/``per`` s since then."""
+    for k in range(np.uint64(first), np.uint64(last)):
+        c, normal = columns[k], at(drawn, k)
+        normal = turned(maps[pose_of[group[c]]], PLACE, normal)
+        if rate is not None:
+            put(rate, c, scale(subtract(normal, at(now, c)), per))
+        put(now, c, normal)
+
+
+@elementwise
+def twist(first, last, columns, group, pose_of, maps, drawn, face, turning, view, couple, work, dt):
+    """N × T of the rows ``first`` to ``last`` by the mass that each shows, and less T·Ṅ Δt of their work."""
+    for k in range(np.uint64(first), np.uint64(last)):
+        c = columns[k]
+        normal, turn = at(face, c), at(turning, c)
+        if couple is not None:
+            put(couple, c, scale(cross(normal, turn, normal), 1.0 / take(view, c).mass))
+        rate = turned(maps[pose_of[group[c]]], VELOCITY, at(drawn, k))
+        work[c] -= dt * dot(turn, rate)

@@ -1,0 +1,87 @@
+"""Bodies and a moving wall on a solid across all slabs: the same bits on any number of ranks, resumed or not."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+from parallel.test_simulation import start
+from runs.resuming import go_on_elsewhere
+
+from psph.case import load
+
+COMM = MPI.COMM_WORLD
+pytestmark = pytest.mark.mpi(min_size=2)
+
+MATTRESS = """
+time.end = 1.0
+neighbours.skin = 0.1
+parallel.axis = "x"
+output = { frames = 0.02, probes = 0.01, log = 0.01 }
+[space]
+dimensions = 2
+spacing = 0.1
+[physics]
+gravity = [0.3, -9.8]
+contact = { damping = 0.1, friction = 0.3 }
+[solids.mattress]
+shape.box = { lower = [0.0, 0.0], upper = [4.0, 0.5] }
+clamped.box = { lower = [0.0, 0.0], upper = [4.0, 0.1] }
+density = 1000.0
+young = 3.0e5
+poisson = 0.35
+damping = 40.0
+jitter = 0.1
+[bodies.beam]
+shape.polygon.points = [[0.5, 0.55], [3.0, 0.75], [3.0, 1.15], [0.5, 0.95]]
+density = 800.0
+velocity = [-0.5, -3.0]
+[bodies.ball]
+shape.disc = { center = [3.5, 0.85], radius = 0.3 }
+density = 1500.0
+velocity = [-2.0, -3.0]
+spin = 20.0
+[walls.roller]
+shape.disc = { center = [0.3, 0.7], radius = 0.25 }
+motion = { translation = [1.5, -0.8] }
+"""
+"""A beam across slabs and a ball that spins fall on rubber, and a wall rolls over it."""
+
+
+def mattress(folder):
+    if COMM.rank == 0:
+        (folder / "mattress.toml").write_text(MATTRESS, encoding="utf-8")
+    COMM.Barrier()
+    return load(folder / "mattress.toml")
+
+
+def rows(simulation):
+    """All that particles carry of it, by id, and the stored energy."""
+    energy, store = simulation.engine.stored_energy(), simulation.store
+    names = ("position", "velocity", "acceleration", "load", "couple", "face", "face_rate", "slip", "work")
+    parts = [store.owned_rows("id")[:, None], *(store.owned_rows(n).reshape(store.owned, -1) for n in names)]
+    every = np.concatenate(simulation.comm.allgather(np.hstack(parts)))
+    return every[np.argsort(every[:, 0])], energy
+
+
+def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
+    case = mattress(mpi_tmp_path)
+    single, together = start(case, MPI.COMM_SELF), start(case, COMM)
+    begun = single.engine.poses.state()
+    for step in range(120):
+        single.step()
+        together.step()
+        if step % 10 == 9:  # at the same steps: contacts are summed in the order of the lists
+            single.rebuild()
+            together.rebuild()
+    (one, energy), (many, energy_of_many) = rows(single), rows(together)
+    state = single.engine.poses.state()
+    turned = np.subtract(state["angular_momentum"], begun["angular_momentum"])
+    assert np.isfinite(one).all() and (np.abs(turned).max(axis=1) > 0.1).all()  # both are pressed
+    assert np.abs(one[:, -1]).max() > 0.0  # and so is the wall
+    assert np.array_equal(one, many) and energy == energy_of_many > 0.0
+    assert state == together.engine.poses.state()
+    assert together.domain.rebuilds == single.domain.rebuilds > 8
+
+
+@pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
+def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
+    go_on_elsewhere(mattress(mpi_tmp_path), before, after, mpi_tmp_path)
