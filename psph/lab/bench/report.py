@@ -19,12 +19,12 @@ KIND = ("problem", "dimensions", "neighbours_in_bulk", "precision", "threads")
 """What two runs share that differ only in particles and ranks."""
 
 
-def tables(files: Iterable[Path]) -> str:
-    """The tables of these results.  BenchError: a file is of another kind."""
-    return "\n".join(_tables([run for file in files for run in read_runs(file)]))
+def tables(files: Iterable[Path], *, ranks: bool = True) -> str:
+    """The tables of these results, also of several ranks against one.  BenchError: a file is of another kind."""
+    return "\n".join(_tables([run for file in files for run in read_runs(file)], ranks))
 
 
-def _tables(runs: list[dict]) -> Iterator[str]:
+def _tables(runs: list[dict], ranks: bool) -> Iterator[str]:
     for machine in sorted({run["machine"] for run in runs}):
         all_here = [run for run in runs if run["machine"] == machine]
         here = [run for run in all_here if AGAINST not in run] or all_here
@@ -47,7 +47,7 @@ def _tables(runs: list[dict]) -> Iterator[str]:
             ),
             map(_pace, here),
         )
-        if scaled := list(_scaled(here)):
+        if ranks and (scaled := list(_scaled(here))):
             yield ""
             yield "More ranks against one: the same particles, or as many to a rank (weak)."
             yield ""
@@ -178,7 +178,9 @@ def _percent(share: float) -> str:
 
 def main(arguments: list[str]) -> int:
     """Renew a page; the exit code."""
-    return command("psph.lab.bench.report PAGE FILE...", lambda _, files: tables(files), arguments)
+    return command(
+        "psph.lab.bench.report PAGE FILE...", lambda _, files: tables(files, ranks=False), arguments
+    )
 
 
 if __name__ == "__main__":
