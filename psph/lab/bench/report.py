@@ -20,7 +20,7 @@ KIND = ("problem", "dimensions", "neighbours_in_bulk", "precision", "threads")
 
 
 def tables(files: Iterable[Path], *, ranks: bool = True) -> str:
-    """The tables of these results, also of several ranks against one.  BenchError: a file is of another kind."""
+    """The tables of these results; that of ranks where wanted.  BenchError: a file is of another kind."""
     return "\n".join(_tables([run for file in files for run in read_runs(file)], ranks))
 
 
