@@ -10,7 +10,18 @@ from invariances.transforms import Extruded
 from long import long_but_for
 from scipy.spatial import cKDTree
 
-KINDS = ("tank", "two fluids", "mud by bingham", "mud by granular", "solid", "soil")
+KINDS = (
+    "tank",
+    "sticky tank",
+    "rocked tank",
+    "body",
+    "two fluids",
+    "mud by bingham",
+    "mud by granular",
+    "solid",
+    "solid in water",
+    "soil",
+)
 """Scenes without their disorder: noise is another in 3D."""
 
 SHORT = ("solid",)
