@@ -11,7 +11,7 @@ from typing import Any
 
 from numba.core import types
 
-from psph.engine.jit import method_of, overload, register_jitable, tuple_of, unrolled
+from psph.engine.jit import method_of, overload, overload_walker, register_jitable, tuple_of, unrolled
 from psph.engine.simd import fold, total
 from psph.vectors import add, put, scale, zero_like
 
@@ -42,7 +42,7 @@ def _sum_of(name: str, arguments: str, empty, plus):
         terms = [getattr(effect, name)(*args) for effect in effects if hasattr(effect, name)]
         return functools.reduce(plus, terms) if terms else empty(*args)
 
-    @overload(summed, strict=False)
+    @overload_walker(summed)
     def typed(effects, *args):
         methods = _methods(effects, name)
         terms = _calls("effects", methods, arguments) or [f"empty({arguments})"]
@@ -140,7 +140,7 @@ def start(reductions, i):
     return tuple(effect.start(i) for effect in reductions)
 
 
-@overload(start)
+@overload_walker(start)
 def _typed_start(reductions, i):
     methods = _methods(reductions, "start")
     sums = tuple_of(_calls("reductions", methods, "i"))
@@ -168,7 +168,7 @@ def gather_each(reductions, totals, i, j, pair):
     return tuple(effect.gather(total, i, j, pair) for effect, total in zip(reductions, totals))
 
 
-@overload(gather_each)
+@overload_walker(gather_each)
 def _typed_gather_each(reductions, totals, i, j, pair):
     methods = _methods(reductions, "gather")
     sums = (f"method_{place}(reductions[{place}], totals[{place}], i, j, pair)" for place in methods)
@@ -201,7 +201,7 @@ def finish_acceleration(reductions, totals, i):
     return acceleration
 
 
-@overload(finish_acceleration)
+@overload_walker(finish_acceleration)
 def _typed_finish_acceleration(reductions, totals, i):
     methods = _methods(reductions, "finish_acceleration")
     lines = (f"a = add(a, method_{place}(reductions[{place}], totals[{place}], i))" for place in methods)
@@ -223,7 +223,7 @@ def finish_value(reductions, totals, i, kernel, k, written):
             store(array, k, effect.finish_value(gathered, i, kernel))
 
 
-@overload(finish_value)
+@overload_walker(finish_value)
 def _typed_finish_value(reductions, totals, i, kernel, k, written):
     methods = _methods(reductions, "finish_value")
     lines = (

@@ -186,6 +186,29 @@ def overload_inside(function):
     return overload(function, jit_options=INSIDE)
 
 
+def overload_walker(function):
+    """As :func:`overload`, for what works through the effects that are its first argument: such a part of a
+    loop where one of them is ``written_in``."""
+
+    def stand_in(gives):
+        def usual(*args):
+            return None if _is_written_in(args[0]) else gives(*args)
+
+        def written(*args):
+            return gives(*args) if _is_written_in(args[0]) else None
+
+        overload(function, strict=False)(usual)
+        overload(function, jit_options=INSIDE, strict=False)(written)
+        return gives
+
+    return stand_in
+
+
+def _is_written_in(kinds) -> bool:
+    """Whether any of the types of some effects asks for it."""
+    return any(getattr(getattr(one, "instance_class", None), "written_in", False) for one in kinds)
+
+
 def call_by_type(name: str):
     """A function ``(value, *args) -> value.name(*args)`` for compiled code and plain Python.
 

@@ -13,7 +13,7 @@ from psph.composition import terms
 from psph.composition.pair import fetch, take
 from psph.composition.space import softened
 from psph.composition.terms import added
-from psph.engine.jit import compiled, elementwise, overload, register_jitable
+from psph.engine.jit import compiled, elementwise, overload, overload_inside, register_jitable
 from psph.engine.simd import spread, total, width_of
 from psph.physics.solid.deformation import ReferencePair
 from psph.simulation.solid_memory import across, advanced, energy, stress
@@ -168,12 +168,21 @@ def drag(viscosity, f, folded, inverse, a):
 def _typed_drag(viscosity, f, folded, inverse, a):
     if len(folded) == 1:
         return lambda viscosity, f, folded, inverse, a: None
+    return _voigt if len(a) < SPATIAL else None
 
-    def voigt(viscosity, f, folded, inverse, a):
-        rate = matrix_product(folded[1], inverse, a)
-        return matrix_product(f, scale(transposed_product(f, rate, a), viscosity), a)
 
-    return voigt
+@overload_inside(drag)
+def _typed_drag_in_3d(viscosity, f, folded, inverse, a):
+    return _voigt if len(folded) > 1 and len(a) == SPATIAL else None
+
+
+def _voigt(viscosity, f, folded, inverse, a):
+    rate = matrix_product(folded[1], inverse, a)
+    return matrix_product(f, scale(transposed_product(f, rate, a), viscosity), a)
+
+
+SPATIAL = 3
+"""Dimensions in which LLVM would leave the friction of a solid as a call."""
 
 
 @compiled

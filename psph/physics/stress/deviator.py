@@ -80,6 +80,7 @@ class DeviatorRate(NamedTuple):
     faces: Any = Sticking()
 
     writes = DEVIATOR
+    written_in = True
 
     def in_scene(self, scene: Facts):
         """Where soils ask for it, the form whose stress spreads between neighbours too; in matter that never
@@ -138,6 +139,7 @@ class DiffusedDeviatorRate(NamedTuple):
     faces: Any = Sticking()
 
     writes = DEVIATOR
+    written_in = True
 
     def start(self, i):
         """No neighbour yet."""
