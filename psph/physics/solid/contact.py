@@ -303,7 +303,7 @@ def rubbing(contact, i, j, pair, met):
 
 
 class Touching(NamedTuple):
-    """The faces of two solids, or of a solid and a wall, repel each other where they overlap.
+    """The faces of two solids, or of a solid and what is rigid, repel each other where they overlap.
 
     The form of :class:`SolidContact` in a scene: ``stiffness`` s dx^(d−2), ``damping`` ζ, ``friction`` μ,
     ``spacing`` dx in m, the ``part`` of a pair in the sum over a face, and the longest ``step`` in s.
@@ -344,7 +344,7 @@ class Touching(NamedTuple):
 
 
 class Rubbing(NamedTuple):
-    """The faces of two solids, or of a solid and a wall, push and rub each other where they overlap.
+    """The faces of two solids, or of a solid and what is rigid, push and rub each other where they overlap.
 
     :class:`Touching`, with friction.  Each particle carries the slip of its contacts (Cundall & Strack 1979,
     Géotechnique 29, 47, there of each pair): half the difference of those of a pair is the stretch of its
