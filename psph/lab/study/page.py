@@ -1,8 +1,7 @@
 """The measured part of a page: ``python -m psph.lab.study.page PAGE FOLDER...``.
 
-Each FOLDER holds a study.  Between the markers of the page come a row for each series of spacings, what
-series predict for their finest run, what the profiles cost, and the pictures, which go into ``images/``
-beside the page.
+Each FOLDER holds a study.  Between the markers of the page come a row for each series of spacings, what the
+profiles cost, and the pictures, which go into ``images/`` beside the page.
 """
 
 import json
@@ -70,28 +69,6 @@ def _order(ladder: Ladder | None) -> str:
     if ladder is None:
         return "–"
     return f"{ladder.order.value:.2f}{within(ladder.order, '.2f')}" if ladder.steady else "not steady"
-
-
-def _predictions(found: list[tuple[Path, dict]]) -> Iterator[str]:
-    """A line for each ladder whose coarser runs predict its finest, and the head of the table."""
-    lines = [
-        (folder.name, ladder.prediction)
-        for folder, kept in found
-        for shared, _, ladder in ladders_of(kept["rows"], kept["vary"], kept["dimensions"])
-        if ladder and ladder.prediction and not shared
-    ]
-    if not lines:
-        return
-    yield "## Prediction of the finest run by the others"
-    yield ""
-    yield "| case | spacing | error predicted | measured | seconds predicted | measured |"
-    yield "|---" * 6 + "|"
-    for name, (run, error, took) in lines:
-        yield (
-            f"| {name} | {toml(run.spacing)} | {percent(error.value)} | {percent(run.error)} | "
-            f"{took.value:.3g} | {run.seconds:.3g} |"
-        )
-    yield ""
 
 
 def _profiles(every: list[dict]) -> Iterator[str]:
