@@ -26,7 +26,6 @@ def studies(page: Path, folders: Sequence[Path]) -> str:
     of_profiles = [kept for _, kept in found if PROFILE in kept["vary"]]
     parts = [
         _series(alone),
-        _predictions(alone),
         _profiles(of_profiles),
         _pictures(page, [folder for folder, _ in alone]),
     ]
