@@ -21,8 +21,8 @@ that runs it. On the site each case has a page with its film. {drawn} of {all} c
 a coarser or shorter run. `./run/gallery` draws all of them again, `./run/gallery dam_break` only one,
 `./run/gallery --missing` those without a picture.
 """
-ACROSS = 3
-"""Pictures beside each other."""
+ACROSS, ACROSS_WITHOUT_WORDS = 3, 5
+"""Pictures beside each other, with sentences below them and without."""
 TITLES = {"": "Flows", "hard": "Hard cases of the [battery](../stability.md#the-battery)"}
 """Headings for folders of cases; another has its name."""
 
@@ -38,10 +38,11 @@ def _groups(shown: list[Shown], site: bool) -> Iterator[str]:
         title = TITLES.get(folder.removeprefix("."), folder.capitalize())
         yield f"## {title}\n"
         cells = [_small(one) + (_told(one) if site else _named(one, one.path)) for one in group]
-        yield "| | | |\n|---|---|---|"
-        for k in range(0, len(cells), ACROSS):
-            row = cells[k : k + ACROSS]
-            yield f"| {' | '.join(row + [''] * (ACROSS - len(row)))} |"
+        across = ACROSS if site else ACROSS_WITHOUT_WORDS
+        yield f"{'| ' * across}|\n{'|---' * across}|"
+        for k in range(0, len(cells), across):
+            row = cells[k : k + across]
+            yield f"| {' | '.join(row + [''] * (across - len(row)))} |"
         yield ""
 
 
