@@ -13,6 +13,7 @@ from jobs import clean_environment
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs/site"))
 
+import figures  # noqa: E402
 import navigation  # noqa: E402
 import plain  # noqa: E402
 import tree  # noqa: E402
@@ -140,6 +141,14 @@ def test_an_index_lists_the_pages_of_its_folder_in_the_order_of_its_links():
         "docs/g/a",
         "docs/g/c/d",
     ]
+
+
+def test_figures_are_drawn_and_shown(tmp_path):
+    drawn = figures.draw(tmp_path)
+    pages = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "docs").glob("*.md"))
+    for path in drawn:
+        assert path.read_bytes()[:4] == b"\x89PNG"
+        assert (ROOT / "docs/images" / path.name).exists() and f"(images/{path.name})" in pages
 
 
 def test_no_page_is_listed_twice_or_gone():
