@@ -1,29 +1,42 @@
 """The stages of a step, in their order.  A scene has those that it needs: see :func:`stages_of`."""
 
 from collections.abc import Callable, Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from psph.parallel.reductions import largest
 from psph.physics.region import next_time
 
-Stage = Callable[..., None]
-"""Takes the simulation from one state within a step to the next; collective."""
+
+class Stage(NamedTuple):
+    """Declared work of a step: both take the simulation, and are collective.
+
+    ``run`` takes it from one state within a step to the next.  ``begin`` is the same before the first step,
+    of a step without length: the start goes through the stages as every step does.
+    """
+
+    run: Callable[..., None]
+    begin: Callable[..., None]
 
 
 def stages_of(plan) -> Iterator[Stage]:
     """What a step of this plan does, in order."""
-    yield predict
+    yield Stage(predict, predict)
     if plan.regions:
-        yield populate
-    yield renew_lists
-    yield sum_over_pairs
+        yield Stage(populate, nothing)
+    yield Stage(renew_lists, begin_lists)
+    yield Stage(sum_over_pairs, begin_sums)
     if plan.floats:
-        yield push_bodies
-    yield kick
+        yield Stage(push_bodies, push_bodies)
+    yield Stage(kick, begin_rates)
     if plan.absorbs:
-        yield measure_levels
-    yield find_limits
+        yield Stage(measure_levels, measure_levels)
+    yield Stage(find_limits, find_limits)
+
+
+def nothing(simulation) -> None:
+    """A stage that the start does without."""
 
 
 def predict(simulation) -> None:
@@ -48,10 +61,27 @@ def renew_lists(simulation) -> None:
         simulation.rebuild()
 
 
+def begin_lists(simulation) -> None:
+    """The first lists, and what particles keep of the start."""
+    simulation.rebuild()
+    simulation.engine.begin()
+
+
 def sum_over_pairs(simulation) -> None:
     """Every pass over the neighbours that is due."""
     at = simulation.steps, simulation.then, simulation.dt
     simulation.engine.sum(*at, ghosts_are_fresh=not simulation.listed, at_once=simulation.impacts.lasts)
+
+
+def begin_sums(simulation) -> None:
+    """The first sums; twice where forces rest on those of the pass before."""
+    sum_over_pairs(simulation)
+    if simulation.plan.starts_twice:
+        kick(simulation)
+        find_limits(simulation)
+        predict(simulation)
+        simulation.listed = True
+        sum_over_pairs(simulation)
 
 
 def push_bodies(simulation) -> None:
@@ -65,6 +95,12 @@ def kick(simulation) -> None:
     simulation.pace = simulation.fluid_speed  # bounds the shifts of the next step, whose speed is not known
     with simulation.ledger("kick"):
         simulation.own_extremes = simulation.engine.kick(simulation.then, simulation.dt, simulation.pace)
+
+
+def begin_rates(simulation) -> None:
+    """The first rates, which are those of earlier steps too, and a kick without length."""
+    simulation.engine.begin_rates()
+    kick(simulation)
 
 
 def measure_levels(simulation) -> None:

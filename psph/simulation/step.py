@@ -12,7 +12,7 @@ from psph.simulation.cpu import Engine
 from psph.simulation.impacts import Impacts
 from psph.simulation.plan import Plan
 from psph.simulation.population import Population
-from psph.simulation.stages import find_limits, kick, measure_levels, push_bodies, stages_of
+from psph.simulation.stages import stages_of
 
 TOO_FAST = 100.0
 """A particle at this many speeds of sound is a run that blew up, whatever the case allows."""
@@ -89,7 +89,7 @@ class Simulation:
             jolt = self.engine.poses.advance(self.then, self.dt)
             self.listed = self.skin.holds(self.dt, self.speed, max(self.acceleration, jolt), self.shift)
         for stage in self.stages:
-            stage(self)
+            stage.run(self)
         self.time = self.then
         self.steps += 1
         self._refuse_blow_up()
@@ -120,25 +120,9 @@ class Simulation:
 
     def _start(self) -> None:
         """First forces, from particles at rest in time: predicted is initial."""
-        self.engine.predict(0.0, 0.0, self.pace)
-        self.rebuild()
-        self.engine.begin()
-        self.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=True)
-        if self.plan.starts_twice:  # its first verdict comes with the first sums
-            self._kick_in_place()
-            self.engine.predict(0.0, 0.0, self.pace)
-            self.engine.sum(0, 0.0, 0.0, ghosts_are_fresh=False)
-        if self.plan.floats:
-            push_bodies(self)
-        if self.plan.absorbs:
-            measure_levels(self)
-        self.engine.begin_rates()
-        self._kick_in_place()
+        for stage in self.stages:
+            stage.begin(self)
         self._refuse_blow_up()
-
-    def _kick_in_place(self) -> None:
-        kick(self)
-        find_limits(self)
 
     def _restore(self, saved) -> None:
         """Everything as it was when ``saved`` was written."""
