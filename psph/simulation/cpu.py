@@ -32,6 +32,7 @@ from psph.simulation.integrator import (
     settle_told,
     state_of,
 )
+from psph.simulation.kinds import Kind, kinds_of
 from psph.simulation.paddles import Paddles
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
@@ -59,8 +60,6 @@ class Engine:
             plan.space.lanes if plan.passes else None,
         )
         self.skin = Skin(self.domain, scene.reach.skin, plan.planes) if plan.passes else Unlisted()
-        self.solids = self._solids(scene) if plan.solids else None
-        self.immersion = self._immersion(scene) if plan.immersed else None
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         floating = Floating(scene, plan) if plan.floats else None
         paddles = Paddles(scene, plan) if plan.absorbs else None
@@ -83,33 +82,19 @@ class Engine:
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._load, self._push = settled(sum_over_neighbours), settled(add_pushes)
         self._potential = settled(potentials)
-        self.pressed = self._pressed(scene) if plan.pressed else None
+        self.kinds = tuple(kinds_of(scene, plan, store, self.domain, ledger, self.poses.maps))
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
         self.wetting = [Wetting(one, plan, store, self.domain, scene.reach) for one in plan.marking]
 
-    def _solids(self, scene):
-        """What the engine has of elastic solids."""
-        from psph.simulation.solids import Solids  # late: most scenes have none
-
-        return Solids(scene, self.plan, self.store, self.domain, self.ledger)
-
-    def _immersion(self, scene):
-        """How solids move in a fluid."""
-        from psph.simulation.immersion import Immersion  # late, as above
-
-        return Immersion(self.solids, scene, self.plan, self.store)
-
-    def _pressed(self, scene):
-        """What solids touch that moves as a whole."""
-        from psph.simulation.pressed import Pressed  # late, as above
-
-        return Pressed(scene, self.plan, self.store, self.poses.maps)
+    def of_kind(self, kind: type[Kind]):
+        """What the engine has of a kind of matter, or None."""
+        return next((one for one in self.kinds if isinstance(one, kind)), None)
 
     def predict(self, time: float, dt: float, pace: float) -> None:
         """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
         self._each(self._predict, time, dt, self._rules, self._view(pace), self._columns())
-        if self.immersion:
-            self.immersion.advance(time, dt, pace)
+        for kind in self.kinds:
+            kind.advance(time, dt, pace)
         if self.plan.evolving:
             self._each(predict_rows, dt, self.store.data, self._rows_that_evolve())
         if bounds := self.plan.bounds:
@@ -128,8 +113,7 @@ class Engine:
         if bounds := self.plan.bounds:
             rest = (self.store[name] for name in (bounds.bounds.name, "density", bounds.remembers.name))
             self._each(admit_kicked, bounds, self._view(pace), *rest)
-        if self.immersion:
-            parts = [*parts, self.immersion.kick(dt)]
+        parts = [*parts, *filter(None, [kind.kick(dt) for kind in self.kinds])]
         return list(map(max, *parts)) if len(parts) > 1 else list(parts[0])
 
     def rebuild(self) -> None:
@@ -142,17 +126,16 @@ class Engine:
             self._list_others()
         with self.ledger("records"):
             self._fit_records()
-        self._settle_solids()
+        for kind in self.kinds:
+            kind.settle()
         self.skin.renew()
 
     def begin(self) -> None:
         """What particles keep of the start, from where they stand then; lists have to be there."""
         for one in self.wetting:
             one.begin()
-        if self.solids:
-            self.solids.begin()
-        if self.immersion:
-            self.immersion.begin()
+        for kind in self.kinds:
+            kind.begin()
 
     def sum(self, steps: int, time: float, dt: float, ghosts_are_fresh: bool, at_once: bool = False) -> None:
         """Every pass that is due in the step of ``dt`` s after ``steps``, which ends at ``time``, s.
@@ -161,10 +144,8 @@ class Engine:
 
         The first of them brings ghosts up to date unless they are; each then what was written before it.
         """
-        if self.pressed:
-            self.pressed.carry(dt)
-        if self.plan.touching:
-            self.solids.strain(dt)
+        for kind in self.kinds:
+            kind.before_sums(dt)
         stale = self.plan.faced if ghosts_are_fresh else self.plan.refreshed
         written: set[str] = set()
         for one in self.plan.passes:
@@ -179,12 +160,8 @@ class Engine:
             stale, written = (), written | one.written
         for wetting in self.wetting:
             wetting.mark()
-        if self.pressed:
-            self.pressed.twist(dt)
-        if self.plan.touching:
-            self.solids.push(time, dt)
-        elif self.solids and not self.immersion:
-            self.solids.sum(time, dt)
+        for kind in self.kinds:
+            kind.after_sums(time, dt)
 
     def push_bodies(self, time: float, dt: float) -> None:
         """The second kick of rigid bodies at ``time``, by body forces and the pushes that the last pass has
@@ -202,14 +179,16 @@ class Engine:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store
         state_of(s.low, s.low + s.owned, self._rules, self._view(pace), self._columns())
-        if self.solids:
-            self.solids.measure()
+        for kind in self.kinds:
+            kind.measure()
 
     def shown_pressure(self) -> np.ndarray:
         """The pressure of this rank's particles, Pa (n,), as :meth:`settle_pressure` has left it; of elastic
         solids that of their stress."""
         pressure = self.store.shown("pressure")
-        return self.solids.with_pressure(pressure) if self.solids else pressure
+        for kind in self.kinds:
+            pressure = kind.with_pressure(pressure)
+        return pressure
 
     def potential(self) -> np.ndarray:
         """Potential energy by mass of this rank's particles, J/kg (n,), but for that of uniform pulls."""
@@ -219,8 +198,8 @@ class Engine:
         return found[self.store.inner]
 
     def stored_energy(self) -> float:
-        """Energy of deformation of all solids, J; collective."""
-        return self.solids.energy() if self.solids else 0.0
+        """Energy that kinds of matter store, as solids do by their deformation, J; collective."""
+        return sum(kind.energy() for kind in self.kinds)
 
     def begin_rates(self) -> None:
         """The rates of earlier steps, before there were any, are the first ones."""
@@ -243,7 +222,8 @@ class Engine:
         self._fit_records()
         for records in self.records:
             records.fill(0, self.store.total)
-        self._settle_solids()
+        for kind in self.kinds:
+            kind.settle()
         self.skin.restore(saved.state["skin"])
 
     def bytes_held(self) -> int:
@@ -256,20 +236,13 @@ class Engine:
             *tables,
             *self.domain.lists,
         ]
-        held = self.solids.bytes_held() if self.solids else 0
+        held = sum(kind.bytes_held() for kind in self.kinds)
         return held + sum(a.nbytes for a in arrays)
 
     def spent_on_pairs(self) -> float:
         """Seconds of this rank's pair loop since this was last asked."""
         paid, self._paid = self._paid, self.ledger.seconds["pairs"]
         return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
-
-    def _settle_solids(self) -> None:
-        """Solids, and what they touch, after particles have found new columns."""
-        if self.solids:
-            self.solids.settle()
-        if self.pressed:
-            self.pressed.settle()
 
     def _list_others(self) -> None:
         """Solids feel only other ones in space."""

@@ -26,6 +26,7 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.physics.motion import LOAD, WORK, Immersed
 from psph.physics.solid.deformation import INERTIA
+from psph.simulation.kinds import Kind
 from psph.vectors import add, at, dot, put, scale
 
 
@@ -36,7 +37,7 @@ def substeps(solids: Iterable, smoothing_length: float, dt: float, speed: float)
     return max(1, math.ceil(dt / longest))
 
 
-class Immersion:
+class Immersion(Kind):
     """The motion of the ``solids`` of a rank (psph.simulation.solids) in the fluid of a ``scene``."""
 
     def __init__(self, solids, scene, plan, store):

@@ -13,10 +13,11 @@ from psph.physics.motion import ANCHOR, COUPLE, WORK, is_rigid
 from psph.physics.rigid.pose import PLACE, VELOCITY
 from psph.physics.solid.contact import FACE, FACE_RATE, TURNING
 from psph.scene.solids import drawn_faces
+from psph.simulation.kinds import Kind
 from psph.vectors import affine, at, dot, put, scale, subtract, zero_like
 
 
-class Pressed:
+class Pressed(Kind):
     """The particles near the faces of the bodies and the moving walls of a ``scene``, in a rank's ``store``.
 
     The normal N of a face turns with it, by the ``maps`` of all rigid motions.  The energy U of contacts
@@ -40,13 +41,13 @@ class Pressed:
         self._columns = columns[known].astype(np.uint64)
         self._drawn = tuple(np.ascontiguousarray(normal[known].T))
 
-    def carry(self, dt: float) -> None:
+    def before_sums(self, dt: float) -> None:
         """Where the faces are now, ``dt`` s after they were carried last."""
         s = self._store
         rate = s[FACE_RATE.name] if FACE_RATE.name in s else None
         self._each(self._carry, s[FACE.name], rate, 1.0 / dt if dt > 0.0 else 0.0)
 
-    def twist(self, dt: float) -> None:
+    def after_sums(self, time: float, dt: float) -> None:
         """The moment of contacts by the normals, and the work that they do so in a step of ``dt`` s."""
         s = self._store
         couple = s[COUPLE.name] if COUPLE.name in s else None

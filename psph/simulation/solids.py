@@ -11,7 +11,7 @@ from psph.parallel.reductions import exact_sums
 from psph.parallel.reference import reference_rows
 from psph.particles.partners import ReferenceRows, padded_lists
 from psph.physics.solid.compression import OF_HEAT, Heat
-from psph.physics.solid.contact import CONTACT_ENERGY, FACE
+from psph.physics.solid.contact import CONTACT_ENERGY
 from psph.physics.solid.deformation import (
     DRAWN,
     KERNEL,
@@ -28,6 +28,7 @@ from psph.physics.solid.deformation import (
 from psph.physics.solid.material import is_damped, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
+from psph.simulation.kinds import Kind
 from psph.simulation.plan import NO_SOLID
 from psph.simulation.solid_memory import Memory
 from psph.simulation.solid_pairs import (
@@ -41,6 +42,7 @@ from psph.simulation.solid_pairs import (
     sum_inner_forces,
     sum_moments,
 )
+from psph.simulation.solid_parts import parts_of
 from psph.simulation.solid_shares import shares_of
 from psph.simulation.solid_table import Table
 from psph.smoothing import kernel
@@ -52,7 +54,7 @@ LOOSENED, STRENGTH = "loosened", "strength"
 """What is read of partners where solids crack: whether one lets go of its last bonds, how strong it is."""
 
 
-class Solids:
+class Solids(Kind):
     """The solids of ``scene`` among the particles of ``store``, a rank's share of them.
 
     A row is a solid particle that this rank owns: first those whose partners it owns too, then the rest, each
@@ -74,42 +76,15 @@ class Solids:
         moving = {PLACES: d} | ({"predicted_velocity": d} if damped else {})
         self._widths = {"reference": d, **moving}, {"reference": d, PLACES: d, FLUX: d * d}
         self._moving = tuple(moving)
-        self._cracks = self._made_to_crack() if plan.cracks else None
+        self.clamps, self.loads, self._faces, self._cracks = parts_of(scene, plan, store, self.comm)
         if self._cracks:
             self._widths[1].update({LOOSENED: 1, STRENGTH: 1})
-        self._faces = self._made_to_meet() if FACE.name in store else None
         self._solid_of = plan.solid_of
         self._rows = self.halo = None
-        self.clamps = self._made_to_move() if plan.grips else None
-        self.loads = self._made_to_pull() if DRAWN.name in store else None
         loops = (sum_moments, sum_gradients, sum_inner_forces, measure, push_solids, fill_places)
         self._moments, self._gradients, self._forces, self._measure, self._push, self._fill = map(
             settled, loops
         )
-
-    def _made_to_move(self):
-        """What moves clamps."""
-        from psph.simulation.clamps import Clamps  # late: most clamps stay
-
-        return Clamps(self.scene, self.plan, self.store)
-
-    def _made_to_pull(self):
-        """What pulls parts of solids."""
-        from psph.simulation.solid_loads import SolidLoads  # late: most solids have no loads
-
-        return SolidLoads(self.scene, self.store, self.comm)
-
-    def _made_to_meet(self):
-        """What carries the faces that touch."""
-        from psph.simulation.solid_faces import SolidFaces  # late: most solids meet nothing
-
-        return SolidFaces(self.scene, self.store)
-
-    def _made_to_crack(self):
-        """What cuts bonds."""
-        from psph.simulation.solid_cracks import Cracks  # late: most solids hold
-
-        return Cracks(self.scene, self.plan, self.store)
 
     def begin(self) -> None:
         """The moments of the reference lists, and the loads; collective."""
@@ -214,6 +189,18 @@ class Solids:
         last sum; collective."""
         self.strain(dt)
         self.push(time, dt)
+
+    def before_sums(self, dt: float) -> None:
+        """Stress and faces, where solids touch."""
+        if self.plan.touching:
+            self.strain(dt)
+
+    def after_sums(self, time: float, dt: float) -> None:
+        """All forces of solids that touch or stand alone; those in a fluid have steps of their own."""
+        if self.plan.touching:
+            self.push(time, dt)
+        elif not self.plan.immersed:
+            self.sum(time, dt)
 
     def strain(self, dt: float) -> None:
         """The stress of all particles of solids, and their faces, ``dt`` s after the last; collective."""
