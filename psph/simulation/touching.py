@@ -55,14 +55,15 @@ class Contacts:
         bounced = -self._restitution * approach(touching, *before)
         wanted = np.where(closing, np.maximum(bounced, -gap / dt), -gap / dt)
         impulse = solve(touching, yielding, wanted, self._friction, speed, spin)
-        pressed = (impulse != 0.0).any(axis=1)
+        # One of several points that would do may bear all: those left without a push rest on the face too.
+        resting = closing | (impulse != 0.0).any(axis=1)
         self._push(bodies, touching, impulse, dt)
         if (touching.gap < 0.0).any():
             wanted = np.maximum(approach(touching, speed, spin), -OUT * touching.gap / dt)
             wanted = np.where(touching.gap < 0.0, wanted, -gap / dt)
             self._extra = _sums(touching, solve(touching, yielding, wanted, 0.0, speed, spin), bodies)
             bodies.shoved(*self._extra)
-        self._touching = Touching(*(of[pressed] for of in touching))
+        self._touching = Touching(*(of[resting] for of in touching))
         self._yielding: Yielding = yielding
 
     def rest(self, bodies: Bodies, dt: float) -> None:

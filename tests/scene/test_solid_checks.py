@@ -133,7 +133,7 @@ def test_a_sound_beam_is_good(tmp_path):
                 "physics.contact={}",
                 "walls.floor={shape={box={lower=[0.0,-1.0],upper=[1.0,-0.5]}},no_slip=true}",
             ],
-            "walls.floor.no_slip: a wall that solids alone meet is at rest",
+            "walls.floor.no_slip: says what a fluid meets, and there is none",
         ),
         (
             [

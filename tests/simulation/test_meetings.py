@@ -9,8 +9,8 @@ from scene.solids import cube, shape_of
 from psph.case.shapes import Shape
 from psph.scene.distance import corners_of
 
-FALLEN = 0.2 * 9.81 * 2e-3
-"""A part of what bodies fall in half a step: points that an impact leaves without a push do not bear that, m/s."""
+FALLEN = 1e-6
+"""Speed that an impact without restitution may leave, m/s; a step falls 0.02."""
 
 SMOOTH = FLAT.format(dx=0.05, friction=0.0, restitution=0.0)
 
