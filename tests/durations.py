@@ -57,6 +57,7 @@ class Clock:
 
     def __init__(self):
         self.seconds = defaultdict(lambda: [0.0, 0.0])
+        self.path = os.environ.pop(FILE, None)  # sessions within tests write none
 
     def pytest_runtest_logreport(self, report):
         """Add up one of the three parts of a test."""
@@ -67,8 +68,8 @@ class Clock:
         ranks = config.pluginmanager.get_plugin("ranks")
         if ranks and ranks.comm.rank > 0:
             return
-        if path := os.environ.get(FILE):
-            with open(path, "a", newline="", encoding="utf-8") as file:
+        if self.path:
+            with open(self.path, "a", newline="", encoding="utf-8") as file:
                 rows = ([test, f"{a:.2f}", f"{b:.2f}"] for test, (a, b) in sorted(self.seconds.items()))
                 csv.writer(file).writerows(rows)
         if "not slow" in config.option.markexpr:

@@ -15,9 +15,11 @@ TOLD = "PSPH_TOLD"
 """The variable that names the file of what was told, a line of JSON each; without it none."""
 
 
-def long_but_for(short, values, name=str):
-    """``values`` for a parametrisation; those whose ``name`` is not in ``short`` are long."""
-    return [v if name(v) in short else pytest.param(v, marks=LONG) for v in values]
+def long_but_for(short, values, name=str, core=()):
+    """``values`` for a parametrisation; those whose ``name`` is not in ``short`` are long, and those in ``core``
+    stay in `run/tests` however long they take."""
+    marks = {name(v): [pytest.mark.core] if name(v) in core else [] for v in values}
+    return [pytest.param(v, marks=marks[name(v)] if name(v) in short else LONG) for v in values]
 
 
 def tell(what, number=1):

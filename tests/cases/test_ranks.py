@@ -141,7 +141,7 @@ EVERY = sorted(path.relative_to(CASES).with_suffix("").as_posix() for path in Pa
 
 
 @pytest.mark.mpi(min_size=2)
-@pytest.mark.parametrize("case", long_but_for(OF_EACH_KIND, EVERY))
+@pytest.mark.parametrize("case", long_but_for(OF_EACH_KIND, EVERY, core=("soils/blade",)))
 def test_a_few_steps_of_every_case_on_one_and_two_ranks(case):
     case = load(Path(CASES) / f"{case}.toml")
     scene = Scene(case)

@@ -66,6 +66,7 @@ def rows(simulation):
     return every[np.argsort(every[:, 0])]
 
 
+@pytest.mark.core
 def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
     case = flap(mpi_tmp_path)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)

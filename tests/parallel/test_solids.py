@@ -118,6 +118,7 @@ def met(simulation):
     return np.count_nonzero(simulation.store.shown("contact_energy"))
 
 
+@pytest.mark.core
 def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
     case = beams(mpi_tmp_path)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
