@@ -88,21 +88,23 @@ def _files(root: Path) -> Iterator[tuple[float, int, Path]]:
 class LoopCache:
     """What numba asks for a loop before it compiles it: the loop of the same contents, from the folder.
 
-    ``name`` gives the file of a signature.
+    ``name`` gives the file of a signature; None for a loop that cannot be named, which is compiled each time.
     """
 
     cache_path = None
 
-    def __init__(self, cache: Cache, name: Callable[[Any], str]):
+    def __init__(self, cache: Cache, name: Callable[[Any], str | None]):
         self.cache, self.name = cache, name
 
     def load_overload(self, signature, target):
         """The compiled loop for a signature, or None."""
         target.refresh()
-        kept = self.cache.load(self.name(signature))
+        name = self.name(signature)
+        kept = name and self.cache.load(name)
         return kept and CompileResult._rebuild(target, *kept)
 
     def save_overload(self, signature, loop):
         """Keep a compiled loop."""
-        if not loop.library.has_dynamic_globals:
-            self.cache.save(self.name(signature), loop._reduce())
+        name = self.name(signature)
+        if name and not loop.library.has_dynamic_globals:
+            self.cache.save(name, loop._reduce())

@@ -22,7 +22,7 @@ from numba.core.sigutils import normalize_signature
 
 from psph.engine import lean
 from psph.engine.cache import READY, Cache, LoopCache
-from psph.engine.contents import HOW, STAND_INS, contents
+from psph.engine.contents import HOW, STAND_INS, UnknownContent, contents
 
 FAST = {"contract", "reassoc", "arcp", "nsz", "afn"}
 """Freedom to reorder sums, which vectors need.  NaN and infinity keep their meaning (no ``nnan``,
@@ -32,10 +32,11 @@ no ``ninf``): a run that blows up must be seen to do so."""
 PACKAGE = Path(__file__).parents[1]
 
 
-def source_digest(*folders: str) -> str:
-    """Fingerprint of psph's own sources, all or those in some of its folders: who wrote a checkpoint."""
+def source_digest(*patterns: str) -> str:
+    """Fingerprint of psph's own sources, all or those that fit ``patterns``: who wrote a checkpoint."""
+    found = {path for pattern in patterns or ("**/*.py",) for path in PACKAGE.glob(pattern)}
     digest = hashlib.sha256()
-    for path in sorted(path for folder in folders or ("",) for path in (PACKAGE / folder).rglob("*.py")):
+    for path in sorted(found):
         digest.update(str(path.relative_to(PACKAGE)).encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
@@ -63,13 +64,17 @@ def _configure() -> None:
 _configure()
 
 
+COMPILER = ("engine/jit.py", "engine/lean.py", "engine/simd/*.py")
+"""Sources that say how loops are compiled, whatever these are."""
+
+
 def cache_folder() -> Path:
     """Folder of the compiled loops: ``$PSPH_CACHE`` or the user's cache folder, one per way of compiling."""
     home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     root = Path(os.environ.get("PSPH_CACHE") or Path(home) / "psph")
     processor = (numba.config.CPU_NAME, numba.config.CPU_FEATURES)
     versions = (sys.version, numba.__version__, np.__version__, llvmlite.__version__)
-    build = f"{source_digest('engine')} {processor} {versions}"
+    build = f"{source_digest(*COMPILER)} {processor} {versions}"
     return root / hashlib.sha256(build.encode()).hexdigest()[:16]
 
 
@@ -135,9 +140,12 @@ def elementwise(function):
 def _kept(loop):
     """The loop, in the cache where there is one."""
 
-    def name(signature) -> str:
+    def name(signature) -> str | None:
         arguments, _ = normalize_signature(signature)
-        return f"{loop.__name__}-{contents(loop, arguments)}"
+        try:
+            return f"{loop.__name__}-{contents(loop, arguments)}"
+        except UnknownContent:  # of a class in a user's file
+            return None
 
     if CACHE.folder is not None and not numba.config.DISABLE_JIT:
         loop._cache = LoopCache(CACHE, name)

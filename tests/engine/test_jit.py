@@ -67,6 +67,14 @@ def test_an_effect_of_a_script_is_compiled_once(tmp_path):
     assert script(tmp_path) == ["1.0", "1 from the cache"]
 
 
+def test_an_effect_with_something_unknown_in_it_is_compiled_each_time(tmp_path):
+    """``density`` is a word of the loop too."""
+    edit = ("    def pressure", "    density = object()\n\n    def pressure")
+    for _ in range(2):
+        assert script(tmp_path, "foreign", edit=edit)[:2] == ["1.0", "14.0"]
+    assert script(tmp_path) == ["1.0", "1 from the cache"]
+
+
 def test_an_edited_effect_of_a_script_is_compiled_anew(tmp_path):
     assert script(tmp_path, "foreign")[1] == "14.0"
     assert script(tmp_path, "foreign", edit=("7.0", "9.0")) == ["1.0", "18.0", "1 from the cache"]
