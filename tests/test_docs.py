@@ -32,7 +32,7 @@ from psph.output.tables import CsvTable
 from psph.parallel.reductions import alone
 from psph.physics import catalogue
 from psph.physics.catalogue import Entry
-from psph.runs.outlook import outlook
+from psph.runs.stability_forecast import stability_forecast
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 from psph.theory.stability.growth import is_stable
@@ -396,7 +396,7 @@ def test_windows_of_the_page():
 def test_explain_of_the_page():
     [block] = [b for b in fences("docs/stability.md", "text") if b.startswith("Stability of")]
     scene = Scene(load(ROOT / "run/cases/hydrostatic.toml", ["space.smoothing=1.2"]))
-    assert block.splitlines() == list(outlook(scene, make_plan(scene)))
+    assert block.splitlines() == list(stability_forecast(scene, make_plan(scene)))
 
 
 # The examples of docs/recipes

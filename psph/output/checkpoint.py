@@ -33,7 +33,7 @@ from psph.output import rows as hdf5
 from psph.output.errors import cause, together
 from psph.parallel.reductions import wrapped_sums
 
-FORMAT = 5
+FORMAT = 6
 """Number of this form of a file; another one is refused."""
 
 COPY = "case.toml"

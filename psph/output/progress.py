@@ -142,7 +142,7 @@ def terminal_width() -> int | None:
     return None
 
 
-def told(items: Collection[T], doing: str, what: str) -> Iterator[T]:
+def with_progress(items: Collection[T], doing: str, what: str) -> Iterator[T]:
     """The items one by one; how many are done and the time left go to the standard error.
 
     On a terminal in place, else in a line every ``PATIENCE`` seconds.  The first one is not taken as typical.

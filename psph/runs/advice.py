@@ -8,8 +8,8 @@ from psph.fields import FLUID
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.solid.laws import SaintVenantKirchhoff
 from psph.physics.walls.conditions import DYNAMIC
+from psph.scene.pressureless_walls import unbearing_walls
 from psph.scene.solid_checks import fast_start
-from psph.scene.unbearing import unbearing_walls
 from psph.scene.walls import layers_needed, thinnest_walls
 
 FASTER = 2.0

@@ -20,8 +20,8 @@ from psph.runs.absent import absent_lines
 from psph.runs.acting import matter_lines
 from psph.runs.forecast import forecast, forecast_lines, pull, sites_within
 from psph.runs.hints import hints
-from psph.runs.outlay import output_lines
-from psph.runs.outlook import outlook
+from psph.runs.output_size import output_lines
+from psph.runs.stability_forecast import stability_forecast
 from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
 from psph.scene.moving import motion_lines
@@ -57,7 +57,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     yield from output_lines(scene, plan, neighbours, found.steps)
     if scene.case.flowing:
-        yield from outlook(scene, plan)
+        yield from stability_forecast(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
 

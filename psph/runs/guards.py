@@ -19,8 +19,8 @@ from psph.runs.advice import advice
 from psph.runs.post_mortem import write_post_mortem
 from psph.runs.record import Record
 from psph.runs.resume import newest_checkpoint, write_checkpoint
-from psph.runs.suspect import Suspect, find
-from psph.scene.behind import Solid
+from psph.runs.worst_particle import Suspect, find
+from psph.scene.outside import Solid
 from psph.simulation.solid_overlap import inside_others
 from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
 from psph.simulation.touching import Overlap

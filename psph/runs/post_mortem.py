@@ -7,7 +7,7 @@ import numpy as np
 
 from psph.fields import KINDS
 from psph.output.errors import together
-from psph.runs.suspect import Suspect
+from psph.runs.worst_particle import Suspect
 
 REPORT, PICTURE = "post_mortem.md", "post_mortem.png"
 

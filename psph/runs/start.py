@@ -23,9 +23,9 @@ from psph.runs.explain import slab_planes
 from psph.runs.folder import alone_in, make_folder, prepare_folder, reopen_folder
 from psph.runs.forecast import long_run
 from psph.runs.guards import Guards
+from psph.runs.memory_check import check_memory, check_size
 from psph.runs.record import Record
 from psph.runs.resume import listed_particles, take_up, write_checkpoint
-from psph.runs.room import check_memory, check_size
 from psph.runs.setup import compile_ahead, create_particles
 from psph.runs.summary import write_summary
 from psph.runs.watch import Call, Stopped, Watch
@@ -158,7 +158,7 @@ def _simulate(
         at_last.callback(record.close)
         progress = Progress(comm, case.time.end, case.title or case.name, particles, lines)
         at_last.callback(progress.close)
-        simulation.word = watch.call
+        simulation.request = watch.call
         watch.begin_steps()
         while simulation.time < case.time.end:
             guards.step()
@@ -202,7 +202,7 @@ def _begin(scene, plan, comm, folder: Path, saved: Saved | None) -> tuple[Simula
 
 def _attend(simulation: Simulation, record: Record, watch: Watch, case, folder: Path) -> None:
     """Leave a checkpoint where one is due or asked for; raise Stopped where it is the last."""
-    call, every = Call(int(simulation.heard)), case.checkpoint.every
+    call, every = Call(int(simulation.requested)), case.checkpoint.every
     if call is Call.NOTHING and not (every and simulation.steps % every == 0):
         return
     begun = time.monotonic()

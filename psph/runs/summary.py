@@ -13,7 +13,7 @@ from psph.runs.cost import costs
 
 SUMMARY = "summary.json"
 
-UNTOLD: dict = {"header": "", "said": [], "parts": [], "versions": {}}
+NO_SUMMARY: dict = {"header": "", "said": [], "parts": [], "versions": {}}
 """The summary of a run that has not come to its end."""
 
 PACKAGES = ("numpy", "numba", "mpi4py", "h5py")

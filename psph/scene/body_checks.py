@@ -10,7 +10,7 @@ from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
 from psph.scene.bodies import body_step, density_ratio, drawn_volume, volume_of
 from psph.scene.lattice import TOLERANCE
-from psph.scene.multiples import is_of_boxes
+from psph.scene.lattice_fit import is_of_boxes
 
 if TYPE_CHECKING:
     from psph.scene.scene import Scene
@@ -148,7 +148,7 @@ def _lopsided(scene: "Scene") -> Iterator[str]:
 def _misfilled(scene: "Scene") -> Iterator[str]:
     """A line for each body whose particles fill another volume than its shape, where that is no box.
 
-    Of boxes psph.scene.multiples tells.
+    Of boxes psph.scene.lattice_fit tells.
     """
     for number, (name, table) in enumerate(scene.case.bodies.items(), scene.layout.first_body):
         if table.density is None or is_of_boxes(table.shape):

@@ -12,22 +12,22 @@ from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
-from psph.scene.driven import driven_flow
-from psph.scene.gauging import astray, buried, misplaced, misread, shown
+from psph.scene.density_ratios import several_fluids
+from psph.scene.gauging import gauge_warnings, inside_walls, off_solids, outside_domain, shown
 from psph.scene.lattice import TOLERANCE
+from psph.scene.lattice_fit import misfits
 from psph.scene.meshes import report as meshes
 from psph.scene.moving import FARTHEST, motion_faults, motion_warnings, overshoots
-from psph.scene.multiples import misfits
 from psph.scene.opening import surface_warnings
+from psph.scene.periodic_gravity import driven_flow
+from psph.scene.pressureless_walls import unbearing_warnings
 from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
-from psph.scene.several import several_fluids
 from psph.scene.shapes import bounds
 from psph.scene.soils import soil_warnings
 from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.solved import exact_faults
 from psph.scene.still import start_warnings
-from psph.scene.unbearing import unbearing_warnings
 from psph.scene.units import in_degrees, in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
 from psph.scene.waving import wave_faults, wave_warnings
@@ -64,8 +64,8 @@ def faults(scene: Scene) -> Iterator[str]:
         *_domain_faults(scene),
         *_mirror_faults(scene),
         *_site_faults(scene),
-        *misplaced(scene),
-        *astray(scene),
+        *outside_domain(scene),
+        *off_solids(scene),
         *body_faults(scene),
         *exact_faults(scene),
     ]
@@ -361,8 +361,8 @@ OF_FLUIDS = (
     _slow_sound,
     driven_flow,
     unbearing_warnings,
-    buried,
-    misread,
+    inside_walls,
+    gauge_warnings,
     several_fluids,
     slips,
     rheology_warnings,

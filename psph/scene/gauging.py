@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from psph.scene.behind import Solid
 from psph.scene.lattice import TOLERANCE
 from psph.scene.moving import moving_parts
+from psph.scene.outside import Solid
 from psph.scene.shapes import inside
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ BESIDE = 1.0
 """Spacings along each axis by which a point of a solid may lie beside it: edges follow the lattice."""
 
 
-def misplaced(scene: "Scene") -> Iterator[str]:
+def outside_domain(scene: "Scene") -> Iterator[str]:
     """A line for each point of a probe or a gauge, and each whole section, outside the domain."""
     for key, point, _ in _points(scene, "position", "foot", "top"):
         yield from _outside(scene, key, point)
@@ -47,7 +47,7 @@ def _outside(scene: "Scene", key: str, point: tuple[float, ...]) -> Iterator[str
         )
 
 
-def astray(scene: "Scene") -> Iterator[str]:
+def off_solids(scene: "Scene") -> Iterator[str]:
     """A line for each point whose displacement or stress is asked for and that lies off its solid; of what
     keeps no neighbours of the start, for each outside the domain."""
     around = np.linspace(-BESIDE, BESIDE, 7) * scene.spacing
@@ -66,7 +66,7 @@ def astray(scene: "Scene") -> Iterator[str]:
             )
 
 
-def buried(scene: "Scene") -> Iterator[str]:
+def inside_walls(scene: "Scene") -> Iterator[str]:
     """A line for each point within a wall that stands still, or within what carries it; a line of a gauge
     may begin there."""
     still, species = Solid(scene), {one.name: one for one in scene.species}
@@ -89,7 +89,7 @@ def within_reach(scene: "Scene", names: list[str], point: tuple[float, ...]) -> 
             yield name
 
 
-def misread(scene: "Scene") -> Iterator[str]:
+def gauge_warnings(scene: "Scene") -> Iterator[str]:
     """A line for each gauge that reads something else than it is likely meant to."""
     yield from _left_behind(scene)
     yield from _upside_down(scene)

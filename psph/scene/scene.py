@@ -20,15 +20,15 @@ from psph.physics.solid.material import Solid
 from psph.physics.walls.conditions import DYNAMIC, MIRROR
 from psph.scene.answering import answer
 from psph.scene.bodies import rigid_bodies
-from psph.scene.driven import creeping_speed, driven_speed
 from psph.scene.immersed import is_immersed, shown_by
-from psph.scene.kicked import kicked_velocities, kicks_of
 from psph.scene.lattice import lattice_around
 from psph.scene.meshes.report import Drawn, drawn, sites_in
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.moving import falling_speed, fastest_corner, largest_speed
 from psph.scene.opening import has_free_surface
 from psph.scene.particles import ParticleSet, fill
+from psph.scene.periodic_gravity import creeping_speed, driven_speed
+from psph.scene.perturbations import kicked_velocities, kicks_of
 from psph.scene.pressures import range_of_pressure, starting_fullness
 from psph.scene.rheologies import laws_of, number_of
 from psph.scene.shapes import bounds

@@ -27,25 +27,25 @@ def carry(rules, group, k, time, columns):
 
 
 @inside
-def hurry(rules, group, k, time, dt, columns):
+def prescribed_squares(rules, group, k, time, dt, columns):
     """|v|² and |a|² of particle ``k`` by its prescribed motion, m²/s², m²/s⁴; zeros without one."""
-    return _hurry(rules.motions, rules.poses, rules, group, k, time, dt, columns)
+    return _prescribed_squares(rules.motions, rules.poses, rules, group, k, time, dt, columns)
 
 
 @inside
-def feel(rules, group, k, time, dt, columns):
+def store_apparent_force(rules, group, k, time, dt, columns):
     """Store the force per mass of a moving frame on particle ``k`` less its prescribed acceleration, m/s²."""
-    _feel(columns.apparent, rules, group, k, time, dt, columns)
+    _store_apparent_force(columns.apparent, rules, group, k, time, dt, columns)
 
 
 @inside
-def give(rules, i, group, k, dt, columns):
+def book_work(rules, i, group, k, dt, columns):
     """Book what particle ``k``, seen as ``i``, gives in a step of ``dt`` s, J.
 
     A wall that moves pushes the fluid with −m_i a_i, a_i by the fluid around it; to what moves freely those
     body forces give that have no potential, a moving frame's among them.
     """
-    _give(columns.work, rules, i, group, k, dt, columns)
+    _book_work(columns.work, rules, i, group, k, dt, columns)
 
 
 def _carry_by_formula(motions, number, k, time, periods, columns):
@@ -179,42 +179,42 @@ def _typed_acceleration_by_pose(poses, pose_of, number, group, k, columns):
     return _acceleration_pose
 
 
-def _hurry(motions, poses, rules, group, k, time, dt, columns):
+def _prescribed_squares(motions, poses, rules, group, k, time, dt, columns):
     if not motions and poses is None:
         return 0.0, 0.0
-    return _hurry_told(motions, poses, rules, group, k, time, dt, columns)
+    return _squares_of_motion(motions, poses, rules, group, k, time, dt, columns)
 
 
-def _hurry_told(motions, poses, rules, group, k, time, dt, columns):
+def _squares_of_motion(motions, poses, rules, group, k, time, dt, columns):
     if rules.motion_of[group] <= FIXED:
         return 0.0, 0.0
     v, a = at(columns.velocity, k), prescribed_acceleration(rules, group, k, time, dt, columns)
     return dot(v, v), dot(a, a)
 
 
-@overload_inside(_hurry)
-def _typed_hurry(motions, poses, rules, group, k, time, dt, columns):
+@overload_inside(_prescribed_squares)
+def _typed_squares(motions, poses, rules, group, k, time, dt, columns):
     if not len(motions) and isinstance(poses, types.NoneType):
         return lambda motions, poses, rules, group, k, time, dt, columns: (0.0, 0.0)
-    return _hurry_told
+    return _squares_of_motion
 
 
-def _feel(apparent, rules, group, k, time, dt, columns):
+def _store_apparent_force(apparent, rules, group, k, time, dt, columns):
     if apparent is not None:
-        _feel_it(apparent, rules, group, k, time, dt, columns)
+        _store_force(apparent, rules, group, k, time, dt, columns)
 
 
-def _feel_it(apparent, rules, group, k, time, dt, columns):
+def _store_force(apparent, rules, group, k, time, dt, columns):
     a = prescribed_acceleration(rules, group, k, time, dt, columns)
     x, v = at(columns.position, k), at(columns.predicted_velocity, k)
     put(apparent, k, subtract(inertial(rules.frame, x, v), a))
 
 
-@overload_inside(_feel)
-def _typed_feel(apparent, rules, group, k, time, dt, columns):
+@overload_inside(_store_apparent_force)
+def _typed_store(apparent, rules, group, k, time, dt, columns):
     if isinstance(apparent, types.NoneType):
         return lambda apparent, rules, group, k, time, dt, columns: None
-    return _feel_it
+    return _store_force
 
 
 def inertial(frame, x, v):
@@ -231,12 +231,12 @@ def _typed_inertial(frame, x, v):
     return (lambda frame, x, v: zero_like(x)) if isinstance(frame, types.NoneType) else _inertial
 
 
-def _give(work, rules, i, group, k, dt, columns):
+def _book_work(work, rules, i, group, k, dt, columns):
     if work is not None:
-        _give_it(work, rules, i, group, k, dt, columns)
+        _book(work, rules, i, group, k, dt, columns)
 
 
-def _give_it(work, rules, i, group, k, dt, columns):
+def _book(work, rules, i, group, k, dt, columns):
     v = at(columns.velocity, k)
     if group < rules.free:
         work[k] += dt * i.mass * dot(terms.body(rules.booked, i), v)
@@ -244,11 +244,11 @@ def _give_it(work, rules, i, group, k, dt, columns):
         work[k] -= dt * i.mass * dot(stored(columns.load, v, k), v)
 
 
-@overload_inside(_give)
-def _typed_give(work, rules, i, group, k, dt, columns):
+@overload_inside(_book_work)
+def _typed_book(work, rules, i, group, k, dt, columns):
     if isinstance(work, types.NoneType):
         return lambda work, rules, i, group, k, dt, columns: None
-    return _give_it
+    return _book
 
 
 def stored(arrays, v, k):

@@ -29,7 +29,7 @@ from psph.simulation.integrator import (
     kick_drift_predict,
     kick_rows,
     predict_rows,
-    settle_told,
+    settle_given_pressure,
     state_of,
 )
 from psph.simulation.kinds import Kind, kinds_of
@@ -68,7 +68,7 @@ class Engine:
             plan.carriers,
             plan.laws,
             plan.law_of,
-            plan.told,
+            plan.given_pressure,
             plan.free,
             plan.motions,
             plan.motion_of,
@@ -90,29 +90,31 @@ class Engine:
         """What the engine has of a kind of matter, or None."""
         return next((one for one in self.kinds if isinstance(one, kind)), None)
 
-    def predict(self, time: float, dt: float, pace: float) -> None:
-        """Kick, drift to ``time`` and predict; ``pace`` bounds displacements, m/s."""
-        self._each(self._predict, time, dt, self._rules, self._view(pace), self._columns())
+    def predict(self, time: float, dt: float, largest_speed: float) -> None:
+        """Kick, drift to ``time`` and predict; ``largest_speed`` bounds displacements, m/s."""
+        self._each(self._predict, time, dt, self._rules, self._view(largest_speed), self._columns())
         for kind in self.kinds:
-            kind.advance(time, dt, pace)
+            kind.advance(time, dt, largest_speed)
         if self.plan.evolving:
             self._each(predict_rows, dt, self.store.data, self._rows_that_evolve())
         if bounds := self.plan.bounds:
             value = self.store[self.store.seen_as(bounds.bounds.name)]
-            self._each(admit_predicted, bounds, self._rules, self._view(pace), value, self._columns())
+            self._each(
+                admit_predicted, bounds, self._rules, self._view(largest_speed), value, self._columns()
+            )
         for field in self.plan.evolving:
             _, *rates = companions(field)
             self.store.rotate(*(rate.name for rate in rates))
         self.store.rotate("density_rate", "density_rate_1", "density_rate_2")
 
-    def kick(self, time: float, dt: float, pace: float) -> list[float]:
+    def kick(self, time: float, dt: float, largest_speed: float) -> list[float]:
         """The second kick.  Returns the largest |v|², |a|², strain, squared shift and |v|² of walls here."""
         if self.plan.evolving:
             self._each(kick_rows, dt, self.store.data, self._rows_that_evolve())
-        parts = self._each(self._kick, time, dt, self._rules, self._view(pace), self._columns())
+        parts = self._each(self._kick, time, dt, self._rules, self._view(largest_speed), self._columns())
         if bounds := self.plan.bounds:
             rest = (self.store[name] for name in (bounds.bounds.name, "density", bounds.remembers.name))
-            self._each(admit_kicked, bounds, self._view(pace), *rest)
+            self._each(admit_kicked, bounds, self._view(largest_speed), *rest)
         parts = [*parts, *filter(None, [kind.kick(dt) for kind in self.kinds])]
         return list(map(max, *parts)) if len(parts) > 1 else list(parts[0])
 
@@ -156,7 +158,7 @@ class Engine:
             else:
                 self._sum_all(one)
             if one.settles:
-                self._each(settle_told, self._rules, self._view(0.0), self._columns())
+                self._each(settle_given_pressure, self._rules, self._view(0.0), self._columns())
             stale, written = (), written | one.written
         for wetting in self.wetting:
             wetting.mark()
@@ -175,10 +177,10 @@ class Engine:
             floating.kick(time, dt)
         self.poses.turn_to(time)
 
-    def settle_pressure(self, pace: float) -> None:
+    def settle_pressure(self, largest_speed: float) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store
-        state_of(s.low, s.low + s.owned, self._rules, self._view(pace), self._columns())
+        state_of(s.low, s.low + s.owned, self._rules, self._view(largest_speed), self._columns())
         for kind in self.kinds:
             kind.measure()
 
@@ -336,9 +338,9 @@ class Engine:
         s = self.store
         return Columns(s.group, *(s[name] if name in s else None for name in Columns._fields[1:]))
 
-    def _view(self, pace: float):
-        """The particles as the plan's carriers see them; a displacement also sees the pace."""
-        return seen_at(self.store.view()._replace(**self.plan.uncarried), pace)
+    def _view(self, largest_speed: float):
+        """The particles as the plan's carriers see them; a displacement also sees the largest speed."""
+        return seen_at(self.store.view()._replace(**self.plan.uncarried), largest_speed)
 
     def _rows_that_evolve(self) -> np.ndarray:
         """Rows of value, prediction and three rates of each component of what evolves (n, 5)."""

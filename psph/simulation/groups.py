@@ -25,7 +25,7 @@ def laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
     return {law: "; ".join(keys) for law, keys in reasons.items()}
 
 
-def tells(effect, material) -> bool:
+def is_given_pressure(effect, material) -> bool:
     """Whether an effect gives particles of a material their pressure."""
     return hasattr(effect, "tells") and material_value(material, effect.tells) > 0.0
 

@@ -18,7 +18,7 @@ import numpy as np
 from psph.composition.pair import take
 from psph.composition.terms import displacement, limit_density, limit_wall_density
 from psph.engine.jit import elementwise
-from psph.simulation.carried import carry, feel, give, hurry
+from psph.simulation.carried import book_work, carry, prescribed_squares, store_apparent_force
 from psph.simulation.rules import borne, density
 from psph.vectors import add, at, dot, put, scale
 
@@ -48,7 +48,7 @@ def kick_drift_predict(first, last, time, dt, rules, view, columns):
         else:
             rho = limit_wall_density(rules.effects, i, rho)
             carry(rules, group, k, time, c)
-        feel(rules, group, k, time, dt, c)
+        store_apparent_force(rules, group, k, time, dt, c)
         c.specific_volume[k] = 1.0 / rho
         c.pressure[k] = borne(rules, i, group, rho)
 
@@ -63,12 +63,12 @@ def state_of(first, last, rules, view, columns):
 
 
 @elementwise
-def settle_told(first, last, rules, view, columns):
-    """Density and specific volume of the columns ``first`` to ``last`` whose pressure a pass has told."""
+def settle_given_pressure(first, last, rules, view, columns):
+    """Density and specific volume of the columns ``first`` to ``last`` whose pressure a pass has given."""
     c = columns
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
-        if rules.told[group]:
+        if rules.given_pressure[group]:
             law = rules.law_of[group]
             rho = density(rules.laws, law, c.pressure[k], i.rest_density, i.sound_speed)
             c.density[k] = rho
@@ -111,9 +111,9 @@ def kick(first, last, time, dt, rules, view, columns):
         else:
             rho = limit_wall_density(rules.effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
-            v2, a2 = hurry(rules, group, k, time, dt, c)
+            v2, a2 = prescribed_squares(rules, group, k, time, dt, c)
             wall_v2_max, a2_max = max(wall_v2_max, v2), max(a2_max, a2)
-        give(rules, i, group, k, dt, c)
+        book_work(rules, i, group, k, dt, c)
         c.density[k] = rho
     return v2_max, a2_max, strain_max, shift2_max, wall_v2_max
 

@@ -18,8 +18,8 @@ class Kind:
     def begin(self) -> None:
         """What is kept of the start, from where particles stand then; lists are there."""
 
-    def advance(self, time: float, dt: float, pace: float) -> None:
-        """Go with the drift from ``time`` − ``dt`` to ``time``, s; ``pace`` is the fluid's speed, m/s."""
+    def advance(self, time: float, dt: float, largest_speed: float) -> None:
+        """Go with the drift from ``time`` − ``dt`` to ``time``, s; ``largest_speed`` is of fluids, m/s."""
 
     def before_sums(self, dt: float) -> None:
         """Ready what the passes over pairs read, ``dt`` s after the last ones."""

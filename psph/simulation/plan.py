@@ -36,7 +36,7 @@ from psph.physics.solid.plastic import Lasting
 from psph.scene.bodies import body_step
 from psph.scene.solids import solid_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
-from psph.simulation.groups import has_couples, laws, material_value, split, tells
+from psph.simulation.groups import has_couples, is_given_pressure, laws, material_value, split
 from psph.simulation.limits import step_limits
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, make_passes
@@ -86,7 +86,7 @@ class Plan:
     """The equations of state of its fluids and walls."""
     law_of: np.ndarray
     """The number of the law of each group."""
-    told: np.ndarray
+    given_pressure: np.ndarray
     """Whether a pass gives the particles of a group their pressure: (groups,)."""
     bearing: np.ndarray
     """Whether the particles of a group bear a pressure: (groups,)."""
@@ -345,7 +345,9 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         kernel=scene.kernel,
         laws=tuple(law for _, law in own_laws),
         law_of=np.array([[*own_laws].index((type(one.law), one.law)) for one in scene.species], np.uint8),
-        told=np.array([any(tells(c.effect, one) for c in called) for one in scene.species], bool),
+        given_pressure=np.array(
+            [any(is_given_pressure(c.effect, one) for c in called) for one in scene.species], bool
+        ),
         bearing=np.array([one.bearing for one in scene.species], bool),
         law_reasons=tuple(own_laws.values()),
         planes=scene.mirror_planes,

@@ -19,14 +19,14 @@ class Rules(NamedTuple):
     the number of each group's motion (psph.physics.motion), from PRESCRIBED on one of ``motions``;
     ``poses`` are the maps of what is rigid (psph.simulation.poses) and ``pose_of`` the row of each group, or
     None; ``frame`` is what a moving frame of reference adds to gravity, or None.  ``periods`` m, None for
-    an open axis.  ``told`` are the groups to which a pass gives their pressure; ``booked`` are effects whose
-    work on particles is booked.
+    an open axis.  ``given_pressure`` are the groups to which a pass gives their pressure; ``booked`` are
+    effects whose work on particles is booked.
     """
 
     effects: tuple
     laws: tuple
     law_of: Any
-    told: Any
+    given_pressure: Any
     free: Any
     motions: tuple
     motion_of: Any

@@ -42,7 +42,7 @@ def nothing(simulation) -> None:
 def predict(simulation) -> None:
     """Kick, drift, and predict what the forces read at the end of the step."""
     with simulation.ledger("kick, drift, predict"):
-        simulation.engine.predict(simulation.then, simulation.dt, simulation.pace)
+        simulation.engine.predict(simulation.then, simulation.dt, simulation.previous_speed)
 
 
 def populate(simulation) -> None:
@@ -92,9 +92,13 @@ def push_bodies(simulation) -> None:
 
 def kick(simulation) -> None:
     """The second kick, with the new rates."""
-    simulation.pace = simulation.fluid_speed  # bounds the shifts of the next step, whose speed is not known
+    simulation.previous_speed = (
+        simulation.fluid_speed
+    )  # bounds the shifts of the next step, whose speed is not known
     with simulation.ledger("kick"):
-        simulation.own_extremes = simulation.engine.kick(simulation.then, simulation.dt, simulation.pace)
+        simulation.own_extremes = simulation.engine.kick(
+            simulation.then, simulation.dt, simulation.previous_speed
+        )
 
 
 def begin_rates(simulation) -> None:
@@ -117,10 +121,10 @@ def find_limits(simulation) -> None:
     *extremes, shift2, wall2 = simulation.own_extremes
     displaces, moves = simulation.plan.displaces, simulation.plan.moves_walls
     with simulation.ledger("limits"):
-        sent = [*extremes, simulation.word(), *([shift2] * displaces), *([wall2] * moves)]
+        sent = [*extremes, simulation.request(), *([shift2] * displaces), *([wall2] * moves)]
         found = largest(simulation.comm, sent)
     simulation.fluid_speed, simulation.acceleration = np.sqrt(found[:2]).tolist()
-    simulation.strain, simulation.heard = found[2:4].tolist()
+    simulation.strain, simulation.requested = found[2:4].tolist()
     simulation.shift = float(np.sqrt(found[4]) if displaces else 0.0)
     walls = float(np.sqrt(found[-1]) if moves else 0.0)
     simulation.speed = max(simulation.fluid_speed, walls)

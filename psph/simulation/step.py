@@ -24,7 +24,7 @@ CLOCK = (
     "limited_by",
     "speed",
     "fluid_speed",
-    "pace",
+    "previous_speed",
     "acceleration",
     "shift",
     "energy_at_start",
@@ -50,8 +50,8 @@ class Simulation:
     ``store`` holds this rank's particles as created, anywhere; ``comm`` the ranks that share the
     scene.  ``time`` in s, ``dt`` the last step.  Over all ranks ``speed`` is the largest in m/s of all
     that moves, ``fluid_speed`` that of the fluid, and ``strain`` its largest |ρ/ρ₀ − 1| after the last
-    step, infinite where a number is not finite.  ``word`` is asked at the end of each step for a number
-    from 0 on that a rank wants all others to know; ``heard`` is the largest of them, the same on every
+    step, infinite where a number is not finite.  ``request`` is asked at the end of each step for a number
+    from 0 on that a rank wants all others to know; ``requested`` is the largest of them, the same on every
     rank.
     With ``saved`` it goes on from a checkpoint (psph.runs.resume), whose particles ``store``
     holds where the lists were made.
@@ -69,12 +69,12 @@ class Simulation:
         self.stages = tuple(stages_of(plan))
         self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
         self.listed = False
-        self.speed, self.fluid_speed, self.pace, self.strain = 0.0, 0.0, 0.0, 0.0
+        self.speed, self.fluid_speed, self.previous_speed, self.strain = 0.0, 0.0, 0.0, 0.0
         self.acceleration = self.shift = 0.0
         self.energy_at_start: float | None = None
         self.limited_by = ""
-        self.word: Callable[[], float] = float
-        self.heard = 0.0
+        self.request: Callable[[], float] = float
+        self.requested = 0.0
         if saved is None:
             self._start()
         else:
@@ -116,7 +116,7 @@ class Simulation:
 
     def settle_pressure(self) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
-        self.engine.settle_pressure(self.pace)
+        self.engine.settle_pressure(self.previous_speed)
 
     def _start(self) -> None:
         """First forces, from particles at rest in time: predicted is initial."""

@@ -35,7 +35,7 @@ def test_the_step_and_the_lists_know_of_a_wall_and_the_fluid_s_speed_does_not(sw
     speeds = np.linalg.norm(store.shown("velocity"), axis=1)
     assert simulation.speed == pytest.approx(speeds.max(), rel=1e-12) and simulation.speed > 4.0
     assert simulation.fluid_speed == pytest.approx(speeds[fluid].max(), rel=1e-12)
-    assert simulation.pace < simulation.fluid_speed < 1.0  # it bounds shifts, and is a step old
+    assert simulation.previous_speed < simulation.fluid_speed < 1.0  # it bounds shifts, and is a step old
 
 
 def test_the_log_and_the_guards_look_at_the_fluid_also_after_a_restart(swung, tmp_path):

@@ -31,7 +31,7 @@ MOMENTS = (0.1, 0.35, 0.699, 0.9, 1.35, 1.6, 1.95)
 def agree(motion, time):
     """The velocity and acceleration of a point are the slopes of its place and velocity."""
     before, now, after = (motion.pose(t) for t in (time - STEP, time, time + STEP))
-    for value, slope in (("place", "speed"), ("speed", "hurry")):
+    for value, slope in (("place", "velocity_of"), ("velocity_of", "acceleration_of")):
         ends = [np.array(getattr(pose, value)(POINT)) for pose in (before, after)]
         told = getattr(now, slope)(POINT)
         assert told == pytest.approx((ends[1] - ends[0]) / (2.0 * STEP), abs=2e-8), (value, time)
@@ -61,8 +61,8 @@ def test_a_ramp_leaves_speed_and_acceleration_without_a_jump():
         part = Part(law, RAMPED, AWAY, SKEW)
         for moment in (RAMPED.start, RAMPED.start + RAMPED.ramp, RAMPED.end - RAMPED.ramp, RAMPED.end):
             before, after = (part.pose(moment + way) for way in (-1e-9, 1e-9))
-            assert before.speed(POINT) == pytest.approx(after.speed(POINT), abs=1e-7)
-            assert before.hurry(POINT) == pytest.approx(after.hurry(POINT), abs=1e-5)
+            assert before.velocity_of(POINT) == pytest.approx(after.velocity_of(POINT), abs=1e-7)
+            assert before.acceleration_of(POINT) == pytest.approx(after.acceleration_of(POINT), abs=1e-5)
 
 
 def test_places_are_what_formulas_say():

@@ -7,7 +7,7 @@ from scene.test_solid_checks import BEAM
 from simulation.test_immersion import start
 
 from psph.runs.advice import advice
-from psph.runs.suspect import find
+from psph.runs.worst_particle import find
 from psph.scene import Scene
 
 BANK = """

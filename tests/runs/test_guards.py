@@ -21,7 +21,7 @@ from psph.runs.guards import EVERY
 from psph.runs.post_mortem import PICTURE, REPORT
 from psph.runs.resume import take_up
 from psph.runs.start import resume
-from psph.runs.suspect import find
+from psph.runs.worst_particle import find
 from psph.scene import Scene
 from psph.simulation.step import BlowUp, Simulation
 

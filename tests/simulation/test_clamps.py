@@ -187,7 +187,7 @@ def test_what_a_hub_gives_to_flap_and_water_is_what_they_gain(tmp_path):
     (before, size), given, force = momentum(), np.zeros(2), given_by_hub(flap)
     for _ in range(40):
         flap.step()
-        pace = flap.pace
+        pace = flap.previous_speed
         assert substeps(flap.plan.solids, flap.plan.solid_smoothing_length, flap.dt, pace) == 1
         after = given_by_hub(flap)
         given += 0.5 * flap.dt * (force + after)
@@ -218,7 +218,7 @@ def test_within_a_step_of_the_water_the_clamp_goes_on(tmp_path, monkeypatch):
     for _ in range(3):
         flap.step()
     times, away, faster = np.transpose(seen)
-    count = substeps(flap.plan.solids, flap.plan.solid_smoothing_length, flap.dt, flap.pace)
+    count = substeps(flap.plan.solids, flap.plan.solid_smoothing_length, flap.dt, flap.previous_speed)
     assert count > 3 and len(seen) >= 3 * count and times[-1] == flap.time
     assert np.diff(times) == pytest.approx(flap.dt / count, rel=0.3)
     assert away.max() < 1e-14 and faster.max() < 1e-13

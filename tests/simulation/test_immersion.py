@@ -77,7 +77,7 @@ def test_fluids_and_a_solid_keep_the_momentum_of_both(seen, density, tmp_path):
     assert own == pytest.approx(2500.0 / density)
     for _ in range(40):
         simulation.step()
-    count = substeps(plan.solids, plan.solid_smoothing_length, simulation.dt, simulation.pace)
+    count = substeps(plan.solids, plan.solid_smoothing_length, simulation.dt, simulation.previous_speed)
     assert count > 3
     after, _ = momentum(simulation)
     store, block = simulation.store, simulation.store.shown("group") == 2

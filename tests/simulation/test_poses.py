@@ -23,13 +23,13 @@ POINT = (0.9, 0.1, -0.4)
 
 def test_maps_are_the_pose():
     found = maps(POSE, 3)
-    for one, told in zip(found, (POSE.place(POINT), POSE.speed(POINT), POSE.hurry(POINT))):
+    for one, told in zip(found, (POSE.place(POINT), POSE.velocity_of(POINT), POSE.acceleration_of(POINT))):
         assert one[:, 0] + one[:, 1:] @ POINT == pytest.approx(told, rel=1e-14)
     r = np.array(POSE.place(POINT)) - POSE.translation
     w = np.array(POSE.angular_velocity)
-    assert POSE.speed(POINT) == pytest.approx(POSE.velocity + np.cross(w, r))
+    assert POSE.velocity_of(POINT) == pytest.approx(POSE.velocity + np.cross(w, r))
     whirl = np.cross(POSE.angular_acceleration, r) + np.cross(w, np.cross(w, r))
-    assert POSE.hurry(POINT) == pytest.approx(POSE.acceleration + whirl)
+    assert POSE.acceleration_of(POINT) == pytest.approx(POSE.acceleration + whirl)
 
 
 def test_a_rotation_turns_about_its_axis_and_keeps_lengths():
@@ -47,10 +47,10 @@ def test_particles_stand_where_the_pose_has_them_and_move_so(case):  # noqa: F81
     store, pose = simulation.store, motion.pose(simulation.time)
     own = store.shown("group") == 1
     anchors = np.column_stack([store.shown("anchor"), np.zeros(store.owned)])[own]
-    for name, told in (("position", pose.place), ("velocity", pose.speed)):
+    for name, told in (("position", pose.place), ("velocity", pose.velocity_of)):
         wanted = np.array([told(tuple(anchor)) for anchor in anchors.tolist()])[:, :2]
         assert store.shown(name)[own] == pytest.approx(wanted, rel=1e-13, abs=1e-14)
-    rates = np.linalg.norm([pose.hurry(tuple(anchor)) for anchor in anchors.tolist()], axis=1)
+    rates = np.linalg.norm([pose.acceleration_of(tuple(anchor)) for anchor in anchors.tolist()], axis=1)
     speeds = np.linalg.norm(store.shown("velocity")[own], axis=1)
     assert simulation.speed == pytest.approx(max(speeds.max(), simulation.fluid_speed), rel=1e-12)
     assert simulation.acceleration >= rates.max() * (1.0 - 1e-12) > 100.0

@@ -6,7 +6,7 @@ from pathlib import Path
 from psph.lab.battery.picture import COLOURS, PICTURE
 from psph.lab.battery.tables import CSV, PAGE
 from psph.lab.battery.verdicts import VERDICTS
-from psph.lab.report.sheet import Told, first_run
+from psph.lab.report.sheet import Result, first_run
 from psph.output.pictures.names import REPORT
 
 KINDS = {
@@ -22,7 +22,7 @@ KINDS = {
 """Of each kind of table: its page, its title, and what it tells."""
 
 
-def told(folder: Path) -> Told | None:
+def result_of(folder: Path) -> Result | None:
     """The verdicts in a folder; None where it holds none."""
     found = [
         table
@@ -34,7 +34,7 @@ def told(folder: Path) -> Told | None:
     page, title, tells = KINDS[found[0]]
     with open(folder / found[0], encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    return Told(
+    return Result(
         title=title,
         kind=f"A battery: {tells}. Each run has bounds that it must keep, and a verdict.",
         text=(folder / page).read_text(encoding="utf-8"),

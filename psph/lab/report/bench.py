@@ -5,18 +5,18 @@ from pathlib import Path
 from psph.lab.bench import PROBLEMS
 from psph.lab.bench.report import tables
 from psph.lab.bench.results import read_runs
-from psph.lab.report.sheet import Told
+from psph.lab.report.sheet import Result
 
 PHASES = ("pairs", "rebuild", "halo", "limits")
 """Phases with a bar of their own; the rest goes together."""
 
 
-def told(path: Path) -> Told | None:
+def result_of(path: Path) -> Result | None:
     """What was measured; None where ``path`` is no file.  Raises BenchError for another file."""
     if not path.is_file():
         return None
     runs = read_runs(path)
-    return Told(
+    return Result(
         title=f"Speed of psph on {runs[0]['machine']}",
         kind="A bench: standard problems, timed on this machine, beside the rates that it can reach at all.",
         text=tables([path]),

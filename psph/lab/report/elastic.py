@@ -4,13 +4,13 @@ from pathlib import Path
 
 from psph.lab.maps.elastic import CSV, PAGE, UNIT
 from psph.lab.report.growth import cells, told_of
-from psph.lab.report.sheet import Told
+from psph.lab.report.sheet import Result
 
 TITLE = "Which descriptions of elastic solids are stable"
 KIND = "Linear theory of small waves on an elastic lattice, at rest and evenly stretched."
 
 
-def told(folder: Path) -> Told | None:
+def result_of(folder: Path) -> Result | None:
     """The table in a folder; None where it holds none."""
     return told_of(folder, CSV, PAGE, UNIT, TITLE, KIND, _figure)
 

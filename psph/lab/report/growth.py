@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from psph.lab.report.sheet import Told
+from psph.lab.report.sheet import Result
 from psph.output.pictures.names import REPORT
 
 STABLE, GROWS = "#56b4e9", [[0.0, "#fff3e0"], [0.4, "#f5b041"], [0.7, "#d55e00"], [1.0, "#5b1a00"]]
@@ -21,13 +21,13 @@ def told_of(
     kind: str,
     figure: Callable[[list[dict[str, str]]], Any],
     pictures: Sequence[str] = (),
-) -> Told | None:
+) -> Result | None:
     """What a report says of the ``table`` (CSV) and the ``page`` in a folder; None without them."""
     if not ((folder / table).is_file() and (folder / page).is_file()):
         return None
     with open(folder / table, encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    return Told(
+    return Result(
         title=title,
         kind=kind,
         text=(folder / page).read_text(encoding="utf-8"),

@@ -4,14 +4,14 @@ from pathlib import Path
 
 from psph.lab.maps.tables import CSV, PAGE, PICTURE, UNIT
 from psph.lab.report.growth import cells, told_of
-from psph.lab.report.sheet import Told
+from psph.lab.report.sheet import Result
 from psph.theory.stability import STATES
 
 TITLE = "Which lattices are stable, and how fast instabilities grow on the others"
 KIND = "A map of stability: linear theory of small waves on a lattice at rest, by kernel and h/dx."
 
 
-def told(folder: Path) -> Told | None:
+def result_of(folder: Path) -> Result | None:
     """The map in a folder; None where it holds none."""
     return told_of(folder, CSV, PAGE, UNIT, TITLE, KIND, _figure, [PICTURE])
 

@@ -19,8 +19,8 @@ from psph.output.pictures.names import REPORT
 from psph.output.pictures.plot import plot
 from psph.output.reader import Run
 from psph.runs.explain import explain
-from psph.runs.outlook import outlook
-from psph.runs.summary import UNTOLD, read_summary
+from psph.runs.stability_forecast import stability_forecast
+from psph.runs.summary import NO_SUMMARY, read_summary
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 
@@ -52,7 +52,7 @@ def report(folder: Path, field: str = "speed") -> Path:
         run.folder / REPORT,
         title=run.attributes.get("title") or run.path.stem,
         run=run,
-        summary=UNTOLD | read_summary(run.folder),
+        summary=NO_SUMMARY | read_summary(run.folder),
         pictures=[(name, embedded(path, "image/png")) for name, path in _in_order(drawn)],
         films=[(path.name, embedded(path, FILMS[path.suffix])) for path in _films(run.folder)],
         turning=interactive(turning(run), "turning"),
@@ -70,7 +70,7 @@ def _of_case(folder: Path, remarks: list[str]) -> dict:
         case, left_out = load_to_read(folder / COPY)
         scene = Scene(case)
         plan = make_plan(scene)
-        expected = list(outlook(scene, plan)) if scene.case.flowing else []
+        expected = list(stability_forecast(scene, plan)) if scene.case.flowing else []
         ranks = read_summary(folder).get("ranks", 1)
         return {
             "plan": "\n".join(explain(scene, ranks)),

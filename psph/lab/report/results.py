@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from psph.lab.report import battery, bench, elastic, maps, study
-from psph.lab.report.sheet import Told, embedded, interactive, written
+from psph.lab.report.sheet import Result, embedded, interactive, written
 from psph.output.checkpoint import COPY
-from psph.runs.summary import UNTOLD, read_summary
+from psph.runs.summary import NO_SUMMARY, read_summary
 
 TEMPLATE = "results.html"
 
@@ -16,26 +16,26 @@ def report_of_results(path: Path) -> Path | None:
     ``path`` is the folder of a study, of a battery, of remedies or walls compared, of a map or a table of
     ``stability``, or a file of ``bench --json``.
     """
-    for told in (study.told, battery.told, maps.told, elastic.told, bench.told):
-        if found := told(path):
+    for result_of in (study.result_of, battery.result_of, maps.result_of, elastic.result_of, bench.result_of):
+        if found := result_of(path):
             return _write(found)
     return None
 
 
-def _write(told: Told) -> Path:
+def _write(result: Result) -> Path:
     from markdown_it import MarkdownIt
 
-    summary = UNTOLD | (read_summary(told.run) if told.run else {})
+    summary = NO_SUMMARY | (read_summary(result.run) if result.run else {})
     markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
     return written(
         TEMPLATE,
-        told.out,
-        title=told.title,
-        kind=told.kind,
-        text=markdown.render(told.text),
-        diagram=interactive(told.figure, "diagram"),
-        caption=told.caption,
-        pictures=[(path.stem, embedded(path, "image/png")) for path in told.pictures if path.is_file()],
+        result.out,
+        title=result.title,
+        kind=result.kind,
+        text=markdown.render(result.text),
+        diagram=interactive(result.figure, "diagram"),
+        caption=result.caption,
+        pictures=[(path.stem, embedded(path, "image/png")) for path in result.pictures if path.is_file()],
         summary=summary,
-        case=(told.run / COPY).read_text(encoding="utf-8") if told.run else "",
+        case=(result.run / COPY).read_text(encoding="utf-8") if result.run else "",
     )

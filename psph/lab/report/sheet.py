@@ -16,7 +16,7 @@ NEEDS = ("jinja2", "plotly")
 """What the extra ``report`` installs."""
 
 
-class Told(NamedTuple):
+class Result(NamedTuple):
     """What was measured: its title, what ``kind`` of thing it is, its page in Markdown, a figure of plotly
     and its caption, pictures, a run of it that has the case and the versions, and where the report goes."""
 

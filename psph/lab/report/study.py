@@ -3,20 +3,20 @@
 import json
 from pathlib import Path
 
-from psph.lab.report.sheet import Told, first_run
+from psph.lab.report.sheet import Result, first_run
 from psph.lab.study.ladder import name_of
 from psph.lab.study.report import percent
 from psph.lab.study.study import KEPT, PAGE, PICTURE, ladders_of
 from psph.output.pictures.names import REPORT
 
 
-def told(folder: Path) -> Told | None:
+def result_of(folder: Path) -> Result | None:
     """What a study has found; None where the folder holds none."""
     if not (folder / KEPT).is_file() or not (folder / PAGE).is_file():
         return None
     kept = json.loads((folder / KEPT).read_text(encoding="utf-8"))
     head, _, text = (folder / PAGE).read_text(encoding="utf-8").partition("\n")
-    return Told(
+    return Result(
         title=head.removeprefix("# "),
         kind="A study: the same case with several settings; the error and the run time of each.",
         text=text,

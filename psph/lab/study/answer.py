@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from psph.lab.study import report, words
 from psph.lab.study.ladder import SPACING
 from psph.scene import Scene
-from psph.scene.multiples import FARTHEST, misfits, nearest_fit, widths
+from psph.scene.lattice_fit import FARTHEST, misfits, nearest_fit, widths
 
 
 def answers(ladders, scene: Scene, error: float | None, seconds: float | None) -> Iterator[str]:

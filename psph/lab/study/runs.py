@@ -11,7 +11,7 @@ from psph.engine.threads import threads
 from psph.lab.study.ladder import SPACING, Settings, overrides
 from psph.output.errors import OutputError
 from psph.parallel.slabs import TooManyRanks
-from psph.runs.room import TooLittleMemory
+from psph.runs.memory_check import TooLittleMemory
 from psph.runs.start import Finished, run
 from psph.runs.watch import Stopped
 from psph.simulation.step import BlowUp, ParticleLost

@@ -14,7 +14,7 @@ from psph.lab.study.ladder import PROFILE, SPACING, Settings, groups, name_of
 from psph.lab.study.picture import draw
 from psph.lab.study.runs import DONE, Make, cases, conditions, perform
 from psph.output.reader import Run as Folder
-from psph.runs.room import check_size
+from psph.runs.memory_check import check_size
 from psph.scene import Scene, check
 from psph.scene.checks import warnings
 

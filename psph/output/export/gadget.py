@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 from psph.output.export.parts import Exported, in_space
-from psph.output.progress import told
+from psph.output.progress import with_progress
 
 TYPES = 6
 """Types of particles that a snapshot can have."""
@@ -35,7 +35,7 @@ def write_gadget(exported: Exported, folder: Path) -> list[Path]:
     kernel's support, as in Gadget.
     """
     paths = [folder / f"{exported.stem}_{k:05d}.hdf5" for k in exported.chosen]
-    for k, path in told(list(zip(exported.chosen, paths)), "writing", "snapshots"):
+    for k, path in with_progress(list(zip(exported.chosen, paths)), "writing", "snapshots"):
         fresh = path.with_name(f"{path.name}.new")
         with h5py.File(fresh, "w") as file:
             _fill(file, exported, k)

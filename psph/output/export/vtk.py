@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from psph.output.export.parts import PARTS, Exported, in_space
-from psph.output.progress import told
+from psph.output.progress import with_progress
 
 _TYPES = {"f8": "Float64", "i8": "Int64", "u1": "UInt8"}
 _HEAD = (
@@ -29,7 +29,7 @@ def write_vtk(exported: Exported, folder: Path) -> Path:
     the field data, as the time does.  Numbers are those of the frames, to the bit.
     """
     lines = []
-    for k in told(exported.chosen, "writing", "frames"):
+    for k in with_progress(exported.chosen, "writing", "frames"):
         path = folder / f"{exported.stem}_{k:05d}.vtp"
         _replace(path, _cloud(exported, k))
         time = float(exported.times[k])

@@ -23,7 +23,7 @@ from psph.output.gauges.run_up import RunUpGauge
 from psph.output.gauges.stress import StressGauge
 from psph.output.probes import Front, Probe
 from psph.output.tables import GAUGE
-from psph.scene.behind import Solid
+from psph.scene.outside import Solid
 
 DRAWN = 0.01
 """Spacings behind a drawn face from which on a point of a line is within a wall."""

@@ -65,7 +65,9 @@ class ReactionGauge(NamedTuple):
                 own = group == number
                 pose = plan.rigid[plan.pose_of[number]].pose(simulation.time)
                 places = in_space(tuple(store.shown(ANCHOR.name)[rows[own]].T))
-                told[own] = np.stack(np.broadcast_arrays(*pose.hurry(places)), axis=1)[:, : store.dimensions]
+                told[own] = np.stack(np.broadcast_arrays(*pose.acceleration_of(places)), axis=1)[
+                    :, : store.dimensions
+                ]
         return told
 
     def _on_anvil(self, simulation, number: int) -> tuple[np.ndarray, np.ndarray]:

@@ -14,7 +14,7 @@ from psph.errors import Refused, one_line
 from psph.output.errors import OutputError, cause
 from psph.output.pictures import names, style
 from psph.output.pictures.show import Show
-from psph.output.progress import told
+from psph.output.progress import with_progress
 
 GIF, MP4 = ".gif", ".mp4"
 RATES = (5.0, 25.0)
@@ -91,7 +91,7 @@ def _write_gif(path: Path, show: Show, chosen: Sequence[int], rate: float) -> No
     palette = _palette(show, chosen)
     images = (
         Image.fromarray(_pixels(show, k, SMALL)).quantize(palette=palette, dither=Image.Dither.NONE)
-        for k in told(chosen, "filming", "frames")
+        for k in with_progress(chosen, "filming", "frames")
     )
     first = next(images)
     first.save(path, "GIF", save_all=True, append_images=images, duration=10 * round(100 / rate), loop=0)
@@ -114,7 +114,7 @@ def _write_mp4(path: Path, show: Show, chosen: Sequence[int], rate: float) -> No
         ffmpeg = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=said, stderr=said)
         try:
             with ffmpeg.stdin as stream:
-                for k in told(chosen, "filming", "frames"):
+                for k in with_progress(chosen, "filming", "frames"):
                     stream.write(_pixels(show, k, style.DPI).tobytes())
         except BrokenPipeError:
             pass  # it says why

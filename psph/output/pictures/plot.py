@@ -6,7 +6,7 @@ from pathlib import Path
 from psph.output.pictures import charts, names, style
 from psph.output.pictures.flat import Slice
 from psph.output.pictures.show import Show
-from psph.output.progress import told
+from psph.output.progress import with_progress
 from psph.output.reader import Run
 
 
@@ -28,7 +28,8 @@ def plot(
     show = Show(Run(folder), times, field, cut, smooth)
     name, variant = show.quantity.name, show.panel.variant
     made = {
-        names.name_of(name, variant, k): show.picture([k]) for k in told(show.chosen, "drawing", "pictures")
+        names.name_of(name, variant, k): show.picture([k])
+        for k in with_progress(show.chosen, "drawing", "pictures")
     }
     if column := charts.probe_charts(show.run, show.case):
         made[names.PROBES] = charts.picture(column, show.title, "probes")

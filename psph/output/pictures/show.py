@@ -20,7 +20,7 @@ from psph.output.pictures.moorings import has_moorings, moorings_of
 from psph.output.pictures.quantities import quantity, usual
 from psph.output.pictures.scale import Scale, scale_of
 from psph.output.pictures.view import Panel, around_most, box_around, room_of, spread
-from psph.output.progress import told
+from psph.output.progress import with_progress
 from psph.output.reader import Run
 
 LARGEST = (7.6, 5.6)
@@ -93,7 +93,7 @@ class Show:
 
             solid.pyvista()  # missing, it is missed before any work
         sample = spread(len(self.times), self.quantity.samples)
-        glances = [self._glance(k) for k in told(sample, "looking at the run", "frames")]
+        glances = [self._glance(k) for k in with_progress(sample, "looking at the run", "frames")]
         scale = scale_of(self.quantity, [glance.values for glance in glances])
         mirrors = mirrors_of(self.case)
         boxes = [with_mirrors(glance.box, mirrors) for glance in glances]

@@ -12,7 +12,7 @@ from psph.output.errors import NotThere
 from psph.output.pictures import names
 from psph.output.pictures.bodies import Body, bodies_of
 from psph.output.pictures.walls import Triangles
-from psph.output.progress import told
+from psph.output.progress import with_progress
 from psph.output.reader import Run
 from psph.output.xdmf import ENDING, HEAD, TAIL, item
 
@@ -53,7 +53,8 @@ def solids(folder: Path) -> Path:
     fresh = path.with_name(f"{path.name}.new")
     with h5py.File(fresh, "w") as file:
         grids = [
-            _grid(file, path, bodies, run, k) for k in told(range(len(run.times)), "moving walls", "frames")
+            _grid(file, path, bodies, run, k)
+            for k in with_progress(range(len(run.times)), "moving walls", "frames")
         ]
     os.replace(fresh, path)
     index = path.with_suffix(ENDING)

@@ -349,8 +349,8 @@ class Bodies:
         for row in rows:
             one, pose, fixed = self.bodies[row], self.bodies[row].pose(time), ~self.slides[row]
             self.place[row, fixed] = np.array(pose.place(one.reference))[fixed]
-            self.velocity[row, fixed] = np.array(pose.speed(one.reference))[fixed]
-            self.prescribed[row, fixed] = np.array(pose.hurry(one.reference))[fixed]
+            self.velocity[row, fixed] = np.array(pose.velocity_of(one.reference))[fixed]
+            self.prescribed[row, fixed] = np.array(pose.acceleration_of(one.reference))[fixed]
             if not any(one.turns):
                 self.turn[row] = np.reshape(pose.rotation, (3, 3))
                 self.spin_ahead[row] = pose.angular_velocity

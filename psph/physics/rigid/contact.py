@@ -22,8 +22,8 @@ class Touching(NamedTuple):
 
     ``first`` (m,) is the row of a body, ``second`` that of the body it meets, −1 for a wall; ``arms`` and
     ``other_arms`` (m, 3) lead from their reference points to the point, m; ``normal`` (m, 3) is the unit
-    vector out of the second; ``gap`` (m,) m how far the point is before the face; ``told`` (m, 3) m/s the
-    velocity of a wall there.
+    vector out of the second; ``gap`` (m,) m how far the point is before the face; ``prescribed`` (m, 3)
+    m/s the velocity of a wall there.
     """
 
     first: np.ndarray
@@ -32,7 +32,7 @@ class Touching(NamedTuple):
     other_arms: np.ndarray
     normal: np.ndarray
     gap: np.ndarray
-    told: np.ndarray
+    prescribed: np.ndarray
 
 
 class Yielding(NamedTuple):
@@ -51,7 +51,7 @@ def approach(touching: Touching, velocity: np.ndarray, spin: np.ndarray) -> np.n
     one, other = touching.first, touching.second
     here = velocity[one] + np.cross(spin[one], touching.arms)
     there = velocity[other] + np.cross(spin[other], touching.other_arms)
-    there = np.where(other[:, None] < 0, touching.told, there)
+    there = np.where(other[:, None] < 0, touching.prescribed, there)
     return ((here - there) * touching.normal).sum(axis=1)
 
 
@@ -114,7 +114,7 @@ def _sliding(touching, c, velocity, spin):
     i, j = touching.first[c], touching.second[c]
     here = add(_row(velocity, i), _cross(_row(spin, i), _row(touching.arms, c)))
     if j < 0:
-        return add(here, scale(_row(touching.told, c), -1.0))
+        return add(here, scale(_row(touching.prescribed, c), -1.0))
     there = add(_row(velocity, j), _cross(_row(spin, j), _row(touching.other_arms, c)))
     return add(here, scale(there, -1.0))
 

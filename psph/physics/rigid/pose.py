@@ -40,12 +40,12 @@ class Pose(NamedTuple):
         """Where a point has come that was at ``point``, m."""
         return add(self.translation, turned(self.rotation, subtract(point, self.reference)))
 
-    def speed(self, point: Vector) -> Vector:
+    def velocity_of(self, point: Vector) -> Vector:
         """The velocity of that point, m/s."""
         arm = turned(self.rotation, subtract(point, self.reference))
         return add(self.velocity, cross(self.angular_velocity, arm))
 
-    def hurry(self, point: Vector) -> Vector:
+    def acceleration_of(self, point: Vector) -> Vector:
         """The acceleration of that point, m/s²."""
         arm, w = turned(self.rotation, subtract(point, self.reference)), self.angular_velocity
         whirl = add(cross(self.angular_acceleration, arm), cross(w, cross(w, arm)))
@@ -67,9 +67,9 @@ def combined(first: Pose, second: Pose) -> Pose:
         first.reference,
         second.place(first.translation),
         product(turn, first.rotation),
-        add(second.speed(first.translation), own),
+        add(second.velocity_of(first.translation), own),
         add(w, spin),
-        add(second.hurry(first.translation), gained),
+        add(second.acceleration_of(first.translation), gained),
         add(second.angular_acceleration, spun),
     )
 

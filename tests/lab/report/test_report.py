@@ -62,7 +62,7 @@ def test_a_tag_left_open_is_seen():
 
 def test_it_tells_what_was_simulated_and_what_it_cost(page):
     text = page.read_text(encoding="utf-8")
-    for told in (
+    for sentence in (
         "A drop of &lt;water&gt; &amp; more.",
         "<title>A drop &amp; a wall",
         "SymmetricPressure",
@@ -72,7 +72,7 @@ def test_it_tells_what_was_simulated_and_what_it_cost(page):
         "numba",
         "walls.floor",
     ):
-        assert told in text, told
+        assert sentence in text, sentence
 
 
 def test_a_run_that_has_not_ended_has_a_report_too(page, tmp_path):

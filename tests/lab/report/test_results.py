@@ -153,8 +153,8 @@ def made(request, tmp_path_factory):
 def test_it_tells_what_was_measured(made):
     kind, page = made
     text = page.read_text(encoding="utf-8")
-    for told in KINDS[kind][1]:
-        assert told in text, told
+    for sentence in KINDS[kind][1]:
+        assert sentence in text, sentence
     read = Page(text)
     assert not read.faults and not read.open
     assert read.sources and all(source.startswith("data:") for source in read.sources)

@@ -25,7 +25,7 @@ from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
-from psph.runs import room
+from psph.runs import memory_check
 from psph.runs.explain import bytes_of_rank
 from psph.runs.start import run
 from psph.scene import Scene
@@ -334,7 +334,7 @@ def test_a_run_that_does_not_fit_into_the_memory_does_not_end_the_study(tmp_path
         made = Study(tmp_path / "wave.toml", ["study.repeats=1"], every, tmp_path / "out", alone())
         return [row["status"] for row in made.run(lambda line: None)]
 
-    monkeypatch.setattr(room, "free_memory", lambda: 0.9 * needed)
+    monkeypatch.setattr(memory_check, "free_memory", lambda: 0.9 * needed)
     first, lacking, last = statuses()
     assert first == last == "done"
     assert re.fullmatch(

@@ -18,7 +18,7 @@ from psph.output.pictures import film as module
 from psph.output.pictures.film import encoder
 from psph.output.pictures.names import remove_pictures
 from psph.output.pictures.plot import film
-from psph.output.progress import told
+from psph.output.progress import with_progress
 from psph.output.reader import Run
 
 CASE = """
@@ -127,7 +127,7 @@ def test_what_cannot_be_written_is_one_line_and_leaves_nothing(crossing, tmp_pat
 def test_the_time_left_is_told(capsys, monkeypatch):
     clock = iter([0.0, 100.0, 140.0, 180.0, 220.0])  # the first one takes long, and is not typical
     monkeypatch.setattr("psph.output.progress.perf_counter", lambda: next(clock))
-    assert list(told("abcd", "filming", "frames")) == list("abcd")
+    assert list(with_progress("abcd", "filming", "frames")) == list("abcd")
     assert capsys.readouterr().err.splitlines() == [
         "filming: 2 of 4 frames, 1 min 20 s left",
         "filming: 3 of 4 frames, 40 s left",

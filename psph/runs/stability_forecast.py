@@ -17,7 +17,7 @@ NEAR = 1e-4
 """Relative change of density for the derivative of the pressure."""
 
 
-def outlook(scene, plan: Plan) -> Iterator[str]:
+def stability_forecast(scene, plan: Plan) -> Iterator[str]:
     """Whether small waves grow at the start, how fast, and which h/dx is stable."""
     lattice, form = OF_SCENES[scene.dimensions], scene.case.physics.pressure_gradient
     yield (

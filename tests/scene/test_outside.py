@@ -7,7 +7,7 @@ import numpy as np
 from psph.case import Case
 from psph.fields import WALL
 from psph.scene import Scene
-from psph.scene.behind import Solid
+from psph.scene.outside import Solid
 
 
 def tank(top=1.0, **space):

@@ -8,9 +8,9 @@ from runs.test_explain import BOX
 from psph.lab.study.runs import perform
 from psph.lab.study.study import Study
 from psph.runs import explain as words
-from psph.runs import room
+from psph.runs import memory_check
 from psph.runs.explain import bytes_of_rank, explain
-from psph.runs.room import TooLittleMemory
+from psph.runs.memory_check import TooLittleMemory
 from psph.runs.start import run
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -26,7 +26,7 @@ def needed(tmp_path):
 
 def test_a_run_that_does_not_fit_leaves_no_trace(needed, tmp_path, monkeypatch):
     case, size = needed
-    monkeypatch.setattr(room, "free_memory", lambda: size - 1.0)
+    monkeypatch.setattr(memory_check, "free_memory", lambda: size - 1.0)
     with pytest.raises(TooLittleMemory) as refused:
         run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)
     assert str(refused.value) == (
@@ -39,9 +39,9 @@ def test_a_run_that_does_not_fit_leaves_no_trace(needed, tmp_path, monkeypatch):
 
 def test_one_that_fits_is_not_refused(needed, monkeypatch):
     case, size = needed
-    monkeypatch.setattr(room, "free_memory", lambda: size)
+    monkeypatch.setattr(memory_check, "free_memory", lambda: size)
     scene = Scene(case)
-    room.check_memory(scene, make_plan(scene), MPI.COMM_SELF)
+    memory_check.check_memory(scene, make_plan(scene), MPI.COMM_SELF)
 
 
 def test_explain_foresees_it(needed, monkeypatch):
@@ -62,11 +62,11 @@ def test_the_ranks_of_a_machine_count_together_and_all_refuse(mpi_tmp_path, monk
     scene = Scene(case)
     plan = make_plan(scene)
     together = comm.size * bytes_of_rank(scene, plan, comm.size)
-    monkeypatch.setattr(room, "free_memory", lambda: together - (comm.rank == 1))
+    monkeypatch.setattr(memory_check, "free_memory", lambda: together - (comm.rank == 1))
     with pytest.raises(TooLittleMemory):
-        room.check_memory(scene, plan, comm)
-    monkeypatch.setattr(room, "free_memory", lambda: together)
-    room.check_memory(scene, plan, comm)
+        memory_check.check_memory(scene, plan, comm)
+    monkeypatch.setattr(memory_check, "free_memory", lambda: together)
+    memory_check.check_memory(scene, plan, comm)
 
 
 HUGE = """

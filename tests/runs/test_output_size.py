@@ -12,7 +12,7 @@ from psph.case import load
 from psph.output.probes import Probe
 from psph.output.reader import Run
 from psph.runs.explain import explain
-from psph.runs.outlay import amount, bytes_per_frame
+from psph.runs.output_size import amount, bytes_per_frame
 from psph.runs.start import run
 from psph.scene import Scene
 from psph.simulation.plan import make_plan

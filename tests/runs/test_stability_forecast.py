@@ -8,7 +8,7 @@ from drafts import SQUARE, TANK, draft
 
 from psph.case import load
 from psph.runs.explain import explain
-from psph.runs.outlook import outlook
+from psph.runs.stability_forecast import stability_forecast
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.theory.stability.growth import growth
@@ -17,7 +17,7 @@ from psph.theory.stability.uniform import Settings
 
 def said(case):
     scene = Scene(case)
-    return list(outlook(scene, make_plan(scene)))
+    return list(stability_forecast(scene, make_plan(scene)))
 
 
 def paper(name, *sets):
@@ -125,5 +125,5 @@ def test_it_takes_no_time(case):
     scene = Scene(paper(case, "space.kernel=cubic"))
     plan = make_plan(scene)
     begun = time.process_time()
-    assert list(outlook(scene, plan))
+    assert list(stability_forecast(scene, plan))
     assert time.process_time() - begun < (0.5 if scene.dimensions == 2 else 2.0)

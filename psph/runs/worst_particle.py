@@ -128,7 +128,7 @@ def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -
 
 def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -> tuple:
     """What each effect does to a particle, by its plain formulas over its neighbours, in mirrors too."""
-    view = seen_at(around.view(), simulation.pace)
+    view = seen_at(around.view(), simulation.previous_speed)
     reach = scene.kernel.support * scene.smoothing_length
     near = np.flatnonzero((np.linalg.norm(offset, axis=1) <= reach) & bool(simulation.plan.passes))
     i = take(view, column)
