@@ -54,6 +54,14 @@ LIMITS = {
     "laminar viscosity": (lattice(viscosity=5.0), 1.6),
     "laminar viscosity of steep kernels": (lattice(viscosity=5.0, kernel="wendland-c6", smoothing=2.0), 1.6),
     "central friction": (lattice({"central_friction": {}}, viscosity=5.0), 1.5),
+    "Laplacian friction": (lattice({"laplacian_friction": {}}, viscosity=5.0), 1.6),
+    "central apparent viscosity": (
+        lattice(
+            {"central_friction": {}},
+            rheology={"bingham": {"yield_stress": 9.0, "plastic_viscosity": 2.0, "largest_viscosity": 5e3}},
+        ),
+        1.5,
+    ),
     "apparent viscosity": (
         lattice(
             rheology={"bingham": {"yield_stress": 9.0, "plastic_viscosity": 2.0, "largest_viscosity": 5e3}}
@@ -82,11 +90,22 @@ LIMITS = {
     "acoustic damper of the fourth-order kernel": (lattice({"acoustic_damper": 20.0}, **FOURTH_ORDER), 1.6),
     "pair damping in 3D": (lattice({"pair_damping": 20.0}, dimensions=3), 1.6),
     "spreading of the stress of soils": (soil(stress_diffusion=3.0), 1.3),
+    "damping zone": (lattice({"damping_zone": {"begin": -1e4, "end": 2.0, "strength": 4e3}}), 2.1),
+    "damping zone beside sound": (
+        lattice(
+            {
+                "damping_zone": {"begin": -1e4, "end": 2.0, "strength": 290.0},
+                "fourth_order_diffusion": "off",
+            },
+            scheme="stable",
+        ),
+        2.0,
+    ),
     "density diffusion in 3D": (lattice({"density_diffusion": 5.0}, dimensions=3), 1.3),
 }
 """A lattice where this is the shortest limit, or that of sound, and how many times the step is unstable."""
 
-ALWAYS = ("pair damping", "acoustic damper of steep kernels")
+ALWAYS = ("pair damping", "acoustic damper of steep kernels", "damping zone")
 """The rest is long."""
 
 

@@ -10,8 +10,9 @@ from psph.formula import where
 from psph.physics.facts import Facts
 from psph.vectors import dot, scale
 
-STABLE = 0.2
-"""β Δt stays below: what is taken off in a step is a small part of the velocity."""
+STABLE = 0.5
+"""β Δt stays below.  A velocity that is predicted to first order is stable up to 1, and somewhat less beside
+sound."""
 
 
 class DampingZone(NamedTuple):
@@ -84,5 +85,5 @@ class Absorbing(NamedTuple):
         return scale(i.velocity, of_fluids(i, rate))
 
     def longest_step(self, scene: Facts):
-        """Δt ≤ 0.2/β, s: see STABLE."""
+        """Δt ≤ 0.5/β, s: see STABLE."""
         return STABLE / self.strength if self.strength else inf

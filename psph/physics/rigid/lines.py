@@ -9,8 +9,7 @@ from psph.physics.rigid.bodies import Bodies
 from psph.vectors import Vector
 
 STEP = 0.2
-"""Time steps of at most this over the angular frequency of a line, and this over the rate at which it
-damps."""
+"""Time steps of at most this over the angular frequency of lines, and over the rate at which they damp."""
 
 
 class Line(NamedTuple):
@@ -56,15 +55,26 @@ def pulls(lines: Sequence[Line], bodies: Bodies) -> tuple[np.ndarray, np.ndarray
 
 
 def longest_step(lines: Sequence[Line], bodies: Bodies) -> float:
-    """Δt ≤ 0.2/√(k/m) and 0.2 m/ζ for every line, s, with 1/m the sum of what the ends give way by."""
-    shortest = np.inf
+    """Δt ≤ 0.2/√λ for the springs and 0.2/λ for the dampers, s: λ the largest eigenvalue of M⁻¹K, at most.
+
+    Bodies are joined by the sum of their lines, K_ab = Σ_l k_l √(y_la y_lb), with y what an end gives way by,
+    1/kg.  One spring has λ = k/m.  Springs are stable up to 2/√λ, and dampers up to 1/λ: the rest is for
+    accuracy, as a line that goes slack strikes.
+    """
+    rate = max(_joined(lines, bodies, "stiffness") ** 0.5, _joined(lines, bodies, "damping"))
+    return STEP / rate if rate > 0.0 else float(np.inf)
+
+
+def _joined(lines: Sequence[Line], bodies: Bodies, what: str) -> float:
+    """λ by the numbers of that name, 1/s² or 1/s."""
+    whole = np.zeros((len(bodies.bodies),) * 2)
     for line in lines:
-        yielding = _yielding(bodies, line.body, line.at)
+        ends = np.zeros(len(bodies.bodies))
+        ends[line.body] = _yielding(bodies, line.body, line.at)
         if line.other is not None:
-            yielding += _yielding(bodies, line.other, line.anchor)
-        rate = max((line.stiffness * yielding) ** 0.5, line.damping * yielding)
-        shortest = min(shortest, STEP / rate if rate > 0.0 else np.inf)
-    return float(shortest)
+            ends[line.other] += _yielding(bodies, line.other, line.anchor)
+        whole += getattr(line, what) * np.sqrt(np.outer(ends, ends))
+    return float(np.linalg.eigvalsh(whole).max(initial=0.0))
 
 
 def _ends(line: Line, bodies: Bodies):

@@ -191,6 +191,46 @@ def test_a_body_on_a_spring_swings_as_long_as_it_should_and_a_damper_brakes_it()
     assert braked.place[0, 2] - 0.5 == pytest.approx(exact, abs=1e-6)
 
 
+LINES = {
+    "a spring": ((12.0, 0.0), 1, 9.9),
+    "a damper": ((0.0, 6.0), 1, 4.9),
+    "both": ((12.0, 6.0), 1, 4.1),
+    "ten springs": ((12.0, 0.0), 10, 9.9),
+    "ten dampers": ((0.0, 6.0), 10, 4.9),
+}
+"""Stiffness and damping; how many stand side by side; and up to which times the limit is
+stable: ω²Δt²/4 + ζΔt/m ≤ 1."""
+
+
+def swung(lines, times):
+    """The speed after 400 steps ``times`` as long as the limit, over that of the start."""
+    swinging = Bodies([body(velocity=(0.0, 0.0, 0.1))], (0.0,) * 3)
+    step = times * longest_step(lines, swinging)
+    return abs(float(moved(swinging, step, 400, lines).velocity[0, 2])) / 0.1
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_lines_are_stable_at_the_limit_of_the_step_however_many_they_are(name):
+    """Six dampers, each at its own limit, had blown up.  The limit is of accuracy: five to ten times it, they do."""
+    (stiffness, damping), count, beyond = LINES[name]
+    lines = [Line("l", 0, (1.0, -2.0, 0.5), None, (1.0, -2.0, 1.5), stiffness, 1.0, damping, False)] * count
+    assert swung(lines, 1.0) < 1.001 and swung(lines, beyond) < 1.001
+    with np.errstate(over="ignore", invalid="ignore"):
+        assert not swung(lines, 1.2 * beyond) < 1e3
+
+
+def test_a_mooring_line_that_goes_slack_keeps_the_energy_at_the_limit_of_the_step():
+    """Between two bodies; in steps four times as long it wins a tenth of the speed and more."""
+    two = [body(velocity=(0.0, 0.0, -0.1)), body(centre=(1.0, -2.0, 1.5), velocity=(0.0, 0.0, 0.1))]
+    line = Line("l", 0, (1.0, -2.0, 0.5), 1, (1.0, -2.0, 1.5), 12.0, 1.0, 0.0, True)
+    struck = moved(Bodies(two, (0.0,) * 3), step := longest_step([line], Bodies(two, (0.0,) * 3)), 30, [line])
+    assert step == pytest.approx(0.2 / math.sqrt(8.0)) and struck.velocity[0, 2] == pytest.approx(
+        0.1, rel=0.01
+    )
+    rough = moved(Bodies(two, (0.0,) * 3), 4.0 * step, 8, [line])
+    assert abs(rough.velocity[0, 2] - 0.1) > 0.005
+
+
 def test_lines_between_bodies_push_back_what_pulls():
     bodies = Bodies([body(), body(mass=5.0, centre=(3.0, 0.0, 0.0))], (0.0,) * 3)
     line = Line("l", 0, (1.2, -1.8, 0.4), 1, (2.5, 0.3, 0.1), 7.0, 0.5, 0.2, False)
