@@ -37,6 +37,13 @@ class Volume(NamedTuple):
         """Moments about the centre, kg m² (3, 3), of a ``mass`` in kg that fills it evenly."""
         return mass * (np.trace(self.spread) * np.eye(3) - self.spread)
 
+    def surface(self, dimensions: int) -> float:
+        """The surface, m^(d − 1), of a box of this spread, or of a cube of this volume if that has more."""
+        d = dimensions
+        sides = np.sqrt(12.0 * np.linalg.eigvalsh(self.spread[:d, :d]))
+        box = 2.0 * sum(float(np.delete(sides, axis).prod()) for axis in range(d))
+        return max(box, 2.0 * d * self.volume ** ((d - 1.0) / d))
+
 
 def volume_of(scene: "Scene", material: int) -> Volume:
     """What the sites of a material fill, a cell of the lattice each."""
@@ -163,19 +170,31 @@ def body_step(scene: "Scene") -> float:
     """The longest step that the bodies of a scene stand, s.
 
     That of their lines; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within
-    h of its surface A, whose push in a step would move it too far.  Contact is hard, and asks for no step of
-    its own; that with elastic solids has one (psph.physics.solid.contact).
+    h of its surface A, whose push in a step would move it too far, or turn it.  Contact is hard, and asks for
+    no step of its own; that with elastic solids has one (psph.physics.solid.contact).
     """
     own = scene.rigid_bodies
     bodies = Bodies(own, scene.gravity)
     shortest = longest_step(lines_of(scene, [one.name for one in own]), bodies)
-    h, c, dx, d = scene.smoothing_length, scene.sound_speed, scene.spacing, scene.dimensions
-    for number, one in enumerate(own if scene.case.flowing else (), scene.layout.first_body):
-        count = float(scene.census.sizes[number])
-        area = (
-            2.0 * d * count ** ((d - 1.0) / d) * dx ** (d - 1)
-        )  # of a cube with so many sites: no body has less
-        share = one.mass / (scene.species[number].density * area * h)
-        if any(one.slides) and share < 1.0:
-            shortest = min(shortest, 0.5 * share**0.5 * h / c)
+    h, c = scene.smoothing_length, scene.sound_speed
+    for row, number in enumerate(range(scene.layout.first_body, scene.layout.first_body + len(own))):
+        if scene.case.flowing and (any(own[row].slides) or any(own[row].turns)):
+            filled = volume_of(scene, number)
+            layer = scene.species[number].density * filled.surface(scene.dimensions) * h
+            share = _lightest(bodies, row, filled) / layer
+            shortest = min(shortest, 0.5 * share**0.5 * h / c) if share < 1.0 else shortest
     return shortest
+
+
+def _lightest(bodies: Bodies, row: int, filled: Volume) -> float:
+    """The mass of a body against a push, kg, or against one that turns it where it would be felt as less: the
+    moment of inertia about the axis over the mean square of the distance to it."""
+    masses = [bodies.bodies[row].mass] if any(bodies.bodies[row].slides) else []
+    arm = filled.centre - bodies.reference[row]
+    even = filled._replace(spread=filled.spread + np.outer(arm, arm)).inertia(1.0)
+    if row in bodies.hinged:
+        axis = bodies.axis[row]
+        masses.append(float(bodies.about[bodies.hinged == row][0]) / float(axis @ even @ axis))
+    elif row in bodies.tumbling:
+        masses.append(float(np.linalg.eigvals(np.linalg.solve(even, bodies.inertia[row])).real.min()))
+    return min(masses)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from invariances.amplification import amplification
 from invariances.running import begun, by_id
-from invariances.scenes import BLOCK, DX, SAND, SCENES, scene, stirred_solid, tank
+from invariances.scenes import BLOCK, DX, SAND, SCENES, box, less, scene, stirred_solid, tank
 from long import LONG, long_but_for
 
 from psph.errors import Failed
@@ -205,3 +205,37 @@ def test_penalty_walls_hold_still_water_at_the_limit_and_not_beyond(tmp_path):
     with pytest.raises(Failed, match="blew up"):
         for _ in range(100):
             wild.step()
+
+
+AFLOAT = {
+    "slides": ({"free": ["x", "y"]}, 3.0),
+    "turns": ({"free": ["turn_z"], "pivot": [0.0, 0.1875]}, 2.5),
+}
+"""What a light plate is free to do, and how many times the step is unstable."""
+
+
+@pytest.mark.parametrize("name", AFLOAT)
+def test_a_light_plate_in_water_stays_at_the_limit_and_blows_up_beyond(tmp_path, name):
+    """Set off at 0.3 m/s, 3 spacings by 20, of 0.03 of the density of water.  Without its limit the one on a hinge
+    ends within six steps, and a plate as a cube of as many sites has 1.2 times this limit."""
+    keys, beyond = AFLOAT[name]
+    length, full = 20 * DX, box((-0.5, -1.5), (3.0, 1.5))
+    start = {"velocity": [0.0, 0.3]} if name == "slides" else {"spin": 0.3 / length}
+    plate = {"shape": box((0.0, 0.0), (length, 3 * DX)), "density": 30.0, **keys, **start}
+    tables = scene(
+        fluids={"water": {"shape": full, "density": 1000.0}},
+        walls={"tank": {"shape": less(box((-1.0, -2.0), (3.5, 2.0)), full)}},
+        bodies={"plate": plate},
+    )
+
+    def ran(times):
+        step, limit = begun(tables, tmp_path).plan.longest_step(0.0, 0.0)
+        assert limit == "bodies"
+        simulation = begun({**tables, "time": {**tables["time"], "step": times * step}}, tmp_path)
+        for _ in range(80):
+            simulation.step()
+        return simulation.fluid_speed
+
+    assert ran(1.0) < 0.02
+    with pytest.raises(Failed, match="blew up"):
+        ran(beyond)
