@@ -16,13 +16,17 @@ if TYPE_CHECKING:
 HALVINGS = 12
 """Of the way out of a wall, until its face is known."""
 
+DIGITS = 9
+"""To which heights are alike, in spacings."""
+
 
 def smooth_faces(scene: "Scene", species: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Of particles of these ``species`` (n,) that begin at ``position`` (n, dim) the unit normals (n, dim) of
     the faces before them, in walls without friction, and zeros in all else.
 
     That face is the one that the way to the nearest site outside of all walls that move alike goes through:
-    where walls touch, and at the ends of a period, there is none.
+    where walls touch, and at the ends of a period, there is none.  Of several as near the lowest counts, and
+    of the faces at a corner the lower one: so they turn as the scene does.
     """
     normal, walls = np.zeros_like(position), {n for n, one in enumerate(scene.species) if one.kind == WALL}
     for motion in {scene.species[n].motion for n in walls}:
@@ -43,18 +47,19 @@ def _before(scene: "Scene", alike: Sequence[int], place: np.ndarray) -> np.ndarr
         middle = 0.5 * (inner + outer)
         within = nearest_faces(shapes, place + middle * way).away[:, None] <= 0.0
         inner, outer = np.where(within, middle, inner), np.where(within, outer, middle)
-    return nearest_faces(shapes, place + outer * way).normal
+    lower = np.abs(way).max(initial=0.0) * 0.5**HALVINGS * np.array(scene.up)
+    return nearest_faces(shapes, place + outer * way - lower).normal
 
 
 def _way_out(scene: "Scene", alike: Sequence[int], place: np.ndarray) -> np.ndarray:
-    """From each of ``place`` (n, dim) to the nearest site without a wall ``alike`` within reach, m (n, dim);
-    zeros where there is none."""
-    most = int(scene.wall_reach / scene.spacing)
+    """From each of ``place`` (n, dim) to the nearest site without a wall ``alike`` within reach, m: the
+    lowest of several; zeros where there is none."""
+    most = scene.wall_reach
     offsets = np.array(list(product(range(-most, most + 1), repeat=scene.dimensions)))
-    length = (offsets**2).sum(axis=1)
-    offsets = offsets[np.argsort(length, kind="stable")]
+    length, height = (offsets**2).sum(axis=1), np.round(offsets @ np.array(scene.up), DIGITS)
+    order = np.lexsort((height, length))
     way, left = np.zeros_like(place), np.arange(len(place))
-    for offset in offsets[np.sort(length) <= most**2]:
+    for offset in offsets[order[length[order] <= most**2]]:
         sites = place[left] + scene.spacing * offset
         grid = [scene.folded(d, x.copy()) for d, x in enumerate(sites.T)]
         free = ~np.isin(scene.layout.held(grid, grid[0].shape), alike)

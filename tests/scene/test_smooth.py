@@ -43,6 +43,44 @@ def test_it_is_that_which_the_way_out_of_all_walls_goes_through(tmp_path):
     assert not normals(Scene(draft(tmp_path, BED, "walls.floor.no_slip=true")), "floor", [0.5, -0.025]).any()
 
 
+TANK = """
+time.end = 1.0
+physics.gravity = [1.0, -9.0]
+space = { dimensions = 2, spacing = 0.125 }
+[soils.bed]
+density = 1800.0
+young = 2e6
+poisson = 0.3
+friction_angle = 30.0
+shape.box = { lower = [0.0, 0.0], upper = [1.5, 1.0] }
+[walls.tank]
+shape.difference.from.box = { lower = [-0.5, -0.5], upper = [2.0, 1.25] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.5, 1.25] } }]
+"""
+
+
+def test_a_corner_shows_the_lower_of_its_faces_and_a_rim_the_inner_one(tmp_path):
+    """As often as a place is as near to both: the first in the order of the axes had decided."""
+    scene = Scene(draft(tmp_path, TANK))
+    corners = [[-0.0625, -0.0625], [-0.1875, -0.1875], [1.5625, -0.0625]]
+    assert normals(scene, "tank", *corners) == pytest.approx(np.tile([0.0, 1.0], (3, 1)), abs=1e-12)
+    rims = normals(scene, "tank", [-0.0625, 1.1875], [1.5625, 1.1875])
+    assert rims == pytest.approx(np.tile([1.0, 0.0], (2, 1)), abs=1e-12)
+    across = Scene(draft(tmp_path, TANK, "physics.gravity=[-9.0,1.0]"))
+    assert normals(across, "tank", *corners[:2]) == pytest.approx(np.tile([1.0, 0.0], (2, 1)), abs=1e-12)
+
+
+def test_the_reach_of_a_wall_is_the_same_at_any_spacing(tmp_path, monkeypatch):
+    """It had been divided by the spacing: 400 sites each way at 1 cm."""
+    tried = []
+    folded = Scene.folded
+    monkeypatch.setattr(Scene, "folded", lambda *args: tried.append(0) or folded(*args))
+    for text in (TANK, TANK.replace("0.125", "0.0625")):
+        tried.clear()
+        normals(Scene(draft(tmp_path, text)), "tank", [-0.48, -0.48])
+        assert len(tried) <= 2 * 9 * 9
+
+
 def test_the_end_of_a_period_is_no_face(tmp_path):
     extruded = (
         "space={ dimensions=3, spacing=0.05, periodic=['z'], lower=[-0.2, -0.2, 0.0], upper=[1.2, 0.7, 0.5] }",
