@@ -88,7 +88,7 @@ def _check(options, comm) -> None:
     if comm.rank == 0:
         for line in described(scene):
             print(one_line(f"{options.case}: {line}"))
-        count = int(scene.counts().sum())
+        count = int(scene.census.counts.sum())
         good = f"{options.case}: good: {count:,} particles, at most {slab_planes(scene)} ranks"
         print(one_line(good))
 

@@ -291,7 +291,7 @@ def test_every_option_is_in_the_table_of_commands():
 
 def test_the_case_of_the_readme_raises_no_warning(drop):
     scene = Scene(load(drop))
-    assert check(scene) == [] and scene.counts().sum() > 1000
+    assert check(scene) == [] and scene.census.counts.sum() > 1000
 
 
 # The hull of docs/geometry.md

@@ -48,7 +48,7 @@ def explained(scene, ranks: int) -> Explanation:
     expected = forecast(scene, plan, ranks)
     return Explanation(
         title=case.title or case.name,
-        particles=int(scene.counts().sum()),
+        particles=int(scene.census.counts.sum()),
         dimensions=scene.dimensions,
         spacing=scene.spacing,
         smoothing_length=scene.smoothing_length,

@@ -27,7 +27,7 @@ def advice(scene, guard: str, suspect) -> list[str]:
     if not scene.case.flowing:
         return [*(fast_start(scene) if guard == "speed" else ()), *_solids(scene), *_bound(guard)]
     return [
-        *(_solids(scene) if scene.elastic_solids else ()),
+        *(_solids(scene) if scene.starts.solids else ()),
         *_driven(scene, guard, suspect),
         *_long_step(scene),
         *_scheme(scene),
@@ -43,14 +43,14 @@ def advice(scene, guard: str, suspect) -> list[str]:
 def _solids(scene) -> Iterator[str]:
     if scene.case.time.step is not None:
         yield "remove time.step: the waves in the solids set the step then"
-    softens = any(isinstance(one.law, SaintVenantKirchhoff) for one in scene.elastic_solids)
+    softens = any(isinstance(one.law, SaintVenantKirchhoff) for one in scene.starts.solids)
     law = 'law = "neo-hookean", which stands more compression, ' if softens else ""
     yield f"give {law}a larger hourglass, or some damping; look at the units of young, density and loads"
 
 
 def _driven(scene, guard: str, suspect) -> Iterator[str]:
     c, speed = scene.sound_speed, suspect.speed
-    if scene.driven and guard in ("energy", "speed", "density") and speed > c / SOUND_OVER_SPEED:
+    if scene.layout.driven and guard in ("energy", "speed", "density") and speed > c / SOUND_OVER_SPEED:
         yield (
             f"raise physics.sound_speed to {SOUND_OVER_SPEED * speed:.3g} m/s or more: gravity along a "
             f"periodic axis drives this flow, it has reached c/{c / speed:.2g}, and c is meant for c/10"
@@ -101,7 +101,7 @@ def _friction(scene) -> Iterator[str]:
 
 def _sound(scene, guard: str) -> Iterator[str]:
     c = scene.sound_speed
-    expected = scene.undriven_speed
+    expected = scene.speeds.undriven
     if not scene.case.fluids:
         if guard == "density":
             yield "give a larger young: densities differ by (speed/c)², and c is that of its waves"
@@ -119,13 +119,14 @@ def _walls(scene, guard: str, suspect) -> Iterator[str]:
     near_wall = (suspect.around.shown("kind") != FLUID).any()
     if guard != "depth" and not near_wall:
         return
-    need, names = layers_needed(scene), [material.name for material in scene.species]
+    need, names = layers_needed(scene.layout), [material.name for material in scene.species]
     for name in unbearing_walls(scene):
+        condition = scene.case.walls[name].condition
         yield (
-            f'give walls.{name}.condition = "{DYNAMIC}": with "{scene.walls[name].condition}" it bears no '
+            f'give walls.{name}.condition = "{DYNAMIC}": with "{condition}" it bears no '
             "pressure, and lets through what comes fast"
         )
-    for material, (layers, _) in thinnest_walls(scene).items():
+    for material, (layers, _) in thinnest_walls(scene.layout).items():
         yield f"make walls.{names[material]} thicker: {need} spacings instead of {layers}"
     if guard == "depth":
         yield (

@@ -24,7 +24,7 @@ from psph.runs.output_size import output_lines
 from psph.runs.stability_forecast import stability_forecast
 from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
-from psph.scene.moving import motion_lines
+from psph.scene.motion_checks import motion_lines
 from psph.scene.rheologies import rheology_lines
 from psph.scene.soils import soil_lines
 from psph.scene.solid_checks import solid_lines
@@ -40,7 +40,7 @@ rebuild sorts with; of a neighbour in a list; and of a cell of the grid during a
 def explain(scene, ranks: int) -> Iterator[str]:
     """Lines that describe the plan of a scene on so many ranks."""
     plan = make_plan(scene)
-    counts = scene.counts()
+    counts = scene.census.counts
     particles = int(counts.sum())
     yield from _scene_lines(scene, plan, particles)
     yield from _rank_lines(scene, plan, ranks)
@@ -88,7 +88,7 @@ def bytes_of_solid(scene, plan: Plan) -> float:
 def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
     """Memory of the particles, ghosts and lists of one of so many ranks, bytes."""
     own, listed = bytes_per_particle(scene, plan)
-    share = float(scene.counts().sum()) / ranks
+    share = float(scene.census.counts.sum()) / ranks
     return own * (share + _neighbours(scene, ranks) * _ghosts_a_side(scene)) + listed * share
 
 
@@ -105,28 +105,30 @@ def _rows(scene, plan: Plan, names: tuple[str, ...]) -> int:
 
 def _neighbours(scene, ranks: int) -> int:
     """Ranks, or sides, that a rank exchanges ghosts with."""
-    return 2 if scene.periods[scene.axis] is not None else min(ranks - 1, 2)
+    return 2 if scene.layout.periods[scene.layout.axis] is not None else min(ranks - 1, 2)
 
 
 def _ghosts_a_side(scene) -> float:
     """Particles of an average plane of cells: a rank holds one plane from each side."""
-    return float(scene.counts().sum()) / slab_planes(scene)
+    return float(scene.census.counts.sum()) / slab_planes(scene)
 
 
 def _cells_per_particle(scene) -> float:
     """The most that the grid may come to have, when particles leave an open domain."""
     grid = _grid(scene)
-    closed = all(period is not None for period in scene.periods)
-    return max(math.prod(grid.counts) / float(scene.counts().sum()), 0.0 if closed else CELLS_A_PARTICLE)
+    closed = all(period is not None for period in scene.layout.periods)
+    return max(math.prod(grid.counts) / float(scene.census.counts.sum()), 0.0 if closed else CELLS_A_PARTICLE)
 
 
 def _grid(scene):
     """The grid over the scene at its start."""
-    return make_grid(scene.axis, _cutoff(scene), scene.lower, scene.upper, scene.periods)
+    return make_grid(
+        scene.layout.axis, _cutoff(scene), scene.layout.lower, scene.layout.upper, scene.layout.periods
+    )
 
 
 def _cutoff(scene) -> float:
-    return scene.reach.cutoff
+    return scene.layout.reach.cutoff
 
 
 def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
@@ -139,19 +141,19 @@ def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
     yield f"  materials   {names}"
     yield from soil_lines(scene)
     yield from solid_lines(scene)
-    for body in scene.rigid_bodies:
+    for body in scene.census.rigid_bodies:
         yield f"  body        {body.name}: {in_words(scene, body)}"
     yield from motion_lines(scene)
     yield from wave_lines(scene)
     for one in scene.species:
         if deforms(one.motion):
             yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"
-    for plane in scene.mirror_planes:
+    for plane in scene.layout.mirror_planes:
         sticks = "; the fluid sticks to it" if plane.sticks else ""
         yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
     for line in described(scene):
         yield f"  mesh        {line}"
-    for region, _ in scene.regions:
+    for region, _ in scene.layout.regions:
         yield f"  region      {type(region).__name__}: {_first_line(region)}"
     for name, table in scene.tables.items():
         yield f"  table       {name}.csv: {_first_line(table)}"
@@ -165,7 +167,7 @@ def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
             f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
         )
     if plan.touching:
-        reach = scene.reach
+        reach = scene.layout.reach
         yield (
             f"  contact     within {reach.support:g} m of other solids and walls; lists reach "
             f"{reach.cutoff:.4g} m"
@@ -197,7 +199,7 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
     own, listed = bytes_per_particle(scene, plan)
     memory, free = bytes_of_rank(scene, plan, ranks), free_memory()
     each, sent = bytes_per_refresh(scene, plan, ranks)
-    along = "xyz"[scene.axis]
+    along = "xyz"[scene.layout.axis]
     yield f"  ranks       {ranks}, at most {planes}: that many planes of cells along {along}"
     yield (
         f"  memory      about {memory / 2**20:.1f} MiB a rank, {own + listed:.0f} bytes a particle, "
@@ -231,7 +233,7 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
 def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     yield from _early_passes(plan)
     if plan.passes:
-        flops = plan.flops_per_pair(scene.periods)
+        flops = plan.flops_per_pair(scene.layout.periods)
         yield f"Pass over the neighbours, one a step, {flops} flops a pair"
     if plan.solids:
         yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"

@@ -37,10 +37,10 @@ def forecast(scene, plan: Plan, ranks: int) -> Forecast:
     """What a run of a scene will take on so many ranks, a core each."""
     step, limit = plan.longest_step(scene.expected_speed, pull(scene))
     steps = math.ceil(scene.case.time.end / step)
-    flops = plan.flops_per_pair(scene.periods) if plan.passes else SOLID_FLOPS
+    flops = plan.flops_per_pair(scene.layout.periods) if plan.passes else SOLID_FLOPS
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     each = PARTICLE + neighbours * flops * FLOP
-    return Forecast(steps, limit, steps * (STEP + each * float(scene.counts().sum()) / ranks))
+    return Forecast(steps, limit, steps * (STEP + each * float(scene.census.counts.sum()) / ranks))
 
 
 def forecast_lines(found: Forecast, ranks: int, end: float) -> Iterator[str]:

@@ -91,7 +91,7 @@ class Guards:
     def _bodies_gone(self) -> Iterator[str]:
         """A line for each body that is beyond the scene's walls in whole, but not above."""
         scene, plan = self.scene, self.simulation.plan
-        if not plan.floats or not scene.walls:
+        if not plan.floats or not scene.layout.parts.walls:
             return
         lower, upper = self._around
         poses = self.simulation.engine.poses
@@ -110,7 +110,7 @@ class Guards:
         store, scene = self.simulation.store, self.scene
         fluid = store.shown("kind") == FLUID
         gone = np.zeros(len(fluid), bool)
-        if not scene.walls:
+        if not scene.layout.parts.walls:
             return gone
         lower, upper = self._around
         for d, x in enumerate(self.simulation.domain.inside(store.shown("position")).T):
@@ -124,14 +124,14 @@ class Guards:
         """The corners of a box around the particles at the start, walls where they stand now, and mirrors,
         m; without an end along an axis that repeats."""
         scene = self.scene
-        lower, upper = np.array(scene.lattice.lower), np.array(scene.lattice.upper)
+        lower, upper = np.array(scene.layout.lattice.lower), np.array(scene.layout.lattice.upper)
         if self.simulation.plan.rigid:
             told = [not isinstance(one, Body) for one in self.simulation.plan.rigid]
             for low, up in zip(*(ends[told] for ends in self.simulation.engine.poses.around)):
                 lower, upper = np.minimum(lower, low), np.maximum(upper, up)
-        for plane in scene.mirror_planes:
+        for plane in scene.layout.mirror_planes:
             (lower if plane.side == BELOW else upper)[plane.axis] = plane.at
-        repeats = [period is not None for period in scene.periods]
+        repeats = [period is not None for period in scene.layout.periods]
         return np.where(repeats, -np.inf, lower), np.where(repeats, np.inf, upper)
 
     def _tripped(self) -> Iterator[str]:
@@ -204,7 +204,7 @@ class Guards:
                 stored = np.where(law_of == number, law.energy(density, rest, c), stored)
             return stored
 
-        heights, held = sim.plan.pulls.heights(self.scene.periods), sim.engine.potential()
+        heights, held = sim.plan.pulls.heights(self.scene.layout.periods), sim.engine.potential()
         whole = total_energy(sim.comm, sim.store, heights, elastic, self._led, held)
         whole += sim.engine.stored_energy()
         return whole - (work_done(sim.comm, sim.store) if sim.plan.books_work else 0.0)
@@ -326,7 +326,7 @@ class Guards:
                 part = suspect.value("density") / suspect.value("rest_density")
                 return f"{who} has {part:.3g} of its rest density{bound}"
             case _ if guard == OVERLAP and not self._body_overlaps():
-                name = self.scene.key_of(int(suspect.value("group")))
+                name = self.scene.layout.parts[int(suspect.value("group"))].key
                 return f"{who} of {name} is inside another solid, a body or a wall{bound}"
             case _ if guard == OVERLAP:
                 found = self._overlap()

@@ -28,7 +28,7 @@ def check_size(scene, comm) -> None:
     Before the sites are counted, which takes hours where they are too many by far.
     """
     sites = (
-        sum(_least_volume(part.shape) for part in scene.parts[: scene.layout.movers])
+        sum(_least_volume(part.shape) for part in scene.layout.parts if part.moves_freely)
         / scene.spacing**scene.dimensions
     )
     free = sum(comm.allgather(free_memory() / ranks_here(comm)))
@@ -57,7 +57,7 @@ def check_memory(scene, plan: Plan, comm) -> None:
     if short:
         needed, free = max(short, key=lambda pair: pair[0] - pair[1])
         raise TooLittleMemory(
-            f"{scene.case.name}: {int(scene.counts().sum()):,} particles need about "
+            f"{scene.case.name}: {int(scene.census.counts.sum()):,} particles need about "
             f"{needed / GIB:.1f} GiB on one machine, {free / GIB:.1f} GiB are free there: use more "
             "machines, or a larger space.spacing"
         )

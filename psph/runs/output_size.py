@@ -16,7 +16,7 @@ DIGITS = 19
 
 def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[str]:
     """Frames and tables of a scene whose particles have so many ``neighbours``, in ``steps``."""
-    out, particles = scene.case.output, int(scene.counts().sum())
+    out, particles = scene.case.output, int(scene.census.counts.sum())
     yield "Output, at most once a step"
     frames, each = _moments(scene, out.frames, steps), bytes_per_frame(scene, plan)
     yield f"  frames              {frames:,}, {amount(each)} each, {amount(frames * each)} in all"
@@ -40,7 +40,7 @@ def bytes_per_frame(scene, plan: Plan) -> int:
     """Of all datasets of a frame and what describes them."""
     rows = sum(_bytes(field, scene.dimensions) for field in plan.saved)
     points = 24 if scene.dimensions == 1 else 0  # the dataset that XDMF needs
-    return int(scene.counts().sum()) * (rows + points) + STRUCTURE
+    return int(scene.census.counts.sum()) * (rows + points) + STRUCTURE
 
 
 def amount(size: float) -> str:

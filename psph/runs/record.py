@@ -66,7 +66,7 @@ class Record:
     def __init__(self, scene, simulation: Simulation, folder: Path, saved: Saved | None = None):
         case, comm = scene.case, simulation.comm
         self.simulation, self.kernel = simulation, scene.kernel
-        self.heights = simulation.plan.pulls.heights(scene.periods)
+        self.heights = simulation.plan.pulls.heights(scene.layout.periods)
         self.frames = FrameFile(
             folder / f"{case.name}.h5",
             comm,
@@ -97,8 +97,8 @@ class Record:
         )
         self.accuracy = self.errors = None
         self.latest_errors: list[float] = []
-        if scene.exact:
-            self.accuracy = Accuracy(simulation.domain, scene.exact, scene.setting)
+        if scene.layout.exact:
+            self.accuracy = Accuracy(simulation.domain, scene.layout.exact, scene.starts.setting)
             self.errors = CsvTable(
                 folder / ERRORS, ["time", *self.accuracy.columns()], comm, sizes.get(ERRORS)
             )

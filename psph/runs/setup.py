@@ -31,10 +31,10 @@ def create_particles(scene, plan: Plan, comm) -> Store:
 
 def lattice_particles(scene, comm) -> ParticleSet:
     """This rank's share of the scene's particles, by lattice planes; ids in lattice order."""
-    reached = np.concatenate([[0], np.cumsum(scene.counts())])
+    reached = np.concatenate([[0], np.cumsum(scene.census.counts)])
     goals = reached[-1] * np.arange(comm.size + 1) // comm.size
     cuts = np.searchsorted(reached, goals)
-    cuts[-1] = scene.planes
+    cuts[-1] = scene.layout.planes
     first, last = int(cuts[comm.rank]), int(cuts[comm.rank + 1])
     return scene.particles(first, last, int(reached[first]))
 
@@ -72,7 +72,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
         DRAWN.name in plan.arrays or None,
         plan.cracks or None,
         bool(plan.grips) or None,
-        scene.periods,
+        scene.layout.periods,
         store.view(),
     )
     measured = "step and probes" if scene.case.probes or scene.case.gauges else "step"
@@ -135,8 +135,8 @@ def _empty(scene, plan: Plan) -> Store:
 
 def _two_particles(scene, plan: Plan, store: Store) -> None:
     """Two particles of the first material in ``store``: it has the types of the whole run."""
-    middle = np.tile([0.5 * (a + b) for a, b in zip(scene.lower, scene.upper)], (2, 1))
-    first = np.array([0, scene.layout.fluids if plan.immersed else 0], np.uint8)
+    middle = np.tile([0.5 * (a + b) for a, b in zip(scene.layout.lower, scene.layout.upper)], (2, 1))
+    first = np.array([0, scene.layout.parts.solids[0] if plan.immersed else 0], np.uint8)
     density = np.full(2, scene.species[0].density)
     block = block_of(scene, store, first, middle, np.zeros_like(middle), density)
     store.append(np.arange(2), first, block)

@@ -103,7 +103,8 @@ def _extremes(scene) -> Iterator[tuple[float, Start]]:
     both signs that c is made for: ρc²/100.
     """
     found: dict[bool, tuple[float, Start]] = {}
-    for start in scene.starts[: scene.layout.fluids]:
+    for fluid in scene.layout.parts.flowing:
+        start = scene.starts.states[fluid]
         own = start.layer.highest if start.layer else start.pressure
         expected = start.rest_density * (scene.sound_speed / STIFF) ** 2
         for pressure in (own,) if own else (expected, -expected):

@@ -128,7 +128,7 @@ def _simulate(
     begun, case = time.perf_counter(), scene.case
     lines, say = say is None, say or _speaker(comm)
     check_ranks(comm.size, slab_planes(scene))
-    particles = int(scene.counts().sum())
+    particles = int(scene.census.counts.sum())
     check_room(particles, comm.size)
     plan = make_plan(scene)
     for warning in long_run(scene, plan, comm.size):
@@ -239,7 +239,7 @@ def _summary(
         f"{simulation.domain.rebuilds} list rebuilds"
     )
     spent = dict(simulation.ledger.seconds)
-    yield from cost_lines(simulation.plan, scene.periods, spent, seconds)
+    yield from cost_lines(simulation.plan, scene.layout.periods, spent, seconds)
     if record.accuracy:
         yield f"error against the exact solution at {simulation.time:.6g} s: " + ", ".join(
             f"{name.replace('_', ' ')} {100.0 * error:.3g} %"

@@ -27,11 +27,11 @@ def write_summary(folder: Path, scene, simulation, seconds: float, steps: int, s
     as good: a disk that is full now does not make it fail.
     """
     spent = dict(simulation.ledger.seconds)
-    parts = list(costs(simulation.plan, scene.periods, spent))
+    parts = list(costs(simulation.plan, scene.layout.periods, spent))
     told = {
         "header": header(Path(scene.case.file)),
         "ranks": simulation.comm.size,
-        "particles": int(scene.counts().sum()),
+        "particles": int(scene.census.counts.sum()),
         "steps": steps,
         "seconds": seconds,
         "parts": [*parts, ("the rest", seconds - sum(spent.values()))],

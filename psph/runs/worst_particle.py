@@ -82,7 +82,7 @@ def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
     reach = max(SEEN * scene.spacing, scene.kernel.support * scene.smoothing_length)
     around = _gathered(simulation, scene, place, reach)
     column = int(np.flatnonzero(around.shown("id") == -least)[0])
-    offset = _away(_places(around), place, scene.periods)
+    offset = _away(_places(around), place, scene.layout.periods)
     place = simulation.domain.inside(place[None])[0]
     shares = _shares(simulation, scene, around, column, offset)
     if simulation.plan.solids:
@@ -111,7 +111,7 @@ def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -
     """The particles of all ranks within ``reach`` m of a place, on every rank, by their ids."""
     store = simulation.store
     with np.errstate(over="ignore", invalid="ignore"):
-        near = np.linalg.norm(_away(_places(store), centre, scene.periods), axis=1) <= reach
+        near = np.linalg.norm(_away(_places(store), centre, scene.layout.periods), axis=1) <= reach
     names = ("id", "group", *store.rows)
     parts = simulation.comm.allgather({name: store.shown(name)[near] for name in names})
     every = {name: np.concatenate([part[name] for part in parts]) for name in names}
@@ -138,7 +138,7 @@ def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -
         for m in range(images(mirrors)):
             for k in near if m else near[near != column]:
                 j = image(at_look(mirrors, 2 * m), i, take(view, k))
-                x_ij = nearest_image(subtract(i.position, j.position), scene.periods)
+                x_ij = nearest_image(subtract(i.position, j.position), scene.layout.periods)
                 pairs.append((j, geometry(scene.kernel, x_ij, simulation.engine.softening[0], i, j)))
         return tuple(_share(call, i, pairs, simulation.dt) for call in simulation.plan.called)
 

@@ -2,19 +2,16 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.solid.contact import LAYER
-from psph.scene.solids import drawn_faces
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
+from psph.scene.census import Census
+from psph.scene.faces import drawn_faces
 
 
-def answer(scene: "Scene", friction: bool) -> float:
+def answer(census: Census, friction: bool) -> float:
     """The largest eigenvalue λ of M⁻¹ Σ b GᵀG over all bodies, 1/kg.
 
     Where springs of the stiffness k press all particles of its faces at once, each with the part b that it
@@ -22,32 +19,33 @@ def answer(scene: "Scene", friction: bool) -> float:
     its velocity and spin to the speed along w of the point of its face at r: along the normal, or with
     ``friction``, and at edges, along each axis.  M⁻¹ is 1/M and I⁻¹ in what the body is free to do.
     """
-    if not scene.case.bodies:
+    if not census.layout.case.bodies:
         return 0.0
-    yielding = Bodies(scene.rigid_bodies, scene.gravity).yielding(math.inf)
+    yielding = Bodies(census.rigid_bodies, census.layout.gravity).yielding(math.inf)
     found = []
     for row, sliding in enumerate(yielding.sliding):
         inverse = np.zeros((6, 6))
         inverse[:3, :3], inverse[3:, 3:] = np.diag(sliding), yielding.turning[row]
         values, axes = np.linalg.eigh(inverse)
         root = axes * np.sqrt(np.maximum(values, 0.0))
-        pressed = sum((g.T @ g for g in _pressed(scene, row, friction)), np.zeros((6, 6)))
+        pressed = sum((g.T @ g for g in _pressed(census, row, friction)), np.zeros((6, 6)))
         found.append(float(np.linalg.eigvalsh(root.T @ pressed @ root)[-1]))
     return max(found)
 
 
-def _pressed(scene: "Scene", row: int, friction: bool) -> Iterator[np.ndarray]:
+def _pressed(census: Census, row: int, friction: bool) -> Iterator[np.ndarray]:
     """√b G of the particles of the faces of a body, m in turns (n, 6), by chunks."""
-    number, d, point = scene.layout.first_body + row, scene.dimensions, scene.rigid_bodies[row].reference
-    for begin, end in scene.lattice.chunks():
-        held = scene.layout.materials(begin, end) == number
-        grid = scene.lattice.grid(begin, end)
+    layout, point = census.layout, census.rigid_bodies[row].reference
+    number, d = layout.parts.bodies[row], layout.dimensions
+    for begin, end in layout.lattice.chunks():
+        held = layout.materials(begin, end) == number
+        grid = layout.lattice.grid(begin, end)
         sites = np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1)
-        normal, depth = drawn_faces(scene, np.full(len(sites), number), sites)
+        normal, depth = drawn_faces(layout, np.full(len(sites), number), sites)
         share = np.clip(LAYER - depth, 0.0, 1.0)
         arms, ways = np.zeros((2, len(sites), 3))
         ways[:, :d] = normal
-        arms[:, :d] = sites - point[:d] + depth[:, None] * scene.spacing * normal
+        arms[:, :d] = sites - point[:d] + depth[:, None] * layout.spacing * normal
         known = np.full(len(sites), not friction) & (normal != 0.0).any(axis=1)
         yield _led(arms[known], ways[known], share[known])
         for axis in np.eye(3)[:d]:

@@ -2,18 +2,16 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
-from psph.scene.bodies import body_step, density_ratio, drawn_volume, volume_of
+from psph.scene.bodies import body_step, density_ratio
 from psph.scene.lattice import TOLERANCE
 from psph.scene.lattice_fit import is_of_boxes
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
+from psph.scene.scene import Scene
+from psph.scene.volumes import drawn_volume, volume_of
 
 LIGHTEST, HEAVIEST = 0.05, 20.0
 """Densities over that of the fluid that are tried (docs/bodies.md), and beyond which little floats or is
@@ -36,11 +34,11 @@ MOST_CRUSHED, SAFE = 0.5, 0.4
 it bears."""
 
 
-def body_faults(scene: "Scene") -> Iterator[str]:
+def body_faults(scene: Scene) -> Iterator[str]:
     """A line for each body that a plane of symmetry cuts and that is free to leave it."""
-    for number, (name, table) in enumerate(scene.case.bodies.items(), scene.layout.first_body):
+    for number, (name, table) in zip(scene.layout.parts.bodies, scene.case.bodies.items()):
         freed = set(table.freed(scene.dimensions))
-        for plane in scene.mirror_planes:
+        for plane in scene.layout.mirror_planes:
             ends = (scene.census.lowest[number, plane.axis], scene.census.highest[number, plane.axis])
             if min(abs(end - plane.at) for end in ends) > 0.75 * scene.spacing:
                 continue
@@ -52,14 +50,14 @@ def body_faults(scene: "Scene") -> Iterator[str]:
                 )
 
 
-def period_faults(scene: "Scene") -> Iterator[str]:
+def period_faults(scene: Scene) -> Iterator[str]:
     """A line for each body that turns and reaches half a period, or more, from the point it turns about.
 
     The arms of its torque are those of the nearest images, which are others there.  Turns about the axis
     that repeats ask for no arm along it.
     """
-    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
-        for d, period in enumerate(scene.periods):
+    for number, one in zip(scene.layout.parts.bodies, scene.census.rigid_bodies):
+        for d, period in enumerate(scene.layout.periods):
             if period is None or not any(free for axis, free in enumerate(one.turns) if axis != d):
                 continue
             ends = scene.census.lowest[number, d], scene.census.highest[number, d]
@@ -74,12 +72,12 @@ def period_faults(scene: "Scene") -> Iterator[str]:
                 )
 
 
-def _far_points(scene: "Scene") -> Iterator[str]:
+def _far_points(scene: Scene) -> Iterator[str]:
     """A line for each point told of a body that is far from it, over its size."""
     half = 0.5 * scene.spacing
     ends = {
         name: (scene.census.lowest[number] - half, scene.census.highest[number] + half)
-        for number, name in enumerate(scene.case.bodies, scene.layout.first_body)
+        for number, name in zip(scene.layout.parts.bodies, scene.case.bodies)
     }
     told = [
         (f"bodies.{name}.{key}", getattr(table, key), name, sizes)
@@ -103,9 +101,9 @@ def _far_points(scene: "Scene") -> Iterator[str]:
             )
 
 
-def _slight(scene: "Scene") -> Iterator[str]:
+def _slight(scene: Scene) -> Iterator[str]:
     """A line for each body that is given less inertia than one of its cells would have."""
-    for one in scene.rigid_bodies:
+    for one in scene.census.rigid_bodies:
         if scene.case.bodies[one.name].inertia is None:
             continue
         moments = np.linalg.eigvalsh(np.reshape(one.inertia, (3, 3)))
@@ -118,13 +116,13 @@ def _slight(scene: "Scene") -> Iterator[str]:
             )
 
 
-def _lopsided(scene: "Scene") -> Iterator[str]:
+def _lopsided(scene: Scene) -> Iterator[str]:
     """A line for each body from a geometry file whose particles lean to a side, and its surface does not.
 
     The slope is Σ (x − c_x)(z − c_z) / Σ (x − c_x)², with z upwards.  A site on a face belongs to the body on
     its low side alone, so a hull in round numbers may get sites on one side that it lacks on the other.
     """
-    if scene.mirror_planes or not any(scene.gravity):  # planes cut bodies
+    if scene.layout.mirror_planes or not any(scene.gravity):  # planes cut bodies
         return
     for name, table in scene.case.bodies.items():
         mesh = table.shape.mesh
@@ -132,7 +130,7 @@ def _lopsided(scene: "Scene") -> Iterator[str]:
             continue
         from psph.scene.meshes.mass import solid_of
 
-        filled, drawn = volume_of(scene, scene.names.index(name)), solid_of(mesh)
+        filled, drawn = volume_of(scene.layout, scene.layout.names.index(name)), solid_of(mesh)
         up = int(np.abs(scene.gravity).argmax())
         for d in (d for d in range(scene.dimensions) if d != up and not scene.gravity[d]):
             mean = -drawn.inertia[d, up] / drawn.volume  # of (x − c)(z − c), as filled.spread has it
@@ -145,15 +143,15 @@ def _lopsided(scene: "Scene") -> Iterator[str]:
                 )
 
 
-def _misfilled(scene: "Scene") -> Iterator[str]:
+def _misfilled(scene: Scene) -> Iterator[str]:
     """A line for each body whose particles fill another volume than its shape, where that is no box.
 
     Of boxes psph.scene.lattice_fit tells.
     """
-    for number, (name, table) in enumerate(scene.case.bodies.items(), scene.layout.first_body):
+    for number, (name, table) in zip(scene.layout.parts.bodies, scene.case.bodies.items()):
         if table.density is None or is_of_boxes(table.shape):
             continue
-        own, drawn = volume_of(scene, number).volume, drawn_volume(scene, table.shape)
+        own, drawn = volume_of(scene.layout, number).volume, drawn_volume(scene.layout, table.shape)
         if abs(own / drawn - 1.0) > MOST_MISFILLED:
             unit = "m2" if scene.dimensions == 2 else "m3"
             yield (
@@ -162,18 +160,19 @@ def _misfilled(scene: "Scene") -> Iterator[str]:
             )
 
 
-def _crushing(scene: "Scene") -> Iterator[str]:
+def _crushing(scene: Scene) -> Iterator[str]:
     """A line for each heavy body under which water gives way where it lands on the floor.
 
     The last row of water, and contact, are as stiff as the fluid: they stop a body of the density ρ_b and
     the height h_b at the strain ε with ½ ρc² ε² dx = ½ ρ_b h_b v², ε = (v/c) √(ρ_b h_b/(ρ dx)).  v is that
     of a fall to the floor, of which friction and the water that must get out of the way leave less.
     """
-    pull = math.hypot(*scene.height_gravity)
-    floor = float(scene.census.bottom[: scene.layout.fluids].min(initial=math.inf))
-    for number, one in enumerate(scene.rigid_bodies, scene.layout.first_body):
+    gravity = scene.layout.height_gravity
+    pull = math.hypot(*gravity)
+    floor = float(scene.census.bottom[list(scene.layout.parts.flowing)].min(initial=math.inf))
+    for number, one in zip(scene.layout.parts.bodies, scene.census.rigid_bodies):
         ratio, bottom = density_ratio(scene, one), float(scene.census.bottom[number])
-        if ratio <= 1.0 or not any(slides and g for slides, g in zip(one.slides, scene.height_gravity)):
+        if ratio <= 1.0 or not any(slides and g for slides, g in zip(one.slides, gravity)):
             continue
         fall = max(bottom - floor, 0.0) * (1.0 - 1.0 / ratio)
         speed = math.sqrt(2.0 * pull * fall + sum(v * v for v in one.velocity))
@@ -187,7 +186,7 @@ def _crushing(scene: "Scene") -> Iterator[str]:
             )
 
 
-def body_warnings(scene: "Scene") -> Iterator[str]:
+def body_warnings(scene: Scene) -> Iterator[str]:
     """A line for each body whose density, inertia or points are likely a slip, and for steps that bodies make
     short."""
     yield from _slight(scene)
@@ -197,11 +196,11 @@ def body_warnings(scene: "Scene") -> Iterator[str]:
         yield from _afloat(scene)
 
 
-def _afloat(scene: "Scene") -> Iterator[str]:
+def _afloat(scene: Scene) -> Iterator[str]:
     """A line for each body that will not float, or fall, as is likely meant."""
     yield from _lopsided(scene)
     yield from _crushing(scene)
-    for one in scene.rigid_bodies:
+    for one in scene.census.rigid_bodies:
         ratio = density_ratio(scene, one)
         if not LIGHTEST <= ratio <= HEAVIEST:
             depth = " per metre of depth" if scene.dimensions == 2 else ""

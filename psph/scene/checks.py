@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 from itertools import chain, product
-from typing import Any
 
 import numpy as np
 
@@ -13,21 +12,20 @@ from psph.case.keys import AXES
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.density_ratios import several_fluids
-from psph.scene.gauging import gauge_warnings, inside_walls, off_solids, outside_domain, shown
+from psph.scene.gauging import gauge_warnings, inside_walls, off_solids, outside_domain
 from psph.scene.lattice import TOLERANCE
 from psph.scene.lattice_fit import misfits
 from psph.scene.meshes import report as meshes
-from psph.scene.moving import FARTHEST, motion_faults, motion_warnings, overshoots
-from psph.scene.opening import surface_warnings
-from psph.scene.periodic_gravity import driven_flow
+from psph.scene.motion_checks import FARTHEST, motion_faults, motion_warnings, overshoots
+from psph.scene.parts import Part
 from psph.scene.pressureless_walls import unbearing_warnings
 from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
-from psph.scene.shapes import bounds
+from psph.scene.shapes import bounds, shown
 from psph.scene.soils import soil_warnings
 from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.solved import exact_faults
-from psph.scene.still import start_warnings
+from psph.scene.start_checks import driven_flow, start_warnings, surface_warnings
 from psph.scene.units import in_degrees, in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
 from psph.scene.waving import wave_faults, wave_warnings
@@ -81,9 +79,9 @@ def faults(scene: Scene) -> Iterator[str]:
 
 def _size_faults(scene: Scene) -> Iterator[str]:
     """Checks before the sites are visited, which could take hours and too much memory."""
-    dx, lattice = scene.spacing, scene.lattice
+    dx, lattice = scene.spacing, scene.layout.lattice
     sites, in_plane = math.prod(lattice.counts), lattice.sites_in_plane
-    in_mm = in_millimetres(scene, *range(len(scene.parts)))
+    in_mm = in_millimetres(scene, *range(len(scene.layout.parts)))
     if sites > MOST_SITES:
         yield (
             f"space.spacing: {dx:g} m makes a lattice of {sites:.2g} sites, more than "
@@ -91,10 +89,10 @@ def _size_faults(scene: Scene) -> Iterator[str]:
         )
     elif in_plane > MOST_IN_PLANE:
         yield (
-            f"parallel.axis: {in_plane:.2g} sites in a plane across {AXES[scene.axis]}, more than "
+            f"parallel.axis: {in_plane:.2g} sites in a plane across {AXES[scene.layout.axis]}, more than "
             f"{MOST_IN_PLANE:.0e}; leave it out, or name a longer axis{in_mm}"
         )
-    room = math.prod((up - low) / dx for low, up in zip(scene.lower, scene.upper))
+    room = math.prod((up - low) / dx for low, up in zip(scene.layout.lower, scene.layout.upper))
     if max(room, 0.0) > max(MOST_SITES, sites):
         yield (
             f"space.upper: the domain has room for {room:.2g} particles, more than {MOST_SITES:.0e}; "
@@ -106,10 +104,10 @@ def _size_faults(scene: Scene) -> Iterator[str]:
 def _far_faults(scene: Scene) -> Iterator[str]:
     case = scene.case
     lengths = {
-        "space.origin": (*scene.lattice.lower, *scene.lattice.upper, *case.space.origin),
-        "space.lower": scene.lower,
-        "space.upper": scene.upper,
-        **{f"{scene.key_of(n)}.jitter": (part.jitter * scene.spacing,) for n, part in _moving(scene)},
+        "space.origin": (*scene.layout.lattice.lower, *scene.layout.lattice.upper, *case.space.origin),
+        "space.lower": scene.layout.lower,
+        "space.upper": scene.layout.upper,
+        **{f"{part.key}.jitter": (part.jitter * scene.spacing,) for part in _moving(scene)},
         **{f"perturbations[{k}].shift": p.shift for k, p in enumerate(case.perturbations)},
     }
     for key, numbers in lengths.items():
@@ -131,7 +129,7 @@ def warnings(scene: Scene) -> Iterator[str]:
 def _domain_faults(scene: Scene) -> Iterator[str]:
     reach = scene.kernel.support * scene.smoothing_length
     least = SLABS_IN_A_PERIOD * reach * (1.0 + scene.case.neighbours.skin)
-    for name, low, period in zip(AXES, scene.lower, scene.periods):
+    for name, low, period in zip(AXES, scene.layout.lower, scene.layout.periods):
         if period is None:
             continue
         spacings = period / scene.spacing
@@ -152,7 +150,7 @@ def _mirror_faults(scene: Scene) -> Iterator[str]:
     """Two mirrors so near each other that an image of an image would be seen."""
     reach = scene.kernel.support * scene.smoothing_length * (1.0 + scene.case.neighbours.skin)
     faces: dict[int, list[float]] = {}
-    for plane in scene.mirror_planes:
+    for plane in scene.layout.mirror_planes:
         faces.setdefault(plane.axis, []).append(plane.at)
     for axis, at in faces.items():
         if max(at) - min(at) < reach and len(at) > 1:
@@ -164,10 +162,7 @@ def _mirror_faults(scene: Scene) -> Iterator[str]:
 
 def _spacing_faults(scene: Scene) -> Iterator[str]:
     """A spacing that leaves what moves without a particle, and that none of it is thick enough for."""
-    thickness = {
-        scene.key_of(n): min(up - low for low, up in zip(*bounds(part.shape)))
-        for n, part in enumerate(scene.parts[: scene.layout.movers])
-    }
+    thickness = {part.key: min(up - low for low, up in zip(*bounds(part.shape))) for part in _moving(scene)}
     thickest = max(thickness, key=thickness.get)
     kind = "fluids" if scene.case.flowing else "solids"
     if scene.spacing > thickness[thickest]:
@@ -179,41 +174,34 @@ def _spacing_faults(scene: Scene) -> Iterator[str]:
 
 
 def _site_faults(scene: Scene) -> Iterator[str]:
-    census = scene.census
-    for material, size in enumerate(census.sizes):
-        if not size and scene.layout.movers <= material < scene.layout.first_wall:
-            yield f"{scene.key_of(material)}: holds no particle of the solid; let the shapes meet"
-        elif not size and _held_as_a_whole(scene, material):
-            yield f"{scene.key_of(material)}: its clamps hold all of it; leave a part of it free"
+    census, parts = scene.census, scene.layout.parts
+    for part, size in zip(parts, census.sizes):
+        if not size and part.is_clamp:
+            yield f"{part.key}: holds no particle of the solid; let the shapes meet"
+        elif not size and any(census.sizes[n] for n in parts.of_solid(part.number)):
+            yield f"{part.key}: its clamps hold all of it; leave a part of it free"
         elif not size:
             yield (
-                f"{scene.key_of(material)}.shape: no lattice site lies in it; make it larger than "
-                "space.spacing, or move it"
+                f"{part.key}.shape: no lattice site lies in it; make it larger than space.spacing, or move it"
             )
     for (one, other), site in sorted(census.clashes.items()):
-        if one < scene.layout.first_wall or other >= scene.layout.first_body:
-            move = "move one, or " if one >= scene.layout.fluids else ""
+        rigid = parts[one].is_wall or parts[one].is_body
+        if not rigid or parts[other].is_body:
+            move = "" if parts[one].flows else "move one, or "
             yield (
-                f"{scene.key_of(other)}.shape: overlaps {scene.key_of(one)} at {shown(site)}; {move}subtract "
+                f"{parts[other].key}.shape: overlaps {parts[one].key} at {shown(site)}; {move}subtract "
                 "one from the other: shape = { difference = { from = ..., minus = [...] } }"
-                f"{_or_displace(scene, one, other)}{meshes.sizes_of(scene, one, other)}"
+                f"{_or_displace(parts[one], parts[other])}{meshes.sizes_of(scene, one, other)}"
                 f"{in_millimetres(scene, one, other)}"
             )
     yield from _particles_outside(scene)
 
 
-def _held_as_a_whole(scene: Scene, material: int) -> bool:
-    """Whether all particles of a solid are clamped."""
-    layout, sizes = scene.layout, scene.census.sizes
-    return any(of == material and sizes[n] for n, of in enumerate(layout.clamps, layout.movers))
-
-
-def _or_displace(scene: Scene, one: int, other: int) -> str:
+def _or_displace(one: Part, other: Part) -> str:
     """The other cure for a wall in a fluid."""
-    is_wall = scene.layout.first_wall <= other < scene.layout.first_body
-    if one >= scene.layout.fluids or not is_wall:
+    if not one.flows or not other.is_wall:
         return ""
-    return f", or let the wall take its place: {scene.key_of(other)}.displaces = true"
+    return f", or let the wall take its place: {other.key}.displaces = true"
 
 
 def _particles_outside(scene: Scene) -> Iterator[str]:
@@ -221,12 +209,12 @@ def _particles_outside(scene: Scene) -> Iterator[str]:
     for material in np.flatnonzero(census.sizes):
         for d, name in enumerate(AXES[: scene.dimensions]):
             lowest, highest = census.lowest[material, d], census.highest[material, d]
-            low, up = scene.lower[d] - slack, scene.upper[d] - slack
+            low, up = scene.layout.lower[d] - slack, scene.layout.upper[d] - slack
             if lowest < low or highest >= up:
                 far = lowest if lowest < low else highest
                 yield (
-                    f"{scene.key_of(material)}.shape: a particle at {name} = {far:.6g} m outside "
-                    f"the domain from {scene.lower[d]:.6g} to {scene.upper[d]:.6g}; make the "
+                    f"{scene.layout.parts[material].key}.shape: a particle at {name} = {far:.6g} m outside "
+                    f"the domain from {scene.layout.lower[d]:.6g} to {scene.layout.upper[d]:.6g}; make the "
                     f"shape smaller, or change space.lower and space.upper{in_millimetres(scene, material)}"
                 )
 
@@ -246,7 +234,7 @@ def _state_faults(scene: Scene) -> Iterator[str]:
             "(by this spacing and speed of sound), lost in the rounding of the time; give "
             f"less than {0.9 * MOST_STEPS * longest:.2g}"
         )
-    for name, start in zip(scene.case.flowing, scene.starts):
+    for name, start in zip(scene.case.flowing, scene.starts.states):
         density = float(start.density(np.array([[0.0] * scene.dimensions]))[0])
         if not start.layer and not start.exact and not density > 0.0:
             yield (
@@ -256,13 +244,13 @@ def _state_faults(scene: Scene) -> Iterator[str]:
 
 
 def _thin_walls(scene: Scene) -> Iterator[str]:
-    need = layers_needed(scene)
-    for material, (layers, site) in sorted(thinnest_walls(scene).items()):
+    need = layers_needed(scene.layout)
+    for material, (layers, site) in sorted(thinnest_walls(scene.layout).items()):
         reach = scene.kernel.support * scene.case.space.smoothing
-        is_body = material >= scene.layout.first_body
-        what, other_cure = ("body", ", or space.spacing smaller") if is_body else ("wall", "")
+        part = scene.layout.parts[material]
+        what, other_cure = ("body", ", or space.spacing smaller") if part.is_body else ("wall", "")
         yield (
-            f"{scene.key_of(material)}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
+            f"{part.key}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
             f"{shown(site)}, the kernel reaches over {reach:.3g}; make the {what} at least "
             f"{need} spacings ({need * scene.spacing:.6g} m) thick{other_cure}"
         )
@@ -316,27 +304,27 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
 def _slow_sound(scene: Scene) -> Iterator[str]:
     if not scene.case.fluids:
         return  # soils have the waves of their moduli
-    least = SOUND_OVER_SPEED * scene.undriven_speed
+    least = SOUND_OVER_SPEED * scene.speeds.undriven
     if scene.case.fluids and scene.sound_speed < least * (1.0 - TOLERANCE):
         yield (
             f"physics.sound_speed: {scene.sound_speed:g} is below ten times the expected speed, "
-            f"{scene.undriven_speed:.3g} m/s, so density will vary by more than 1 %; "
+            f"{scene.speeds.undriven:.3g} m/s, so density will vary by more than 1 %; "
             f"raise it to {least:.3g}"
         )
 
 
 def _jitter(scene: Scene) -> Iterator[str]:
-    for number, part in _moving(scene):
+    for part in _moving(scene):
         if part.jitter > LARGEST_QUIET_JITTER:
             yield (
-                f"{scene.key_of(number)}.jitter: {part.jitter:g} spacings let neighbours change places; "
+                f"{part.key}.jitter: {part.jitter:g} spacings let neighbours change places; "
                 f"give at most {LARGEST_QUIET_JITTER:g}"
             )
 
 
-def _moving(scene: Scene) -> Iterator[tuple[int, Any]]:
-    """Each fluid and solid, with its number."""
-    return enumerate(scene.parts[: scene.layout.movers])
+def _moving(scene: Scene) -> list[Part]:
+    """Each fluid and solid."""
+    return [part for part in scene.layout.parts if part.moves_freely]
 
 
 OF_EVERY_SCENE = (

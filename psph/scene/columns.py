@@ -1,19 +1,17 @@
 """The lattice seen in columns along gravity: what stands over what."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
+from psph.scene.layout import Layout
 
 
-def columns(scene: "Scene", axis: int) -> np.ndarray:
+def columns(layout: Layout, axis: int) -> np.ndarray:
     """Material of each site of the lattice, uint8, in the order x, y, z but for ``axis``, which is last."""
-    lattice = scene.lattice
-    held = np.concatenate([scene.layout.materials(*chunk) for chunk in lattice.chunks()])
-    return held.transpose([lattice.axes.index(d) for d in order_of(scene.dimensions, axis)])
+    lattice = layout.lattice
+    held = np.concatenate([layout.materials(*chunk) for chunk in lattice.chunks()])
+    return held.transpose([lattice.axes.index(d) for d in order_of(layout.dimensions, axis)])
 
 
 def order_of(dimensions: int, axis: int) -> list[int]:

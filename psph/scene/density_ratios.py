@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from itertools import combinations
 
+from psph.scene.scene import Scene
+
 LARGEST_RATIO = 5.0
 """Of the densities of two fluids in one scene.  A still layer of a fifth of the density on water keeps its
 pressure within some per cent; at a tenth the pressure is 19 % off, at a twentieth 64 %: docs/limits.md."""
@@ -11,7 +13,7 @@ ALIKE = 0.01
 """Densities that differ by less than this part are one for a wall."""
 
 
-def several_fluids(scene) -> Iterator[str]:
+def several_fluids(scene: Scene) -> Iterator[str]:
     """Warnings of a scene with fluids of different density, a line each."""
     fluids, table = scene.case.flowing, scene.case.table_of
     for (a, one), (b, other) in combinations(fluids.items(), 2):
@@ -27,10 +29,10 @@ def several_fluids(scene) -> Iterator[str]:
         yield from _walls_of_another_fluid(scene)
 
 
-def _walls_of_another_fluid(scene) -> Iterator[str]:
+def _walls_of_another_fluid(scene: Scene) -> Iterator[str]:
     """A wall, a body or a solid has the density of one fluid: beside another one pressures do not balance."""
     names, found = list(scene.case.flowing), set()
-    for first, last in scene.lattice.chunks():
+    for first, last in scene.layout.lattice.chunks():
         held = scene.layout.materials(first, last)
         for fluid, name in enumerate(names):
             beside = set(held[scene.layout.touching(fluid, first, last)].tolist())
@@ -51,11 +53,8 @@ def _walls_of_another_fluid(scene) -> Iterator[str]:
                 )
 
 
-def _continuing(scene) -> Iterator[tuple[str, list[int], str]]:
+def _continuing(scene: Scene) -> Iterator[tuple[str, list[int], str]]:
     """The key of each wall, body and solid, the numbers of its parts, and the fluid that it continues."""
-    layout = scene.layout
-    for elastic, (name, solid) in enumerate(scene.case.referred.items()):
-        parts = [n for n in range(layout.first_wall) if layout.elastic_of(n) == elastic]
-        yield f"solids.{name}", parts, solid.continues
-    for number, one in enumerate(scene.boundaries.values(), layout.first_wall):
-        yield scene.key_of(number), [number], one.continues
+    parts = scene.layout.parts
+    for number in (*parts.solids, *parts.boundaries):
+        yield parts[number].key, parts.of_solid(number), parts[number].table.continues

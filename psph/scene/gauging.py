@@ -1,18 +1,14 @@
 """Whether probes and gauges look where something can be."""
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 
 from psph.scene.lattice import TOLERANCE
 from psph.scene.moving import moving_parts
 from psph.scene.outside import Solid
-from psph.scene.shapes import inside
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
-
+from psph.scene.scene import Scene
+from psph.scene.shapes import inside, shown
 
 BURIED = 0.5
 """Spacings behind a wall's face from which on a probe is said to be in the wall."""
@@ -24,30 +20,29 @@ BESIDE = 1.0
 """Spacings along each axis by which a point of a solid may lie beside it: edges follow the lattice."""
 
 
-def outside_domain(scene: "Scene") -> Iterator[str]:
+def outside_domain(scene: Scene) -> Iterator[str]:
     """A line for each point of a probe or a gauge, and each whole section, outside the domain."""
     for key, point, _ in _points(scene, "position", "foot", "top"):
         yield from _outside(scene, key, point)
+    lower, upper = scene.layout.lower, scene.layout.upper
     for name, section in ((name, one.flow) for name, one in scene.case.gauges.items() if one.flow):
-        below = any(up < low for up, low in zip(section.upper, scene.lower))
-        if below or any(low > up for low, up in zip(section.lower, scene.upper)):
+        below = any(up < low for up, low in zip(section.upper, lower))
+        if below or any(low > up for low, up in zip(section.lower, upper)):
             yield (
                 f"gauges.{name}.flow: a section from {shown(section.lower)} to {shown(section.upper)} lies "
-                f"outside the domain {shown(scene.lower)} to {shown(scene.upper)}; move it inside"
+                f"outside the domain {shown(lower)} to {shown(upper)}; move it inside"
             )
 
 
-def _outside(scene: "Scene", key: str, point: tuple[float, ...]) -> Iterator[str]:
+def _outside(scene: Scene, key: str, point: tuple[float, ...]) -> Iterator[str]:
     """A line for a point that lies outside the domain."""
-    off = TRIFLE * scene.spacing
-    if not all(low - off <= x <= up + off for low, x, up in zip(scene.lower, point, scene.upper)):
-        yield (
-            f"{key}: {shown(point)} lies outside the domain {shown(scene.lower)} to "
-            f"{shown(scene.upper)}; move it inside"
-        )
+    off, lower, upper = TRIFLE * scene.spacing, scene.layout.lower, scene.layout.upper
+    if not all(low - off <= x <= up + off for low, x, up in zip(lower, point, upper)):
+        where = f"the domain {shown(lower)} to {shown(upper)}"
+        yield f"{key}: {shown(point)} lies outside {where}; move it inside"
 
 
-def off_solids(scene: "Scene") -> Iterator[str]:
+def off_solids(scene: Scene) -> Iterator[str]:
     """A line for each point whose displacement or stress is asked for and that lies off its solid; of what
     keeps no neighbours of the start, for each outside the domain."""
     around = np.linspace(-BESIDE, BESIDE, 7) * scene.spacing
@@ -58,7 +53,7 @@ def off_solids(scene: "Scene") -> Iterator[str]:
             yield from _outside(scene, f"gauges.{name}.{gauge.kind}.at", asked.at)
             continue
         places = np.meshgrid(*(x + around for x in asked.at), indexing="ij")
-        grid = [scene.folded(d, place) for d, place in enumerate(places)]
+        grid = [scene.layout.folded(d, place) for d, place in enumerate(places)]
         if not inside(scene.case.solids[asked.of].shape, grid, TOLERANCE * scene.spacing).any():
             yield (
                 f"gauges.{name}.{gauge.kind}.at: {shown(asked.at)} lies off solids.{asked.of}; give a point "
@@ -66,7 +61,7 @@ def off_solids(scene: "Scene") -> Iterator[str]:
             )
 
 
-def inside_walls(scene: "Scene") -> Iterator[str]:
+def inside_walls(scene: Scene) -> Iterator[str]:
     """A line for each point within a wall that stands still, or within what carries it; a line of a gauge
     may begin there."""
     still, species = Solid(scene), {one.name: one for one in scene.species}
@@ -76,26 +71,26 @@ def inside_walls(scene: "Scene") -> Iterator[str]:
             yield f"{key}: {shown(point)} lies in a wall, where there is no fluid to measure; move it out"
 
 
-def within_reach(scene: "Scene", names: list[str], point: tuple[float, ...]) -> Iterator[str]:
+def within_reach(scene: Scene, names: list[str], point: tuple[float, ...]) -> Iterator[str]:
     """Those of the walls ``names`` that the kernel around a point reaches."""
-    around = np.arange(1 - scene.wall_reach, scene.wall_reach) * scene.spacing
+    around = np.arange(1 - scene.layout.wall_reach, scene.layout.wall_reach) * scene.spacing
     places = np.meshgrid(*(x + around for x in point), indexing="ij")
     distance = np.sqrt(sum((place - x) ** 2 for place, x in zip(places, point)))
-    grid = [scene.folded(d, place) for d, place in enumerate(places)]
+    grid = [scene.layout.folded(d, place) for d, place in enumerate(places)]
     held = scene.layout.held(grid, distance.shape)
     near = set(held[distance < scene.kernel.support * scene.smoothing_length].tolist())
-    for number, name in enumerate(scene.names):
+    for number, name in enumerate(scene.layout.names):
         if number in near and name in names:
             yield name
 
 
-def gauge_warnings(scene: "Scene") -> Iterator[str]:
+def gauge_warnings(scene: Scene) -> Iterator[str]:
     """A line for each gauge that reads something else than it is likely meant to."""
     yield from _left_behind(scene)
     yield from _upside_down(scene)
 
 
-def _upside_down(scene: "Scene") -> Iterator[str]:
+def _upside_down(scene: Scene) -> Iterator[str]:
     """A line for each line of a level or a run-up that goes down: its level is the distance to its lowest wet
     point."""
     for name, gauge in scene.case.gauges.items():
@@ -109,9 +104,9 @@ def _upside_down(scene: "Scene") -> Iterator[str]:
             )
 
 
-def _left_behind(scene: "Scene") -> Iterator[str]:
+def _left_behind(scene: Scene) -> Iterator[str]:
     """A line for each sensor on a wall that moves away from it."""
-    moving = [scene.names[number] for number, _, _ in moving_parts(scene)]
+    moving = [scene.layout.names[number] for number, _, _ in moving_parts(scene.census)]
     sensors = [(name, gauge.sensor) for name, gauge in scene.case.gauges.items() if gauge.sensor]
     for name, sensor in sensors if moving else ():
         if sensor.moves_with:
@@ -123,7 +118,7 @@ def _left_behind(scene: "Scene") -> Iterator[str]:
             )
 
 
-def _points(scene: "Scene", *keys: str) -> Iterator[tuple[str, tuple[float, ...], str | None]]:
+def _points(scene: Scene, *keys: str) -> Iterator[tuple[str, tuple[float, ...], str | None]]:
     """Keys of the case that name a point of a probe or a gauge, the point, m, and what carries it along."""
     asked = [(f"probes.{name}", probe) for name, probe in scene.case.probes.items()]
     for name, gauge in scene.case.gauges.items():
@@ -132,8 +127,3 @@ def _points(scene: "Scene", *keys: str) -> Iterator[tuple[str, tuple[float, ...]
         for key in keys:
             if (point := getattr(one, key, None)) is not None:
                 yield f"{table}.{key}", point, getattr(one, "moves_with", None)
-
-
-def shown(x: Sequence[float]) -> str:
-    """A point in a message."""
-    return f"[{', '.join(f'{value:.6g}' for value in x)}]"

@@ -2,15 +2,13 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from psph.case.keys import AXES
 from psph.case.shapes import Box, Difference, Shape
 from psph.scene.lattice import TOLERANCE, sites_between
+from psph.scene.scene import Scene
 from psph.scene.shapes import bounds
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
 
 WIDEST_MISFIT = 1e-3
 """Part of a width that the lattice may change without a warning: far below the errors of a run."""
@@ -33,24 +31,23 @@ class Width(NamedTuple):
         return self.upper - self.lower
 
 
-def widths(scene: "Scene") -> list[Width]:
+def widths(scene: Scene) -> list[Width]:
     """Of every box of a fluid, a solid or a body and every closed room in a wall, and the periods."""
     case = scene.case
     found = [
         Width("space.upper", d, low, low + period)
-        for d, (low, period) in enumerate(zip(scene.lower, scene.periods))
+        for d, (low, period) in enumerate(zip(scene.layout.lower, scene.layout.periods))
         if period is not None
     ]
-    movers, first = scene.layout.movers, scene.layout.first_body
-    for number in (*range(movers), *range(first, len(scene.parts))):
-        boxes = _boxes(scene.parts[number].shape)
-        found += (Width(scene.key_of(number), *side) for box in boxes for side in _sides(box))
+    for part in scene.layout.parts:
+        if part.moves_freely or part.is_body:
+            found += (Width(part.key, *side) for box in _boxes(part.shape) for side in _sides(box))
     for name, wall in case.walls.items():
         found += (Width(f"walls.{name}", *side) for side in _cavities(wall.shape))
     return found
 
 
-def misfits(scene: "Scene", spacing: float | None = None) -> Iterator[str]:
+def misfits(scene: Scene, spacing: float | None = None) -> Iterator[str]:
     """A line for each fluid, wall and axis whose width the lattice changes noticeably.
 
     At a ``spacing`` in m, by default that of the scene.

@@ -1,22 +1,18 @@
-"""Whether a fluid has a free surface, now or when what encloses it has moved, and what follows from it."""
+"""Whether a fluid has a free surface, now or when what encloses it has moved."""
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from psph.composition.mirrors import ABOVE, BELOW
-from psph.physics.fluid.pressure import AUTO
 from psph.physics.motion import is_rigid
 from psph.physics.region import is_sink
+from psph.scene.census import Census
 from psph.scene.columns import connected
 from psph.scene.lattice import TOLERANCE, sites_between
 from psph.scene.moving import goes_free, moments, moved_on, taken_back
 from psph.scene.shapes import inside
 from psph.scene.walls import touches_air
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
 
 AROUND = 2
 """Sites around those of the fluid that are looked at."""
@@ -28,7 +24,7 @@ LAYERS = 0.5
 """By how many layers of particles on all that moves the place must grow for a free surface to open."""
 
 
-def has_free_surface(scene: "Scene") -> bool:
+def has_free_surface(census: Census) -> bool:
     """Whether the fluid has a free surface at the start, or can have one before the end.
 
     It can where particles vanish, and where the place of the fluid grows or opens: the sites that are
@@ -39,22 +35,23 @@ def has_free_surface(scene: "Scene") -> bool:
     back open it, and a drum that turns about its axis, a lid that slides along itself and a paddle wheel
     within do not.
     """
-    if touches_air(scene) or any(is_sink(region) for region, _ in scene.regions):
+    layout = census.layout
+    if touches_air(layout) or any(is_sink(region) for region, _ in layout.regions):
         return True
-    motions = scene.species_in_motion[scene.layout.fluids :]
-    return any(goes_free(one) or is_rigid(one) for one in motions) and _opens(scene)
+    motions = (census.motions[part.number] for part in layout.parts if not part.flows)
+    return any(goes_free(one) or is_rigid(one) for one in motions) and _opens(census)
 
 
-def _opens(scene: "Scene") -> bool:
+def _opens(census: Census) -> bool:
     """Whether the place of the fluid grows, or opens."""
-    room = _Room(scene)
+    room = _Room(census)
     before = room.size(0.0)
     if before is None:
         return True
     slack = max(LAYERS * room.faces, 1.0)
     fewest, most = LOOKS
     looks = min(max(LOOKED_AT // room.fluid.size, fewest), most)
-    for time in moments(scene.case.time.end, looks):
+    for time in moments(census.layout.case.time.end, looks):
         found = room.size(float(time))
         if found is None or found - before > slack:
             return True
@@ -68,18 +65,18 @@ class _Room:
     ``faces`` of them are of the fluid and beside something that moves relative to it.
     """
 
-    def __init__(self, scene: "Scene"):
-        self.scene, layout = scene, scene.layout
-        low = scene.census.lowest[: layout.fluids].min(axis=0)
-        high = scene.census.highest[: layout.fluids].max(axis=0)
-        self.axes = tuple(range(scene.dimensions))
-        self.around = [d for d in self.axes if scene.periods[d] is not None]
-        self.mirrored = {(plane.axis, plane.side) for plane in scene.mirror_planes}
+    def __init__(self, census: Census):
+        self.census, self.layout = census, census.layout
+        layout, fluids = census.layout, list(census.layout.parts.flowing)
+        low, high = census.lowest[fluids].min(axis=0), census.highest[fluids].max(axis=0)
+        self.axes = tuple(range(layout.dimensions))
+        self.around = [d for d in self.axes if layout.periods[d] is not None]
+        self.mirrored = {(plane.axis, plane.side) for plane in layout.mirror_planes}
         self.grid = self._grid(low, high)
         self.shape = np.broadcast_shapes(*(x.shape for x in self.grid))
         self.points = np.stack([np.broadcast_to(x, self.shape).ravel() for x in self.grid], axis=1)
-        self.fluid = layout.held(self.grid, self.shape) < layout.fluids
-        walls = [n for n in range(layout.first_wall, len(layout.shapes)) if not goes_free(self._motion(n))]
+        self.fluid = layout.flows(layout.held(self.grid, self.shape))
+        walls = [n for n in layout.parts.boundaries if not goes_free(self._motion(n))]
         self.moved: dict[Any, list[int]] = {}
         for n in walls:
             self.moved.setdefault(self._motion(n) if is_rigid(self._motion(n)) else None, []).append(n)
@@ -101,7 +98,7 @@ class _Room:
 
     def _held(self, time: float) -> np.ndarray:
         """True at the sites that something holds which closes the fluid in."""
-        dimensions = self.scene.dimensions
+        dimensions = self.layout.dimensions
         points = self.points if self.seat is None else moved_on(self.seat, self.points, time, dimensions)
         held = np.zeros(self.shape, bool)
         for motion, parts in self.moved.items():
@@ -109,13 +106,13 @@ class _Room:
                 held |= self._inside(parts, self.grid)
                 continue
             back = points if motion is None else taken_back(motion, points, time, dimensions)
-            folded = [self.scene.folded(d, x).reshape(self.shape) for d, x in enumerate(back.T)]
+            folded = [self.layout.folded(d, x).reshape(self.shape) for d, x in enumerate(back.T)]
             held |= self._inside(parts, folded)
         return held
 
     def _inside(self, parts: list[int], grid) -> np.ndarray:
-        tolerance = TOLERANCE * self.scene.spacing
-        return np.logical_or.reduce([inside(self.scene.layout.shapes[n], grid, tolerance) for n in parts])
+        tolerance = TOLERANCE * self.layout.spacing
+        return np.logical_or.reduce([inside(self.layout.parts[n].shape, grid, tolerance) for n in parts])
 
     def _faces(self, parts: list[int]) -> int:
         """How many sites of the fluid are beside some parts at the start."""
@@ -129,15 +126,15 @@ class _Room:
 
     def _grid(self, low: np.ndarray, high: np.ndarray) -> list[np.ndarray]:
         """Coordinates of the sites, m: those of the fluid and some around, within mirrors and periods."""
-        lattice, grid = self.scene.lattice, []
+        lattice, grid = self.layout.lattice, []
         for d in self.axes:
             first, last = sites_between(low[d], high[d] + lattice.spacing, lattice.origin[d], lattice.spacing)
             first, last = first - AROUND, last + AROUND
             if d in self.around:
                 first, last = sites_between(
-                    self.scene.lower[d], self.scene.upper[d], lattice.origin[d], lattice.spacing
+                    self.layout.lower[d], self.layout.upper[d], lattice.origin[d], lattice.spacing
                 )
-            for plane in (p for p in self.scene.mirror_planes if p.axis == d):
+            for plane in (p for p in self.layout.mirror_planes if p.axis == d):
                 below, above = sites_between(plane.at, plane.at, lattice.origin[d], lattice.spacing)
                 first, last = (max(first, above), last) if plane.side == BELOW else (first, min(last, below))
             x = lattice.origin[d] + (np.arange(first, last) + 0.5) * lattice.spacing
@@ -145,25 +142,4 @@ class _Room:
         return grid
 
     def _motion(self, n: int):
-        return self.scene.species_in_motion[n]
-
-
-def surface_warnings(scene: "Scene") -> Iterator[str]:
-    """What does not go with a free surface, a line each."""
-    physics = scene.case.physics
-    if physics.pressure_gradient == "minimum" and scene.has_free_surface:
-        yield (
-            'physics.pressure_gradient: "minimum" is unstable at a free surface, where it only pushes '
-            'outward, and the fluid has one; use "symmetric", or enclose the fluid'
-        )
-    given = physics.background_pressure
-    if given is not None and given.pressure != AUTO and scene.has_free_surface:
-        yield (
-            "physics.background_pressure: blows a free surface apart, and the fluid has one; "
-            "leave it out, or enclose the fluid"
-        )
-    if physics.transport_velocity is not None and scene.has_free_surface:
-        yield (
-            "physics.transport_velocity: moves a free surface outwards, and the fluid has one; use "
-            "physics.generalised_transport_velocity, or enclose the fluid"
-        )
+        return self.census.motions[n]

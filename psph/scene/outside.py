@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from psph.physics.motion import Fixed
-from psph.scene.species import NONE
+from psph.scene.layout import NONE
+from psph.scene.scene import Scene
 
 FIXED = Fixed()
 
@@ -21,7 +22,7 @@ class Solid:
     Of walls whose motion deforms them it knows nothing: where they stood, fluid may be.
     """
 
-    def __init__(self, scene, motion=FIXED):
+    def __init__(self, scene: Scene, motion=FIXED):
         self.scene, self.layout, self.lattice = scene, scene.layout, scene.layout.lattice
         self._still = np.zeros(NONE + 1, bool)
         for number, one in enumerate(scene.species):
@@ -51,7 +52,7 @@ class Solid:
         """For each axis whether walls close its lower and its upper side: every site there is one."""
         return tuple(
             (False, False) if period is not None else (self._all_wall(d, 0), self._all_wall(d, -1))
-            for d, period in enumerate(self.scene.periods)
+            for d, period in enumerate(self.scene.layout.periods)
         )
 
     def _deep(self, position: np.ndarray, depth: float, once: Container[int]) -> np.ndarray:
@@ -69,7 +70,7 @@ class Solid:
     def _inside(self, position: np.ndarray, once: Container[int]) -> np.ndarray:
         """True at points (n, dim) in a wall, or beyond a side that walls close."""
         grid = [x.copy() for x in position.T]  # unit stride
-        grid = [x if d in once else self.scene.folded(d, x) for d, x in enumerate(grid)]
+        grid = [x if d in once else self.scene.layout.folded(d, x) for d, x in enumerate(grid)]
         found = self._still[self.layout.held(grid, grid[0].shape)]
         low = [x < least for x, least in zip(grid, self.lattice.lower)]
         high = [x > most for x, most in zip(grid, self.lattice.upper)]

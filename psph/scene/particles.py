@@ -6,8 +6,8 @@ import numpy as np
 from numpy.random import Generator, Philox
 
 from psph.case.study import EXACT
-from psph.scene.immersed import shown_by
-from psph.scene.species import NONE
+from psph.scene.layout import NONE
+from psph.scene.starts import Starts
 
 NUMBERS_PER_COUNT = 4
 """Philox gives four 64-bit numbers for each count: one count is one particle."""
@@ -48,89 +48,90 @@ class ParticleSet:
         return ParticleSet(*(array[first:last] for array in vars(self).values()))
 
 
-def fill(particles: ParticleSet, scene, first: int, last: int) -> None:
-    """Put particles on the held sites of planes ``first`` to ``last - 1`` of a scene."""
+def fill(particles: ParticleSet, starts: Starts, first: int, last: int) -> None:
+    """Put particles on the held sites of planes ``first`` to ``last - 1`` of the layout."""
     done = 0
-    for begin, end in scene.lattice.chunks(first, last):
-        held = scene.layout.materials(begin, end)
+    for begin, end in starts.layout.lattice.chunks(first, last):
+        held = starts.layout.materials(begin, end)
         sites = np.flatnonzero(held != NONE)
         chunk = particles.rows(done, done + len(sites))
-        _place(chunk, scene, held, sites, begin)
-        _start(chunk, scene)
-        _dry(chunk, scene, sites, begin, end)
-        _kick(chunk, scene, sites, begin, end)
-        _shift(chunk, scene)
-        _sheared(chunk, scene)
-        _as_exact(chunk, scene)
+        _place(chunk, starts, held, sites, begin)
+        _start(chunk, starts)
+        _dry(chunk, starts, sites, begin, end)
+        _kick(chunk, starts, sites, begin, end)
+        _shift(chunk, starts)
+        _sheared(chunk, starts)
+        _as_exact(chunk, starts)
         done += len(sites)
 
 
-def _place(chunk: ParticleSet, scene, held: np.ndarray, sites: np.ndarray, begin: int) -> None:
-    lattice = scene.lattice
+def _place(chunk: ParticleSet, starts: Starts, held: np.ndarray, sites: np.ndarray, begin: int) -> None:
+    lattice = starts.layout.lattice
     chunk.material[:] = held.ravel()[sites]
     for d, k in zip(lattice.axes, np.unravel_index(sites, held.shape)):
         chunk.position[:, d] = lattice.coordinates(d)[k + begin if d == lattice.axis else k]
 
 
-def _start(chunk: ParticleSet, scene) -> None:
+def _start(chunk: ParticleSet, starts: Starts) -> None:
     """Kind, velocity, density and mass by material."""
     for index in np.unique(chunk.material):
-        material, rows = scene.species[index], chunk.material == index
+        material, rows = starts.species[index], chunk.material == index
         chunk.kind[rows] = material.kind
-        chunk.velocity[rows] = scene.velocities[index]
-        chunk.density[rows] = scene.starts[index].density(chunk.position[rows])
+        chunk.velocity[rows] = starts.speeds.velocities[index]
+        chunk.density[rows] = starts.states[index].density(chunk.position[rows])
         chunk.mass[rows] = material.mass
 
 
-def _dry(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> None:
+def _dry(chunk: ParticleSet, starts: Starts, sites: np.ndarray, begin: int, end: int) -> None:
     """A wall out of reach of the fluid whose hydrostatic pressure it continues starts without.
 
     It would push away the water that comes to it later.
     """
-    for index, fluid in enumerate(shown_by(scene)):
+    layout = starts.layout
+    for index, part in enumerate(layout.parts):
         rows = chunk.material == index
-        if index >= scene.layout.fluids and scene.starts[fluid].layer and rows.any():
-            wet = scene.layout.near(fluid, begin, end, scene.wall_reach).ravel()[sites]
-            chunk.density[rows & ~wet] = scene.species[index].density
+        if not part.flows and starts.states[part.source].layer and rows.any():
+            wet = layout.near(part.source, begin, end, layout.wall_reach).ravel()[sites]
+            chunk.density[rows & ~wet] = starts.species[index].density
 
 
-def _kick(chunk: ParticleSet, scene, sites: np.ndarray, begin: int, end: int) -> None:
-    for (plane, place), (velocity, shift) in scene.kicks.items():
+def _kick(chunk: ParticleSet, starts: Starts, sites: np.ndarray, begin: int, end: int) -> None:
+    for (plane, place), (velocity, shift) in starts.speeds.kicks.items():
         if begin <= plane < end:
-            row = np.searchsorted(sites, (plane - begin) * scene.lattice.sites_in_plane + place)
+            row = np.searchsorted(sites, (plane - begin) * starts.layout.lattice.sites_in_plane + place)
             chunk.velocity[row] += velocity
             chunk.position[row] += shift
 
 
-def _shift(chunk: ParticleSet, scene) -> None:
+def _shift(chunk: ParticleSet, starts: Starts) -> None:
     """Random shifts, the same for a particle wherever it is made: its id places the draw."""
     dimensions = chunk.position.shape[1]
-    for index, part in enumerate(scene.parts[: scene.layout.first_wall]):
+    for index, part in enumerate(starts.layout.parts):
         rows = chunk.material == index
         if part.jitter and rows.any():
-            source = Philox(key=part.seed)
+            source = Philox(key=part.table.seed)
             source.advance(int(chunk.id[0]))
             drawn = Generator(source).random((len(chunk.id), NUMBERS_PER_COUNT))[rows, :dimensions]
-            chunk.position[rows] += (2.0 * drawn - 1.0) * (part.jitter * scene.spacing)
-    for x, low, period in zip(chunk.position.T, scene.lower, scene.periods):
+            chunk.position[rows] += (2.0 * drawn - 1.0) * (part.jitter * starts.layout.spacing)
+    for x, low, period in zip(chunk.position.T, starts.layout.lower, starts.layout.periods):
         if period is not None:
             x -= period * np.floor((x - low) / period)
             x[x >= low + period] = low  # rounding may land on the upper edge
 
 
-def _sheared(chunk: ParticleSet, scene) -> None:
+def _sheared(chunk: ParticleSet, starts: Starts) -> None:
     """The gradient of the velocity at the start, where each particle now is."""
-    for index, part in enumerate(scene.parts[: scene.layout.movers]):
+    for index, part in enumerate(starts.layout.parts):
         rows = chunk.material == index
-        if part.velocity_gradient and rows.any():
-            chunk.velocity[rows] += part.sheared(chunk.position[rows])
+        if part.moves_freely and part.table.velocity_gradient and rows.any():
+            chunk.velocity[rows] += part.table.sheared(chunk.position[rows])
 
 
-def _as_exact(chunk: ParticleSet, scene) -> None:
+def _as_exact(chunk: ParticleSet, starts: Starts) -> None:
     """Velocity and density of the exact solution, where each particle now is."""
-    for index, body in enumerate(scene.parts):
+    for index, part in enumerate(starts.layout.parts):
         rows = chunk.material == index
-        if body.velocity == EXACT and rows.any():
-            chunk.velocity[rows] += scene.exact.velocity(chunk.position[rows], 0.0, scene.setting)
-        if scene.starts[index].exact:
-            chunk.density[rows] = scene.starts[index].density(chunk.position[rows])
+        if part.table.velocity == EXACT and rows.any():
+            chunk.velocity[rows] += starts.layout.exact.velocity(chunk.position[rows], 0.0, starts.setting)
+        if starts.states[index].exact:
+            chunk.density[rows] = starts.states[index].density(chunk.position[rows])

@@ -2,13 +2,11 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 from psph.physics.fluid.friction import friction_step
 from psph.physics.fluid.rheology import Granular, HerschelBulkley
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
+from psph.scene.scene import Scene
 
 MOST_CREEP = 0.05
 """Rate of the creep below the yield, over that of the flow, above which the cap hides the yield."""
@@ -18,18 +16,6 @@ MOST_OF_GRAINS = 1.0
 
 MOST_STRAIN = 0.1
 """By which a paste that is to stand may creep until the end of a run."""
-
-
-def laws_of(case) -> tuple[Any, ...]:
-    """The different laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
-    laws = (fluid.rheology.law for fluid in case.flowing.values() if fluid.rheology)
-    return tuple(dict.fromkeys(laws))
-
-
-def number_of(fluid, laws: tuple[Any, ...]) -> int:
-    """The number of the law of a fluid's viscosity among ``laws`` from 1 on, 0 where that is constant."""
-    rheology = getattr(fluid, "rheology", None)
-    return 1 + laws.index(rheology.law) if rheology else 0
 
 
 class Paste(NamedTuple):
@@ -64,7 +50,7 @@ class Paste(NamedTuple):
         return max(self.stress / self.law.largest, self.law.creep_under(self.stress, self.limit))
 
 
-def pastes(scene: "Scene") -> Iterator[Paste]:
+def pastes(scene: Scene) -> Iterator[Paste]:
     """The fluids with a yield stress."""
     for place, (name, fluid) in enumerate(scene.case.flowing.items()):
         law = fluid.rheology and fluid.rheology.law
@@ -81,7 +67,7 @@ def pastes(scene: "Scene") -> Iterator[Paste]:
         )
 
 
-def grains(scene: "Scene") -> Iterator[Paste]:
+def grains(scene: Scene) -> Iterator[Paste]:
     """The grains that weigh on what is below them, at their floor."""
     for place, (name, fluid) in enumerate(scene.case.flowing.items()):
         law, thickness = fluid.rheology and fluid.rheology.law, _thickness(scene, place)
@@ -104,26 +90,13 @@ def grains(scene: "Scene") -> Iterator[Paste]:
         )
 
 
-def held_speeds(scene: "Scene", pull: float, gap: float, depth: float) -> Iterator[float]:
-    """The speeds in m/s that fluids reach under ``pull`` m/s² between plates ``gap`` m apart, and grains of
-    this ``depth``, m, on a slope."""
-    down = math.hypot(*(g for g, period in zip(scene.gravity, scene.periods) if period is None))
-    for fluid in scene.case.flowing.values():
-        if fluid.viscosity:
-            yield pull * gap**2 / (8.0 * fluid.viscosity)
-        elif fluid.rheology and isinstance(fluid.rheology.law, HerschelBulkley):
-            yield fluid.rheology.law.speed_between(fluid.density * pull, 0.5 * gap)
-        elif fluid.rheology and isinstance(fluid.rheology.law, Granular) and down:
-            yield fluid.rheology.law.speed_on_slope(pull / down, fluid.density * down, depth)
-
-
-def _thickness(scene: "Scene", place: int) -> float:
+def _thickness(scene: Scene, place: int) -> float:
     """The smallest extent of a fluid along the axes that do not repeat, or along all, m."""
     sizes = _sizes(scene, place)
     return sizes[_across(scene, sizes)]
 
 
-def _shearing(scene: "Scene", place: int) -> float:
+def _shearing(scene: Scene, place: int) -> float:
     """The acceleration that shears a fluid over its thickness, m/s².
 
     Of a layer that gravity pulls along its length, on a slope or in a channel, g∥ + g⊥ H/L: H is its
@@ -136,24 +109,24 @@ def _shearing(scene: "Scene", place: int) -> float:
     along = math.hypot(*(scene.gravity[d] for d in others))
     if not along:
         return math.hypot(*scene.gravity)
-    if scene.driven and not scene.has_free_surface:
+    if scene.layout.driven and not scene.has_free_surface:
         return 0.5 * along
-    pulled = [sizes[d] if scene.periods[d] is None else math.inf for d in others if scene.gravity[d]]
+    pulled = [sizes[d] if scene.layout.periods[d] is None else math.inf for d in others if scene.gravity[d]]
     return along + abs(scene.gravity[across]) * sizes[across] / max(min(pulled), sizes[across])
 
 
-def _sizes(scene: "Scene", place: int) -> list[float]:
+def _sizes(scene: Scene, place: int) -> list[float]:
     """The extents of a fluid along all axes, m."""
     return (scene.census.highest[place] - scene.census.lowest[place] + scene.spacing).tolist()
 
 
-def _across(scene: "Scene", sizes: list[float]) -> int:
+def _across(scene: Scene, sizes: list[float]) -> int:
     """The axis along which ``sizes`` are smallest, of those that do not repeat, or of all."""
-    open_axes = [d for d, period in enumerate(scene.periods) if period is None]
+    open_axes = [d for d, period in enumerate(scene.layout.periods) if period is None]
     return min(open_axes or range(scene.dimensions), key=sizes.__getitem__)
 
 
-def rheology_lines(scene: "Scene") -> Iterator[str]:
+def rheology_lines(scene: Scene) -> Iterator[str]:
     """What ``explain`` says of the laws: yield, plug, Bingham number, creep, and the cost of the cap."""
     sound = scene.case.time.cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
     for name, fluid in scene.case.flowing.items():
@@ -183,7 +156,7 @@ def _paste_lines(paste: Paste) -> Iterator[str]:
     yield f"creeps below the yield at up to {paste.creep:.2g} 1/s, {paste.creep / paste.rate:.2g} of that"
 
 
-def rheology_warnings(scene: "Scene") -> Iterator[str]:
+def rheology_warnings(scene: Scene) -> Iterator[str]:
     """Lines for laws whose cap hides what they are for."""
     for paste in (*pastes(scene), *grains(scene)):
         if paste.rate and paste.creep > paste.most * paste.rate:

@@ -107,3 +107,8 @@ def _in_polygon(points: Sequence[Corner], grid: Grid, tolerance: float) -> np.nd
             crossing = x_1 + (y - y_1) * ((x_2 - x_1) / (y_2 - y_1))
             odd ^= ((y < y_1) != (y < y_2)) & (x < crossing)
     return odd
+
+
+def shown(x: Sequence[float]) -> str:
+    """A point in a message."""
+    return f"[{', '.join(f'{value:.6g}' for value in x)}]"

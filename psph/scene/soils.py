@@ -2,10 +2,9 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
+from psph.scene.scene import Scene
+from psph.scene.stressed import soils_of
 
 LIGHTEST, HEAVIEST = 500.0, 4000.0
 """kg/m³: peat with its pores, and ore."""
@@ -17,25 +16,26 @@ RADIANS = 1.6
 """Angles of friction below this many degrees, and above 0, are likely in radians: π/2 is 1.57."""
 
 
-def soil_lines(scene: "Scene") -> Iterator[str]:
+def soil_lines(scene: Scene) -> Iterator[str]:
     """What ``explain`` says of the soils."""
-    for number, soil in scene.stressed.soils.items():
+    for part in soils_of(scene.census):
+        soil = part.table
         says = f"φ {soil.friction_angle:g}°, c {soil.cohesion:g} Pa, ψ {soil.dilatancy:g}°"
         if soil.strength_reduction != 1.0:
             says += f", strength divided by {soil.strength_reduction:g}"
         bears = soil.tip
         slides = math.degrees(math.atan(soil.pyramid[0]))
         yield (
-            f"  soil        {scene.names[number]}: {says}; slides on planes of {slides:.3g}°, "
+            f"  soil        {part.name}: {says}; slides on planes of {slides:.3g}°, "
             f"bears {bears:.3g} Pa of mean tension; waves of {soil.wave_speed:.4g} m/s"
         )
 
 
-def soil_warnings(scene: "Scene") -> Iterator[str]:
+def soil_warnings(scene: Scene) -> Iterator[str]:
     """A line for each number of a soil that is likely not meant."""
     pull = math.hypot(*scene.gravity)
-    for number, soil in scene.stressed.soils.items():
-        key = scene.key_of(number)
+    for part in soils_of(scene.census):
+        key, number, soil = part.key, part.number, part.table
         if not LIGHTEST <= soil.density <= HEAVIEST:
             yield f"{key}.density: {soil.density:g} kg/m³; dry sand has 1600, wet clay 2000"
         if 0.0 < soil.friction_angle < RADIANS:

@@ -1,17 +1,16 @@
 """Elastic solids that cannot be, and numbers of solids that are likely a slip."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.scene.calming import calming, impedance
+from psph.scene.faces import across, thinnest
 from psph.scene.lattice import TOLERANCE
+from psph.scene.parts.solid import ElasticPart, UpdatedPart
+from psph.scene.scene import Scene
 from psph.scene.shapes import inside
-from psph.scene.solids import across, anvils_of, calming, impedance, thinnest
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
 
 FEWEST = 4
 """Particles across a plate: fewer bend too softly (docs/solids.md)."""
@@ -36,23 +35,23 @@ SLOWEST = 2.0
 """Wave speed over the expected speed below which a solid is hardly one."""
 
 
-def solid_faults(scene: "Scene") -> Iterator[str]:
+def solid_faults(scene: Scene) -> Iterator[str]:
     """A line for each solid that is too thin for any stress, for each load that pulls nothing, and for each
     two clamps of a solid that share particles."""
     yield from _shared(scene)
     for number, name in _elastic(scene):
-        wide, axis = thinnest(scene, number)
+        wide, axis = thinnest(scene.census, number)
         if wide == 1:
             yield (
                 f"solids.{name}.shape: one particle thick along {AXES[axis]}, where no strain is known; make "
                 f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
             )
         for load, table in scene.case.solids[name].loads.items():
-            if not _pulls(scene, _parts(scene, number), table.shape):
+            if not _pulls(scene, scene.layout.parts.of_solid(number), table.shape):
                 yield f"solids.{name}.loads.{load}.shape: no particle of the solid lies in it; move it there"
 
 
-def solid_warnings(scene: "Scene") -> Iterator[str]:
+def solid_warnings(scene: Scene) -> Iterator[str]:
     """A line for each number of a solid that is likely not meant."""
     case = scene.case
     if len(case.referred) > 1 and case.physics.contact is None and not case.flowing:
@@ -64,7 +63,7 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
         yield from fast_start(scene)
     for number, name in _elastic(scene):
         yield from _of_either_description(scene, number, name)
-    for number, (name, table) in enumerate(scene.case.referred.items(), scene.layout.fluids):
+    for solid, (number, (name, table)) in enumerate(zip(scene.layout.parts.solids, case.referred.items())):
         if table.hourglass == 0:
             yield f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; remove it"
         yield from _numbers(f"solids.{name}", table)
@@ -76,10 +75,10 @@ def solid_warnings(scene: "Scene") -> Iterator[str]:
                 )
         yield from _behind_anvils(scene, number, f"solids.{name}")
         if scene.case.fluids:
-            yield from _answers(scene, number - scene.layout.fluids, f"solids.{name}", table)
+            yield from _answers(scene, solid, f"solids.{name}", table)
 
 
-def fast_start(scene: "Scene") -> Iterator[str]:
+def fast_start(scene: Scene) -> Iterator[str]:
     """A line where solids start at a speed that guards.speed takes for trouble, as in an impact of shocks."""
     most, speed = scene.case.guards.speed, scene.starting_speed / scene.sound_speed
     if speed > most:
@@ -89,16 +88,16 @@ def fast_start(scene: "Scene") -> Iterator[str]:
         )
 
 
-def _elastic(scene: "Scene") -> Iterator[tuple[int, str]]:
-    """The material and the name of each elastic solid, total or updated Lagrangian."""
-    case = scene.case
-    yield from ((n, name) for n, name in enumerate(case.flowing) if name in case.updated)
-    yield from enumerate(case.referred, scene.layout.fluids)
+def _elastic(scene: Scene) -> Iterator[tuple[int, str]]:
+    """The part and the name of each elastic solid, total or updated Lagrangian."""
+    for part in scene.layout.parts:
+        if isinstance(part, (UpdatedPart, ElasticPart)):
+            yield part.number, part.name
 
 
-def _of_either_description(scene: "Scene", number: int, name: str) -> Iterator[str]:
+def _of_either_description(scene: Scene, number: int, name: str) -> Iterator[str]:
     """A line for a solid that is thin, and for each number of it that is likely in another unit."""
-    table, (wide, axis) = scene.case.solids[name], thinnest(scene, number)
+    table, (wide, axis) = scene.case.solids[name], thinnest(scene.census, number)
     if 1 < wide < FEWEST:
         yield (
             f"solids.{name}.shape: {wide} particles thick along {AXES[axis]}: it will bend too softly; "
@@ -106,8 +105,8 @@ def _of_either_description(scene: "Scene", number: int, name: str) -> Iterator[s
         )
     if not LIGHTEST <= table.density <= HEAVIEST:
         yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
-    own = number - scene.layout.fluids
-    wave = table.wave_speed if table.is_updated else scene.elastic_solids[own].wave_speed
+    own = scene.layout.parts[number].elastic
+    wave = table.wave_speed if own is None else scene.starts.solids[own].wave_speed
     if wave < SLOWEST * scene.expected_speed and not table.mie_gruneisen:
         yield (
             f"solids.{name}.young: waves of {wave:.3g} m/s, where {scene.expected_speed:.3g} m/s are "
@@ -136,14 +135,14 @@ def _numbers(key: str, table) -> Iterator[str]:
         )
 
 
-def _behind_anvils(scene: "Scene", number: int, key: str) -> Iterator[str]:
+def _behind_anvils(scene: Scene, number: int, key: str) -> Iterator[str]:
     """A line for each anvil that pushes a solid from the start."""
-    parts = _parts(scene, number)
-    for name, (place, normal) in zip(scene.case.anvils, anvils_of(scene.case)):
+    parts = scene.layout.parts.of_solid(number)
+    for name, (place, normal) in zip(scene.case.anvils, scene.layout.anvils):
         nearest = np.inf
-        for first, last in scene.lattice.chunks():
+        for first, last in scene.layout.lattice.chunks():
             own = np.isin(scene.layout.materials(first, last), parts)
-            grid = scene.lattice.grid(first, last)
+            grid = scene.layout.lattice.grid(first, last)
             above = sum(n * (x - x_0) for n, x, x_0 in zip(normal, grid, place))
             nearest = min(nearest, np.broadcast_to(above, own.shape)[own].min(initial=np.inf))
         if nearest < (0.5 - TOLERANCE) * scene.spacing:
@@ -153,15 +152,15 @@ def _behind_anvils(scene: "Scene", number: int, key: str) -> Iterator[str]:
             )
 
 
-def _answers(scene: "Scene", number: int, key: str, table) -> Iterator[str]:
+def _answers(scene: Scene, number: int, key: str, table) -> Iterator[str]:
     """A line where a solid answers to the fluid faster than a step can tell."""
-    share = impedance(scene, number, table)
+    share = impedance(scene.speeds, number, table)
     if share > HEAVY:
         yield (
             f"{key}: the fluid takes {100.0 * share:.0f} % of its speed in a step, so light it is, or thin: "
             "they will shake each other; give a smaller time.cfl, or make it heavier, or a thin one thicker"
         )
-    needed = calming(scene, number, table)
+    needed = calming(scene.speeds, number, table)
     if table.damping is not None and table.damping < 0.5 * needed:
         yield (
             f"{key}.damping: {table.damping:g} Pa s lets waves grow that a step of the fluid does not "
@@ -169,55 +168,44 @@ def _answers(scene: "Scene", number: int, key: str, table) -> Iterator[str]:
         )
 
 
-def _shared(scene: "Scene") -> Iterator[str]:
+def _shared(scene: Scene) -> Iterator[str]:
     """A line for each clamp that shares particles with an earlier one of its solid."""
-    for n, grip in enumerate(scene.grips):
-        for other in (one for one in scene.grips[:n] if one.solid == grip.solid):
-            whole = scene.case.solids[grip.solid].shape
-            if (count := _sites_in(scene, whole, grip.table.shape, other.table.shape)) > 0:
-                yield (
-                    f"solids.{grip.solid}.{grip.key}: shares {count:,} particles with solids.{other.solid}."
-                    f"{other.key}; let each be in one clamp"
-                )
+    parts = scene.layout.parts
+    clamps = [parts[number] for number in parts.clamps]
+    for n, clamp in enumerate(clamps):
+        for other in (one for one in clamps[:n] if one.whole == clamp.whole):
+            if (count := _sites_in(scene, parts[clamp.whole].shape, clamp.shape, other.shape)) > 0:
+                yield f"{clamp.key}: shares {count:,} particles with {other.key}; let each be in one clamp"
 
 
-def _sites_in(scene: "Scene", *shapes) -> int:
+def _sites_in(scene: Scene, *shapes) -> int:
     """How many sites lie in all of some shapes."""
     tolerance, count = TOLERANCE * scene.spacing, 0
-    for first, last in scene.lattice.chunks():
-        grid, size = scene.lattice.grid(first, last), scene.lattice.shape(first, last)
+    for first, last in scene.layout.lattice.chunks():
+        grid, size = scene.layout.lattice.grid(first, last), scene.layout.lattice.shape(first, last)
         held = (np.broadcast_to(inside(shape, grid, tolerance), size) for shape in shapes)
         count += int(np.count_nonzero(np.logical_and.reduce([*held])))
     return count
 
 
-def _is_of(scene: "Scene", material: int, solid: int) -> bool:
-    return scene.layout.elastic_of(material) == solid - scene.layout.fluids
-
-
-def _parts(scene: "Scene", solid: int) -> list[int]:
-    """The materials of a solid: its own, and those of its clamps."""
-    return [n for n in range(scene.layout.first_wall) if _is_of(scene, n, solid)]
-
-
-def _pulls(scene: "Scene", parts: list[int], shape) -> bool:
+def _pulls(scene: Scene, parts: list[int], shape) -> bool:
     """Whether any site of these materials lies in a shape."""
     tolerance = TOLERANCE * scene.spacing
-    for first, last in scene.lattice.chunks():
+    for first, last in scene.layout.lattice.chunks():
         held = scene.layout.materials(first, last)
         own = np.isin(held, parts)
-        if (inside(shape, scene.lattice.grid(first, last), tolerance) & own).any():
+        if (inside(shape, scene.layout.lattice.grid(first, last), tolerance) & own).any():
             return True
     return False
 
 
-def solid_lines(scene: "Scene") -> Iterator[str]:
+def solid_lines(scene: Scene) -> Iterator[str]:
     """What the solids are, in words, for `explain`."""
-    for number, (name, table) in enumerate(scene.case.referred.items(), scene.layout.fluids):
-        one = scene.elastic_solids[number - scene.layout.fluids]
-        wide, axis = across(scene, number - scene.layout.fluids)
-        held = [n for n, of in enumerate(scene.layout.clamps, scene.layout.movers) if of == number]
-        clamped = sum(int(scene.census.sizes[n]) for n in held)
+    parts = scene.layout.parts
+    for solid, number in enumerate(parts.solids):
+        one, name, table = scene.starts.solids[solid], parts[number].name, parts[number].table
+        wide, axis = across(scene.census, solid)
+        clamped = sum(int(scene.census.sizes[n]) for n in parts.of_solid(number) if n != number)
         count = int(scene.census.sizes[number]) + clamped
         yield (
             f"  solid       {name}: {_law(table)}, E {table.young:g} Pa, ν {table.poisson:g}, waves of "

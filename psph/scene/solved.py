@@ -1,30 +1,27 @@
 """What of a case speaks against the exact solution that it names."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from psph.scene.scene import Scene
 from psph.theory.solutions.catalogue import asked_of_fluid
 
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
 
-
-def exact_faults(scene: "Scene") -> Iterator[str]:
+def exact_faults(scene: Scene) -> Iterator[str]:
     """A line for each fault of the case, with its cure."""
     for name, table in scene.case.exact:
         if table is None:
             continue
-        if unfit := scene.exact.unfit(scene.unheard_setting):
+        if unfit := scene.layout.exact.unfit(scene.layout.surroundings):
             yield f"exact.{name}: {unfit}"
         else:
             yield from (f"exact.{name}: {unlike}, or remove exact" for unlike in _unlike(scene))
 
 
-def _unlike(scene: "Scene") -> Iterator[str]:
+def _unlike(scene: Scene) -> Iterator[str]:
     """Fluids that are not the one of the solution: what it asks of a fluid is that of the first."""
     fluids = {f"{scene.case.table_of(name)}.{name}": fluid for name, fluid in scene.case.flowing.items()}
     first = next(iter(fluids))
-    for asked in asked_of_fluid(scene.exact, scene.unheard_setting):
+    for asked in asked_of_fluid(scene.layout.exact, scene.layout.surroundings):
         values = {key: getattr(fluid, asked, 0.0) for key, fluid in fluids.items()}
         muddy = [key for key, fluid in fluids.items() if getattr(fluid, "rheology", None)]
         others = [key for key, value in values.items() if value != values[first]]

@@ -1,36 +1,169 @@
-"""The state in which the materials of a scene start."""
+"""The state in which the parts of a scene start, and what their particles are.  The fourth value of a
+scene."""
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
-from psph.case.parameters import last_part
+import numpy as np
+
 from psph.case.study import EXACT
-from psph.physics.stress.bulk import Hooke
-from psph.scene.species import Start
-from psph.scene.still import HYDROSTATIC
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
-
-
-def law_of(scene: "Scene", part):
-    """The equation of state of a material: its own, or that of all."""
-    if hasattr(part, "bulk_modulus"):
-        return Hooke(part.bulk_modulus, scene.stressed.tension_of(part))
-    name = getattr(part, "equation_of_state", None) or scene.case.physics.equation_of_state
-    [law] = (entry.effect for entry in scene.case.catalogue.states if last_part(entry) == name)
-    return law()
+from psph.physics.solid.material import Solid
+from psph.scene.calming import damped_solids
+from psph.scene.census import Census
+from psph.scene.layout import Layout
+from psph.scene.opening import has_free_surface
+from psph.scene.parts import Known
+from psph.scene.parts.fluid import rheologies_of
+from psph.scene.species import Species, Start
+from psph.scene.speeds import Speeds
+from psph.scene.still import HYDROSTATIC, Still, stills_of
+from psph.scene.stressed import Stressed, stressed_of
+from psph.theory.solutions.setting import Setting
 
 
-def start_of(scene: "Scene", index: int) -> Start:
-    """The state of a material before the first step."""
-    part = scene.parts[index]
-    pressure = getattr(part, "pressure", 0.0)
-    hydrostatic, exact = (pressure == word for word in (HYDROSTATIC, EXACT))
-    return Start(
-        law=law_of(scene, part),
-        rest_density=part.density,
-        sound_speed=scene.sound_speed,
-        pressure=0.0 if hydrostatic or exact else pressure,
-        exact=(lambda x: scene.exact.pressure(x, 0.0, scene.setting)) if exact else None,
-        layer=scene.stills.get(index) if hydrostatic else scene.stressed.layers.get(index),
-    )
+@dataclass(frozen=True, eq=False)
+class Starts:
+    """The state of the parts before the first step: it follows from their ``speeds`` and the census."""
+
+    speeds: Speeds
+
+    @property
+    def census(self) -> Census:
+        """Of the speeds."""
+        return self.speeds.census
+
+    @property
+    def layout(self) -> Layout:
+        """Of the census."""
+        return self.speeds.layout
+
+    @cached_property
+    def setting(self) -> Setting:
+        """What the exact solution needs of the scene, the speed of sound with it."""
+        return Setting(**vars(self.layout.surroundings), sound_speed=self.speeds.sound_speed)
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """What the elastic solids are made of."""
+        return damped_solids(self.speeds)
+
+    @cached_property
+    def rheologies(self) -> tuple[Any, ...]:
+        """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
+        return rheologies_of(self.layout.case)
+
+    @cached_property
+    def stressed(self) -> Stressed:
+        """What bears an evolved stress: soils."""
+        return stressed_of(self.census)
+
+    @cached_property
+    def stills(self) -> dict[int, Still]:
+        """How each fluid starts that is under its own weight, by its number."""
+        resting = (part for part in self.layout.parts if part.flows and part.table.pressure == HYDROSTATIC)
+        return stills_of(self.census, [part.number for part in resting])
+
+    @cached_property
+    def states(self) -> tuple[Start, ...]:
+        """The state of each part before the first step; a wall's is that of its fluid."""
+        return tuple(self._start(part.source) for part in self.layout.parts)
+
+    @cached_property
+    def species(self) -> tuple[Species, ...]:
+        """What the particles of each part are."""
+        layout, volume = self.layout, self.layout.spacing**self.layout.dimensions
+        known = Known(
+            self.speeds.sound_speed,
+            self.rheologies,
+            self.stressed.laws,
+            tuple(one.density * one.wave_speed**2 for one in self.solids),
+            self.census.lowest,
+            self.census.highest,
+            layout.gravity,
+            layout.spacing,
+        )
+        return tuple(
+            Species(
+                name=part.name,
+                motion=motion,
+                mass=start.mass(volume),
+                law=start.law,
+                loaded=part.loaded,
+                solid=part.solid,
+                elastic=part.elastic,
+                **layout.parts[part.source].shown(known),
+                **part.own(known),
+            )
+            for part, motion, start in zip(layout.parts, self.census.motions, self.states)
+        )
+
+    @cached_property
+    def has_free_surface(self) -> bool:
+        """Whether a fluid has a free surface at the start, or can have one (psph.scene.opening)."""
+        return has_free_surface(self.census)
+
+    @property
+    def lowest_pressure(self) -> float:
+        """The lowest pressure of a fluid at the start, Pa."""
+        return min(lowest for lowest, _ in self._pressures)
+
+    @cached_property
+    def standing_tension(self) -> float:
+        """Pa by which a fluid lacks pressure at the start everywhere: what its own flow does not explain.
+
+        Of a fluid whose pressure follows from a flow (an exact solution), its highest pressure below zero;
+        of others the lowest.
+        """
+        borne = (
+            highest if start.exact else lowest
+            for start, (lowest, highest) in zip(self.states, self._pressures)
+        )
+        return max(0.0, -min(borne))
+
+    @cached_property
+    def fullness(self) -> tuple[float, float]:
+        """Smallest and largest m/(ρ dx^d) of a fluid at the start, with 1 among them.
+
+        Equal masses do not fill the lattice where the pressure differs from place to place.
+        """
+        filled, volume = [1.0], self.layout.spacing**self.layout.dimensions
+        for fluid, pressures in zip(self.layout.parts.flowing, self._pressures):
+            start, mass = self.states[fluid], self.species[fluid].mass
+            for pressure in pressures:
+                rho = start.law.density(np.float64(pressure), start.rest_density, start.sound_speed)
+                filled.append(mass / volume / float(rho))
+        return min(filled), max(filled)
+
+    def _start(self, number: int) -> Start:
+        """The state of a part that others have too."""
+        part = self.layout.parts[number]
+        pressure = part.table.pressure
+        hydrostatic, exact = (pressure == word for word in (HYDROSTATIC, EXACT))
+        return Start(
+            law=part.law(self.layout.case),
+            rest_density=part.table.density,
+            sound_speed=self.speeds.sound_speed,
+            pressure=0.0 if hydrostatic or exact else pressure,
+            exact=(lambda x: self.layout.exact.pressure(x, 0.0, self.setting)) if exact else None,
+            layer=self.stills.get(number) if hydrostatic else self.stressed.layers.get(number),
+        )
+
+    @cached_property
+    def _pressures(self) -> tuple[tuple[float, float], ...]:
+        """The lowest and the highest pressure of each fluid at the start, Pa."""
+        return tuple(self._range_of_pressure(fluid) for fluid in self.layout.parts.flowing)
+
+    def _range_of_pressure(self, fluid: int) -> tuple[float, float]:
+        start, layout = self.states[fluid], self.layout
+        if start.layer:
+            return start.pressure, start.layer.highest
+        if not start.exact:
+            return start.pressure, start.pressure
+        found = []
+        for first, last in layout.lattice.chunks():
+            held = layout.materials(first, last) == fluid
+            grid = layout.lattice.grid(first, last)
+            found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
+        pressure = start.exact(np.concatenate(found))
+        return float(pressure.min()), float(pressure.max())

@@ -2,21 +2,18 @@
 
 import functools
 import math
-from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from psph.composition.mirrors import ABOVE, BELOW
 from psph.physics.rigid.pose import in_space, inertia
 from psph.rows import projected
+from psph.scene.census import Census
 from psph.scene.columns import columns, connected, order_of
-from psph.scene.species import NONE
+from psph.scene.layout import NONE, Layout
 from psph.scene.walls import with_surroundings
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
 
 HYDROSTATIC = "hydrostatic"
 """The pressure at the start of a fluid that is under its own weight."""
@@ -57,21 +54,21 @@ class Still(NamedTuple):
         return np.where(depth > 0.0, above + weight * depth, 0.0)
 
 
-def felt_gravity(scene: "Scene") -> tuple[float, ...]:
+def felt_gravity(layout: Layout) -> tuple[float, ...]:
     """What a fluid feels as gravity at the start along axes that do not repeat, m/s².
 
     In a frame of reference that is accelerated without a turn g less its acceleration.
     """
-    if scene.frame is None:
-        return scene.height_gravity
-    added = inertia(scene.frame.pose(0.0), in_space(scene.gravity), scene.dimensions)
+    if layout.frame is None:
+        return layout.height_gravity
+    added = inertia(layout.frame.pose(0.0), in_space(layout.gravity), layout.dimensions)
     if added[:, :, 1:].any():
-        return scene.height_gravity
-    both = zip(scene.gravity, added[0, :, 0].tolist(), scene.periods)
+        return layout.height_gravity
+    both = zip(layout.gravity, added[0, :, 0].tolist(), layout.periods)
     return tuple(g + a if period is None else 0.0 for g, a, period in both)
 
 
-def stills_of(scene: "Scene", resting: list[int]) -> dict[int, Still]:
+def stills_of(census: Census, resting: list[int]) -> dict[int, Still]:
     """How the ``resting`` fluids start, under their own weight, by their numbers.
 
     Along gravity, a column of fluid bears what stands over it up to the air: its own weight, that of the
@@ -83,15 +80,15 @@ def stills_of(scene: "Scene", resting: list[int]) -> dict[int, Still]:
     solid bears from below falls, and has no pressure. Where gravity is oblique to the axes each connected
     part of a fluid has one surface, its highest point, and bears those that are above all of it.
     """
-    gravity = felt_gravity(scene)
+    gravity = felt_gravity(census.layout)
     axes = [d for d, g in enumerate(gravity) if g]
     if not resting or not axes:
-        return {n: _one_level(scene, n, gravity) for n in resting}
+        return {n: _one_level(census, n, gravity) for n in resting}
     if len(axes) > 1:
-        return _Slanted(scene, gravity, resting).stills()
-    if _is_level(scene, axes[0], gravity[axes[0]]):
-        return {0: _one_level(scene, 0, gravity)}
-    return _Columns(scene, axes[0], gravity[axes[0]], resting).stills()
+        return _Slanted(census, gravity, resting).stills()
+    if _is_level(census, axes[0], gravity[axes[0]]):
+        return {0: _one_level(census, 0, gravity)}
+    return _Columns(census, axes[0], gravity[axes[0]], resting).stills()
 
 
 def _against(gravity) -> tuple[float, ...]:
@@ -100,30 +97,31 @@ def _against(gravity) -> tuple[float, ...]:
     return tuple(-g / pull if pull else 0.0 for g in gravity)
 
 
-def _one_level(scene: "Scene", number: int, gravity) -> Still:
+def _one_level(census: Census, number: int, gravity) -> Still:
     """A fluid whose surface is at its highest point, with nothing on it."""
-    weight = scene.parts[number].density * math.hypot(*gravity)
-    surface = float(scene.census.top[number]) + 0.5 * scene.spacing
-    highest = weight * max(surface - float(scene.census.bottom[number]), 0.0)
+    weight = census.layout.parts[number].table.density * math.hypot(*gravity)
+    surface = census.surface_of(number)
+    highest = weight * max(surface - float(census.bottom[number]), 0.0)
     return Still(_against(gravity), surface, 0.0, weight, highest)
 
 
-def _is_level(scene: "Scene", axis: int, pull: float) -> bool:
+def _is_level(census: Census, axis: int, pull: float) -> bool:
     """Whether the only fluid has one surface that is open everywhere, and rests on something: most scenes are
     so, and need no columns.  Looks at some planes at a time."""
-    if len(scene.case.fluids) > 1 or scene.up[axis] != -math.copysign(1.0, pull):
+    layout = census.layout
+    if len(layout.case.fluids) > 1 or layout.up[axis] != -math.copysign(1.0, pull):
         return False
-    borne = _mirrored(scene, axis, pull)[1]
-    top = float(scene.census.top[0])
-    for first, last in scene.lattice.chunks():
-        held = with_surroundings(scene, first, last, 1)
+    borne = _mirrored(layout, axis, pull)[1]
+    top = float(census.top[0])
+    for first, last in layout.lattice.chunks():
+        held = with_surroundings(layout, first, last, 1)
         inner = [slice(1, -1)] * held.ndim
         low, high = ([*inner], [*inner])
-        place = scene.lattice.axes.index(axis)
+        place = layout.lattice.axes.index(axis)
         low[place], high[place] = slice(None, -2), slice(2, None)
         over, under = (held[tuple(one)] for one in ((high, low) if pull < 0.0 else (low, high)))
         fluid = held[tuple(inner)] == 0
-        height = np.broadcast_to(scene.up[axis] * scene.lattice.grid(first, last)[axis], fluid.shape)
+        height = np.broadcast_to(layout.up[axis] * layout.lattice.grid(first, last)[axis], fluid.shape)
         roofed = (fluid & (over > 0) & (over < NONE)).any()
         if roofed or (height[fluid & (over == NONE)] != top).any():
             return False
@@ -131,10 +129,10 @@ def _is_level(scene: "Scene", axis: int, pull: float) -> bool:
     return borne
 
 
-def _mirrored(scene: "Scene", axis: int, pull: float) -> tuple[bool, bool]:
+def _mirrored(layout: Layout, axis: int, pull: float) -> tuple[bool, bool]:
     """Whether a mirror is above, and whether one is below."""
     sides = (ABOVE, BELOW) if pull < 0.0 else (BELOW, ABOVE)
-    found = [any(p.axis == axis and p.side == side for p in scene.mirror_planes) for side in sides]
+    found = [any(p.axis == axis and p.side == side for p in layout.mirror_planes) for side in sides]
     return found[0], found[1]
 
 
@@ -142,24 +140,25 @@ class _Columns:
     """The columns of a scene along ``axis``, the sites of each from above, and what the ``resting`` fluids in
     them bear under ``pull``, m/s² along that axis."""
 
-    def __init__(self, scene: "Scene", axis: int, pull: float, resting: list[int]):
-        self.scene, self.resting, self.spacing = scene, resting, scene.spacing
-        self.order = tuple(order_of(scene.dimensions, axis))
-        self.up = tuple(-math.copysign(1.0, pull) if d == axis else 0.0 for d in range(scene.dimensions))
+    def __init__(self, census: Census, axis: int, pull: float, resting: list[int]):
+        layout = census.layout
+        self.layout, self.resting, self.spacing = layout, resting, layout.spacing
+        self.order = tuple(order_of(layout.dimensions, axis))
+        self.up = tuple(-math.copysign(1.0, pull) if d == axis else 0.0 for d in range(layout.dimensions))
         self.downwards = slice(None, None, -1 if pull < 0.0 else 1)
-        self.held = columns(scene, axis)[..., self.downwards]
-        self.heights = (self.up[axis] * scene.lattice.coordinates(axis))[self.downwards]
-        liquids = range(len(scene.case.fluids))
+        self.held = columns(layout, axis)[..., self.downwards]
+        self.heights = (self.up[axis] * layout.lattice.coordinates(axis))[self.downwards]
+        liquids = range(len(layout.case.fluids))
         masks = [self.held == n for n in liquids]
         self.air, self.wet = self.held == NONE, np.logical_or.reduce(masks)
-        self.around = [place for place, d in enumerate(self.order) if scene.periods[d] is not None]
+        self.around = [place for place, d in enumerate(self.order) if layout.periods[d] is not None]
         self.part = connected([masks[n] for n in resting], self.around)
         self.count = int(self.part.max())
         self.weights = np.zeros(self.count + 1)
         for n in resting:
-            self.weights[np.unique(self.part[masks[n]])] = scene.parts[n].density * abs(pull)
-        self.given = {n: scene.parts[n].pressure for n in liquids if n not in resting}
-        self.roofed, self.floored = _mirrored(scene, axis, pull)
+            self.weights[np.unique(self.part[masks[n]])] = layout.parts[n].table.density * abs(pull)
+        self.given = {n: layout.parts[n].table.pressure for n in liquids if n not in resting}
+        self.roofed, self.floored = _mirrored(census.layout, axis, pull)
 
     def stills(self) -> dict[int, Still]:
         """What each resting fluid bears."""
@@ -294,8 +293,8 @@ class _Columns:
 
             nearest = tuple(distance_transform_edt(~own, return_distances=False, return_indices=True))
             found = [array[nearest][..., self.downwards] for array in (surface, above, weight)]
-        lattice = self.scene.lattice
-        first = np.array([lattice.coordinates(d)[0] for d in range(self.scene.dimensions)])
+        lattice = self.layout.lattice
+        first = np.array([lattice.coordinates(d)[0] for d in range(self.layout.dimensions)])
         return Still(self.up, *found, highest, first, self.spacing, self.order)
 
 
@@ -305,14 +304,15 @@ class _Slanted(_Columns):
     They tell what is within what, and what falls; steps of the lattice along a slope are no surface.
     """
 
-    def __init__(self, scene: "Scene", gravity: tuple[float, ...], resting: list[int]):
-        axis = max(range(scene.dimensions), key=lambda d: abs(gravity[d]))
-        super().__init__(scene, axis, gravity[axis], resting)
+    def __init__(self, census: Census, gravity: tuple[float, ...], resting: list[int]):
+        layout = census.layout
+        axis = max(range(layout.dimensions), key=lambda d: abs(gravity[d]))
+        super().__init__(census, axis, gravity[axis], resting)
         pull = math.hypot(*gravity)
         self.level = [place for place, d in enumerate(self.order) if abs(gravity[d]) < 0.5 * pull]
         self.weights *= pull / abs(gravity[axis])
         self.up = _against(gravity)
-        grid = np.ix_(*(self.up[d] * scene.lattice.coordinates(d) for d in self.order))
+        grid = np.ix_(*(self.up[d] * layout.lattice.coordinates(d) for d in self.order))
         self.heights = functools.reduce(np.add, grid)[..., self.downwards]
 
     def _bearing(self, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -336,22 +336,3 @@ class _Slanted(_Columns):
 def _overlap(one: slice, other: slice) -> bool:
     """Whether two ranges of sites have one in common."""
     return one.start < other.stop and other.start < one.stop
-
-
-def start_warnings(scene: "Scene") -> Iterator[str]:
-    """A line for each fluid that starts without the pressure of its own weight, since the case gives none."""
-    silent = {n: name for n, (name, one) in enumerate(scene.case.fluids.items()) if is_silent(one)}
-    if not silent or not any(felt_gravity(scene)) or not scene.has_free_surface:
-        return
-    for number, still in stills_of(scene, [*silent]).items():
-        if still.highest > 0.0:
-            yield (
-                f"fluids.{silent[number]}.pressure: not given, so it starts at 0 Pa and sinks under its own "
-                f"weight: pressures swing between 0 and {2.0 * still.highest:.3g} Pa at first; give "
-                f'"{HYDROSTATIC}", or 0 if that is meant'
-            )
-
-
-def is_silent(fluid) -> bool:
-    """Whether the case says nothing of a fluid's pressure at the start."""
-    return "pressure" not in fluid.model_fields_set

@@ -1,20 +1,13 @@
 """What bears an evolved stress in a scene: laws, waves, and soils under their own weight at the start."""
 
 import math
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.case.soils import Soil
+from psph.scene.census import Census
 from psph.scene.columns import columns
-
-if TYPE_CHECKING:
-    from psph.scene.scene import Scene
-
-
-NEVER = 1e30
-"""Stands for a tension that leaves no strength where the strength is that of no pressure, Pa."""
+from psph.scene.parts.soil import SoilPart
 
 
 class Layer(NamedTuple):
@@ -67,70 +60,17 @@ class Layer(NamedTuple):
         return (1.0 - self.at_rest) * self.stress(position)[1][:, None] * rows
 
 
-class Stressed:
-    """What bears an evolved stress in a scene (psph.physics.stress): soils."""
+class Stressed(NamedTuple):
+    """What bears an evolved stress in a scene (psph.physics.stress): soils.
 
-    def __init__(self, scene: "Scene"):
-        self._scene = scene
-        self.tables: dict[int, Any] = {
-            number: table
-            for number, table in enumerate(scene.case.flowing.values())
-            if hasattr(table, "shear_modulus")
-        }
-        self.soils: dict[int, Soil] = {n: one for n, one in self.tables.items() if isinstance(one, Soil)}
+    ``laws``: the different ones that bound a stress (psph.physics.stress.strength); ``diffusion``: how
+    strongly the stress of a soil spreads between neighbours at most, 0 without; ``layers``: how each soil
+    starts that starts under its own weight, by its number.
+    """
 
-    @property
-    def wave_speed(self) -> float:
-        """Of the fastest wave, m/s; 0 without such matter."""
-        return max((table.wave_speed for table in self.tables.values()), default=0.0)
-
-    @cached_property
-    def laws(self) -> tuple[Any, ...]:
-        """The different laws that bound a stress (psph.physics.stress.strength)."""
-        return tuple(dict.fromkeys(self._law(number) for number in self.soils))
-
-    def number_of(self, part: int) -> int:
-        """The number of the law of a part from 1 on, 0 where none bounds its stress."""
-        return 1 + self.laws.index(self._law(part)) if part in self.soils else 0
-
-    def tension_of(self, table) -> float:
-        """The largest mean tension that matter of a table bears, Pa."""
-        return table.tip if isinstance(table, Soil) else math.inf
-
-    def cone_tip_of(self, part: int) -> float:
-        """The mean tension at which the shear strength of a part is gone, Pa; 0 of what bears no shear."""
-        if part not in self.tables:
-            return 0.0
-        friction, cohesion, _ = self.soils[part].pyramid if part in self.soils else (0, 0, 0)
-        return cohesion / friction if friction else NEVER
-
-    def rest_coefficient_of(self, part: int) -> float:
-        """K₀ of the whole stress of a part, that of the water in the pores of a soil with it; 1 of others."""
-        if part not in self.soils:
-            return 1.0
-        soil, census = self.soils[part], self._scene.census
-        water = 0.0
-        if soil.water_level is not None:
-            up = int(np.abs(self._scene.gravity).argmax())
-            ends = np.array([census.lowest[part, up], census.highest[part, up]])
-            low, high = np.sort(-np.sign(self._scene.gravity[up]) * ends)
-            wet = np.clip((soil.water_level - low) / max(high - low, self._scene.spacing), 0.0, 1.0)
-            water = float(wet) * soil.water_density / soil.density
-        return soil.at_rest + (1.0 - soil.at_rest) * water
-
-    @property
-    def diffusion(self) -> float:
-        """How strongly the stress of a soil spreads between neighbours at most; 0 without."""
-        return max((soil.stress_diffusion for soil in self.soils.values()), default=0.0)
-
-    @cached_property
-    def layers(self) -> dict[int, Layer]:
-        """How each soil starts that starts under its own weight, by its number."""
-        if not any(self._scene.gravity):
-            return {}
-        resting = {n: soil for n, soil in self.soils.items() if soil.geostatic}
-        held = columns(self._scene, int(np.abs(self._scene.gravity).argmax())) if resting else None
-        return {n: layer_of(self._scene, n, soil, held) for n, soil in resting.items()}
+    laws: tuple[Any, ...]
+    diffusion: float
+    layers: dict[int, Layer]
 
     def deviator(self, species: np.ndarray, position: np.ndarray) -> np.ndarray:
         """The deviatoric stress at the start, Pa (n, dim(dim + 1)/2), of particles of ``species`` (n,)."""
@@ -141,33 +81,43 @@ class Stressed:
             found[rows] = layer.deviator(position[rows])
         return found
 
-    def _law(self, part: int):
-        scene = self._scene
-        pull = math.hypot(*scene.gravity)
-        up = tuple(-g / pull if pull else 0.0 for g in scene.gravity)
-        return self.soils[part].law(up, pull)
+
+def soils_of(census: Census) -> list[SoilPart]:
+    """The soils of a scene."""
+    return [part for part in census.layout.parts if isinstance(part, SoilPart)]
 
 
-def layer_of(scene: "Scene", number: int, soil: Soil, held) -> Layer:
+def stressed_of(census: Census) -> Stressed:
+    """What bears an evolved stress in a scene."""
+    soils, gravity = soils_of(census), census.layout.gravity
+    laws = tuple(dict.fromkeys(soil.strength(gravity) for soil in soils))
+    diffusion = max((soil.table.stress_diffusion for soil in soils), default=0.0)
+    resting = [soil for soil in soils if soil.table.geostatic] if any(gravity) else []
+    held = columns(census.layout, int(np.abs(gravity).argmax())) if resting else None
+    return Stressed(laws, diffusion, {soil.number: layer_of(census, soil, held) for soil in resting})
+
+
+def layer_of(census: Census, part: SoilPart, held) -> Layer:
     """A soil under its own weight, and that of soils above it, along the axis of which gravity has most; the
     sites are ``held`` as :func:`columns` says."""
-    axis = int(np.abs(scene.gravity).argmax())
-    sign = -math.copysign(1.0, scene.gravity[axis])
-    pull = abs(scene.gravity[axis])
+    layout, number, soil = census.layout, part.number, part.table
+    axis = int(np.abs(layout.gravity).argmax())
+    sign = -math.copysign(1.0, layout.gravity[axis])
+    pull = abs(layout.gravity[axis])
     wet = soil.water_level is not None
     pores, level = (soil.water_density * pull, soil.water_level) if wet else (0.0, 0.0)
-    height = sign * scene.lattice.coordinates(axis)
-    top, nearest = ground(held == number, height, scene.spacing)
-    above = {other: one.density * pull for other, one in scene.stressed.soils.items() if other != number}
+    height = sign * layout.lattice.coordinates(axis)
+    top, nearest = ground(held == number, height, layout.spacing)
+    above = {other.number: other.table.density * pull for other in soils_of(census) if other.number != number}
     weight = soil.density * pull
     loads = np.broadcast_to(0.0, held.shape)  # one soil needs no array for it
     if above:
         replaced = np.where(height < top[..., None], weight, np.where(height < level, pores, 0.0))
-        loads = scene.spacing * burden(held, above, replaced, upwards=sign > 0.0)[nearest]
-    first = np.array([scene.lattice.coordinates(d)[0] for d in range(scene.dimensions)])
-    depth = max(scene.surface_of(number) - float(scene.census.bottom[number]), 0.0)
-    highest = soil.density * math.hypot(*scene.height_gravity) * depth
-    return Layer(axis, sign, first, scene.spacing, top, loads, weight, pores, level, soil.at_rest, highest)
+        loads = layout.spacing * burden(held, above, replaced, upwards=sign > 0.0)[nearest]
+    first = np.array([layout.lattice.coordinates(d)[0] for d in range(layout.dimensions)])
+    depth = max(census.surface_of(number) - float(census.bottom[number]), 0.0)
+    highest = soil.density * math.hypot(*layout.height_gravity) * depth
+    return Layer(axis, sign, first, layout.spacing, top, loads, weight, pores, level, soil.at_rest, highest)
 
 
 def ground(held: np.ndarray, height: np.ndarray, spacing: float) -> tuple[np.ndarray, tuple]:

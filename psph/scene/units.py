@@ -9,12 +9,12 @@ import numpy as np
 from psph.case.errors import dotted
 from psph.case.keys import AXES
 from psph.physics.fluid.friction import friction_step
+from psph.scene.scene import Scene
 from psph.scene.shapes import bounds
 from psph.scene.walls import unheld
 
 if TYPE_CHECKING:
     from psph.case.motion import Motion
-    from psph.scene.scene import Scene
 
 LONGEST_TANK = 300.0
 """Metres: the longest wave flume (the Delta Flume) has 300 m.  Millimetres taken for metres have a
@@ -43,24 +43,24 @@ MOST_UNHELD = 0.5
 """Part of a fluid's columns that may fall past all walls without a warning."""
 
 
-def slips(scene: "Scene") -> Iterator[str]:
+def slips(scene: Scene) -> Iterator[str]:
     """A line for each number that is likely not meant."""
     for kind in (_gravity, _densities, _viscosities, _long_tank, _falls_out):
         yield from kind(scene)
 
 
-def in_millimetres(scene: "Scene", *parts: int) -> str:
+def in_millimetres(scene: Scene, *parts: int) -> str:
     """The guess, to end a message with, that some of ``parts`` are in mm and others in m; or nothing."""
-    sizes = [max(up - low for low, up in zip(*bounds(part.shape))) for part in scene.parts]
+    sizes = [max(up - low for low, up in zip(*bounds(part.shape))) for part in scene.layout.parts]
     space = scene.case.space
     rest = min(sizes)
     if space.lower is not None and space.upper is not None:
         rest = max(up - low for low, up in zip(space.lower, space.upper))
-    found = [scene.key_of(part) for part in sorted(parts) if sizes[part] > THOUSANDFOLD * rest]
+    found = [scene.layout.parts[part].key for part in sorted(parts) if sizes[part] > THOUSANDFOLD * rest]
     return f"; is {' and '.join(found)} given in mm? Lengths are in m" if found else ""
 
 
-def _gravity(scene: "Scene") -> Iterator[str]:
+def _gravity(scene: Scene) -> Iterator[str]:
     pull = float(np.linalg.norm(scene.gravity))
     if pull > STRONGEST:
         yield (
@@ -69,7 +69,7 @@ def _gravity(scene: "Scene") -> Iterator[str]:
         )
 
 
-def _densities(scene: "Scene") -> Iterator[str]:
+def _densities(scene: Scene) -> Iterator[str]:
     for name, fluid in scene.case.fluids.items():
         if not LIGHTEST <= fluid.density <= HEAVIEST:
             than = "lighter than any gas" if fluid.density < LIGHTEST else "heavier than any metal"
@@ -79,7 +79,7 @@ def _densities(scene: "Scene") -> Iterator[str]:
             )
 
 
-def _viscosities(scene: "Scene") -> Iterator[str]:
+def _viscosities(scene: Scene) -> Iterator[str]:
     """A viscosity that shortens the time step far below what sound allows."""
     for name, fluid in scene.case.fluids.items():
         sound = scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
@@ -91,7 +91,7 @@ def _viscosities(scene: "Scene") -> Iterator[str]:
             )
 
 
-def _long_tank(scene: "Scene") -> Iterator[str]:
+def _long_tank(scene: Scene) -> Iterator[str]:
     """Only under gravity: without it lengths may be in any unit."""
     if not any(scene.gravity):
         return
@@ -99,22 +99,23 @@ def _long_tank(scene: "Scene") -> Iterator[str]:
     sizes = (census.highest - census.lowest).max(axis=1) + scene.spacing
     longest = int(sizes.argmax())
     if sizes[longest] > LONGEST_TANK:
+        key = scene.layout.parts[longest].key
         yield (
-            f"{scene.key_of(longest)}.shape: {sizes[longest]:.4g} m long, and no wave flume is longer than "
+            f"{key}.shape: {sizes[longest]:.4g} m long, and no wave flume is longer than "
             f"{LONGEST_TANK:g} m; lengths are in m: if they were meant in mm, divide all of them by 1000"
         )
 
 
-def _falls_out(scene: "Scene") -> Iterator[str]:
+def _falls_out(scene: Scene) -> Iterator[str]:
     """Fluid below which there is no wall, no plane of symmetry and no period: it falls for ever."""
-    axis = int(np.abs(scene.height_gravity).argmax())
-    pull = scene.height_gravity[axis]
+    axis = int(np.abs(scene.layout.height_gravity).argmax())
+    pull = scene.layout.height_gravity[axis]
     if not pull or scene.case.updated:  # a solid hangs on its clamp, or is thrown
         return
     sign = int(math.copysign(1, pull))
-    if (axis, sign) in ((plane.axis, plane.side) for plane in scene.mirror_planes):
+    if (axis, sign) in ((plane.axis, plane.side) for plane in scene.layout.mirror_planes):
         return
-    free = unheld(scene, axis, sign)
+    free = unheld(scene.layout, axis, sign)
     if free > MOST_UNHELD:
         towards = f"{'+' if pull > 0.0 else '−'}{AXES[axis]}"
         yield (
@@ -123,7 +124,7 @@ def _falls_out(scene: "Scene") -> Iterator[str]:
         )
 
 
-def in_degrees(scene: "Scene") -> Iterator[str]:
+def in_degrees(scene: Scene) -> Iterator[str]:
     """A line for each turn that is likely in degrees, or in turns a minute."""
     for loc, parts in scene.case.motions.items():
         for part in parts:

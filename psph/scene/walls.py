@@ -7,24 +7,24 @@ import numpy as np
 
 from psph.composition.mirrors import ABOVE, BELOW
 from psph.scene.lattice import TOLERANCE
-from psph.scene.species import NONE
+from psph.scene.layout import NONE, Layout
 
 Thin = dict[int, tuple[int, tuple[float, ...]]]
 """For a wall that is too thin somewhere: the fewest layers, and a site that has so many."""
 
 
-def layers_needed(scene) -> int:
+def layers_needed(layout: Layout) -> int:
     """Layers that fill the support of a fluid particle at the face of a wall."""
-    reach = scene.kernel.support * scene.case.space.smoothing
+    reach = layout.kernel.support * layout.case.space.smoothing
     return math.ceil(reach - TOLERANCE)
 
 
-def touches_air(scene) -> bool:
+def touches_air(layout: Layout) -> bool:
     """Whether a fluid site has an empty site beside it at the start, walls and periodic images counted."""
-    for first, last in scene.lattice.chunks():
-        held = with_surroundings(scene, first, last, 1)
+    for first, last in layout.lattice.chunks():
+        held = with_surroundings(layout, first, last, 1)
         inner = (slice(1, -1),) * held.ndim
-        fluid = held[inner] < scene.layout.fluids
+        fluid = layout.flows(held[inner])
         for axis in range(held.ndim):
             for beside in (slice(None, -2), slice(2, None)):
                 window = (*inner[:axis], beside, *inner[axis + 1 :])
@@ -33,20 +33,20 @@ def touches_air(scene) -> bool:
     return False
 
 
-def unheld(scene, axis: int, sign: int) -> float:
+def unheld(layout: Layout, axis: int, sign: int) -> float:
     """Part of the lines of sites along ``axis`` with fluid that have no wall beyond it."""
-    lattice, fluids = scene.lattice, scene.layout.fluids
+    lattice = layout.lattice
     place, nowhere = lattice.axes.index(axis), -lattice.counts[axis] - 1
     held = with_fluid = 0
     ends = None  # of the lines so far, where they go on from chunk to chunk
     for first, last in lattice.chunks():
-        found = scene.layout.materials(first, last)
+        found = layout.materials(first, last)
         sites = sign * (np.arange(found.shape[place]) + (0 if place else first))
         along = sites.reshape((-1,) + (1,) * (found.ndim - place - 1))
         far = np.array(
             [
                 np.where(mask, along, nowhere).max(axis=place)
-                for mask in (found < fluids, (found >= fluids) & (found < NONE))
+                for mask in (layout.flows(found), layout.stands(found))
             ]
         )
         ends = far if place or ends is None else np.maximum(ends, far)
@@ -57,7 +57,7 @@ def unheld(scene, axis: int, sign: int) -> float:
     return 1.0 - held / with_fluid if with_fluid else 0.0
 
 
-def thinnest_walls(scene) -> Thin:
+def thinnest_walls(layout: Layout) -> Thin:
     """The walls with fewer layers than needed, by material.
 
     From each wall site that touches a fluid site the wall sites are counted along the axis, away
@@ -65,19 +65,18 @@ def thinnest_walls(scene) -> Thin:
     tip of a round body is not thin.  Of walls that are thick enough there, the sites that touch an empty one
     count in the same way: fluid may come to them.
     """
-    need, wet, dry = layers_needed(scene), Thin(), Thin()
-    if not (scene.walls or scene.case.flowing and scene.case.referred):
+    need, wet, dry = layers_needed(layout), Thin(), Thin()
+    if not (layout.parts.walls or layout.case.flowing and layout.case.referred):
         return wet
-    fluids = scene.layout.fluids
-    for first, last in scene.lattice.chunks():
-        held = with_surroundings(scene, first, last, need)
-        is_wall = (held >= fluids) & (held < NONE)
+    for first, last in layout.lattice.chunks():
+        held = with_surroundings(layout, first, last, need)
+        is_wall = layout.stands(held)
         inner = held[(slice(need, -need),) * held.ndim]
-        for thin, faced in ((wet, held < fluids), (dry, held == NONE)):
+        for thin, faced in ((wet, layout.flows(held)), (dry, held == NONE)):
             layers = _layers(is_wall, faced, need)
             for material in np.unique(inner[layers < need]).tolist():
                 its_layers = np.where(inner == material, layers, need)
-                _keep_thinnest(thin, scene, first, last, material, its_layers)
+                _keep_thinnest(thin, layout, first, last, material, its_layers)
     return dry | wet
 
 
@@ -104,29 +103,29 @@ def _moved(array: np.ndarray, axis: int, step: int, margin: int) -> np.ndarray:
     return array[tuple(window)]
 
 
-def with_surroundings(scene, first: int, last: int, margin: int) -> np.ndarray:
+def with_surroundings(layout: Layout, first: int, last: int, margin: int) -> np.ndarray:
     """Materials of some planes and of ``margin`` sites around them, across periodic edges and in mirrors."""
-    lattice = scene.lattice
-    mirrored = set(_mirrored_sides(scene))
+    lattice = layout.lattice
+    mirrored = set(_mirrored_sides(layout))
     wraps = [
-        period is not None and round(period / scene.spacing) == count
-        for period, count in zip(scene.periods, lattice.counts)
+        period is not None and round(period / layout.spacing) == count
+        for period, count in zip(layout.periods, lattice.counts)
     ]
     nothing = np.full(lattice.shape(0, 1), NONE, np.uint8)
 
     def plane(k: int) -> np.ndarray:
-        if wraps[scene.axis]:
+        if wraps[layout.axis]:
             k %= lattice.planes
-        elif k < 0 and (scene.axis, BELOW) in mirrored:
+        elif k < 0 and (layout.axis, BELOW) in mirrored:
             k = -1 - k
-        elif k >= lattice.planes and (scene.axis, ABOVE) in mirrored:
+        elif k >= lattice.planes and (layout.axis, ABOVE) in mirrored:
             k = 2 * lattice.planes - 1 - k
-        return scene.layout.materials(k, k + 1) if 0 <= k < lattice.planes else nothing
+        return layout.materials(k, k + 1) if 0 <= k < lattice.planes else nothing
 
     held = np.concatenate(
         [
             *(plane(k) for k in range(first - margin, first)),
-            scene.layout.materials(first, last),
+            layout.materials(first, last),
             *(plane(k) for k in range(last, last + margin)),
         ]
     )
@@ -140,11 +139,11 @@ def with_surroundings(scene, first: int, last: int, margin: int) -> np.ndarray:
     return held
 
 
-def _mirrored_sides(scene) -> Iterator[tuple[int, int]]:
+def _mirrored_sides(layout: Layout) -> Iterator[tuple[int, int]]:
     """Axis and side of the lattice's ends at which a mirror stands."""
-    ends = {BELOW: scene.lattice.lower, ABOVE: scene.lattice.upper}
-    for plane in scene.mirror_planes:
-        if abs(ends[plane.side][plane.axis] - plane.at) < 0.5 * scene.spacing:
+    ends = {BELOW: layout.lattice.lower, ABOVE: layout.lattice.upper}
+    for plane in layout.mirror_planes:
+        if abs(ends[plane.side][plane.axis] - plane.at) < 0.5 * layout.spacing:
             yield plane.axis, plane.side
 
 
@@ -153,10 +152,10 @@ def _at(place: int, ends: tuple[int, int], axes: int) -> list[tuple[int, int]]:
     return [ends if k == place else (0, 0) for k in range(axes)]
 
 
-def _keep_thinnest(thin: Thin, scene, first: int, last: int, material: int, layers) -> None:
+def _keep_thinnest(thin: Thin, layout: Layout, first: int, last: int, material: int, layers) -> None:
     site = np.unravel_index(layers.argmin(), layers.shape)
     fewest = int(layers[site])
     if material not in thin or fewest < thin[material][0]:
-        grid = scene.lattice.grid(first, last)
+        grid = layout.lattice.grid(first, last)
         where = tuple(float(np.broadcast_to(x, layers.shape)[site]) for x in grid)
         thin[material] = fewest, where

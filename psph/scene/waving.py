@@ -10,6 +10,7 @@ from psph.case.motion import PADDLES
 from psph.case.paddles import Irregular, OnHinge
 from psph.physics.rigid.paddles import Swings
 from psph.scene.moving import moving_parts
+from psph.scene.scene import Scene
 from psph.scene.shapes import bounds
 from psph.theory.water_waves import HIGHEST_IN_DEPTH, MADSEN, steepest, wave_number
 
@@ -46,10 +47,11 @@ class Waves(NamedTuple):
         return f"walls.{self.wall}.motion.{self.way}"
 
 
-def waves_of(scene) -> Iterator[Waves]:
+def waves_of(scene: Scene) -> Iterator[Waves]:
     """Those of each paddle of a scene."""
     strength = math.hypot(*scene.gravity)
-    for name, wall in scene.walls.items():
+    walls = ((wall.name, wall.table) for wall in scene.layout.parts if wall.is_wall)
+    for name, wall in walls:
         for part in wall.motion or ():
             if part.way in PADDLES:
                 asked = getattr(part, part.way)
@@ -61,7 +63,7 @@ def waves_of(scene) -> Iterator[Waves]:
                     yield Waves(name, part.way, asked, law, 2.0 * math.pi / k, k * asked.depth)
 
 
-def wave_lines(scene) -> Iterator[str]:
+def wave_lines(scene: Scene) -> Iterator[str]:
     """The waves in words, for `explain`."""
     for waves in waves_of(scene):
         _, _, asked, law, length, depths = waves
@@ -82,7 +84,7 @@ def wave_lines(scene) -> Iterator[str]:
         yield from _absorption_lines(scene, asked)
 
 
-def _absorption_lines(scene, asked: Any) -> Iterator[str]:
+def _absorption_lines(scene: Scene, asked: Any) -> Iterator[str]:
     """How a paddle answers to waves that come back."""
     if getattr(asked, "absorb", None) is None:
         return
@@ -94,7 +96,7 @@ def _absorption_lines(scene, asked: Any) -> Iterator[str]:
     yield f"              at most {told.reach:.3g} m from its stroke; forgets a level in {told.memory:.3g} s"
 
 
-def wave_faults(scene) -> Iterator[str]:
+def wave_faults(scene: Scene) -> Iterator[str]:
     """Flaps whose two places of the hinge disagree: by its height over the bed, and by its coordinates.
 
     The bed lies at the foot of the fluids, or the depth below their surface.
@@ -113,7 +115,7 @@ def wave_faults(scene) -> Iterator[str]:
             )
 
 
-def wave_warnings(scene) -> Iterator[str]:
+def wave_warnings(scene: Scene) -> Iterator[str]:
     """What of the waves may not be meant so."""
     for waves in waves_of(scene):
         _, _, asked, _, length, depths = waves
@@ -167,16 +169,16 @@ def _stroke(law: Swings, asked: Any) -> float:
     return 2.0 * lever * (math.sqrt(2.0) * math.hypot(*sizes) if isinstance(asked, Irregular) else sizes[0])
 
 
-def _water(scene) -> tuple[np.ndarray, np.ndarray]:
+def _water(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """The corners of the box around all fluids, m."""
-    fluids, half = scene.layout.fluids, 0.5 * scene.spacing
+    fluids, half = list(scene.layout.parts.flowing), 0.5 * scene.spacing
     return (
-        scene.census.lowest[:fluids].min(axis=0) - half,
-        scene.census.highest[:fluids].max(axis=0) + half,
+        scene.census.lowest[fluids].min(axis=0) - half,
+        scene.census.highest[fluids].max(axis=0) + half,
     )
 
 
-def _depth_warnings(scene, waves: Waves) -> Iterator[str]:
+def _depth_warnings(scene: Scene, waves: Waves) -> Iterator[str]:
     depth, deep = waves.asked.depth, _depth_before(scene, waves)
     if abs(depth - deep) > max(MISTAKEN * deep, scene.spacing):
         yield (
@@ -185,22 +187,22 @@ def _depth_warnings(scene, waves: Waves) -> Iterator[str]:
         )
 
 
-def _depth_before(scene, waves: Waves) -> float:
+def _depth_before(scene: Scene, waves: Waves) -> float:
     """Depth of the fluid at rest, m, ``AHEAD`` of the paddle's middle; of all fluid where none is there."""
     low, high = _water(scene)
     count = max(1, round((high[-1] - low[-1]) / scene.spacing))
-    lower, upper = map(np.array, bounds(scene.walls[waves.wall].shape))
+    lower, upper = map(np.array, bounds(scene.case.walls[waves.wall].shape))
     heading = np.array(waves.asked.heading[: scene.dimensions])
     away = 0.5 * (upper - lower) @ np.abs(heading) + AHEAD * scene.spacing
     column = np.tile(0.5 * (lower + upper) + away * heading, (count, 1))
     column[:, -1] = low[-1] + (np.arange(count) + 0.5) * scene.spacing
-    grid = [scene.folded(d, x.copy()) for d, x in enumerate(column.T)]
-    wet = np.count_nonzero(scene.layout.held(grid, (count,)) < scene.layout.fluids)
+    grid = [scene.layout.folded(d, x.copy()) for d, x in enumerate(column.T)]
+    wet = np.count_nonzero(scene.layout.flows(scene.layout.held(grid, (count,))))
     return float(wet * scene.spacing if wet else high[-1] - low[-1])
 
 
-def _late_warnings(scene, waves: Waves) -> Iterator[str]:
-    [part] = (one for one in scene.walls[waves.wall].motion if getattr(one, one.way) is waves.asked)
+def _late_warnings(scene: Scene, waves: Waves) -> Iterator[str]:
+    [part] = (one for one in scene.case.walls[waves.wall].motion if getattr(one, one.way) is waves.asked)
     if part.start >= (end := scene.case.time.end):
         yield (
             f"{waves.key}: the paddle starts at {part.start:g} s, and the run ends at {end:g} s: no wave is "
@@ -208,9 +210,9 @@ def _late_warnings(scene, waves: Waves) -> Iterator[str]:
         )
 
 
-def _stroke_warnings(scene) -> Iterator[str]:
+def _stroke_warnings(scene: Scene) -> Iterator[str]:
     paddles = {f"walls.{waves.wall}" for waves in waves_of(scene)}
-    for _, key, found in moving_parts(scene) if paddles else ():
+    for _, key, found in moving_parts(scene.census) if paddles else ():
         low, high = _water(scene)
         length = float((high - low)[:-1].max())
         if key in paddles and found.way > length:

@@ -16,7 +16,7 @@ class Clamps:
     """The particles of a rank in the clamps of a ``scene`` that move as they are told."""
 
     def __init__(self, scene, plan, store):
-        self._plan, self._store, self._periods = plan, store, scene.periods
+        self._plan, self._store, self._periods = plan, store, scene.layout.periods
         self._moves = np.array([isinstance(one.motion, MovingClamp) for one in scene.species], bool)
         self._maps = np.zeros((len(plan.rigid), 3, store.dimensions, 1 + store.dimensions))
         self._carry, self._book = settled(carry), settled(book)

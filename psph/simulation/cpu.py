@@ -54,12 +54,12 @@ class Engine:
         self.domain = Domain(
             comm,
             store,
-            Extent(scene.axis, scene.lower, scene.upper, scene.periods),
-            scene.reach.cutoff,
+            Extent(scene.layout.axis, scene.layout.lower, scene.layout.upper, scene.layout.periods),
+            scene.layout.reach.cutoff,
             Travels(plan.ghost_fields, plan.refreshed),
             plan.space.lanes if plan.passes else None,
         )
-        self.skin = Skin(self.domain, scene.reach.skin, plan.planes) if plan.passes else Unlisted()
+        self.skin = Skin(self.domain, scene.layout.reach.skin, plan.planes) if plan.passes else Unlisted()
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         floating = Floating(scene, plan) if plan.floats else None
         paddles = Paddles(scene, plan) if plan.absorbs else None
@@ -75,7 +75,7 @@ class Engine:
             self.poses.maps,
             plan.pose_of if plan.rigid else None,
             self.poses.frame,
-            scene.periods,
+            scene.layout.periods,
             plan.pulls.booked,
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
@@ -84,7 +84,7 @@ class Engine:
         self._potential = settled(potentials)
         self.kinds = tuple(kinds_of(scene, plan, store, self.domain, ledger, self.poses.maps))
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
-        self.wetting = [Wetting(one, plan, store, self.domain, scene.reach) for one in plan.marking]
+        self.wetting = [Wetting(one, plan, store, self.domain, scene.layout.reach) for one in plan.marking]
 
     def of_kind(self, kind: type[Kind]):
         """What the engine has of a kind of matter, or None."""

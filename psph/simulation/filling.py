@@ -9,8 +9,8 @@ from psph.physics.solid.contact import COVER, FACE
 from psph.physics.solid.deformation import REFERENCE
 from psph.physics.stress.deviator import DEVIATOR
 from psph.physics.stress.faces import OF_FACES
+from psph.scene.faces import drawn_faces
 from psph.scene.smooth import smooth_faces
-from psph.scene.solids import drawn_faces
 from psph.simulation.groups import material_value
 
 
@@ -25,7 +25,7 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
         for name in (DEVIATOR.name, f"predicted_{DEVIATOR.name}"):
             block[list(store.rows[name])] = scene.stressed.deviator(species, position).T
     if FACE.name in store:
-        normal, depth = drawn_faces(scene, species, position)
+        normal, depth = drawn_faces(scene.layout, species, position)
         block[list(store.rows[FACE.name])], block[store.rows[COVER.name].start] = normal.T, depth
     if any(field.name in store for field in OF_FACES):
         normal = smooth_faces(scene, species, position)
@@ -37,7 +37,7 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
         field.name: np.array([material_value(s, field.name) for s in scene.species])[species]
         for field in OF_MATERIAL
     }
-    known |= {field.name: scene.lattice.odd(position) for field in OF_SITE}
+    known |= {field.name: scene.layout.lattice.odd(position) for field in OF_SITE}
     known |= {field.name: field.start for field in store.fields.values() if field.start}
     for name, values in known.items():
         if name in store:

@@ -34,10 +34,10 @@ class Floating:
             if isinstance(one.motion, Body):
                 self.body_of[group] = own.index(one.motion)
         pressure = max(one.density for one in scene.species) * scene.sound_speed**2
-        count = int(scene.census.sizes[scene.layout.first_body :].sum())
+        count = int(scene.census.sizes[list(scene.layout.parts.bodies)].sum())
         units = 2.0 ** (BITS - count.bit_length())
         force = pressure * scene.spacing ** (scene.dimensions - 1) / units
-        self.units = (force, force * max(up - low for low, up in zip(scene.lower, scene.upper)))
+        self.units = (force, force * max(up - low for low, up in zip(scene.layout.lower, scene.layout.upper)))
         self._scene, self._plan = scene, plan
         self.contacts: Contacts | None = None
 

@@ -52,7 +52,7 @@ def split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
 def has_couples(scene) -> bool:
     """Whether the push of a viscous fluid on a wall or a body is asked for, and what has a moment; or that of
     elastic solids on bodies, whose contacts turn the normals of their faces."""
-    if scene.elastic_solids and not scene.case.flowing:
+    if scene.starts.solids and not scene.case.flowing:
         return bool(scene.case.bodies)
     rubbed = any(one.loaded and one.rubs for one in scene.species if not one.is_fluid)
     return scene.dimensions > 1 and rubbed and any(one.rubs for one in scene.species if one.is_fluid)

@@ -50,9 +50,9 @@ class Meetings:
 
     def __init__(self, scene, plan, rows, maps: np.ndarray):
         self._maps, self._spacing = maps, scene.spacing
-        self._d, self._periods = scene.dimensions, scene.periods
-        self._middle = 0.5 * (np.array(scene.lower) + np.array(scene.upper))
-        periods = product(*((0.0,) if p is None else (-p, 0.0, p) for p in scene.periods))
+        self._d, self._periods = scene.dimensions, scene.layout.periods
+        self._middle = 0.5 * (np.array(scene.layout.lower) + np.array(scene.layout.upper))
+        periods = product(*((0.0,) if p is None else (-p, 0.0, p) for p in scene.layout.periods))
         self._shifts = [np.array(one) for one in periods]
         self._obstacles = [*obstacles_of(scene, plan, rows)]
         bodies = sorted((one for one in self._obstacles if one.body >= 0), key=attrgetter("body"))

@@ -84,15 +84,19 @@ class Plane(NamedTuple):
 def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
     """Bodies, walls that stay or move as a whole, and mirrors; ``rows`` are the poses of the bodies."""
     ends = {}
-    for part in range(scene.layout.first_wall, len(scene.parts)):
-        key, motion, shape = scene.key_of(part), scene.species_in_motion[part], scene.parts[part].shape
+    for part in scene.layout.parts.boundaries:
+        key, motion, shape = (
+            scene.layout.parts[part].key,
+            scene.census.motions[part],
+            scene.layout.parts[part].shape,
+        )
         pose = int(plan.pose_of[part]) if is_rigid(motion) else -1
         if isinstance(motion, Body):
             ends[row := rows.index(pose)] = bounds(shape)
             yield Obstacle(key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose)
         elif isinstance(motion, Fixed) or is_rigid(motion):
             yield Obstacle(key, shape, tips_of(shape, scene.spacing), -1, pose)
-    for one in scene.mirror_planes:
+    for one in scene.layout.mirror_planes:
         cut = [row for row, (low, up) in ends.items() if low[one.axis] < one.at < up[one.axis]]
         plane = Plane(one.axis, one.at, 1 if one.side == BELOW else -1)
         yield Obstacle("a mirror", plane, None, cuts=tuple(cut))
@@ -114,10 +118,10 @@ def tips_of(shape: Shape, spacing: float, on_faces=()) -> Tips:
 
 def under_faces(scene, part: int) -> Iterator[np.ndarray]:
     """Points on the faces of a body, under its outer particles, m (n, dim), by chunks."""
-    shape = scene.parts[part].shape
-    for begin, end in scene.lattice.chunks():
+    shape = scene.layout.parts[part].shape
+    for begin, end in scene.layout.lattice.chunks():
         held = scene.layout.materials(begin, end) == part
-        grid = scene.lattice.grid(begin, end)
+        grid = scene.layout.lattice.grid(begin, end)
         sites = np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1)
         away, normal = faces_of(shape, sites)
         outer = away > -LAYER * scene.spacing

@@ -316,7 +316,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     refuse_unwritten(scene, called, (*computed, *told))
     seen = tuple(field for name, field in fields.items() if name in own)
     imaged = by_name(OF_EVERY_SCENE, seen).values()
-    if scene.mirror_planes:
+    if scene.layout.mirror_planes:
         refuse_without_image(scene, called, fields)
     told = {name for name in told if name in own or name not in ONLY_READ}
     told |= {LOAD.name} if loaded.any() else set()
@@ -350,12 +350,12 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         ),
         bearing=np.array([one.bearing for one in scene.species], bool),
         law_reasons=tuple(own_laws.values()),
-        planes=scene.mirror_planes,
-        mirrors=mirrors_of(scene.mirror_planes, scene.gravity, scene.reach.cutoff, imaged),
+        planes=scene.layout.mirror_planes,
+        mirrors=mirrors_of(scene.layout.mirror_planes, scene.gravity, scene.layout.reach.cutoff, imaged),
         precision=case.precision,
-        space=fixed_point(scene.smoothing_length, scene.periods)
+        space=fixed_point(scene.smoothing_length, scene.layout.periods)
         if case.precision == "mixed"
-        else Metres(tuple(scene.periods)),
+        else Metres(tuple(scene.layout.periods)),
         smoothing_length=scene.smoothing_length,
         constants=shared | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
         fields=fields,
@@ -373,12 +373,12 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         **movement._asdict(),
         loaded=loaded if loaded.any() else None,
         body_step=body_step(scene) if scene.case.bodies else None,
-        solids=scene.elastic_solids,
+        solids=scene.starts.solids,
         solid_of=np.array(
             [NO_SOLID if one.elastic is None else one.elastic for one in scene.species], np.uint8
         ),
         solid_smoothing_length=SMOOTHING * scene.spacing,
-        regions=scene.regions,
+        regions=scene.layout.regions,
         cfl=case.time.cfl,
         fixed_step=case.time.step,
         extremes=Extremes(

@@ -14,7 +14,7 @@ class Population:
 
     def __init__(self, scene, plan, domain):
         self.scene, self.plan, self.domain = scene, plan, domain
-        self.next_id, self.asked = int(scene.counts().sum()), 0.0
+        self.next_id, self.asked = int(scene.census.counts.sum()), 0.0
 
     def renew(self, time: float) -> None:
         """Take out and let in what the regions say up to ``time``, s; new lists have to follow."""

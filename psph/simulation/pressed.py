@@ -12,7 +12,7 @@ from psph.formula import helper
 from psph.physics.motion import ANCHOR, COUPLE, WORK, is_rigid
 from psph.physics.rigid.pose import PLACE, VELOCITY
 from psph.physics.solid.contact import FACE, FACE_RATE, TURNING
-from psph.scene.solids import drawn_faces
+from psph.scene.faces import drawn_faces
 from psph.simulation.kinds import Kind
 from psph.vectors import affine, at, dot, put, scale, subtract, zero_like
 
@@ -36,7 +36,7 @@ class Pressed(Kind):
         s = self._store
         columns = s.low + np.flatnonzero(self._own[s.group[s.inner]])
         place = np.stack([of[columns] for of in s[ANCHOR.name]], axis=1)
-        normal, _ = drawn_faces(self._scene, s.group[columns], place)
+        normal, _ = drawn_faces(self._scene.layout, s.group[columns], place)
         known = (normal != 0.0).any(axis=1)
         self._columns = columns[known].astype(np.uint64)
         self._drawn = tuple(np.ascontiguousarray(normal[known].T))

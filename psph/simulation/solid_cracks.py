@@ -20,7 +20,7 @@ class Cracks:
     """
 
     def __init__(self, scene, plan, store):
-        self.store, self.periods = store, scene.periods
+        self.store, self.periods = store, scene.layout.periods
         self._solids = plan.solids
         self._seeds = [table.seed for table in scene.case.solids.values()]
         self._critical = np.array([one.critical_stretch for one in plan.solids])

@@ -10,7 +10,7 @@ from psph.engine.settled import settled
 from psph.engine.simd import spread, width_of
 from psph.engine.threads import in_threads
 from psph.physics.solid.contact import BORNE, FACE, FACE_RATE, HOLD, SLIDING, SLIP, TURNING
-from psph.scene.solids import drawn_faces
+from psph.scene.faces import drawn_faces
 from psph.simulation.solid_pairs import reference_pair
 from psph.vectors import (
     add,
@@ -51,7 +51,7 @@ class SolidFaces:
         """The faces of the particles in ``columns`` as they were drawn."""
         s, count = self._store, len(columns)
         place = np.stack([of[columns] for of in s["reference"]], axis=1)
-        normal, _ = drawn_faces(self._scene, s.group[columns], place)
+        normal, _ = drawn_faces(self._scene.layout, s.group[columns], place)
         self._columns, self._normal = columns, tuple(np.ascontiguousarray(normal.T))
         self._inverse = tuple(np.zeros(count) for _ in range(s.dimensions**2))
 

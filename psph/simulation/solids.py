@@ -28,6 +28,7 @@ from psph.physics.solid.deformation import (
 from psph.physics.solid.material import is_damped, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
+from psph.scene.parts.order import among
 from psph.simulation.kinds import Kind
 from psph.simulation.plan import NO_SOLID
 from psph.simulation.solid_memory import Memory
@@ -175,7 +176,7 @@ class Solids(Kind):
             self._bring_of(table, "reference")
         if unknown and SHARE.name in self.store:
             every = padded_lists(*whole, Metres.lanes)
-            held = self.store.group[self._columns] >= self.scene.layout.movers
+            held = ~among(self.store.group[self._columns], self.scene.layout.parts.movers)
             found = shares_of(self._weights, tables[0], every, held, self._bring_of)
             shared = np.array([one.shared for one in self.plan.solids])[self._matter.number]
             self.store[SHARE.name][self._columns] = np.where(shared, found, 1.0)
@@ -322,7 +323,7 @@ class Solids(Kind):
         store, scene = self.store, self.scene
         body = self._solid_of[store.group[store.inner]]
         own = body != NO_SOLID
-        extent = Extent(scene.axis, scene.lower, scene.upper, scene.periods)
+        extent = Extent(scene.layout.axis, scene.layout.lower, scene.layout.upper, scene.layout.periods)
         reference = store.shown("reference")[own]
         ids = store.id[store.inner][own]
         return reference_rows(self.comm, extent, self.support, ids, reference, body[own])

@@ -131,9 +131,9 @@ def test_what_is_near_the_bounds_is_taken(tmp_path):
     """The control: the refusals do not reach what can be computed."""
     assert not check(Scene(draft(tmp_path, TANK)))
     far = WATER.replace("[0.0, 0.0]", "[1e6, 0.0]").replace("[1.0, 0.5]", "[1000001.0, 0.5]")
-    assert Scene(draft(tmp_path, far)).counts().sum() == 50
+    assert Scene(draft(tmp_path, far)).census.counts.sum() == 50
     huge = SQUARE.replace("0.1", "1e19").replace("1.0, 1.0", "1e20, 1e20")
-    assert Scene(draft(tmp_path, huge)).counts().sum() == 100
+    assert Scene(draft(tmp_path, huge)).census.counts.sum() == 100
     assert draft(tmp_path, 'title = "Éau, 水"\n' + WATER).title == "Éau, 水"
     short = draft(tmp_path, WATER, "time.end=1e-30")
     assert draft(tmp_path, short.to_toml()).output == short.output

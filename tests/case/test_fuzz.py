@@ -112,8 +112,8 @@ def understood(path, folder):
     again.write_text(case.to_toml(), encoding="utf-8")
     assert load(again).model_dump() == case.model_dump()
     scene = Scene(case)
-    if scene.counts().sum() < 5000:
-        made = scene.particles(0, scene.planes, 0)
+    if scene.census.counts.sum() < 5000:
+        made = scene.particles(0, scene.layout.planes, 0)
         assert all(np.isfinite(column).all() for column in vars(made).values())
 
 
@@ -231,7 +231,7 @@ def test_what_is_accepted_starts(examples, tmp_path, starts):
         except CaseError:
             tally["refused"] += 1
             return
-        if scene.counts().sum() > FEW:
+        if scene.census.counts.sum() > FEW:
             tally["large"] += 1
             return
         end, said = starts(path)

@@ -8,7 +8,7 @@ from drafts import draft, refusal
 
 from psph.case.motion import motion_of
 from psph.scene import Scene, check
-from psph.scene.moving import motion_lines
+from psph.scene.motion_checks import motion_lines
 
 SCENE = """
 space = { dimensions = 2, spacing = 0.1 }

@@ -25,11 +25,14 @@ poisson = 0.25
 def test_the_parts_of_such_a_solid(tmp_path):
     scene = Scene(draft(tmp_path, BLOCK))
     moving, held = scene.species
-    assert scene.names == ("block", "block (clamped)") and scene.key_of(1) == "solids.block.clamped"
+    assert (
+        scene.layout.names == ("block", "block (clamped)")
+        and scene.layout.parts[1].key == "solids.block.clamped"
+    )
     assert moving.mobile and not held.mobile and moving.shear_modulus == held.shear_modulus == 4e5
-    assert scene.census.counts.sum() == 100 and scene.velocities[1] == (0.0, 0.0)
+    assert scene.census.counts.sum() == 100 and scene.speeds.velocities[1] == (0.0, 0.0)
     assert scene.sound_speed == pytest.approx((1.2e6 / 1000.0) ** 0.5)
-    assert not scene.elastic_solids and moving.elastic is held.elastic is None
+    assert not scene.starts.solids and moving.elastic is held.elastic is None
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def error(run, name, time):
 def solution(run):
     """The exact solution of a run and its setting."""
     scene = Scene(load(run.folder / "case.toml"))
-    return scene.exact, scene.setting
+    return scene.layout.exact, scene.starts.setting
 
 
 # Walls without slip

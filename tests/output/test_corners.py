@@ -61,7 +61,7 @@ def test_a_gate_bears_the_pressure_on_its_face(tmp_path, dimensions):
     for axis in "xyz"[:dimensions]:
         parts = sum(read[f"{name}.force_{axis}"] for name in boxes)
         assert parts == pytest.approx(read[f"all.force_{axis}"], abs=1e-9 * side)
-    own = store.shown("group") == scene.names.index("gate")
+    own = store.shown("group") == scene.layout.names.index("gate")
     alone = (store.shown("mass")[own] * store.shown("load")[own, 0]).sum()
     assert alone < 0.96 * side * width
 
@@ -70,7 +70,7 @@ def test_a_gate_above_the_floor_shares_nothing_with_it(tmp_path):
     raised = "walls.gate.shape.box.lower=[0.6, 0.2]"
     simulation, scene = started(draft(tmp_path, tank(2)[0], raised))
     read, store = readings(simulation, scene), simulation.store
-    own = store.shown("group") == scene.names.index("gate")
+    own = store.shown("group") == scene.layout.names.index("gate")
     alone = (store.shown("mass")[own] * store.shown("load")[own, 0]).sum()
     assert alone > 100.0 and read["gate.force_x"] == pytest.approx(alone, rel=1e-12)
 

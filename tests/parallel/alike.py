@@ -190,7 +190,7 @@ def compare(path, steps):
         comm.Free()
     return {
         "scene": path.stem,
-        "particles": int(scene.counts().sum()),
+        "particles": int(scene.census.counts.sum()),
         "rebuilds": rebuilds,
         "digests": digests,
     }

@@ -23,7 +23,7 @@ def memory(what):
 
 path, comm = Path(sys.argv[1]), MPI.COMM_WORLD
 scene = Scene(load(path))
-plan, particles = make_plan(scene), int(scene.counts().sum())
+plan, particles = make_plan(scene), int(scene.census.counts.sum())
 import h5py  # what a frame needs, apart from its bytes
 compile_ahead(scene, plan, comm)
 open("/proc/self/clear_refs", "w").write("5")  # forget the peak so far

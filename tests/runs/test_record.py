@@ -56,9 +56,9 @@ def test_no_height_across_a_period(tmp_path):
     assert moved[-1] > 0.8  # once around
     assert log["kinetic_energy"][-1] == pytest.approx(0.5 * mass * (3.0 + 5.0 * 0.3) ** 2, rel=1e-3)
     assert np.abs(np.diff(log["potential_energy"])).max() < 1e-9
-    assert Scene(case).height_gravity == (0.0, 0.0)
+    assert Scene(case).layout.height_gravity == (0.0, 0.0)
     walled = draft(tmp_path, FALLING, 'space.periodic=["y"]')
-    assert Scene(walled).height_gravity == (5.0, 0.0)
+    assert Scene(walled).layout.height_gravity == (5.0, 0.0)
 
 
 def test_a_frame_holds_positions_inside_the_periods(tmp_path):

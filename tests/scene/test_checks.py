@@ -467,7 +467,7 @@ def test_the_derived_speed_of_sound_is_that_of_the_driven_flow(tmp_path):
     """Along a period nothing falls: the length of the channel is no height."""
     for text in (CHANNEL, CHANNEL.replace("[1.0, ", "[2.0, ")):
         scene = Scene(draft(tmp_path, text))
-        assert scene.undriven_speed == 0.0 and scene.up == (0.0, 0.0)
+        assert scene.speeds.undriven == 0.0 and scene.layout.up == (0.0, 0.0)
         assert scene.sound_speed == pytest.approx(10 * 0.1 / (8 * 0.01))
     assert checked(tmp_path, CHANNEL) == []
     creeping = Scene(draft(tmp_path, CHANNEL, "fluids.water.viscosity=1.0"))
@@ -496,7 +496,7 @@ FREE = ("walls.plates.condition=mirror", "walls.plates.no_slip=false")
 )
 def test_how_fast_a_flow_between_what_holds_it_back_can_be(tmp_path, sets, speed):
     scene = Scene(draft(tmp_path, CHANNEL, *sets))
-    assert driven_speed(scene) == pytest.approx(speed)
+    assert driven_speed(scene.census) == pytest.approx(speed)
     assert scene.expected_speed == pytest.approx(speed)
 
 
@@ -504,8 +504,8 @@ def test_a_slope_has_a_height_across_its_flow_alone(tmp_path):
     """Gravity across and along: the water is as deep as it is, and its pressure is that of its depth."""
     slope = ("physics.gravity=[0.5, -9.8]", "fluids.water.pressure=hydrostatic", "fluids.water.viscosity=0.1")
     scene = Scene(draft(tmp_path, CHANNEL, *slope))
-    assert scene.up == (0.0, 1.0) and scene.undriven_speed == pytest.approx((2 * 9.8 * 1.0) ** 0.5)
-    density = scene.starts[0].density(np.array([[0.1, 0.5], [0.9, 0.5]]))
+    assert scene.layout.up == (0.0, 1.0) and scene.speeds.undriven == pytest.approx((2 * 9.8 * 1.0) ** 0.5)
+    density = scene.starts.states[0].density(np.array([[0.1, 0.5], [0.9, 0.5]]))
     assert density[0] == density[1] == pytest.approx(1000.0 + 4900.0 / scene.sound_speed**2)
 
 

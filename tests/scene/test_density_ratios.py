@@ -29,7 +29,7 @@ shape.box = { lower = [0.0, -0.06], upper = [0.5, 0.0] }
 
 def starting_pressure(scene, fluid):
     """Heights and pressures of a fluid's particles at the start."""
-    found = scene.particles(0, scene.planes, 0)
+    found = scene.particles(0, scene.layout.planes, 0)
     own, species = found.material == fluid, scene.species[fluid]
     p = species.law.pressure(found.density[own], species.density, scene.sound_speed)
     return found.position[own][:, 1], p
@@ -80,7 +80,7 @@ def test_a_body_between_two_fluids_is_told_to_continue_one(tmp_path):
 
 
 def test_the_height_of_a_surface_is_half_a_spacing_above_its_particles(tmp_path):
-    starts = Scene(draft(tmp_path, LAYERS)).starts
+    starts = Scene(draft(tmp_path, LAYERS)).starts.states
     assert all(s.layer.level for s in starts)
     assert [s.layer.surface for s in starts] == pytest.approx([0.3, 0.6, 0.3])
     assert [s.layer.above for s in starts] == pytest.approx([9.8 * 800.0 * 0.3, 0.0, 9.8 * 800.0 * 0.3])

@@ -14,7 +14,7 @@ REACH = 0.056
 @pytest.fixture(scope="module")
 def dam():
     scene = Scene(load("run/cases/dam_break.toml"))
-    return scene, scene.particles(0, scene.planes, 0)
+    return scene, scene.particles(0, scene.layout.planes, 0)
 
 
 def test_only_walls_near_the_column_carry_its_pressure(dam):
@@ -39,7 +39,7 @@ def test_the_column_s_pressure_goes_on_in_the_floor(dam):
 
 def test_it_does_not_depend_on_where_the_planes_are_cut(dam):
     scene, whole = dam
-    cut = scene.planes // 3
+    cut = scene.layout.planes // 3
     first = scene.particles(0, cut, 0)
-    second = scene.particles(cut, scene.planes, len(first.id))
+    second = scene.particles(cut, scene.layout.planes, len(first.id))
     assert np.array_equal(np.concatenate([first.density, second.density]), whole.density)

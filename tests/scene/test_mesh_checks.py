@@ -123,7 +123,7 @@ def test_a_mesh_in_millimetres_is_refused_before_its_sites_are_visited(tmp_path,
     """A cube of 0.2 m that is 200 m long: 8e9 sites, which are fewer than a lattice may have."""
     put(tmp_path, trimesh.creation.box(bounds=[[0, 0, 0], [200, 200, 200]]))
     sets = [f"{key}.scale=1.0" for key in (KEY.replace("[0]", ".0"), NOT[1])]
-    monkeypatch.setattr("psph.scene.meshes.report.sites_in", None)  # nobody asks
+    monkeypatch.setattr("psph.scene.census.sites_in", None)  # nobody asks
     [line] = refused(tmp_path, POOL, *sets)
     assert "is 200 x 200 x 200 m in size, 133 times the rest of the scene; lengths are in m: was" in line
     assert line.endswith("give scale = 0.001")
@@ -241,7 +241,7 @@ def test_a_scene_without_a_mesh_loads_nothing_for_it():
         text=True,
         timeout=60,
     )
-    assert job.stdout.strip() == "['psph.scene.meshes.report']", job.stderr
+    assert job.stdout.strip() == "['psph.scene.meshes.drawn', 'psph.scene.meshes.report']", job.stderr
 
 
 def test_a_hull_whose_faces_go_through_sites_is_told(tmp_path):

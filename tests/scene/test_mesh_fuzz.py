@@ -63,7 +63,7 @@ def test_damaged_files(ending, examples, tmp_path, capsys):
             scene = Scene(draft(tmp_path, text.replace("scale", f"{more}scale")))
             check(scene)
             assert all("nan" not in line for line in described(scene))
-            assert np.isfinite(scene.particles(0, scene.planes, 0).position).all()
+            assert np.isfinite(scene.particles(0, scene.layout.planes, 0).position).all()
             tally["accepted"] += 1
         except CaseError as error:
             assert error.lines

@@ -50,8 +50,8 @@ def test_parts_are_the_whole(tmp_path, monkeypatch, text, cuts):
     whole = everything(scene(tmp_path, text))
     monkeypatch.setattr(lattices, "SITES_AT_ONCE", 40)
     parted = scene(tmp_path, text)
-    before = np.concatenate([[0], np.cumsum(parted.counts())])
-    ends = [0, *cuts, parted.planes]
+    before = np.concatenate([[0], np.cumsum(parted.census.counts)])
+    ends = [0, *cuts, parted.layout.planes]
     parts = [parted.particles(a, b, int(before[a])) for a, b in zip(ends, ends[1:])]
     for name, array in vars(whole).items():
         joined = np.concatenate([getattr(part, name) for part in parts])

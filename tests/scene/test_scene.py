@@ -26,21 +26,21 @@ def scene(folder, text=WATER, *overrides):
 
 def test_the_domain_is_found_from_the_shapes(tmp_path):
     tank = scene(tmp_path, TANK)
-    assert tank.lower == pytest.approx((-0.3, -0.3))
-    assert tank.upper == pytest.approx((1.3, 0.7))
-    assert tank.periods == (None, None)
-    assert tank.axis == 0
-    assert tank.planes == 16
+    assert tank.layout.lower == pytest.approx((-0.3, -0.3))
+    assert tank.layout.upper == pytest.approx((1.3, 0.7))
+    assert tank.layout.periods == (None, None)
+    assert tank.layout.axis == 0
+    assert tank.layout.planes == 16
 
 
 def test_a_periodic_axis_has_its_length(tmp_path):
     periodic = scene(tmp_path, PERIODIC)
-    assert (periodic.lower, periodic.upper) == ((0.0, 0.0), (1.0, 2.0))
-    assert periodic.periods == (1.0, None)
+    assert (periodic.layout.lower, periodic.layout.upper) == ((0.0, 0.0), (1.0, 2.0))
+    assert periodic.layout.periods == (1.0, None)
 
 
 def test_the_slab_axis_can_be_given(tmp_path):
-    assert scene(tmp_path, WATER, "parallel.axis=y").axis == 1
+    assert scene(tmp_path, WATER, "parallel.axis=y").layout.axis == 1
 
 
 def test_smoothing_and_kernel(tmp_path):
@@ -53,7 +53,7 @@ def test_smoothing_and_kernel(tmp_path):
 @pytest.mark.parametrize("cut", [7, 1 << 20])
 def test_counts_are_the_particles_of_each_plane(tmp_path, monkeypatch, cut):
     monkeypatch.setattr(lattices, "SITES_AT_ONCE", cut)
-    counts = scene(tmp_path, TANK).counts()
+    counts = scene(tmp_path, TANK).census.counts
     assert counts.dtype == np.int64
     assert counts.tolist() == [10] * 3 + [8] * 10 + [10] * 3
 
@@ -67,7 +67,7 @@ def test_the_expected_speed_is_free_fall_over_the_height(tmp_path):
 def test_height_is_along_gravity(tmp_path):
     sideways = scene(tmp_path, WATER, "physics.gravity=[9.8, 0.0]")
     assert sideways.expected_speed == pytest.approx((2 * 9.8 * 1.0) ** 0.5)
-    assert sideways.up == pytest.approx((-1.0, 0.0))
+    assert sideways.layout.up == pytest.approx((-1.0, 0.0))
 
 
 @pytest.mark.parametrize(

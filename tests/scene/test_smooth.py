@@ -26,7 +26,7 @@ ramp.shape.polygon.points = [[1.0, 0.0], [1.7, 0.7], [1.7, -0.2], [1.0, -0.2]]
 
 def normals(scene, name, *places):
     """Of particles of a wall at these places."""
-    species = np.full(len(places), scene.names.index(name))
+    species = np.full(len(places), scene.layout.names.index(name))
     return np.abs(smooth_faces(scene, species, np.array(places)))
 
 

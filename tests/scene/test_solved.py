@@ -6,7 +6,7 @@ from scene.test_checks import refused
 
 from psph.theory.solutions.catalogue import asked_of_fluid
 from psph.theory.solutions.channel import Poiseuille
-from psph.theory.solutions.setting import Setting
+from psph.theory.solutions.setting import Surroundings
 from psph.theory.solutions.still import Hydrostatic
 from psph.theory.solutions.vortices import TaylorGreen
 
@@ -28,7 +28,15 @@ surface = 1.0
 
 
 def test_what_solutions_ask_of_a_fluid():
-    setting = Setting(2, 1000.0, 0.1, 10.0, (0.1, -9.81), (0.0, 0.0), (1.0, 1.0), (1.0, None))
+    setting = Surroundings(
+        dimensions=2,
+        density=1000.0,
+        viscosity=0.1,
+        gravity=(0.1, -9.81),
+        lower=(0.0, 0.0),
+        upper=(1.0, 1.0),
+        periods=(1.0, None),
+    )
     assert asked_of_fluid(Hydrostatic(1.0), setting) == ("density",)
     assert asked_of_fluid(Poiseuille(0.0, 1.0), setting) == ("viscosity",)
     assert asked_of_fluid(TaylorGreen(1.0, 1.0), setting) == ("density", "viscosity")

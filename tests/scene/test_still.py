@@ -58,7 +58,7 @@ class Pressures:
     def __init__(self, folder, text, *keys, gravity=(0.0, -G)):
         head = HEAD.format(dim=len(gravity), gravity=list(gravity))
         self.scene = Scene(draft(folder, head + text, *keys))
-        self.found = self.scene.particles(0, self.scene.planes, 0)
+        self.found = self.scene.particles(0, self.scene.layout.planes, 0)
         self.p = np.zeros(len(self.found.id))
         for n, one in enumerate(self.scene.species):
             rows = self.found.material == n

@@ -287,7 +287,7 @@ inertia = 0.25
 centre = [0.71, 0.6]
 """
     )
-    plate, ring = Scene(draft(tmp_path, text)).rigid_bodies
+    plate, ring = Scene(draft(tmp_path, text)).census.rigid_bodies
     assert plate.mass == pytest.approx(700.0 * 0.03)
     assert plate.centre == pytest.approx((0.35, 0.55, 0.0))
     assert plate.inertia[8] == pytest.approx(21.0 * (0.09 + 0.01) / 12.0)

@@ -63,7 +63,7 @@ def test_a_central_force_swings_a_body_about_its_centre(tmp_path):
 
 def test_the_mass_of_a_body_is_shared_so_that_its_centre_is_that_of_the_case(tmp_path):
     scene = Scene(draft(tmp_path, ORBIT))
-    [shares], particles = shares_of(scene), scene.particles(0, scene.planes, 0)
+    [shares], particles = shares_of(scene), scene.particles(0, scene.layout.planes, 0)
     x = particles.position[particles.material == 1]
     mass = shares[0] + x @ shares[1:]
     assert mass.sum() == pytest.approx(50.0)

@@ -129,7 +129,7 @@ def _conserved(scene, log: dict, first: dict, last: dict, speed: float) -> dict[
     found["momentum"] = float(
         np.linalg.norm(last["velocity"].sum(axis=0) - first["velocity"].sum(axis=0)) / pace
     )
-    if not any(scene.periods):
+    if not any(scene.layout.periods):
         found["angular"] = float(np.linalg.norm(_spin(last) - _spin(first)) / max(_lever(first), 1e-300))
     return found
 
@@ -184,11 +184,11 @@ def _of_exact(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
 
 
 def _of_energy(run: Run, scene, fluids) -> Iterator[tuple[str, float]]:
-    if not hasattr(scene.exact, "velocity"):
+    if not hasattr(scene.layout.exact, "velocity"):
         return
     ratios = []
     for time, fluid in zip(run.times, fluids):
-        theirs = scene.exact.velocity(fluid["position"], time, scene.setting)
+        theirs = scene.layout.exact.velocity(fluid["position"], time, scene.starts.setting)
         if (expected := float((theirs**2).sum())) > 0.0:
             ratios.append(float((fluid["velocity"] ** 2).sum()) / expected)
     if ratios:
@@ -219,7 +219,7 @@ def _of_cavity(run: Run, case, fluids) -> Iterator[tuple[str, float]]:
     if case.name != CAVITY:
         return
     lid = max(np.linalg.norm(wall.velocity) for wall in case.walls.values())
-    squares, periods = [], Scene(case).periods
+    squares, periods = [], Scene(case).layout.periods
     for axis, name in ((0, "u"), (1, "v")):
         along, theirs = ghia(path_of(case).parent / f"experiments/ghia_1982_{name}.csv")
         at = np.full((len(along), 2), 0.5 * SIDE)

@@ -22,16 +22,16 @@ def tree_of(scene, position: np.ndarray):
     """A tree of places that knows the scene's periods."""
     from scipy.spatial import cKDTree
 
-    if not any(scene.periods):
+    if not any(scene.layout.periods):
         return cKDTree(position)
-    periods = [period or 0.0 for period in scene.periods]
+    periods = [period or 0.0 for period in scene.layout.periods]
     return cKDTree(_wrapped(scene, position), boxsize=periods)
 
 
 def _wrapped(scene, position: np.ndarray) -> np.ndarray:
     """Places from the lower corner on, within the periods."""
-    away = position - np.array(scene.lower)
-    for d, period in enumerate(scene.periods):
+    away = position - np.array(scene.layout.lower)
+    for d, period in enumerate(scene.layout.periods):
         if period:
             away[:, d] %= period
             away[away[:, d] >= period, d] = 0.0
@@ -39,7 +39,7 @@ def _wrapped(scene, position: np.ndarray) -> np.ndarray:
 
 
 def _asked(scene, position: np.ndarray) -> np.ndarray:
-    return _wrapped(scene, position) if any(scene.periods) else position
+    return _wrapped(scene, position) if any(scene.layout.periods) else position
 
 
 def nearest(scene, position: np.ndarray) -> np.ndarray:
@@ -66,7 +66,7 @@ def voids(scene, every: np.ndarray, fluid: np.ndarray) -> float:
     dx = scene.spacing
     ends = [
         (low, low + period) if period else (x.min() - 2.0 * dx, x.max() + 2.0 * dx)
-        for x, low, period in zip(fluid.T, scene.lower, scene.periods)
+        for x, low, period in zip(fluid.T, scene.layout.lower, scene.layout.periods)
     ]
     counts = [max(round(FINE * (up - low) / dx), 1) for low, up in ends]
     if np.prod(np.array(counts, float)) > MOST_PLACES:
@@ -76,7 +76,7 @@ def voids(scene, every: np.ndarray, fluid: np.ndarray) -> float:
     empty = tree_of(scene, every).query(_asked(scene, places))[0] > HOLLOW * dx
     parts, _ = label(empty.reshape(counts))
     outside = {0}
-    for axis, period in enumerate(scene.periods):
+    for axis, period in enumerate(scene.layout.periods):
         if not period:
             outside |= set(np.take(parts, (0, -1), axis=axis).ravel().tolist())
     enclosed = np.count_nonzero(~np.isin(parts, list(outside)))

@@ -61,21 +61,21 @@ def operations(scene, plan) -> float:
     of_passes = 0.0
     if plan.passes:
         around = sites_within(scene, scene.kernel.support * scene.smoothing_length)
-        of_passes = around * plan.flops_per_pair(scene.periods)
+        of_passes = around * plan.flops_per_pair(scene.layout.periods)
     if not plan.solids:
         return of_passes
     h = plan.solid_smoothing_length
     own, d = kernel(KERNEL, h, scene.dimensions), scene.dimensions
     apart = (0.5 * h / d**0.5,) * d
     shown = {"reference": apart, "position": apart, "flux": (1.0,) * d * d}
-    gradient = Gradient(scene.periods)
+    gradient = Gradient(scene.layout.periods)
 
     def first(weighed, i, j):
-        pair = reference_pair(Weights(weighed, scene.periods, 0.0), i, j, 0.0)
+        pair = reference_pair(Weights(weighed, scene.layout.periods, 0.0), i, j, 0.0)
         return gradient.gather((0.0,) * d * d, i, j, pair)
 
     def second(weighed, i, j):
-        weights = Weights(weighed, scene.periods, 0.0)
+        weights = Weights(weighed, scene.layout.periods, 0.0)
         return inner_force(weights, i, j, reference_pair(weights, i, j, 0.0), 1.0)
 
     of_pair = sum(flops_of(each, own, shown, {"volume": 1.0}) for each in (first, second))
@@ -114,7 +114,7 @@ def _stored(scene, plan, frame: dict) -> float:
 
 def _momenta(scene, first: dict, last: dict) -> Iterator[tuple[str, float]]:
     """Momenta where nothing acts from outside, and the energy of the solids' flight."""
-    if scene.grips or scene.walls or any(scene.gravity):
+    if scene.layout.parts.clamps or scene.layout.parts.walls or any(scene.gravity):
         return
     pace = np.linalg.norm(first["velocity"], axis=1).sum()
     yield (
@@ -122,8 +122,8 @@ def _momenta(scene, first: dict, last: dict) -> Iterator[tuple[str, float]]:
         float(np.linalg.norm(last["velocity"].sum(axis=0) - first["velocity"].sum(axis=0)) / pace),
     )
     yield "angular", abs(_spin(last) - _spin(first)) / _lever(first)
-    if len(scene.parts) > 1:
-        flights = [sum(_flight(frame, n) for n in range(len(scene.parts))) for frame in (first, last)]
+    if len(scene.layout.parts) > 1:
+        flights = [sum(_flight(frame, n) for n in range(len(scene.layout.parts))) for frame in (first, last)]
         yield "flight", flights[1] / flights[0]
 
 

@@ -21,7 +21,7 @@ def lost(scene, position: np.ndarray) -> int:
         gone |= _deep(shape, position, DEEP * scene.spacing)
     lower, upper = (np.array(ends) for ends in zip(*map(bounds, walls)))
     lower, upper = lower.min(axis=0), upper.max(axis=0)
-    open_above, open_below = (np.array(scene.up) > 0.0), (np.array(scene.up) < 0.0)
+    open_above, open_below = (np.array(scene.layout.up) > 0.0), (np.array(scene.layout.up) < 0.0)
     gone |= ((position > upper) & ~open_above).any(axis=1)
     gone |= ((position < lower) & ~open_below).any(axis=1)
     return int(gone.sum())

@@ -69,9 +69,9 @@ class Falling(NamedTuple):
         water = _chosen(fallen, fallen.kind == FLUID)
         shares = len(water.id) * np.arange(comm.size + 1) // comm.size
         mine = water.rows(shares[comm.rank], shares[comm.rank + 1])
-        children = self._split(mine, int(shares[comm.rank]), int(scene.counts().sum()))
+        children = self._split(mine, int(shares[comm.rank]), int(scene.census.counts.sum()))
         children.velocity[:] = interpolated(  # else a list would wear at once where parents meet
-            water.position, water.velocity, children.position, self.coarse.spacing, coarse.periods
+            water.position, water.velocity, children.position, self.coarse.spacing, coarse.layout.periods
         )
         both = zip(vars(children).values(), vars(walls).values())
         return store_of(scene, plan, ParticleSet(*map(np.concatenate, both)))
@@ -143,14 +143,14 @@ def _chosen(particles: ParticleSet, mask: np.ndarray) -> ParticleSet:
 
 def _sites(coarse: Scene, position: np.ndarray) -> tuple[np.ndarray, ...]:
     """Place on the coarse lattice, along each axis, of the cell around each position."""
-    lattice = coarse.lattice
+    lattice = coarse.layout.lattice
     cells = np.floor((position - np.array(lattice.origin)) / lattice.spacing).astype(np.int64)
     return tuple((cells - np.array(lattice.first)).T)
 
 
 def _wall_density(coarse: Scene, fallen: ParticleSet) -> np.ndarray:
     """Density of the coarse walls on their lattice, which the fine walls start with."""
-    density = np.full(coarse.lattice.counts, np.nan)
+    density = np.full(coarse.layout.lattice.counts, np.nan)
     walls = _chosen(fallen, fallen.kind == WALL)
     density[_sites(coarse, walls.position)] = walls.density
     return density

@@ -67,6 +67,6 @@ def gathered(simulation) -> dict | None:
 def blown_up(scene, states: list[dict]) -> str:
     """What is wrong with the places, in words; empty where the block is still together."""
     x = np.concatenate([np.frombuffer(state["x"]).reshape(-1, 3) for state in states])[:, : scene.dimensions]
-    lower, upper = map(np.array, (scene.lower, scene.upper))
+    lower, upper = map(np.array, (scene.layout.lower, scene.layout.upper))
     off = np.linalg.norm(x - 0.5 * (lower + upper), axis=1).max() / (0.5 * np.linalg.norm(upper - lower))
     return "" if off < FAR else f"a particle is at {off:.3g} times the half diagonal"

@@ -11,8 +11,8 @@ def box(scene, types: int) -> list[str]:
     """The domain of the scene, for particles of so many ``types``; a layer of cells in 2D."""
     dx, d = scene.spacing, scene.dimensions
     thin = [(-0.5 * dx, 0.5 * dx)] * (3 - d)
-    ends = [*zip(scene.lower, scene.upper), *thin]
-    sides = ["s" if period is None else "p" for period in scene.periods] + ["p"] * len(thin)
+    ends = [*zip(scene.layout.lower, scene.layout.upper), *thin]
+    sides = ["s" if period is None else "p" for period in scene.layout.periods] + ["p"] * len(thin)
     return [
         f"dimension {d}",
         f"boundary {' '.join(sides)}",

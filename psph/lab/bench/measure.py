@@ -145,7 +145,7 @@ def scene_of(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
         return scene
     like = Scene(layout.case())
     moved = [name for name in SITES if getattr(scene.case.space, name) != getattr(like.case.space, name)]
-    if moved or scene.counts().tolist() != like.counts().tolist():
+    if moved or scene.census.counts.tolist() != like.census.counts.tolist():
         what = f"space.{moved[0]}" if moved else "the shapes"
         raise BenchError(
             f"bench --against {' '.join(against)}: not the same particles any more; leave {what} as in the "

@@ -64,7 +64,7 @@ def price(comm, dimensions: int, particles: int | None = None, blocks: int | Non
     return {
         "machine": machine(),
         "dimensions": dimensions,
-        "particles": int(scenes[DEFAULT].counts().sum()),
+        "particles": int(scenes[DEFAULT].census.counts.sum()),
         "ranks": comm.size,
         "threads": threads(),
         "precision": asked.precision,

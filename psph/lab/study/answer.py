@@ -45,7 +45,7 @@ def answers(ladders, scene: Scene, error: float | None, seconds: float | None) -
 def _lengths(scene: Scene) -> tuple[list[float], ...]:
     """What a spacing should divide: all widths, those of fluids and periods, the periods alone."""
     every = widths(scene)
-    periods = [period for period in scene.periods if period is not None]
+    periods = [period for period in scene.layout.periods if period is not None]
     fluids = [width.length for width in every if width.key.startswith("fluids.")]
     return [width.length for width in every], [*fluids, *periods], periods
 

@@ -75,7 +75,7 @@ class Judge:
         ours, theirs = (_fluid(r, self.what) for r in (run, Run(finest)))
         if run.folder == finest:
             return Judgement(math.nan, math.nan, math.nan)
-        there = interpolated(*theirs, ours[0], self._spacing(finest), Scene(self.case).periods)
+        there = interpolated(*theirs, ours[0], self._spacing(finest), Scene(self.case).layout.periods)
         return series_errors(ours[1], there)
 
     @staticmethod
@@ -105,7 +105,7 @@ class Judge:
         x = np.array([self.case.probes[name].position])
 
         def at(t: float) -> float:
-            [value] = getattr(scene.exact, field)(x, t, scene.setting)
+            [value] = getattr(scene.layout.exact, field)(x, t, scene.starts.setting)
             return float(value["xyz".index(axis)] if axis else value)
 
         return np.vectorize(at)
@@ -125,7 +125,7 @@ class Judge:
 
     def _first_known(self) -> str:
         if self.against == EXACT:
-            return known(Scene(self.case).exact)[0]
+            return known(Scene(self.case).layout.exact)[0]
         if self.against in self.case.experiments:
             return self.case.experiments[self.against].probe
         if self.against == THEORY:
@@ -168,7 +168,7 @@ class Judge:
     def _references_of(self, what: str) -> list[str]:
         """The references of the case that have ``what``."""
         found = [n for n, e in self.case.experiments.items() if e.probe == what]
-        solution = Scene(self.case).exact
+        solution = Scene(self.case).layout.exact
         name, _, quantity = what.partition(".")
         field = quantity.partition("_")[0] if quantity else what
         probe = self.case.probes.get(name)

@@ -56,11 +56,11 @@ class Exported:
 
     def parts(self, group: np.ndarray) -> np.ndarray:
         """Which of PARTS each particle is of, uint8 (n,), by its ``group`` (n,)."""
-        layout = self.scene.layout
+        parts = self.scene.layout.parts
         of_group = np.full(len(self.names), WALL, np.uint8)
-        of_group[: layout.fluids] = FLUID
-        of_group[layout.fluids : layout.first_wall] = SOLID
-        of_group[layout.first_body :] = BODY
+        of_group[list(parts.flowing)] = FLUID
+        of_group[[*parts.solids, *parts.clamps]] = SOLID
+        of_group[list(parts.bodies)] = BODY
         return of_group[group]
 
 

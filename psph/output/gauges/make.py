@@ -42,7 +42,7 @@ def gauges_of(scene, mirrors=None) -> dict[str, Any]:
 def gauge_of(scene, name: str, table, mirrors=None):
     """The gauge of one table of ``[gauges]``: every, columns(scene) and row(simulation)."""
     asked, every = getattr(table, table.kind), table.every
-    names = scene.names
+    names = scene.layout.names
     match table.kind:
         case "force":
             groups = tuple(k for on in asked.on for k in _groups(scene, on))
@@ -98,7 +98,7 @@ def _beside(scene, asked) -> Solid:
     """The walls that a gauge stands beside for good: those that carry it along, else those at rest."""
     if asked.moves_with is None:
         return Solid(scene)
-    return Solid(scene, scene.species[scene.names.index(asked.moves_with)].motion)
+    return Solid(scene, scene.species[scene.layout.names.index(asked.moves_with)].motion)
 
 
 def _carrier(asked, names) -> Carrier | None:
@@ -109,7 +109,7 @@ def _carrier(asked, names) -> Carrier | None:
 def _supports(scene, keys) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """The groups of the clamps and the numbers of the anvils with these ``keys``."""
     clamps, anvils = clamps_of(scene.case.referred), anvils_of(scene.case)
-    held = (scene.layout.movers + k for k, key in enumerate(clamps) if key in keys)
+    held = (n for n, key in zip(scene.layout.parts.clamps, clamps) if key in keys)
     return tuple(held), tuple(k for k, key in enumerate(anvils) if key in keys)
 
 

@@ -65,7 +65,7 @@ def _slice(scene, offset: np.ndarray) -> tuple[int, int, np.ndarray]:
     """The axes to the right and upwards, and which particles are seen."""
     if scene.dimensions == 1:
         return 0, 0, np.ones(len(offset), bool)
-    pull = np.abs(scene.height_gravity)
+    pull = np.abs(scene.layout.height_gravity)
     up = int(pull.argmax()) if pull.any() else scene.dimensions - 1
     across, *cut = (d for d in range(scene.dimensions) if d != up)
     seen = np.ones(len(offset), bool)

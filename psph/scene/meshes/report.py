@@ -2,21 +2,15 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from psph.case import Case, CaseError
 from psph.case.consistency import walk
 from psph.case.mesh import Mesh
 from psph.case.shapes import Difference, Shape
-from psph.scene.gauging import shown
-from psph.scene.lattice import TOLERANCE, lattice_around
-from psph.scene.shapes import bounds, inside
-
-if TYPE_CHECKING:
-    from psph.scene.meshes.surface import Surface
-    from psph.scene.scene import Scene
+from psph.scene.meshes.drawn import Drawn
+from psph.scene.scene import Scene
+from psph.scene.shapes import bounds, shown
 
 FAR_LARGER, LARGER = 300.0, 30.0
 """Times the rest of a scene: a mesh so large is refused, and asked about.  Millimetres taken for metres make
@@ -35,66 +29,11 @@ COARSE = 0.1
 """Spacings: how far the corners of a file may be rounded without a warning."""
 
 
-class Drawn(NamedTuple):
-    """A shape that a geometry file draws: its keys in the case, most often one, and its surface."""
-
-    keys: tuple[str, ...]
-    shape: Shape
-    surface: "Surface"
-
-    @property
-    def mesh(self) -> Mesh:
-        """What the case says of it."""
-        return self.shape.form
-
-    @property
-    def key(self) -> str:
-        """The first place where it stands."""
-        return self.keys[0]
-
-    @property
-    def size(self) -> str:
-        """Its extent in words."""
-        return " x ".join(f"{length:.4g}" for length in self.surface.size) + " m"
-
-
-def drawn(case: Case) -> tuple[Drawn, ...]:
-    """The meshes of a case, read.  Raises CaseError with a line for each that no shape can be made of."""
-    if not case.meshes:
-        return ()
-    from psph.scene.meshes.surface import MeshError, surface_of
-
-    keys: dict[Mesh, list[str]] = {}
-    for key, mesh in case.meshes.items():
-        keys.setdefault(mesh, []).append(key)
-    found, faults = [], []
-    for mesh, where in keys.items():
-        try:
-            found.append(Drawn(tuple(where), Shape(mesh=mesh), surface_of(mesh)))
-        except MeshError as trouble:
-            faults.append(f"{case.file}: {where[0]}.file: {mesh.found.path} {trouble}")
-    if faults:
-        raise CaseError(faults)
-    return tuple(found)
-
-
-def sites_in(scene: "Scene", one: Drawn) -> int:
-    """Sites of the lattice of a scene in the shape that a mesh draws."""
-    lattice = scene.lattice
-    (low, high), total = bounds(one.shape), 0
-    box = tuple(map(max, low, lattice.lower)), tuple(map(min, high, lattice.upper))
-    part = lattice_around([box], lattice.origin, lattice.spacing, None)
-    for first, last in part.chunks():
-        held = inside(one.shape, part.grid(first, last), TOLERANCE * scene.spacing)
-        total += int(np.count_nonzero(held))
-    return total
-
-
-def size_faults(scene: "Scene") -> Iterator[str]:
+def size_faults(scene: Scene) -> Iterator[str]:
     """Meshes in another unit than that of the scene, before its sites are visited."""
     rest = _rest(scene)
-    many = math.prod(scene.lattice.counts) > MANY_SITES
-    for one in scene.meshes:
+    many = math.prod(scene.layout.lattice.counts) > MANY_SITES
+    for one in scene.layout.meshes:
         floats = any(key.startswith("bodies.") for key in one.keys)  # what is around it is no smaller
         most = LARGER if many or floats else FAR_LARGER
         times = max(one.surface.size) / rest if rest else 0.0
@@ -105,10 +44,10 @@ def size_faults(scene: "Scene") -> Iterator[str]:
             )
 
 
-def sizes_of(scene: "Scene", *parts: int) -> str:
+def sizes_of(scene: Scene, *parts: int) -> str:
     """How large the geometry files of these parts are, to end a message with; or nothing."""
-    tables = tuple(f"{scene.key_of(part)}." for part in parts)
-    found = {f"{one.mesh.file} is {one.size}": None for one in scene.meshes if _stands_in(one, tables)}
+    tables = tuple(f"{scene.layout.parts[part].key}." for part in parts)
+    found = {f"{one.mesh.file} is {one.size}": None for one in scene.layout.meshes if _stands_in(one, tables)}
     return f"; {' and '.join(found)}" if found else ""
 
 
@@ -116,9 +55,9 @@ def _stands_in(one: Drawn, tables: tuple[str, ...]) -> bool:
     return any(key.startswith(tables) for key in one.keys)
 
 
-def site_faults(scene: "Scene") -> Iterator[str]:
+def site_faults(scene: Scene) -> Iterator[str]:
     """Meshes that hold no site."""
-    for one, sites in zip(scene.meshes, scene.mesh_sites):
+    for one, sites in zip(scene.layout.meshes, scene.census.mesh_sites):
         if not sites:
             yield (
                 f"{one.key}: no lattice site lies in {one.mesh.file}, {one.size} in size from "
@@ -127,16 +66,16 @@ def site_faults(scene: "Scene") -> Iterator[str]:
             )
 
 
-def remarks(scene: "Scene") -> Iterator[str]:
+def remarks(scene: Scene) -> Iterator[str]:
     """What will run with these meshes, but probably not as intended."""
-    for one, sites in zip(scene.meshes, scene.mesh_sites):
+    for one, sites in zip(scene.layout.meshes, scene.census.mesh_sites):
         for says in (*_faces(one), *_sizes(scene, one), *_volumes(scene, one, sites)):
             yield f"{one.key}: {says}"
 
 
-def described(scene: "Scene") -> Iterator[str]:
+def described(scene: Scene) -> Iterator[str]:
     """What each mesh is, a line each."""
-    for one, sites in zip(scene.meshes, scene.mesh_sites):
+    for one, sites in zip(scene.layout.meshes, scene.census.mesh_sites):
         body, surface = one.surface.body, one.surface
         edges = f"{body.open_edges:,} open edges" if body.open_edges else "closed"
         also = f" (also {', '.join(one.keys[1:])})" if len(one.keys) > 1 else ""
@@ -167,7 +106,7 @@ def _faces(one: Drawn) -> Iterator[str]:
         )
 
 
-def _sizes(scene: "Scene", one: Drawn) -> Iterator[str]:
+def _sizes(scene: Scene, one: Drawn) -> Iterator[str]:
     rest, longest = _rest(scene), max(one.surface.size)
     if rest and (longest > LARGER * rest or FAR_LARGER * longest < rest):
         yield (
@@ -186,7 +125,7 @@ def _sizes(scene: "Scene", one: Drawn) -> Iterator[str]:
         )
 
 
-def _volumes(scene: "Scene", one: Drawn, sites: int) -> Iterator[str]:
+def _volumes(scene: Scene, one: Drawn, sites: int) -> Iterator[str]:
     excess = _excess(scene, one, sites)
     if not one.mesh.shell and _is_within(scene, one) and abs(excess) > MISFIT:
         yield (
@@ -196,19 +135,19 @@ def _volumes(scene: "Scene", one: Drawn, sites: int) -> Iterator[str]:
         )
 
 
-def _rest(scene: "Scene") -> float:
+def _rest(scene: Scene) -> float:
     """The largest extent, m, of what :func:`_others` encloses; 0 without any."""
     lower, upper = _others(scene)
     return float((upper - lower).max(initial=0.0))
 
 
-def _off(scene: "Scene", one: Drawn) -> float:
+def _off(scene: Scene, one: Drawn) -> float:
     """The gap along an axis, m, between a mesh and what :func:`_others` encloses."""
     (lower, upper), (low, high) = _others(scene), bounds(one.shape)
     return float(np.maximum(low - upper, lower - high).max(initial=0.0))
 
 
-def _others(scene: "Scene") -> tuple[np.ndarray, np.ndarray]:
+def _others(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Corners of a box around the domain, where it is given, and all shapes but meshes, m; or none."""
     space, boxes = scene.case.space, []
     if space.lower and space.upper:
@@ -222,16 +161,16 @@ def _others(scene: "Scene") -> tuple[np.ndarray, np.ndarray]:
     return lower.min(axis=0), upper.max(axis=0)
 
 
-def _is_within(scene: "Scene", one: Drawn) -> bool:
+def _is_within(scene: Scene, one: Drawn) -> bool:
     """Whether a mesh lies in the lattice, but for a spacing: not half behind a mirror, for one."""
     (low, high), slack = bounds(one.shape), scene.spacing
     return all(
         a >= b - slack and c <= d + slack
-        for a, b, c, d in zip(low, scene.lattice.lower, high, scene.lattice.upper)
+        for a, b, c, d in zip(low, scene.layout.lattice.lower, high, scene.layout.lattice.upper)
     )
 
 
-def _excess(scene: "Scene", one: Drawn, sites: int) -> float:
+def _excess(scene: Scene, one: Drawn, sites: int) -> float:
     """How much more than a mesh encloses its sites hold, over that."""
     volume = one.surface.volume
     return sites * scene.spacing**3 / volume - 1.0 if volume > 0.0 else math.inf

@@ -2,14 +2,16 @@
 
 A solution is a NamedTuple of its parameters.  Its methods take places ``x`` (n, dim) in m, a time
 in s and a :class:`~psph.theory.solutions.setting.Setting`: ``velocity`` (n, dim) in m/s and ``pressure``
-(n,) in Pa, as far as they are known; ``unfit`` says what of a case speaks against it, ``top_speed``
-what sound has to be faster than, ``up_to_a_constant`` which fields a case may raise by any number.
+(n,) in Pa, as far as they are known.  Of :class:`~psph.theory.solutions.setting.Surroundings` alone ``unfit``
+says what of a case speaks against it, and ``top_speed`` what sound has to be faster than;
+``up_to_a_constant`` names the fields that a case may raise by any number.
 """
 
 import numpy as np
 
 from psph.theory.solutions.channel import Couette, Poiseuille
 from psph.theory.solutions.drop import EllipticDrop
+from psph.theory.solutions.setting import Surroundings
 from psph.theory.solutions.still import Hydrostatic
 from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
 from psph.theory.solutions.waves import SoundWave, StandingWave
@@ -42,17 +44,20 @@ OF_A_FLUID = ("density", "viscosity")
 class _Listener:
     """Answers as a setting does, and remembers what it was asked for."""
 
-    def __init__(self, setting):
-        self._setting, self.asked = setting, set()
+    sound_speed = 1.0
+    """Any number will do, m/s: not the answer counts but the question."""
+
+    def __init__(self, surroundings: Surroundings):
+        self._surroundings, self.asked = surroundings, set()
 
     def __getattr__(self, name: str):
         self.asked.add(name)
-        return getattr(self._setting, name)
+        return getattr(self._surroundings, name)
 
 
-def asked_of_fluid(solution, setting) -> tuple[str, ...]:
+def asked_of_fluid(solution, surroundings: Surroundings) -> tuple[str, ...]:
     """What a solution asks of the fluid: those of its density and viscosity on which its fields depend."""
-    listener = _Listener(setting)
+    listener = _Listener(surroundings)
     for name in known(solution):
-        getattr(solution, name)(np.zeros((1, setting.dimensions)), 1.0, listener)
+        getattr(solution, name)(np.zeros((1, surroundings.dimensions)), 1.0, listener)
     return tuple(name for name in OF_A_FLUID if name in listener.asked)

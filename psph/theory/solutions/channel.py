@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from psph.theory.solutions.setting import Setting
+from psph.theory.solutions.setting import Setting, Surroundings
 
 TERMS = 200
 """Of the series; the last is below 1e-7 of the first from νt/L² = 2e-5 on."""
@@ -15,7 +15,7 @@ Low = Annotated[float, Field(description="y of the lower plate", json_schema_ext
 High = Annotated[float, Field(description="y of the upper plate", json_schema_extra={"unit": "m"})]
 
 
-def _unfit(solution, setting: Setting) -> str | None:
+def _unfit(solution, setting: Surroundings) -> str | None:
     if setting.dimensions == 1:
         return "is a flow in 2D or 3D; give space.dimensions = 2"
     if not solution.lower < solution.upper:
@@ -45,13 +45,13 @@ class Poiseuille(NamedTuple):
 
     up_to_a_constant = ()
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         if not setting.gravity[0] or any(setting.gravity[1:]):
             return "is driven along x; give physics.gravity = [g, 0]"
         return _unfit(self, setting)
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, at the end, m/s."""
         return abs(setting.gravity[0]) * (self.upper - self.lower) ** 2 / (8.0 * setting.viscosity)
 
@@ -80,13 +80,13 @@ class Couette(NamedTuple):
 
     up_to_a_constant = ()
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         if any(setting.gravity):
             return "is driven by a plate; remove physics.gravity"
         return _unfit(self, setting)
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, m/s."""
         return abs(self.speed)
 

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from psph.theory.solutions.setting import Setting
+from psph.theory.solutions.setting import Setting, Surroundings
 
 TOLERANCE = 1e-11
 """Of the shape over time, relative."""
@@ -28,7 +28,7 @@ class EllipticDrop(NamedTuple):
 
     up_to_a_constant = ()
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         if setting.dimensions != 2:
             return "is a flow in 2D; give space.dimensions = 2"
@@ -36,7 +36,7 @@ class EllipticDrop(NamedTuple):
             return "is a flow without gravity and friction; remove both"
         return None
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, at the start, m/s."""
         return self.rate * self.radius
 

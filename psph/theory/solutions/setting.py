@@ -1,27 +1,33 @@
 """The properties of a case that an exact solution needs."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 
-class Setting(NamedTuple):
-    """The fluid, its surroundings and the domain.
+@dataclass(frozen=True, kw_only=True)
+class Surroundings:
+    """The fluid, what acts on it, and the domain: what is known before any speed of sound.
 
-    ``density`` ρ₀ in kg/m³, kinematic ``viscosity`` in m²/s, ``sound_speed`` in m/s, ``gravity``
-    in m/s²; ``lower`` and ``upper`` are the corners of the domain in m, ``periods`` a length in m
-    or None for each axis.
+    ``density`` ρ₀ in kg/m³, kinematic ``viscosity`` in m²/s, ``gravity`` in m/s²; ``lower`` and ``upper``
+    are the corners of the domain in m, ``periods`` a length in m or None for each axis.
     """
 
     dimensions: int
     density: float
     viscosity: float
-    sound_speed: float
     gravity: tuple[float, ...]
     lower: tuple[float, ...]
     upper: tuple[float, ...]
     periods: tuple[float | None, ...]
 
 
-def whole_waves(setting: Setting, axes: tuple[int, ...], length: float) -> str | None:
+@dataclass(frozen=True, kw_only=True)
+class Setting(Surroundings):
+    """The same with the ``sound_speed`` c in m/s, which is chosen by the top speed of the solution."""
+
+    sound_speed: float
+
+
+def whole_waves(setting: Surroundings, axes: tuple[int, ...], length: float) -> str | None:
     """What is wrong where a pattern of this ``length`` in m must repeat along ``axes``."""
     for axis in axes:
         name, period = "xyz"[axis], setting.periods[axis]

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from psph.rows import projected
-from psph.theory.solutions.setting import Setting
+from psph.theory.solutions.setting import Setting, Surroundings
 
 
 class Hydrostatic(NamedTuple):
@@ -24,13 +24,13 @@ class Hydrostatic(NamedTuple):
 
     up_to_a_constant = ()
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         if not any(setting.gravity):
             return "is the pressure under gravity; give physics.gravity"
         return None
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """Nothing moves, m/s."""
         return 0.0
 

@@ -6,10 +6,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from psph.theory.solutions.setting import Setting, whole_waves
+from psph.theory.solutions.setting import Setting, Surroundings, whole_waves
 
 
-def _only_2d(setting: Setting) -> str | None:
+def _only_2d(setting: Surroundings) -> str | None:
     return None if setting.dimensions == 2 else "is a flow in 2D; give space.dimensions = 2"
 
 
@@ -28,11 +28,11 @@ class TaylorGreen(NamedTuple):
 
     up_to_a_constant = ("pressure",)
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         return _only_2d(setting) or whole_waves(setting, (0, 1), self.length)
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, m/s."""
         return self.speed
 
@@ -67,13 +67,13 @@ class Beltrami(NamedTuple):
 
     up_to_a_constant = ("pressure",)
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         if setting.dimensions != 3:
             return "is a flow in 3D; give space.dimensions = 3"
         return whole_waves(setting, (0, 1, 2), self.length)
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, m/s."""
         return self.speed
 
@@ -108,13 +108,13 @@ class Gresho(NamedTuple):
 
     up_to_a_constant = ("pressure",)
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         if setting.viscosity:
             return "is a flow without friction; remove the fluid's viscosity"
         return _only_2d(setting)
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, m/s."""
         return self.speed
 

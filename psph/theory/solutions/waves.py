@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from psph.theory.solutions.setting import Setting, whole_waves
+from psph.theory.solutions.setting import Setting, Surroundings, whole_waves
 from psph.theory.water_waves import frequency
 
 
@@ -22,11 +22,11 @@ class SoundWave(NamedTuple):
 
     up_to_a_constant = ()
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         return whole_waves(setting, (0,), self.length)
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, m/s."""
         return self.speed
 
@@ -60,7 +60,7 @@ class StandingWave(NamedTuple):
 
     up_to_a_constant = ()
 
-    def unfit(self, setting: Setting) -> str | None:
+    def unfit(self, setting: Surroundings) -> str | None:
         """What is wrong with the case for this solution, or None."""
         if setting.dimensions != 2:
             return "is a flow in 2D; give space.dimensions = 2"
@@ -68,12 +68,12 @@ class StandingWave(NamedTuple):
             return "needs gravity along −y; give physics.gravity = [0.0, -9.81]"
         return None
 
-    def frequency(self, setting: Setting) -> float:
+    def frequency(self, setting: Surroundings) -> float:
         """ω, 1/s."""
         k = 2.0 * math.pi / self.length
         return frequency(k, self.depth, -setting.gravity[1])
 
-    def top_speed(self, setting: Setting) -> float:
+    def top_speed(self, setting: Surroundings) -> float:
         """The largest speed, m/s."""
         k = 2.0 * math.pi / self.length
         return self.amplitude * self.frequency(setting) / math.tanh(k * self.depth)

@@ -132,7 +132,9 @@ def test_energy_left_is_told_over_that_of_the_exact_solution():
     scene = Scene(load(CASES / "taylor_green.toml"))
     x = (np.indices((50, 50)).reshape(2, -1).T + 0.5) * 0.02
     times = np.array([0.0, 0.5, 1.0])
-    exact = [{"position": x, "velocity": scene.exact.velocity(x, t, scene.setting)} for t in times]
+    exact = [
+        {"position": x, "velocity": scene.layout.exact.velocity(x, t, scene.starts.setting)} for t in times
+    ]
     energy = [float((f["velocity"] ** 2).sum()) for f in exact]
     assert energy[2] / energy[0] == pytest.approx(0.854, abs=1e-3)  # exp(-16 π² ν)
     worn = [exact[0], exact[1], exact[2] | {"velocity": 0.8 * exact[2]["velocity"]}]

@@ -36,9 +36,9 @@ def test_as_many_particles_as_asked(dim, neighbours, many):
 def test_a_tank_is_what_it_says(dim, neighbours):
     tank = Tank.nearest(dim, neighbours, 3000)
     scene = Scene(tank.case())
-    assert scene.counts().sum() == tank.particles
+    assert scene.census.counts.sum() == tank.particles
     assert scene.census.sizes[0] == tank.across**dim
-    assert not thinnest_walls(scene)
+    assert not thinnest_walls(scene.layout)
 
 
 def test_the_standard_set():
@@ -148,5 +148,5 @@ def test_ranks_that_the_coarse_tank_cannot_use_wait(monkeypatch):
     together = fall(coarse, MPI.COMM_WORLD)
     monkeypatch.setattr(falling, "slab_planes", lambda scene: 1)
     single = fall(coarse, MPI.COMM_WORLD)
-    assert len(single.id) == coarse.counts().sum()
+    assert len(single.id) == coarse.census.counts.sum()
     assert single.position.tobytes() == together.position.tobytes()

@@ -19,6 +19,6 @@ OF_ALL_MATTER = (
 @pytest.mark.parametrize("name", OF_ALL_MATTER)
 def test_walls_and_bodies_come_after_all_that_forces_move_and_its_clamps(name):
     case = load(CASES / f"{name}.toml")
-    layout, told = Scene(case).layout, tomllib.loads(case.to_toml())
-    assert first_wall(told) == layout.first_wall > 0
-    assert first_body(told) == layout.first_body
+    parts, told = Scene(case).layout.parts, tomllib.loads(case.to_toml())
+    assert first_wall(told) == (parts.boundaries.start or len(parts)) > 0
+    assert first_body(told) == (parts.bodies.start or len(parts))

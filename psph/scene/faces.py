@@ -1,0 +1,65 @@
+"""The elastic solids of a layout: how thick they are, and the faces that the case draws of them."""
+
+import math
+
+import numpy as np
+
+from psph.scene.census import Census
+from psph.scene.distance import endless, faces_of
+from psph.scene.lattice import TOLERANCE
+from psph.scene.layout import Layout
+
+FLAT = 0.95
+"""Length of the mean of the normals half a spacing around a particle from which no edge is near."""
+
+
+def across(census: Census, number: int) -> tuple[int, int]:
+    """The fewest particles that a solid has along an axis, its clamped part with it, and that axis."""
+    return thinnest(census, census.layout.parts.solids[number])
+
+
+def thinnest(census: Census, material: int) -> tuple[int, int]:
+    """The same of any material that moves freely."""
+    layout, parts = census.layout, census.layout.parts.of_solid(material)
+    low, high = census.lowest[parts].min(axis=0), census.highest[parts].max(axis=0)
+    counts = np.rint((high - low) / layout.spacing).astype(int) + 1
+    for d, period in enumerate(layout.periods):
+        if period is not None and (counts[d] + TOLERANCE) * layout.spacing > period:
+            counts[d] = np.iinfo(int).max  # it goes on
+    axis = int(counts.argmin())
+    return int(counts[axis]), axis
+
+
+def drawn_faces(layout: Layout, species: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of particles of these ``species`` (n,) that begin at ``position`` (n, dim) the normals (n, dim) of the
+    drawn faces nearest to them, zeros within half a spacing of an edge, and their depths (n,) below, in
+    spacings.
+
+    What cracks gets new faces: its particles have none, and half a spacing of depth.
+    """
+    normal, depth = np.zeros_like(position), np.full(len(position), 0.5)
+    for number in np.unique(species):
+        part = layout.parts[number]
+        if part.flows or part.elastic is not None and may_crack(layout, part.elastic):
+            continue
+        drawn = layout.parts[part.whole if part.elastic is not None else number].shape
+        shape = endless(drawn, layout.lower, layout.upper, layout.periods)
+        rows = species == number
+        found = faces_of(shape, position[rows])
+        mean = np.zeros_like(found.normal)
+        for d in range(layout.dimensions):
+            for way in (-0.5, 0.5):
+                beside = position[rows].copy()
+                beside[:, d] += way * layout.spacing
+                mean += faces_of(shape, beside).normal / (2.0 * layout.dimensions)
+        alike = np.sqrt((mean**2).sum(axis=1))
+        normal[rows], depth[rows] = (
+            np.where(alike[:, None] > FLAT, found.normal, 0.0),
+            -found.away / layout.spacing,
+        )
+    return normal, depth
+
+
+def may_crack(layout: Layout, number: int) -> bool:
+    """Whether bonds of an elastic solid may be cut."""
+    return layout.solids[number].critical_stretch < math.inf

@@ -1,0 +1,267 @@
+"""The layout: which part of a case holds which site of the lattice, in which domain.  The first value of a
+scene: it follows from the case alone, before any site is looked at."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from typing import Any
+
+import numpy as np
+
+from psph.case import Case
+from psph.case.keys import AXES
+from psph.case.motion import motion_of
+from psph.case.parameters import as_numbers, chosen
+from psph.moments import normalised
+from psph.particles.reach import Reach
+from psph.physics.solid.contact import REACH
+from psph.physics.solid.material import Solid
+from psph.physics.walls.conditions import MIRROR
+from psph.scene.lattice import TOLERANCE, Lattice, lattice_around
+from psph.scene.meshes.drawn import Drawn, drawn
+from psph.scene.mirrors import around, clipped, planes_of
+from psph.scene.parts import Parts, parts_of
+from psph.scene.parts.order import among
+from psph.scene.parts.solid import anvils_in, solids_in
+from psph.scene.shapes import Corner, Grid, bounds, inside
+from psph.smoothing import kernel
+from psph.theory.solutions.catalogue import SOLUTIONS
+from psph.theory.solutions.setting import Surroundings
+
+NONE = 255
+"""In place of a part: a site without a particle."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where the parts of a case are at the start: the first that claims a site has it.
+
+    ``parts`` in their order; ``meshes`` the files of shapes; ``lattice`` the sites that may hold a particle;
+    ``mirror_planes`` its mirrors; ``lower`` and ``upper`` the corners of the domain in m; ``kernel`` smooths.
+    """
+
+    case: Case
+    meshes: tuple[Drawn, ...]
+    kernel: Any
+    parts: Parts
+    mirror_planes: tuple[Any, ...]
+    lattice: Lattice
+    lower: Corner
+    upper: Corner
+
+    @property
+    def dimensions(self) -> int:
+        """Of space."""
+        return self.case.space.dimensions
+
+    @property
+    def spacing(self) -> float:
+        """Of the lattice, m."""
+        return self.case.space.spacing
+
+    @property
+    def smoothing_length(self) -> float:
+        """h, m."""
+        return self.case.space.smoothing * self.case.space.spacing
+
+    @property
+    def axis(self) -> int:
+        """The slab axis."""
+        return self.lattice.axis
+
+    @property
+    def planes(self) -> int:
+        """Of the lattice, across ``axis``."""
+        return self.lattice.planes
+
+    @cached_property
+    def periods(self) -> tuple[float | None, ...]:
+        """A length in m, or None, for each axis."""
+        periodic = self.case.space.periodic
+        ends = zip(AXES, self.lower, self.upper)
+        return tuple(up - low if name in periodic else None for name, low, up in ends)
+
+    @property
+    def gravity(self) -> tuple[float, ...]:
+        """g in m/s², zeros where the case has none."""
+        return gravity_of(self.case)
+
+    @cached_property
+    def height_gravity(self) -> tuple[float, ...]:
+        """g in m/s² along the axes that do not repeat, else zero: across a period there is no height,
+        so a potential energy −m g·x would jump where a particle passes it."""
+        return tuple(g if period is None else 0.0 for g, period in zip(self.gravity, self.periods))
+
+    @property
+    def driven(self) -> bool:
+        """Whether gravity pulls along a periodic axis: what it can do there is not told by a height."""
+        return self.gravity != self.height_gravity
+
+    @cached_property
+    def up(self) -> tuple[float, ...]:
+        """The unit vector against gravity, but for what pulls along a periodic axis; zeros without."""
+        pull = math.hypot(*self.height_gravity)
+        return tuple(-g / pull if pull else 0.0 for g in self.height_gravity)
+
+    @cached_property
+    def frame(self):
+        """How the frame of reference moves (psph.physics.rigid.motion.Rigid), or None."""
+        return motion_of(self.case.frame.motion)
+
+    @property
+    def reach(self) -> Reach:
+        """How far particles feel and see each other: by the kernel; elastic solids alone within two spacings,
+        and what the kernel reaches beyond that is skin, one spacing at least."""
+        whole = Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
+        if self.case.flowing:
+            return whole
+        support = REACH * self.spacing
+        return Reach(support, max(whole.cutoff - support, self.spacing))
+
+    @property
+    def wall_reach(self) -> int:
+        """Depth in sites to which a wall acts on a fluid, and one more."""
+        return math.ceil(self.kernel.support * self.smoothing_length / self.spacing) + 1
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all parts."""
+        return tuple(part.name for part in self.parts)
+
+    @cached_property
+    def regions(self) -> tuple[tuple[Any, int], ...]:
+        """Where particles appear or vanish, each with the number of the fluid that comes."""
+        tables = getattr(self.case, "regions", {}).values()
+        fluids = list(self.case.flowing)
+        return tuple(
+            (region, fluids.index(table.into) if table.into else 0)
+            for table in tables
+            for region in chosen(table, self.case.catalogue.regions).values()
+        )
+
+    @cached_property
+    def solids(self) -> tuple[Solid, ...]:
+        """The total Lagrangian solids, without the damping that depends on the speed of sound."""
+        return solids_in(self.case, any(self.periods))
+
+    @cached_property
+    def anvils(self) -> tuple[tuple[Corner, Corner], ...]:
+        """A point of each anvil in m, and the unit vector out of it."""
+        return anvils_in(self.case)
+
+    @cached_property
+    def exact(self):
+        """The exact solution that the case names, or None."""
+        for name, table in self.case.exact:
+            if table is not None:
+                return SOLUTIONS[name](**as_numbers(table))
+        return None
+
+    @property
+    def surroundings(self) -> Surroundings:
+        """What the exact solution needs of the scene: its first fluid and the domain."""
+        first = self.parts[0].table
+        return Surroundings(
+            dimensions=self.dimensions,
+            density=first.density,
+            viscosity=first.viscosity,
+            gravity=self.gravity,
+            lower=self.lower,
+            upper=self.upper,
+            periods=self.periods,
+        )
+
+    def folded(self, d: int, x: np.ndarray) -> np.ndarray:
+        """Coordinates along axis ``d`` within the period there, m."""
+        period, low = self.periods[d], self.lower[d]
+        return x if period is None else x - period * np.floor((x - low) / period)
+
+    def flows(self, held: np.ndarray) -> np.ndarray:
+        """True where ``held`` is a part that flows."""
+        return among(held, self.parts.flowing)
+
+    def stands(self, held: np.ndarray) -> np.ndarray:
+        """True where ``held`` is a part that does not flow: an elastic solid, a clamp, a wall, a body."""
+        return (held != NONE) & ~self.flows(held)
+
+    def masks(self, grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:
+        """For each part, True at the sites that it claims."""
+        tolerance = TOLERANCE * self.spacing
+        masks = [np.broadcast_to(inside(part.shape, grid, tolerance), shape) for part in self.parts]
+        for clamp in self.parts.clamps:
+            of = self.parts[clamp].whole
+            whole = masks[of]
+            masks[clamp] = masks[clamp] & whole
+            masks[of] = whole & ~masks[clamp]
+        taking = [masks[part.number] for part in self.parts if part.displaces or part.is_body]
+        if not taking:
+            return masks
+        taken = reduce(np.logical_or, taking)
+        return [mask & ~taken if part.flows else mask for part, mask in zip(self.parts, masks)]
+
+    def materials(self, first: int, last: int) -> np.ndarray:
+        """Number of the part at each site of some planes, uint8; the first that claims a site has it."""
+        return self.held(self.lattice.grid(first, last), self.lattice.shape(first, last))
+
+    def held(self, grid: Grid, shape: tuple[int, ...]) -> np.ndarray:
+        """The same at any points, their coordinates broadcast to ``shape``; uint8."""
+        return _first_claim(self.masks(grid, shape), shape)
+
+    def near(self, part: int, first: int, last: int, reach: int) -> np.ndarray:
+        """True at the sites of some planes with a site of a part at most ``reach`` away.
+
+        Counted along each axis, in sites.
+        """
+        begin, end = max(first - reach, 0), min(last + reach, self.lattice.planes)
+        found = self.materials(begin, end) == part
+        for axis in range(found.ndim):
+            found = _spread(np.moveaxis(found, axis, 0), reach)
+            found = np.moveaxis(found, 0, axis)
+        return found[first - begin : last - begin]
+
+    def touching(self, part: int, first: int, last: int) -> np.ndarray:
+        """True at the sites of some planes that are of a part, or beside such a site along an axis."""
+        begin, end = max(first - 1, 0), min(last + 1, self.lattice.planes)
+        held = self.materials(begin, end) == part
+        ways = (np.moveaxis(_spread(np.moveaxis(held, axis, 0), 1), 0, axis) for axis in range(held.ndim))
+        return np.logical_or.reduce([*ways])[first - begin : last - begin]
+
+
+def lay_out(case: Case) -> Layout:
+    """The layout of a case.  Raises CaseError where a file draws no shape, or a mirror does not fit."""
+    space, meshes = case.space, drawn(case)
+    smooths = kernel(space.kernel, space.smoothing * space.spacing, space.dimensions)
+    if space.normalised:
+        smooths = normalised(smooths, space.spacing, space.dimensions)
+    parts, planes = parts_of(case, gravity_of(case)), planes_of(case)
+    axis = AXES.index(case.parallel.axis) if case.parallel.axis else None
+    boxes = (clipped(bounds(part.shape), planes) for part in parts)
+    lattice = lattice_around(boxes, space.origin, space.spacing, axis)
+    mirrors = (bounds(wall.shape) for wall in case.walls.values() if wall.condition == MIRROR)
+    found = around([(lattice.lower, lattice.upper), *mirrors])
+    given = (ends if own is None else own for ends, own in zip(found, (space.lower, space.upper)))
+    lower, upper = clipped(tuple(given), planes)
+    return Layout(case, meshes, smooths, parts, planes, lattice, lower, upper)
+
+
+def gravity_of(case: Case) -> tuple[float, ...]:
+    """g in m/s², zeros where the case has none."""
+    gravity = case.physics.gravity
+    return gravity.acceleration if gravity else (0.0,) * case.space.dimensions
+
+
+def _spread(held: np.ndarray, reach: int) -> np.ndarray:
+    """True along the first axis wherever True is at most ``reach`` places away."""
+    spread = held.copy()
+    for step in range(1, min(reach, len(held) - 1) + 1):
+        spread[step:] |= held[:-step]
+        spread[:-step] |= held[step:]
+    return spread
+
+
+def _first_claim(masks: Sequence[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+    found = np.full(shape, NONE, np.uint8)
+    for part in reversed(range(len(masks))):
+        found[masks[part]] = part
+    return found

@@ -1,0 +1,122 @@
+"""The order of the parts of a case: what flows, elastic solids, their clamped parts, walls, bodies."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from psph.case import Case
+from psph.case.motion import motion_of
+from psph.fields import WALL
+from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed, MovingClamp
+from psph.physics.walls.conditions import MIRROR
+from psph.scene.parts.fluid import FluidPart
+from psph.scene.parts.part import Part
+from psph.scene.parts.rigid import BodyPart, WallPart
+from psph.scene.parts.soil import SoilPart
+from psph.scene.parts.solid import ClampPart, ElasticPart, UpdatedPart, clamps_in
+
+FIRST_BODY = 2
+"""Number of a first rigid body or elastic solid among solids: 0 is no solid, 1 a wall."""
+
+
+class Parts(tuple[Part, ...]):
+    """The parts of a case in their order, which nothing else need know: the numbers of each kind of them."""
+
+    @property
+    def flowing(self) -> range:
+        """What finds its neighbours in space: fluids, soils, updated Lagrangian solids."""
+        return _run(part for part in self if part.flows)
+
+    @property
+    def solids(self) -> range:
+        """Total Lagrangian solids."""
+        return _run(part for part in self if part.is_elastic)
+
+    @property
+    def movers(self) -> range:
+        """All whose particles forces move one by one."""
+        return _run(part for part in self if part.moves_freely)
+
+    @property
+    def clamps(self) -> range:
+        """The clamped parts of solids."""
+        return _run(part for part in self if part.is_clamp)
+
+    @property
+    def walls(self) -> range:
+        """Walls with particles."""
+        return _run(part for part in self if part.is_wall)
+
+    @property
+    def bodies(self) -> range:
+        """Rigid bodies."""
+        return _run(part for part in self if part.is_body)
+
+    @property
+    def boundaries(self) -> range:
+        """Walls and rigid bodies."""
+        return _run(part for part in self if part.is_wall or part.is_body)
+
+    def of_solid(self, solid: int) -> list[int]:
+        """The numbers of a solid and of its clamped parts."""
+        return [part.number for part in self if part.whole == solid]
+
+
+def among(held: np.ndarray, numbers: range) -> np.ndarray:
+    """True where the number of a part in ``held`` is one of ``numbers``."""
+    return (held >= numbers.start) & (held < numbers.stop)
+
+
+def _run(parts: Iterator[Part]) -> range:
+    numbers = [part.number for part in parts]
+    return range(numbers[0], numbers[-1] + 1) if numbers else range(0)
+
+
+def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
+    """The parts of a case with this ``gravity``, m/s²."""
+    flowing, referred = list(case.flowing), list(case.referred)
+    found: list[Part] = []
+
+    def add(kind: type[Part], name: str, key: str, table, motion, loaded: bool = False, **more: Any) -> None:
+        number = len(found)
+        more = {"whole": number, "source": number} | more
+        found.append(kind(name, key, table, motion, number, loaded=loaded or name in case.loaded, **more))
+
+    def continued(table) -> int:
+        """The part whose density and state others show: without fluids the first solid."""
+        return flowing.index(table.continues) if flowing else 0
+
+    for name, fluid in case.fluids.items():
+        add(FluidPart, name, f"fluids.{name}", fluid, Free(), solid=0)
+    for name, soil in case.soils.items():
+        add(SoilPart, name, f"soils.{name}", soil, Free(), solid=0)
+    for name, solid in case.updated.items():
+        add(UpdatedPart, name, f"solids.{name}", solid, Free(), solid=0)
+    for number, (name, solid) in enumerate(case.referred.items()):
+        more: dict[str, Any] = {"source": continued(solid)} if flowing else {}
+        more |= {"solid": FIRST_BODY + number, "elastic": number, "loaded": bool(flowing)}
+        add(ElasticPart, name, f"solids.{name}", solid, Immersed() if flowing else Elastic(), **more)
+    for name, key, clamp in clamps_in(case):
+        whole = found[[*flowing, *referred].index(name)]
+        told = motion_of(clamp.motion, gravity)
+        add(
+            ClampPart,
+            f"{name} ({key})",
+            f"solids.{name}.{key}",
+            whole.table.held(clamp),
+            MovingClamp(told) if told else Clamped(),
+            whole=whole.number,
+            source=whole.source,
+            solid=whole.solid or WALL,
+            elastic=whole.elastic,
+            loaded=whole.elastic is not None and bool(flowing),
+        )
+    for name, wall in case.walls.items():
+        if wall.condition != MIRROR:
+            told = motion_of(wall.motion, gravity) or Fixed()
+            add(WallPart, name, f"walls.{name}", wall, told, source=continued(wall))
+    for number, (name, body) in enumerate(case.bodies.items(), FIRST_BODY):
+        solid = WALL if referred else number
+        add(BodyPart, name, f"bodies.{name}", body, None, source=continued(body), solid=solid)
+    return Parts(found)
