@@ -5,6 +5,7 @@ import pytest
 from drafts import draft
 
 from psph.scene import Scene
+from psph.scene.layout import Layout
 from psph.scene.smooth import smooth_faces
 
 BED = """
@@ -73,8 +74,8 @@ def test_a_corner_shows_the_lower_of_its_faces_and_a_rim_the_inner_one(tmp_path)
 def test_the_reach_of_a_wall_is_the_same_at_any_spacing(tmp_path, monkeypatch):
     """It had been divided by the spacing: 400 sites each way at 1 cm."""
     tried = []
-    folded = Scene.folded
-    monkeypatch.setattr(Scene, "folded", lambda *args: tried.append(0) or folded(*args))
+    folded = Layout.folded
+    monkeypatch.setattr(Layout, "folded", lambda *args: tried.append(0) or folded(*args))
     for text in (TANK, TANK.replace("0.125", "0.0625")):
         tried.clear()
         normals(Scene(draft(tmp_path, text)), "tank", [-0.48, -0.48])
