@@ -7,10 +7,10 @@ What there is stands in psph/api/__init__.py; docs/python.md tells of it.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from psph.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from psph.api import *  # noqa: F403
-
-__version__ = "0.2.0"
 
 
 def __getattr__(name: str) -> Any:

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
 
-import psph
 from psph.errors import Refused, one_line
 from psph.lab.bench import PROBLEMS
 from psph.output.export.command import PROGRAMS
 from psph.theory.stability import FORMS, STATES
 from psph.theory.stability.lattices import LATTICES
+from psph.version import __version__
 
 MODULE, COMMAND = "python -m psph", "psph"
 """What a person types to call psph: the module, or the command that its installation makes."""
@@ -100,7 +100,7 @@ def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
         description="Smoothed-particle hydrodynamics on any number of ranks.",
         epilog=f"mpirun -n 2 {program} case.toml",
     )
-    made.add_argument("--version", action="version", version=f"psph {psph.__version__}")
+    made.add_argument("--version", action="version", version=f"psph {__version__}")
     group = made.add_subparsers(title="verbs", metavar="case.toml | verb", required=True)
     verb = {name: group.add_parser(name, help=text) for name, (_, text) in verbs.items()}
     for name, (action, _) in verbs.items():

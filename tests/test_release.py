@@ -9,7 +9,7 @@ from jobs import clean_environment
 
 ROOT = Path(__file__).parents[1]
 FILES = {
-    "psph/__init__.py": '__version__ = "1.2.3"\n',
+    "psph/version.py": '__version__ = "1.2.3"\n',
     "CITATION.cff": "cff-version: 1.2.0\nversion: 1.2.3\ndate-released: 2026-01-02\n",
     "CHANGELOG.md": "# Changelog\n\n## 1.2.3 (2026-01-02)\n\n## 1.2.2 (2026-01-01)\n",
 }
@@ -61,7 +61,7 @@ def test_a_version_that_agrees_is_ready_until_its_tag_is_elsewhere(checkout):
             "CITATION.cff",
             "version: 1.2.3",
             "version: 1.2.2",
-            "CITATION.cff: version 1.2.2, psph/__init__.py has 1.2.3",
+            "CITATION.cff: version 1.2.2, psph/version.py has 1.2.3",
         ),
         ("CITATION.cff", "2026-01-02", "2026-01-03", 'close it as "1.2.3 (2026-01-03)"'),
         ("CHANGELOG.md", "## 1.2.3", "## Unreleased\n\n## 1.2.3", 'CHANGELOG.md begins with "Unreleased"'),

@@ -26,12 +26,12 @@ from typing import Any
 
 import numpy as np
 
-import psph
 from psph.engine.jit import SOURCES, compiled
 from psph.errors import Refused
 from psph.output import rows as hdf5
 from psph.output.errors import cause, together
 from psph.parallel.reductions import wrapped_sums
+from psph.version import __version__
 
 FORMAT = 6
 """Number of this form of a file; another one is refused."""
@@ -101,7 +101,7 @@ def write(
     sums = wrapped_sums(comm, [checksum(part, first) for part in arrays.values()])
     header = header | {
         "format": FORMAT,
-        "psph": psph.__version__,
+        "psph": __version__,
         "sources": SOURCES,
         "particles": total,
         "checksums": dict(zip(arrays, sums)),
@@ -239,10 +239,10 @@ class Saved:
             return {}, self._damaged(error)
 
     def _objections(self, file, header: dict[str, Any], case: str) -> Iterator[str]:
-        if (header["format"], header["psph"]) != (FORMAT, psph.__version__):
+        if (header["format"], header["psph"]) != (FORMAT, __version__):
             yield (
                 f"{self.path}: written by psph {header['psph']} (format {header['format']}), this "
-                f"is psph {psph.__version__} (format {FORMAT}): resume with the psph that wrote it"
+                f"is psph {__version__} (format {FORMAT}): resume with the psph that wrote it"
             )
         copy = self.path.with_name(COPY)
         if header["case"] != case and self._foreign(header):

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-import psph
 from psph.case.keys import AXES
 from psph.engine.jit import processor
 from psph.output import diagnostics
@@ -19,6 +18,7 @@ from psph.output.gauges import gauges_of
 from psph.output.probes import Front, Probe, sensor
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
 from psph.simulation.step import Simulation
+from psph.version import __version__
 
 
 class Schedule:
@@ -73,7 +73,7 @@ class Record:
             {
                 "case": case.to_toml(),
                 "title": case.title,
-                "psph_version": psph.__version__,
+                "psph_version": __version__,
                 "processor": processor(),
                 "dimensions": scene.dimensions,
                 "spacing": scene.spacing,

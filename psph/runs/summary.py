@@ -7,9 +7,9 @@ from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
 
-import psph
 from psph.engine.jit import processor
 from psph.runs.cost import costs
+from psph.version import __version__
 
 SUMMARY = "summary.json"
 
@@ -36,7 +36,7 @@ def write_summary(folder: Path, scene, simulation, seconds: float, steps: int, s
         "seconds": seconds,
         "parts": [*parts, ("the rest", seconds - sum(spent.values()))],
         "said": list(said),
-        "versions": {"psph": psph.__version__, "Python": platform.python_version()}
+        "versions": {"psph": __version__, "Python": platform.python_version()}
         | {name: metadata.version(name) for name in PACKAGES},
         "processor": processor(),
     }

@@ -2,19 +2,16 @@
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from psph.case.errors import dotted
 from psph.case.keys import AXES
+from psph.case.motion import Motion
 from psph.physics.fluid.friction import friction_step
 from psph.scene.scene import Scene
 from psph.scene.shapes import bounds
 from psph.scene.walls import unheld
-
-if TYPE_CHECKING:
-    from psph.case.motion import Motion
 
 LONGEST_TANK = 300.0
 """Metres: the longest wave flume (the Delta Flume) has 300 m.  Millimetres taken for metres have a
@@ -131,7 +128,7 @@ def in_degrees(scene: Scene) -> Iterator[str]:
             yield from (f"{dotted(loc)}.{line}" for line in _turns(part))
 
 
-def _turns(part: "Motion") -> Iterator[str]:
+def _turns(part: Motion) -> Iterator[str]:
     """The same of a part of a motion; a series that turns on and on may turn far."""
     if (turn := part.rotation) and abs(w := turn.speed) > QUICKEST_TURN:
         yield (

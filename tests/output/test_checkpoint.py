@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-import psph
 from psph.output import checkpoint
 from psph.output.checkpoint import CheckpointError, Saved, checkpoint_path, checkpoints, checksum
 from psph.output.errors import OutputError
@@ -91,7 +90,7 @@ def test_a_file_that_is_cut_short_is_seen(tmp_path, share):
 def test_another_case_version_or_format_is_refused(tmp_path, monkeypatch):
     path = written(tmp_path)
     assert "belongs to another case than" in objection(path, "that case")
-    monkeypatch.setattr(psph, "__version__", "99.1")
+    monkeypatch.setattr(checkpoint, "__version__", "99.1")
     assert "resume with the psph that wrote it" in objection(path)
     monkeypatch.undo()
     monkeypatch.setattr(checkpoint, "FORMAT", checkpoint.FORMAT + 1)

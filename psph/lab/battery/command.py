@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-import psph
 from psph.case import CaseError, load
 from psph.lab.battery import comparison, picture, tables
 from psph.lab.battery.comparison import Comparison
@@ -16,7 +15,7 @@ from psph.lab.study.runs import perform
 from psph.output.errors import NotThere
 from psph.output.reader import Run
 
-CASES = Path(psph.__file__).parents[1] / "run" / "cases" / "hard"
+CASES = Path(__file__).parents[3] / "run" / "cases" / "hard"
 FOLDER = Path("battery")
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-import psph
 from psph.case import CaseError
 from psph.case.loader import load_to_read
 from psph.errors import Refused
@@ -23,6 +22,7 @@ from psph.runs.stability_forecast import stability_forecast
 from psph.runs.summary import NO_SUMMARY, read_summary
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
+from psph.version import __version__
 
 TEMPLATE = "page.html"
 FILMS = {".mp4": "video/mp4", ".gif": "image/gif"}
@@ -58,7 +58,7 @@ def report(folder: Path, field: str = "speed") -> Path:
         turning=interactive(turning(run), "turning"),
         key_numbers=list(_key_numbers(run)),
         accuracy=list(_accuracy(run, measured)),
-        psph_version=run.attributes.get("psph_version", psph.__version__),
+        psph_version=run.attributes.get("psph_version", __version__),
         **_of_case(run.folder, remarks),
     )
 
