@@ -21,6 +21,7 @@ KINDS = (
     "solid",
     "solid in water",
     "soil",
+    "updated",
 )
 """Scenes without their disorder: noise is another in 3D."""
 
@@ -34,6 +35,12 @@ ALIKE = 0.06
 """Of the change of the velocities, or of what gravity alone would change: kernels differ in 2D and 3D, so that
 walls and surfaces are felt a little otherwise; measured 0.01 to 0.058, the
 last of soil."""
+
+UPDATED = 0.1
+"""That of an updated Lagrangian solid, measured 0.088: in the first two rows the rate of its density differs by
+6.6 %, by 0.3 % with the Gaussian, which is drawn out to itself, and in the others by rounding.  It falls with
+the rows that see a surface: 0.071 at half the spacing.  0.109 where 3D faded the gradient of the velocity
+by the determinant that 2D does."""
 
 
 def in_order(name, folder):
@@ -80,7 +87,7 @@ def compared(name, folder, stiffer=1.0):
 
 @pytest.mark.parametrize("name", long_but_for(SHORT, KINDS))
 def test_a_scene_that_is_drawn_out_does_the_same(tmp_path, name):
-    assert compared(name, tmp_path) < ALIKE
+    assert compared(name, tmp_path) < (UPDATED if name == "updated" else ALIKE)
 
 
 def test_a_solid_that_is_a_little_stiffer_is_seen(tmp_path):

@@ -42,7 +42,8 @@ DEVIATOR = Declared(
 )
 
 FEWEST_OF_ELASTIC = 0.45
-"""Determinant of M below which the gradient of the velocity fades in matter that never yields."""
+"""Determinant of M below which the gradient of the velocity fades in matter that never yields, in 2D.  In 3D
+its power 3/2: at a surface M is below 1 along each axis, along z of a solid that is drawn out too."""
 
 
 @helper
@@ -86,7 +87,7 @@ class DeviatorRate(NamedTuple):
         """Where soils ask for it, the form whose stress spreads between neighbours too; in matter that never
         yields the correction fades sooner: else particles with few neighbours, at an edge, tear out."""
         if not scene.stressed.laws:
-            return DeviatorRate(FEWEST_OF_ELASTIC, faces_of(scene))
+            return DeviatorRate(FEWEST_OF_ELASTIC ** (max(scene.dimensions, 2) / 2.0), faces_of(scene))
         if not scene.stressed.diffusion:
             return DeviatorRate(self.least, faces_of(scene))
         return DiffusedDeviatorRate(scene.stressed.diffusion, levelled(scene), faces_of(scene))
