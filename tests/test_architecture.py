@@ -100,14 +100,13 @@ def circles(imports: dict[str, set[str]]) -> list[set[str]]:
 
 def late_imports(source: str) -> int:
     """How many imports of psph's modules are not at the top of a file."""
-    tree = parsed(source)
-    inner = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom | ast.Import)]
-    names = [
-        node.module or "" for node in inner if node not in tree.body and isinstance(node, ast.ImportFrom)
-    ]
-    names += [
-        a.name for node in inner if node not in tree.body and isinstance(node, ast.Import) for a in node.names
-    ]
+    tree, names = parsed(source), []
+    top = {id(node) for node in tree.body}
+    for node in (node for node in ast.walk(tree) if id(node) not in top):
+        if isinstance(node, ast.ImportFrom):
+            names.append(node.module or "")
+        elif isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
     return sum(name.partition(".")[0] == "psph" for name in names)
 
 

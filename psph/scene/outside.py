@@ -25,13 +25,13 @@ class Solid:
     def __init__(self, scene: Scene, motion=FIXED):
         self.scene, self.layout, self.lattice = scene, scene.layout, scene.layout.lattice
         self._still = np.zeros(NONE + 1, bool)
-        for number, one in enumerate(scene.species):
-            self._still[number] = one.motion == motion and type(one.motion) is type(motion)
+        for number, own in enumerate(scene.census.motions):
+            self._still[number] = own == motion and type(own) is type(motion)
 
     @property
     def groups(self) -> tuple[int, ...]:
         """The numbers of these walls."""
-        return tuple(number for number, _ in enumerate(self.scene.species) if self._still[number])
+        return tuple(np.flatnonzero(self._still).tolist())
 
     def deep(self, position: np.ndarray, depth: float, once: Container[int] = frozenset()) -> np.ndarray:
         """True where a point of ``position`` (n, dim) lies ``depth`` spacings behind every face.

@@ -6,6 +6,7 @@ import numpy as np
 
 from psph.case import Case
 from psph.fields import WALL
+from psph.physics.motion import is_free
 from psph.scene import Scene
 from psph.scene.outside import Solid
 
@@ -110,6 +111,6 @@ class Lifted(NamedTuple):
 
 def test_where_a_moving_wall_stood_fluid_may_be():
     solid = tank()
-    moving = tuple(one if one.is_fluid else one._replace(motion=Lifted()) for one in solid.scene.species)
-    solid.scene.species = moving
+    census = solid.scene.census
+    vars(census)["motions"] = tuple(one if is_free(one) else Lifted() for one in census.motions)
     assert not Solid(solid.scene).deep(np.array([[0.5, -0.15], [-3.0, 0.5]]), 1.0).any()

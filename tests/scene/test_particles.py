@@ -38,7 +38,7 @@ def scene(folder, text=WATER, *overrides):
 
 def everything(found):
     """All particles of a scene."""
-    return found.particles(0, found.planes, 0)
+    return found.particles(0, found.layout.planes, 0)
 
 
 SHAKEN = TANK.replace("[fluids.water]", "[fluids.water]\njitter = 0.1")
