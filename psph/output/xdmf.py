@@ -27,7 +27,7 @@ TAIL = """    </Grid>
 </Xdmf>
 """
 _GRID = """      <Grid Name="{name}" GridType="Uniform">
-        <Time Value="{time!r}"/>
+        <Time Value="{time}"/>
         <Topology TopologyType="Polyvertex" NumberOfElements="{count}" NodesPerElement="1">
           {connectivity}
         </Topology>
@@ -44,6 +44,9 @@ _ITEM = (
     '<DataItem Dimensions="{shape}" NumberType="{number}" Precision="{bytes}" Format="HDF">'
     "{file}:/{name}</DataItem>"
 )
+
+NAME, TIME = "<frame>", "<time>"
+"""What stands in a template: no name in the file has these signs, which XML escapes."""
 
 PARTICLES = "particles"
 
@@ -75,7 +78,7 @@ def item(file: Path, name: str, kind: Kind) -> str:
 class _Frame(NamedTuple):
     name: str
     time: float
-    fields: dict[str, Kind]  # one for all frames that are alike: a run may have very many
+    lines: str  # one template for all frames that are alike: a run may have very many
 
 
 class XdmfIndex:
@@ -122,19 +125,20 @@ class XdmfIndex:
 
     def _forget(self) -> None:
         self._listed: list[_Frame] = []
+        self._templates: dict[tuple, str] = {}
         self._behind = False
         self._size = len(HEAD.format(name=PARTICLES)) + len(TAIL)
         self._seen = 0  # bytes of the frames when the index was last written
 
     def _list(self, frame: str, time: float, kinds: dict[str, Kind]) -> None:
-        fields = {
-            name.removeprefix(f"{frame}/"): kind
+        fields = tuple(
+            (name.removeprefix(f"{frame}/"), kind)
             for name, kind in kinds.items()
             if name.startswith(f"{frame}/")
-        }
-        if self._listed and self._listed[-1].fields == fields:
-            fields = self._listed[-1].fields
-        self._listed.append(_Frame(frame, float(time), fields))
+        )
+        if fields not in self._templates:
+            self._templates[fields] = self._template(frame.rpartition("/")[0], dict(fields))
+        self._listed.append(_Frame(frame.rpartition("/")[2], float(time), self._templates[fields]))
         self._size += len(self._grid(*self._listed[-1]).encode())
         self._behind = True
 
@@ -151,13 +155,18 @@ class XdmfIndex:
             yield self._grid(*frame)
         yield TAIL
 
-    def _grid(self, frame: str, time: float, fields: dict[str, Kind]) -> str:
+    def _grid(self, name: str, time: float, lines: str) -> str:
+        return lines.replace(NAME, name).replace(TIME, repr(time))
+
+    def _template(self, folder: str, fields: dict[str, Kind]) -> str:
+        """The lines of a frame of these fields, with NAME and TIME in the place of its own."""
         (count, dimensions), _ = fields["position"]
         points = "points" if dimensions == 1 else "position"
         shown = {name: kind for name, kind in fields.items() if name not in ("position", "points")}
+        frame = f"{folder}/{NAME}"
         return _GRID.format(
-            name=frame.rpartition("/")[2],
-            time=time,
+            name=NAME,
+            time=TIME,
             count=count,
             connectivity=self._item(f"connectivity/{count}", ((count,), np.dtype("int64"))),
             geometry="XY" if dimensions == 2 else "XYZ",

@@ -193,7 +193,7 @@ class Domain:
         if self.store.owned:
             for d, x in enumerate(self.store["position"]):
                 inner = x[self.store.inner]
-                reach[d], reach[dimensions + d] = -np.nanmin(inner), np.nanmax(inner)
+                reach[d], reach[dimensions + d] = -np.fmin.reduce(inner), np.fmax.reduce(inner)
         self.comm.Allreduce(MPI.IN_PLACE, reach, MPI.MAX)
         low, high = map(np.array, self._home)
         outside = (reach - np.concatenate([-low, high])) / np.tile(self._step(), 2)
@@ -231,6 +231,9 @@ class Domain:
 
     def _balance_and_migrate(self, spent: float) -> np.ndarray:
         cells = self._cells()
+        if self.comm.size == 1:
+            self.bounds = np.array([0, self.grid.counts[0]])
+            return cells
         planes = planes_of(cells, self.grid)
         histogram = np.bincount(planes, minlength=self.grid.counts[0])
         self.bounds = rebalanced(self._costs(histogram, spent), self.bounds, self.comm.size)

@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 CHUNK = 1 << 16
-"""Rows that are rounded at once: what that takes of memory does not grow with the particles."""
+"""Terms that are rounded at once: what that takes of memory does not grow with the particles."""
 
 BITS = 62
 """Bits of a signed 64-bit integer that a sum may fill."""
@@ -41,21 +41,22 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     extremes = np.zeros(len(columns))
     if rows:
         with np.errstate(invalid="ignore"):
-            extremes[:] = [max(column.max(), -column.min()) for column in columns]
+            np.maximum(columns.max(axis=1), -columns.min(axis=1), out=extremes)
     extremes[np.isnan(extremes)] = np.inf
     count = np.array(rows, dtype=np.int64)
     peaks = largest(comm, extremes)
     comm.Allreduce(MPI.IN_PLACE, count, MPI.SUM)
     room = BITS - max(int(count), 1).bit_length()
-    exponents = [math.frexp(x)[1] if 0.0 < x < math.inf else 0 for x in peaks]
+    finite = np.isfinite(peaks)
+    scales = room - np.where(finite, np.frexp(np.where(finite, peaks, 0.0))[1], 0)
     total = np.zeros(len(columns), np.int64)
-    for place in np.flatnonzero(np.isfinite(peaks)):
-        for first in range(0, rows, CHUNK):
-            part = np.ldexp(columns[place, first : first + CHUNK], room - exponents[place])
-            total[place] += np.rint(part, out=part).astype(np.int64).sum()
+    wide = max(CHUNK // max(len(columns), 1), 1)
+    for first in range(0, rows, wide):
+        part = np.ldexp(columns[finite, first : first + wide], scales[finite, None])
+        total[finite] += np.rint(part, out=part).astype(np.int64).sum(axis=1)
     comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
-    sums = np.array([math.ldexp(int(t), e - room) for t, e in zip(total, exponents)])
-    return np.where(np.isfinite(peaks), sums, np.nan)
+    sums = np.array([math.ldexp(int(t), -scale) for t, scale in zip(total, scales.tolist())])
+    return np.where(finite, sums, np.nan)
 
 
 def whole_sums(comm: MPI.Comm, values: np.ndarray) -> np.ndarray:

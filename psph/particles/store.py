@@ -60,7 +60,9 @@ class Store:
             first += width
         self.low = self.owned = self.high = 0
         self._seen_in, self._view = view, None
-        self._arrays: dict[str, np.ndarray | tuple[np.ndarray, ...]] = {}
+        self._arrays: dict[int, np.ndarray | tuple[np.ndarray, ...]] = {}  # by the first row
+        self.blocks = 0
+        """How often all arrays were replaced by longer ones: who keeps some compares this number."""
         self.data = np.zeros((first, SLACK))
         self.id = np.zeros(SLACK, np.int64)
         self.group = np.zeros(SLACK, np.uint8)
@@ -71,10 +73,11 @@ class Store:
 
     def __getitem__(self, name: str):
         """The field over all columns: an array, or a tuple of component arrays."""
-        if name not in self._arrays:
-            rows = tuple(self.data[row] for row in self.rows[name])
-            self._arrays[name] = rows if self.fields[name].composed else rows[0]
-        return self._arrays[name]
+        rows = self.rows[name]
+        if (found := self._arrays.get(rows.start)) is None:
+            arrays = tuple(self.data[row] for row in rows)
+            found = self._arrays[rows.start] = arrays if self.fields[name].composed else arrays[0]
+        return found
 
     def rotate(self, *names: str) -> None:
         """Each field takes the rows of the one before, the first those of the last; no copy.
@@ -83,8 +86,6 @@ class Store:
         """
         rows = [self.rows[name] for name in names]
         self.rows.update(zip(names, [rows[-1], *rows[:-1]]))
-        for name in names:
-            self._arrays.pop(name, None)
 
     @property
     def kind(self) -> np.ndarray:
@@ -152,13 +153,20 @@ class Store:
         if columns + SLACK <= self.capacity:
             return
         wide = columns + columns // SPARE + SLACK
-        for name in ("data", "id", "group"):
-            old = getattr(self, name)
+
+        def widened(old: np.ndarray) -> np.ndarray:
             new = np.zeros((*old.shape[:-1], wide), old.dtype)
             new[..., : old.shape[-1]] = old
-            setattr(self, name, new)
+            return new
+
+        self.hold(*map(widened, (self.data, self.id, self.group)))
+
+    def hold(self, data: np.ndarray, ids: np.ndarray, groups: np.ndarray) -> None:
+        """Keep the particles in these arrays from now on; nobody may use the old ones."""
+        self.data, self.id, self.group = data, ids, groups
         self._arrays.clear()
-        self._view = None  # it shows the old arrays
+        self._view = None
+        self.blocks += 1
 
     def append(self, ids: np.ndarray, groups: np.ndarray, block: np.ndarray) -> None:
         """Add owned particles behind the last; ``block`` (rows, n).  Ghosts are lost."""

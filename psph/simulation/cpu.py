@@ -84,6 +84,8 @@ class Engine:
         self._potential = settled(potentials)
         self.kinds = tuple(kinds_of(scene, plan, store, self.domain, ledger, self.poses.maps))
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
+        self._bundles: dict[tuple, Columns] = {}
+        self._viewed = self._carried = None
         self.wetting = [Wetting(one, plan, store, self.domain, scene.layout.reach) for one in plan.marking]
 
     def of_kind(self, kind: type[Kind]):
@@ -336,11 +338,19 @@ class Engine:
     def _columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""
         s = self.store
-        return Columns(s.group, *(s[name] if name in s else None for name in Columns._fields[1:]))
+        held = s.blocks, s.rows.get("density_rate")  # whose rows change places in each step
+        if held not in self._bundles:
+            arrays = (s[name] if name in s else None for name in Columns._fields[1:])
+            self._bundles = {kept: one for kept, one in self._bundles.items() if kept[0] == s.blocks}
+            self._bundles[held] = Columns(s.group, *arrays)
+        return self._bundles[held]
 
     def _view(self, largest_speed: float):
         """The particles as the plan's carriers see them; a displacement also sees the largest speed."""
-        return seen_at(self.store.view()._replace(**self.plan.uncarried), largest_speed)
+        view = self.store.view()
+        if view is not self._viewed:
+            self._viewed, self._carried = view, view._replace(**self.plan.uncarried)
+        return seen_at(self._carried, largest_speed)
 
     def _rows_that_evolve(self) -> np.ndarray:
         """Rows of value, prediction and three rates of each component of what evolves (n, 5)."""

@@ -70,11 +70,8 @@ def near_and_far(tmp_path):
     """Twins: one in the first columns, one with columns past 2^31 and lists past 2^32."""
     near, far = small(tmp_path), small(tmp_path)
     store, domain = far.store, far.domain
-    store.data = shifted(tmp_path, store.data, COLUMNS)
-    store.id, store.group = (shifted(tmp_path, a, COLUMNS) for a in (store.id, store.group))
+    store.hold(*(shifted(tmp_path, a, COLUMNS) for a in (store.data, store.id, store.group)))
     store.low += COLUMNS
-    store._view = None
-    store._arrays.clear()
     for records in far.engine.records:
         table = records.table
         records.table = sparse(tmp_path, (COLUMNS + len(table), table.shape[1]), table.dtype)
