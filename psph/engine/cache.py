@@ -1,5 +1,6 @@
 """The folder of compiled loops: a file for each, named by what it was made of (psph.engine.contents)."""
 
+import hashlib
 import os
 import pickle
 import uuid
@@ -13,6 +14,9 @@ from numba.core.serialize import dumps
 
 MOST_BYTES = 2 * 2**30
 """What the folder may hold, bytes: some five hundred kinds of scene."""
+
+SUM = 32
+"""Bytes at the beginning of a file: the digest of the others."""
 
 LOOP, READY = ".loop", ".ready"
 """Endings of its files: a compiled loop, and the word that all loops of a plan are there."""
@@ -43,8 +47,11 @@ class Cache:
         """What was kept by this name, or None; its file counts as used just now."""
         path = self.folder / f"{name}{LOOP}"
         try:
-            kept = pickle.loads(path.read_bytes())
-        except Exception:  # no such file, half a file, or a class that is nowhere now
+            written = path.read_bytes()
+            if _sum(written[SUM:]) != written[:SUM]:
+                return None  # a part that a machine lost as it went down would be run as code
+            kept = pickle.loads(written[SUM:])
+        except Exception:  # no such file, or a class that is nowhere now
             return None
         with suppress(OSError):
             os.utime(path)
@@ -55,7 +62,8 @@ class Cache:
         path = self.folder / f"{name}{LOOP}"
         fresh = path.with_suffix(f".{uuid.uuid4().hex}")
         try:
-            fresh.write_bytes(dumps(kept))
+            written = dumps(kept)
+            fresh.write_bytes(_sum(written) + written)
             fresh.replace(path)
         except Exception:  # a full disk, or a class that has no name: no reason to end a run
             with suppress(OSError):
@@ -75,6 +83,10 @@ class Cache:
             if held > MOST_BYTES:
                 with suppress(OSError):
                     path.unlink()
+
+
+def _sum(written: bytes) -> bytes:
+    return hashlib.sha256(written).digest()
 
 
 def _files(root: Path) -> Iterator[tuple[float, int, Path]]:

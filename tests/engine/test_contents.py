@@ -3,13 +3,16 @@
 import importlib.util
 import subprocess
 import sys
+import types
 from pathlib import Path
 
 import numba
+import numpy as np
 import pytest
 from jobs import clean_environment
 from long import LONG
 
+from psph.engine import contents as contents_module
 from psph.engine.contents import UnknownContent, contents
 
 MODULE = '''
@@ -108,6 +111,99 @@ def test_what_changes_the_loop_changes_its_key(digest, old, new):
 )
 def test_what_does_not_change_the_loop_leaves_its_key(digest, old, new):
     assert digest() == digest(old, new)
+
+
+BEGIN = """
+import functools, operator, sys, types
+import numba, numpy as np
+from typing import NamedTuple
+from psph.engine.jit import compiled, overload, register_jitable
+
+def scaled(x):
+    return x
+
+@compiled
+def loop(x):
+    return scaled(x)
+"""
+CALLED = "def factor():\n    return 2.0\n\n"
+STANDS = "\n@overload(scaled)\ndef _scaled(x):\n    by = {}\n    return lambda x: by * x\n"
+HIDDEN = {
+    "a constant of a module in a module": ("import pkg.inner", STANDS.format("pkg.inner.FACTOR")),
+    "a default": ("class Given(NamedTuple):\n    by: float = 2.0\n", STANDS.format("Given().by")),
+    "what a function has": (f"{CALLED}factor.by = 2.0", STANDS.format("factor.by")),
+    "what prints short": ("OF = np.poly1d([2.00000000001])", STANDS.format("float(OF.c[0])")),
+    "what is found by its name": ("FACTOR = 2.0", STANDS.format("globals()['FACTOR']")),
+    "what is imported when it is called": ("", STANDS.format("FACTOR").replace("    by", "    from pkg.inner import FACTOR\n    by")),
+    "what numba was told": ("", "\n@numba.extending.overload(scaled)\ndef _scaled(x):\n    return lambda x: 2.0 * x\n"),
+    "a function of C": (f"@numba.cfunc('f8()')\n{CALLED}", STANDS.format("factor.__wrapped__()")),
+}  # fmt: skip
+"""Ways in which 2 gets into a loop, as the begin and the end of a module."""
+
+
+def loaded(folder, text, name="edited"):
+    """A module with this text."""
+    path = folder / f"{name}.py"
+    path.write_text(text)
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("way", HIDDEN)
+def test_what_gets_into_a_loop_by_a_detour_is_in_its_key(way, tmp_path, monkeypatch):
+    """Or the loop has none, and is compiled each time."""
+    keys = []
+    for number in ("2.0", "3.0"):
+        inner = types.SimpleNamespace(package=types.ModuleType("pkg"), module=types.ModuleType("pkg.inner"))
+        inner.package.inner, inner.module.FACTOR = inner.module, float(number)
+        monkeypatch.setitem(sys.modules, "pkg", inner.package)
+        monkeypatch.setitem(sys.modules, "pkg.inner", inner.module)
+        begin, end = (words.replace("2.0", number) for words in HIDDEN[way])
+        module = loaded(tmp_path, f"{BEGIN}{begin}\n{end}")
+        try:
+            keys.append(contents(module.loop, (numba.float64,)))
+        except UnknownContent:
+            keys.append(number)
+    assert keys[0] != keys[1]
+
+
+def test_a_file_of_ones_own_may_be_called_as_one_of_python(tmp_path, monkeypatch):
+    keys = []
+    for number in (2, 3):
+        wave = loaded(tmp_path, f"def factor(x):\n    return {number}.0 * x\n", "wave")
+        monkeypatch.setitem(sys.modules, "wave", wave)
+        contents_module._comes_from_outside.cache_clear()
+
+        def loop(x, factor=wave.factor):
+            return factor(x)
+
+        keys.append(contents(loop, (numba.float64,)))
+    assert keys[0] != keys[1]
+
+
+def test_what_is_replaced_while_python_runs_has_no_key(tmp_path):
+    """Some code was compiled with what was there before: it would be kept by the name of what is there now."""
+    for replace in (
+        lambda module: setattr(module, "STRENGTH", 3.0),
+        lambda module: setattr(module.Effect, "pull", lambda self, x: x),
+        lambda module: module.TABLE.update(b=np.array([1.0, 3.0])),
+        lambda module: module.TABLE["b"].fill(3.0),
+        lambda module: setattr(module.half, "__code__", (lambda x: 0.25 * x).__code__),
+    ):
+        module = loaded(tmp_path, MODULE)
+        kinds = (numba.typeof(module.Effect(1.0)), numba.float64)
+        assert contents(module.loop, kinds) == contents(module.loop, kinds)
+        replace(module)
+        with pytest.raises(UnknownContent, match="was another"):
+            contents(module.loop, kinds)
+
+
+def test_the_way_of_numba_is_in_the_key(digest, monkeypatch):
+    usual = digest()
+    monkeypatch.setattr(numba.config, "BOUNDSCHECK", 1)
+    assert digest() != usual
 
 
 def test_the_key_tells_types_apart(digest):

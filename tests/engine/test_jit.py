@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 from jobs import clean_environment
 from long import LONG
 
@@ -80,10 +81,12 @@ def test_an_edited_effect_of_a_script_is_compiled_anew(tmp_path):
     assert script(tmp_path, "foreign", edit=("7.0", "9.0")) == ["1.0", "18.0", "1 from the cache"]
 
 
-def test_a_loop_that_cannot_be_read_is_compiled_anew(tmp_path):
+@pytest.mark.parametrize("spoil", [lambda of: of[:-100], lambda of: of[:3000] + bytes(3000) + of[6000:]])
+def test_a_loop_that_cannot_be_read_is_compiled_anew(tmp_path, spoil):
+    """The second is a page that was never written: it would be run as code."""
     script(tmp_path)
     for kept in (tmp_path / "cache").rglob(f"*{LOOP}"):
-        kept.write_bytes(kept.read_bytes()[:-100])
+        kept.write_bytes(spoil(kept.read_bytes()))
     assert script(tmp_path) == ["1.0", "0 from the cache"]
     assert script(tmp_path) == ["1.0", "1 from the cache"]
 
@@ -96,7 +99,7 @@ def test_without_a_writable_cache_loops_are_compiled_for_this_process(tmp_path):
 
 
 def test_what_was_used_longest_ago_makes_room(tmp_path, monkeypatch):
-    monkeypatch.setattr(cache, "MOST_BYTES", 250)
+    monkeypatch.setattr(cache, "MOST_BYTES", 300)
     own, other = Cache(tmp_path / "own"), Cache(tmp_path / "other")
     for age, (where, name) in enumerate(((other, "oldest"), (own, "used"), (own, "newer"))):
         where.save(name, b"x" * 80)
