@@ -24,10 +24,9 @@ def answer(census: Census, friction: bool) -> float:
     yielding = Bodies(census.rigid_bodies, census.layout.gravity).yielding(math.inf)
     found = []
     for row, sliding in enumerate(yielding.sliding):
-        inverse = np.zeros((6, 6))
-        inverse[:3, :3], inverse[3:, 3:] = np.diag(sliding), yielding.turning[row]
-        values, axes = np.linalg.eigh(inverse)
-        root = axes * np.sqrt(np.maximum(values, 0.0))
+        root = np.zeros((6, 6))
+        values, axes = np.linalg.eigh(yielding.turning[row])
+        root[:3, :3], root[3:, 3:] = np.diag(np.sqrt(sliding)), axes * np.sqrt(np.maximum(values, 0.0))
         pressed = sum((g.T @ g for g in _pressed(census, row, friction)), np.zeros((6, 6)))
         found.append(float(np.linalg.eigvalsh(root.T @ pressed @ root)[-1]))
     return max(found)

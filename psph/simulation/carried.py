@@ -10,7 +10,8 @@ from psph.composition import terms
 from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
-from psph.vectors import add, affine, at, dot, nearest_to, onto, put, scale, subtract, zero_like
+from psph.simulation.mapped import affine, linear, onto
+from psph.vectors import add, at, dot, nearest_to, put, scale, subtract, zero_like
 
 place = call_by_number("place")
 """(motions, number, anchor, time) → x, m."""
@@ -110,9 +111,8 @@ def _face(drawn, normal, maps, k):
 
 
 def _face_it(drawn, normal, maps, k):
-    """R N of the normal N of what moves as a whole: what leads from the place of 0 to that of N."""
-    n = at(drawn, k)
-    put(normal, k, subtract(affine(maps, PLACE, n), affine(maps, PLACE, zero_like(n))))
+    """R N of the normal N of what moves as a whole."""
+    put(normal, k, linear(maps, PLACE, at(drawn, k)))
 
 
 @overload_inside(_face)

@@ -9,7 +9,8 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.physics.motion import ANCHOR, WORK, MovingClamp
 from psph.physics.rigid.pose import PLACE, VELOCITY, maps
-from psph.vectors import affine, at, dot, nearest_to, put, subtract
+from psph.simulation.mapped import affine
+from psph.vectors import at, dot, nearest_to, put, subtract
 
 
 class Clamps:

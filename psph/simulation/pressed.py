@@ -8,13 +8,13 @@ from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import WALL
-from psph.formula import helper
 from psph.physics.motion import ANCHOR, COUPLE, WORK, is_rigid
 from psph.physics.rigid.pose import PLACE, VELOCITY
 from psph.physics.solid.contact import FACE, FACE_RATE, TURNING
 from psph.scene.faces import drawn_faces
 from psph.simulation.kinds import Kind
-from psph.vectors import affine, at, dot, put, scale, subtract, zero_like
+from psph.simulation.mapped import linear
+from psph.vectors import at, dot, put, scale, subtract
 
 
 class Pressed(Kind):
@@ -58,19 +58,13 @@ class Pressed(Kind):
         in_threads(loop, 0, len(self._columns), *told, *args)
 
 
-@helper
-def turned(maps, which, a):
-    """What becomes of a direction by the affine map ``which``: what leads from the place of 0 to its."""
-    return subtract(affine(maps, which, a), affine(maps, which, zero_like(a)))
-
-
 @elementwise
 def carry(first, last, columns, group, pose_of, maps, drawn, now, rate, per):
     """The normals R N₀ of the rows ``first`` to ``last``, ``drawn`` N₀, as they are ``now``; their ``rate``
     in 1/s, if it is asked for, with the time 1/``per`` s since then."""
     for k in range(np.uint64(first), np.uint64(last)):
         c, normal = columns[k], at(drawn, k)
-        normal = turned(maps[pose_of[group[c]]], PLACE, normal)
+        normal = linear(maps[pose_of[group[c]]], PLACE, normal)
         if rate is not None:
             put(rate, c, scale(subtract(normal, at(now, c)), per))
         put(now, c, normal)
@@ -84,5 +78,5 @@ def twist(first, last, columns, group, pose_of, maps, drawn, face, turning, view
         normal, turn = at(face, c), at(turning, c)
         if couple is not None:
             put(couple, c, scale(cross(normal, turn, normal), 1.0 / take(view, c).mass))
-        rate = turned(maps[pose_of[group[c]]], VELOCITY, at(drawn, k))
+        rate = linear(maps[pose_of[group[c]]], VELOCITY, at(drawn, k))
         work[c] -= dt * dot(turn, rate)

@@ -170,6 +170,18 @@ SCENES = {
         },
         physics={"contact": {"damping": 0.1, "friction": 0.3}},
     ),
+    "body and solid": scene(
+        solids={"block": {"shape": box((0.0, 0.0), (0.75, 1.0)), "velocity": [2.0, 0.3], **RUBBER}},
+        bodies={
+            "disc": {
+                "shape": {"disc": {"center": [1.1, 0.5], "radius": 0.3}},
+                "density": 700.0,
+                "velocity": [-2.0, 0.2],
+                "spin": 2.0,
+            }
+        },
+        physics={"contact": {"damping": 0.1, "friction": 0.3}},
+    ),
     "solid in water": poured(
         {"tank": tank()},
         solids={
