@@ -24,7 +24,7 @@ from psph.case.paddles import Absorber, Flap, Irregular, OnHinge, Piston, Solita
 from psph.case.parameters import Parameters, chosen, last_part, table_of
 from psph.physics.rigid.absorption import Absorbing
 from psph.physics.rigid.laws import Accelerated, Harmonic, Steady, Tabulated
-from psph.physics.rigid.motion import UPWARDS, Part, Rigid
+from psph.physics.rigid.motion import UPWARDS, MotionPart, Rigid
 from psph.physics.rigid.pose import ZERO, in_space
 from psph.physics.rigid.schedule import Schedule
 
@@ -295,10 +295,10 @@ class Motion(Table):
         schedule = Schedule(self.start, math.inf if self.end is None else self.end, self.ramp)
         law = asked.law(gravity) if self.way in PADDLES else asked.law()
         if self.absorbs:
-            return Absorbing(Part(law, schedule), asked.heading, asked.absorption(gravity))
+            return Absorbing(MotionPart(law, schedule), asked.heading, asked.absorption(gravity))
         if isinstance(asked, (Turning, Wavemaker)):
-            return Part(law, schedule, asked.pivot, asked.unit_axis)
-        return Part(law, schedule)
+            return MotionPart(law, schedule, asked.pivot, asked.unit_axis)
+        return MotionPart(law, schedule)
 
 
 def _as_list(value: Any) -> Any:

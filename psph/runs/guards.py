@@ -14,13 +14,13 @@ from psph.output.errors import OutputError
 from psph.parallel.reductions import largest, wrapped_sums
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import is_prescribed
-from psph.physics.rigid.bodies import Body
+from psph.physics.rigid.bodies import RigidBody
 from psph.runs.advice import advice
 from psph.runs.post_mortem import write_post_mortem
 from psph.runs.record import Record
 from psph.runs.resume import newest_checkpoint, write_checkpoint
 from psph.runs.worst_particle import Suspect, find
-from psph.scene.outside import Solid
+from psph.scene.outside import WallRegion
 from psph.simulation.solid_overlap import inside_others
 from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
 from psph.simulation.touching import Overlap
@@ -51,8 +51,8 @@ class Guards:
         # What walls give is booked by pairs, of walls that bear a pressure.
         unbooked = moving and (whole or not all(one.bearing for one in moving))
         self._books = not simulation.plan.regions and not unbooked
-        self.solids = [(Solid(scene), None)]
-        self.solids += [(Solid(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
+        self.solids = [(WallRegion(scene), None)]
+        self.solids += [(WallRegion(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
         self.seen: Counter[str] = Counter()
         mass = moving_mass(simulation.comm, simulation.store)
         self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
@@ -126,7 +126,7 @@ class Guards:
         scene = self.scene
         lower, upper = np.array(scene.layout.lattice.lower), np.array(scene.layout.lattice.upper)
         if self.simulation.plan.rigid:
-            told = [not isinstance(one, Body) for one in self.simulation.plan.rigid]
+            told = [not isinstance(one, RigidBody) for one in self.simulation.plan.rigid]
             for low, up in zip(*(ends[told] for ends in self.simulation.engine.poses.around)):
                 lower, upper = np.minimum(lower, low), np.maximum(upper, up)
         for plane in scene.layout.mirror_planes:

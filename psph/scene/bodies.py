@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from psph.case.parameters import as_numbers
-from psph.physics.rigid.bodies import Bodies, Body
+from psph.physics.rigid.bodies import Bodies, RigidBody
 from psph.physics.rigid.lines import Line, longest_step
 from psph.physics.rigid.pose import in_space
 from psph.physics.solid.contact import SolidContact
@@ -36,14 +36,14 @@ def contact_of(scene: Scene) -> SolidContact:
     return SolidContact() if table is None else SolidContact(**as_numbers(table))
 
 
-def density_ratio(scene: Scene, body: Body) -> float:
+def density_ratio(scene: Scene, body: RigidBody) -> float:
     """The density of a body over that of its fluid."""
     number = [one.name for one in scene.species].index(body.name)
     volume = float(scene.census.sizes[number]) * scene.spacing**scene.dimensions
     return body.mass / volume / scene.species[number].density
 
 
-def in_words(scene: Scene, body: Body) -> str:
+def in_words(scene: Scene, body: RigidBody) -> str:
     """Mass, density over that of its fluid, centre and freedom of a body."""
     ratio = density_ratio(scene, body)
     freed = ", ".join(scene.case.bodies[body.name].freed(scene.dimensions)) or "nothing"

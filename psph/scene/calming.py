@@ -1,6 +1,6 @@
 """Elastic solids in fluids: the damping that calms what a step of the fluid does not resolve."""
 
-from psph.physics.solid.material import Solid, calming_viscosity
+from psph.physics.solid.material import ElasticSolid, calming_viscosity
 from psph.scene.faces import across
 from psph.scene.speeds import Speeds
 
@@ -9,7 +9,7 @@ DEEPEST = 4
 thick a solid is (docs/coupling.md)."""
 
 
-def damped_solids(speeds: Speeds) -> tuple[Solid, ...]:
+def damped_solids(speeds: Speeds) -> tuple[ElasticSolid, ...]:
     """The elastic solids of a scene, with the viscosity η of each in Pa s: as given, or what calms it in a
     fluid."""
     return tuple(

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from psph.physics.rigid.bodies import Body
+from psph.physics.rigid.bodies import RigidBody
 from psph.scene.layout import Layout
 from psph.scene.meshes.drawn import sites_in
 from psph.scene.volumes import rigid_bodies
@@ -31,7 +31,7 @@ class Census:
     clashes: dict[tuple[int, int], tuple[float, ...]] = field(default_factory=dict)
 
     @cached_property
-    def rigid_bodies(self) -> tuple[Body, ...]:
+    def rigid_bodies(self) -> tuple[RigidBody, ...]:
         """What the bodies of the case are: mass and inertia are those of their sites."""
         return rigid_bodies(self.layout)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from psph.scene.lattice import TOLERANCE
 from psph.scene.moving import moving_parts
-from psph.scene.outside import Solid
+from psph.scene.outside import WallRegion
 from psph.scene.scene import Scene
 from psph.scene.shapes import inside, shown
 
@@ -64,9 +64,9 @@ def off_solids(scene: Scene) -> Iterator[str]:
 def inside_walls(scene: Scene) -> Iterator[str]:
     """A line for each point within a wall that stands still, or within what carries it; a line of a gauge
     may begin there."""
-    still, species = Solid(scene), {one.name: one for one in scene.species}
+    still, species = WallRegion(scene), {one.name: one for one in scene.species}
     for key, point, carrier in _points(scene, "position"):
-        solid = Solid(scene, species[carrier].motion) if carrier else still
+        solid = WallRegion(scene, species[carrier].motion) if carrier else still
         if solid.deep(np.array([point]), BURIED)[0]:
             yield f"{key}: {shown(point)} lies in a wall, where there is no fluid to measure; move it out"
 

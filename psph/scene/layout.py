@@ -16,7 +16,7 @@ from psph.case.parameters import as_numbers, chosen
 from psph.moments import normalised
 from psph.particles.reach import Reach
 from psph.physics.solid.contact import REACH
-from psph.physics.solid.material import Solid
+from psph.physics.solid.material import ElasticSolid
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.lattice import TOLERANCE, Lattice, lattice_around
 from psph.scene.meshes.drawn import Drawn, drawn
@@ -141,7 +141,7 @@ class Layout:
         )
 
     @cached_property
-    def solids(self) -> tuple[Solid, ...]:
+    def solids(self) -> tuple[ElasticSolid, ...]:
         """The total Lagrangian solids, without the damping that depends on the speed of sound."""
         return solids_in(self.case, any(self.periods))
 

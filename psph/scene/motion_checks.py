@@ -10,7 +10,7 @@ from psph.case.errors import dotted
 from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN, RADIANS
 from psph.physics.motion import is_rigid
-from psph.physics.rigid.motion import Part, Rigid
+from psph.physics.rigid.motion import MotionPart, Rigid
 from psph.scene.moving import (
     MOMENTS,
     Sweep,
@@ -71,7 +71,7 @@ def motion_lines(scene: Scene) -> Iterator[str]:
 def _turns_in_words(motion, end: float) -> Iterator[str]:
     """How far and how fast each part of a motion turns that does."""
     parts = motion.parts if isinstance(motion, Rigid) else ()
-    for part in (one for one in parts if isinstance(one, Part)):
+    for part in (one for one in parts if isinstance(one, MotionPart)):
         told = [part.law.ways(part.schedule, t) for t in moments(end, MOMENTS)]
         angle, rate = (max(abs(one[k][3]) for one in told) for k in (0, 1))
         if angle or rate:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.physics.motion import Immersed, is_free, is_rigid
-from psph.physics.rigid.bodies import Body
+from psph.physics.rigid.bodies import RigidBody
 from psph.physics.rigid.pose import PLACE, maps
 from psph.scene.census import Census
 from psph.scene.layout import Layout
@@ -54,7 +54,7 @@ def moving_parts(census: Census) -> Iterator[tuple[int, str, Sweep]]:
     """Each wall and body that moves rigidly as it is told: its number among the species, its key and what
     it does."""
     for number, one in enumerate(census.motions):
-        told = one.motion if isinstance(one, Body) else one
+        told = one.motion if isinstance(one, RigidBody) else one
         if is_rigid(told):
             low, high = (tuple(end.tolist()) for end in _box(census, number))
             yield number, census.layout.parts[number].key, sweep(told, low, high, census.layout.case.time.end)
@@ -123,7 +123,7 @@ def falling_speed(census: Census) -> float:
 
 def goes_free(motion) -> bool:
     """Whether forces say where a part goes, at least along an axis."""
-    if isinstance(motion, Body):
+    if isinstance(motion, RigidBody):
         return any((*motion.slides, *motion.turns))
     return is_free(motion) or isinstance(motion, Immersed)
 

@@ -15,7 +15,7 @@ AT_ONCE = 1 << 15
 """Points that are processed together: their arrays fit into the processor's cache."""
 
 
-class Solid:
+class WallRegion:
     """The walls of a scene that move together, by ``motion``, where they stood at the start; continued
     outwards where they close a whole side of its particles.
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from psph.case.study import EXACT
-from psph.physics.solid.material import Solid
+from psph.physics.solid.material import ElasticSolid
 from psph.scene.calming import damped_solids
 from psph.scene.census import Census
 from psph.scene.layout import Layout
@@ -44,7 +44,7 @@ class Starts:
         return Setting(**vars(self.layout.surroundings), sound_speed=self.speeds.sound_speed)
 
     @cached_property
-    def solids(self) -> tuple[Solid, ...]:
+    def solids(self) -> tuple[ElasticSolid, ...]:
         """What the elastic solids are made of."""
         return damped_solids(self.speeds)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.motion import motion_of
-from psph.physics.rigid.bodies import Body
+from psph.physics.rigid.bodies import RigidBody
 from psph.physics.rigid.pose import in_space
 from psph.scene.lattice import lattice_around
 from psph.scene.layout import Layout
@@ -67,12 +67,12 @@ def drawn_volume(layout: Layout, shape) -> float:
     return float(count) * fine**layout.dimensions
 
 
-def rigid_bodies(layout: Layout) -> tuple[Body, ...]:
+def rigid_bodies(layout: Layout) -> tuple[RigidBody, ...]:
     """The bodies of a layout."""
     return tuple(_body(layout, part) for part in layout.parts if part.is_body)
 
 
-def _body(layout: Layout, part: Part) -> Body:
+def _body(layout: Layout, part: Part) -> RigidBody:
     table, filled, dimensions = part.table, volume_of(layout, part.number), layout.dimensions
     mass = table.mass or table.density * filled.volume
     inertia = filled.inertia(mass)
@@ -82,7 +82,7 @@ def _body(layout: Layout, part: Part) -> Body:
         inertia = np.array(table.inertia)
     spin = (0.0, 0.0, table.spin or 0.0) if dimensions == 2 else tuple(table.spin or (0.0,) * 3)
     freed = table.freed(dimensions)
-    return Body(
+    return RigidBody(
         part.name,
         mass,
         in_space(table.centre) if table.centre else tuple(filled.centre.tolist()),

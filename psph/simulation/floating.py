@@ -3,7 +3,7 @@
 import numpy as np
 
 from psph.parallel.reductions import whole_sums
-from psph.physics.rigid.bodies import Bodies, Body, crossing
+from psph.physics.rigid.bodies import Bodies, RigidBody, crossing
 from psph.physics.rigid.lines import pulls
 from psph.scene.bodies import lines_of, shares_of
 from psph.simulation.touching import Contacts
@@ -23,7 +23,7 @@ class Floating:
     """
 
     def __init__(self, scene, plan):
-        self.rows = [row for row, motion in enumerate(plan.rigid) if isinstance(motion, Body)]
+        self.rows = [row for row, motion in enumerate(plan.rigid) if isinstance(motion, RigidBody)]
         own = [plan.rigid[row] for row in self.rows]
         self.bodies, self._dimensions = Bodies(own, plan.pulls.uniform), scene.dimensions
         self.masses = shares_of(scene) if plan.pulls.bodies else None
@@ -31,7 +31,7 @@ class Floating:
         self.tensions = np.zeros(len(self.lines))
         self.body_of = np.full(len(scene.species), -1)
         for group, one in enumerate(scene.species):
-            if isinstance(one.motion, Body):
+            if isinstance(one.motion, RigidBody):
                 self.body_of[group] = own.index(one.motion)
         pressure = max(one.density for one in scene.species) * scene.sound_speed**2
         count = int(scene.census.sizes[list(scene.layout.parts.bodies)].sum())

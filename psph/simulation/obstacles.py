@@ -9,7 +9,7 @@ import numpy as np
 from psph.case.shapes import Ball, Disc, Shape
 from psph.composition.mirrors import BELOW
 from psph.physics.motion import Fixed, is_rigid
-from psph.physics.rigid.bodies import Body
+from psph.physics.rigid.bodies import RigidBody
 from psph.scene.distance import Faces, corners_of, faces_of
 from psph.scene.shapes import bounds
 
@@ -91,7 +91,7 @@ def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
             scene.layout.parts[part].shape,
         )
         pose = int(plan.pose_of[part]) if is_rigid(motion) else -1
-        if isinstance(motion, Body):
+        if isinstance(motion, RigidBody):
             ends[row := rows.index(pose)] = bounds(shape)
             yield Obstacle(key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose)
         elif isinstance(motion, Fixed) or is_rigid(motion):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from psph.physics.rigid.laws import Accelerated, Harmonic, Steady, Tabulated
-from psph.physics.rigid.motion import Part, Rigid
+from psph.physics.rigid.motion import MotionPart, Rigid
 from psph.physics.rigid.pose import ZERO, inertia
 from psph.physics.rigid.schedule import Schedule
 
@@ -40,7 +40,7 @@ def agree(motion, time):
 @pytest.mark.parametrize("schedule", [ALWAYS, RAMPED, ONCE])
 @pytest.mark.parametrize("name", LAWS)
 def test_every_part_has_the_slopes_that_it_says(name, schedule):
-    part = Part(LAWS[name], schedule, AWAY, SKEW)
+    part = MotionPart(LAWS[name], schedule, AWAY, SKEW)
     for time in MOMENTS:
         agree(part, time)
     assert part.pose(0.0).place(POINT) == pytest.approx(POINT, abs=1e-15)  # it begins where the wall stands
@@ -50,7 +50,11 @@ def test_every_part_has_the_slopes_that_it_says(name, schedule):
 @pytest.mark.parametrize("second", LAWS)
 def test_compositions_have_the_slopes_that_they_say(first, second):
     motion = Rigid(
-        (Part(LAWS[first], RAMPED, AWAY, SKEW), Part(LAWS[second], ALWAYS, ZERO), Part(LAWS["swing"]))
+        (
+            MotionPart(LAWS[first], RAMPED, AWAY, SKEW),
+            MotionPart(LAWS[second], ALWAYS, ZERO),
+            MotionPart(LAWS["swing"]),
+        )
     )
     for time in MOMENTS:
         agree(motion, time)
@@ -58,7 +62,7 @@ def test_compositions_have_the_slopes_that_they_say(first, second):
 
 def test_a_ramp_leaves_speed_and_acceleration_without_a_jump():
     for law in LAWS.values():
-        part = Part(law, RAMPED, AWAY, SKEW)
+        part = MotionPart(law, RAMPED, AWAY, SKEW)
         for moment in (RAMPED.start, RAMPED.start + RAMPED.ramp, RAMPED.end - RAMPED.ramp, RAMPED.end):
             before, after = (part.pose(moment + way) for way in (-1e-9, 1e-9))
             assert before.velocity_of(POINT) == pytest.approx(after.velocity_of(POINT), abs=1e-7)
@@ -67,7 +71,7 @@ def test_a_ramp_leaves_speed_and_acceleration_without_a_jump():
 
 def test_places_are_what_formulas_say():
     def moved(law, schedule, time):
-        return Part(law, schedule).pose(time).translation[0]
+        return MotionPart(law, schedule).pose(time).translation[0]
 
     assert moved(LAWS["translation"], ONCE, 1.0) == pytest.approx(0.5 * 0.8)
     assert moved(LAWS["translation"], RAMPED, 5.0) == pytest.approx(0.5 * (1.7 - 0.5))  # a ramp less
@@ -77,15 +81,15 @@ def test_places_are_what_formulas_say():
     assert moved(LAWS["sinusoid"], RAMPED, 1.0) == pytest.approx(0.2 * math.sin(4.0 * 0.8 + 0.6))
     assert moved(LAWS["sinusoid"], RAMPED, 2.0) == 0.0  # it has faded
     for time, row in zip(TIMES, TABLE):
-        assert Part(LAWS["series"]).pose(time).translation == pytest.approx(row[:3], abs=1e-15)
-    after = Part(LAWS["series"]).pose(7.0)
+        assert MotionPart(LAWS["series"]).pose(time).translation == pytest.approx(row[:3], abs=1e-15)
+    after = MotionPart(LAWS["series"]).pose(7.0)
     assert after.translation == pytest.approx(TABLE[-1, :3]) and after.velocity == ZERO
 
 
 def test_a_part_moves_what_the_parts_before_it_have_made():
     """A wheel that turns about its hub and travels: the hub as drawn, whatever the wheel has travelled."""
-    turn = Part(Steady((0.0, 0.0, 0.0, 0.5 * math.pi)), ALWAYS, (1.0, 0.0, 0.0))
-    travel = Part(Steady((3.0, 0.0, 0.0, 0.0)))
+    turn = MotionPart(Steady((0.0, 0.0, 0.0, 0.5 * math.pi)), ALWAYS, (1.0, 0.0, 0.0))
+    travel = MotionPart(Steady((3.0, 0.0, 0.0, 0.0)))
     rolling, orbiting = Rigid((turn, travel)).pose(1.0), Rigid((travel, turn)).pose(1.0)
     assert rolling.place((2.0, 0.0, 0.0)) == pytest.approx((4.0, 1.0, 0.0))
     assert orbiting.place((2.0, 0.0, 0.0)) == pytest.approx((1.0, 4.0, 0.0), abs=1e-15)
@@ -94,7 +98,7 @@ def test_a_part_moves_what_the_parts_before_it_have_made():
 def test_inertia_is_what_a_point_at_rest_in_space_seems_to_feel():
     """A point that gravity alone pulls, told in a frame that moves: its path there against differences."""
     gravity = (0.5, -9.8, 1.0)
-    frame = Rigid((Part(LAWS["swing"], RAMPED, AWAY, SKEW), Part(LAWS["sinusoid"], RAMPED)))
+    frame = Rigid((MotionPart(LAWS["swing"], RAMPED, AWAY, SKEW), MotionPart(LAWS["sinusoid"], RAMPED)))
 
     def seen(time):
         pose = frame.pose(time)

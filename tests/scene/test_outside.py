@@ -8,12 +8,12 @@ from psph.case import Case
 from psph.fields import WALL
 from psph.physics.motion import is_free
 from psph.scene import Scene
-from psph.scene.outside import Solid
+from psph.scene.outside import WallRegion
 
 
 def tank(top=1.0, **space):
     """A tank 2 m wide, walls three particles of 0.1 m thick, its walls up to ``top``."""
-    return Solid(
+    return WallRegion(
         Scene(
             Case.model_validate(
                 {
@@ -82,7 +82,7 @@ def test_across_a_periodic_edge():
         "fluids": {"water": {"shape": {"box": {"lower": [0.0, 0.0], "upper": [2.0, 1.0]}}}},
         "walls": {"floor": {"shape": {"box": {"lower": [0.0, -0.4], "upper": [2.0, 0.0]}}}},
     }
-    solid = Solid(Scene(Case.model_validate(case)))
+    solid = WallRegion(Scene(Case.model_validate(case)))
     assert solid.closed == ((False, False), (True, False))
     places = np.array([[0.02, -0.2], [1.99, -0.2], [2.3, -0.2], [1.0, -3.0], [1.0, 1.4]])
     assert solid.deep(places, 1.0).tolist() == [True, True, True, True, False]
@@ -95,7 +95,7 @@ def test_without_walls_nothing_is_behind_one():
         "physics": {"sound_speed": 10.0},
         "fluids": {"water": {"shape": {"box": {"lower": [0.0], "upper": [1.0]}}}},
     }
-    solid = Solid(Scene(Case.model_validate(case)))
+    solid = WallRegion(Scene(Case.model_validate(case)))
     assert not solid.deep(np.array([[0.5], [9.0]]), 1.0).any()
 
 
@@ -113,4 +113,4 @@ def test_where_a_moving_wall_stood_fluid_may_be():
     solid = tank()
     census = solid.scene.census
     vars(census)["motions"] = tuple(one if is_free(one) else Lifted() for one in census.motions)
-    assert not Solid(solid.scene).deep(np.array([[0.5, -0.15], [-3.0, 0.5]]), 1.0).any()
+    assert not WallRegion(solid.scene).deep(np.array([[0.5, -0.15], [-3.0, 0.5]]), 1.0).any()

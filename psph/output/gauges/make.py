@@ -23,7 +23,7 @@ from psph.output.gauges.run_up import RunUpGauge
 from psph.output.gauges.stress import StressGauge
 from psph.output.probes import Front, Probe
 from psph.output.tables import GAUGE
-from psph.scene.outside import Solid
+from psph.scene.outside import WallRegion
 
 DRAWN = 0.01
 """Spacings behind a drawn face from which on a point of a line is within a wall."""
@@ -94,11 +94,11 @@ def _up(scene) -> tuple[float, ...]:
     return tuple(-g / size if size else 0.0 for g in scene.gravity)
 
 
-def _beside(scene, asked) -> Solid:
+def _beside(scene, asked) -> WallRegion:
     """The walls that a gauge stands beside for good: those that carry it along, else those at rest."""
     if asked.moves_with is None:
-        return Solid(scene)
-    return Solid(scene, scene.species[scene.layout.names.index(asked.moves_with)].motion)
+        return WallRegion(scene)
+    return WallRegion(scene, scene.species[scene.layout.names.index(asked.moves_with)].motion)
 
 
 def _carrier(asked, names) -> Carrier | None:

@@ -17,7 +17,7 @@ BENT = 0.2
 """Spacings by which particles may miss a motion without deformation."""
 
 
-class Body:
+class DrawnBody:
     """A wall of ``group``, or a body that is ``rigid``: its ``faces`` (n, 3, 3), m, in the frame ``start``;
     ``around`` the fluid?"""
 
@@ -64,7 +64,7 @@ def hull(places: np.ndarray, spacing: float) -> Triangles:
     return np.empty((0, 3, 3)) if around is None else around.points[around.regular_faces].astype(float)
 
 
-def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator[Body]:
+def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator[DrawnBody]:
     """All that is not fluid in ``case`` (3D), whose first frame is ``start``; its files are in ``folder``.
 
     What has no shape in the case, or one whose file is gone, gets a surface around its particles.
@@ -83,7 +83,7 @@ def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator
             faces = inwards(faces, shape) if around else faces
         else:
             faces, around = hull(start["position"][start["group"] == group], spacing), False
-        yield Body(group, faces, around, group >= first_body(case), start, spacing)
+        yield DrawnBody(group, faces, around, group >= first_body(case), start, spacing)
 
 
 def _shape(table: dict, folder: Path) -> Shape | None:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from psph.errors import Refused
 from psph.fields import WALL
 from psph.output.pictures import style
-from psph.output.pictures.bodies import Body, bodies_of
+from psph.output.pictures.bodies import DrawnBody, bodies_of
 from psph.output.pictures.camera import ANGLE, Camera, before, directions
 from psph.output.pictures.moorings import Moorings, moorings_of
 from psph.output.pictures.ruler import rulers
@@ -51,7 +51,7 @@ def pyvista():
 
 def scene(
     case: dict, folder: Path, start: dict, room: Room, boxes: Sequence[dict[int, np.ndarray]], smooth: bool
-) -> "Solid":
+) -> "View3D":
     """The scene of ``case``, whose first frame is ``start``; its files are in ``folder``.
 
     ``boxes`` (2, 3), m, are those around each group in time.
@@ -63,7 +63,7 @@ def scene(
     seen = {body.group for body in still}
     visible = [body.faces.reshape(-1, 3) for body in still]
     visible += [box for one in boxes for group, box in one.items() if group not in seen]
-    return Solid(room, bodies, np.concatenate(visible), smooth, moorings_of(case, start))
+    return View3D(room, bodies, np.concatenate(visible), smooth, moorings_of(case, start))
 
 
 def _stands(boxes: Sequence[np.ndarray]) -> bool:
@@ -71,7 +71,7 @@ def _stands(boxes: Sequence[np.ndarray]) -> bool:
     return all(np.array_equal(boxes[0], box) for box in boxes)
 
 
-class Solid:
+class View3D:
     """The whole of a ``room`` with its ``bodies``, seen by one camera from the left, the front and above.
 
     It shows the box around all of the ``visible`` points, (n, 3) m.  ``smooth``: the fluid has a surface in
@@ -83,7 +83,7 @@ class Solid:
     def __init__(
         self,
         room: Room,
-        bodies: Iterable[Body],
+        bodies: Iterable[DrawnBody],
         visible: np.ndarray,
         smooth: bool,
         moorings: Moorings | None = None,
@@ -160,7 +160,7 @@ class Solid:
             setattr(actor.prop, name, share)
         plotter.add_actor(actor)
 
-    def _add_body(self, plotter, body: Body, faces: np.ndarray) -> None:
+    def _add_body(self, plotter, body: DrawnBody, faces: np.ndarray) -> None:
         if not len(faces):
             return
         seen = {"color": style.WALLS, "opacity": AROUND if body.around else WITHIN, "culling": "back"}

@@ -10,7 +10,7 @@ import numpy as np
 from psph.errors import Refused
 from psph.output.errors import NotThere
 from psph.output.pictures import names
-from psph.output.pictures.bodies import Body, bodies_of
+from psph.output.pictures.bodies import DrawnBody, bodies_of
 from psph.output.pictures.walls import Triangles
 from psph.output.progress import with_progress
 from psph.output.reader import Run
@@ -62,7 +62,7 @@ def solids(folder: Path) -> Path:
     return index
 
 
-def _grid(file: h5py.File, path: Path, bodies: list[Body], run: Run, k: int) -> str:
+def _grid(file: h5py.File, path: Path, bodies: list[DrawnBody], run: Run, k: int) -> str:
     """The element of frame ``k``, whose arrays are written into ``file``."""
     frame = run.frame(k, "position", "group", "id")
     faces = [body.at(frame) for body in bodies]

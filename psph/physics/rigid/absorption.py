@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from psph.fields import WALL
-from psph.physics.rigid.motion import Part
+from psph.physics.rigid.motion import MotionPart
 from psph.physics.rigid.pose import Pose, combined
 from psph.vectors import Vector, scale
 
@@ -33,7 +33,7 @@ class Absorbing(NamedTuple):
     unit vector.  How far it is from there is its :class:`Correction`.
     """
 
-    part: Part
+    part: MotionPart
     heading: Vector
     absorption: Absorption
 

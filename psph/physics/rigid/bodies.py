@@ -48,7 +48,7 @@ KEPT = (
 """The arrays of a state."""
 
 
-class Body(NamedTuple):
+class RigidBody(NamedTuple):
     """What a rigid body is, and what holds it.
 
     ``mass`` in kg (per m of depth in 2D); ``centre`` of mass at the start, m; ``inertia`` about it, kg
@@ -94,7 +94,7 @@ class Bodies:
     its angle, and no error in the turn at all.
 
     ``place`` X, m, ``velocity`` m/s, ``angular_momentum`` kg m²/s and ``force`` N, ``torque`` N m, all
-    (n, 3), are of the reference points (:class:`Body`), ``turn`` (n, 3, 3) leads from the start to now,
+    (n, 3), are of the reference points (:class:`RigidBody`), ``turn`` (n, 3, 3) leads from the start to now,
     ``frame`` has the principal axes of those that turn freely.  ``ahead`` and ``spin_ahead`` are
     velocity and angular velocity as they will be at the end of the step if the force stays; ``loose`` (n, 1)
     is 0 for a body that is held, which shows no velocity and no acceleration, else 1; ``prescribed``, m/s²,
@@ -102,7 +102,7 @@ class Bodies:
     ``twisting`` N m (n, 3) are what contacts were in the last step, in the mean over it.
     """
 
-    def __init__(self, bodies: Sequence[Body], gravity: Sequence[float]):
+    def __init__(self, bodies: Sequence[RigidBody], gravity: Sequence[float]):
         self.bodies = tuple(bodies)
         n = len(self.bodies)
         self.mass = np.array([one.mass for one in bodies])[:, None]

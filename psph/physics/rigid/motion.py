@@ -12,7 +12,7 @@ UPWARDS = (0.0, 0.0, 1.0)
 """The axis of all turns in 2D."""
 
 
-class Part(NamedTuple):
+class MotionPart(NamedTuple):
     """A displacement and a turn about a point that moves along.
 
     x = c + s(t) + R(θ(t)) (x₀ − c): ``law`` gives s and θ (psph.physics.rigid.laws) by the ``schedule``,

@@ -36,7 +36,7 @@ MADE_OF = (
 """The keys of a case that say what a solid is made of, as they stand."""
 
 
-class Solid(NamedTuple):
+class ElasticSolid(NamedTuple):
     """An elastic solid: its ``law`` (psph.physics.solid.laws), ``density`` in the reference in kg/m³, and
     ``wave_speed`` c_l = √((λ + 2μ)/ρ₀) of its fastest wave in m/s; the ``viscosity`` of Kelvin and Voigt in
     Pa s, and the ``stiffness`` αE of the hourglass control in Pa.
@@ -82,12 +82,12 @@ def solid_of(
     mie_gruneisen: dict[str, float] | None = None,
     length: float = 0.0,
     shared: bool = False,
-) -> Solid:
+) -> ElasticSolid:
     """The solid of these numbers: ``young`` and ``poisson`` E in Pa and ν, ``damping`` η in Pa s; where it
     yields, ``yield_stress`` and ``hardening`` in Pa, or the numbers of a table ``johnson_cook``; where it
     cracks, ``critical_stretch`` and perhaps the Weibull modulus ``flaws``; with the numbers of a table
     ``mie_gruneisen`` its pressure is by that law, shocks as wide as some ``length`` in m; ``shared`` as in
-    :class:`Solid`."""
+    :class:`ElasticSolid`."""
     lame, shear = moduli(young, poisson)
     bulk = lame + 2.0 * shear / 3.0
     compression: Any = EvenBulk(bulk)
@@ -102,7 +102,7 @@ def solid_of(
         yielding = LinearHardening(yield_stress, hardening)
     own = Metal(compression, shear, yielding) if yielding else LAWS[law](lame, shear)
     most = math.inf if critical_stretch is None else critical_stretch
-    return Solid(name, own, density, speed, damping, hourglass * young, most, flaws or 0.0, shared)
+    return ElasticSolid(name, own, density, speed, damping, hourglass * young, most, flaws or 0.0, shared)
 
 
 def mie_gruneisen_of(
@@ -134,16 +134,16 @@ def johnson_cook_of(density: float, heat_capacity: float | None, **numbers) -> J
     return JohnsonCook(heated=HEAT / (density * heat_capacity) if heat_capacity else 0.0, **numbers)
 
 
-def remembers(solids: Iterable[Solid]) -> bool:
+def remembers(solids: Iterable[ElasticSolid]) -> bool:
     """Whether any solid yields: then all particles carry a history."""
     return any(hasattr(one.law, "flow") for one in solids)
 
 
-def is_heated(solids: Iterable[Solid]) -> bool:
+def is_heated(solids: Iterable[ElasticSolid]) -> bool:
     """Whether any solid books its internal energy."""
     return any(isinstance(getattr(one.law, "compression", None), MieGruneisen) for one in solids)
 
 
-def is_damped(solids: Iterable[Solid]) -> bool:
+def is_damped(solids: Iterable[ElasticSolid]) -> bool:
     """Whether any solid has a viscosity: then velocities are summed, and travel, too."""
     return any(one.viscosity for one in solids)

@@ -8,7 +8,7 @@ from psph.case.mesh import Mesh
 from psph.scene.meshes.surface import surface_of
 
 
-class Solid(NamedTuple):
+class MassProperties(NamedTuple):
     """A body of density 1: ``volume`` in m³, ``center`` (3,) in m, ``inertia`` (3, 3) about the centre in m⁵.
 
     Times a density in kg/m³ they are its mass, and its inertia in kg m².
@@ -19,7 +19,7 @@ class Solid(NamedTuple):
     inertia: np.ndarray
 
 
-def solid_of(mesh: Mesh) -> Solid:
+def solid_of(mesh: Mesh) -> MassProperties:
     """The closed body that a mesh encloses, whether it is filled or a shell (Mirtich 1996, by trimesh).
 
     Raises MeshError.
@@ -29,4 +29,4 @@ def solid_of(mesh: Mesh) -> Solid:
     whole = surface_of(mesh).whole
     body = trimesh.Trimesh(whole.vertices, whole.faces, process=False)
     found = body.mass_properties
-    return Solid(float(found.mass), np.array(found.center_mass), np.array(found.inertia))
+    return MassProperties(float(found.mass), np.array(found.center_mass), np.array(found.inertia))

@@ -24,7 +24,7 @@ ALL_OPEN = 0.8
 
 
 @dataclass(frozen=True)
-class Body:
+class FileSurface:
     """A surface as a file has it, welded, turned to one side, and closed.
 
     ``sheet`` is the surface itself, ``whole`` the same with its holes closed; lengths in the unit of the
@@ -41,12 +41,12 @@ class Body:
 
 
 class Surface:
-    """The surface of a body in a scene: ``sheet`` and ``whole`` as in :class:`Body`, in m, ``volume`` in m³.
+    """The surface of a body in a scene: ``sheet`` and ``whole`` as in :class:`FileSurface`, in m.
 
-    ``rounding`` (m): how exact the file is; ``lower``, ``upper``: corners of the box around it.
+    ``volume`` in m³; ``rounding`` (m): how exact the file is; ``lower``, ``upper``: corners of the box around it.
     """
 
-    def __init__(self, body: Body, scale: float, turns: Sequence[Turn], move: Sequence[float]):
+    def __init__(self, body: FileSurface, scale: float, turns: Sequence[Turn], move: Sequence[float]):
         self.body = body
         self.sheet, self.whole = (_placed(one, scale, turns, move) for one in (body.sheet, body.whole))
         self.rounding = self.sheet.rounding
@@ -182,7 +182,7 @@ def _surface(found: Found, scale: float, turns: tuple[Turn, ...], move: tuple[fl
 
 
 @cache
-def _body(found: Found) -> Body:
+def _body(found: Found) -> FileSurface:
     """The surface of a file, made fit; each once in a process."""
     surface = weld(read(found.path))
     if not len(surface.faces):
@@ -196,7 +196,7 @@ def _body(found: Found) -> Body:
     if encloses and volume(whole.corners) < 0.0:  # all faces lie inwards
         sheet, whole = (_about(one, slice(None)) for one in (sheet, whole))
     open_edges = int(np.count_nonzero(edges_of(sheet.faces).unbalanced))
-    return Body(sheet, whole, open_edges, len(rings), int(about.sum()), not encloses)
+    return FileSurface(sheet, whole, open_edges, len(rings), int(about.sum()), not encloses)
 
 
 def _about(surface: Welded, which) -> Welded:

@@ -6,7 +6,7 @@ from typing import Any
 
 from psph.case import Case
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS, SMOOTHING
-from psph.physics.solid.material import MADE_OF, Solid, solid_of
+from psph.physics.solid.material import MADE_OF, ElasticSolid, solid_of
 from psph.scene.parts.hookean import HookeanPart, StressedPart
 from psph.scene.parts.part import Known
 
@@ -43,7 +43,7 @@ def clamps_in(case: Case) -> Iterator[tuple[str, str, Any]]:
             yield name, key, clamp
 
 
-def solids_in(case: Case, repeats: bool) -> tuple[Solid, ...]:
+def solids_in(case: Case, repeats: bool) -> tuple[ElasticSolid, ...]:
     """The total Lagrangian solids of a case, without damping; ``repeats`` says whether an axis does.
 
     What is drawn out along an axis that repeats is a plate and has the hourglass control of 2D, so that both

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from psph.physics.rigid.bodies import Bodies, Body
+from psph.physics.rigid.bodies import Bodies, RigidBody
 from psph.physics.rigid.laws import Accelerated
 from psph.physics.rigid.lines import Line, longest_step, pulls
-from psph.physics.rigid.motion import Part, Rigid
+from psph.physics.rigid.motion import MotionPart, Rigid
 from psph.physics.rigid.pose import Pose
 from psph.physics.rigid.schedule import Schedule
 
@@ -20,7 +20,7 @@ BRICK = (2.0, 0.1, -0.2, 0.1, 3.0, 0.15, -0.2, 0.15, 4.5)
 
 def body(**different):
     """A free body off the origin; what differs is given."""
-    return Body("brick", 3.0, (1.0, -2.0, 0.5), BRICK, (0.0,) * 3, (0.0,) * 3, FREE, FREE)._replace(
+    return RigidBody("brick", 3.0, (1.0, -2.0, 0.5), BRICK, (0.0,) * 3, (0.0,) * 3, FREE, FREE)._replace(
         **different
     )
 
@@ -143,7 +143,7 @@ def test_a_hinge_bears_the_moments_that_would_tip_its_body():
 
 
 def test_what_moves_a_body_pushes_it_and_what_is_free_needs_nothing():
-    told = Rigid((Part(Accelerated((2.0, 0.0, 0.5, 0.0)), Schedule()),))
+    told = Rigid((MotionPart(Accelerated((2.0, 0.0, 0.5, 0.0)), Schedule()),))
     pushed = body(slides=(False, True, False), turns=FIXED, motion=told)
     held = body(held=10.0)
     bodies = moved(Bodies([pushed, body(spin=(2.0, -1.0, 5.0)), held], (0.0, -9.8, 0.0)), 1e-2, 10)
@@ -156,7 +156,7 @@ def test_what_moves_a_body_pushes_it_and_what_is_free_needs_nothing():
 def test_a_pendulum_on_a_hinge_that_speeds_up_leans_back():
     # In the frame of the hinge the weight is turned by atan(a/g): it swings about that angle, let go from rest.
     length, g, a = 0.8, 9.8, 2.0
-    ahead = Rigid((Part(Accelerated((a, 0.0, 0.0, 0.0)), Schedule()),))
+    ahead = Rigid((MotionPart(Accelerated((a, 0.0, 0.0, 0.0)), Schedule()),))
     bob = body(centre=(0.0, -length, 0.0), pivot=(0.0,) * 3, slides=FIXED, turns=(False, False, True))
     angles = {}
     for name, motion in (("ahead", ahead), ("still", None)):
