@@ -81,6 +81,28 @@ force = { on = ["outer"], about = [0.0, 0.0] }
 """
 
 
+BALLS = """
+time.end = 100.0
+space = { dimensions = 3, spacing = 0.05 }
+physics.sound_speed = 8.0
+[fluids.oil]
+shape.difference.from.ball = { center = [0.0, 0.0, 0.0], radius = 0.75 }
+shape.difference.minus = [{ ball = { center = [0.0, 0.0, 0.0], radius = 0.3 } }]
+viscosity = 0.2
+[walls.inner]
+no_slip = true
+motion = { rotation = { speed = 0.5, center = [0.0, 0.0, 0.0], axis = [0.0, 0.0, 1.0] } }
+shape.ball = { center = [0.0, 0.0, 0.0], radius = 0.3 }
+[walls.outer]
+no_slip = true
+shape.difference.from.ball = { center = [0.0, 0.0, 0.0], radius = 0.95 }
+shape.difference.minus = [{ ball = { center = [0.0, 0.0, 0.0], radius = 0.75 } }]
+[gauges.inner]
+force = { on = ["inner"], about = [0.0, 0.0, 0.0] }
+[gauges.outer]
+force = { on = ["outer"], about = [0.0, 0.0, 0.0] }
+"""
+
 ELLIPSE = """
 time.end = 100.0
 space = { dimensions = 2, spacing = 0.1 }
@@ -187,6 +209,23 @@ def test_a_rheometer_has_the_moments_of_taylor_and_couette(tmp_path):
     assert -inner == pytest.approx(1.0, abs=0.02) and outer == pytest.approx(1.0, abs=0.02)
     assert inner + outer == pytest.approx(0.0, abs=4e-3)
     assert abs(inner - within + outer - without) > 0.02
+
+
+@LONG
+@pytest.mark.timeout(900)
+def test_a_ball_that_turns_within_another_has_the_moment_of_stokes(tmp_path):
+    """M = 8πμΩ R₁³R₂³/(R₂³ − R₁³) on both, six spacings to the inner radius, Re 0.2.
+
+    The control: at the places of the particles the inner one is 4 % smaller.
+    """
+    one, gauges = started(tmp_path, BALLS), gauges_of(Scene(draft(tmp_path, BALLS)))
+    until(one, 0.7)
+    exact = 8.0 * math.pi * 200.0 * 0.5 * 0.3**3 * 0.75**3 / (0.75**3 - 0.3**3)
+    inner, outer = (float(gauges[f"gauge-{name}.csv"].row(one)[-1]) / exact for name in ("inner", "outer"))
+    assert -inner == pytest.approx(1.0, abs=0.03) and outer == pytest.approx(1.0, abs=0.03)
+    store, of = one.store, one.store.owned_rows("group") == 1
+    x, load, mass = (store.owned_rows(name)[of] for name in ("position", "load", "mass"))
+    assert (mass * (x[:, 0] * load[:, 1] - x[:, 1] * load[:, 0])).sum() / exact > inner + 0.03
 
 
 def surface_stresses(s, nu, n=2):
