@@ -177,8 +177,6 @@ def anvils_of(case) -> list[str]:
 
 OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
 
-CONTACT = "physics", "contact"
-
 NOT_MET = "nothing is known of contact between solids and these; remove one of the two"
 
 
@@ -216,18 +214,16 @@ def elastic(case) -> Iterator[Finding]:
 def _meeting(case) -> Iterator[Finding]:
     """What contact knows nothing of."""
     contact = case.physics.contact is not None
-    if case.flowing:
-        if contact:
-            yield CONTACT, ..., "solids in a fluid do not feel each other; remove it, or the fluids"
-        if case.bodies:
-            says = "in a fluid nothing is known of contact between solids and these; remove one of the three"
-            yield ("bodies",), ..., says
-        return
-    yield from _rigid(case)
-    for name, one in case.boundaries.items():
+    if contact or not case.flowing:
+        yield from _rigid(case)
+    for name in case.bodies if case.flowing else case.boundaries:
         here = (case.table_of(name), name)
         if not contact:
             yield here, ..., f"solids do not feel {here[0]} without contact; give physics.contact = {{}}"
+    if case.flowing:
+        return
+    for name, one in case.boundaries.items():
+        here = (case.table_of(name), name)
         given = {
             "velocity": name in case.walls and any(one.velocity or ()),
             "condition": one.condition != type(one).model_fields["condition"].default,
@@ -246,12 +242,12 @@ def _meeting(case) -> Iterator[Finding]:
 
 
 def _rigid(case) -> Iterator[Finding]:
-    """Walls and bodies that solids alone cannot meet."""
+    """Walls and bodies that solids cannot meet."""
     for name, wall in case.walls.items():
         if not all(part.is_rigid for part in wall.motion or () if len(part.ways) == 1):
             says = "solids meet walls that move as a whole, and this one deforms; remove this key"
             yield ("walls", name, "motion"), ..., says
-        if any(part.way in PADDLES for part in wall.motion or () if len(part.ways) == 1):
+        if not case.flowing and any(part.way in PADDLES for part in wall.motion or () if len(part.ways) == 1):
             yield ("walls", name, "motion"), ..., "a paddle makes waves, and there is no fluid; take another"
     for name in case.bodies.keys() & case.solids.keys():
         yield ("bodies", name), ..., "a solid has this name too; give the body another"

@@ -53,21 +53,22 @@ def _entries(first: np.ndarray, counts: np.ndarray) -> np.ndarray:
     return np.arange(ends[-1] if len(ends) else 0) + np.repeat(first - (ends - counts), counts)
 
 
-def padded_lists(counts: np.ndarray, entries: np.ndarray, multiple: int) -> Neighbours:
-    """Lists of ``counts[k]`` ``entries`` each for the rows from 0 on, each filled up with the row itself."""
+def padded_lists(counts: np.ndarray, entries: np.ndarray, multiple: int, first: int = 0) -> Neighbours:
+    """Lists of ``counts[k]`` ``entries`` each for the rows of columns from ``first`` on, each filled up with
+    the column itself."""
     padded = -(-counts // multiple) * multiple
     begin = np.cumsum(padded) - padded
     room = np.zeros(int(padded.sum()) + AHEAD, np.uint32)
-    fill_padded(counts, begin, entries, room)
+    fill_padded(first, counts, begin, entries, room)
     return Neighbours(begin.astype(np.uint64), counts.astype(np.uint32), room[: len(room) - AHEAD])
 
 
 @compiled
-def fill_padded(counts, begin, entries, room):
-    """Write the entries of each row from ``begin[k]`` on, and the row itself behind them."""
+def fill_padded(first, counts, begin, entries, room):
+    """Write the entries of each row from ``begin[k]`` on, and its column ``first`` + k behind them."""
     done = 0
     for k in range(len(counts)):
         end = begin[k + 1] if k + 1 < len(begin) else len(room)
         for n in range(begin[k], end):
-            room[n] = entries[done + n - begin[k]] if n < begin[k] + counts[k] else k
+            room[n] = entries[done + n - begin[k]] if n < begin[k] + counts[k] else first + k
         done += counts[k]

@@ -4,6 +4,8 @@ A list names particles that lie scattered.  A record holds in one or two cache l
 a quantity would spread over many; the pair loop turns records into lanes (psph.engine.simd).
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from psph.composition.pair import FOLDED
@@ -39,16 +41,18 @@ class Records:
     ``names`` are the fields that vary and that pairs read of a neighbour; what is no fluid has
     a negative specific volume (:data:`CARRIER`).  ``table`` (columns, width) has the columns of the
     store; a record begins with a cache line, or shares it with one other.
+    ``in_place`` names the field that is shown for another.
     Where ``space`` is fixed point all is in single precision, but for positions: whole steps of
     32 bits, modulo their range.
     """
 
-    def __init__(self, store: Store, names: tuple[str, ...], space):
+    def __init__(self, store: Store, names: tuple[str, ...], space, in_place: Mapping[str, str] = {}):
         self.store = store
         placed = recorded(names)
         entries = store.view()._fields
-        self._names = tuple(n for n in map(store.seen_as, entries) if n in placed)
-        self._shown = tuple((name, store.seen_as(name) in self._names) for name in entries)
+        self._seen = {name: in_place.get(name, store.seen_as(name)) for name in entries}
+        self._names = tuple(n for n in self._seen.values() if n in placed)
+        self._shown = tuple((name, self._seen[name] in self._names) for name in entries)
         rows = [row for name in self._names for row in store.rows[name]]
         self._rows = np.array(rows, np.uint64)
         self._folded = FLAG in names and FLAG not in placed
@@ -68,7 +72,7 @@ class Records:
         if self._of is not store.view():  # the store has new arrays
             found = type(store.view())(
                 *(
-                    store[store.seen_as(name)] if placed else store.constants.get(name)
+                    store[self._seen[name]] if placed else store.constants.get(name)
                     for name, placed in self._shown
                 )
             )

@@ -79,6 +79,13 @@ class Store:
             found = self._arrays[rows.start] = arrays if self.fields[name].composed else arrays[0]
         return found
 
+    def arrays_of(self, stored: str | tuple[str, ...] | None):
+        """What takes a sum: the array of a number, those of several numbers in a row, or None."""
+        if not isinstance(stored, tuple):
+            return stored and self[stored]
+        found = (self[name] for name in stored)
+        return tuple(array for one in found for array in (one if isinstance(one, tuple) else (one,)))
+
     def rotate(self, *names: str) -> None:
         """Each field takes the rows of the one before, the first those of the last; no copy.
 

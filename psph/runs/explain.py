@@ -14,6 +14,7 @@ from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
 from psph.physics.motion import deforms
+from psph.physics.solid.contact import REACH
 from psph.physics.solid.deformation import KERNEL, SMOOTHING, places_of, support_of
 from psph.physics.solid.material import is_damped
 from psph.runs.absent import absent_lines
@@ -167,12 +168,11 @@ def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
             f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
         )
     if plan.touching:
-        reach = scene.layout.reach
         yield (
-            f"  contact     within {reach.support:g} m of other solids and walls; lists reach "
-            f"{reach.cutoff:.4g} m"
+            f"  contact     within {REACH * scene.spacing:g} m of other solids and walls; lists reach "
+            f"{scene.layout.reach.cutoff:.4g} m"
         )
-    elif plan.passes:
+    if plan.passes and not plan.alone:
         yield (
             f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
             f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
@@ -321,16 +321,17 @@ def _step_lines(scene, plan: Plan) -> Iterator[str]:
     width = _column(name for _, name in limits)
     for step, name in limits:
         yield f"  {name:<{width}}{step:.3g} s"
-    if plan.immersed:
+    if plan.substeps:
         yield _substep_line(scene, plan, min(limits)[0])
 
 
 def _substep_line(scene, plan: Plan, dt: float) -> str:
     """How many steps of the solids a step of the fluid takes, and why."""
     h, speed = plan.solid_smoothing_length, scene.expected_speed
-    count = substeps(plan.solids, h, dt, speed)
-    longest, name = min((one.longest_step(h, speed), one.name) for one in plan.solids)
+    count = substeps(plan.solids, h, dt, speed, plan.contact_step)
+    known = ((one.longest_step(h, speed), f"solids.{one.name}") for one in plan.solids)
+    longest, name = min([*known, (plan.contact_step, "their contact")])
     return (
-        f"  solids make {count} steps in a step of {dt:.3g} s, under one push of the fluid: solids.{name} "
+        f"  solids make {count} steps in a step of {dt:.3g} s, under one push of the fluid: {name} "
         f"stands {longest:.3g} s; each is two passes over the reference and two messages to partners"
     )

@@ -29,6 +29,9 @@ from psph.smoothing import kernel
 from psph.theory.solutions.catalogue import SOLUTIONS
 from psph.theory.solutions.setting import Surroundings
 
+BEYOND = 0.1
+"""Spacings: more than two particles approach each other in a step of a fluid."""
+
 NONE = 255
 """In place of a part: a site without a particle."""
 
@@ -111,12 +114,15 @@ class Layout:
 
     @property
     def reach(self) -> Reach:
-        """How far particles feel and see each other: by the kernel; elastic solids alone within two spacings,
-        and what the kernel reaches beyond that is skin, one spacing at least."""
+        """How far particles feel and see each other: by the kernel; elastic solids alone within 2.5 spacings,
+        and what the kernel reaches beyond that is skin, one spacing at least.  In a fluid they touch
+        before new lists are made: lists then reach a little farther."""
         whole = Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
-        if self.case.flowing:
-            return whole
         support = REACH * self.spacing
+        if self.case.flowing:
+            touches = self.case.referred and self.case.physics.contact is not None
+            farther = whole._replace(support=max(whole.support, support + BEYOND * self.spacing))
+            return farther if touches else whole
         return Reach(support, max(whole.cutoff - support, self.spacing))
 
     @property

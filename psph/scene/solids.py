@@ -5,7 +5,7 @@ import math
 from psph.fields import CROSSED, Field
 from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
-from psph.physics.solid.contact import OF_CONTACT, OF_FRICTION, SolidContact
+from psph.physics.solid.contact import MET, OF_CONTACT, OF_FRICTION, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
 from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, STRESS_ZZ
 from psph.physics.solid.material import is_heated, remembers
@@ -32,6 +32,7 @@ def solid_fields(scene: Scene) -> tuple[Field, ...]:
     cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.starts.solids) else ()
     meeting = OF_CONTACT if meets(scene) else ()
     meeting += OF_FRICTION if meeting and scene.physics.contact.friction else ()
+    meeting += (MET,) if meeting and scene.case.flowing else ()
     own = (*OF_SOLIDS, *plane, *shares, *across, *lasting, *cracks, *meeting)
     return (*own, *([DRAWN, WORK] if loaded else []), *wet)
 

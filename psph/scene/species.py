@@ -26,7 +26,8 @@ class Species(NamedTuple):
     mean tension that leaves it no strength; ``wave_modulus`` in Pa is
     the P-wave modulus of an elastic solid, beside solids of a wall the largest of theirs, else 0;
     ``wave_speed`` in m/s is that of pressure waves in matter whose deviatoric stress evolves, else the
-    numerical one; ``stress_diffusion`` and ``rest_coefficient`` K₀ are those of a soil, 0 and 1 else.
+    numerical one; ``own_mass`` in kg that of a particle of an elastic solid, which shows a fluid another one;
+    ``stress_diffusion`` and ``rest_coefficient`` K₀ are those of a soil, 0 and 1 else.
     """
 
     name: str
@@ -48,6 +49,12 @@ class Species(NamedTuple):
     wave_speed: float = 0.0
     stress_diffusion: float = 0.0
     rest_coefficient: float = 1.0
+    own_mass: float = 0.0
+
+    @property
+    def inertia(self) -> float:
+        """The true mass of a particle, kg."""
+        return self.own_mass or self.mass
 
     @property
     def kind(self) -> int:

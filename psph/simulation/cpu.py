@@ -125,9 +125,7 @@ class Engine:
         with self.ledger("rebuild"):
             bring_back(self.store, self.plan.planes, self.plan.free)
             self.domain.rebuild(self.spent_on_pairs())
-            for one in self.wetting:
-                one.settle()
-            self._list_others()
+            self._lists_are_new()
         with self.ledger("records"):
             self._fit_records()
         for kind in self.kinds:
@@ -220,9 +218,7 @@ class Engine:
         self.poses.restore(saved.state["poses"], saved.state["time"])
         if self.plan.passes:
             self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
-        for one in self.wetting:
-            one.settle()  # what ghosts are counts too
-        self._list_others()
+        self._lists_are_new()  # what ghosts are counts too
         self._fit_records()
         for records in self.records:
             records.fill(0, self.store.total)
@@ -248,9 +244,13 @@ class Engine:
         paid, self._paid = self._paid, self.ledger.seconds["pairs"]
         return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
 
-    def _list_others(self) -> None:
-        """Solids feel only other ones in space."""
-        if self.plan.touching:
+    def _lists_are_new(self) -> None:
+        """Take what rests, and what does not feel each other, out of them: solids feel other ones alone."""
+        for kind in self.kinds:
+            kind.listed()
+        for one in self.wetting:
+            one.settle()
+        if self.plan.alone:
             self._each(keep_others, self.store.low, self.domain.lists, self.store["solid"])
 
     def _fit_records(self) -> None:
@@ -314,12 +314,12 @@ class Engine:
         around = Around(records.view(), records.table, s.low, self._lists, self._mirrors)
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
-        sums = Sums(*rates, tuple(map(self._arrays_of, one.stores)))
+        sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)))
         rest = None
         if one.gives_rates and plan.loaded is not None:
             rest = Unloaded(plan.loaded, s.group)
             reductions, written = one.reductions, sums.written
-            kind = Pushes if plan.touching else Loads
+            kind = Pushes if plan.alone else Loads
             if COUPLE.name in s and kind is Loads:
                 reductions, written = (*reductions, Couple(one.effects)), (*written, s[COUPLE.name])
             summed = Summed(one.effects, reductions, kind(plan.loaded, s.group))
@@ -327,13 +327,6 @@ class Engine:
             yield self._load, (summed, *seen, told)
         summed = Summed(one.effects, one.reductions, rest)
         yield self._sums[one.place], (summed, *seen, sums)
-
-    def _arrays_of(self, stored: str | tuple[str, ...] | None):
-        """What takes a sum: the array of a number, those of several numbers in a row, or None."""
-        if not isinstance(stored, tuple):
-            return stored and self.store[stored]
-        found = (self.store[name] for name in stored)
-        return tuple(array for one in found for array in (one if isinstance(one, tuple) else (one,)))
 
     def _columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""

@@ -9,7 +9,8 @@ from psph.scene.bodies import lines_of, shares_of
 from psph.simulation.touching import Contacts
 
 BITS = 58
-"""Of whole numbers of 64 bits, for a push of ρ₀c² on all particles of bodies: room for sixteen times that."""
+"""Of whole numbers of 64 bits, for a push of ρ₀c², or of the modulus of a solid, on all particles of bodies:
+room for sixteen times that."""
 
 
 class Floating:
@@ -34,6 +35,7 @@ class Floating:
             if isinstance(one.motion, RigidBody):
                 self.body_of[group] = own.index(one.motion)
         pressure = max(one.density for one in scene.species) * scene.sound_speed**2
+        pressure = max(pressure, *(one.wave_modulus for one in scene.species))
         count = int(scene.census.sizes[list(scene.layout.parts.bodies)].sum())
         units = 2.0 ** (BITS - count.bit_length())
         force = pressure * scene.spacing ** (scene.dimensions - 1) / units

@@ -5,6 +5,7 @@ from typing import Any
 
 from psph.fields import OF_MATERIAL, OF_SITE
 from psph.physics.catalogue import Entry
+from psph.scene.solids import meets
 from psph.simulation.calling import called_for
 
 
@@ -52,7 +53,7 @@ def split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
 def has_couples(scene) -> bool:
     """Whether the push of a viscous fluid on a wall or a body is asked for, and what has a moment; or that of
     elastic solids on bodies, whose contacts turn the normals of their faces."""
-    if scene.starts.solids and not scene.case.flowing:
-        return bool(scene.case.bodies)
+    if scene.case.bodies and meets(scene):
+        return True
     rubbed = any(one.loaded and one.rubs for one in scene.species if not one.is_fluid)
     return scene.dimensions > 1 and rubbed and any(one.rubs for one in scene.species if one.is_fluid)

@@ -27,21 +27,25 @@ from psph.engine.threads import in_threads
 from psph.physics.motion import LOAD, WORK, Immersed
 from psph.physics.solid.deformation import INERTIA
 from psph.simulation.kinds import Kind
+from psph.simulation.wet_contact import WetContact
 from psph.vectors import add, at, dot, put, scale
 
 
-def substeps(solids: Iterable, smoothing_length: float, dt: float, speed: float) -> int:
+def substeps(
+    solids: Iterable, smoothing_length: float, dt: float, speed: float, contact: float = math.inf
+) -> int:
     """How many steps of ``solids`` (psph.physics.solid.material) with the ``smoothing_length`` in m a step of
-    ``dt`` s takes, at the largest ``speed`` in m/s: the same on every rank."""
-    longest = min(one.longest_step(smoothing_length, speed) for one in solids)
+    ``dt`` s takes, at the largest ``speed`` in m/s: the same on every rank.  Contacts stand ``contact`` s."""
+    longest = min(contact, *(one.longest_step(smoothing_length, speed) for one in solids))
     return max(1, math.ceil(dt / longest))
 
 
 class Immersion(Kind):
     """The motion of the ``solids`` of a rank (psph.simulation.solids) in the fluid of a ``scene``."""
 
-    def __init__(self, solids, scene, plan, store):
+    def __init__(self, solids, scene, plan, store, domain, ledger):
         self.solids, self.plan, self.store = solids, plan, store
+        self.contact = WetContact(scene, plan, store, domain, ledger) if plan.touching else None
         self._moves = np.array([isinstance(one.motion, Immersed) for one in scene.species], bool)
         self._drift, self._kick, self._show, self._book = map(settled, (drift, kick, show, book))
 
@@ -49,7 +53,7 @@ class Immersion(Kind):
         """True masses, and the first inner forces; collective."""
         self.store[INERTIA.name][:] = self.store.view().mass
         self.solids.fill_masses(self.store[INERTIA.name])
-        self.solids.sum(0.0, 0.0)
+        self._sum(0.0, 0.0)
 
     def advance(self, time: float, dt: float, speed: float) -> None:
         """From ``time`` − ``dt`` to ``time``, s, under the last push of the fluid; collective.
@@ -59,14 +63,15 @@ class Immersion(Kind):
         if not dt > 0.0:
             return
         plan, solids = self.plan, self.solids
-        count = substeps(plan.solids, plan.solid_smoothing_length, dt, speed)
+        stands = plan.solids, plan.solid_smoothing_length, dt, speed, plan.contact_step
+        count = substeps(*stands) if plan.substeps else 1
         part, columns, seen = dt / count, self._columns, self._seen
         shown = tuple(np.zeros(len(columns)) for _ in range(self.store.dimensions))
         for n in range(1, count + 1):
             self._each(self._drift, columns, part, 1.0 / count, *seen, shown)
             if solids.clamps and count > 1:
                 solids.clamps.carry(time - (count - n) * part)
-            solids.sum(time - dt + n * part, part)
+            self._sum(time - dt + n * part, part)
             self._each(self._kick, columns, 0.5 * part, 0.5 * part, *seen)
             if booked := plan.pulls.booked_in_solids:
                 names = ("velocity", INERTIA.name, WORK.name)
@@ -80,6 +85,24 @@ class Immersion(Kind):
         found = self._each(self._kick, self._columns, 0.0, 0.5 * dt, *self._seen)
         fastest, strain = (max(of) for of in zip(*found)) if found else (0.0, 0.0)
         return 0.0, 0.0, strain, 0.0, fastest
+
+    def listed(self) -> None:
+        """Lists of what may touch."""
+        if self.contact:
+            self.contact.settle()
+
+    def bytes_held(self) -> int:
+        """Bytes of what finds contacts."""
+        return self.contact.bytes_held() if self.contact else 0
+
+    def _sum(self, time: float, dt: float) -> None:
+        """All forces on solids but the push of the fluid, ``dt`` s after the last; collective."""
+        if not self.contact:
+            return self.solids.sum(time, dt)
+        self.solids.strain(dt)
+        self.contact.sum()
+        self.contact.begin_forces(self.solids.columns)
+        self.solids.push(time, dt)
 
     @property
     def _columns(self) -> np.ndarray:

@@ -12,6 +12,9 @@ class Kind:
     :func:`kinds_of`; all are collective.
     """
 
+    def listed(self) -> None:
+        """Neighbours are listed anew, of walls that are dry too: their rows then rest."""
+
     def settle(self) -> None:
         """Particles have found new columns or ranks, and have new lists."""
 
@@ -60,4 +63,4 @@ def kinds_of(scene, plan, store, domain, ledger, maps) -> Iterator[Kind]:
         if plan.immersed:
             from psph.simulation.immersion import Immersion
 
-            yield Immersion(solids, scene, plan, store)
+            yield Immersion(solids, scene, plan, store, domain, ledger)

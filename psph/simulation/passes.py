@@ -2,7 +2,9 @@
 
 from typing import Any, NamedTuple
 
+from psph.acts import FLOWING
 from psph.fields import PRESSURE, SPECIFIC_VOLUME, filled
+from psph.physics.solid.deformation import INERTIA
 
 
 class SumsInACircle(TypeError):
@@ -85,6 +87,22 @@ def make_passes(
     ]
     effects = tuple(call.effect for call in called)
     return (*passes, _pass(len(passes), effects, reductions, called, before, stored, seen_as, 1, also))
+
+
+def array_of(name: str, stored: tuple[str, ...]) -> str:
+    """The array that formulas see under a name: the predicted one of what evolves."""
+    return f"predicted_{name}" if f"predicted_{name}" in stored else name
+
+
+TRUE_MASS = {"mass": INERTIA.name}
+"""What contacts in a fluid see in place of the mass that solids show that."""
+
+
+def pass_of_contacts(called, stored: tuple[str, ...]) -> Pass | None:
+    """That of the contacts of elastic solids in a fluid; None where nothing touches."""
+    own = [one for one in called if hasattr(one.effect, "push") and set(one.acts).isdisjoint(FLOWING)]
+    found = make_passes(own, stored, lambda name: TRUE_MASS.get(name, array_of(name, stored)))
+    return found[0] if found else None
 
 
 def _pass(place, effects, reductions, called, before, stored, seen_as, every, also=()) -> Pass:

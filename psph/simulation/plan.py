@@ -13,7 +13,6 @@ from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import (
-    FLUID,
     IDENTITY,
     OF_EVERY_SCENE,
     OF_MATERIAL,
@@ -26,20 +25,17 @@ from psph.fields import (
 )
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK, MovingClamp, is_prescribed
+from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK, is_prescribed
 from psph.physics.rigid.absorption import Absorbing
-from psph.physics.solid.contact import FACE, OF_FRICTION
-from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import SMOOTHING
-from psph.physics.solid.material import remembers
-from psph.physics.solid.plastic import Lasting
 from psph.scene.bodies import body_step
 from psph.scene.solids import solid_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.groups import has_couples, is_given_pressure, laws, material_value, split
 from psph.simulation.limits import step_limits
 from psph.simulation.movement import carried_fields, movement_of
-from psph.simulation.passes import Pass, make_passes
+from psph.simulation.passes import Pass, array_of, make_passes, pass_of_contacts
+from psph.simulation.plan_of_solids import OfSolids
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
 from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
 
@@ -74,7 +70,7 @@ Extremes = namedtuple("Extremes", (*OF_SCENE, *(f.name for f in OF_MATERIAL)))
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(OfSolids):
     """What will be simulated.  It prints itself: see psph.runs.explain."""
 
     called: tuple[Called, ...]
@@ -109,6 +105,8 @@ class Plan:
     """What formulas read of a particle."""
     arrays: tuple[str, ...]
     passes: tuple[Pass, ...]
+    met: Pass | None
+    """The pass of the contacts of elastic solids in a fluid (psph.simulation.wet_contact)."""
     refreshed: tuple[str, ...]
     """What ghosts need before the first pass of every step."""
     ghost_fields: tuple[str, ...]
@@ -186,32 +184,6 @@ class Plan:
         return bool(self.motions or self.rigid or self.immersed)
 
     @property
-    def immersed(self) -> bool:
-        """Whether elastic solids stand in a fluid."""
-        return bool(self.solids) and FLUID in self.kinds
-
-    @property
-    def grips(self) -> tuple[Any, ...]:
-        """The motions of clamps that move, among those that are rigid."""
-        return tuple(one for one in self.rigid if isinstance(one, MovingClamp))
-
-    @property
-    def touching(self) -> bool:
-        """Whether elastic solids look for each other: a pass then begins the sums of their forces."""
-        return bool(self.solids and self.passes) and not self.immersed
-
-    @property
-    def pressed(self) -> bool:
-        """Whether elastic solids look for what moves as a whole: bodies, and walls."""
-        return self.touching and any(one.kind == WALL for one in self.rigid)
-
-    @cached_property
-    def faced(self) -> tuple[str, ...]:
-        """What contacts read of a ghost that is found anew just before they are summed."""
-        renewed = {field.name for field in (FACE, *OF_FRICTION)}
-        return tuple(name for name in self.refreshed if self.touching and name in renewed)
-
-    @property
     def floats(self) -> bool:
         """Whether there are rigid bodies that forces move."""
         return self.body_step is not None
@@ -240,19 +212,6 @@ class Plan:
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
         return tuple(call.effect for call in self.called if _carries(call))
-
-    @cached_property
-    def solid_laws(self) -> tuple:
-        """The laws of the solids; elastic ones beside one that yields have a memory too, and leave it."""
-        laws = tuple(one.law for one in self.solids)
-        if not remembers(self.solids):
-            return laws
-        return tuple(law if hasattr(law, "flow") else Lasting(law) for law in laws)
-
-    @property
-    def cracks(self) -> bool:
-        """Whether bonds of a solid may be cut."""
-        return CUT.name in self.arrays
 
     @property
     def books_work(self) -> bool:
@@ -327,13 +286,14 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     passes = make_passes(
         paired if case.flowing or any(hasattr(c.effect, "push") for c in paired) else (),
         stored,
-        lambda name: _array_of(name, stored),
+        lambda name: array_of(name, stored),
         case.time.gather_every,
         for_loads,
     )
+    met = pass_of_contacts(called, stored) if case.flowing and of_solids else None
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
-    neighbour = {name for one in passes for name in one.neighbour_fields}
+    neighbour = {name for one in (*passes, *([met] if met else [])) for name in one.neighbour_fields}
     return Plan(
         called=called,
         absent=tuple(e for e in catalogue.effects if e not in present),
@@ -363,6 +323,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         seen=seen,
         arrays=stored,
         passes=passes,
+        met=met,
         refreshed=tuple(n for n in stored if n in fresh and n in (*computed, APPARENT.name)),
         ghost_fields=tuple(
             n for n in stored if n in varying and n in neighbour | told_by or n in neighbour and n in brought
@@ -391,8 +352,3 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
 def _carries(call: Called) -> bool:
     """Whether an effect has a part in kick and drift."""
     return any(hasattr(call.effect, name) for name in (*OF_A_PARTICLE, "admit"))
-
-
-def _array_of(name: str, stored: tuple[str, ...]) -> str:
-    """The array that formulas see under a name: the predicted one of what evolves."""
-    return f"predicted_{name}" if f"predicted_{name}" in stored else name

@@ -8,6 +8,7 @@ from psph.engine.jit import compiled
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.physics.solid.contact import REACH
+from psph.simulation.immersion import Immersion
 from psph.vectors import at, dot, nearest_image, subtract
 
 
@@ -22,7 +23,9 @@ def inside_others(engine, spacing: float, depth: float) -> np.ndarray:
     found = np.zeros(store.owned)
     if not engine.plan.touching:
         return found > 0.0
-    seen = engine.domain.lists, store["position"], engine.domain.periods, REACH * spacing
+    wet = engine.of_kind(Immersion)
+    lists = wet.contact.lists if wet else engine.domain.lists
+    seen = lists, store["position"], engine.domain.periods, REACH * spacing
     in_threads(settled(crowd), low, low + store.owned, low, *seen, found)
     return found > filled(depth / REACH, store.dimensions) * whole(store.dimensions)
 

@@ -193,12 +193,12 @@ class Solids(Kind):
 
     def before_sums(self, dt: float) -> None:
         """Stress and faces, where solids touch."""
-        if self.plan.touching:
+        if self.plan.alone:
             self.strain(dt)
 
     def after_sums(self, time: float, dt: float) -> None:
         """All forces of solids that touch or stand alone; those in a fluid have steps of their own."""
-        if self.plan.touching:
+        if self.plan.alone:
             self.push(time, dt)
         elif not self.plan.immersed:
             self.sum(time, dt)

@@ -305,7 +305,7 @@ def test_a_block_softer_than_the_water_is_pressed_together_and_does_not_shake(tm
     [
         (
             "bodies.one={density=500.0,shape={disc={center=[1.0,1.0],radius=0.1}}}",
-            "nothing is known of contact",
+            "bodies.one: solids do not feel bodies without contact; give physics.contact = {}",
         ),
         ("physics.pressure_gradient=minimum", "does not push back"),
     ],

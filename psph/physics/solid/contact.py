@@ -24,6 +24,8 @@ TURNING = Field("turning", "J", "−∂/∂N of the energy of its contacts, N th
 OF_CONTACT = (FACE, COVER)
 """What particles carry where elastic solids meet."""
 
+MET = Field("met", "m/s2", "acceleration by contacts with elastic solids in a fluid", VECTOR)
+
 FACE_RATE = Field("face_rate", "1/s", "rate of the normal of the face", VECTOR)
 SLIP = Field("slip", "m", "by how much the contacts of a particle are sheared", VECTOR)
 SLIDING = Field("sliding", "N/s", "Σ k u_t of its contacts: how fast what it touches slides", VECTOR)
@@ -136,7 +138,7 @@ class SolidContact(NamedTuple):
         shape = self.stiffness * dx ** (d - 2), self.damping, self.friction, dx, 1.0 / SHARES[d - 1]
         made = kind(*shape, 0.0)
         stiffest = max(modulus(made, i, j) for i, j in pairs)
-        hardest = max(modulus(made, i, j) / min(i.mass, j.mass) for i, j in pairs)
+        hardest = max(modulus(made, i, j) / min(i.inertia, j.inertia) for i, j in pairs)
         # Of a particle and a body ω² is k/m + kλ at most, and 2k/m of two like particles.
         hardest = max(hardest, 0.5 * (hardest + stiffest * scene.answer(self.friction > 0.0)))
         return made._replace(step=STEP / (math.sqrt(hardest) * (1.0 + self.damping)))

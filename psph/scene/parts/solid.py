@@ -21,8 +21,8 @@ class ElasticPart(HookeanPart):
     is_elastic = True
 
     def own(self, known: Known) -> dict[str, Any]:
-        """Beside its shear modulus the P-wave modulus by which a contact with it is stiff."""
-        return super().own(known) | {"wave_modulus": known.wave_moduli[self.elastic]}
+        """Beside its shear modulus what contacts know of it."""
+        return super().own(known) | _met(self, known)
 
 
 class ClampPart(HookeanPart):
@@ -33,7 +33,13 @@ class ClampPart(HookeanPart):
     def own(self, known: Known) -> dict[str, Any]:
         """The same as its solid, whose deviatoric stress does not evolve here."""
         own = super().own(known)
-        return own if self.elastic is None else own | {"wave_modulus": known.wave_moduli[self.elastic]}
+        return own if self.elastic is None else own | _met(self, known)
+
+
+def _met(part: HookeanPart, known: Known) -> dict[str, Any]:
+    """The P-wave modulus by which a contact with a solid is stiff, and the true mass of its particles."""
+    volume = known.spacing ** len(known.gravity)
+    return {"wave_modulus": known.wave_moduli[part.elastic], "own_mass": part.table.density * volume}
 
 
 def clamps_in(case: Case) -> Iterator[tuple[str, str, Any]]:

@@ -1,0 +1,84 @@
+"""What a plan says of its elastic solids: what they touch, where they stand, and how they step."""
+
+import math
+from functools import cached_property
+from typing import Any
+
+from psph.fields import FLUID, WALL
+from psph.physics.motion import MovingClamp
+from psph.physics.solid.contact import FACE, OF_FRICTION
+from psph.physics.solid.cracks import CUT
+from psph.physics.solid.material import remembers
+from psph.physics.solid.plastic import Lasting
+from psph.simulation.passes import Pass
+
+
+class OfSolids:
+    """The part of a plan (psph.simulation.plan) that follows from its elastic solids."""
+
+    kinds: tuple[int, ...]
+    arrays: tuple[str, ...]
+    passes: tuple[Pass, ...]
+    met: Pass | None
+    refreshed: tuple[str, ...]
+    rigid: tuple[Any, ...]
+    solids: tuple[Any, ...]
+    extremes: Any
+
+    @property
+    def immersed(self) -> bool:
+        """Whether elastic solids stand in a fluid."""
+        return bool(self.solids) and FLUID in self.kinds
+
+    @property
+    def touching(self) -> bool:
+        """Whether elastic solids look for each other: a pass then begins the sums of their forces."""
+        return bool(self.solids and (self.met if self.immersed else self.passes))
+
+    @property
+    def alone(self) -> bool:
+        """Whether that is the pass of all, as nothing flows."""
+        return self.touching and not self.immersed
+
+    @property
+    def pressed(self) -> bool:
+        """Whether elastic solids look for what moves as a whole: bodies, and walls."""
+        return self.touching and any(one.kind == WALL for one in self.rigid)
+
+    @property
+    def substeps(self) -> bool:
+        """Whether solids make steps of their own within one of the fluid.
+
+        What they press and moves as a whole takes the steps of the fluid: beside it they take these too.
+        """
+        return self.immersed and not self.pressed
+
+    @property
+    def contact_step(self) -> float:
+        """The longest step that contacts in a fluid stand, s; infinity without."""
+        effects = self.met.effects if self.met else ()
+        return min((one.longest_step(self.extremes) for one in effects), default=math.inf)
+
+    @property
+    def grips(self) -> tuple[Any, ...]:
+        """The motions of clamps that move, among those that are rigid."""
+        return tuple(one for one in self.rigid if isinstance(one, MovingClamp))
+
+    @cached_property
+    def faced(self) -> tuple[str, ...]:
+        """What contacts read of a ghost that is found anew just before they are summed."""
+        renewed = {field.name for field in (FACE, *OF_FRICTION)}
+        return tuple(name for name in self.refreshed if self.alone and name in renewed)
+
+    @cached_property
+    def solid_laws(self) -> tuple:
+        """The laws of the solids; elastic ones beside one that yields have a memory too, and leave it."""
+        laws = tuple(one.law for one in self.solids)
+        if not remembers(self.solids):
+            return laws
+        return tuple(law if hasattr(law, "flow") else Lasting(law) for law in laws)
+
+    @property
+    def cracks(self) -> bool:
+        """Whether bonds of a solid may be cut."""
+        return CUT.name in self.arrays
