@@ -141,6 +141,38 @@ def test_the_work_of_a_wall_that_moves_is_the_energy_of_what_it_pushes(tmp_path)
     assert bodies_of(simulation).velocity[0, 0] > 0.1
 
 
+SPINS = (
+    "bodies.hammer.shape={disc={center=[-0.031,0.004],radius=0.03}}",
+    "bodies.hammer.spin=300.0",
+    "solids.bar.clamped={box={lower=[0.09,0.0],upper=[0.1,0.02]}}",
+)
+"""A disc that spins fast hits the bar below its middle, so that the edge of the bar's face cuts its contact."""
+
+GRINDS = (
+    "bodies=off",
+    "walls.roller={shape={disc={center=[-0.031,0.004],radius=0.03}},motion=["
+    "{rotation={speed=300.0,center=[-0.031,0.004]}},{sinusoid={amplitude=[0.003,0.0],frequency=25.0}}]}",
+)
+"""So does a wall, as it is told."""
+
+
+@pytest.mark.parametrize(
+    ("turns", "part", "alike"), [((), 0.1, 8e-3), (GRINDS, 0.5, 0.015)], ids=["body", "wall"]
+)
+def test_the_work_by_normals_that_turn_is_in_the_books(tmp_path, turns, part, alike):
+    """The energy of contacts depends on the normals N too: T·Ṅ, T = −∂U/∂N, is a part of what a body or a wall
+    gives, here a large one."""
+    simulation = start(draft(tmp_path, HAMMER, *SPINS, *turns))
+    store, by_normals = simulation.store, 0.0
+    while simulation.time < 0.012:
+        simulation.step()
+        own = store.shown("kind") == 1
+        (n_x, n_y), (t_x, t_y) = (store.shown(name)[own].T for name in ("face", "turning"))
+        by_normals -= 300.0 * (n_x * t_y - n_y * t_x).sum() * simulation.dt
+    given, stored = store.shown("work").sum(), energy_of_solids(simulation)
+    assert given == pytest.approx(stored, rel=alike) and abs(by_normals) > part * stored
+
+
 def test_without_bodies_nothing_is_stored_summed_or_asked_of_the_step_for_them(tmp_path):
     plan = make_plan(Scene(draft(tmp_path, HAMMER)))
     assert plan.pressed and plan.floats and {"load", "couple", "anchor", "work"} <= {*plan.arrays}
