@@ -10,13 +10,16 @@ from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 
 
-def started(case, steps=0):
-    """A simulation of a case after some steps, and its scene."""
+def start(case, comm=MPI.COMM_SELF, ledger=None):
+    """The simulation of a case before its first step."""
     scene = Scene(case)
     plan = make_plan(scene)
-    simulation = Simulation(
-        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
-    )
+    return Simulation(scene, plan, create_particles(scene, plan, comm), comm, ledger or Ledger())
+
+
+def started(case, steps=0):
+    """A simulation of a case after some steps, and its scene."""
+    scene, simulation = Scene(case), start(case)
     for _ in range(steps):
         simulation.step()
     return simulation, scene

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from gauging import start
 from mpi4py import MPI
-from parallel.test_simulation import start
 from runs.resuming import go_on_elsewhere
 
 from psph.case import load

@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gauging import start
 from mpi4py import MPI
-from parallel.test_simulation import box, start
+from parallel.test_simulation import box
 
 from psph.output.ledger import Ledger
 from psph.parallel import halo as halo_module

@@ -2,14 +2,11 @@
 
 import numpy as np
 import pytest
+from gauging import start
 from mpi4py import MPI
 
 from psph.case import Case
 from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -47,14 +44,6 @@ def box(dim, periodic, axis, skin=0.1, **physics):
             "parallel": {"axis": "xyz"[axis]},
         }
     )
-
-
-def start(case, comm, ledger=None):
-    """The simulation of a case before its first step."""
-    scene = Scene(case)
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, comm)
-    return Simulation(scene, plan, store, comm, ledger or Ledger())
 
 
 def run(case, comm, steps=40):

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from gauging import start
 from long import LONG
 from mpi4py import MPI
-from parallel.test_simulation import start
 from runs.resuming import go_on_elsewhere
 
 from psph.case import load

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from scene.test_solid_checks import BEAM
-from simulation.test_immersion import start
 
 from psph.runs.advice import advice
 from psph.runs.worst_particle import find

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from contacts import BLOCKS
 from mpi4py import MPI
 from runs.guarded import boxed, started
 
@@ -31,77 +32,48 @@ def test_one_that_is_meant_to_goes_on(tmp_path, key):
     assert trouble is None and any("guards.overlap was exceeded" in line for line in said) == ("warn" in key)
 
 
-BLOCKS = """
-title = "Two blocks"
-time.end = 0.15
-output = { frames = 0.15, log = 0.05 }
-[space]
-dimensions = 2
-spacing = 0.1
-[physics]
-contact = { stiffness = 1e-3 }
-[solids.left]
-shape.box = { lower = [0.0, 0.0], upper = [0.8, 0.8] }
-density = 1200.0
-young = 2.0e6
-poisson = 0.3
-velocity = [5.0, 0.0]
-[solids.right]
-shape.box = { lower = [0.9, 0.05], upper = [1.7, 0.85] }
-density = 900.0
-young = 3.0e6
-poisson = 0.3
-"""
+SHORT = "time.end=0.15", "output={frames=0.15,log=0.05}"
+SOFT = "physics.contact.stiffness=1e-3"
 
 
-def meeting(folder, *sets):
-    path = folder / "blocks.toml"
+def met(folder, text, *sets):
+    """How a run of two that meet ends, and what it says."""
+    path = folder / "meeting.toml"
     with together(MPI.COMM_WORLD, path):
-        path.write_text(BLOCKS)
-    return started(load(path, sets), folder / "run", MPI.COMM_WORLD)
+        path.write_text(text)
+    return started(load(path, (*SHORT, *sets)), folder / "run", MPI.COMM_WORLD)
 
 
-def test_elastic_solids_inside_each_other_end_the_run(tmp_path):
-    trouble, _ = meeting(tmp_path)
+PUDDLE = "fluids.puddle.shape.box={lower=[5.0,0.0],upper=[5.3,0.3]}", "physics.sound_speed=70.0"
+"""Water out of the way: solids meet in steps of their own."""
+
+
+@pytest.mark.parametrize("wet", [(), PUDDLE], ids=["alone", "in a fluid"])
+def test_elastic_solids_inside_each_other_end_the_run(tmp_path, wet):
+    trouble, _ = met(tmp_path, BLOCKS, SOFT, *wet)
     assert "the run has a body inside another at step 100" in str(trouble)
     assert "is inside another solid, a body or a wall (guards.overlap = 1)" in str(trouble)
     assert "of solids.left" in str(trouble) or "of solids.right" in str(trouble)
 
 
 def test_those_that_bounce_go_on(tmp_path):
-    assert meeting(tmp_path, "physics.contact.stiffness=1.0")[0] is None
+    assert met(tmp_path, BLOCKS)[0] is None
 
 
-DROPPED = """
-title = "A small body"
-time.end = 0.25
-output = { frames = 0.25, log = 0.05 }
-[space]
-dimensions = 2
-spacing = 0.1
-[physics]
-contact = { stiffness = 1e-3 }
-[solids.block]
-shape.box = { lower = [0.0, 0.0], upper = [0.8, 0.8] }
-density = 1200.0
-young = 2.0e6
-poisson = 0.3
-[bodies.bullet]
-shape.box = { lower = [-0.4, 0.3], upper = [-0.1, 0.6] }
-density = 3000.0
-velocity = [3.0, 0.0]
-"""
+BULLET = (
+    "solids.right=off",
+    "bodies.bullet.shape.box={lower=[-0.4,0.3],upper=[-0.1,0.6]}",
+    "bodies.bullet.density=3000.0",
+    "bodies.bullet.velocity=[9.0,0.0]",
+)
 """A body three particles wide is shot into a block: it fills no neighbourhood of that, but that its own."""
 
 
 def test_a_small_body_inside_an_elastic_solid_ends_the_run(tmp_path):
-    path = tmp_path / "bullet.toml"
-    with together(MPI.COMM_WORLD, path):
-        path.write_text(DROPPED)
-    trouble, _ = started(load(path), tmp_path / "run", MPI.COMM_WORLD)
+    trouble, _ = met(tmp_path, BLOCKS, SOFT, *BULLET)
     assert "the run has a body inside another at step 100" in str(trouble)
     assert "of bodies.bullet is inside another solid, a body or a wall (guards.overlap = 1)" in str(trouble)
-    assert started(load(path, ["physics.contact.stiffness=1.0"]), tmp_path / "run", MPI.COMM_WORLD)[0] is None
+    assert met(tmp_path, BLOCKS, *BULLET)[0] is None
 
 
 def test_a_lattice_before_a_plane_is_that_part_of_a_whole_one():

@@ -4,75 +4,26 @@ import math
 
 import numpy as np
 import pytest
+from contacts import (
+    ASKEW,
+    HAMMER,
+    bodies_of,
+    box,
+    drawn,
+    energy,
+    energy_of_solids,
+    hardest,
+    motion,
+    on_slope,
+    until,
+    wrong,
+)
 from drafts import draft, refusal
+from gauging import start
 from long import LONG
-from simulation.test_immersion import start
 
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
-
-HAMMER = """
-[space]
-dimensions = 2
-spacing = 0.005
-[time]
-end = 1.0
-[physics]
-contact = {}
-[bodies.hammer]
-shape.box = { lower = [-0.051, 0.0], upper = [-0.001, 0.02] }
-density = 2000.0
-velocity = [0.5, 0.0]
-[solids.bar]
-shape.box = { lower = [0.0, 0.0], upper = [0.1, 0.02] }
-density = 1000.0
-young = 1.0e6
-poisson = 0.0
-"""
-"""A rigid hammer as heavy as the elastic bar whose end it hits."""
-
-ASKEW = (
-    "bodies.hammer.shape={polygon={points=[[-0.051,0.004],[-0.001,0.009],[-0.004,0.039],[-0.054,0.034]]}}",
-    "bodies.hammer.spin=9.0",
-    "bodies.hammer.velocity=[0.9,-0.3]",
-    "bodies.hammer.density=700.0",
-)
-"""It turns, and hits a corner of the bar with one of its own."""
-
-
-def bodies_of(simulation):
-    return simulation.engine.poses.floating.bodies
-
-
-def motion(simulation):
-    """Momentum, kg m/s, and angular momentum, kg m²/s, of solids and bodies (3,), and Σ m|v|."""
-    store, bodies = simulation.store, bodies_of(simulation)
-    own = store.shown("kind") == 2
-    m, v, x = (store.shown(name)[own] for name in ("mass", "velocity", "position"))
-    v, x = (np.pad(of, ((0, 0), (0, 3 - store.dimensions))) for of in (v, x))
-    solid, rigid = m[:, None] * v, bodies.mass * bodies.velocity
-    spin = np.cross(x, solid).sum(axis=0) + (bodies.angular_momentum + np.cross(bodies.place, rigid)).sum(
-        axis=0
-    )
-    size = sum(np.linalg.norm(of, axis=1).sum() for of in (solid, rigid))
-    return solid.sum(axis=0) + rigid.sum(axis=0), spin, size
-
-
-def energy_of_solids(simulation):
-    store = simulation.store
-    own = store.shown("kind") == 2
-    kinetic = 0.5 * (store.shown("mass")[own] * (store.shown("velocity")[own] ** 2).sum(axis=1)).sum()
-    return kinetic + simulation.engine.stored_energy()
-
-
-def energy(simulation):
-    return energy_of_solids(simulation) + bodies_of(simulation).kinetic_energy().sum()
-
-
-def until(simulation, time):
-    while simulation.time < time:
-        simulation.step(time)
-    return simulation
 
 
 def test_a_hammer_and_a_bar_part_as_waves_have_it(tmp_path):
@@ -91,13 +42,23 @@ def test_a_hammer_and_a_bar_part_as_waves_have_it(tmp_path):
     assert energy(simulation) == pytest.approx(whole, rel=2e-3)
 
 
+@LONG
+def test_what_is_left_of_the_speed_of_a_hammer_converges(tmp_path):
+    """The front of the wave, spread by the lattice, comes back early: by that the body keeps too much.
+
+    A chain of masses and springs, as many as particles along the bar, does so too: 1.2, 0.9, 0.6 % for 20, 40,
+    80 of them, where psph has 2.3, 1.7, 0.8 %.
+    """
+    kept = math.exp(-2.0)
+    simulations = (start(draft(tmp_path, HAMMER, f"space.spacing={dx}")) for dx in (0.005, 0.00125))
+    coarse, fine = (bodies_of(until(one, 0.0125)).velocity[0, 0] / 0.5 - kept for one in simulations)
+    assert 0.0 < fine < 0.01 and 2.0 * fine < coarse < 0.025
+
+
 def test_a_body_that_turns_and_hits_a_corner_keeps_both_momenta_and_energy(tmp_path):
     simulation = start(draft(tmp_path, HAMMER, *ASKEW))
-    (momentum, spin, size), whole, most = motion(simulation), energy(simulation), 0.0
-    before = bodies_of(simulation).spin[0, 2]
-    while simulation.time < 0.02:
-        simulation.step()
-        most = max(most, simulation.store.shown("contact_energy").sum())
+    (momentum, spin, size), whole = motion(simulation), energy(simulation)
+    before, most = bodies_of(simulation).spin[0, 2], hardest(simulation, 0.02)
     after, turned, _ = motion(simulation)
     assert most > 0.02 * whole and abs(bodies_of(simulation).spin[0, 2] - before) > 3.0  # it was hit
     assert np.abs(after - momentum).max() < 1e-14 * size and np.abs(turned - spin).max() < 1e-15 * size
@@ -113,15 +74,10 @@ def test_the_step_is_short_enough_for_a_body_that_is_lighter_than_what_it_hits(t
     longest, name = start(draft(tmp_path, *light)).plan.longest_step(0.0, 0.0)
     assert name == "solid contact" and longest < 0.4 * heavy
 
-    def wrong(step):
-        simulation = start(draft(tmp_path, *light, f"time.step={step}"))
-        whole, most = energy(simulation), 0.0
-        while simulation.time < 0.004:
-            simulation.step()
-            most = max(most, abs(energy(simulation) / whole - 1.0))
-        return most
+    def off(step):
+        return wrong(start(draft(tmp_path, *light, f"time.step={step}")), 0.004)
 
-    assert wrong(longest) < 0.01 < 0.025 < wrong(1.5 * longest) and wrong(heavy) > 0.08
+    assert off(longest) < 0.01 < 0.025 < off(1.5 * longest) and off(heavy) > 0.08
 
 
 PISTON = (
@@ -208,10 +164,8 @@ velocity = [0.0, 0.1, 0.2]
 @LONG
 def test_in_three_dimensions_too_both_momenta_and_energy_are_kept(tmp_path):
     simulation = start(draft(tmp_path, TUMBLING))
-    (momentum, spin, size), whole, most = motion(simulation), energy(simulation), 0.0
-    while simulation.time < 0.03:
-        simulation.step()
-        most = max(most, simulation.store.shown("contact_energy").sum())
+    (momentum, spin, size), whole = motion(simulation), energy(simulation)
+    most = hardest(simulation, 0.03)
     after, turned, _ = motion(simulation)
     assert most > 0.05 * whole and bodies_of(simulation).velocity[0, 2] > 0.0  # it bounced
     assert np.abs(after - momentum).max() < 1e-14 * size
@@ -219,15 +173,7 @@ def test_in_three_dimensions_too_both_momenta_and_energy_are_kept(tmp_path):
     assert energy(simulation) == pytest.approx(whole, rel=5e-3)
 
 
-SLOPE = """
-[space]
-dimensions = 2
-spacing = 0.02
-[time]
-end = 1.0
-[physics]
-gravity = [0.0, -9.81]
-contact = {{ friction = {friction}, damping = 0.3 }}
+RUBBER = """
 [solids.floor]
 shape.polygon.points = {floor}
 clamped.polygon.points = {foot}
@@ -242,22 +188,10 @@ density = 1000.0
 """A body on a drawn slope of rubber that is clamped below."""
 
 
-def drawn(degrees, corners):
-    """Corners along and out of a slope, in space, m."""
-    a = math.radians(degrees)
-    turn = np.array([[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]])
-    return np.round(np.array(corners) @ turn, 9).tolist()
-
-
-def box(degrees, left, low, right, up):
-    return drawn(degrees, [(left, low), (right, low), (right, up), (left, up)])
-
-
-def on_slope(folder, degrees, friction, shape, *sets):
+def on_rubber(folder, degrees, friction, shape, *sets):
     """A simulation of a body on a slope, and the unit vector down it."""
     floor, foot = box(degrees, -0.1, -0.12, 0.6, 0.0), box(degrees, -0.1, -0.12, 0.6, -0.06)
-    text = SLOPE.format(friction=friction, floor=floor, foot=foot, block=shape)
-    return start(draft(folder, text, *sets)), np.array(drawn(degrees, (1.0, 0.0)))
+    return on_slope(folder, degrees, friction, RUBBER.format(floor=floor, foot=foot, block=shape), *sets)[:2]
 
 
 def block(degrees):
@@ -273,12 +207,12 @@ def pull_down(simulation, down, times=(0.1, 0.2, 0.3)):
 @pytest.mark.parametrize("degrees", [25, pytest.param(38, marks=LONG)])
 def test_a_body_slides_down_a_solid_as_theory_has_it(tmp_path, degrees):
     a = math.radians(degrees)
-    found = pull_down(*on_slope(tmp_path, degrees, 0.3, block(degrees)))
+    found = pull_down(*on_rubber(tmp_path, degrees, 0.3, block(degrees)))
     assert found == pytest.approx(9.81 * (math.sin(a) - 0.3 * math.cos(a)), rel=0.01)
 
 
 def test_below_its_angle_of_friction_a_body_stays(tmp_path):
-    simulation, down = on_slope(tmp_path, 20.0, 0.5, block(20.0))
+    simulation, down = on_rubber(tmp_path, 20.0, 0.5, block(20.0))
     ways = [bodies_of(until(simulation, time)).place[0, :2] @ down for time in (0.15, 0.3)]
     assert abs(ways[1] - ways[0]) < 1e-4
 
@@ -286,7 +220,7 @@ def test_below_its_angle_of_friction_a_body_stays(tmp_path):
 def test_a_disc_rolls_down_a_solid(tmp_path):
     """Friction is by the velocity of the point that touches, v + ω × r."""
     disc = f"disc = {{ center = {drawn(20.0, (0.05, 0.1))}, radius = 0.1 }}"
-    simulation, down = on_slope(tmp_path, 20.0, 0.5, disc, "solids.floor.young=1e6")
+    simulation, down = on_rubber(tmp_path, 20.0, 0.5, disc, "solids.floor.young=1e6")
     found, bodies = pull_down(simulation, down), bodies_of(simulation)
     own = bodies.about[0] / (bodies.mass[0, 0] * 0.1**2)
     assert found == pytest.approx(9.81 * math.sin(math.radians(20.0)) / (1.0 + own), rel=0.03)
@@ -294,7 +228,7 @@ def test_a_disc_rolls_down_a_solid(tmp_path):
 
 
 def test_a_body_at_rest_presses_a_solid_by_its_weight(tmp_path):
-    simulation, _ = on_slope(tmp_path, 0.0, 0.3, block(0.0))
+    simulation, _ = on_rubber(tmp_path, 0.0, 0.3, block(0.0))
     bodies = bodies_of(until(simulation, 0.35))
     given = np.zeros(3)
     while simulation.time < 0.4:
@@ -313,8 +247,6 @@ def test_a_body_at_rest_presses_a_solid_by_its_weight(tmp_path):
         (["solids.hammer={shape={box={lower=[1.0,0.0],upper=[1.1,0.1]}},density=1.0,young=1.0,poisson=0.0}"],
          "bodies.hammer: a solid has this name too; give the body another"),
         (["bodies.hammer.condition=extrapolated"], "bodies.hammer.condition: says what a fluid meets, and there is"),
-        (["fluids.water={shape={box={lower=[1.0,0.0],upper=[1.1,0.1]}}}"],
-         "bodies: in a fluid nothing is known of contact between solids and these; remove one of the three"),
         (["walls.bent={shape={box={lower=[1.0,0.0],upper=[1.1,0.1]}},"
           "motion={piston={height=0.01,period=1.0,depth=0.3}}}"],
          "walls.bent.motion: a paddle makes waves, and there is no fluid; take another"),

@@ -3,18 +3,15 @@
 import numpy as np
 import pytest
 from drafts import draft, refusal
-from gauging import readings, started
+from gauging import readings, start, started
 from long import LONG
 from mpi4py import MPI
 
 from psph.output.diagnostics import energies_and_momentum
-from psph.output.ledger import Ledger
 from psph.physics.fluid.continuity import Continuity
-from psph.runs.setup import create_particles
 from psph.scene import Scene, check
 from psph.simulation.immersion import substeps
 from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 STIRRED = """
 [space]
@@ -51,12 +48,6 @@ velocity = [0.2, 0.1]
 jitter = 0.05
 """
 """A block of another density among two fluids that flow against each other and it."""
-
-
-def start(case):
-    scene = Scene(case)
-    plan = make_plan(scene)
-    return Simulation(scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger())
 
 
 def momentum(simulation):

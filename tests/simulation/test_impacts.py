@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from mpi4py import MPI
-from parallel.test_simulation import start
 
 from psph.simulation import impacts
 from psph.simulation.impacts import LASTS, Impacts

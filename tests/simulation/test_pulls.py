@@ -5,22 +5,18 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from long import LONG
-from mpi4py import MPI
 
 from psph.acts import SOLIDS
 from psph.case import load
-from psph.output.ledger import Ledger
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.rigid.pushes import pulled
 from psph.runs.guards import Guards
 from psph.runs.record import Record
-from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.scene.bodies import shares_of
-from psph.simulation.plan import make_plan
 from psph.simulation.rules import Columns
-from psph.simulation.step import Simulation
 
 FREQUENCY, CENTER = 2.0, (0.1, -0.2)
 
@@ -40,12 +36,6 @@ velocity = [0.0, 0.5]
 spin = 1.5
 """
 """A body whose mass is not that of its particles, and water far from it."""
-
-
-def start(case):
-    scene = Scene(case)
-    plan = make_plan(scene)
-    return Simulation(scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger())
 
 
 def test_a_central_force_swings_a_body_about_its_centre(tmp_path):

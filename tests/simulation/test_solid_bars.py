@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from drafts import draft
-from simulation.test_immersion import start
+from gauging import start
 
 from psph.physics.solid.shares import HELD
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from long import LONG, tell
 from scipy.spatial import cKDTree
-from simulation.test_immersion import start
 
 from psph.physics.solid.deformation import SMOOTHING, support_of
 

@@ -2,85 +2,37 @@
 
 import numpy as np
 import pytest
+from contacts import ASKEW, BARS, HAMMER, PUDDLE, bodies_of, energy, hardest, motion, until, wrong
 from drafts import draft, refusal
+from gauging import start
 from long import LONG
-from simulation.test_body_contact import ASKEW, HAMMER, bodies_of, energy
-from simulation.test_contact import BARS
-from simulation.test_immersion import momentum, start
+from simulation.test_immersion import momentum
 
 from psph.scene import Scene
 from psph.simulation import immersion
 from psph.simulation.plan import make_plan
-
-PUDDLE = (
-    "fluids.puddle={shape={box={lower=[0.6,0.0],upper=[0.65,0.05]}},density=700.0}",
-    "physics.sound_speed=20.0",
-)
-"""Water out of the way of solids that stay dry."""
-
-
-def in_true_masses(simulation):
-    """Momentum, kg m/s, and angular momentum, kg m²/s, of solids and bodies, and Σ m|v|."""
-    store, bodies = simulation.store, bodies_of(simulation)
-    own = store.shown("kind") == 2
-    m, v, x = (store.shown(name)[own] for name in ("inertia", "velocity", "position"))
-    v, x = (np.pad(of, ((0, 0), (0, 1))) for of in (v, x))
-    solid, rigid = m[:, None] * v, bodies.mass * bodies.velocity
-    spin = np.cross(x, solid).sum(axis=0) + (bodies.angular_momentum + np.cross(bodies.place, rigid)).sum(
-        axis=0
-    )
-    size = sum(np.linalg.norm(of, axis=1).sum() for of in (solid, rigid))
-    return solid.sum(axis=0) + rigid.sum(axis=0), spin, size
-
-
-def energy_of_all(simulation):
-    """Of solids and bodies, J."""
-    store = simulation.store
-    own = store.shown("kind") == 2
-    kinetic = 0.5 * (store.shown("inertia")[own] * (store.shown("velocity")[own] ** 2).sum(axis=1)).sum()
-    return kinetic + simulation.engine.stored_energy() + bodies_of(simulation).kinetic_energy().sum()
 
 
 def test_beside_a_puddle_out_of_the_way_solids_and_bodies_meet_as_without(tmp_path):
     """Both momenta to rounding, the energy as in the steps of solids alone, and the same bounce."""
     simulation = start(draft(tmp_path, HAMMER, *ASKEW, *PUDDLE, "solids.bar.damping=0.0"))
     dry = start(draft(tmp_path, HAMMER, *ASKEW))
-    (before, spin, size), whole, most = in_true_masses(simulation), energy_of_all(simulation), 0.0
-    while simulation.time < 0.02:
-        simulation.step()
-        most = max(most, simulation.store.shown("contact_energy").sum())
-    while dry.time < 0.02:
-        dry.step(0.02)
-    after, turned, _ = in_true_masses(simulation)
+    (before, spin, size), whole = motion(simulation), energy(simulation)
+    most = hardest(simulation, 0.02)
+    after, turned, _ = motion(until(simulation, 0.02))
     assert most > 0.02 * whole
     assert np.abs(after - before).max() < 1e-14 * size and np.abs(turned - spin).max() < 1e-14 * size
-    assert energy_of_all(simulation) == pytest.approx(whole, rel=4e-3) == energy(dry)
+    assert energy(simulation) == pytest.approx(whole, rel=4e-3) == energy(until(dry, 0.02))
     assert bodies_of(simulation).spin[0, 2] == pytest.approx(bodies_of(dry).spin[0, 2], rel=0.02)
-
-
-def wrong(simulation, end=0.012):
-    """The largest error of the energy of two bars over it."""
-    store = simulation.store
-
-    def found():
-        own = store.shown("kind") == 2
-        speed2 = (store.shown("velocity")[own] ** 2).sum(axis=1)
-        return 0.5 * (store.shown("inertia")[own] * speed2).sum() + simulation.engine.stored_energy()
-
-    whole, most = found(), 0.0
-    while simulation.time < end:
-        simulation.step()
-        most = max(most, abs(found() / whole - 1.0))
-    return most
 
 
 def test_their_own_steps_are_as_short_as_contact_asks_and_twice_as_long_is_not_right(tmp_path, monkeypatch):
     keys = "physics.contact.stiffness=4.0", "solids.short.damping=0.0", "solids.long.damping=0.0", *PUDDLE
     longest = make_plan(Scene(draft(tmp_path, BARS, *keys))).contact_step
     case = draft(tmp_path, BARS, *keys, f"time.step={6.0 * longest}")
-    assert wrong(start(case)) < 2e-3
+    assert wrong(start(case), 0.012) < 2e-3
     monkeypatch.setattr(immersion, "substeps", lambda *told: 3)
-    assert wrong(start(case)) > 4e-3
+    assert wrong(start(case), 0.012) > 4e-3
 
 
 SEA = """
