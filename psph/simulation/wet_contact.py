@@ -14,13 +14,12 @@ from psph.particles.neighbours import Neighbours
 from psph.particles.others import Others
 from psph.particles.records import Records
 from psph.physics.solid.contact import MET
-from psph.simulation.kinds import Kind
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import TRUE_MASS
 from psph.vectors import add, at, put
 
 
-class WetContact(Kind):
+class WetContact:
     """The pass ``plan.met`` over the solids, bodies and walls of a rank: what they do to each other.
 
     The lists of the fluid name their neighbours too, farther than contacts reach; from these come lists of

@@ -142,7 +142,7 @@ BAR = (
 @pytest.mark.parametrize("what", [BLOCK, pytest.param(BAR, marks=LONG)], ids=["body", "solid"])
 def test_what_lands_on_rubber_under_water_stays_on_it(what, tmp_path):
     case = draft(tmp_path, TANK, *what)
-    simulation, names, lowest, touched = start(case), Scene(case).names, 9.0, False
+    simulation, names, lowest, touched = start(case), Scene(case).layout.names, 9.0, False
     store, block, mat = simulation.store, names.index("bar" if what is BAR else "block"), names.index("mat")
     while simulation.time < 0.15:
         simulation.step()
@@ -155,7 +155,7 @@ def test_what_lands_on_rubber_under_water_stays_on_it(what, tmp_path):
 @LONG
 def test_a_bar_that_lands_on_a_wall_under_water_stays_on_it(tmp_path):
     case = draft(tmp_path, TANK, *ON_WALL, *BAR)
-    simulation, bar, lowest, touched = start(case), Scene(case).names.index("bar"), 9.0, False
+    simulation, bar, lowest, touched = start(case), Scene(case).layout.names.index("bar"), 9.0, False
     store = simulation.store
     while simulation.time < 0.15:
         simulation.step()
