@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from cases.measures import CASES, by_id
+from gauging import start
 from jobs import mpirun
 from long import LONG, long_but_for, tell
 from mpi4py import MPI
-from parallel.test_simulation import start, state
+from parallel.test_simulation import state
 
 from psph.case import load
 from psph.output.reader import Run
@@ -71,6 +72,7 @@ END = {
     "solids/dam_break_on_plate": 0.01,
     "solids/taylor_bar": 1e-6,
     "solids/rings": 1e-3,
+    "solids/cylinder_on_beam": 1e-4,
     "solids/pulled_strip": 0.01,
     "solids/notched_strip": 1e-3,
     "solids/plate_impact": 4e-7,
