@@ -202,6 +202,11 @@ SCENES = {
         walls={"tank": tank()},
         physics={"gravity": PULL},
     ),
+    "rocked soil": scene(
+        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
+        walls={"tank": tank(motion=[SWING, SWAY])},
+        physics={"gravity": PULL},
+    ),
     "falling sand": scene(
         soils={
             "sand": {
