@@ -68,11 +68,12 @@ def tank(layers=4, **keys):
 def poured(walls, fluids=None, **tables):
     """Water in a tank under gravity."""
     physics = {"gravity": PULL, **tables.pop("physics", {})}
+    hole = 0.6 if len(tables.get("bodies", ())) > 1 else 0.35 if "bodies" in tables else 0.0
     return scene(
         fluids=fluids or {"water": water()},
         walls=walls,
         physics=physics,
-        perturbations=shifts(*WATER, hole=0.0 if "bodies" not in tables else 0.35),
+        perturbations=shifts(*WATER, hole=hole),
         **tables,
     )
 
@@ -154,6 +155,24 @@ SCENES = {
     "rocked extrapolated": poured({"tank": tank(motion=[SWING, SWAY], condition="extrapolated")}),
     "frame": poured({"tank": tank()}, frame={"motion": [SWING, SWAY]}),
     "body": poured({"tank": tank()}, bodies={"disc": {**DISC, "velocity": [0.5, 0.2], "spin": 2.0}}),
+    "bodies that meet": poured(
+        {"tank": tank()},
+        bodies={
+            "disc": {
+                "shape": {"disc": {"center": [0.4375, 0.5], "radius": 0.22}},
+                "density": 700.0,
+                "velocity": [3.0, 0.2],
+                "spin": 2.0,
+            },
+            "brick": {
+                "shape": {"polygon": {"points": [[0.81, 0.3], [1.21, 0.4], [1.11, 0.8], [0.71, 0.7]]}},
+                "density": 2000.0,
+                "velocity": [-3.0, 0.0],
+                "spin": -3.0,
+            },
+        },
+        physics={"contact": {"friction": 0.3, "restitution": 0.5}},
+    ),
     "sticky body": poured(
         {"tank": tank(no_slip=True)},
         {"water": water(viscosity=0.1)},

@@ -147,12 +147,14 @@ class Shift(NamedTuple):
 
 
 NO_UNIT = (
-    "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction",
+    "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction", "restitution",
     "exponent", "friction", "fast_friction", "inertial_number", "damping_ratio", "angle", "phase", "cfl",
     "gather_every", "hourglass", "alpha", "skin", "rate", "epsilon", "delta", "beta", "contact",
 )  # fmt: skip
 UNIT_OF = {
-    **dict.fromkeys(("spacing", "radius", "shift", "diameter", "amplitude", "lower", "upper", *POINTS), "m"),
+    **dict.fromkeys(
+        ("spacing", "radius", "shift", "diameter", "amplitude", "lower", "upper", "points", *POINTS), "m"
+    ),
     **dict.fromkeys(("velocity", "sound_speed", "translation"), "m/s"),
     **dict.fromkeys(("end", "step", "ramp", "start", "time", "regularisation"), "s"),
     **dict.fromkeys(("frequency", "spin", "velocity_gradient", "speed", "least_rate", "strength"), "1/s"),
