@@ -43,7 +43,8 @@ class FileSurface:
 class Surface:
     """The surface of a body in a scene: ``sheet`` and ``whole`` as in :class:`FileSurface`, in m.
 
-    ``volume`` in m³; ``rounding`` (m): how exact the file is; ``lower``, ``upper``: corners of the box around it.
+    ``volume`` in m³; ``rounding`` (m): how exact the file is; ``lower``, ``upper``: corners of the box around
+    it.
     """
 
     def __init__(self, body: FileSurface, scale: float, turns: Sequence[Turn], move: Sequence[float]):
