@@ -159,7 +159,7 @@ def test_a_whole_turn_of_everything_moves_nothing_and_keeps_the_angular_momentum
     assert relative < STILL and abs(change) < KEPT[name]
 
 
-@pytest.mark.parametrize("name", long_but_for(("drop",), UNSHIFTED))
+@pytest.mark.parametrize("name", long_but_for((), UNSHIFTED))
 def test_the_shift_alone_changes_the_angular_momentum(tmp_path, name):
     """And the control: with it an eighth of a quarter changes more than all of a turn without."""
     assert abs(turned(name, tmp_path, 2.0 * np.pi, position_shift="off")[1]) < UNSHIFTED[name]
