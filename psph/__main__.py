@@ -79,6 +79,7 @@ def _explain(options, comm) -> None:
 
 
 def _check(options, comm) -> None:
+    from psph.kinds import count_of
     from psph.runs.explain import slab_planes
     from psph.scene.meshes.report import described
 
@@ -88,7 +89,7 @@ def _check(options, comm) -> None:
     if comm.rank == 0:
         for line in described(scene):
             print(one_line(f"{options.case}: {line}"))
-        count = int(scene.census.counts.sum())
+        count = count_of(scene)
         good = f"{options.case}: good: {count:,} particles, at most {slab_planes(scene)} ranks"
         print(one_line(good))
 

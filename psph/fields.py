@@ -12,11 +12,11 @@ SCALAR, VECTOR, SYMMETRIC, MATRIX, AXIAL = "scalar", "vector", "symmetric", "mat
 """Shapes of a field: a number, one number per axis, a symmetric matrix (its rows from the diagonal
 on), a full matrix by rows, one number per axis of rotation (in 2D z, in 3D x, y, z)."""
 
-FLUID, WALL, SOLID = 0, 1, 2
+FLUID, WALL, SOLID, OTHER = 0, 1, 2, 3
 """Values of ``kind``: a fluid particle moves freely, a wall particle does not, a solid one is held by its
-neighbours of the start."""
+neighbours of the start, another one is moved by the work of a kind of matter (psph.kinds)."""
 
-KINDS = ("fluid", "wall", "solid")
+KINDS = ("fluid", "wall", "solid", "other")
 """Their names, in this order."""
 
 
@@ -230,6 +230,10 @@ OF_MATERIAL = (
     _fixed("strength", "1", "number of the law that bounds an evolved stress, 0 where none does", Numbered),
 )
 """Fixed at the start by the material: one number where all materials of a scene agree, else an array."""
+
+APART = _fixed(
+    "apart", "1", "1 where ordinary passes over pairs do not see the particle (psph.kinds), else 0"
+)
 
 OF_SITE = (_fixed("stress_point", "1", "1 where pressure is borne, 0 where velocity is carried"),)
 """Fixed at the start by the site of the lattice: 1 on every other one, 0 between."""

@@ -120,7 +120,7 @@ def on_slope(folder, degrees, friction, tables, *sets):
 
 def bodies_of(simulation):
     """The state of the rigid bodies."""
-    return simulation.engine.poses.floating.bodies
+    return simulation.engine.of("bodies").bodies
 
 
 def masses(simulation):
@@ -138,7 +138,7 @@ def motion(simulation):
         np.cross(x, m * v).sum(axis=0),
         np.linalg.norm(m * v, axis=1).sum(),
     )
-    if simulation.plan.floats:
+    if simulation.plan.of("bodies"):
         bodies = bodies_of(simulation)
         own = bodies.mass * bodies.velocity
         momentum, size = momentum + own.sum(axis=0), size + np.linalg.norm(own, axis=1).sum()
@@ -155,7 +155,7 @@ def energy_of_solids(simulation):
 def energy(simulation):
     """The same with that of bodies, J."""
     whole = energy_of_solids(simulation)
-    return whole + (bodies_of(simulation).kinetic_energy().sum() if simulation.plan.floats else 0.0)
+    return whole + (bodies_of(simulation).kinetic_energy().sum() if simulation.plan.of("bodies") else 0.0)
 
 
 def until(simulation, time):

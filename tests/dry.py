@@ -32,7 +32,8 @@ class Dry:
         plan = make_plan(self.scene)
         self.floating = Floating(self.scene, plan)
         corners = corners_of(self.scene, plan)
-        self.poses = Poses(plan.rigid, corners, None, self.scene.gravity, self.floating)
+        self.poses = Poses(plan.rigid, corners, None, self.scene.gravity, (self.floating,))
+        self.floating.meet(self.poses.maps)
         self.bodies = self.floating.bodies
         self.bodies.load(np.zeros_like(self.bodies.force), np.zeros_like(self.bodies.force))
 
@@ -40,7 +41,7 @@ class Dry:
         self.time += self.dt
         self.poses.advance(self.time, self.dt)
         self.bodies.load(np.zeros_like(self.bodies.force), np.zeros_like(self.bodies.force))
-        self.floating.kick(self.time, self.dt)
+        self.bodies.kick(self.time, self.dt, self.floating.contacts)
         self.poses.turn_to(self.time)
 
     def to(self, time):

@@ -6,6 +6,7 @@ import itertools
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -23,7 +24,7 @@ from psph.__main__ import VERBS, _with_verb
 from psph.case import acts, load, profiles, reference
 from psph.case.physics import physics_table
 from psph.composition.trial import reads
-from psph.fields import SAVED, by_name
+from psph.fields import OTHER, SAVED, by_name
 from psph.options import parser
 from psph.output import diagnostics
 from psph.output.frames import FrameFile
@@ -473,7 +474,7 @@ BESIDE_A_CASE = {
 """The examples that bring something, and the files that the page puts them into."""
 
 WITH_ALL = """
-use = ["lucy.py", "cohesion.py", "floor.py", "logarithmic.py", "belt.py", "sink.py", "front.py"]
+use = ["lucy.py", "cohesion.py", "floor.py", "logarithmic.py", "belt.py", "sink.py", "front.py", "markers.py"]
 scheme = "sph"
 space = { dimensions = 2, spacing = 0.1, kernel = "lucy", smoothing = 1.3 }
 time.end = 0.02
@@ -490,6 +491,7 @@ fluids.oil.equation_of_state = "logarithmic"
 walls.belt.shape.box = { lower = [-0.5, -0.4], upper = [0.5, 0.0] }
 walls.belt.motion.steady = [3.0, 0.0]
 regions.drain.sink = 0.1
+markers.dye.shape.box = { lower = [0.0, 0.2], upper = [0.5, 0.4] }
 """
 
 
@@ -497,6 +499,7 @@ def test_the_examples_stand_beside_a_case(tmp_path):
     """All in one case, run as a person does, without editing psph."""
     for name, file in BESIDE_A_CASE.items():
         (tmp_path / f"{file}.py").write_text(example(name), encoding="utf-8")
+    shutil.copy(Path(__file__).parent / "guests/markers.py", tmp_path)
     (tmp_path / "all.toml").write_text(WITH_ALL, encoding="utf-8")
     job = mpirun(2, ["-m", "psph", tmp_path / "all.toml", "--out", tmp_path / "out"])
     assert job.returncode == 0, job.stderr
@@ -506,6 +509,10 @@ def test_the_examples_stand_beside_a_case(tmp_path):
     belt = last["group"] == 2
     assert last["position"][belt, 0].min() == pytest.approx(-0.45 + 3.0 * 0.02)
     assert (last["velocity"][belt] == [3.0, 0.0]).all()
+    dye = last["kind"] == OTHER
+    assert (
+        np.count_nonzero(dye) == 10 and 0.0 > last["velocity"][dye, 1].max() > -0.3
+    )  # it falls with the water
     with h5py.File(tmp_path / "out/all.h5") as file:
         assert len(file["frames/00000/id"]) > len(last["id"])  # what fell beside the belt is gone
 
@@ -571,7 +578,7 @@ def test_the_table_of_datasets_is_that_of_the_fields():
 def test_the_columns_of_the_log_are_all_there():
     table = text("docs/output.md").split("`log.csv`, over")[1].split("The sums")[0]
     named = re.findall(r"`(\w+)`", table)
-    assert named == diagnostics.columns(3, solids=True)
+    assert named == diagnostics.columns(3, ["stored_energy"])
 
 
 def test_profiles_are_as_the_page_has_them():

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from psph.kinds import count_of
 from psph.runs.absent import absent
 from psph.runs.explain import Acting, acting, bytes_of_rank, explain, laws_of, slab_planes
 from psph.runs.forecast import forecast, pull
@@ -48,7 +49,7 @@ def explained(scene, ranks: int) -> Explanation:
     expected = forecast(scene, plan, ranks)
     return Explanation(
         title=case.title or case.name,
-        particles=int(scene.census.counts.sum()),
+        particles=count_of(scene),
         dimensions=scene.dimensions,
         spacing=scene.spacing,
         smoothing_length=scene.smoothing_length,

@@ -7,7 +7,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.acts import refusals
 from psph.case.bodies import held_together
-from psph.case.corners import cornered
+from psph.case.corners import cornered, of_kinds
 from psph.case.errors import advise, with_points
 from psph.case.findings import Finding, Location, asked_of, not_of
 from psph.case.keys import AXES, Table
@@ -46,6 +46,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         held_together,
         elastic,
         earthen,
+        of_kinds,
         _single,
         _stepped,
         due,

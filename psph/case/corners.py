@@ -49,6 +49,11 @@ class Answer(NamedTuple):
     says: str = ""
 
 
+def kinds_of(case) -> dict[str, Any]:
+    """The same with the kinds of matter of files that a case uses."""
+    return KINDS | {entry.effect.name: entry.effect for entry in case.catalogue.kinds}
+
+
 def between(one: str, other: str) -> str:
     """Why two kinds of matter or surroundings do not go together; empty where they do."""
     return refusals(KINDS.get(one)).get(other) or refusals(KINDS.get(other)).get(one, "")
@@ -112,6 +117,8 @@ def present(case) -> dict[str, list[tuple[Location, Any]]]:
         SYMMETRY: [(("space", "symmetry"), ...)] if case.space.symmetry else [],
         MIXED: [(("precision",), case.precision)] if case.precision == "mixed" else [],
     }
+    for entry in case.catalogue.kinds:
+        found[entry.effect.name] = [((entry.effect.name,), ...)] if entry.effect.is_in(case) else []
     for name, wall in case.walls.items():
         found.setdefault(wall.condition, []).append((("walls", name, "condition"), wall.condition))
     return {corner: keys for corner, keys in found.items() if keys}
@@ -133,8 +140,9 @@ def cornered(case) -> Iterator[Finding]:
     here = present(case)
     dimension = DIMENSIONS[case.space.dimensions - 1]
     apart: set[str] = set()  # what does not go together: a scheme's effects need not say so too
-    for kind in (one for one in KINDS if one in here):
-        for corner, says in refusals(KINDS[kind]).items():
+    kinds = kinds_of(case)
+    for kind in (one for one in kinds if one in here):
+        for corner, says in refusals(kinds[kind]).items():
             if corner == dimension:
                 yield from ((loc, ..., says) for loc, _ in here[kind])
             if corner in here:
@@ -174,3 +182,10 @@ def _of_other_matter(case, name: str, effect, here) -> Iterator[Finding]:
         value = getattr(table, key)
         if kind not in here and value != effect._field_defaults[key]:
             yield ("physics", name, key), value, f"is of {kind}, and the case has none: {cure}"
+
+
+def of_kinds(case) -> Iterator[Finding]:
+    """What contradicts itself in the tables of kinds of matter that files bring."""
+    for kind in (entry.effect for entry in case.catalogue.kinds):
+        if kind.is_in(case):
+            yield from kind.contradictions(case)

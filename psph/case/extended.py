@@ -6,12 +6,17 @@ from typing import Any, Literal
 from pydantic import create_model
 
 from psph.case.keys import Name, key
-from psph.case.model import Case, Fluid, Space, Wall
+from psph.case.model import MANY, Case, Fluid, Space, Wall
 from psph.case.motion import motions_type
-from psph.case.parameters import last_part, table_of
+from psph.case.parameters import last_part, summary, table_of
 from psph.case.physics import own_law, physics_table
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
+
+
+def tables_taken(catalogue: Catalogue) -> list[str]:
+    """The kinds of matter of a catalogue that have the name of a table that each case has."""
+    return [entry.key for entry in catalogue.kinds if entry.key in Case.model_fields]
 
 
 @cache
@@ -50,6 +55,10 @@ def case_model(catalogue: Catalogue) -> type[Case]:
             into=(Name | None, key("the fluid that comes", None, otherwise="the first fluid")),
         )
         fields["regions"] = (dict[Name, region], key("where particles appear or vanish, by name", {}))
+    kinds: tuple[Any, ...] = tuple(entry.effect for entry in catalogue.kinds)
+    for kind in kinds:
+        table = create_model(kind.table.__name__, __base__=kind.table, __doc__=kind.table.__doc__)
+        fields[kind.name] = (dict[Name, table], key(summary(kind), {}, max_length=MANY))
     made = create_model("Case", __base__=Case, __doc__=Case.__doc__, **fields)
     made.offered = catalogue
     return made

@@ -106,7 +106,7 @@ def checked(
     # Only here: the model knows the effects, and these bring the compiler along.
     from pydantic import ValidationError
 
-    from psph.case.extended import case_model
+    from psph.case.extended import case_model, tables_taken
     from psph.case.extensions import catalogue_of
     from psph.case.messages import messages
 
@@ -130,6 +130,8 @@ def checked(
     if here:
         data["use"] = list(dict.fromkeys([*names, *here]))
     catalogue = catalogue_of(file, names, given)
+    if taken := tables_taken(catalogue):
+        raise CaseError([f"{file}: use: a kind of matter named {name}, and there is one" for name in taken])
     model = case_model(catalogue)
     try:
         case = model.model_validate(data, context=Path(file).parent)

@@ -11,8 +11,8 @@ from psph.particles.store import Store
 from psph.rows import projected
 
 
-def columns(dimensions: int, solids: bool = False) -> list[str]:
-    """Columns of log.csv, of a scene with ``solids`` their stored energy among them."""
+def columns(dimensions: int, of_kinds: Sequence[str] = ()) -> list[str]:
+    """Columns of log.csv, with those ``of_kinds`` of matter (psph.kinds)."""
     momentum = [f"momentum_{axis}" for axis in "xyz"[:dimensions]]
     return [
         "time",
@@ -20,7 +20,7 @@ def columns(dimensions: int, solids: bool = False) -> list[str]:
         "dt",
         "kinetic_energy",
         "potential_energy",
-        *(["stored_energy"] if solids else []),
+        *of_kinds,
         *momentum,
         "largest_speed",
         "density_error",

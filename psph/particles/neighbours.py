@@ -38,10 +38,10 @@ class Near(NamedTuple):
 
 def empty(owned: int, entries: int) -> Neighbours:
     """Room for the rows of ``owned`` particles with ``entries`` neighbours in all."""
-    return Neighbours(np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), _entries(entries))
+    return Neighbours(np.zeros(owned, np.uint64), np.zeros(owned, np.uint32), entries_for(entries))
 
 
-def _entries(count: int) -> np.ndarray:
+def entries_for(count: int) -> np.ndarray:
     """Zeros, and behind them as many as the pair loop looks ahead."""
     return np.zeros(count + AHEAD, np.uint32)[:count]
 
@@ -73,7 +73,7 @@ def build(
         needed = max(parts)
         if needed == 0:
             return room
-        room = room._replace(lists=_entries(needed + needed // SPARE))
+        room = room._replace(lists=entries_for(needed + needed // SPARE))
 
 
 def in_single_precision(store, grid: Grid, first: int, cutoff: float):

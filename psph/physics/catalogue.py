@@ -79,6 +79,8 @@ class Catalogue(NamedTuple):
     """Smoothing kernels beside those of psph.smoothing, ``space.kernel=NAME``."""
     tables: tuple[Entry, ...] = ()
     """Tables of numbers that a run writes as NAME.csv, ``tables.NAME``: psph.runs.record."""
+    kinds: tuple[Entry, ...] = ()
+    """Kinds of matter beside those of psph, ``KIND.*``: psph.kinds."""
 
     def with_more(self, other: "Catalogue") -> "Catalogue":
         """All that either of two offers."""

@@ -15,7 +15,7 @@ Neither is integrated, so that particles never drift from where they belong, how
 
 from typing import Any, NamedTuple
 
-from psph.fields import AXIAL, FLUID, MATRIX, SOLID, VECTOR, WALL, Field, Turned, VelocityGradient
+from psph.fields import AXIAL, FLUID, MATRIX, OTHER, SOLID, VECTOR, WALL, Field, Turned, VelocityGradient
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
 
@@ -90,6 +90,12 @@ class MovingClamp(NamedTuple):
     def pose(self, time: float):
         """The pose of the whole at ``time``, s."""
         return self.motion.pose(time)
+
+
+class OfItsKind(NamedTuple):
+    """Particles are moved by the work of a kind of matter (psph.kinds)."""
+
+    kind = OTHER
 
 
 FREE, FIXED, RIGID, PRESCRIBED = 0, 1, 2, 3

@@ -4,8 +4,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from psph.case.keys import AXES
-from psph.composition.space import Metres
+from psph.kinds import count_of
 from psph.output.tables import GAUGE
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
@@ -13,24 +12,14 @@ from psph.parallel.slabs import check_ranks
 from psph.particles.cells import make_grid
 from psph.particles.records import record_width, recorded
 from psph.particles.store import SPARE
-from psph.physics.motion import deforms
-from psph.physics.solid.contact import REACH
-from psph.physics.solid.deformation import KERNEL, SMOOTHING, places_of, support_of
-from psph.physics.solid.material import is_damped
 from psph.runs.absent import absent_lines
 from psph.runs.acting import matter_lines
-from psph.runs.forecast import forecast, forecast_lines, pull, sites_within
+from psph.runs.forecast import forecast, forecast_lines, pull
 from psph.runs.hints import hints
 from psph.runs.output_size import output_lines
 from psph.runs.stability_forecast import stability_forecast
-from psph.scene.bodies import in_words
 from psph.scene.meshes.report import described
-from psph.scene.motion_checks import motion_lines
-from psph.scene.rheologies import rheology_lines
-from psph.scene.soils import soil_lines
-from psph.scene.solid_checks import solid_lines
-from psph.scene.waving import wave_lines
-from psph.simulation.immersion import substeps
+from psph.scene.sites import sites_within
 from psph.simulation.plan import Plan, make_plan
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
@@ -41,23 +30,19 @@ rebuild sorts with; of a neighbour in a list; and of a cell of the grid during a
 def explain(scene, ranks: int) -> Iterator[str]:
     """Lines that describe the plan of a scene on so many ranks."""
     plan = make_plan(scene)
-    counts = scene.census.counts
-    particles = int(counts.sum())
+    particles = count_of(scene)
     yield from _scene_lines(scene, plan, particles)
     yield from _rank_lines(scene, plan, ranks)
     yield from _pass_lines(scene, plan)
     yield from matter_lines(scene.case, plan)
     yield from _step_lines(scene, plan)
-    for place, line in enumerate(rheology_lines(scene)):
-        if not place:
-            yield "Viscosities that depend on the rate of strain"
-        yield f"  {line}"
-    yield from _friction_lines(scene, plan)
+    for kind in plan.matter:
+        yield from kind.friction_lines(plan)
     found = forecast(scene, plan, ranks)
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     yield from output_lines(scene, plan, neighbours, found.steps)
-    if scene.case.flowing:
+    if any(one.is_fluid for one in plan.species):
         yield from stability_forecast(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
@@ -76,20 +61,13 @@ def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
     own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
     entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2 if plan.passes else 0.0
     listed = (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
-    return own, listed + (bytes_of_solid(scene, plan) if plan.solids else 0.0)
-
-
-def bytes_of_solid(scene, plan: Plan) -> float:
-    """Memory of the records, the reference list and the row of ids of a particle of a solid, bytes."""
-    entries = sites_within(scene, support_of(plan.solid_smoothing_length)) + (Metres.lanes - 1) / 2
-    widths = map(record_width, places_of(scene.dimensions, is_damped(plan.solids)))
-    return NUMBER * sum(widths) + (ENTRY + NUMBER) * entries + ROW
+    return own, listed + sum(kind.bytes_of_particle(plan) for kind in plan.matter)
 
 
 def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
     """Memory of the particles, ghosts and lists of one of so many ranks, bytes."""
     own, listed = bytes_per_particle(scene, plan)
-    share = float(scene.census.counts.sum()) / ranks
+    share = count_of(scene) / ranks
     return own * (share + _neighbours(scene, ranks) * _ghosts_a_side(scene)) + listed * share
 
 
@@ -111,14 +89,14 @@ def _neighbours(scene, ranks: int) -> int:
 
 def _ghosts_a_side(scene) -> float:
     """Particles of an average plane of cells: a rank holds one plane from each side."""
-    return float(scene.census.counts.sum()) / slab_planes(scene)
+    return count_of(scene) / slab_planes(scene)
 
 
 def _cells_per_particle(scene) -> float:
     """The most that the grid may come to have, when particles leave an open domain."""
     grid = _grid(scene)
     closed = all(period is not None for period in scene.layout.periods)
-    return max(math.prod(grid.counts) / float(scene.census.counts.sum()), 0.0 if closed else CELLS_A_PARTICLE)
+    return max(math.prod(grid.counts) / count_of(scene), 0.0 if closed else CELLS_A_PARTICLE)
 
 
 def _grid(scene):
@@ -134,24 +112,13 @@ def _cutoff(scene) -> float:
 
 def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
     case = scene.case
-    support = scene.kernel.support * scene.smoothing_length
     yield f"{case.title or case.name} ({case.file})"
     yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
     yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
-    yield from soil_lines(scene)
-    yield from solid_lines(scene)
-    for body in scene.census.rigid_bodies:
-        yield f"  body        {body.name}: {in_words(scene, body)}"
-    yield from motion_lines(scene)
-    yield from wave_lines(scene)
-    for one in scene.species:
-        if deforms(one.motion):
-            yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {_first_line(one.motion)}"
-    for plane in scene.layout.mirror_planes:
-        sticks = "; the fluid sticks to it" if plane.sticks else ""
-        yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
+    for kind in plan.matter:
+        yield from kind.matter_lines()
     for line in described(scene):
         yield f"  mesh        {line}"
     for region, _ in scene.layout.regions:
@@ -161,23 +128,8 @@ def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
     for name, gauge in case.gauges.items():
         measures = _first_line(getattr(gauge, gauge.kind))
         yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
-    if plan.solids:
-        neighbours = sites_within(scene, support_of(plan.solid_smoothing_length))
-        yield (
-            f"  kernel      of solids: {KERNEL}, h = {plan.solid_smoothing_length:g} m "
-            f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
-        )
-    if plan.touching:
-        yield (
-            f"  contact     within {REACH * scene.spacing:g} m of other solids and walls; lists reach "
-            f"{scene.layout.reach.cutoff:.4g} m"
-        )
-    if plan.passes and not plan.alone:
-        yield (
-            f"  kernel      {case.space.kernel}, h = {scene.smoothing_length:g} m "
-            f"(h/dx {case.space.smoothing:g}), support {support:g} m, "
-            f"about {sites_within(scene, support):.0f} neighbours"
-        )
+    for kind in plan.matter:
+        yield from kind.reach_lines(plan)
 
 
 def _preset_lines(case) -> Iterator[str]:
@@ -219,13 +171,8 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
             f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
             f"{sent:,.0f} bytes from a rank"
         )
-    if plan.solids:
-        first, second = places_of(scene.dimensions, is_damped(plan.solids))
-        d = scene.dimensions
-        yield (
-            f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "
-            f"stress, {NUMBER * (second - 2 * d)} bytes each"
-        )
+    for kind in plan.matter:
+        yield from kind.message_lines(plan)
     if plan.ghost_fields:
         yield f"              once a rebuild: {', '.join(plan.ghost_fields)}"
 
@@ -235,8 +182,8 @@ def _pass_lines(scene, plan: Plan) -> Iterator[str]:
     if plan.passes:
         flops = plan.flops_per_pair(scene.layout.periods)
         yield f"Pass over the neighbours, one a step, {flops} flops a pair"
-    if plan.solids:
-        yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
+    for kind in plan.matter:
+        yield from kind.pass_lines(plan)
     effects, laws = acting(plan), laws_of(plan)
     width = _column([one.name for one in (*effects, *laws)] + [e.effect.__name__ for e in plan.absent])
     for one in effects:
@@ -294,44 +241,11 @@ def _first_line(effect) -> str:
     return type(effect).__doc__.splitlines()[0]
 
 
-def _friction_lines(scene, plan: Plan) -> Iterator[str]:
-    """What numerical friction stands for, beside the viscosity of the fluids."""
-    found = [
-        (call.title, call.effect.numerical_viscosity(scene))
-        for call in plan.called
-        if hasattr(call.effect, "numerical_viscosity")
-    ]
-    if not any(viscosity for _, viscosity in found):
-        return
-    fluids = scene.case.flowing.items()
-    own = [(f"fluids.{name}", fluid.viscosity) for name, fluid in fluids if not fluid.rheology]
-    yield "Kinematic viscosity, and what numerical friction acts as in a shear flow"
-    width = _column(name for name, _ in (*own, *found))
-    for name, viscosity in own:
-        yield f"  {name:<{width}}{viscosity:.3g} m²/s"
-    smallest = min((viscosity for _, viscosity in own if viscosity), default=0.0)
-    for name, viscosity in found:
-        times = f", {viscosity / smallest:.2g} times the fluid's" if smallest else ""
-        yield f"  {name:<{width}}{viscosity:.3g} m²/s{times}"
-
-
 def _step_lines(scene, plan: Plan) -> Iterator[str]:
     yield f"Time step, from the expected speed {scene.expected_speed:.3g} m/s"
     limits = list(plan.step_limits(scene.expected_speed, pull(scene)))
     width = _column(name for _, name in limits)
     for step, name in limits:
         yield f"  {name:<{width}}{step:.3g} s"
-    if plan.substeps:
-        yield _substep_line(scene, plan, min(limits)[0])
-
-
-def _substep_line(scene, plan: Plan, dt: float) -> str:
-    """How many steps of the solids a step of the fluid takes, and why."""
-    h, speed = plan.solid_smoothing_length, scene.expected_speed
-    count = substeps(plan.solids, h, dt, speed, plan.contact_step)
-    known = ((one.longest_step(h, speed), f"solids.{one.name}") for one in plan.solids)
-    longest, name = min([*known, (plan.contact_step, "their contact")])
-    return (
-        f"  solids make {count} steps in a step of {dt:.3g} s, under one push of the fluid: {name} "
-        f"stands {longest:.3g} s; each is two passes over the reference and two messages to partners"
-    )
+    for kind in plan.matter:
+        yield from kind.step_lines(plan, min(limits)[0])

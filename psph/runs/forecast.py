@@ -8,15 +8,14 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from psph.kinds import count_of
 from psph.output.progress import duration
+from psph.scene.sites import sites_within
 from psph.simulation.plan import Plan
 
 STEP, PARTICLE, FLOP = 3e-5, 4e-8, 1.4e-10
 """Seconds of a step whatever the particles, of a particle in it apart from its pairs, and of an
 operation of a pair, lists and halo included: by the measured rates of docs/performance.md."""
-
-SOLID_FLOPS = 100
-"""Operations of a pair in both passes of a solid, in 2D and 3D about as many."""
 
 LONGEST = 7 * 86400.0
 """Seconds: a run that is longer is likely not meant."""
@@ -37,10 +36,14 @@ def forecast(scene, plan: Plan, ranks: int) -> Forecast:
     """What a run of a scene will take on so many ranks, a core each."""
     step, limit = plan.longest_step(scene.expected_speed, pull(scene))
     steps = math.ceil(scene.case.time.end / step)
-    flops = plan.flops_per_pair(scene.layout.periods) if plan.passes else SOLID_FLOPS
+    flops = (
+        plan.flops_per_pair(scene.layout.periods)
+        if plan.passes
+        else max(kind.flops() for kind in plan.matter)
+    )
     neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
     each = PARTICLE + neighbours * flops * FLOP
-    return Forecast(steps, limit, steps * (STEP + each * float(scene.census.counts.sum()) / ranks))
+    return Forecast(steps, limit, steps * (STEP + each * count_of(scene) / ranks))
 
 
 def forecast_lines(found: Forecast, ranks: int, end: float) -> Iterator[str]:
@@ -61,32 +64,7 @@ def long_run(scene, plan: Plan, ranks: int) -> Iterator[str]:
     where = "1 rank" if ranks == 1 else f"{ranks} ranks"
     yield (
         f"{scene.case.file}: time.end: {scene.case.time.end:g} s takes about {found.steps:.2g} steps "
-        f"and, at a guess, {duration(found.seconds)} on {where}; {_what_to_do(scene, found.limit)}"
-    )
-
-
-def _what_to_do(scene, limit: str) -> str:
-    caps = {
-        fluid.rheology.law.largest / fluid.density: (name, fluid.rheology)
-        for name, fluid in scene.case.flowing.items()
-        if fluid.rheology
-    }
-    if limit == "apparent viscosity" and caps:
-        name, rheology = caps[max(caps)]
-        return (
-            f"fluids.{name}.rheology.{rheology.name} sets the step by its largest viscosity, "
-            f"{rheology.law.largest:.3g} Pa s; give less"
-        )
-    viscosity = max((fluid.viscosity for fluid in scene.case.flowing.values()), default=0.0)
-    if limit.endswith(("viscosity", "friction")) and viscosity:
-        [name] = [n for n, f in scene.case.flowing.items() if f.viscosity == viscosity][:1]
-        return (
-            f"fluids.{name}.viscosity = {viscosity:g} m²/s sets the step: it is the kinematic viscosity, "
-            "1e-6 for water and 0.01 for honey"
-        )
-    return (
-        f"{limit} limits the step: take a larger space.spacing, an earlier time.end, a lower "
-        "physics.sound_speed, or more ranks, and look at the units"
+        f"and, at a guess, {duration(found.seconds)} on {where}; {_cure(plan, found.limit)}"
     )
 
 
@@ -95,7 +73,10 @@ def pull(scene) -> float:
     return math.hypot(*scene.gravity)
 
 
-def sites_within(scene, radius: float) -> float:
-    """Lattice sites within ``radius`` m of a particle in the bulk."""
-    ball = {1: 2.0, 2: math.pi, 3: 4.0 / 3.0 * math.pi}[scene.dimensions]
-    return ball * (radius / scene.spacing) ** scene.dimensions - 1.0
+def _cure(plan: Plan, limit: str) -> str:
+    """What to do about a limit of the step that makes a run long."""
+    own = (cure for kind in plan.matter if (cure := kind.cure(limit)))
+    return next(own, "") or (
+        f"{limit} limits the step: take a larger space.spacing, an earlier time.end, a lower "
+        "physics.sound_speed, or more ranks, and look at the units"
+    )

@@ -9,21 +9,19 @@ import numpy as np
 from psph.composition.mirrors import BELOW
 from psph.errors import typed
 from psph.fields import FLUID, WALL
+from psph.kinds import Work
 from psph.output.diagnostics import moving_mass, total_energy, work_done
 from psph.output.errors import OutputError
 from psph.parallel.reductions import largest, wrapped_sums
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.physics.motion import is_prescribed
-from psph.physics.rigid.bodies import RigidBody
 from psph.runs.advice import advice
 from psph.runs.post_mortem import write_post_mortem
 from psph.runs.record import Record
 from psph.runs.resume import newest_checkpoint, write_checkpoint
 from psph.runs.worst_particle import Suspect, find
 from psph.scene.outside import WallRegion
-from psph.simulation.solid_overlap import inside_others
 from psph.simulation.step import BlowUp, ParticleLost, Simulation, TimeLost
-from psph.simulation.touching import Overlap
 
 EVERY = 100
 """Steps from one look behind the walls and at the energy to the next."""
@@ -45,12 +43,12 @@ class Guards:
     def __init__(self, scene, simulation: Simulation, record: Record, folder: Path, say: Callable):
         self.scene, self.simulation, self.record = scene, simulation, record
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
-        self._led = np.array([is_prescribed(one.motion) for one in scene.species], bool)
+        self._led = np.array([is_prescribed(one.motion) for one in simulation.plan.species], bool)
         moving = [one for one, led in zip(scene.species, self._led) if led]
         whole = any(hasattr(effect, "finish_acceleration") for effect in simulation.plan.effects)
         # What walls give is booked by pairs, of walls that bear a pressure.
         unbooked = moving and (whole or not all(one.bearing for one in moving))
-        self._books = not simulation.plan.regions and not unbooked
+        self._books = not unbooked and all(kind.keeps_energy for kind in simulation.plan.matter)
         self.solids = [(WallRegion(scene), None)]
         self.solids += [(WallRegion(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
         self.seen: Counter[str] = Counter()
@@ -85,25 +83,9 @@ class Guards:
                 f"{count:,} fluid particles have left the walls, over a rim or through a gap: they are "
                 "a spacing or more below or beside them"
             )
-
-        yield from self._bodies_gone()
-
-    def _bodies_gone(self) -> Iterator[str]:
-        """A line for each body that is beyond the scene's walls in whole, but not above."""
-        scene, plan = self.scene, self.simulation.plan
-        if not plan.floats or not scene.layout.parts.walls:
-            return
-        lower, upper = self._around
-        poses = self.simulation.engine.poses
-        lowest, highest = poses.around
-        down, up = np.array(scene.gravity) <= 0.0, np.array(scene.gravity) >= 0.0
-        for row in poses.floating.rows:
-            below = down & (highest[row] < lower - scene.spacing)
-            if (below | up & (lowest[row] > upper + scene.spacing)).any():
-                yield (
-                    f"bodies.{plan.rigid[row].name} has left the walls, over a rim or through a gap: it is "
-                    "a spacing or more below or beside them"
-                )
+        if self.scene.layout.parts.walls:
+            for kind in self.simulation.engine.kinds:
+                yield from kind.summary(self.simulation.engine.poses, *self._around)
 
     def _gone(self) -> np.ndarray:
         """True for each fluid particle of this rank that is beyond the scene's walls, but not above."""
@@ -126,7 +108,9 @@ class Guards:
         scene = self.scene
         lower, upper = np.array(scene.layout.lattice.lower), np.array(scene.layout.lattice.upper)
         if self.simulation.plan.rigid:
-            told = [not isinstance(one, RigidBody) for one in self.simulation.plan.rigid]
+            told = np.ones(len(self.simulation.plan.rigid), bool)
+            for kind in self.simulation.engine.kinds:
+                told[list(kind.rows)] &= kind.encloses
             for low, up in zip(*(ends[told] for ends in self.simulation.engine.poses.around)):
                 lower, upper = np.minimum(lower, low), np.maximum(upper, up)
         for plane in scene.layout.mirror_planes:
@@ -145,28 +129,18 @@ class Guards:
             with simulation.ledger("guards"):
                 slow = [
                     (DEPTH, largest(simulation.comm, [self._hidden().any()])[0] > 0.0),
-                    (OVERLAP, self._overlaps()),
+                    (OVERLAP, self._overlap() is not None),
                     ("energy", self._books and self._gain() > bounds.energy),
                 ]
             yield from (name for name, passed in slow if passed)
 
-    def _overlap(self) -> Overlap:
-        """Where a rigid body is deepest inside another or a wall; the same on every rank."""
-        floating = self.simulation.engine.poses.floating
-        return floating.contacts.deepest(floating.bodies) if floating else Overlap(0.0, -1, "")
-
-    def _overlaps(self) -> bool:
-        """Whether a rigid body or an elastic solid is too deep inside another or a wall."""
-        return self._body_overlaps() or largest(self.simulation.comm, [self._inside().any()])[0] > 0.0
-
-    def _body_overlaps(self) -> bool:
-        """Whether a rigid body is too deep inside another or a wall; the same on every rank."""
-        return self._overlap().depth > self.bounds.overlap * self.scene.spacing
-
-    def _inside(self) -> np.ndarray:
-        """True for each particle of this rank that is too deep inside what it touches: of a solid, or of a
-        body or a wall inside one."""
-        return inside_others(self.simulation.engine, self.scene.spacing, self.bounds.overlap)
+    def _overlap(self) -> tuple[Work, np.ndarray] | None:
+        """The kind of matter that has something too deep inside another or a wall, and which particles these
+        are; None where there is none."""
+        for kind in self.simulation.engine.kinds:
+            if (found := kind.overlapping(self.simulation.store, self.bounds.overlap)) is not None:
+                return kind, found
+        return None
 
     def _hidden(self) -> np.ndarray:
         """True for each particle of this rank that is fluid and too deep behind a wall's face."""
@@ -286,10 +260,8 @@ class Guards:
         return self._hidden().astype(float)
 
     def _worst_by_overlap(self) -> np.ndarray:
-        floating = self.simulation.engine.poses.floating
-        if not self._body_overlaps():
-            return self._inside().astype(float)
-        return (floating.body_of[self.simulation.store.shown("group")] == self._overlap().body).astype(float)
+        found = self._overlap()
+        return np.zeros(self.simulation.store.owned) if found is None else found[1]
 
     def _moving(self) -> np.ndarray:
         return self.simulation.store.shown("kind") != WALL
@@ -325,13 +297,11 @@ class Guards:
             case "density":
                 part = suspect.value("density") / suspect.value("rest_density")
                 return f"{who} has {part:.3g} of its rest density{bound}"
-            case _ if guard == OVERLAP and not self._body_overlaps():
-                name = self.scene.layout.parts[int(suspect.value("group"))].key
-                return f"{who} of {name} is inside another solid, a body or a wall{bound}"
             case _ if guard == OVERLAP:
-                found = self._overlap()
-                inner = self.simulation.engine.poses.floating.bodies.bodies[found.body].name
-                return f"bodies.{inner} is {found.depth:.3g} m inside {found.other}{bound}"
+                (kind, _), group = self._overlap(), int(suspect.value("group"))
+                parts, species = self.scene.layout.parts, self.simulation.plan.species
+                key = parts[group].key if group < len(parts) else species[group].name
+                return kind.overlap_words(suspect.id, key) + bound
             case _ if guard == DEPTH:
                 if (side := self._side_passed(suspect)) is not None:
                     return f"{who} has left the walls {side}{bound}"

@@ -3,6 +3,7 @@
 import math
 
 from psph.errors import Refused
+from psph.kinds import count_of
 from psph.parallel.machine import free_memory, ranks_here
 from psph.runs.explain import bytes_of_rank
 from psph.simulation.plan import Plan
@@ -57,7 +58,7 @@ def check_memory(scene, plan: Plan, comm) -> None:
     if short:
         needed, free = max(short, key=lambda pair: pair[0] - pair[1])
         raise TooLittleMemory(
-            f"{scene.case.name}: {int(scene.census.counts.sum()):,} particles need about "
+            f"{scene.case.name}: {count_of(scene):,} particles need about "
             f"{needed / GIB:.1f} GiB on one machine, {free / GIB:.1f} GiB are free there: use more "
             "machines, or a larger space.spacing"
         )

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from psph.fields import Field
+from psph.kinds import count_of
 from psph.runs.record import probes_of
 from psph.simulation.plan import Plan
 
@@ -16,7 +17,7 @@ DIGITS = 19
 
 def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[str]:
     """Frames and tables of a scene whose particles have so many ``neighbours``, in ``steps``."""
-    out, particles = scene.case.output, int(scene.census.counts.sum())
+    out, particles = scene.case.output, count_of(scene)
     yield "Output, at most once a step"
     frames, each = _moments(scene, out.frames, steps), bytes_per_frame(scene, plan)
     yield f"  frames              {frames:,}, {amount(each)} each, {amount(frames * each)} in all"
@@ -40,7 +41,7 @@ def bytes_per_frame(scene, plan: Plan) -> int:
     """Of all datasets of a frame and what describes them."""
     rows = sum(_bytes(field, scene.dimensions) for field in plan.saved)
     points = 24 if scene.dimensions == 1 else 0  # the dataset that XDMF needs
-    return int(scene.census.counts.sum()) * (rows + points) + STRUCTURE
+    return count_of(scene) * (rows + points) + STRUCTURE
 
 
 def amount(size: float) -> str:

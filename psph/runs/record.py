@@ -91,7 +91,9 @@ class Record:
             self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
         self.log = CsvTable(
             folder / LOG,
-            diagnostics.columns(scene.dimensions, bool(simulation.plan.solids)),
+            diagnostics.columns(
+                scene.dimensions, [name for kind in simulation.plan.matter for name in kind.columns]
+            ),
             comm,
             sizes.get(LOG),
         )
@@ -198,8 +200,8 @@ class Record:
         sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.heights, potential)
         error = diagnostics.density_error(sim.comm, sim.store)
         energies, momentum = sums[:2].tolist(), sums[2:].tolist()
-        stored = [sim.engine.stored_energy()] if sim.plan.solids else []
-        self.log.write([sim.time, sim.steps, sim.dt, *energies, *stored, *momentum, sim.fluid_speed, error])
+        own = sim.engine.booked()
+        self.log.write([sim.time, sim.steps, sim.dt, *energies, *own, *momentum, sim.fluid_speed, error])
         if self.accuracy:
             self.latest_errors = self.accuracy.errors(sim.time)
             self.errors.write([sim.time, *self.latest_errors])

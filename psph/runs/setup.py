@@ -6,13 +6,13 @@ from contextlib import suppress
 import numpy as np
 
 from psph.engine.jit import CACHE, many_loops, marker
+from psph.kinds import Created
 from psph.output.checkpoint import checksum
 from psph.output.gauges import gauges_of
 from psph.output.ledger import Ledger
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
 from psph.physics.motion import OF_MOTION
-from psph.physics.solid.deformation import DRAWN
 from psph.runs.record import probes_of
 from psph.scene.particles import ParticleSet
 from psph.simulation.cpu import Engine
@@ -26,7 +26,26 @@ def create_particles(scene, plan: Plan, comm) -> Store:
 
     Where they belong is for the first rebuild to say.
     """
-    return store_of(scene, plan, lattice_particles(scene, comm))
+    store = store_of(scene, plan, lattice_particles(scene, comm))
+    first, groups = int(scene.census.counts.sum()), len(scene.species)
+    for kind in plan.matter:
+        if made := kind.particles():
+            _append(scene, store, made, groups, first, comm)
+            first += len(made.group)
+        groups += len(kind.groups())
+    return store
+
+
+def _append(scene, store: Store, made: Created, first_group: int, first_id: int, comm) -> None:
+    """Add this rank's share of the particles of a kind of matter."""
+    begin, end = (len(made.group) * rank // comm.size for rank in (comm.rank, comm.rank + 1))
+    group = (made.group[begin:end] + first_group).astype(np.uint8)
+    block = block_of(
+        scene, store, group, made.position[begin:end], made.velocity[begin:end], made.density[begin:end]
+    )
+    for name, values in made.values.items():
+        block[list(store.rows[name])] = values[begin:end].reshape(end - begin, -1).T
+    store.append(first_id + np.arange(begin, end), group, block)
 
 
 def lattice_particles(scene, comm) -> ParticleSet:
@@ -68,10 +87,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
             bool(scene.frame) or None,
             *(f.name in plan.arrays or None for f in OF_MOTION),
         ),
-        tuple((law, bool(one.viscosity) or None) for law, one in zip(plan.solid_laws, plan.solids)),
-        DRAWN.name in plan.arrays or None,
-        plan.cracks or None,
-        bool(plan.grips) or None,
+        *(kind.examples(plan) for kind in plan.matter),
         scene.layout.periods,
         store.view(),
     )
@@ -108,7 +124,7 @@ def _share(scene, plan: Plan, comm) -> None:
     """Compile this rank's share of the loops; collective."""
     store = _empty(scene, plan)
     if comm.rank == 0:
-        _two_particles(scene, plan, store)
+        _few_particles(scene, plan, store)
         _AllButSums(scene, plan, store, alone(), Ledger()).step()
     else:
         Engine(scene, plan, store, alone(), Ledger()).prepare_sums(comm.rank - 1, comm.size - 1)
@@ -117,7 +133,7 @@ def _share(scene, plan: Plan, comm) -> None:
 
 def _rehearse(scene, plan: Plan, store: Store) -> None:
     """One step, and all that may be measured after it."""
-    _two_particles(scene, plan, store)
+    _few_particles(scene, plan, store)
     rehearsal = Simulation(scene, plan, store, alone(), Ledger())
     rehearsal.step()
     rehearsal.settle_pressure()
@@ -133,10 +149,14 @@ def _empty(scene, plan: Plan) -> Store:
     return Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
 
 
-def _two_particles(scene, plan: Plan, store: Store) -> None:
-    """Two particles of the first material in ``store``: it has the types of the whole run."""
-    middle = np.tile([0.5 * (a + b) for a, b in zip(scene.layout.lower, scene.layout.upper)], (2, 1))
-    first = np.array([0, scene.layout.parts.solids[0] if plan.immersed else 0], np.uint8)
-    density = np.full(2, scene.species[0].density)
-    block = block_of(scene, store, first, middle, np.zeros_like(middle), density)
-    store.append(np.arange(2), first, block)
+def _few_particles(scene, plan: Plan, store: Store) -> None:
+    """A few particles in ``store``, two of the first material or one, and what else kinds of matter ask for:
+    it has the types of the whole run."""
+    further = [group for kind in plan.matter for group in kind.rehearsed()] or [0]
+    groups = np.array([0, *further], np.uint8)
+    middle = np.tile(
+        [0.5 * (a + b) for a, b in zip(scene.layout.lower, scene.layout.upper)], (len(groups), 1)
+    )
+    density = np.full(len(groups), scene.species[0].density)
+    block = block_of(scene, store, groups, middle, np.zeros_like(middle), density)
+    store.append(np.arange(len(groups)), groups, block)

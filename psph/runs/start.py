@@ -10,6 +10,7 @@ from typing import NamedTuple
 from psph.case.running import Checkpoint
 from psph.engine.jit import CACHE
 from psph.errors import typed
+from psph.kinds import count_of
 from psph.output.checkpoint import Saved
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
@@ -128,9 +129,9 @@ def _simulate(
     begun, case = time.perf_counter(), scene.case
     lines, say = say is None, say or _speaker(comm)
     check_ranks(comm.size, slab_planes(scene))
-    particles = int(scene.census.counts.sum())
-    check_room(particles, comm.size)
     plan = make_plan(scene)
+    particles = count_of(scene)
+    check_room(particles, comm.size)
     for warning in long_run(scene, plan, comm.size):
         say(f"warning: {warning}", sys.stderr)
     check_memory(scene, plan, comm)

@@ -8,6 +8,7 @@ from importlib import metadata
 from pathlib import Path
 
 from psph.engine.jit import processor
+from psph.kinds import count_of
 from psph.runs.cost import costs
 from psph.version import __version__
 
@@ -31,7 +32,7 @@ def write_summary(folder: Path, scene, simulation, seconds: float, steps: int, s
     told = {
         "header": header(Path(scene.case.file)),
         "ranks": simulation.comm.size,
-        "particles": int(scene.census.counts.sum()),
+        "particles": count_of(scene),
         "steps": steps,
         "seconds": seconds,
         "parts": [*parts, ("the rest", seconds - sum(spent.values()))],

@@ -85,7 +85,7 @@ def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
     offset = _away(_places(around), place, scene.layout.periods)
     place = simulation.domain.inside(place[None])[0]
     shares = _shares(simulation, scene, around, column, offset)
-    if simulation.plan.solids:
+    if any(kind.pushes_within for kind in simulation.plan.matter):
         others = sum((one.acceleration for one in shares), np.zeros(scene.dimensions))
         inner = around.shown("acceleration")[column] - others
         shares = (*shares, Share(INNER, inner, 0.0, np.zeros(scene.dimensions)))

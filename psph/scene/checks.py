@@ -9,6 +9,7 @@ import numpy as np
 from psph.case import CaseError
 from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
+from psph.kinds import kinds_in
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.density_ratios import several_fluids
@@ -68,6 +69,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *exact_faults(scene),
     ]
     places = places or [
+        *(line for kind in kinds_in(scene) for line in kind.faults()),
         *period_faults(scene),
         *solid_faults(scene),
         *motion_faults(scene),
@@ -123,6 +125,9 @@ def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
     for kind in (*OF_EVERY_SCENE, *(OF_FLUIDS if scene.case.flowing else (body_warnings,))):
         for line in kind(scene):
+            yield f"{scene.case.file}: {line}"
+    for kind in kinds_in(scene):
+        for line in kind.warnings():
             yield f"{scene.case.file}: {line}"
 
 

@@ -14,15 +14,19 @@ from psph.physics.solid.shares import SHARE
 from psph.scene.scene import Scene
 
 
+def followed_fields(scene: Scene) -> tuple[Field, ...]:
+    """What particles carry because gauges follow them: where they were, and how often they have crossed."""
+    gauges = scene.case.gauges.values()
+    followed = any(gauge.displacement for gauge in gauges)
+    counted = followed or scene.starts.solids and any(gauge.reaction or gauge.force for gauge in gauges)
+    across = (CROSSED,) if counted and any(scene.layout.periods) else ()
+    return (*([REFERENCE] if followed else []), *across)
+
+
 def solid_fields(scene: Scene) -> tuple[Field, ...]:
     """What particles carry because the scene has solids, and these yield, crack, have loads or stand in a
     fluid."""
-    gauges = scene.case.gauges.values()
-    followed = any(gauge.displacement for gauge in gauges)
-    counted = followed or any(gauge.reaction or gauge.force for gauge in gauges)
-    across = (CROSSED,) if counted and any(scene.layout.periods) else ()
-    if not scene.starts.solids:
-        return (REFERENCE, *across) if followed else ()
+    across = tuple(field for field in followed_fields(scene) if field == CROSSED)
     loaded = any(table.loads for table in scene.case.solids.values())
     lasting = OF_PLASTIC if remembers(scene.starts.solids) else ()
     lasting += OF_HEAT if is_heated(scene.starts.solids) else ()

@@ -4,26 +4,27 @@ All that depends on how sums are computed on a processor lies behind these few m
 """
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
-from psph.composition.loads import Couple, Loads, Pushes, Unloaded
+from psph.composition.loads import Couple, Loads, Unloaded
 from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
-from psph.fields import companions, seen_at
+from psph.fields import APART, companions, seen_at
+from psph.kinds import Rank
 from psph.output.ledger import Ledger
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin, Unlisted
-from psph.particles.others import keep_others
+from psph.particles.apart import part
+from psph.particles.neighbours import empty
 from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.physics.motion import COUPLE, LOAD
-from psph.physics.rigid.pushes import add_pushes
 from psph.simulation.bounded import admit_kicked, admit_predicted
-from psph.simulation.floating import Floating
 from psph.simulation.integrator import (
     kick,
     kick_drift_predict,
@@ -32,8 +33,6 @@ from psph.simulation.integrator import (
     settle_given_pressure,
     state_of,
 )
-from psph.simulation.kinds import Kind, kinds_of
-from psph.simulation.paddles import Paddles
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
@@ -61,9 +60,12 @@ class Engine:
         )
         self.skin = Skin(self.domain, scene.layout.reach.skin, plan.planes) if plan.passes else Unlisted()
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
-        floating = Floating(scene, plan) if plan.floats else None
-        paddles = Paddles(scene, plan) if plan.absorbs else None
-        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.frame, scene.gravity, floating, paddles)
+        rank = Rank(scene, plan, store, self.domain, ledger)
+        self.kinds = tuple(work for kind in plan.matter for work in kind.work(rank))
+        movers = tuple(work for work in self.kinds if work.rows)
+        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.frame, scene.gravity, movers)
+        for work in self.kinds:
+            work.meet(self.poses.maps)
         self._rules = Rules(
             plan.carriers,
             plan.laws,
@@ -80,30 +82,28 @@ class Engine:
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
-        self._load, self._push = settled(sum_over_neighbours), settled(add_pushes)
+        self._load = settled(sum_over_neighbours)
         self._potential = settled(potentials)
-        self.kinds = tuple(kinds_of(scene, plan, store, self.domain, ledger, self.poses.maps))
         self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
         self._bundles: dict[tuple, Columns] = {}
         self._viewed = self._carried = None
+        self._apart = empty(0, 0)
         self.wetting = [Wetting(one, plan, store, self.domain, scene.layout.reach) for one in plan.marking]
 
-    def of_kind(self, kind: type[Kind]):
-        """What the engine has of a kind of matter, or None."""
-        return next((one for one in self.kinds if isinstance(one, kind)), None)
+    def of(self, name: str) -> Any:
+        """The work of that name, of a kind of matter (psph.kinds), or None."""
+        return next((work for work in self.kinds if work.name == name), None)
 
     def predict(self, time: float, dt: float, largest_speed: float) -> None:
         """Kick, drift to ``time`` and predict; ``largest_speed`` bounds displacements, m/s."""
-        self._each(self._predict, time, dt, self._rules, self._view(largest_speed), self._columns())
+        self.each(self._predict, time, dt, self._rules, self.view(largest_speed), self.columns())
         for kind in self.kinds:
             kind.advance(time, dt, largest_speed)
         if self.plan.evolving:
-            self._each(predict_rows, dt, self.store.data, self._rows_that_evolve())
+            self.each(predict_rows, dt, self.store.data, self._rows_that_evolve())
         if bounds := self.plan.bounds:
             value = self.store[self.store.seen_as(bounds.bounds.name)]
-            self._each(
-                admit_predicted, bounds, self._rules, self._view(largest_speed), value, self._columns()
-            )
+            self.each(admit_predicted, bounds, self._rules, self.view(largest_speed), value, self.columns())
         for field in self.plan.evolving:
             _, *rates = companions(field)
             self.store.rotate(*(rate.name for rate in rates))
@@ -112,11 +112,11 @@ class Engine:
     def kick(self, time: float, dt: float, largest_speed: float) -> list[float]:
         """The second kick.  Returns the largest |v|², |a|², strain, squared shift and |v|² of walls here."""
         if self.plan.evolving:
-            self._each(kick_rows, dt, self.store.data, self._rows_that_evolve())
-        parts = self._each(self._kick, time, dt, self._rules, self._view(largest_speed), self._columns())
+            self.each(kick_rows, dt, self.store.data, self._rows_that_evolve())
+        parts = self.each(self._kick, time, dt, self._rules, self.view(largest_speed), self.columns())
         if bounds := self.plan.bounds:
             rest = (self.store[name] for name in (bounds.bounds.name, "density", bounds.remembers.name))
-            self._each(admit_kicked, bounds, self._view(largest_speed), *rest)
+            self.each(admit_kicked, bounds, self.view(largest_speed), *rest)
         parts = [*parts, *filter(None, [kind.kick(dt) for kind in self.kinds])]
         return list(map(max, *parts)) if len(parts) > 1 else list(parts[0])
 
@@ -125,6 +125,7 @@ class Engine:
         with self.ledger("rebuild"):
             bring_back(self.store, self.plan.planes, self.plan.free)
             self.domain.rebuild(self.spent_on_pairs())
+            self._part_lists()
             self._lists_are_new()
         with self.ledger("records"):
             self._fit_records()
@@ -148,7 +149,7 @@ class Engine:
         """
         for kind in self.kinds:
             kind.before_sums(dt)
-        stale = self.plan.faced if ghosts_are_fresh else self.plan.refreshed
+        stale = self.plan.renewed if ghosts_are_fresh else self.plan.refreshed
         written: set[str] = set()
         for one in self.plan.passes:
             if not (one.due(steps) or at_once and one.slow):
@@ -158,29 +159,17 @@ class Engine:
             else:
                 self._sum_all(one)
             if one.settles:
-                self._each(settle_given_pressure, self._rules, self._view(0.0), self._columns())
+                self.each(settle_given_pressure, self._rules, self.view(0.0), self.columns())
             stale, written = (), written | one.written
         for wetting in self.wetting:
             wetting.mark()
         for kind in self.kinds:
             kind.after_sums(time, dt)
 
-    def push_bodies(self, time: float, dt: float) -> None:
-        """The second kick of rigid bodies at ``time``, by body forces and the pushes that the last pass has
-        summed; without a step ``dt`` these alone."""
-        floating = self.poses.floating
-        of_each = floating.body_of, floating.bodies.place, floating.units, self.domain.periods
-        of_each += self.plan.pulls.bodies, floating.masses
-        parts = self._each(self._push, *of_each, self._view(0.0), self._columns())
-        floating.load(sum(parts), self.domain.comm)
-        if dt > 0.0:
-            floating.kick(time, dt)
-        self.poses.turn_to(time)
-
     def settle_pressure(self, largest_speed: float) -> None:
         """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
         s = self.store
-        state_of(s.low, s.low + s.owned, self._rules, self._view(largest_speed), self._columns())
+        state_of(s.low, s.low + s.owned, self._rules, self.view(largest_speed), self.columns())
         for kind in self.kinds:
             kind.measure()
 
@@ -196,12 +185,20 @@ class Engine:
         """Potential energy by mass of this rank's particles, J/kg (n,), but for that of uniform pulls."""
         found = np.zeros(self.store.total)
         if held := self.plan.pulls.held:
-            self._each(self._potential, held, self.store.view(), found)
+            self.each(self._potential, held, self.store.view(), found)
         return found[self.store.inner]
 
     def stored_energy(self) -> float:
         """Energy that kinds of matter store, as solids do by their deformation, J; collective."""
         return sum(kind.energy() for kind in self.kinds)
+
+    def state(self) -> dict:
+        """What the next steps of kinds of matter rest on beside their particles."""
+        return {key: value for kind in self.kinds for key, value in kind.state().items()}
+
+    def booked(self) -> list[float]:
+        """What kinds of matter add to log.csv; collective."""
+        return [value for kind in self.kinds for value in kind.booked()]
 
     def begin_rates(self) -> None:
         """The rates of earlier steps, before there were any, are the first ones."""
@@ -215,9 +212,12 @@ class Engine:
         """The lists as they were made, then everything as it was when ``saved`` was written."""
         self.domain.relist(saved.state["lower"], saved.state["upper"])
         saved.fill(self.store)
-        self.poses.restore(saved.state["poses"], saved.state["time"])
+        for kind in self.kinds:
+            kind.restore(saved.state["poses"])
+        self.poses.turn_to(saved.state["time"])
         if self.plan.passes:
             self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
+        self._part_lists()
         self._lists_are_new()  # what ghosts are counts too
         self._fit_records()
         for records in self.records:
@@ -235,6 +235,7 @@ class Engine:
             self.store.group,
             *tables,
             *self.domain.lists,
+            *self._apart,
         ]
         held = sum(kind.bytes_held() for kind in self.kinds)
         return held + sum(a.nbytes for a in arrays)
@@ -245,13 +246,17 @@ class Engine:
         return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
 
     def _lists_are_new(self) -> None:
-        """Take what rests, and what does not feel each other, out of them: solids feel other ones alone."""
+        """Take what rests, and what does not feel each other, out of them."""
         for kind in self.kinds:
             kind.listed()
         for one in self.wetting:
             one.settle()
-        if self.plan.alone:
-            self._each(keep_others, self.store.low, self.domain.lists, self.store["solid"])
+
+    def _part_lists(self) -> None:
+        """Pairs with particles that are apart get lists of their own."""
+        if APART.name in self.store and self.plan.passes:
+            apart = self.store[APART.name] > 0.0
+            self._apart = part(self.domain.lists, self.store, apart, self.plan.space.lanes)
 
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""
@@ -260,11 +265,12 @@ class Engine:
         self._mirrors, self._lists = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
         if not self.records:
             return
-        listed = int(self.domain.lists.lengths[: self.store.owned].max(initial=0))
-        longest = max([listed, *(one.longest for one in self.wetting)])
+        kept = (self.domain.lists, self._apart)
+        listed = [int(lists.lengths[: self.store.owned].max(initial=0)) for lists in kept]
+        longest = max([*listed, *(one.longest for one in self.wetting)])
         self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
 
-    def _each(self, loop, *args) -> list:
+    def each(self, loop, *args) -> list:
         """A loop over the columns of the owned particles."""
         return in_threads(loop, self.store.low, self.store.low + self.store.owned, *args)
 
@@ -311,7 +317,8 @@ class Engine:
     def _loops_of(self, one: Pass) -> Iterator[tuple[Settled, tuple]]:
         """The compiled loops of a pass, each with what it takes beside the columns."""
         s, plan, records = self.store, self.plan, self.records[one.place]
-        around = Around(records.view(), records.table, s.low, self._lists, self._mirrors)
+        lists, mirrors = (self._apart, None) if one.across else (self._lists, self._mirrors)
+        around = Around(records.view(), records.table, s.low, lists, mirrors)
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)))
@@ -319,16 +326,15 @@ class Engine:
         if one.gives_rates and plan.loaded is not None:
             rest = Unloaded(plan.loaded, s.group)
             reductions, written = one.reductions, sums.written
-            kind = Pushes if plan.alone else Loads
-            if COUPLE.name in s and kind is Loads:
+            if COUPLE.name in s and plan.loads is Loads:
                 reductions, written = (*reductions, Couple(one.effects)), (*written, s[COUPLE.name])
-            summed = Summed(one.effects, reductions, kind(plan.loaded, s.group))
+            summed = Summed(one.effects, reductions, plan.loads(plan.loaded, s.group))
             told = sums._replace(acceleration=s[LOAD.name], written=written)
             yield self._load, (summed, *seen, told)
         summed = Summed(one.effects, one.reductions, rest)
         yield self._sums[one.place], (summed, *seen, sums)
 
-    def _columns(self) -> Columns:
+    def columns(self) -> Columns:
         """The arrays that the step advances; no anchor where no motion asks for it."""
         s = self.store
         held = s.blocks, s.rows.get("density_rate")  # whose rows change places in each step
@@ -338,7 +344,7 @@ class Engine:
             self._bundles[held] = Columns(s.group, *arrays)
         return self._bundles[held]
 
-    def _view(self, largest_speed: float):
+    def view(self, largest_speed: float):
         """The particles as the plan's carriers see them; a displacement also sees the largest speed."""
         view = self.store.view()
         if view is not self._viewed:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from psph.fields import OF_MATERIAL, OF_SITE
+from psph.fields import APART, OF_MATERIAL, OF_SITE, OTHER
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
 from psph.physics.solid.contact import COVER, FACE
@@ -11,7 +11,7 @@ from psph.physics.stress.deviator import DEVIATOR
 from psph.physics.stress.faces import OF_FACES
 from psph.scene.faces import drawn_faces
 from psph.scene.smooth import smooth_faces
-from psph.simulation.groups import material_value
+from psph.simulation.groups import material_value, species_of
 
 
 def block_of(scene, store: Store, species, position, velocity, density) -> np.ndarray:
@@ -34,9 +34,10 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
                 block[list(store.rows[field.name])] = normal.T
     known = {"density": density}
     known |= {
-        field.name: np.array([material_value(s, field.name) for s in scene.species])[species]
+        field.name: np.array([material_value(s, field.name) for s in species_of(scene)])[species]
         for field in OF_MATERIAL
     }
+    known[APART.name] = np.array([one.kind == OTHER for one in species_of(scene)])[species]
     known |= {field.name: scene.layout.lattice.odd(position) for field in OF_SITE}
     known |= {field.name: field.start for field in store.fields.values() if field.start}
     for name, values in known.items():

@@ -1,10 +1,15 @@
 """The rigid bodies of a simulation: what pushes them, and the maps that place their particles."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from psph.engine.settled import settled
+from psph.kinds import Work
 from psph.parallel.reductions import whole_sums
 from psph.physics.rigid.bodies import Bodies, RigidBody, crossing
 from psph.physics.rigid.lines import pulls
+from psph.physics.rigid.pushes import add_pushes
 from psph.scene.bodies import lines_of, shares_of
 from psph.simulation.touching import Contacts
 
@@ -13,7 +18,7 @@ BITS = 58
 room for sixteen times that."""
 
 
-class Floating:
+class Floating(Work):
     """The bodies of a scene among the rigid motions of its ``plan``.
 
     ``rows`` are their places there and ``bodies`` their state (psph.physics.rigid.bodies), the same on
@@ -23,6 +28,9 @@ class Floating:
     (psph.scene.bodies.shares_of), where body forces ask for that.
     """
 
+    name = "bodies"
+    encloses = False
+
     def __init__(self, scene, plan):
         self.rows = [row for row, motion in enumerate(plan.rigid) if isinstance(motion, RigidBody)]
         own = [plan.rigid[row] for row in self.rows]
@@ -30,7 +38,7 @@ class Floating:
         self.masses = shares_of(scene) if plan.pulls.bodies else None
         self.lines = lines_of(scene, [one.name for one in own])
         self.tensions = np.zeros(len(self.lines))
-        self.body_of = np.full(len(scene.species), -1)
+        self.body_of = np.full(len(plan.species), -1)
         for group, one in enumerate(scene.species):
             if isinstance(one.motion, RigidBody):
                 self.body_of[group] = own.index(one.motion)
@@ -40,10 +48,10 @@ class Floating:
         units = 2.0 ** (BITS - count.bit_length())
         force = pressure * scene.spacing ** (scene.dimensions - 1) / units
         self.units = (force, force * max(up - low for low, up in zip(scene.layout.lower, scene.layout.upper)))
-        self._scene, self._plan = scene, plan
+        self._scene, self._plan, self._push = scene, plan, settled(add_pushes)
         self.contacts: Contacts | None = None
 
-    def meet_in(self, maps: np.ndarray) -> None:
+    def meet(self, maps: np.ndarray) -> None:
         """Look for contacts where the ``maps`` of all rigid motions have bodies and walls."""
         self.contacts = Contacts(self._scene, self._plan, self.rows, maps)
 
@@ -51,11 +59,52 @@ class Floating:
         """The first half of a kick, and the way to ``time``, s, with contacts."""
         self.bodies.drift(time, dt, self.contacts)
 
-    def kick(self, time: float, dt: float) -> None:
-        """The second half of the kick."""
-        self.bodies.kick(time, dt, self.contacts)
+    def push(self, engine, time: float, dt: float) -> None:
+        """The second half of the kick at ``time``, s, by body forces and the pushes that the last pass of the
+        ``engine`` has summed; without a step ``dt`` these alone.  Collective."""
+        of_each = self.body_of, self.bodies.place, self.units, engine.domain.periods
+        of_each += self._plan.pulls.bodies, self.masses
+        parts = engine.each(self._push, *of_each, engine.view(0.0), engine.columns())
+        self.load(sum(parts), engine.domain.comm)
+        if dt > 0.0:
+            self.bodies.kick(time, dt, self.contacts)
+        engine.poses.turn_to(time)
 
-    def maps(self) -> np.ndarray:
+    def overlapping(self, store, depth: float) -> np.ndarray | None:
+        """The particles of the body that is deepest inside another or a wall, where that is more than
+        ``depth`` spacings; the same on every rank."""
+        found = self.contacts.deepest(self.bodies)
+        if not found.depth > depth * self._scene.spacing:
+            return None
+        return (self.body_of[store.shown("group")] == found.body).astype(float)
+
+    def overlap_words(self, number: int, key: str) -> str:
+        """Which body is how deep inside what."""
+        found = self.contacts.deepest(self.bodies)
+        inner = self.bodies.bodies[found.body].name
+        return f"bodies.{inner} is {found.depth:.3g} m inside {found.other}"
+
+    def summary(self, poses, lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
+        """A line for each body that is beyond the scene's walls in whole, but not above."""
+        gravity, dx = np.array(self._scene.gravity), self._scene.spacing
+        down, up = gravity <= 0.0, gravity >= 0.0
+        lowest, highest = poses.around
+        for row, one in zip(self.rows, self.bodies.bodies):
+            if (down & (highest[row] < lower - dx) | up & (lowest[row] > upper + dx)).any():
+                yield (
+                    f"bodies.{one.name} has left the walls, over a rim or through a gap: it is "
+                    "a spacing or more below or beside them"
+                )
+
+    def state(self) -> dict:
+        """Where they are, and how they move."""
+        return self.bodies.state()
+
+    def restore(self, state: dict) -> None:
+        """Go on from there."""
+        self.bodies.restore(state)
+
+    def maps(self, time: float = 0.0) -> np.ndarray:
         """The affine maps of each body, as psph.physics.rigid.pose.maps: (n, 3, dim, 1 + dim)."""
         b, d = self.bodies, self._dimensions
         whirl, bend = crossing(b.spin_ahead), crossing(b.angular_acceleration)

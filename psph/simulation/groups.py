@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from psph.fields import OF_MATERIAL, OF_SITE
+from psph.kinds import kinds_in
 from psph.physics.catalogue import Entry
 from psph.scene.solids import meets
 from psph.simulation.calling import called_for
@@ -26,6 +27,11 @@ def laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
     return {law: "; ".join(keys) for law, keys in reasons.items()}
 
 
+def species_of(scene) -> tuple:
+    """The groups of a scene: those on its lattice, then those that kinds of matter add."""
+    return (*scene.species, *(group for kind in kinds_in(scene) for group in kind.groups()))
+
+
 def is_given_pressure(effect, material) -> bool:
     """Whether an effect gives particles of a material their pressure."""
     return hasattr(effect, "tells") and material_value(material, effect.tells) > 0.0
@@ -36,11 +42,12 @@ def material_value(material, name: str) -> float:
     return float(getattr(material, "density" if name == "rest_density" else name))
 
 
-def split(scene, names) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Quantities fixed at the start that the scene reads: shared values, and names of those that vary."""
+def split(species, names) -> tuple[dict[str, float], tuple[str, ...]]:
+    """Quantities fixed at the start that formulas read, of some ``species``: shared values, and names of
+    those that vary."""
     shared, varying = {}, []
     for name in (field.name for field in OF_MATERIAL):
-        values = {material_value(m, name) for m in scene.species}
+        values = {material_value(m, name) for m in species}
         if name != "mass" and name not in names:
             continue
         if len(values) == 1:

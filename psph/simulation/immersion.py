@@ -24,9 +24,9 @@ from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
+from psph.kinds import Work
 from psph.physics.motion import LOAD, WORK, Immersed
 from psph.physics.solid.deformation import INERTIA
-from psph.simulation.kinds import Kind
 from psph.simulation.wet_contact import WetContact
 from psph.vectors import add, at, dot, put, scale
 
@@ -40,8 +40,10 @@ def substeps(
     return max(1, math.ceil(dt / longest))
 
 
-class Immersion(Kind):
+class Immersion(Work):
     """The motion of the ``solids`` of a rank (psph.simulation.solids) in the fluid of a ``scene``."""
+
+    name = "immersion"
 
     def __init__(self, solids, scene, plan, store, domain, ledger):
         self.solids, self.plan, self.store = solids, plan, store

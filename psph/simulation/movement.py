@@ -16,6 +16,7 @@ from psph.physics.motion import (
     Clamped,
     Fixed,
     Immersed,
+    OfItsKind,
     deforms,
     is_free,
     is_rigid,
@@ -70,6 +71,6 @@ def _number(motion, motions: tuple) -> int:
     """The number of a motion in compiled loops."""
     if is_free(motion):
         return FREE
-    if isinstance(motion, (Fixed, Clamped, Immersed)):
+    if isinstance(motion, (Fixed, Clamped, Immersed, OfItsKind)):
         return FIXED
     return RIGID if is_rigid(motion) else PRESCRIBED + _row(motion, motions)

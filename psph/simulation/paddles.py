@@ -3,10 +3,13 @@
 import math
 from dataclasses import asdict
 
+import numpy as np
+
+from psph.kinds import Work
 from psph.output.gauges.level import LevelGauge
 from psph.output.gauges.make import PER_SPACING
 from psph.physics.rigid.absorption import Absorbing, Correction
-from psph.physics.rigid.pose import Pose, in_space
+from psph.physics.rigid.pose import Pose, in_space, maps
 from psph.vectors import Vector, add, dot, scale
 
 
@@ -36,15 +39,18 @@ class Face:
         return LevelGauge("", math.inf, (*place, low), (*place, high), self._parts)
 
 
-class Paddles:
+class Paddles(Work):
     """The paddles that answer to the water (psph.physics.rigid.absorption).
 
     ``rows`` are their places among the rigid motions of a ``plan``.  Their ``corrections`` are the same on
     every rank, since levels are sums of whole numbers.  The level at rest is that of the start.
     """
 
+    name = "paddles"
+
     def __init__(self, scene, plan):
         self.rows = [row for row, motion in enumerate(plan.rigid) if isinstance(motion, Absorbing)]
+        self._dimensions = scene.dimensions
         self._motions = [plan.rigid[row] for row in self.rows]
         self.corrections = [Correction() for _ in self.rows]
         self._rest: list[float] = []
@@ -55,7 +61,11 @@ class Paddles:
         """Where they are at ``time``, s."""
         return [motion.corrected(time, own) for motion, own in zip(self._motions, self.corrections)]
 
-    def advance(self, dt: float) -> None:
+    def maps(self, time: float) -> np.ndarray:
+        """The maps of each at ``time``, s (paddles, 3, dim, 1 + dim)."""
+        return np.array([maps(pose, self._dimensions) for pose in self.poses(time)])
+
+    def drift(self, time: float, dt: float) -> None:
         """A step of ``dt`` s."""
         for motion, own in zip(self._motions, self.corrections):
             own.advance(motion.absorption, dt)

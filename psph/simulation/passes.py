@@ -19,8 +19,9 @@ class Pass(NamedTuple):
     several fields, that each of these fills, or None.  ``neighbour_fields`` are what it reads of a
     neighbour, ``brought`` those among them that an earlier pass writes: ghosts need them again whenever that
     one has run.  It runs in every ``every``-th step, and more often after an impact
-    (psph.simulation.impacts) where its sums are ``slow``.  A pass that fills the pressure of some particles
-    ``settles`` their density too.
+    (psph.simulation.impacts) where its sums are ``slow``.  One is ``across`` that sums over pairs with
+    particles that are apart (psph.particles.apart), and no other does.  A pass that fills the pressure of
+    some particles ``settles`` their density too.
     """
 
     place: int
@@ -31,6 +32,7 @@ class Pass(NamedTuple):
     brought: tuple[str, ...]
     every: int
     slow: bool = False
+    across: bool = False
 
     @property
     def settles(self) -> bool:
@@ -67,11 +69,18 @@ def make_passes(
     """
     if not called:
         return ()
+    between = [call for call in called if getattr(call.effect, "across", False)]
+    called = [call for call in called if not getattr(call.effect, "across", False)]
     early = [(call, level, _every(call)) for call, level in _levels(called)]
     if gather_every > 1:
         early += [(call, 0, gather_every) for call in called if getattr(call.effect, "slow", False)]
     order = sorted({(level, every) for _, level, every in early})
-    passes, before = [], set()
+    passes: list[Pass] = []
+    before: set[str] = set()
+    if between:
+        sums = [call.effect for call in between]
+        made = _pass(0, (), sums, between, before, stored, seen_as, 1)
+        passes, before = [made._replace(across=True)], set(made.written)
     for level, every in order:
         own = [call for call, *at in early if at == [level, every]]
         sums = [call.effect for call in own]

@@ -9,13 +9,16 @@ from typing import Any
 import numpy as np
 
 from psph.composition.count import flops_per_pair
+from psph.composition.loads import Loads
 from psph.composition.mirrors import mirrors_of
 from psph.composition.space import Metres, fixed_point
 from psph.composition.terms import OF_A_PARTICLE
 from psph.fields import (
+    APART,
     IDENTITY,
     OF_EVERY_SCENE,
     OF_MATERIAL,
+    OTHER,
     WALL,
     Field,
     by_name,
@@ -23,15 +26,15 @@ from psph.fields import (
     filled,
     view_of,
 )
+from psph.kinds import Kind, kinds_in
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK, is_prescribed
-from psph.physics.rigid.absorption import Absorbing
 from psph.physics.solid.deformation import SMOOTHING
-from psph.scene.bodies import body_step
-from psph.scene.solids import solid_fields
+from psph.physics.solid.material import NO_SOLID
+from psph.scene.solids import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
-from psph.simulation.groups import has_couples, is_given_pressure, laws, material_value, split
+from psph.simulation.groups import has_couples, is_given_pressure, laws, material_value, species_of, split
 from psph.simulation.limits import step_limits
 from psph.simulation.movement import carried_fields, movement_of
 from psph.simulation.passes import Pass, array_of, make_passes, pass_of_contacts
@@ -41,9 +44,6 @@ from psph.simulation.reading import Called, called_with, refuse_unwritten, refus
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
-
-NO_SOLID = 255
-"""In place of the number of a solid."""
 
 ALWAYS_READ = (
     "position",
@@ -113,8 +113,14 @@ class Plan(OfSolids):
     """What ghosts need once, when lists are made."""
     evolving: tuple[Field, ...]
     """Fields that an effect gives a rate, beside velocity and density."""
+    matter: tuple[Kind, ...]
+    """The kinds of matter of the scene, which declare what they add (psph.kinds)."""
+    species: tuple[Any, ...]
+    """The groups of particles (psph.scene.species.Species)."""
+    apart: np.ndarray
+    """Whether the particles of a group are in ordinary passes neither seen nor see others: (groups,)."""
     kinds: tuple[int, ...]
-    """The kind of each group."""
+    """The kind of each group, as frames tell them (psph.fields)."""
     free: np.uint8
     """How many groups move freely: these come first."""
     motions: tuple[Any, ...]
@@ -128,16 +134,16 @@ class Plan(OfSolids):
     loaded: np.ndarray | None
     """Whether the push of the fluid alone, or of elastic solids where nothing flows, is summed on the
     particles of a group: (groups,); None: on none."""
-    body_step: float | None
-    """The longest step that rigid bodies stand, s; None without bodies."""
+    loads: Any
+    """How it is summed (psph.composition.loads)."""
+    renewed: tuple[str, ...]
+    """What ghosts need of it that kinds of matter fill anew just before the sums."""
     solids: tuple[Any, ...]
     """The elastic solids (psph.physics.solid.material)."""
     solid_of: np.ndarray
     """The number of the elastic solid of each group, NO_SOLID where it is of none: (groups,)."""
     solid_smoothing_length: float
     """That of the solids' own kernel, m."""
-    regions: tuple[Any, ...]
-    """Where particles appear or vanish, each with the number of the fluid that comes."""
     cfl: float
     fixed_step: float | None
     extremes: Any
@@ -178,20 +184,14 @@ class Plan(OfSolids):
         """Effects with a field that is found from the places of the neighbours in each step."""
         return tuple(e for e in self.effects if hasattr(e, "marks"))
 
-    @property
+    @cached_property
     def moves_walls(self) -> bool:
-        """Whether walls move as they are told, or solids in a fluid."""
-        return bool(self.motions or self.rigid or self.immersed)
+        """Whether walls move as they are told, or a kind of matter by its own work."""
+        return bool(self.motions or self.rigid) or any(kind.moves for kind in self.matter)
 
-    @property
-    def floats(self) -> bool:
-        """Whether there are rigid bodies that forces move."""
-        return self.body_step is not None
-
-    @property
-    def absorbs(self) -> bool:
-        """Whether paddles answer to the water before them."""
-        return any(isinstance(one, Absorbing) for one in self.rigid)
+    def of(self, name: str) -> Any:
+        """The kind of matter of that name, or None."""
+        return next((kind for kind in self.matter if kind.name == name), None)
 
     @cached_property
     def starts_twice(self) -> bool:
@@ -258,20 +258,24 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     written += tuple(field for _, effect, _ in fitted for field in getattr(effect, "drawn", ()))
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
-    movement = movement_of(scene.species)
-    of_solids = solid_fields(scene)
-    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_solids)
+    matter, species = kinds_in(scene), species_of(scene)
+    movement = movement_of(species)
+    apart = np.array([one.kind == OTHER for one in species], bool)
+    of_kinds = tuple(field for kind in matter for field in kind.fields) + followed_fields(scene)
+    of_kinds += (APART,) if apart.any() else ()
+    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_kinds)
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
-    present, pulls = {entry for entry, *_ in fitted}, pulls_of(called, scene.dimensions, bool(case.flowing))
+    flows = any(one.is_fluid for one in species)
+    present, pulls = {entry for entry, *_ in fitted}, pulls_of(called, scene.dimensions, flows)
     own_laws = laws(scene, catalogue.states)
-    led = [is_prescribed(one.motion) and (case.flowing or one.kind == WALL) for one in scene.species]
-    loaded = np.array([one.loaded for one in scene.species], bool) | np.array(led, bool)
-    for_loads = LOADED_READ * (bool(case.flowing) and bool(loaded.any()))
+    led = [is_prescribed(one.motion) and (flows or one.kind == WALL) for one in species]
+    loaded = np.array([one.loaded for one in species], bool) | np.array(led, bool)
+    for_loads = LOADED_READ * (flows and bool(loaded.any()))
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
     told = carried_fields(movement, scene.frame)
     told_by = {e.told_by for e in marking}
-    shared, varying = split(scene, own | told_by)
-    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_solids))
+    shared, varying = split(species, own | told_by)
+    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_kinds))
     refuse_unwritten(scene, called, (*computed, *told))
     seen = tuple(field for name, field in fields.items() if name in own)
     imaged = by_name(OF_EVERY_SCENE, seen).values()
@@ -282,18 +286,20 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     told |= {COUPLE.name} if has_couples(scene) else set()
     told |= {WORK.name} if pulls.booked or pulls.booked_in_solids else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
-    paired = shares_loop(called, bool(case.flowing))
+    paired = shares_loop(called, flows)
     passes = make_passes(
-        paired if case.flowing or any(hasattr(c.effect, "push") for c in paired) else (),
+        paired if flows or any(hasattr(c.effect, "push") for c in paired) else (),
         stored,
         lambda name: array_of(name, stored),
         case.time.gather_every,
         for_loads,
     )
-    met = pass_of_contacts(called, stored) if case.flowing and of_solids else None
+    met = pass_of_contacts(called, stored) if flows and scene.starts.solids else None
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in (*passes, *([met] if met else [])) for name in one.neighbour_fields}
+    refreshed = tuple(n for n in stored if n in fresh and n in (*computed, APPARENT.name))
+    renewed = {name for kind in matter for name in kind.renews(passes)}
     return Plan(
         called=called,
         absent=tuple(e for e in catalogue.effects if e not in present),
@@ -304,11 +310,11 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         },
         kernel=scene.kernel,
         laws=tuple(law for _, law in own_laws),
-        law_of=np.array([[*own_laws].index((type(one.law), one.law)) for one in scene.species], np.uint8),
+        law_of=np.array([[*own_laws].index((type(one.law), one.law)) for one in species], np.uint8),
         given_pressure=np.array(
-            [any(is_given_pressure(c.effect, one) for c in called) for one in scene.species], bool
+            [any(is_given_pressure(c.effect, one) for c in called) for one in species], bool
         ),
-        bearing=np.array([one.bearing for one in scene.species], bool),
+        bearing=np.array([one.bearing for one in species], bool),
         law_reasons=tuple(own_laws.values()),
         planes=scene.layout.mirror_planes,
         mirrors=mirrors_of(scene.layout.mirror_planes, scene.gravity, scene.layout.reach.cutoff, imaged),
@@ -324,27 +330,30 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         arrays=stored,
         passes=passes,
         met=met,
-        refreshed=tuple(n for n in stored if n in fresh and n in (*computed, APPARENT.name)),
+        refreshed=refreshed,
         ghost_fields=tuple(
-            n for n in stored if n in varying and n in neighbour | told_by or n in neighbour and n in brought
+            n
+            for n in stored
+            if n in varying and n in neighbour | told_by or n in neighbour and n in brought or n == APART.name
         ),
         evolving=evolving,
-        kinds=tuple(species.kind for species in scene.species),
-        free=np.uint8(sum(one.mobile for one in scene.species)),
+        matter=matter,
+        species=species,
+        apart=apart,
+        kinds=tuple(one.kind for one in species),
+        free=np.uint8(sum(one.mobile for one in species)),
         **movement._asdict(),
         loaded=loaded if loaded.any() else None,
-        body_step=body_step(scene) if scene.case.bodies else None,
+        loads=next((how for kind in matter if (how := kind.loads(passes))), Loads),
+        renewed=tuple(name for name in refreshed if name in renewed),
         solids=scene.starts.solids,
-        solid_of=np.array(
-            [NO_SOLID if one.elastic is None else one.elastic for one in scene.species], np.uint8
-        ),
+        solid_of=np.array([NO_SOLID if one.elastic is None else one.elastic for one in species], np.uint8),
         solid_smoothing_length=SMOOTHING * scene.spacing,
-        regions=scene.layout.regions,
         cfl=case.time.cfl,
         fixed_step=case.time.step,
         extremes=Extremes(
             *(getattr(scene, name) for name in OF_SCENE),
-            *(max(material_value(m, f.name) for m in scene.species) for f in OF_MATERIAL),
+            *(max(material_value(m, f.name) for m in species) for f in OF_MATERIAL),
         ),
     )
 

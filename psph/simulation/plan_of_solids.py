@@ -6,7 +6,6 @@ from typing import Any
 
 from psph.fields import FLUID, WALL
 from psph.physics.motion import MovingClamp
-from psph.physics.solid.contact import FACE, OF_FRICTION
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.material import remembers
 from psph.physics.solid.plastic import Lasting
@@ -20,7 +19,6 @@ class OfSolids:
     arrays: tuple[str, ...]
     passes: tuple[Pass, ...]
     met: Pass | None
-    refreshed: tuple[str, ...]
     rigid: tuple[Any, ...]
     solids: tuple[Any, ...]
     extremes: Any
@@ -63,12 +61,6 @@ class OfSolids:
     def grips(self) -> tuple[Any, ...]:
         """The motions of clamps that move, among those that are rigid."""
         return tuple(one for one in self.rigid if isinstance(one, MovingClamp))
-
-    @cached_property
-    def faced(self) -> tuple[str, ...]:
-        """What contacts read of a ghost that is found anew just before they are summed."""
-        renewed = {field.name for field in (FACE, *OF_FRICTION)}
-        return tuple(name for name in self.refreshed if self.alone and name in renewed)
 
     @cached_property
     def solid_laws(self) -> tuple:

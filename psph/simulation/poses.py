@@ -16,9 +16,8 @@ class Poses:
     """One row for each rigid motion of a scene, the same on every rank without any message.
 
     ``motions`` have a pose at any time (psph.physics.motion); ``corners`` (rows, n, dim) are points, m,
-    around all particles of each row as they stand at the start.  ``floating`` are the bodies among them that
-    forces move (psph.simulation.floating), ``paddles`` the paddles that answer to the water
-    (psph.simulation.paddles), or None.  ``maps`` (rows, 3, dim, 1 + dim) place
+    around all particles of each row as they stand at the start.  ``movers`` are the works of kinds of matter
+    (psph.kinds) that move some of the rows themselves.  ``maps`` (rows, 3, dim, 1 + dim) place
     the particles (psph.physics.rigid.pose.maps); None where nothing is rigid, so that loops have no code
     for it.  The array stays the same object: loops see each change.
     ``frame`` is what a moving frame of reference adds to ``gravity``, m/s² (psph.physics.rigid.pose.inertia),
@@ -26,29 +25,24 @@ class Poses:
     """
 
     def __init__(
-        self, motions: Sequence, corners: np.ndarray, frame=None, gravity=ZERO, floating=None, paddles=None
+        self, motions: Sequence, corners: np.ndarray, frame=None, gravity=ZERO, movers: Sequence = ()
     ):
         self.motions, self._corners, self._dimensions = tuple(motions), corners, len(gravity)
         self._frame, self._gravity = frame, in_space(gravity)
-        self.floating, self.paddles = floating, paddles
-        moved = {row for those in (floating, paddles) if those for row in those.rows}
+        self._movers = movers
+        moved = {row for mover in movers for row in mover.rows}
         self._told = sorted(set(range(len(self.motions))) - moved)
         dimensions = self._dimensions
         self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
         self.frame = None if frame is None else np.zeros((2, dimensions, 1 + dimensions))
         self.turn_to(0.0)
-        if floating:
-            floating.meet_in(self.maps)
 
     def turn_to(self, time: float) -> None:
         """Have all that is prescribed by time where it is at ``time``, s."""
         for row in self._told:
             self.maps[row] = maps(self.motions[row].pose(time), self._dimensions)
-        if self.floating:
-            self.maps[self.floating.rows] = self.floating.maps()
-        if self.paddles:
-            for row, pose in zip(self.paddles.rows, self.paddles.poses(time)):
-                self.maps[row] = maps(pose, self._dimensions)
+        for mover in self._movers:
+            self.maps[mover.rows] = mover.maps(time)
         if self._frame is not None:
             self.frame[:] = inertia(self._frame.pose(time), self._gravity, self._dimensions)
 
@@ -62,10 +56,8 @@ class Poses:
             self.turn_to(time)
             return 0.0
         before = self._at_corners()
-        if self.floating:
-            self.floating.drift(time, dt)
-        if self.paddles:
-            self.paddles.advance(dt)
+        for mover in self._movers:
+            mover.drift(time, dt)
         self.turn_to(time)
         (x, v), (x_0, v_0) = self._at_corners(), before
         strayed, gained = x - x_0 - v_0 * dt, v - v_0
@@ -104,19 +96,6 @@ class Poses:
         """The corners of boxes around the particles of each row as they stand now, m (rows, dim)."""
         places = self._at_corners()[0]
         return places.min(axis=1), places.max(axis=1)
-
-    def state(self) -> dict:
-        """What the next steps rest on beside the time: of bodies and of paddles that answer to the water."""
-        bodies = self.floating.bodies.state() if self.floating else {}
-        return bodies | (self.paddles.state() if self.paddles else {})
-
-    def restore(self, state: dict, time: float) -> None:
-        """Go on from there at ``time``, s."""
-        if self.floating:
-            self.floating.bodies.restore(state)
-        if self.paddles:
-            self.paddles.restore(state)
-        self.turn_to(time)
 
     def _at_corners(self) -> tuple[np.ndarray, np.ndarray]:
         """Places, m, and velocities, m/s, of the corners of all rows (rows, n, dim)."""

@@ -8,16 +8,16 @@ from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.fields import WALL
+from psph.kinds import Work
 from psph.physics.motion import ANCHOR, COUPLE, LOAD, WORK, is_rigid
 from psph.physics.rigid.pose import PLACE, VELOCITY
 from psph.physics.solid.contact import FACE, FACE_RATE, MET, TURNING
 from psph.scene.faces import drawn_faces
-from psph.simulation.kinds import Kind
 from psph.simulation.mapped import linear
 from psph.vectors import add, at, dot, put, scale, subtract
 
 
-class Pressed(Kind):
+class Pressed(Work):
     """The particles near the faces of the bodies and the moving walls of a ``scene``, in a rank's ``store``.
 
     The normal N of a face turns with it, by the ``maps`` of all rigid motions.  The energy U of contacts
@@ -25,11 +25,15 @@ class Pressed(Kind):
     the other side, keep their angular momentum.
     """
 
-    def __init__(self, scene, plan, store, maps: np.ndarray):
-        self._scene, self._plan, self._store, self._maps = scene, plan, store, maps
+    def __init__(self, scene, plan, store):
+        self._scene, self._plan, self._store = scene, plan, store
         own = [one.kind == WALL and is_rigid(one.motion) for one in scene.species]
         self._own = np.array(own, bool)
         self._carry, self._twist, self._load = settled(carry), settled(twist), settled(load)
+
+    def meet(self, maps: np.ndarray) -> None:
+        """The ``maps`` of all rigid motions turn the faces."""
+        self._maps = maps
 
     def settle(self) -> None:
         """Their columns, and the faces as they were drawn."""
@@ -47,7 +51,7 @@ class Pressed(Kind):
         if self._plan.immersed:
             self._turn(0.0)
 
-    def advance(self, time: float, dt: float, pace: float) -> None:
+    def advance(self, time: float, dt: float, largest_speed: float) -> None:
         """The same after a drift."""
         if self._plan.immersed and dt > 0.0:
             self._turn(dt)

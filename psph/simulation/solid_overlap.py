@@ -7,25 +7,40 @@ import numpy as np
 from psph.engine.jit import compiled
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
+from psph.kinds import Work
+from psph.parallel.reductions import largest
 from psph.physics.solid.contact import REACH
-from psph.simulation.immersion import Immersion
 from psph.vectors import at, dot, nearest_image, subtract
 
 
-def inside_others(engine, spacing: float, depth: float) -> np.ndarray:
+class SolidOverlap(Work):
+    """Solids of a ``rank`` that touch: whether some are inside others; in a fluid by the lists of an
+    ``immersion`` (psph.simulation.immersion)."""
+
+    def __init__(self, rank, immersion=None):
+        self._spacing, self._domain, self._immersion = rank.scene.spacing, rank.domain, immersion
+
+    def overlapping(self, store, depth: float) -> np.ndarray | None:
+        """The particles of this rank that are more than ``depth`` spacings inside another solid, a body or a
+        wall; None where there are none on any rank."""
+        lists = self._immersion.contact.lists if self._immersion else self._domain.lists
+        found = inside_others(store, self._domain, lists, self._spacing, depth)
+        return found.astype(float) if largest(self._domain.comm, [found.any()])[0] > 0.0 else None
+
+    def overlap_words(self, number: int, key: str) -> str:
+        """Who is inside."""
+        return f"particle {number} of {key} is inside another solid, a body or a wall"
+
+
+def inside_others(store, domain, lists, spacing: float, depth: float) -> np.ndarray:
     """True for each particle of this rank (owned,) that is more than ``depth`` spacings inside another solid
     or a wall, by the part of its neighbourhood that these fill.
 
-    The weight 1 − r²/R², R = 2.5dx, of the particles of others is compared with what is within R before a
-    plane ``depth`` behind the particle.  Where solids do not touch, nothing is inside.
+    The weight 1 − r²/R², R = 2.5dx, of the particles of others in its ``lists`` is compared with what is
+    within R before a plane ``depth`` behind the particle.
     """
-    store, low = engine.store, engine.store.low
-    found = np.zeros(store.owned)
-    if not engine.plan.touching:
-        return found > 0.0
-    wet = engine.of_kind(Immersion)
-    lists = wet.contact.lists if wet else engine.domain.lists
-    seen = lists, store["position"], engine.domain.periods, REACH * spacing
+    low, found = store.low, np.zeros(store.owned)
+    seen = lists, store["position"], domain.periods, REACH * spacing
     in_threads(settled(crowd), low, low + store.owned, low, *seen, found)
     return found > filled(depth / REACH, store.dimensions) * whole(store.dimensions)
 

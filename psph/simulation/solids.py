@@ -5,10 +5,12 @@ import numpy as np
 from psph.composition.space import Metres, softening
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
+from psph.kinds import Work
 from psph.parallel.domain import Extent
 from psph.parallel.partner_halo import PartnerHalo, follow
 from psph.parallel.reductions import exact_sums
 from psph.parallel.reference import reference_rows
+from psph.particles.others import keep_others
 from psph.particles.partners import ReferenceRows, padded_lists
 from psph.physics.solid.compression import OF_HEAT, Heat
 from psph.physics.solid.contact import CONTACT_ENERGY
@@ -25,12 +27,10 @@ from psph.physics.solid.deformation import (
     pressure_of,
     support_of,
 )
-from psph.physics.solid.material import is_damped, remembers
+from psph.physics.solid.material import NO_SOLID, is_damped, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
 from psph.scene.parts.order import among
-from psph.simulation.kinds import Kind
-from psph.simulation.plan import NO_SOLID
 from psph.simulation.solid_memory import Memory
 from psph.simulation.solid_pairs import (
     Matter,
@@ -55,12 +55,14 @@ LOOSENED, STRENGTH = "loosened", "strength"
 """What is read of partners where solids crack: whether one lets go of its last bonds, how strong it is."""
 
 
-class Solids(Kind):
+class Solids(Work):
     """The solids of ``scene`` among the particles of ``store``, a rank's share of them.
 
     A row is a solid particle that this rank owns: first those whose partners it owns too, then the rest, each
     in the order of the columns.  Behind the rows of a table stand partners of other ranks.
     """
+
+    name = "solids"
 
     def __init__(self, scene, plan, store, domain, ledger):
         self.scene, self.plan, self.store, self.domain, self.ledger = scene, plan, store, domain, ledger
@@ -86,6 +88,12 @@ class Solids(Kind):
         self._moments, self._gradients, self._forces, self._measure, self._push, self._fill = map(
             settled, loops
         )
+
+    def listed(self) -> None:
+        """Solids feel only other ones in space."""
+        if self.plan.alone:
+            first, lists = self.store.low, self.domain.lists
+            in_threads(keep_others, first, first + self.store.owned, first, lists, self.store["solid"])
 
     def begin(self) -> None:
         """The moments of the reference lists, and the loads; collective."""
@@ -312,6 +320,10 @@ class Solids(Kind):
         """Neighbours in the reference of a particle of this rank, on average."""
         lists = self._around[0].lists
         return float(lists.lengths.mean()) if self.rows else 0.0
+
+    def booked(self) -> tuple[float]:
+        """Their stored energy, J."""
+        return (self.energy(),)
 
     def bytes_held(self) -> int:
         """Bytes of tables, lists and rows."""

@@ -1,38 +1,21 @@
-"""The stages of a step, in their order.  A scene has those that it needs: see :func:`stages_of`."""
+"""The stages of a step, in their order; kinds of matter add theirs: see :func:`stages_of`."""
 
-from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterator
 
 import numpy as np
 
+from psph.kinds import Stage
 from psph.parallel.reductions import largest
-from psph.physics.region import next_time
-
-
-class Stage(NamedTuple):
-    """Declared work of a step: both take the simulation, and are collective.
-
-    ``run`` takes it from one state within a step to the next.  ``begin`` is the same before the first step,
-    of a step without length: the start goes through the stages as every step does.
-    """
-
-    run: Callable[..., None]
-    begin: Callable[..., None]
 
 
 def stages_of(plan) -> Iterator[Stage]:
-    """What a step of this plan does, in order."""
-    yield Stage(predict, predict)
-    if plan.regions:
-        yield Stage(populate, nothing)
-    yield Stage(renew_lists, begin_lists)
-    yield Stage(sum_over_pairs, begin_sums)
-    if plan.floats:
-        yield Stage(push_bodies, push_bodies)
-    yield Stage(kick, begin_rates)
-    if plan.absorbs:
-        yield Stage(measure_levels, measure_levels)
-    yield Stage(find_limits, find_limits)
+    """What a step of this plan does, in order: the stages of every step, and before each of them those that
+    kinds of matter have there."""
+    for stage in OF_EVERY_STEP:
+        for kind in plan.matter:
+            if own := kind.stages().get(stage.run.__name__):
+                yield own
+        yield stage
 
 
 def nothing(simulation) -> None:
@@ -43,16 +26,6 @@ def predict(simulation) -> None:
     """Kick, drift, and predict what the forces read at the end of the step."""
     with simulation.ledger("kick, drift, predict"):
         simulation.engine.predict(simulation.then, simulation.dt, simulation.previous_speed)
-
-
-def populate(simulation) -> None:
-    """Take particles out and let others in, where new lists are due or a region asks for them."""
-    regions = [region for region, _ in simulation.plan.regions]
-    if simulation.listed and next_time(regions, simulation.time) > simulation.then:
-        return
-    with simulation.ledger("populate"):
-        simulation.population.renew(simulation.then)
-    simulation.listed = False
 
 
 def renew_lists(simulation) -> None:
@@ -84,12 +57,6 @@ def begin_sums(simulation) -> None:
         sum_over_pairs(simulation)
 
 
-def push_bodies(simulation) -> None:
-    """The second kick of rigid bodies, with the new forces."""
-    with simulation.ledger("bodies"):
-        simulation.engine.push_bodies(simulation.then, simulation.dt)
-
-
 def kick(simulation) -> None:
     """The second kick, with the new rates."""
     simulation.previous_speed = (
@@ -105,12 +72,6 @@ def begin_rates(simulation) -> None:
     """The first rates, which are those of earlier steps too, and a kick without length."""
     simulation.engine.begin_rates()
     kick(simulation)
-
-
-def measure_levels(simulation) -> None:
-    """How high the water stands before the paddles that answer to it."""
-    with simulation.ledger("paddles"):
-        simulation.engine.poses.paddles.answer(simulation, simulation.then, simulation.dt)
 
 
 def find_limits(simulation) -> None:
@@ -129,3 +90,13 @@ def find_limits(simulation) -> None:
     walls = float(np.sqrt(found[-1]) if moves else 0.0)
     simulation.speed = max(simulation.fluid_speed, walls)
     simulation.impacts.see(simulation.acceleration)
+
+
+OF_EVERY_STEP = (
+    Stage(predict, predict),
+    Stage(renew_lists, begin_lists),
+    Stage(sum_over_pairs, begin_sums),
+    Stage(kick, begin_rates),
+    Stage(find_limits, find_limits),
+)
+"""The stages of every step, in order."""

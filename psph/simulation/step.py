@@ -106,7 +106,7 @@ class Simulation:
             "skin": self.skin.state(),
             "population": self.population.state(),
             "impacts": self.impacts.state(),
-            "poses": self.engine.poses.state(),
+            "poses": self.engine.state(),
         }
         return numbers | corners | rest
 

@@ -166,7 +166,7 @@ def test_a_body_feels_the_couples_that_a_gauge_tells_of(tmp_path):
     whole, couples = moment(drum, 2)
     told = gauges_of(Scene(draft(tmp_path, DRUM + DISC + gauge, "space.spacing=0.05")))["gauge-disc.csv"]
     assert told.row(drum)[2] == pytest.approx(whole, rel=1e-9)
-    assert drum.engine.poses.floating.bodies.torque[0, 2] == pytest.approx(whole, rel=1e-6)
+    assert drum.engine.of("bodies").bodies.torque[0, 2] == pytest.approx(whole, rel=1e-6)
     assert whole < 0.0 and couples / whole > 0.02
 
 
@@ -176,7 +176,7 @@ def test_a_disc_in_a_drum_turns_on_with_it(tmp_path):
     """The former friction had sped it up to 1.6 by then."""
     drum = started(tmp_path, DRUM + DISC, TURNING)
     until(drum, 3.0)
-    assert drum.engine.poses.floating.bodies.spin[0, 2] == pytest.approx(1.0, abs=2e-3)
+    assert drum.engine.of("bodies").bodies.spin[0, 2] == pytest.approx(1.0, abs=2e-3)
     assert abs(moment(drum, 1)[0]) < 0.3  # of 30
 
 

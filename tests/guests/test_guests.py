@@ -43,6 +43,8 @@ GUESTS = {
     "motion.rolling = { amplitude = 0.4, frequency = 10.0, center = [1.5, 0.9] } }",
     "passing": """regions.sink.drain = { lower = [1.2, 0.3], upper = [1.6, 0.7] }
 regions.source.spring = { start = [3.6, 0.8], end = [3.6, 1.1], spacing = 0.1, speed = 30.0 }""",
+    "dust": "dust.silt = { shape.box = { lower = [0.5, 0.1], upper = [2.5, 0.5] }, density = 200.0, "
+    "stopping_time = 0.02 }",
 }
 """Of each file what a case says to use it."""
 
@@ -116,7 +118,7 @@ def test_sums_of_the_same_step_come_in_a_pass_of_their_own(case):
 def test_without_guests_a_scene_has_one_pass_and_no_stage_for_them(tmp_path, case):
     path = case()
     plan = begin(path).plan
-    assert len(plan.passes) == 1 and not plan.motions and not plan.regions and not plan.evolving
+    assert len(plan.passes) == 1 and not plan.motions and not plan.of("regions") and not plan.evolving
     assert len(begin(case("passing")).stages) == len(begin(case()).stages) + 1
 
 

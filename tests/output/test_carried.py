@@ -79,7 +79,7 @@ moves_with = "brick"
 """
     )
     simulation, _ = started(draft(tmp_path, text), 60)
-    bodies = simulation.engine.poses.floating.bodies
+    bodies = simulation.engine.of("bodies").bodies
     [there] = Carrier(2).places(simulation, np.array([[0.3, 0.9]]))
     assert there == pytest.approx(bodies.at(0, np.array([0.3, 0.9, 0.0]))[0][:2], abs=1e-13)
     assert math.dist(there, (0.3, 0.9)) > 0.02

@@ -10,7 +10,6 @@ from runs.resuming import go_on_elsewhere
 from psph.case import load
 from psph.parallel.partner_halo import LostPartner, PartnerHalo, follow, owners
 from psph.particles.partners import ReferenceRows
-from psph.simulation.solids import Solids
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -123,7 +122,7 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(mpi_tmp_path):
     case = beams(mpi_tmp_path)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
     begun, _ = rows(single)
-    assert len(together.engine.of_kind(Solids).halo.ids) > 0  # the beam goes on behind the slab's end
+    assert len(together.engine.of("solids").halo.ids) > 0  # the beam goes on behind the slab's end
     for step in range(90):
         single.step()
         together.step()
@@ -215,7 +214,7 @@ def test_a_scene_without_solids_carries_nothing_for_them():
     from parallel.test_simulation import box
 
     simulation = start(box(2, False, 0), COMM)
-    assert simulation.engine.of_kind(Solids) is None and not simulation.plan.solids
+    assert simulation.engine.of("solids") is None and not simulation.plan.solids
     names = set(simulation.store.fields)
     assert names.isdisjoint(
         {"reference", "moment", "stress", "von_mises", "stored_energy", "drawn", "plastic_metric"}

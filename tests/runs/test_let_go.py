@@ -30,7 +30,7 @@ spin = 1.0
 def test_a_stop_about_the_release_changes_nothing(stop, tmp_path):
     case = draft(tmp_path, SCENE)
     simulation = steps(case, MPI.COMM_SELF, stop)
-    bodies = simulation.engine.poses.floating.bodies
+    bodies = simulation.engine.of("bodies").bodies
     assert bool(np.any(bodies.ahead)) == bool(bodies.loose[0, 0]) == (stop > 10)
     again = taken_up(case, keep(simulation, case, tmp_path), MPI.COMM_SELF)
     go_on_alike(simulation, again, 40, rebuilds=0)

@@ -124,8 +124,9 @@ def test_behind_a_body_at_the_seam_is_what_it_holds_there(way, angle, tmp_path):
     simulation, guards = watched(tmp_path, SEAM)
     poses, store = simulation.engine.poses, simulation.store
     turn = rotation((0.0, 0.0, 1.0), angle)
-    poses.floating.bodies.place[0, 0] += way
-    poses.floating.bodies.turn[0] = np.reshape(turn, (3, 3))
+    bodies = simulation.engine.of("bodies").bodies
+    bodies.place[0, 0] += way
+    bodies.turn[0] = np.reshape(turn, (3, 3))
     poses.turn_to(0.0)
     fluid = np.flatnonzero(store.shown("kind") == 0)
     points = np.random.default_rng(3).uniform((0.0, 0.01), (1.0, 0.6), (len(fluid), 2))

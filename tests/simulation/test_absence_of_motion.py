@@ -9,13 +9,13 @@ import pytest
 from drafts import TANK, draft
 from mpi4py import MPI
 
+from psph.matter.body import push_bodies
 from psph.output.ledger import Ledger
 from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation import integrator
 from psph.simulation.integrator import kick, kick_drift_predict
 from psph.simulation.plan import make_plan
-from psph.simulation.stages import push_bodies
 from psph.simulation.step import Simulation
 
 LOG = "bodies.log={shape={box={lower=[0.4,0.9],upper=[0.7,1.1]}},mass=20.0}"
@@ -54,7 +54,7 @@ def instructions(loop, simulation) -> Counter:
     registers and jumps, which the order of names may change."""
     engine = simulation.engine
     fresh = numba.njit(error_model="numpy", nogil=True)(loop)
-    call = (0, 1, 0.0, 0.0, engine._rules, engine._view(0.0), engine._columns())
+    call = (0, 1, 0.0, 0.0, engine._rules, engine.view(0.0), engine.columns())
     fresh.compile(tuple(map(numba.typeof, call)))
     [code] = fresh.inspect_asm().values()
     found = re.findall(r"^\s+([a-z][a-z0-9]+)\s", code, re.MULTILINE)

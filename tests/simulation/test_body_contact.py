@@ -131,7 +131,7 @@ def test_the_work_by_normals_that_turn_is_in_the_books(tmp_path, turns, part, al
 
 def test_without_bodies_nothing_is_stored_summed_or_asked_of_the_step_for_them(tmp_path):
     plan = make_plan(Scene(draft(tmp_path, HAMMER)))
-    assert plan.pressed and plan.floats and {"load", "couple", "anchor", "work"} <= {*plan.arrays}
+    assert plan.pressed and plan.of("bodies") and {"load", "couple", "anchor", "work"} <= {*plan.arrays}
     others = "bodies=off", "walls.end={shape={box={lower=[-0.02,-0.01],upper=[0.0,0.03]}}}"
     alone = make_plan(Scene(draft(tmp_path, HAMMER, *others)))
     assert alone.touching and not alone.pressed and alone.loaded is None

@@ -12,7 +12,6 @@ from psph.runs.setup import create_particles
 from psph.scene import Scene, check
 from psph.simulation.immersion import substeps
 from psph.simulation.plan import make_plan
-from psph.simulation.solids import Solids
 from psph.simulation.step import Simulation
 
 BAR = """
@@ -90,13 +89,13 @@ def test_a_bar_that_moves_along_with_its_clamp_has_no_stress(tmp_path):
     moves = "motion.translation = [0.3, -0.2]\n"
     bar = begun(draft(tmp_path, BAR + moves, "solids.bar.velocity=[0.3, -0.2]"))
     advanced(bar, 1.0)
-    bar.engine.of_kind(Solids).measure()
+    bar.engine.of("solids").measure()
     store = bar.store
     assert np.abs(store.shown("position") - store.shown("reference") - way).max() < 1e-12
     assert store.shown("von_mises").max() < 1e-10 * 1000.0
     assert energy(bar)[1] == pytest.approx(0.0, abs=1e-12)
     left = advanced(begun(draft(tmp_path, BAR + moves)), 0.2)  # the control: at rest at the start
-    left.engine.of_kind(Solids).measure()
+    left.engine.of("solids").measure()
     assert left.store.shown("von_mises").max() > 0.1 * 1000.0
 
 
@@ -129,7 +128,7 @@ def test_a_bar_that_turns_with_its_clamp_is_stretched_by_its_spin_alone(tmp_path
         advanced(bar, time)
         away = bar.store.shown("position")[tip] - [0.0, 0.03]
         far.append(np.linalg.norm(away, axis=1).mean())
-    bar.engine.of_kind(Solids).measure()
+    bar.engine.of("solids").measure()
     assert bar.store.shown("von_mises")[inside].max() < 1e-10 * 1000.0  # after a turn of 0.24 rad
     stretch = np.mean(far) - np.linalg.norm(x[tip] - [0.0, 0.03], axis=1).mean()
     assert stretch == pytest.approx(spin**2 * LENGTH**3 / 3.0, rel=0.05)
@@ -200,7 +199,7 @@ def test_what_a_hub_gives_to_flap_and_water_is_what_they_gain(tmp_path):
 def test_within_a_step_of_the_water_the_clamp_goes_on(tmp_path, monkeypatch):
     """Stiffer, the flap makes several steps in one of the water: at each its hub is where the time has it."""
     flap = begun(draft(tmp_path, FLAP, "solids.flap.young=2e7"))
-    store, solids = flap.store, flap.engine.of_kind(Solids)
+    store, solids = flap.store, flap.engine.of("solids")
     seen, plain = [], solids.sum
 
     def watched(time, dt):

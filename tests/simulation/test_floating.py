@@ -79,7 +79,7 @@ def started(case):
     simulation = Simulation(
         scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
     )
-    return simulation, simulation.engine.poses.floating.bodies, scene
+    return simulation, simulation.engine.of("bodies").bodies, scene
 
 
 def momentum(simulation, bodies) -> np.ndarray:
@@ -297,9 +297,9 @@ centre = [0.71, 0.6]
 def test_scenes_without_bodies_have_nothing_of_them(tmp_path):
     plain = make_plan(Scene(draft(tmp_path, POOL.format(dx=0.05))))
     asked = make_plan(Scene(draft(tmp_path, STIRRED)))
-    assert not plain.floats and plain.body_step is None
+    assert plain.of("bodies") is None
     assert not {"load", "anchor"} & set(plain.arrays)
-    assert asked.floats and {"load", "anchor"} <= set(asked.arrays)
+    assert asked.of("bodies") and {"load", "anchor"} <= set(asked.arrays)
 
 
 SYMMETRIC = (

@@ -6,11 +6,12 @@ from drafts import draft
 from mpi4py import MPI
 
 from psph.fields import FLUID
+from psph.matter.wall import measure_levels
 from psph.output.ledger import Ledger
 from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
-from psph.simulation.stages import measure_levels, stages_of
+from psph.simulation.stages import stages_of
 from psph.simulation.step import Simulation
 
 FLUME = """
@@ -63,7 +64,7 @@ def test_a_paddle_that_absorbs_takes_up_a_wave_that_another_sends_back(tmp_path)
     assert energy(plain) == energy(absorbing)
     left, rest = (gone(one, 2.5) for one in (plain, absorbing))
     assert rest < 0.1 * left
-    moved = absorbing.engine.poses.paddles.corrections[0].shift
+    moved = absorbing.engine.of("paddles").corrections[0].shift
     assert 0.0 < abs(moved) < 0.2
 
 
@@ -72,12 +73,12 @@ def test_what_does_not_absorb_measures_and_keeps_nothing(tmp_path):
     runs = [[stage.run for stage in stages_of(one.plan)] for one in (absorbing, plain)]
     assert [measure_levels in each for each in runs] == [True, False]
     assert set(absorbing.state()["poses"]) == {"levels_at_rest", "corrections"}
-    assert plain.state()["poses"] == {} and plain.engine.poses.paddles is None
+    assert plain.state()["poses"] == {} and plain.engine.of("paddles") is None
     assert plain.plan.arrays == absorbing.plan.arrays
 
 
 def test_the_level_at_the_face_is_that_of_the_water(tmp_path):
-    paddles = begun(tmp_path, ", absorb = {}").engine.poses.paddles
+    paddles = begun(tmp_path, ", absorb = {}").engine.of("paddles")
     assert paddles.state()["levels_at_rest"] == pytest.approx([0.2], abs=0.005)
     [face] = paddles._faces
     gauge = face.gauge(0.05)
@@ -89,7 +90,7 @@ def test_a_paddle_stands_where_its_stroke_and_its_correction_have_it(tmp_path):
     simulation = begun(tmp_path, ", absorb = {}")
     for _ in range(30):
         simulation.step()
-    [own] = simulation.engine.poses.paddles.corrections
+    [own] = simulation.engine.of("paddles").corrections
     store = simulation.store
     paddle = store.shown("group") == 2
     moved = store.shown("position")[paddle] - store.shown("anchor")[paddle]

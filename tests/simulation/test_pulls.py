@@ -43,7 +43,7 @@ def test_a_central_force_swings_a_body_about_its_centre(tmp_path):
     simulation = start(draft(tmp_path, ORBIT))
     while simulation.time < 0.5:
         simulation.step(0.5)
-    bodies, turned = simulation.engine.poses.floating.bodies, FREQUENCY * 0.5
+    bodies, turned = simulation.engine.of("bodies").bodies, FREQUENCY * 0.5
     swung = (np.array([1.08, 0.03]) - CENTER) * np.cos(turned)
     found = CENTER + swung + np.array([0.0, 0.5]) / FREQUENCY * np.sin(turned)
     assert bodies.centre[0, :2] == pytest.approx(found, abs=1e-4)

@@ -11,8 +11,8 @@ from psph.output.reader import Run
 from psph.physics.solid.deformation import KERNEL, Gradient, support_of
 from psph.physics.stress.invariants import j2
 from psph.runs.explain import bytes_per_particle
-from psph.runs.forecast import sites_within
 from psph.scene import Scene
+from psph.scene.sites import sites_within
 from psph.simulation.plan import make_plan
 from psph.simulation.solid_pairs import Weights, inner_force, reference_pair
 from psph.smoothing import kernel

@@ -26,11 +26,10 @@ from psph.lab.bench.tank import Tank
 from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
 from psph.physics.solid.deformation import support_of
-from psph.runs.forecast import sites_within
 from psph.runs.setup import compile_ahead
 from psph.scene import Scene
+from psph.scene.sites import sites_within
 from psph.simulation.plan import make_plan
-from psph.simulation.solids import Solids
 from psph.simulation.step import Simulation
 from psph.vectors import dot, nearest_image, subtract
 
@@ -220,7 +219,7 @@ def _mean_over_ranks(ledger: Ledger, comm) -> dict[str, float]:
 def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
     """Particles, ordered pairs inside the kernel's support and entries of the lists, in all."""
     store, lists, comm = simulation.store, simulation.domain.lists, simulation.comm
-    if solids := simulation.engine.of_kind(Solids):
+    if solids := simulation.engine.of("solids"):
         pairs = round(solids.neighbours * solids.rows)
         return tuple(comm.allreduce(n) for n in (store.owned, pairs, pairs))
     support = scene.kernel.support * scene.smoothing_length

@@ -52,7 +52,7 @@ class ForceGauge(NamedTuple):
             for of_all, own in zip(twist, couples.T):
                 of_all[: len(bearing)] += own
         found = exact_sums(simulation.comm, np.column_stack([force, *twist]))
-        floating = simulation.engine.poses.floating
+        floating = simulation.engine.of("bodies")
         return found + self._contacts(floating, about[0]) if floating else found
 
     def _contacts(self, floating, point: np.ndarray) -> np.ndarray:

@@ -37,7 +37,7 @@ class MotionGauge(NamedTuple):
 
     def row(self, simulation) -> list[float]:
         """The values, the same on every rank."""
-        floating = simulation.engine.poses.floating
+        floating = simulation.engine.of("bodies")
         bodies, d = floating.bodies, simulation.store.dimensions
         [k] = (k for k, one in enumerate(bodies.bodies) if one.name == self.body)
         slid, turned = slice(0, d), slice(2, 3) if d == 2 else slice(0, 3)

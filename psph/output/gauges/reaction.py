@@ -47,12 +47,12 @@ class ReactionGauge(NamedTuple):
 
     def _on_clamps(self, simulation) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the particles of clamps, and what each has to bear, N (n, dim)."""
-        store, plan = simulation.store, simulation.plan
+        store = simulation.store
         group = store.shown("group")
         rows = np.flatnonzero(np.isin(group, self.groups))
         pulled = store.shown("acceleration")[rows] - self._told(simulation, rows)
         force = _true_mass(store)[rows, None] * pulled
-        if plan.immersed:
+        if INERTIA.name in store:  # the solid stands in a fluid
             force += store.shown("mass")[rows, None] * store.shown(LOAD.name)[rows]
         return rows, force
 

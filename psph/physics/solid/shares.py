@@ -7,9 +7,9 @@ side only; so what bends or twists is too soft.  The shares make that up, in bar
     q_k = (Σ_l V_l W_kl)^−n,
 
 where i is among the j, and so on.  Each particle j hands its volume out, to those near it by W_ij q_i, and q
-is large at faces, larger along edges.  So Σ w_i V_i = Σ V_i, with w_i > 0: an even strain has its energy, less what
-``MOST`` takes, 0.8 % in a bar and 7.6 % in a cube 4 across; and w_i = 1 where the neighbours of i have all of
-theirs.
+is large at faces, larger along edges.  So Σ w_i V_i = Σ V_i, with w_i > 0: an even strain has its energy,
+less what ``MOST`` takes, 0.8 % in a bar and 7.6 % in a cube 4 across; and w_i = 1 where the neighbours of i
+have all of theirs.
 
 What a clamp holds has a larger share yet, ``HELD`` w_i: a strain that ends at the clamp is smoothed over a
 kernel, half of which is inside, and the squares of the halves are less than that of the whole.

@@ -1,0 +1,302 @@
+"""Kinds of matter: how each declares itself, and the catalogue of those that psph has.
+
+A kind says what it adds to a case, to the plan, to a step, to the books and to what is printed; plan, engine,
+record, guards, checkpoint, `explain` and `check` go through the kinds of a scene and name none.  Those of
+psph have a room each in psph/matter; files that a case uses bring others (docs/recipes/kind.md).
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib import import_module
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+
+CATALOGUE = (
+    "psph.matter.soil:Soils",
+    "psph.matter.solid:ElasticSolids",
+    "psph.matter.fluid:Fluids",
+    "psph.matter.body:RigidBodies",
+    "psph.matter.wall:Walls",
+    "psph.matter.region:Regions",
+)
+"""Module and class of each kind that psph has, in the order in which they are asked.  They are named here and
+imported when a scene is there, since they stand above all that asks them."""
+
+
+class Stage(NamedTuple):
+    """Declared work of a step: both take the simulation, and are collective.
+
+    ``run`` takes it from one state within a step to the next.  ``begin`` is the same before the first step,
+    of a step without length: the start goes through the stages as every step does.
+    """
+
+    run: Callable[..., None]
+    begin: Callable[..., None]
+
+
+class Rank(NamedTuple):
+    """What the work of a kind may use on a rank: ``scene`` and ``plan``, the ``store`` of its particles, the
+    ``domain`` (psph.parallel.domain), and the ``ledger`` of seconds."""
+
+    scene: Any
+    plan: Any
+    store: Any
+    domain: Any
+    ledger: Any
+
+
+class Created(NamedTuple):
+    """Particles as they begin, all of a kind, the same on every rank.
+
+    ``group`` (n,) is the number of that of each among those of the kind, ``position`` (n, dim) in m,
+    ``velocity`` (n, dim) in m/s, ``density`` (n,) in kg/m^d; ``values`` has fields by their names, (n,) or
+    (n, components).
+    """
+
+    group: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    density: np.ndarray
+    values: Mapping[str, np.ndarray]
+
+
+class Work:
+    """What a kind of matter does on a rank within a step: it does what it overrides, and nothing else.
+
+    The engine (psph.simulation.cpu) calls each method of all kinds at its moment, in the order of the
+    catalogue; all are collective.  ``name`` is that by which others ask the engine for it.
+    """
+
+    name: ClassVar[str] = ""
+    encloses: ClassVar[bool] = True
+    """Whether what it moves is a wall, which holds what is before it."""
+    rows: Sequence[int] = ()
+    """The places, among the rigid motions of the plan, of those that it moves itself."""
+
+    def meet(self, maps: np.ndarray) -> None:
+        """Get the ``maps`` (rows, 3, dim, 1 + dim) of all rigid motions: an array that stays the same."""
+
+    def maps(self, time: float) -> np.ndarray:
+        """The maps of its own ``rows`` at ``time``, s (psph.physics.rigid.pose.maps)."""
+        raise NotImplementedError
+
+    def drift(self, time: float, dt: float) -> None:
+        """Move what it has in ``rows`` to ``time`` in a step of ``dt`` s, before particles follow."""
+
+    def listed(self) -> None:
+        """Neighbours are listed anew, of walls that are dry too: take out what is not to be met."""
+
+    def settle(self) -> None:
+        """Particles have found new columns or ranks, and have new lists."""
+
+    def begin(self) -> None:
+        """What is kept of the start, from where particles stand then; lists are there."""
+
+    def advance(self, time: float, dt: float, largest_speed: float) -> None:
+        """Go with the drift from ``time`` − ``dt`` to ``time``, s; ``largest_speed`` is of fluids, m/s."""
+
+    def before_sums(self, dt: float) -> None:
+        """Ready what the passes over pairs read, ``dt`` s after the last ones."""
+
+    def after_sums(self, time: float, dt: float) -> None:
+        """Forces at ``time``, s, by what the passes have summed."""
+
+    def kick(self, dt: float) -> tuple[float, ...] | None:
+        """The second kick of a step of ``dt`` s; returns what psph.simulation.integrator.kick does."""
+
+    def measure(self) -> None:
+        """Bring up to date what is written of it at the end of the step."""
+
+    def with_pressure(self, pressure: np.ndarray) -> np.ndarray:
+        """The ``pressure`` (owned,) of a rank's particles, Pa, with that of this kind."""
+        return pressure
+
+    def energy(self) -> float:
+        """Energy that it stores, J; the same bits on any number of ranks."""
+        return 0.0
+
+    def overlapping(self, store: Any, depth: float) -> np.ndarray | None:
+        """Above 0 for each particle of the ``store`` (owned,) that is more than ``depth`` spacings inside
+        what it must not enter; None where none is on any rank."""
+        return None
+
+    def overlap_words(self, number: int, key: str) -> str:
+        """Who is inside what, where :meth:`overlapping` has found it: the worst is the particle ``number``,
+        of what the case calls ``key``."""
+        raise NotImplementedError
+
+    def summary(self, poses: Any, lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
+        """Lines at the end of a run: what has left the walls, which stand between ``lower`` and ``upper``, m;
+        ``poses`` (psph.simulation.poses) are those of rigid motions."""
+        yield from ()
+
+    def booked(self) -> Sequence[float]:
+        """The values of the columns that its kind adds to log.csv; the same bits on any number of ranks."""
+        return ()
+
+    def bytes_held(self) -> int:
+        """Bytes of its lists and tables on this rank."""
+        return 0
+
+    def state(self) -> dict:
+        """What its next step rests on beside particles, for a checkpoint: values that JSON holds, the same on
+        every rank."""
+        return {}
+
+    def restore(self, state: dict) -> None:
+        """Go on from there; ``state`` has that of all kinds."""
+
+
+class Kind:
+    """A kind of matter in a ``scene``: it declares what it overrides, and nothing else.
+
+    ``name`` is its table in a case; where that has another word for it, :meth:`is_in` says so.
+    """
+
+    name: ClassVar[str] = ""
+    table: ClassVar[Any] = None
+    """The keys of one of its entries in a case (psph.case.keys.Table), of a kind that a file brings."""
+    refuses: ClassVar[Mapping[str, str]] = {}
+    """Beside what it does not work, each word of psph.acts with a sentence and its cure."""
+    columns: ClassVar[tuple[str, ...]] = ()
+    """What it adds to log.csv: energies in J."""
+    keeps_energy: ClassVar[bool] = True
+    """Whether the energy of a scene with it is all in the books, so that a guard can watch it."""
+
+    pushes_within: ClassVar[bool] = False
+    """Whether its work pushes its particles itself, beside the effects."""
+
+    def __init__(self, scene: Any):
+        self.scene = scene
+
+    @classmethod
+    def is_in(cls, case: Any) -> bool:
+        """Whether a case has such matter."""
+        return bool(getattr(case, cls.name, None))
+
+    @classmethod
+    def contradictions(cls, case: Any) -> Iterator[tuple]:
+        """What contradicts itself in its tables of a case (psph.case.findings.Finding)."""
+        yield from ()
+
+    def faults(self) -> Iterator[str]:
+        """For `check`: why the scene cannot be run, each line a key and a cure."""
+        yield from ()
+
+    def warnings(self) -> Iterator[str]:
+        """For `check`: what will run, and likely not as intended."""
+        yield from ()
+
+    def groups(self) -> tuple:
+        """Groups of particles that it adds to those on the scene's lattice (psph.scene.species.Species).
+
+        Such particles are apart: only sums of effects that say ``across = True`` see them, and what they
+        see (psph.particles.apart).
+        """
+        return ()
+
+    def particles(self) -> Created | None:
+        """The particles of these groups."""
+        return None
+
+    @property
+    def fields(self) -> tuple:
+        """What particles carry because it is there (psph.fields.Field)."""
+        return ()
+
+    @property
+    def moves(self) -> bool:
+        """Whether its work moves particles itself, beside the kick of what is free."""
+        return False
+
+    def renews(self, passes: Sequence) -> tuple[str, ...]:
+        """Fields that its work fills anew just before the ``passes`` over neighbours are summed."""
+        return ()
+
+    def loads(self, passes: Sequence) -> Any:
+        """How pushes on walls and bodies are summed (psph.composition.loads); None: it does not matter."""
+        return None
+
+    def stages(self) -> Mapping[str, Stage]:
+        """Stages of its own (psph.simulation.stages): each by the name of the one that it comes before."""
+        return {}
+
+    def limits(self, plan: Any, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
+        """Its limits of the time step in s, each with its name, for the largest |v| and |a| in m/s, m/s²."""
+        yield from ()
+
+    def heeds(self, plan: Any) -> tuple:
+        """Effects whose limits of the step it heeds in steps of its own."""
+        return ()
+
+    def work(self, rank: Rank) -> Iterator[Work]:
+        """What it does on a rank within a step."""
+        yield from ()
+
+    def matter_lines(self) -> Iterator[str]:
+        """For `explain`: what it is."""
+        yield from ()
+
+    def reach_lines(self, plan: Any) -> Iterator[str]:
+        """For `explain`: how far its particles see others."""
+        yield from ()
+
+    def message_lines(self, plan: Any) -> Iterator[str]:
+        """For `explain`: what it sends in each step beside the halo."""
+        yield from ()
+
+    def pass_lines(self, plan: Any) -> Iterator[str]:
+        """For `explain`: passes over neighbours of its own."""
+        yield from ()
+
+    def step_lines(self, plan: Any, dt: float) -> Iterator[str]:
+        """For `explain`: what it does within a step of ``dt`` s."""
+        yield from ()
+
+    def friction_lines(self, plan: Any) -> Iterator[str]:
+        """For `explain`: its friction, and what numerical friction acts as beside it."""
+        yield from ()
+
+    def cure(self, limit: str) -> str:
+        """What to change in it where the limit of the step of this name makes a run too long, or empty."""
+        return ""
+
+    def bytes_of_particle(self, plan: Any) -> float:
+        """Bytes that its lists and tables take, by particle."""
+        return 0.0
+
+    def flops(self) -> float:
+        """Operations of a pair in passes of its own, where no other passes are."""
+        return 0.0
+
+    def examples(self, plan: Any) -> tuple:
+        """Values whose types select its compiled loops."""
+        return ()
+
+    def rehearsed(self) -> tuple[int, ...]:
+        """Groups of which a rehearsal of the loops needs a particle."""
+        return ()
+
+
+def known(case: Any) -> Iterator[type[Kind]]:
+    """The kinds that a case can have: psph's own, and those of files that it uses."""
+    for entry in CATALOGUE:
+        module, _, name = entry.partition(":")
+        yield getattr(import_module(module), name)
+    yield from (entry.effect for entry in case.catalogue.kinds)
+
+
+def in_case(case: Any) -> Iterator[type[Kind]]:
+    """The kinds of matter of a case."""
+    return (kind for kind in known(case) if kind.is_in(case))
+
+
+def kinds_in(scene: Any) -> tuple[Kind, ...]:
+    """The kinds of matter of a scene."""
+    return tuple(kind(scene) for kind in in_case(scene.case))
+
+
+def count_of(scene: Any) -> int:
+    """How many particles a scene begins with: those on its lattice, and those that kinds of matter add."""
+    made = filter(None, (kind.particles() for kind in kinds_in(scene)))
+    return int(scene.census.counts.sum()) + sum(len(one.group) for one in made)

@@ -1,0 +1,46 @@
+"""Rigid bodies: what they add to a scene (psph.kinds)."""
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+import numpy as np
+
+from psph.kinds import Kind, Rank, Stage, Work
+from psph.scene.bodies import body_step, in_words
+
+
+class RigidBodies(Kind):
+    """Rigid bodies that forces move."""
+
+    name = "bodies"
+
+    @cached_property
+    def longest_step(self) -> float:
+        """The longest step that they stand, s."""
+        return body_step(self.scene)
+
+    def stages(self) -> Mapping[str, Stage]:
+        """Their kick comes before that of the particles, with the new forces."""
+        return {"kick": Stage(push_bodies, push_bodies)}
+
+    def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
+        """The longest step that they stand."""
+        if self.longest_step < np.inf:
+            yield self.longest_step, "bodies"
+
+    def work(self, rank: Rank) -> Iterator[Work]:
+        """Their motion."""
+        from psph.simulation.floating import Floating
+
+        yield Floating(rank.scene, rank.plan)
+
+    def matter_lines(self) -> Iterator[str]:
+        """What each is."""
+        for body in self.scene.census.rigid_bodies:
+            yield f"  body        {body.name}: {in_words(self.scene, body)}"
+
+
+def push_bodies(simulation) -> None:
+    """The second kick of rigid bodies, with the new forces."""
+    with simulation.ledger("bodies"):
+        simulation.engine.of("bodies").push(simulation.engine, simulation.then, simulation.dt)

@@ -1,0 +1,86 @@
+"""What flows: fluids, soils and updated Lagrangian solids share one pair loop, one kernel and one step."""
+
+from collections.abc import Iterator
+
+from psph.kinds import Kind
+from psph.scene.rheologies import rheology_lines
+from psph.scene.sites import sites_within
+
+NARROWEST = 22
+"""Characters of a column of names."""
+
+FORCE_LIMIT = 0.25
+"""Monaghan (1992): Δt ≤ 0.25 √(h/|a|)."""
+
+
+class Fluids(Kind):
+    """All that moves freely and finds its neighbours in space."""
+
+    name = "flowing"
+
+    def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
+        """That of sound, and that of the largest acceleration."""
+        h = plan.smoothing_length
+        yield plan.cfl * h / (plan.constants["sound_speed"] + speed), "sound (CFL)"
+        if acceleration > 0.0:
+            yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
+
+    def reach_lines(self, plan) -> Iterator[str]:
+        """The kernel."""
+        scene, space = self.scene, self.scene.case.space
+        support = scene.kernel.support * scene.smoothing_length
+        yield (
+            f"  kernel      {space.kernel}, h = {scene.smoothing_length:g} m "
+            f"(h/dx {space.smoothing:g}), support {support:g} m, "
+            f"about {sites_within(scene, support):.0f} neighbours"
+        )
+
+    def friction_lines(self, plan) -> Iterator[str]:
+        """Viscosities, and what numerical friction stands for beside them."""
+        for place, line in enumerate(rheology_lines(self.scene)):
+            if not place:
+                yield "Viscosities that depend on the rate of strain"
+            yield f"  {line}"
+        found = [
+            (call.title, call.effect.numerical_viscosity(self.scene))
+            for call in plan.called
+            if hasattr(call.effect, "numerical_viscosity")
+        ]
+        if not any(viscosity for _, viscosity in found):
+            return
+        fluids = self._tables.items()
+        own = [(f"fluids.{name}", fluid.viscosity) for name, fluid in fluids if not fluid.rheology]
+        yield "Kinematic viscosity, and what numerical friction acts as in a shear flow"
+        width = max(NARROWEST, 2 + max(len(name) for name, _ in (*own, *found)))
+        for name, viscosity in own:
+            yield f"  {name:<{width}}{viscosity:.3g} m²/s"
+        smallest = min((viscosity for _, viscosity in own if viscosity), default=0.0)
+        for name, viscosity in found:
+            times = f", {viscosity / smallest:.2g} times the fluid's" if smallest else ""
+            yield f"  {name:<{width}}{viscosity:.3g} m²/s{times}"
+
+    def cure(self, limit: str) -> str:
+        """Less viscosity."""
+        caps = {
+            fluid.rheology.law.largest / fluid.density: (name, fluid.rheology)
+            for name, fluid in self._tables.items()
+            if fluid.rheology
+        }
+        if limit == "apparent viscosity" and caps:
+            name, rheology = caps[max(caps)]
+            return (
+                f"fluids.{name}.rheology.{rheology.name} sets the step by its largest viscosity, "
+                f"{rheology.law.largest:.3g} Pa s; give less"
+            )
+        viscosity = max((fluid.viscosity for fluid in self._tables.values()), default=0.0)
+        if not limit.endswith(("viscosity", "friction")) or not viscosity:
+            return ""
+        name = next(n for n, fluid in self._tables.items() if fluid.viscosity == viscosity)
+        return (
+            f"fluids.{name}.viscosity = {viscosity:g} m²/s sets the step: it is the kinematic viscosity, "
+            "1e-6 for water and 0.01 for honey"
+        )
+
+    @property
+    def _tables(self):
+        return self.scene.case.flowing

@@ -1,0 +1,164 @@
+"""Elastic solids, alone or in a fluid: what they add to a scene (psph.kinds)."""
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from typing import Any
+
+from psph.composition.loads import Pushes
+from psph.composition.space import Metres
+from psph.fields import FLUID, Field
+from psph.kinds import Kind, Rank, Work
+from psph.particles.records import record_width
+from psph.physics.solid.contact import FACE, OF_FRICTION, REACH
+from psph.physics.solid.deformation import DRAWN, KERNEL, SMOOTHING, places_of, support_of
+from psph.physics.solid.material import STEP, is_damped
+from psph.scene.sites import sites_within
+from psph.scene.solid_checks import solid_lines
+from psph.scene.solids import solid_fields
+
+NUMBER, ROW, ENTRY = 8, 12, 4
+"""Bytes of a number, of the position of a list, and of a neighbour in it."""
+
+FLOPS = 100
+"""Operations of a pair in both passes of a solid, in 2D and 3D about as many."""
+
+
+class ElasticSolids(Kind):
+    """The elastic solids of a scene, which keep their neighbours of the start; ``immersed`` where they stand
+    in a fluid."""
+
+    name = "solids"
+    columns = ("stored_energy",)
+    pushes_within = True
+
+    @cached_property
+    def immersed(self) -> bool:
+        """Whether anything flows."""
+        return any(one.kind == FLUID for one in self.scene.species)
+
+    @classmethod
+    def is_in(cls, case) -> bool:
+        """Where there are some that are not updated Lagrangian."""
+        return bool(case.referred)
+
+    @property
+    def fields(self) -> tuple[Field, ...]:
+        """What they carry, as they yield, crack, have loads or stand in a fluid."""
+        return solid_fields(self.scene)
+
+    @property
+    def moves(self) -> bool:
+        """In a fluid they make steps of their own."""
+        return self.immersed
+
+    def renews(self, passes: Sequence) -> tuple[str, ...]:
+        """What contacts read of a ghost that is found anew just before they are summed, where nothing
+        flows."""
+        return () if self.immersed or not passes else tuple(field.name for field in (FACE, *OF_FRICTION))
+
+    def loads(self, passes: Sequence) -> Any:
+        """Where nothing flows they are what pushes."""
+        return None if self.immersed or not passes else Pushes
+
+    def heeds(self, plan) -> tuple:
+        """Contacts, within their own steps in a fluid."""
+        return plan.met.effects if plan.met and plan.substeps else ()
+
+    def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
+        """That of their waves, if they make no steps of their own, and without a fluid that of the largest
+        acceleration."""
+        h = plan.solid_smoothing_length
+        for one in () if plan.substeps else plan.solids:
+            yield one.longest_step(h, speed), f"waves in solids.{one.name}"
+        if acceleration > 0.0 and not self.immersed:
+            yield STEP * (h / acceleration) ** 0.5, "force"
+
+    def work(self, rank: Rank) -> Iterator[Work]:
+        """What each part of it does; each is imported where it is there."""
+        scene, plan, store, domain, ledger = rank
+        if plan.pressed:
+            from psph.simulation.pressed import Pressed
+
+            yield Pressed(scene, plan, store)
+        from psph.simulation.solids import Solids
+
+        solids, immersion = Solids(scene, plan, store, domain, ledger), None
+        yield solids
+        if plan.immersed:
+            from psph.simulation.immersion import Immersion
+
+            immersion = Immersion(solids, scene, plan, store, domain, ledger)
+            yield immersion
+        if plan.touching:
+            from psph.simulation.solid_overlap import SolidOverlap
+
+            yield SolidOverlap(rank, immersion)
+
+    def matter_lines(self) -> Iterator[str]:
+        """What each is."""
+        yield from solid_lines(self.scene)
+
+    def reach_lines(self, plan) -> Iterator[str]:
+        """Their kernel, and how far they touch."""
+        h = plan.solid_smoothing_length
+        neighbours = sites_within(self.scene, support_of(h))
+        yield (
+            f"  kernel      of solids: {KERNEL}, h = {h:g} m "
+            f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
+        )
+        if plan.touching:
+            yield (
+                f"  contact     within {REACH * self.scene.spacing:g} m of other solids and walls; lists "
+                f"reach {self.scene.layout.reach.cutoff:.4g} m"
+            )
+
+    def message_lines(self, plan) -> Iterator[str]:
+        """What partners on other ranks get."""
+        d = self.scene.dimensions
+        first, second = places_of(d, is_damped(plan.solids))
+        yield (
+            f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "
+            f"stress, {NUMBER * (second - 2 * d)} bytes each"
+        )
+
+    def pass_lines(self, plan) -> Iterator[str]:
+        """Two."""
+        yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
+
+    def step_lines(self, plan, dt: float) -> Iterator[str]:
+        """How many steps they take in a step of the fluid, and why."""
+        if not plan.substeps:
+            return
+        from psph.simulation.immersion import substeps
+
+        h, speed = plan.solid_smoothing_length, self.scene.expected_speed
+        count = substeps(plan.solids, h, dt, speed, plan.contact_step)
+        known = ((one.longest_step(h, speed), f"solids.{one.name}") for one in plan.solids)
+        longest, name = min([*known, (plan.contact_step, "their contact")])
+        yield (
+            f"  solids make {count} steps in a step of {dt:.3g} s, under one push of the fluid: {name} "
+            f"stands {longest:.3g} s; each is two passes over the reference and two messages to partners"
+        )
+
+    def bytes_of_particle(self, plan) -> float:
+        """The records, the reference list and the row of ids."""
+        entries = sites_within(self.scene, support_of(plan.solid_smoothing_length)) + (Metres.lanes - 1) / 2
+        widths = map(record_width, places_of(self.scene.dimensions, is_damped(plan.solids)))
+        return NUMBER * sum(widths) + (ENTRY + NUMBER) * entries + ROW
+
+    def flops(self) -> float:
+        """In both passes."""
+        return FLOPS
+
+    def examples(self, plan) -> tuple:
+        """Their laws, and what they have beside their stress."""
+        return (
+            tuple((law, bool(one.viscosity) or None) for law, one in zip(plan.solid_laws, plan.solids)),
+            DRAWN.name in plan.arrays or None,
+            plan.cracks or None,
+            bool(plan.grips) or None,
+        )
+
+    def rehearsed(self) -> tuple[int, ...]:
+        """In a fluid one of the solid too."""
+        return (self.scene.layout.parts.solids[0],) if self.immersed else ()

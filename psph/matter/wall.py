@@ -1,0 +1,57 @@
+"""Walls: what they add to a scene (psph.kinds)."""
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+from psph.case.keys import AXES
+from psph.kinds import Kind, Rank, Stage, Work
+from psph.physics.motion import deforms
+from psph.physics.rigid.absorption import Absorbing
+from psph.scene.motion_checks import motion_lines
+from psph.scene.waving import wave_lines
+
+
+class Walls(Kind):
+    """All that moves as it is told, or not at all; a frame that moves, and mirrors."""
+
+    name = "walls"
+
+    @cached_property
+    def absorbs(self) -> bool:
+        """Whether paddles answer to the water before them."""
+        return any(isinstance(one.motion, Absorbing) for one in self.scene.species)
+
+    @classmethod
+    def is_in(cls, case) -> bool:
+        """Every scene has room for them: mirrors, frames and clamps move as they are told too."""
+        return True
+
+    def stages(self) -> Mapping[str, Stage]:
+        """Paddles answer to the level at the end of the step, after the kick."""
+        return {"find_limits": Stage(measure_levels, measure_levels)} if self.absorbs else {}
+
+    def work(self, rank: Rank) -> Iterator[Work]:
+        """Paddles that answer to the water before them."""
+        if self.absorbs:
+            from psph.simulation.paddles import Paddles
+
+            yield Paddles(rank.scene, rank.plan)
+
+    def matter_lines(self) -> Iterator[str]:
+        """How they move, and where mirrors stand."""
+        scene = self.scene
+        yield from motion_lines(scene)
+        yield from wave_lines(scene)
+        for one in scene.species:
+            if deforms(one.motion):
+                does = type(one.motion).__doc__.splitlines()[0]
+                yield f"  motion      walls.{one.name}: {type(one.motion).__name__}, {does}"
+        for plane in scene.layout.mirror_planes:
+            sticks = "; the fluid sticks to it" if plane.sticks else ""
+            yield f"  mirror      {AXES[plane.axis]} = {plane.at:g} m{sticks}"
+
+
+def measure_levels(simulation) -> None:
+    """How high the water stands before the paddles that answer to it."""
+    with simulation.ledger("paddles"):
+        simulation.engine.of("paddles").answer(simulation, simulation.then, simulation.dt)

@@ -1,0 +1,223 @@
+"""A guest: a kind of matter.  Dust settles in a fluid and drags it along.
+
+Grains have a mass and no volume.  Over the stopping time t a grain g takes on the velocity of the fluid f,
+
+    m_g dv_g/dt = −(1/t) Σ_f m_g V_f W_gf u_gf + m_g g,
+
+and each f feels the opposite: momentum is kept, and the work becomes heat.  Grains of which half the
+neighbourhood is wall lie still.  After Monaghan & Kocharyan (1995), Comput. Phys. Commun. 87, 225.
+"""
+
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from psph.acts import BODIES, FRAME, SOILS, SOLIDS, SYMMETRY, UPDATED
+from psph.case.keys import Table, Vector, key
+from psph.case.shapes import Shape
+from psph.fields import VECTOR, Drifting, Field, Same
+from psph.formula import where
+from psph.kinds import Created, Kind, Stage, Work
+from psph.parallel.reductions import exact_sums
+from psph.physics.catalogue import Catalogue, Entry
+from psph.physics.motion import OfItsKind
+from psph.physics.walls.conditions import MIRROR
+from psph.scene.sites import sites_in
+from psph.scene.species import Species
+from psph.vectors import add, scale, zero_like
+
+RATE = Field("drag_rate", "1/s", "1 over the stopping time of a grain, 0 of what is no grain", image=Same)
+HEAT = Field("drag_heat", "J", "what drag has turned into heat", saved=True)
+STILL = 0.5
+ALONE = "dust knows nothing of it; remove one of the two"
+
+
+class Drag(NamedTuple):
+    """Grains and fluid drag each other."""
+
+    across = True
+    writes = Field("drag", "m/s2", "acceleration by the drag of grains", VECTOR, image=Drifting)
+
+    def start(self, i):
+        """No neighbour yet."""
+        return zero_like(i.position)
+
+    def gather(self, total, i, j, pair):
+        """Add what the other of grain and fluid does."""
+        met = i.is_fluid * (1.0 - j.is_fluid) + j.is_fluid * (1.0 - i.is_fluid)
+        share = j.mass * (i.is_fluid * i.specific_volume + j.is_fluid * j.specific_volume) * pair.w
+        return add(total, scale(pair.u_ij, -met * share * (i.drag_rate + j.drag_rate)))
+
+    def finish_value(self, total, i, kernel):
+        """dv/dt, m/s²."""
+        return total
+
+
+class Bed(NamedTuple):
+    """Grains know how much of what is around them is wall."""
+
+    across = True
+    writes = Field("bed", "1", "part of the neighbourhood that is wall", saved=True, image=Same)
+
+    def start(self, i):
+        """No neighbour yet."""
+        return 0.0
+
+    def gather(self, total, i, j, pair):
+        """Add V_j W_ij of a wall."""
+        wall = where(j.drag_rate > 0.0, 0.0, 1.0 - j.is_fluid)
+        return total + wall * j.mass * j.specific_volume * pair.w
+
+    def finish_value(self, total, i, kernel):
+        """The part."""
+        return total
+
+
+class Grains(Table):
+    """Grains: where they are at the start, and what they are."""
+
+    shape: Shape = key("where the grains are at the start")
+    density: float = key("mass of grains by volume", unit="kg/m3", gt=0)
+    stopping_time: float = key("time in which a grain takes on the fluid's velocity", unit="s", gt=0)
+    velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
+
+
+class Dust(Kind):
+    """The grains by name, which settle in fluids and drag them."""
+
+    name = "dust"
+    table = Grains
+    columns = ("drag_heat",)
+    fields = (RATE, HEAT)
+    moves = True
+    refuses: ClassVar = dict.fromkeys((SOILS, UPDATED, SOLIDS, BODIES, MIRROR, SYMMETRY, FRAME), ALONE)
+
+    @classmethod
+    def contradictions(cls, case):
+        """Without a fluid there is no drag."""
+        if not case.fluids:
+            yield ("dust",), ..., "there is no fluid to drag it; give one"
+
+    def faults(self):
+        """Shapes without a site."""
+        for name, one in self._tables.items():
+            if not len(self._sites(one)):
+                yield f"dust.{name}.shape: no grain lies in it; make it larger than space.spacing"
+
+    def warnings(self):
+        """A step that is short for the drag alone."""
+        sound = self.scene.smoothing_length / self.scene.sound_speed
+        for name, one in self._tables.items():
+            if one.stopping_time < 0.1 * sound:
+                yield f"dust.{name}.stopping_time: {one.stopping_time:g} s makes short steps; give more"
+
+    def groups(self):
+        """One for each table."""
+        law, volume = self.scene.species[0].law, self.scene.spacing**self.scene.dimensions
+        return tuple(
+            Species(name, OfItsKind(), one.density, 0.0, one.density * volume, law)
+            for name, one in self._tables.items()
+        )
+
+    def particles(self):
+        """A grain between any sites of the fluid."""
+        tables, zeros = [*self._tables.values()], (0.0,) * self.scene.dimensions
+        places = [self._sites(one) for one in tables]
+        group = np.repeat(np.arange(len(places)), [len(x) for x in places])
+        velocity = np.array([one.velocity or zeros for one in tables])[group]
+        density, rate = np.array([(one.density, 1.0 / one.stopping_time) for one in tables])[group].T
+        return Created(group, np.concatenate(places), velocity, density, {RATE.name: rate})
+
+    def rehearsed(self):
+        """A grain too."""
+        return (len(self.scene.species),)
+
+    def stages(self):
+        """Drag comes when all sums are there, before the second kick."""
+
+        def drag(simulation):
+            simulation.engine.of("dust").push()
+
+        return {"kick": Stage(drag, drag)}
+
+    def limits(self, plan, speed, acceleration):
+        """Half the shortest stopping time, less where grains outweigh the fluid (explicit drag)."""
+        fluid = min(one.density for one in self.scene.species if one.is_fluid)
+        for name, one in self._tables.items():
+            yield 0.5 * one.stopping_time / (1.0 + one.density / fluid), f"drag of dust.{name}"
+
+    def matter_lines(self):
+        """What each is."""
+        for name, one in self._tables.items():
+            says = (
+                f"{len(self._sites(one)):,} grains, {one.density:g} kg/m3, stopped in {one.stopping_time:g} s"
+            )
+            yield f"  dust        {name}: {says}"
+
+    def work(self, rank):
+        """How grains move."""
+        yield Moving(rank, len(self.scene.species), len(self._tables))
+
+    @property
+    def _tables(self):
+        return self.scene.case.dust
+
+    def _sites(self, one):
+        return sites_in(self.scene, one.shape, offset=0.5)
+
+
+class Moving(Work):
+    """The grains of a rank: those of so ``many`` groups from the ``first`` on."""
+
+    name = "dust"
+
+    def __init__(self, rank, first, many):
+        self.store, self.comm, self.groups = rank.store, rank.domain.comm, range(first, first + many)
+        self.settle()
+
+    def settle(self):
+        """Their columns."""
+        store = self.store
+        self.own = store.low + np.flatnonzero(np.isin(store.group[store.inner], self.groups))
+
+    def advance(self, time, dt, largest_speed):
+        """Kick, drift, predict."""
+        own, names = self.own, ("position", "velocity", "predicted_velocity", "acceleration")
+        for x, v, ahead, a in zip(*(self.store[name] for name in names)):
+            v[own] += 0.5 * dt * a[own]
+            x[own] += dt * v[own]
+            ahead[own] = v[own] + 0.5 * dt * a[own]
+        self._heat(dt)
+
+    def _heat(self, dt):
+        """What drag takes in half a kick, after it: by the mean velocity in it."""
+        inner, heat = self.store.inner, self.store[HEAT.name]
+        mass = self.store.view().mass[inner]
+        for v, a, drag in zip(*(self.store[name] for name in ("velocity", "acceleration", "drag"))):
+            heat[inner] -= 0.5 * dt * mass * drag[inner] * (v - 0.25 * dt * a)[inner]
+
+    def push(self):
+        """The drag of all, which the passes have summed; what lies in its bed is held."""
+        own, inner = self.own, self.store.inner
+        still = own[self.store["bed"][own] >= STILL]
+        for a, drag, v in zip(*(self.store[name] for name in ("acceleration", "drag", "velocity"))):
+            a[inner] += drag[inner]
+            self.store[HEAT.name][still] += 0.5 * self.store.view().mass[still] * v[still] ** 2
+            a[still] = v[still] = 0.0
+
+    def kick(self, dt):
+        """The second kick."""
+        own, v2, a2 = self.own, np.zeros(len(self.own)), np.zeros(len(self.own))
+        for v, a in zip(self.store["velocity"], self.store["acceleration"]):
+            v[own] += 0.5 * dt * a[own]
+            v2, a2 = v2 + v[own] ** 2, a2 + a[own] ** 2
+        self._heat(dt)
+        trouble = 0.0 if np.isfinite(v2 + a2).all() else np.inf
+        return 0.0, a2.max(initial=0.0), trouble, 0.0, v2.max(initial=0.0)
+
+    def booked(self):
+        """The heat of all, J."""
+        return (float(exact_sums(self.comm, self.store.shown(HEAT.name)[:, None])[0]),)
+
+
+CATALOGUE = Catalogue(effects=(Entry("dust.*", Drag), Entry("dust.*", Bed)), kinds=(Entry("dust", Dust),))
