@@ -25,12 +25,12 @@ GAUGES = ("gauges.level.level={foot=[0.5,0.0],top=[0.5,0.6]}", "gauges.push.forc
 
 WITHOUT = {
     kick: (
-        ("        give(rules, i, group, k, dt, c)\n", ""),
-        ("hurry(rules, group, k, time, dt, c)", "0.0, 0.0"),
+        ("        book_work(rules, i, group, k, dt, c)\n", ""),
+        ("prescribed_squares(rules, group, k, time, dt, c)", "0.0, 0.0"),
     ),
     kick_drift_predict: (
         ("            carry(rules, group, k, time, c)\n", "            pass\n"),
-        ("        feel(rules, group, k, time, dt, c)\n", ""),
+        ("        store_apparent_force(rules, group, k, time, dt, c)\n", ""),
     ),
 }
 """What motion has brought into the loops over columns, and what stands there without it."""
