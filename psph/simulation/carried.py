@@ -9,8 +9,8 @@ from numba.core import types
 from psph.composition import terms
 from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
+from psph.physics.rigid.mapped import affine, linear, onto
 from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
-from psph.simulation.mapped import affine, linear, onto
 from psph.vectors import add, at, dot, nearest_to, put, scale, subtract, zero_like
 
 place = call_by_number("place")

@@ -8,8 +8,8 @@ from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.physics.motion import ANCHOR, WORK, MovingClamp
+from psph.physics.rigid.mapped import affine
 from psph.physics.rigid.pose import PLACE, VELOCITY, maps
-from psph.simulation.mapped import affine
 from psph.vectors import at, dot, nearest_to, put, subtract
 
 

@@ -10,10 +10,10 @@ from psph.engine.threads import in_threads
 from psph.fields import WALL
 from psph.kinds import Work
 from psph.physics.motion import ANCHOR, COUPLE, LOAD, WORK, is_rigid
+from psph.physics.rigid.mapped import linear
 from psph.physics.rigid.pose import PLACE, VELOCITY
 from psph.physics.solid.contact import FACE, FACE_RATE, MET, TURNING
 from psph.scene.faces import drawn_faces
-from psph.simulation.mapped import linear
 from psph.vectors import add, at, dot, put, scale, subtract
 
 

@@ -59,9 +59,8 @@ def begin_sums(simulation) -> None:
 
 def kick(simulation) -> None:
     """The second kick, with the new rates."""
-    simulation.previous_speed = (
-        simulation.fluid_speed
-    )  # bounds the shifts of the next step, whose speed is not known
+    # It bounds the shifts of the next step, whose speed is not known yet.
+    simulation.previous_speed = simulation.fluid_speed
     with simulation.ledger("kick"):
         simulation.own_extremes = simulation.engine.kick(
             simulation.then, simulation.dt, simulation.previous_speed

@@ -155,8 +155,9 @@ def test_nothing_in_psph_could_execute_a_text():
 
     But for psph.case.extensions, which executes the Python files that a case names in ``use``;
     psph.engine.cache, which loads compiled loops that it has written itself, as numba's own cache does: who can
-    write to that folder can change the loops; and psph.engine.jit.unrolled, which writes out the entries of tuples: by their types alone, since
-    who uses it knows of no case.
+    write to that folder can change the loops; psph.engine.contents, which writes values for their digest and reads none;
+    and psph.engine.jit.unrolled, which writes out the entries of tuples: by their types alone, since who uses it
+    knows of no case.
     """
     found, users = [], set()
     package = Path(psph.__file__).parent
@@ -166,7 +167,7 @@ def test_nothing_in_psph_could_execute_a_text():
             found += [f"{path.name}: {what}" for what in _dangers(node)]
         if "unrolled" in source:
             users.add(path.relative_to(package).parts[0])
-    known = ["extensions.py: exec_module", "cache.py: pickle", "jit.py: exec"]
+    known = ["extensions.py: exec_module", "cache.py: pickle", "contents.py: pickle", "jit.py: exec"]
     assert found == known and users <= BEFORE_CASES
 
 

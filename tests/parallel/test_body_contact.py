@@ -127,7 +127,7 @@ def rows(simulation):
 
 def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(case):
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
-    plan, begun = single.plan, single.engine.poses.state()
+    plan, begun = single.plan, single.engine.state()
     for step in range(60 if plan.immersed else 120):
         single.step()
         together.step()
@@ -135,7 +135,7 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(case):
             single.rebuild()
             together.rebuild()
     (one, energy), (many, energy_of_many) = rows(single), rows(together)
-    state = single.engine.poses.state()
+    state = single.engine.state()
     assert np.isfinite(one).all() and np.abs(one[:, -1]).max() > 0.0  # something is pressed
     assert plan.substeps != bool(plan.of("bodies"))
     if plan.alone:
@@ -143,7 +143,7 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(case):
         assert (np.abs(turned).max(axis=1) > 0.1).all()  # both bodies are
         assert np.abs(one[:, -2]).max() > 0.0  # and so is the wall
     assert np.array_equal(one, many) and energy == energy_of_many > 0.0
-    assert state == together.engine.poses.state()
+    assert state == together.engine.state()
     assert together.domain.rebuilds == single.domain.rebuilds > 5
 
 

@@ -78,7 +78,11 @@ def test_shares_of_more_than_2_31_particles_and_their_ids():
     def particles(first, last, first_id):
         raise Asked(first, last, first_id)
 
-    scene = SimpleNamespace(planes=32_768, counts=lambda: np.full(32_768, 2**33), particles=particles)
+    scene = SimpleNamespace(
+        layout=SimpleNamespace(planes=32_768),
+        census=SimpleNamespace(counts=np.full(32_768, 2**33)),
+        particles=particles,
+    )
     for rank in (0, 9000, 16_383):
         with pytest.raises(Asked) as asked:
             create_particles(scene, None, SimpleNamespace(rank=rank, size=16_384))

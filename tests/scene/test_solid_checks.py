@@ -135,14 +135,6 @@ def test_a_sound_beam_is_good(tmp_path):
             ],
             "walls.floor.no_slip: says what a fluid meets, and there is none",
         ),
-        (
-            [
-                "physics.contact={}",
-                "fluids.water={shape={box={lower=[0.0,1.0],upper=[1.0,2.0]}}}",
-                "physics.sound_speed=20.0",
-            ],
-            "physics.contact: solids in a fluid do not feel each other; remove it",
-        ),
         (["solids.beam.flaws=5.0"], "solids.beam.flaws: 5.0: without critical_stretch nothing cracks"),
         (["solids.beam.critical_stretch=0.0"], "solids.beam.critical_stretch: 0.0 is out of range"),
         (["physics.contact={damping=1.5}"], "physics.contact.damping: 1.5 is out of range"),

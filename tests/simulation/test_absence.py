@@ -137,7 +137,7 @@ def calling_for(entry) -> list[str]:
     if key.endswith("damping_zone"):
         return [f"{key}={{begin=0.1, end=0.4}}"]
     hints = get_type_hints(entry.effect)
-    values = {n: [0.2, 0.2] if get_origin(hint) is tuple else 0.2 for n, hint in hints.items()}
+    values = {n: [0.1, 0.1] if get_origin(hint) is tuple else 0.1 for n, hint in hints.items()}
     table = f"{key}={{{', '.join(f'{name}={value}' for name, value in values.items())}}}"
     return [table, *BESIDE.get(key, ())]
 

@@ -150,7 +150,7 @@ def test_a_tank_of_mirrors_is_part_of_the_domain(tmp_path):
     """Water in a part of it, a probe on its far wall, and what lies behind the wall."""
     wide = TANK.replace("1.15", "2.15").replace("1.0, 0.6", "2.0, 0.6")
     near, far = (Scene(draft(tmp_path, f"{wide}[probes.wall]\nposition = [{x}, 0.1]\n")) for x in (2.0, 2.1))
-    assert near.lower == (0.0, 0.0) and near.upper == (2.0, 0.6)
+    assert near.layout.lower == (0.0, 0.0) and near.layout.upper == (2.0, 0.6)
     assert not any("probes" in line for line in faults(near))
     assert any("outside the domain [0, 0] to [2, 0.6]" in line for line in faults(far))
 
