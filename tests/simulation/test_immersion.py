@@ -258,7 +258,7 @@ force = { on = ["disc"] }
 @pytest.mark.parametrize(("young", "calm"), [(1e5, True), (1e6, True), (1e5, False)])
 def test_a_thick_solid_turns_with_its_fluid_and_does_not_shake(young, calm, monkeypatch, tmp_path):
     if not calm:  # the control: the thickness of the whole disc
-        monkeypatch.setattr("psph.scene.solids.DEEPEST", np.inf)
+        monkeypatch.setattr("psph.scene.calming.DEEPEST", np.inf)
     simulation, scene = started(draft(tmp_path, DISC, f"solids.disc.young={young}"))
     while simulation.time < 1.2:
         simulation.step()
