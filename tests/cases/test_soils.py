@@ -58,19 +58,32 @@ def test_a_column_runs_out_as_in_experiments_and_rests_whatever_the_spacing(spac
     assert sand(run, "position")[:, 1].max() > 0.085  # the top by the wall stays
 
 
+@pytest.fixture(scope="module")
+def round_column(tmp_path_factory):
+    """The finished run of sand that was a round column, 0.1 m wide and high."""
+    return finished("soils/round_column", tmp_path_factory.mktemp("round"), "output.frames=0.1")
+
+
 @LONG
-def test_a_round_column_runs_out_and_its_heap_rests(tmp_path):
-    """98 % of the sand stop at 0.96 times its height, and the heap, thicker than half a row, no farther: too near
-    by a quarter of 1.24, Lube and others (2004).  docs/soils.md."""
-    run = finished("soils/round_column", tmp_path, "output.frames=0.1")
-    x, v = sand(run, "position"), sand(run, "velocity")
+@pytest.mark.xfail(strict=True, reason="0.96, a quarter too near: docs/soils.md")
+def test_a_round_column_runs_out_as_in_experiments(round_column):
+    """1.24 times its height, Lube and others (2004): 98 % of the sand."""
+    x = sand(round_column, "position")
+    out = (np.quantile(np.hypot(x[:, 0], x[:, 1]), 0.98) - 0.1) / 0.1
+    tell(f"round column: run-out {out:.2f}")
+    assert out == pytest.approx(1.24, rel=0.15)
+
+
+@LONG
+def test_the_heap_of_a_round_column_rests(round_column):
+    """The heap, thicker than half a row, stops at 0.9 times its height, too near: docs/soils.md."""
+    x, v = sand(round_column, "position"), sand(round_column, "velocity")
     radius = np.hypot(x[:, 0], x[:, 1])
     rings = np.arange(0.0, 0.4, 0.01)
     thick = np.histogram(radius, [*rings, 0.4])[0] * 0.01**3 / (np.pi * ((rings + 0.01) ** 2 - rings**2))
     foot = rings[thick > 0.005].max() + 0.01
-    out = (np.quantile(radius, 0.98) - 0.1) / 0.1
-    tell(f"round column: run-out {out:.2f}, of the heap {foot / 0.1 - 1.0:.2f}, top {x[:, 2].max():.3f} m")
-    assert out == pytest.approx(0.96, rel=0.1) and 0.75 < foot / 0.1 - 1.0 < 1.24
+    tell(f"round column: run-out of the heap {foot / 0.1 - 1.0:.2f}, top {x[:, 2].max():.3f} m")
+    assert 0.75 < foot / 0.1 - 1.0 < 1.24
     assert np.sqrt((v[radius < np.quantile(radius, 0.8)] ** 2).sum(axis=1).mean()) < 0.02
     assert np.abs(x[:, :2].mean(axis=0)).max() < 1e-3  # round still
     around = radius[np.abs(np.arctan2(x[:, 1], x[:, 0]) % (np.pi / 4.0) - np.pi / 8.0) < np.pi / 16.0]

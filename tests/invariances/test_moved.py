@@ -18,9 +18,11 @@ MOVED = ("plain", "solid", "rubber", "metal", "updated", "solids that meet", "so
 NO_SHIFT = {"position_shift": "off"}
 """Its size is bounded by the largest speed, which drifts: docs/limits.md says by how much that tells."""
 
-ALIKE = {"mud by bingham": 1e-6}
-"""Else 1e-9.  A wall that rests sums nothing of fluid between 0.95 and the whole of the kernel's support, one that
-moves does: weights there are below 1e-4 (measured 2.7e-7)."""
+UNLIKE = pytest.mark.xfail(
+    strict=True,
+    reason="2.7e-7: a dry wall at rest sums nothing of fluid beyond 0.95 of the kernel's support, one that moves does",
+)
+"""Of mud by Bingham, where it drifts."""
 
 DRIFT, FAR = Shift(drift=(5.0, -3.0)), Shift(way=(1e5, -1e5))
 STEPS = 30
@@ -50,11 +52,17 @@ def differences(name, shift: Shift, folder) -> dict[str, float]:
     }
 
 
-@pytest.mark.parametrize("name", [n if n in SHORT else pytest.param(n, marks=LONG) for n in MOVED])
+def drifting(name):
+    """The parameter of a scene, with the marks of its test."""
+    known = [UNLIKE] if name == "mud by bingham" else []
+    return pytest.param(name, marks=known if name in SHORT else [LONG, *known])
+
+
+@pytest.mark.parametrize("name", [drifting(name) for name in MOVED])
 def test_a_scene_that_drifts_does_the_same(tmp_path, name):
     """Places after some steps are rounded a hundred times as coarsely as their changes."""
     found = differences(name, DRIFT, tmp_path)
-    assert {what: size for what, size in found.items() if not size < ALIKE.get(name, 1e-9)} == {}
+    assert {what: size for what, size in found.items() if not size < 1e-9} == {}
 
 
 @pytest.mark.parametrize("name", [n if n in SHORT else pytest.param(n, marks=LONG) for n in MOVED])

@@ -144,7 +144,7 @@ def test_same_bits_through_rebuilds_and_on_any_number_of_ranks(case):
         assert np.abs(one[:, -2]).max() > 0.0  # and so is the wall
     assert np.array_equal(one, many) and energy == energy_of_many > 0.0
     assert state == together.engine.state()
-    assert together.domain.rebuilds == single.domain.rebuilds > 5
+    assert together.domain.rebuilds == single.domain.rebuilds > (5 if plan.immersed else 8)
 
 
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
