@@ -4,13 +4,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from psph.errors import Refused
 from psph.kinds import Stage
 from psph.parallel.reductions import largest
 
 
 def stages_of(plan) -> Iterator[Stage]:
     """What a step of this plan does, in order: the stages of every step, and before each of them those that
-    kinds of matter have there."""
+    kinds of matter have there.  Raises Refused where a kind has one before a stage that there is not."""
+    names = [stage.run.__name__ for stage in OF_EVERY_STEP]
+    for kind in plan.matter:
+        for other in sorted(kind.stages().keys() - set(names)):
+            raise Refused(f"{kind.name}: stages: {other}: no such stage; give one of {', '.join(names)}")
     for stage in OF_EVERY_STEP:
         for kind in plan.matter:
             if own := kind.stages().get(stage.run.__name__):
