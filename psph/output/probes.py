@@ -93,7 +93,7 @@ class Probe:
         first, last = store.low, store.low + store.owned
         found = find_near(point, domain.periods, store["position"], first, last, radius * radius, near)
         near = near[:found]
-        fluid = store.kind[near] == FLUID
+        fluid = store.kinds[store.group[near]] == FLUID
         if DryWall.marks in store:
             near, fluid = (x[store[DryWall.marks][near] > 0.0] for x in (near, fluid))
         terms = np.empty((len(near), 1 + len(rows)))

@@ -9,18 +9,12 @@ from typing import Any
 import numpy as np
 
 from psph.composition.loads import Couple, Loads, Unloaded
-from psph.composition.mirrors import with_own_rows
 from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
-from psph.fields import APART, companions, seen_at
+from psph.fields import companions, seen_at
 from psph.kinds import Rank
 from psph.output.ledger import Ledger
-from psph.parallel.domain import Domain, Extent, Travels
-from psph.parallel.skin import Skin, Unlisted
-from psph.particles.apart import part
-from psph.particles.neighbours import empty
-from psph.particles.planes import bring_back
 from psph.particles.records import Records
 from psph.particles.store import Store
 from psph.physics.motion import COUPLE, LOAD
@@ -33,13 +27,13 @@ from psph.simulation.integrator import (
     settle_given_pressure,
     state_of,
 )
+from psph.simulation.neighbourhood import Neighbourhood
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import Pass
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
 from psph.simulation.rules import Columns, Rules
-from psph.simulation.wetting import Wetting
 
 
 class Engine:
@@ -50,15 +44,8 @@ class Engine:
 
     def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger):
         self.plan, self.store, self.ledger = plan, store, ledger
-        self.domain = Domain(
-            comm,
-            store,
-            Extent(scene.layout.axis, scene.layout.lower, scene.layout.upper, scene.layout.periods),
-            scene.layout.reach.cutoff,
-            Travels(plan.ghost_fields, plan.refreshed),
-            plan.space.lanes if plan.passes else None,
-        )
-        self.skin = Skin(self.domain, scene.layout.reach.skin, plan.planes) if plan.passes else Unlisted()
+        self.neighbourhood = Neighbourhood(scene, plan, store, comm)
+        self.domain = self.neighbourhood.domain
         self.records = [Records(store, one.neighbour_fields, plan.space) for one in plan.passes]
         rank = Rank(scene, plan, store, self.domain, ledger)
         self.kinds = tuple(work for kind in plan.matter for work in kind.work(rank))
@@ -84,11 +71,9 @@ class Engine:
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._load = settled(sum_over_neighbours)
         self._potential = settled(potentials)
-        self._mirrors, self._lists, self._paid = plan.mirrors, self.domain.lists, 0.0
+        self._paid = 0.0
         self._bundles: dict[tuple, Columns] = {}
         self._viewed = self._carried = None
-        self._apart = empty(0, 0)
-        self.wetting = [Wetting(one, plan, store, self.domain, scene.layout.reach) for one in plan.marking]
 
     def of(self, name: str) -> Any:
         """The work of that name, of a kind of matter (psph.kinds), or None."""
@@ -123,20 +108,15 @@ class Engine:
     def rebuild(self) -> None:
         """Put every particle where it belongs and list its neighbours."""
         with self.ledger("rebuild"):
-            bring_back(self.store, self.plan.planes, self.plan.free)
-            self.domain.rebuild(self.spent_on_pairs())
-            self._part_lists()
-            self._lists_are_new()
+            self.neighbourhood.update(self.spent_on_pairs(), self.kinds)
         with self.ledger("records"):
             self._fit_records()
         for kind in self.kinds:
             kind.settle()
-        self.skin.renew()
 
     def begin(self) -> None:
         """What particles keep of the start, from where they stand then; lists have to be there."""
-        for one in self.wetting:
-            one.begin()
+        self.neighbourhood.begin()
         for kind in self.kinds:
             kind.begin()
 
@@ -161,8 +141,7 @@ class Engine:
             if one.settles:
                 self.each(settle_given_pressure, self._rules, self.view(0.0), self.columns())
             stale, written = (), written | one.written
-        for wetting in self.wetting:
-            wetting.mark()
+        self.neighbourhood.mark()
         for kind in self.kinds:
             kind.after_sums(time, dt)
 
@@ -210,21 +189,20 @@ class Engine:
 
     def take_up(self, saved) -> None:
         """The lists as they were made, then everything as it was when ``saved`` was written."""
-        self.domain.relist(saved.state["lower"], saved.state["upper"])
+        self.neighbourhood.take_up(saved.state["lower"], saved.state["upper"])
         saved.fill(self.store)
         for kind in self.kinds:
             kind.restore(saved.state["poses"])
         self.poses.turn_to(saved.state["time"])
         if self.plan.passes:
             self.domain.halo.refresh(self.domain.ghost_fields + self.plan.refreshed)
-        self._part_lists()
-        self._lists_are_new()  # what ghosts are counts too
+        self.neighbourhood.sort_out(self.kinds)  # what ghosts are counts too
         self._fit_records()
         for records in self.records:
             records.fill(0, self.store.total)
         for kind in self.kinds:
             kind.settle()
-        self.skin.restore(saved.state["skin"])
+        self.neighbourhood.restore(saved.state["skin"])
 
     def bytes_held(self) -> int:
         """Bytes of this rank's particles, records and lists."""
@@ -234,8 +212,7 @@ class Engine:
             self.store.id,
             self.store.group,
             *tables,
-            *self.domain.lists,
-            *self._apart,
+            *self.neighbourhood.arrays,
         ]
         held = sum(kind.bytes_held() for kind in self.kinds)
         return held + sum(a.nbytes for a in arrays)
@@ -245,30 +222,13 @@ class Engine:
         paid, self._paid = self._paid, self.ledger.seconds["pairs"]
         return max(self._paid - paid, 0.0)  # whoever holds the ledger may have cleared it
 
-    def _lists_are_new(self) -> None:
-        """Take what rests, and what does not feel each other, out of them."""
-        for kind in self.kinds:
-            kind.listed()
-        for one in self.wetting:
-            one.settle()
-
-    def _part_lists(self) -> None:
-        """Pairs with particles that are apart get lists of their own."""
-        if APART.name in self.store and self.plan.passes:
-            apart = self.store[APART.name] > 0.0
-            self._apart = part(self.domain.lists, self.store, apart, self.plan.space.lanes)
-
     def _fit_records(self) -> None:
         """Room for the records of new columns, and for the longest of new lists."""
         for records in self.records:
             records.make_room()
-        self._mirrors, self._lists = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
-        if not self.records:
-            return
-        kept = (self.domain.lists, self._apart)
-        listed = [int(lists.lengths[: self.store.owned].max(initial=0)) for lists in kept]
-        longest = max([*listed, *(one.longest for one in self.wetting)])
-        self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
+        if self.records:
+            longest = self.neighbourhood.longest
+            self.softening = softening(self.plan.space, self.plan.smoothing_length, longest)
 
     def each(self, loop, *args) -> list:
         """A loop over the columns of the owned particles."""
@@ -317,8 +277,7 @@ class Engine:
     def _loops_of(self, one: Pass) -> Iterator[tuple[Settled, tuple]]:
         """The compiled loops of a pass, each with what it takes beside the columns."""
         s, plan, records = self.store, self.plan, self.records[one.place]
-        lists, mirrors = (self._apart, None) if one.across else (self._lists, self._mirrors)
-        around = Around(records.view(), records.table, s.low, lists, mirrors)
+        around = Around(records.view(), records.table, s.low, *self.neighbourhood.of(one))
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)))

@@ -63,7 +63,7 @@ class Simulation:
     def __init__(self, scene, plan: Plan, store: Store, comm, ledger: Ledger, saved=None):
         self.plan, self.store, self.comm, self.ledger = plan, store, comm, ledger
         self.engine = self.engine_type(scene, plan, store, comm, ledger)
-        self.domain, self.skin = self.engine.domain, self.engine.skin
+        self.domain, self.neighbourhood = self.engine.domain, self.engine.neighbourhood
         self.population = Population(scene, plan, self.domain)
         self.impacts = Impacts(plan.constants["sound_speed"] ** 2 / plan.smoothing_length)
         self.stages = tuple(stages_of(plan))
@@ -87,7 +87,9 @@ class Simulation:
         self._refuse_lost(self.dt)
         with self.ledger("skin"):
             jolt = self.engine.poses.advance(self.then, self.dt)
-            self.listed = self.skin.holds(self.dt, self.speed, max(self.acceleration, jolt), self.shift)
+            self.listed = self.neighbourhood.valid(
+                self.dt, self.speed, max(self.acceleration, jolt), self.shift
+            )
         for stage in self.stages:
             stage.run(self)
         self.time = self.then
@@ -103,7 +105,7 @@ class Simulation:
         numbers = {name: getattr(self, name) for name in CLOCK}
         corners = {"lower": self.domain.lower, "upper": self.domain.upper}
         rest = {
-            "skin": self.skin.state(),
+            "skin": self.neighbourhood.state(),
             "population": self.population.state(),
             "impacts": self.impacts.state(),
             "poses": self.engine.state(),

@@ -99,7 +99,7 @@ def events_of_a_step(simulation, events, kind):
         rebuilds = simulation.domain.rebuilds
         events.clear()
         simulation.step()
-        measured = simulation.skin._since <= simulation.dt
+        measured = simulation.neighbourhood.skin._since <= simulation.dt
         found = MEASURING if measured else PLAINLY
         if (REBUILDING if simulation.domain.rebuilds > rebuilds else found) == kind:
             return list(events)

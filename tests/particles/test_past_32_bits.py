@@ -83,7 +83,7 @@ def near_and_far(tmp_path):
         begin=domain.lists.begin + np.uint64(ENTRIES),
         lists=shifted(tmp_path, domain.lists.lists + np.uint32(COLUMNS), ENTRIES),
     )
-    far.engine._lists = domain.lists
+    far.engine.neighbourhood.fit()
     return near, far
 
 

@@ -1,0 +1,113 @@
+"""Who is near whom on a rank, and for how long the lists of that hold."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from psph.composition.mirrors import with_own_rows
+from psph.fields import APART
+from psph.kinds import Work
+from psph.parallel.domain import Domain, Extent, Travels
+from psph.parallel.skin import Skin, Unlisted
+from psph.particles.apart import part
+from psph.particles.neighbours import Neighbours, empty
+from psph.particles.planes import bring_back
+from psph.particles.store import Store
+from psph.simulation.passes import Pass
+from psph.simulation.plan import Plan
+from psph.simulation.wetting import Wetting
+
+
+class Neighbourhood:
+    """The neighbours of the particles of ``store``, of several sorts, as ``plan`` asks for them.
+
+    Ordinary pairs stand in the lists of ``domain``.  Particles that are apart (psph.particles.apart)
+    have lists of their own, images in mirrors come after the entries of all, and rows of dry walls rest.
+    Lists are made anew by :meth:`update` once they are no longer :meth:`valid`; in between all is read as it
+    stands.  ``domain`` also has the ghosts.
+    """
+
+    def __init__(self, scene, plan: Plan, store: Store, comm):
+        layout = scene.layout
+        self.plan, self.store = plan, store
+        self.domain = Domain(
+            comm,
+            store,
+            Extent(layout.axis, layout.lower, layout.upper, layout.periods),
+            layout.reach.cutoff,
+            Travels(plan.ghost_fields, plan.refreshed),
+            plan.space.lanes if plan.passes else None,
+        )
+        self.skin = Skin(self.domain, layout.reach.skin, plan.planes) if plan.passes else Unlisted()
+        self.wetting = [Wetting(one, plan, store, self.domain, layout.reach) for one in plan.marking]
+        self._apart = empty(0, 0)
+        self.fit()
+
+    def valid(self, dt: float, speed: float, acceleration: float, shift: float) -> bool:
+        """Whether the lists hold to the end of a step of ``dt`` s, by the largest speed, m/s, acceleration,
+        m/s², and speed of a shift, m/s, of all ranks; collective where it must measure."""
+        return self.skin.holds(dt, speed, acceleration, shift)
+
+    def update(self, spent: float, kinds: Iterable[Work]) -> None:
+        """Put every particle where it belongs and list its neighbours; collective.
+
+        ``spent`` are the seconds that this rank's pairs took since it was last done, by which slabs are cut;
+        ``kinds`` of matter take out what is not to be met.
+        """
+        bring_back(self.store, self.plan.planes, self.plan.free)
+        self.domain.rebuild(spent)
+        self.sort_out(kinds)
+        self.skin.renew()
+
+    def take_up(self, lower, upper) -> None:
+        """List them where they stand, in the domain of an earlier run between these corners, m."""
+        self.domain.relist(lower, upper)
+
+    def sort_out(self, kinds: Iterable[Work]) -> None:
+        """New lists name everyone: part what is apart, take out what rests and what is not to be met."""
+        if APART.name in self.store and self.plan.passes:
+            apart = self.store[APART.name] > 0.0
+            self._apart = part(self.domain.lists, self.store, apart, self.plan.space.lanes)
+        for kind in kinds:
+            kind.listed()
+        for wetting in self.wetting:
+            wetting.settle()
+        self.fit()
+
+    def fit(self) -> None:
+        """Room for the images of every particle behind the entries of the lists."""
+        self._mirrors, self._lists = with_own_rows(self.plan.mirrors, self.store.total, self.domain.lists)
+
+    def begin(self) -> None:
+        """Which walls are dry at the start; lists are there."""
+        for wetting in self.wetting:
+            wetting.begin()
+
+    def mark(self) -> None:
+        """Which walls are dry by the places of this step."""
+        for wetting in self.wetting:
+            wetting.mark()
+
+    def of(self, one: Pass) -> tuple[Neighbours, object]:
+        """The lists that a pass goes through, and the mirrors in which it looks at them once more."""
+        return (self._apart, None) if one.across else (self._lists, self._mirrors)
+
+    @property
+    def longest(self) -> int:
+        """Entries of the longest row when nothing rests."""
+        kept = (self.domain.lists, self._apart)
+        listed = [int(lists.lengths[: self.store.owned].max(initial=0)) for lists in kept]
+        return max([*listed, *(wetting.longest for wetting in self.wetting)])
+
+    @property
+    def arrays(self) -> tuple[np.ndarray, ...]:
+        """All lists as they are held."""
+        return (*self.domain.lists, *self._apart)
+
+    def state(self) -> dict[str, float | None]:
+        """What :meth:`valid` rests on beside the particles."""
+        return self.skin.state()
+
+    def restore(self, state: dict[str, float | None]) -> None:
+        """Go on as if the lists had been in use since they were made."""
+        self.skin.restore(state)
