@@ -28,7 +28,7 @@ class Fluids(Kind):
     def reach_lines(self, plan) -> Iterator[str]:
         """The kernel."""
         scene, space = self.scene, self.scene.case.space
-        support = scene.kernel.support * scene.smoothing_length
+        support = scene.support
         yield (
             f"  kernel      {space.kernel}, h = {scene.smoothing_length:g} m "
             f"(h/dx {space.smoothing:g}), support {support:g} m, "

@@ -40,7 +40,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
         yield from kind.friction_lines(plan)
     found = forecast(scene, plan, ranks)
     yield from forecast_lines(found, ranks, scene.case.time.end)
-    neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
+    neighbours = sites_within(scene, scene.support)
     yield from output_lines(scene, plan, neighbours, found.steps)
     if any(one.is_fluid for one in plan.species):
         yield from stability_forecast(scene, plan)

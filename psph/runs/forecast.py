@@ -41,7 +41,7 @@ def forecast(scene, plan: Plan, ranks: int) -> Forecast:
         if plan.passes
         else max(kind.flops() for kind in plan.matter)
     )
-    neighbours = sites_within(scene, scene.kernel.support * scene.smoothing_length)
+    neighbours = sites_within(scene, scene.support)
     each = PARTICLE + neighbours * flops * FLOP
     return Forecast(steps, limit, steps * (STEP + each * count_of(scene) / ranks))
 

@@ -108,7 +108,7 @@ def _pushes(suspect: Suspect) -> Iterator[str]:
 
 def _neighbours(scene, suspect: Suspect) -> Iterator[str]:
     around, distance = suspect.around, suspect.distance
-    reach = scene.kernel.support * scene.smoothing_length
+    reach = scene.support
     order = np.lexsort((around.shown("id"), distance))
     order = order[(distance[order] <= reach) & (order != suspect.column)]
     yield f"{len(order)} within the support ({reach / scene.spacing:.3g} dx), the nearest first.\n"

@@ -79,7 +79,7 @@ def find(simulation: Simulation, scene, badness: np.ndarray) -> Suspect:
         k = np.lexsort((ids, -badness))[0]
         mine = float(badness[k]), -int(ids[k]), _places(store)[k].copy()
     _, least, place = max(simulation.comm.allgather(mine), key=lambda one: one[:2])
-    reach = max(SEEN * scene.spacing, scene.kernel.support * scene.smoothing_length)
+    reach = max(SEEN * scene.spacing, scene.support)
     around = _gathered(simulation, scene, place, reach)
     column = int(np.flatnonzero(around.shown("id") == -least)[0])
     offset = _away(_places(around), place, scene.layout.periods)
@@ -129,7 +129,7 @@ def _gathered(simulation: Simulation, scene, centre: np.ndarray, reach: float) -
 def _shares(simulation, scene, around: Store, column: int, offset: np.ndarray) -> tuple:
     """What each effect does to a particle, by its plain formulas over its neighbours, in mirrors too."""
     view = seen_at(around.view(), simulation.previous_speed)
-    reach = scene.kernel.support * scene.smoothing_length
+    reach = scene.support
     near = np.flatnonzero((np.linalg.norm(offset, axis=1) <= reach) & bool(simulation.plan.passes))
     i = take(view, column)
     mirrors = simulation.plan.mirrors

@@ -78,7 +78,7 @@ def within_reach(scene: Scene, names: list[str], point: tuple[float, ...]) -> It
     distance = np.sqrt(sum((place - x) ** 2 for place, x in zip(places, point)))
     grid = [scene.layout.folded(d, place) for d, place in enumerate(places)]
     held = scene.layout.held(grid, distance.shape)
-    near = set(held[distance < scene.kernel.support * scene.smoothing_length].tolist())
+    near = set(held[distance < scene.support].tolist())
     for number, name in enumerate(scene.layout.names):
         if number in near and name in names:
             yield name

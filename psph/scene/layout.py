@@ -113,6 +113,11 @@ class Layout:
         return motion_of(self.case.frame.motion)
 
     @property
+    def support(self) -> float:
+        """Radius of the kernel, m."""
+        return self.kernel.support * self.smoothing_length
+
+    @property
     def reach(self) -> Reach:
         """How far particles feel and see each other: by the kernel; elastic solids alone within 2.5 spacings,
         and what the kernel reaches beyond that is skin, one spacing at least.  In a fluid they touch
@@ -128,7 +133,7 @@ class Layout:
     @property
     def wall_reach(self) -> int:
         """Depth in sites to which a wall acts on a fluid, and one more."""
-        return math.ceil(self.kernel.support * self.smoothing_length / self.spacing) + 1
+        return math.ceil(self.support / self.spacing) + 1
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -63,6 +63,7 @@ class Scene:
     spacing = property(attrgetter("layout.spacing"))
     smoothing_length = property(attrgetter("layout.smoothing_length"))
     kernel = property(attrgetter("layout.kernel"))
+    support = property(attrgetter("layout.support"))
     gravity = property(attrgetter("layout.gravity"))
     frame = property(attrgetter("layout.frame"))
     anvils = property(attrgetter("layout.anvils"))

@@ -60,7 +60,7 @@ def operations(scene, plan) -> float:
     """Operations of a particle in a step: those of its pairs, in every pass that comes each step."""
     of_passes = 0.0
     if plan.passes:
-        around = sites_within(scene, scene.kernel.support * scene.smoothing_length)
+        around = sites_within(scene, scene.support)
         of_passes = around * plan.flops_per_pair(scene.layout.periods)
     if not plan.solids:
         return of_passes

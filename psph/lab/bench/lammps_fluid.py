@@ -19,7 +19,7 @@ BROKEN = 0.2
 
 def support(scene, simulation) -> float:
     """Of its kernel, m: that of psph's."""
-    return scene.kernel.support * scene.smoothing_length
+    return scene.support
 
 
 def commands(scene, simulation) -> tuple[list[str], list[str]]:

@@ -222,7 +222,7 @@ def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
     if solids := simulation.engine.of("solids"):
         pairs = round(solids.neighbours * solids.rows)
         return tuple(comm.allreduce(n) for n in (store.owned, pairs, pairs))
-    support = scene.kernel.support * scene.smoothing_length
+    support = scene.support
     inside = count_inside(
         store.view(),
         simulation.domain.periods,

@@ -110,7 +110,7 @@ def _timed(simulation: Simulation, until: float, comm) -> tuple[float, int]:
 
 def _in_bulk(scene) -> int:
     """Neighbours of a particle deep in the fluid."""
-    reach = scene.kernel.support * scene.smoothing_length / scene.spacing
+    reach = scene.support / scene.spacing
     return round(BALL[scene.dimensions] * reach**scene.dimensions) - 1
 
 

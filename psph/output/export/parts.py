@@ -52,7 +52,7 @@ class Exported:
     @cached_property
     def support(self) -> float:
         """Radius in m beyond which the kernel is zero."""
-        return self.scene.kernel.support * self.scene.smoothing_length
+        return self.scene.support
 
     def parts(self, group: np.ndarray) -> np.ndarray:
         """Which of PARTS each particle is of, uint8 (n,), by its ``group`` (n,)."""

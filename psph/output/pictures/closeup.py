@@ -106,7 +106,7 @@ def _arrows(axes, spots, velocity, seen, spacing: float) -> None:
 
 def _mark(axes, spot, scene) -> None:
     """A ring around the particle, and a dashed one around the kernel's support."""
-    reach = scene.kernel.support * scene.smoothing_length
+    reach = scene.support
     for radius, how in (
         (0.75 * scene.spacing, {"lw": 1.8, "ec": style.LINES[1]}),
         (reach, {"lw": 0.9, "ec": style.PALE, "ls": (0, (5, 3))}),
