@@ -164,6 +164,15 @@ def test_a_bar_that_lands_on_a_wall_under_water_stays_on_it(tmp_path):
     assert touched and lowest > 0.3 * 0.02  # particles are half a spacing above the face of the bar
 
 
+STICKS = ("fluids.water.viscosity=0.01", "walls.tank.no_slip=true")
+
+
+def test_solids_rub_beside_a_wall_that_the_fluid_sticks_to(tmp_path):
+    """What shears a contact, and what a wall shows the fluid, are two fields."""
+    plan = make_plan(Scene(draft(tmp_path, TANK, *BLOCK, *STICKS, "physics.contact.friction=0.3")))
+    assert {"slip", "contact_slip"} <= {*plan.arrays}
+
+
 def test_what_contact_in_a_fluid_does_not_know_is_refused(tmp_path):
     for sets, says in (
         (("physics.contact=off", *BLOCK), "bodies.block: solids do not feel bodies without contact; give"),

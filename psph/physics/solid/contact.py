@@ -27,7 +27,7 @@ OF_CONTACT = (FACE, COVER)
 MET = Field("met", "m/s2", "acceleration by contacts with elastic solids in a fluid", VECTOR)
 
 FACE_RATE = Field("face_rate", "1/s", "rate of the normal of the face", VECTOR)
-SLIP = Field("slip", "m", "by how much the contacts of a particle are sheared", VECTOR)
+SLIP = Field("contact_slip", "m", "by how much the contacts of a particle are sheared", VECTOR)
 SLIDING = Field("sliding", "N/s", "Σ k u_t of its contacts: how fast what it touches slides", VECTOR)
 HOLD = Field("hold", "N/m", "Σ k of its contacts")
 BORNE = Field("borne", "N", "Σ f of its contacts: what they press")
@@ -295,7 +295,7 @@ def slipping(i, j, pair, met):
 @long_helper
 def rubbing(contact, i, j, pair, met):
     """The friction of a pair, N: a spring that slips and a dashpot, μ f_ij at most."""
-    slip = scale(subtract(i.slip, j.slip), 0.5)
+    slip = scale(subtract(i.contact_slip, j.contact_slip), 0.5)
     slip = subtract(slip, scale(met.out, dot(slip, met.out)))
     spring = scale(slip, met.share * modulus(contact, i, j))
     drag = scale(slipping(i, j, pair, met), met.share * CALMING * dashpot(contact, i, j))
