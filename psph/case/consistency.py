@@ -287,13 +287,7 @@ def _regions(case) -> Iterator[Finding]:
 
 def _friction(case) -> Iterator[Finding]:
     rubs = any(fluid.rubs for fluid in case.flowing.values())
-    named = [name for name, _, effect in asked_of(case) if FRICTION in getattr(effect, "roles", ())]
-    for name in () if rubs else named:
-        yield (
-            ("physics", name),
-            ...,
-            ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove this key"),
-        )
+    named = _frictions(case)
     for name, wall in case.boundaries.items():
         if wall.no_slip and not rubs:
             yield (
@@ -311,8 +305,20 @@ def _friction(case) -> Iterator[Finding]:
             )
 
 
+def _frictions(case) -> list[str]:
+    """The keys of ``physics`` that ask for a friction of fluids."""
+    return [name for name, _, effect in asked_of(case) if FRICTION in getattr(effect, "roles", ())]
+
+
 def _rheologies(case) -> Iterator[Finding]:
-    for name, fluid in case.fluids.items():
+    fluids = case.fluids
+    for name in () if any(fluid.rubs for fluid in fluids.values()) else _frictions(case):
+        yield (
+            ("physics", name),
+            ...,
+            "no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove this key",
+        )
+    for name, fluid in fluids.items():
         if fluid.rheology is None:
             continue
         if case.physics.laplacian_friction is not None:
