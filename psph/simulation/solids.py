@@ -104,8 +104,8 @@ class Solids(Work):
 
     def _find_moments(self) -> None:
         """L of all rows."""
-        self._moment = tuple(np.zeros(self.rows) for _ in self.store.rows[MOMENT.name])
-        self._each(self._moments, 0, self.rows, self._weights, self._around[0], self._moment)
+        self._moment = tuple(np.zeros(self._owned) for _ in self.store.rows[MOMENT.name])
+        self._each(self._moments, 0, self._owned, self._weights, self._around[0], self._moment)
         for of, found in zip(self.store[MOMENT.name], self._moment):
             of[self._columns] = found
 
@@ -136,7 +136,7 @@ class Solids(Work):
         rim[np.repeat(np.arange(len(columns)), counts)[abroad]] = True
         order = np.argsort(rim, kind="stable")
         self._columns = columns[order].astype(np.uint64)
-        self.rows, self._inner = len(columns), int(np.count_nonzero(~rim))
+        self._owned, self._inner = len(columns), int(np.count_nonzero(~rim))
         self._matter = self._matter._replace(number=self._solid_of[store.group[columns[order]]])
         density = self._matter.density[self._matter.number]
         self._inverse_density, self._masses = 1.0 / density, density * self._volume
@@ -177,10 +177,10 @@ class Solids(Work):
         self._to_first = self.halo.channel(tables[0].records, begin, end)
         end = tables[1].places[LOOSENED if self._cracks else FLUX][1]
         self._to_second = self.halo.channel(tables[1].records, tables[1].places[FLUX][0], end)
-        self._force = tuple(np.zeros(self.rows) for _ in range(self.store.dimensions))
+        self._force = tuple(np.zeros(self._owned) for _ in range(self.store.dimensions))
         self._places = self.halo.channel(tables[1].records, *tables[1].places[PLACES])
         for table in tables:
-            self._put(table, "reference", 0, self.rows)
+            self._put(table, "reference", 0, self._owned)
             self._bring_of(table, "reference")
         if unknown and SHARE.name in self.store:
             every = padded_lists(*whole, Metres.lanes)
@@ -190,7 +190,7 @@ class Solids(Work):
             self.store[SHARE.name][self._columns] = np.where(shared, found, 1.0)
         if self._cracks:
             strength = self._cracks.strengths(ids, self._matter.number)
-            tables[1].records[: self.rows, tables[1].places[STRENGTH][0]] = strength
+            tables[1].records[: self._owned, tables[1].places[STRENGTH][0]] = strength
             self._bring_of(tables[1], STRENGTH)
 
     def sum(self, time: float, dt: float) -> None:
@@ -213,7 +213,7 @@ class Solids(Work):
 
     def strain(self, dt: float) -> None:
         """The stress of all particles of solids, and their faces, ``dt`` s after the last; collective."""
-        rows, inner = self.rows, self._inner
+        rows, inner = self._owned, self._inner
         memory = self._memory(dt)
         first, second = self._tables
         with self.ledger("records"):
@@ -239,7 +239,7 @@ class Solids(Work):
 
     def push(self, time: float, dt: float) -> None:
         """The acceleration by the stress, and by what contacts do to the faces; collective."""
-        store, rows, inner = self.store, self.rows, self._inner
+        store, rows, inner = self.store, self._owned, self._inner
         if self._faces:
             with self.ledger("solids"):
                 flux = getattr(self._tables[1].view, FLUX)
@@ -281,7 +281,7 @@ class Solids(Work):
 
     def measure(self) -> None:
         """Stored energy and stress of the particles where they stand; collective."""
-        store, n = self.store, self.rows
+        store, n = self.store, self._owned
         self._put(self._tables[1], PLACES, 0, n)
         self._bring(self._places)
         stress = tuple(np.zeros(n) for _ in store.rows[STRESS.name])
@@ -319,7 +319,7 @@ class Solids(Work):
     def neighbours(self) -> float:
         """Neighbours in the reference of a particle of this rank, on average."""
         lists = self._around[0].lists
-        return float(lists.lengths.mean()) if self.rows else 0.0
+        return float(lists.lengths.mean()) if self._owned else 0.0
 
     def booked(self) -> tuple[float]:
         """Their stored energy, J."""

@@ -33,7 +33,10 @@ SAND = (
         ),
         (("frame.motion={translation=[0.2, 0.0]}",), "soils know of no frame that moves"),
         (("physics.central_friction={}",), "physics.central_friction: no fluid has a viscosity; set fluids."),
-        (("physics.laplacian_friction={}",), "physics.laplacian_friction: no fluid has a viscosity; set fluid"),
+        (
+            ("physics.laplacian_friction={}",),
+            "physics.laplacian_friction: no fluid has a viscosity; set fluid",
+        ),
     ],
 )
 def test_what_no_soil_can_be_is_refused_in_one_line(overrides, says, tmp_path):

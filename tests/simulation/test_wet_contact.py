@@ -6,8 +6,10 @@ from contacts import ASKEW, BARS, HAMMER, PUDDLE, bodies_of, energy, hardest, mo
 from drafts import draft, refusal
 from gauging import start
 from long import LONG
+from mpi4py import MPI
 from simulation.test_immersion import momentum
 
+from psph.runs.start import run
 from psph.scene import Scene
 from psph.simulation import immersion
 from psph.simulation.plan import make_plan
@@ -162,6 +164,14 @@ def test_a_bar_that_lands_on_a_wall_under_water_stays_on_it(tmp_path):
         lowest = min(lowest, store.shown("position")[store.shown("group") == bar, 1].min() - 0.1)
         touched |= store.shown("contact_energy").sum() > 0.0
     assert touched and lowest > 0.3 * 0.02  # particles are half a spacing above the face of the bar
+
+
+def test_a_run_with_bodies_and_solids_ends_well(tmp_path):
+    """At its end the guards ask what each kind of matter moves, and whether that encloses the fluid."""
+    case = draft(tmp_path, TANK, *BLOCK, "time.end=0.0005")
+    said = []
+    run(case, tmp_path / "done", MPI.COMM_SELF, say=lambda line, stream=None: said.append(line))
+    assert [line for line in said if "steps in" in line]
 
 
 STICKS = ("fluids.water.viscosity=0.01", "walls.tank.no_slip=true")
