@@ -48,6 +48,9 @@ class Guards:
         whole = any(hasattr(effect, "finish_acceleration") for effect in simulation.plan.effects)
         # What walls give is booked by pairs, of walls that bear a pressure.
         unbooked = moving and (whole or not all(one.bearing for one in moving))
+        # A wall that bears no tension (psph.physics.surface.free) stores none.
+        bears_none = any(hasattr(effect, "bearing_density") for effect in simulation.plan.effects)
+        self._slack = bears_none & (np.arange(len(simulation.plan.law_of)) >= simulation.plan.free)
         self._books = not unbooked and all(kind.keeps_energy for kind in simulation.plan.matter)
         self.solids = [(WallRegion(scene), None)]
         self.solids += [(WallRegion(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
@@ -170,9 +173,11 @@ class Guards:
     def _energy(self) -> float:
         """Energy of motion, height, compression and deformation less what walls and frames have given, J."""
         sim, c = self.simulation, self.scene.sound_speed
-        laws, law_of = sim.plan.laws, sim.plan.law_of[sim.store.shown("group")]
+        group = sim.store.shown("group")
+        laws, law_of, slack = sim.plan.laws, sim.plan.law_of[group], self._slack[group]
 
         def elastic(density, rest):
+            density = np.where(slack, np.maximum(density, rest), density)
             stored = laws[0].energy(density, rest, c)
             for number, law in enumerate(laws[1:], 1):
                 stored = np.where(law_of == number, law.energy(density, rest, c), stored)
