@@ -28,6 +28,26 @@ def moments_below_a_surface(kernel, spacing: float, dimensions: int) -> list[flo
     return [*map(float, accumulate(rows))]
 
 
+def seam_shares(kernel, spacing: float, dimensions: int) -> list[float]:
+    """What two halves of a plane wall exchange along it over what presses them: k_n, n = 1, 2 ... rows.
+
+    Under the pressure p particles of one half and fluid before the other push each other apart with
+    2p Σ ab (−∂W/∂b) a length of the seam, over the sites a spacings across and b > 0 along; n rows below the
+    face are pressed with 2p Σ min(a, n) (−∂W/∂a).  The first over the second.
+    """
+    if dimensions == 1:
+        return []
+    along, pressed = 0.0, [0.0] * _reach(kernel, spacing)
+    for *level, height in _sites(kernel, spacing, dimensions):
+        if height > 0:
+            distance = math.hypot(*level, height)
+            slope = -kernel.dw(distance * spacing) / distance
+            along += height * max(level[0], 0) * level[0] * slope
+            for row in range(height):
+                pressed[row] += height * slope
+    return [along / total for total in accumulate(pressed)]
+
+
 @lru_cache
 def fastest_smoothing(kernel, spacing: float, dimensions: int) -> float:
     """The largest Σ dx^d (−W′/r) (1 − cos k·x) over the same lattice and all wave vectors k, 1/m².

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.fields import WALL
+from psph.output.gauges.seams import BareFaces, Particles, Seams, seams_of
 from psph.physics.motion import FIXED, RIGID
 from psph.physics.rigid.pose import PLACE
 
@@ -14,7 +15,7 @@ OPEN = 0.8
 """Spacings from a site beside a particle within which another particle of a wall closes it."""
 
 MOST = 64
-"""Faces, the nearest ones, among which that of a particle is looked for."""
+"""BareFaces, the nearest ones, among which that of a particle is looked for."""
 
 TOUCH = 1.5
 """Spacings within which particles of two parts touch: what is farther apart shares no edge."""
@@ -27,12 +28,13 @@ class Shares(NamedTuple):
     """Which parts bear the load of particles, by their ``ids`` (n,), in order; ``groups`` (n,) are theirs.
 
     ``bearers`` (n, dim, 2) are the groups that bear it along each axis of the particle's own group, where it
-    is positive and where it is negative.
+    is positive and where it is negative.  What passes along ``seams`` comes besides.
     """
 
     ids: np.ndarray
     groups: np.ndarray
     bearers: np.ndarray
+    seams: Seams
 
 
 class Corners:
@@ -43,12 +45,14 @@ class Corners:
     the last half row of the pressure, which the particles of the floor behind the edge have.  So each
     component of the load of a particle goes to its own part, or one that touches it, with the nearest face
     across it that the particle lies beyond, within the ``support`` of the kernel, m.  Sums over all parts
-    stay what they are.
-    Faces are those of the particles, a ``spacing`` in m apart, that have no neighbour at the next site.
+    stay what they are.  Two parts in one plane exchange along it what they bear wrongly there
+    (:class:`Seams`), ``crossing`` of what presses them (:func:`psph.moments.seam_shares`).
+    BareFaces are those of the particles, a ``spacing`` in m apart, that have no neighbour at the next site.
     """
 
-    def __init__(self, gauged: Sequence[int], spacing: float, support: float):
+    def __init__(self, gauged: Sequence[int], spacing: float, support: float, crossing: Sequence[float]):
         self.gauged, self.spacing, self.support = tuple(sorted(set(gauged))), spacing, support
+        self.crossing = np.array(crossing)
         self._placed: np.ndarray | None = None
         self._shares: Shares | None = None
 
@@ -73,9 +77,12 @@ class Corners:
             for way in (-1.0, 1.0)
         ]
         own, touch = groups[meeting], self._touch(space, places, groups, len(kinds))
-        bearers = np.stack([self._bearer(space, places[meeting], own, touch, *one) for one in faces], axis=1)
+        bearers = np.stack([self._bearer(space, places[meeting], own, touch, one) for one in faces], axis=1)
         shared = (bearers != own[:, None]).any(axis=1)
-        return Shares(ids[meeting][shared], own[shared], bearers[shared].reshape(-1, places.shape[1], 2))
+        bearers = bearers[shared].reshape(-1, places.shape[1], 2)
+        every = BareFaces(*(np.concatenate(part) for part in zip(*faces)))
+        told = space, self.spacing, self.crossing, Particles(ids, places), every, frames, touch
+        return Shares(ids[meeting][shared], own[shared], bearers, seams_of(*told))
 
     def _near_others(self, simulation, space: "_Torus", parts: np.ndarray):
         """Ids in order, groups and places of what is near where parts meet, and whether it is there."""
@@ -106,17 +113,17 @@ class Corners:
             touch[one, other] = touch[other, one] = space.near(*pair, TOUCH * self.spacing).any()
         return touch
 
-    def _faces(self, space: "_Torus", places: np.ndarray, groups: np.ndarray, outward: np.ndarray):
-        """Middles (n, dim), outward normals and groups of the faces that look in the direction ``outward``
-        (groups, dim) of their group."""
+    def _faces(self, space: "_Torus", places, groups, outward: np.ndarray) -> BareFaces:
+        """The faces that look in the direction ``outward`` (groups, dim) of their group."""
         normal = outward[groups]
         beside = space.wrapped(places + self.spacing * normal)
         bare = ~space.near(beside, places, OPEN * self.spacing)
         middle = space.wrapped(places + 0.5 * self.spacing * normal)
-        return middle[bare], normal[bare], groups[bare]
+        return BareFaces(middle[bare], normal[bare], groups[bare])
 
-    def _bearer(self, space: "_Torus", places, own, touch, middle, normal, groups) -> np.ndarray:
+    def _bearer(self, space: "_Torus", places, own, touch, faces: BareFaces) -> np.ndarray:
         """The group whose face bears what presses particles at ``places`` (n, dim) inwards from there."""
+        middle, normal, groups = faces
         if not len(middle) or not len(places):
             return own
         distance, face = space.nearest(places, middle, MOST, self.support)

@@ -82,7 +82,17 @@ class ForceGauge(NamedTuple):
             bearer = shares.bearers[place, axis, (along < 0.0).astype(int)]
             won = np.isin(bearer, self.groups).astype(float) - own
             share += (won * along)[:, None] * axes[:, :, axis]
-        return rows, share
+        beside, passed = self._passed(store, shares.seams)
+        return np.concatenate([rows, beside]), np.concatenate([share, passed])
+
+    def _passed(self, store, seams) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of the particles beside seams of parts in one plane, and what these parts win by each, N."""
+        ids = store.shown("id")
+        here = np.flatnonzero(np.isin(ids, seams.ids))
+        here = here[np.argsort(ids[here])]
+        force = store.shown("mass")[here, None] * store.shown("load")[here]
+        told, share = seams.won(ids[here], force, self.groups)
+        return here[told], share
 
     def _places(self, simulation, held: np.ndarray) -> np.ndarray:
         """Where the particles ``held`` are, m (n, dim): those that move as one beside each other."""

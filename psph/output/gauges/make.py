@@ -8,6 +8,7 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.case.solids import anvils_of, clamps_of
+from psph.moments import seam_shares
 from psph.output.flowing import ALL
 from psph.output.gauges.carried import Carrier
 from psph.output.gauges.corners import Corners
@@ -85,7 +86,9 @@ def _corners(scene) -> Corners:
     """Where parts meet on which forces are measured."""
     names = {name for gauge in scene.case.gauges.values() if gauge.force for name in gauge.force.on}
     gauged = [group for group, one in enumerate(scene.species) if one.name in names]
-    return Corners(gauged, scene.spacing, scene.kernel.support / scene.kernel.inverse_h)
+    kernel, spacing = scene.kernel, scene.spacing
+    crossing = seam_shares(kernel, spacing, scene.dimensions)
+    return Corners(gauged, spacing, kernel.support / kernel.inverse_h, crossing)
 
 
 def _up(scene) -> tuple[float, ...]:
