@@ -71,18 +71,23 @@ def find_undecided(first, last, low, lists, reach, periods, listed, group, beari
 
 
 @compiled
-def find_resting(first, last, low, lists, group, free, loaded, is_fluid, rest):
+def find_resting(first, last, low, lists, group, free, rest):
     """``rest`` of the rows of the columns ``first`` to ``last``: whether nothing has to be summed while dry.
 
-    That is so in a wall and in a rigid body: groups from number ``free`` on, which forces do not move.  Of
-    groups whose load is asked for, ``loaded``, only where no fluid is listed: between 0.95 of the support and
-    its end fluid feels a dry wall, which then has to feel as much.
+    That is so in a wall and in a rigid body: groups from number ``free`` on, which forces do not move.
     """
+    for k in range(np.uint64(first), np.uint64(last)):
+        rest[k - np.uint64(low)] = group[k] >= free
+
+
+@compiled
+def find_beside_fluid(first, last, low, lists, loaded, group, is_fluid, beside):
+    """``beside`` of the rows of columns ``first`` to ``last``: whether ``loaded`` groups list fluid there."""
     for k in range(np.uint64(first), np.uint64(last)):
         row = k - np.uint64(low)
         n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
-        rests = group[k] >= free
-        while rests and loaded[group[k]] and n < end:
-            rests = is_fluid[np.uint64(lists.lists[n])] == 0.0
+        found = False
+        while loaded[group[k]] and not found and n < end:
+            found = is_fluid[np.uint64(lists.lists[n])] > 0.0
             n += np.uint64(1)
-        rest[row] = rests
+        beside[row] = found

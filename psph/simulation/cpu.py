@@ -266,6 +266,22 @@ class Engine:
             return
         for loop, args in self._loops_of(one):
             in_threads(loop, first, last, *args)
+        if one.gives_rates and self.plan.loaded is not None:
+            for columns, lists in self.neighbourhood.dry_beside_fluid(first, last):
+                self._load_dry(one, first, last, columns, lists)
+
+    def _load_dry(self, one: Pass, first: int, last: int, columns: np.ndarray, lists) -> None:
+        """The load alone of some ``columns``, walls that are dry: all else of them stays as without fluid."""
+        loop, (summed, metric, view, around, sums) = next(self._loops_of(one))
+        due = np.zeros(self.store.total, np.uint8)
+        due[columns] = 1
+        asked = summed._replace(loads=summed.loads._replace(loaded=np.array([False, True]), group=due))
+        data, before = self.store.data, self.store.data[:, columns]
+        in_threads(loop, first, last, asked, metric, view, around._replace(lists=lists), sums)
+        names = (name for name in (LOAD.name, COUPLE.name) if name in self.store)
+        for row in (row for name in names for row in self.store.rows[name]):
+            before[row] = data[row, columns]
+        data[:, columns] = before
 
     def prepare_sums(self, share: int, shares: int) -> None:
         """Compile or load one of so many ``shares`` of the passes, by their types alone."""

@@ -1,6 +1,6 @@
 """Who is near whom on a rank, and for how long the lists of that hold."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -91,6 +91,14 @@ class Neighbourhood:
     def of(self, one: Pass) -> tuple[Neighbours, object]:
         """The lists that a pass goes through, and the mirrors in which it looks at them once more."""
         return (self._apart, None) if one.across else (self._lists, self._mirrors)
+
+    def dry_beside_fluid(self, first: int, last: int) -> Iterator[tuple[np.ndarray, Neighbours]]:
+        """The columns from ``first`` to ``last`` of dry walls whose load is asked for, and lists with their
+        rows."""
+        for wetting in self.wetting:
+            columns, lengths = wetting.dry_beside_fluid(first, last)
+            if len(columns):
+                yield columns, self._lists._replace(lengths=lengths)
 
     @property
     def longest(self) -> int:

@@ -6,7 +6,7 @@ from psph.engine.threads import in_threads
 from psph.parallel.domain import Domain
 from psph.particles.reach import Reach
 from psph.particles.store import Store
-from psph.particles.wetting import Rows, find_resting, find_undecided, mark_wet
+from psph.particles.wetting import Rows, find_beside_fluid, find_resting, find_undecided, mark_wet
 from psph.simulation.plan import Plan
 
 
@@ -15,12 +15,14 @@ class Wetting:
     ``store``, by their lists in ``domain``.
 
     A step looks only at those which may become wet or dry while the lists last, and nothing is summed for
-    those that are dry.
+    those that are dry.  Between 0.95 of the support and its end fluid feels a dry wall all the same: of one
+    whose load is asked for that is summed (:meth:`dry_beside_fluid`), and nothing else, so that asking
+    changes nothing.
     """
 
     def __init__(self, effect, plan: Plan, store: Store, domain: Domain, reach: Reach):
         self.effect, self.plan, self.store, self.domain, self.reach = effect, plan, store, domain, reach
-        self._undecided = np.zeros(0, np.uint64)
+        self._undecided = self._loaded = np.zeros(0, np.uint64)
         self._rows = Rows(np.zeros(0, np.uint32), np.zeros(0, bool))
 
     def settle(self) -> None:
@@ -30,9 +32,11 @@ class Wetting:
         safe, wet = self.reach.support - self.reach.skin, s[self.effect.marks.name]
         self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
-        loaded = np.zeros(len(plan.kinds), bool) if plan.loaded is None else plan.loaded
-        told_by = s[self.effect.told_by]
-        self._each(find_resting, s.group, plan.free, loaded, told_by, self._rows.rest)
+        self._each(find_resting, s.group, plan.free, self._rows.rest)
+        if plan.loaded is not None:
+            beside = np.zeros(s.owned, bool)
+            self._each(find_beside_fluid, plan.loaded, s.group, s[self.effect.told_by], beside)
+            self._loaded = np.uint64(s.low) + np.flatnonzero(beside & self._rows.rest).astype(np.uint64)
         lists.lengths[: s.owned][self._rows.rest & (wet[s.inner] == 0.0)] = 0
 
     def begin(self) -> None:
@@ -43,6 +47,12 @@ class Wetting:
     def mark(self) -> None:
         """Decide by the places of this step, ghosts as they were brought for its sums."""
         self._mark(self._undecided)
+
+    def dry_beside_fluid(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """The columns from ``first`` to ``last`` that are dry, list fluid, and bear a load; and the
+        whole lengths of all rows."""
+        found = self._loaded[(self._loaded >= first) & (self._loaded < last)]
+        return found[self.store[self.effect.marks.name][found] == 0.0], self._rows.lengths
 
     @property
     def longest(self) -> int:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from mpi4py import MPI
 
 from psph.fields import WALL
@@ -131,6 +132,30 @@ def test_that_nothing_is_summed_for_dry_walls_changes_next_to_nothing(tmp_path, 
         assert np.abs(one["pressure"] - other["pressure"]).max() < 0.01 * 9800.0 * DEPTH
     walls = frames[-1]["kind"] == WALL
     assert (frames[0]["pressure"][walls] != frames[-1]["pressure"][walls]).any()  # some became wet
+
+
+FALLING = (
+    "walls.basin={shape={box={lower=[-0.2, -0.08], upper=[0.6, 0.0]}}, condition='extrapolated'}",
+    "fluids.water.shape.box={lower=[0.0, 0.06], upper=[0.4, 0.16]}",
+    "fluids.water.velocity=[0.3, -2.0]",
+    "fluids.water.pressure=0",
+    "probes=off",
+)
+
+
+def test_a_gauge_of_force_changes_no_bit(tmp_path):
+    """And between 0.95 of the support and its end a wall that is dry bears what it gives: momentum stays."""
+    alone = start(draft(tmp_path, DAM, *FALLING))
+    asked = start(draft(tmp_path, DAM, *FALLING, "gauges.floor.force.on=['basin']"))
+    pushed = 0.0
+    for _ in range(60):
+        alone.step()
+        asked.step()
+        [(columns, _)] = [*asked.engine.neighbourhood.dry_beside_fluid(0, asked.store.total)] or [([], 0)]
+        pushed = max(pushed, *(np.abs(load[columns]).max(initial=0.0) for load in asked.store["load"]))
+    for name in ("position", "velocity", "pressure"):
+        assert np.array_equal(alone.store.shown(name), asked.store.shown(name)), name
+    assert pushed > 0.0
 
 
 def test_when_lists_are_made_decides_nothing(tmp_path):

@@ -7,22 +7,26 @@ import pytest
 from invariances.running import after, begun, matched
 from invariances.scenes import DX, SCENES
 from invariances.transforms import Shift
-from long import LONG
+from long import long_but_for
 
 SHORT = ("plain",)
 """The rest is long."""
 
-MOVED = ("plain", "solid", "rubber", "metal", "updated", "solids that meet", "soil", "mud by bingham")
-"""A scene of each kind of matter."""
+MOVED = (
+    "plain",
+    "solid",
+    "rubber",
+    "metal",
+    "updated",
+    "solids that meet",
+    "soil",
+    "mud by bingham",
+    "extrapolated",
+)
+"""A scene of each kind of matter, and walls that show a pressure of their own."""
 
 NO_SHIFT = {"position_shift": "off"}
 """Its size is bounded by the largest speed, which drifts: docs/limits.md says by how much that tells."""
-
-UNLIKE = pytest.mark.xfail(
-    strict=True,
-    reason="2.7e-7: a dry wall at rest sums nothing of fluid beyond 0.95 of the kernel's support, one that moves does",
-)
-"""Of mud by Bingham, where it drifts."""
 
 DRIFT, FAR = Shift(drift=(5.0, -3.0)), Shift(way=(1e5, -1e5))
 STEPS = 30
@@ -52,20 +56,14 @@ def differences(name, shift: Shift, folder) -> dict[str, float]:
     }
 
 
-def drifting(name):
-    """The parameter of a scene, with the marks of its test."""
-    known = [UNLIKE] if name == "mud by bingham" else []
-    return pytest.param(name, marks=known if name in SHORT else [LONG, *known])
-
-
-@pytest.mark.parametrize("name", [drifting(name) for name in MOVED])
+@pytest.mark.parametrize("name", long_but_for(SHORT, MOVED))
 def test_a_scene_that_drifts_does_the_same(tmp_path, name):
     """Places after some steps are rounded a hundred times as coarsely as their changes."""
     found = differences(name, DRIFT, tmp_path)
     assert {what: size for what, size in found.items() if not size < 1e-9} == {}
 
 
-@pytest.mark.parametrize("name", [n if n in SHORT else pytest.param(n, marks=LONG) for n in MOVED])
+@pytest.mark.parametrize("name", long_but_for(SHORT, MOVED))
 def test_a_scene_far_from_the_origin_does_the_same(tmp_path, name):
     """At 1e5 m, 800,000 spacings, a place is rounded to 1e-10 of a spacing, a hundredth of a pascal."""
     found = differences(name, FAR, tmp_path)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from psph.particles.neighbours import Neighbours
-from psph.particles.wetting import Rows, find_resting, find_undecided, mark_wet
+from psph.particles.wetting import Rows, find_beside_fluid, find_resting, find_undecided, mark_wet
 
 SUPPORT, SKIN, PERIOD = 1.0, 0.2, 10.0
 
@@ -72,19 +72,16 @@ def test_fluid_does_not_wet_a_wall_that_bears_nothing():
     assert wet_at(0.5, 1.0, bearing=False) == 0.0
 
 
-def resting(group, loaded=False, is_fluid=(0.0, 0.0, 0.0)):
-    """Which of three particles rest while they are dry, each beside the next one."""
-    found, lists = np.zeros(3, bool), lists_of(1, 2, 0)
-    groups, asked = np.array(group, np.uint8), np.array([False, loaded])
-    find_resting(0, 3, 0, lists, groups, np.uint8(1), asked, np.array(is_fluid), found)
-    return found.tolist()
-
-
 def test_walls_rest_and_what_moves_freely_does_not():
-    assert resting(group=[1, 0, 1]) == [True, False, True]
+    found, groups = np.zeros(3, bool), np.array([1, 0, 1], np.uint8)
+    find_resting(0, 3, 0, lists_of(1, 2, 0), groups, np.uint8(1), found)
+    assert found.tolist() == [True, False, True]
 
 
-def test_walls_whose_load_is_asked_for_rest_where_no_fluid_is_listed():
-    beside = (0.0, 1.0, 0.0)
-    assert resting(group=[1, 0, 1], loaded=True, is_fluid=beside) == [False, False, True]
-    assert resting(group=[1, 0, 1], loaded=False, is_fluid=beside) == [True, False, True]
+@pytest.mark.parametrize(("loaded", "says"), [(True, [True, False, False]), (False, [False] * 3)])
+def test_of_walls_whose_load_is_asked_for_those_that_list_fluid_are_found(loaded, says):
+    """Three particles, each beside the next one; the second is fluid."""
+    found, groups = np.zeros(3, bool), np.array([1, 0, 1], np.uint8)
+    is_fluid, asked = np.array([0.0, 1.0, 0.0]), np.array([False, loaded])
+    find_beside_fluid(0, 3, 0, lists_of(1, 2, 0), asked, groups, is_fluid, found)
+    assert found.tolist() == says
