@@ -110,7 +110,8 @@ class Field(NamedTuple):
     """A quantity that each particle carries.
 
     ``saved``: stands in every frame.  ``evolves``: has a rate and is advanced in time as density is;
-    formulas then see its predicted value.  ``start``: what stands in it before it is first filled.
+    formulas then see its predicted value.  ``start``: what stands in it before it is first filled, a number
+    or a function of the lattice (psph.scene.lattice) and of positions (n, dim), m, that gives n numbers.
     ``image``: how it turns at a plane mirror along which matter slips, and at one that it sticks to: one of
     the types above, of its shape; without one it cannot be read of a neighbour beside mirrors.
     """
@@ -121,7 +122,7 @@ class Field(NamedTuple):
     shape: str = SCALAR
     saved: bool = False
     evolves: bool = False
-    start: float = 0.0
+    start: Any = 0.0
     image: Any = None
 
     @property
@@ -235,9 +236,6 @@ APART = _fixed(
     "apart", "1", "1 where ordinary passes over pairs do not see the particle (psph.kinds), else 0"
 )
 
-OF_SITE = (_fixed("stress_point", "1", "1 where pressure is borne, 0 where velocity is carried"),)
-"""Fixed at the start by the site of the lattice: 1 on every other one, 0 between."""
-
 OF_SCENE = (
     _fixed("sound_speed", "m/s", "numerical speed of sound"),
     _fixed("smoothing_length", "m", "smoothing length h"),
@@ -263,6 +261,11 @@ def filled(effect) -> tuple[Field, ...]:
     """The fields that the sum of an effect fills: its ``writes``, one or several."""
     written = getattr(effect, "writes", ())
     return (written,) if isinstance(written, Field) else written
+
+
+def fixed(effect) -> tuple[Field, ...]:
+    """The fields that an effect brings and that stay as they are at the start: its ``fixed``."""
+    return getattr(effect, "fixed", ())
 
 
 PREFIX = "View_of__"

@@ -7,11 +7,23 @@ on any rank.  A rank that failed while another one waits for it in a collective 
 
 import faulthandler
 import os
+import sys
 import time
 
 import pytest
 
 pytest_plugins = ["durations"]
+
+
+@pytest.fixture(autouse=True)
+def kernels_as_they_were():
+    """A file that a case uses adds its kernels to those of psph in this process: no other test sees them."""
+    smoothing = sys.modules.get("psph.smoothing")
+    before = dict(smoothing.KERNELS) if smoothing else {}
+    yield
+    smoothing = sys.modules.get("psph.smoothing")
+    for name in [name for name in smoothing.KERNELS if name not in before] if before else ():
+        del smoothing.KERNELS[name]
 
 
 def pytest_addoption(parser):

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from remedies import FILES, beside
+
 from psph.case import Case, CaseError, load
 from psph.case.files import files_of
 
@@ -63,8 +65,9 @@ def with_its_files(case: Case, folder: Path) -> None:
 
 
 def draft(folder: Path, text: str = WATER, *overrides: str) -> Case:
-    """The case of a text, written to ``case.toml`` in a folder."""
+    """The case of a text, written to ``case.toml`` in a folder, beside the files of run/remedies that it names."""
     path = folder / "case.toml"
+    beside(folder, *(file for file in FILES if any(f'"{file}"' in said for said in (text, *overrides))))
     path.write_text(text, encoding="utf-8")
     return load(path, overrides)
 

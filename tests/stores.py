@@ -1,15 +1,18 @@
 """Stores and views for tests: of any fields by name, and of any values."""
 
+from remedies import ENTRIES
+
 from psph.fields import view_of
 from psph.particles.store import Store
-from psph.physics.catalogue import BUILT_IN
+from psph.physics.catalogue import Catalogue
 
-ALL_NAMES = tuple(BUILT_IN.fields)
+FIELDS = Catalogue(ENTRIES).fields
+ALL_NAMES = tuple(FIELDS)
 
 
 def store_of(dimensions, names, constants=None):
     """An empty store of the named fields, seen by formulas under every known name."""
-    fields = [BUILT_IN.fields[name] for name in names]
+    fields = [FIELDS[name] for name in names]
     return Store(dimensions, fields, constants or {}, view_of(ALL_NAMES))
 
 

@@ -44,9 +44,9 @@ CIRCLES: list[set[str]] = []
 
 TWICE = """
 Absorbing ArtificialStress ArtificialViscosity Asked BackgroundPressure Box Case
-ConservativeSmoothing Cross DensityDiffusion Drawn Floating Frame Granular Guards Harmonic
+Cross DensityDiffusion Drawn Floating Frame Granular Guards Harmonic
 HerschelBulkley Lattice Line Matter Meeting Neighbours PairDamping Paste Plane Probe
-RiemannDissipation Row Rows Run Scene Schedule Steady Strength Stress Study Sums Table Touching
+Row Rows Run Scene Schedule Steady Strength Stress Study Sums Table Touching
 Turning
 """
 """Names that classes of several files have: one class a name is the aim, so none is to come."""

@@ -6,15 +6,25 @@ from itertools import product
 import numba
 import numpy as np
 import pytest
+from remedies import FOLDER
 
+from psph.case.extensions import catalogue_of
 from psph.composition.space import BEYOND
 from psph.moments import fastest_smoothing, moments_below_a_surface, normalised
 from psph.smoothing import KERNELS, kernel, slope_over_r
 
 H = 0.7
-ALL = [(name, dim) for name in KERNELS for dim in (1, 2, 3)]
+BESIDE = ("quadratic", "spiky")
+"""Kernels of a file of run/remedies."""
+ALL = [(name, dim) for name in (*KERNELS, *BESIDE) for dim in (1, 2, 3)]
 JOINTS = sorted({0.0, 1.0, 2.0, 3.0, *(math.sqrt(2.0) * k for k in (1, 2, 3))})
 """r/h at which pieces of some spline join."""
+
+
+@pytest.fixture(autouse=True)
+def with_those_beside(kernels_as_they_were):
+    """As a case that uses the file does."""
+    catalogue_of(str(FOLDER / "case.toml"), ["kernels.py"])
 
 
 def sphere(dim, r):

@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from psph.case.departed import departed
 from psph.case.errors import advise, dotted, nearest
 from psph.case.findings import Location
 from psph.case.structure import alternatives, find, keys_of, places_of
@@ -109,6 +110,10 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
         return f"{plain(value)} is too short; give {place + 1} numbers at least"
     if kind == "missing":
         return f"missing; {_how_to_add(loc, schema)}"
+    if kind == "extra_forbidden" and (where := departed(loc)):
+        return where
+    if kind == "literal_error" and (where := departed(loc, value)):
+        return f"{plain(value)} {where}"
     if kind == "extra_forbidden":
         return f"unknown key; {_where_it_is_known(loc, schema, value)}"
     if details["loc"][-1] == "[key]":

@@ -1,7 +1,6 @@
 """The table ``[physics]``, generated from the catalogue of effects."""
 
 from collections.abc import Sequence
-from itertools import groupby
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, create_model
@@ -32,9 +31,11 @@ def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -
             ),
         )
     }
-    optional = [entry for entry in catalogue if entry.key.startswith(PREFIX)]
-    for name, entries in groupby(optional, lambda entry: entry.key[len(PREFIX) :].partition("=")[0]):
-        fields[name] = _field(list(entries))
+    optional: dict[str, list[Entry]] = {}
+    for entry in catalogue:
+        if entry.key.startswith(PREFIX):  # a file's further choice stands apart from the others
+            optional.setdefault(entry.key[len(PREFIX) :].partition("=")[0], []).append(entry)
+    fields |= {name: _field(entries) for name, entries in optional.items()}
     return create_model(
         "Physics", __base__=Table, __doc__="Forces and other effects on the fluids.", **fields
     )

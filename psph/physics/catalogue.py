@@ -5,12 +5,10 @@ from functools import cache
 from types import FunctionType
 from typing import NamedTuple
 
-from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, OF_SITE, Field, by_name, filled
+from psph.fields import OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, Field, by_name, filled, fixed
 from psph.physics.damping.acoustic import AcousticDamper
 from psph.physics.damping.diffusion import DensityDiffusion, FourthOrderDiffusion
-from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.reconstructed import ReconstructedDamping
-from psph.physics.damping.riemann import RiemannDissipation
 from psph.physics.fluid.absorbing import DampingZone, OtherDampingZone
 from psph.physics.fluid.apparent import ApparentViscosity
 from psph.physics.fluid.continuity import Continuity
@@ -25,7 +23,6 @@ from psph.physics.fluid.pressure import (
     TensileControl,
 )
 from psph.physics.fluid.state import Linear, Tait
-from psph.physics.fluid.stress_points import StressPoints
 from psph.physics.fluid.summation import SummationDensity
 from psph.physics.fluid.viscosity import (
     ArtificialViscosity,
@@ -35,10 +32,9 @@ from psph.physics.fluid.viscosity import (
     LaplacianFriction,
     PairDamping,
 )
-from psph.physics.order.potential import LocalPotential, PairPotential
+from psph.physics.order.potential import LocalPotential
 from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
-from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.contact import SolidContact
 from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
@@ -111,9 +107,9 @@ def methods(kind: type) -> list[str]:
 
 @cache
 def _fields(effects: tuple[type, ...]) -> dict[str, Field]:
-    written = [field for effect in effects for field in filled(effect)]
+    written = [field for effect in effects for field in (*filled(effect), *fixed(effect))]
     more = [getattr(e, of) for e in effects for of in ("marks", "remembers") if hasattr(e, of)]
-    return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SITE, OF_SCENE, written, more)
+    return by_name(OF_EVERY_SCENE, OF_MATERIAL, OF_SCENE, written, more)
 
 
 CATALOGUE = (
@@ -122,7 +118,6 @@ CATALOGUE = (
     Entry("physics.pressure_gradient=minimum", MinimumPressure),
     Entry("physics.pressure_gradient=difference", DifferencePressure),
     Entry("physics.pressure_gradient=tensile_control", TensileControl),
-    Entry("physics.pressure_gradient=stress_points", StressPoints),
     Entry("physics.artificial_stress", ArtificialStress),
     Entry("soils.*|solids.*.description=updated", DeviatorRate),
     Entry("soils.*|solids.*.description=updated", DeviatoricForce),
@@ -142,9 +137,6 @@ CATALOGUE = (
     Entry("physics.reconstructed_damping", ReconstructedDamping),
     Entry("physics.acoustic_damper", AcousticDamper),
     Entry("physics.impact_damping", ImpactDamping),
-    Entry("physics.riemann_dissipation", RiemannDissipation),
-    Entry("physics.conservative_smoothing", ConservativeSmoothing),
-    Entry("physics.pair_potential", PairPotential),
     Entry("physics.local_potential", LocalPotential),
     Entry("physics.gravity", Gravity),
     Entry("physics.central_force", CentralForce),
@@ -161,9 +153,6 @@ CATALOGUE = (
     Entry("physics.summation_density", SummationDensity),
     Entry("physics.particle_shifting", ParticleShifting),
     Entry("physics.position_shift", PositionShift),
-    Entry("physics.xsph", XSPH),
-    Entry("physics.transport_velocity", TransportVelocity),
-    Entry("physics.generalised_transport_velocity", GeneralisedTransportVelocity),
     Entry("physics.gradient_correction", GradientCorrection),
 )
 

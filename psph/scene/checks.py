@@ -26,7 +26,7 @@ from psph.scene.shapes import bounds, shown
 from psph.scene.soils import soil_warnings
 from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.solved import exact_faults
-from psph.scene.start_checks import driven_flow, start_warnings, surface_warnings
+from psph.scene.start_checks import driven_flow, effect_warnings, start_warnings
 from psph.scene.units import in_degrees, in_millimetres, slips
 from psph.scene.walls import layers_needed, thinnest_walls
 from psph.scene.waving import wave_faults, wave_warnings
@@ -348,7 +348,7 @@ OF_FLUIDS = (
     wave_warnings,
     _thin_walls,
     _surface_threshold,
-    surface_warnings,
+    effect_warnings,
     start_warnings,
     _minimum_in_disorder,
     _slow_sound,

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
+from psph.case.findings import asked_of
 from psph.physics.facts import SOUND_OVER_SPEED
-from psph.physics.fluid.pressure import AUTO
 from psph.scene.periodic_gravity import driven_speed
 from psph.scene.scene import Scene
 from psph.scene.still import HYDROSTATIC, felt_gravity, stills_of
@@ -31,25 +31,11 @@ def is_silent(fluid) -> bool:
     return "pressure" not in fluid.model_fields_set
 
 
-def surface_warnings(scene: Scene) -> Iterator[str]:
-    """What does not go with a free surface, a line each."""
-    physics = scene.case.physics
-    if physics.pressure_gradient == "minimum" and scene.has_free_surface:
-        yield (
-            'physics.pressure_gradient: "minimum" is unstable at a free surface, where it only pushes '
-            'outward, and the fluid has one; use "symmetric", or enclose the fluid'
-        )
-    given = physics.background_pressure
-    if given is not None and given.pressure != AUTO and scene.has_free_surface:
-        yield (
-            "physics.background_pressure: blows a free surface apart, and the fluid has one; "
-            "leave it out, or enclose the fluid"
-        )
-    if physics.transport_velocity is not None and scene.has_free_surface:
-        yield (
-            "physics.transport_velocity: moves a free surface outwards, and the fluid has one; use "
-            "physics.generalised_transport_velocity, or enclose the fluid"
-        )
+def effect_warnings(scene: Scene) -> Iterator[str]:
+    """What the effects that the case asks for warn of, a line each."""
+    for name, _, effect in asked_of(scene.case):
+        if hasattr(effect, "warns"):
+            yield from (f"physics.{name}: {says}" for says in effect.warns(scene))
 
 
 def driven_flow(scene: Scene) -> Iterator[str]:

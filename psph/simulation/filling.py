@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from psph.fields import APART, OF_MATERIAL, OF_SITE, OTHER
+from psph.fields import APART, OF_MATERIAL, OTHER
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
 from psph.physics.solid.contact import COVER, FACE
@@ -38,8 +38,10 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
         for field in OF_MATERIAL
     }
     known[APART.name] = np.array([one.kind == OTHER for one in species_of(scene)])[species]
-    known |= {field.name: scene.layout.lattice.odd(position) for field in OF_SITE}
-    known |= {field.name: field.start for field in store.fields.values() if field.start}
+    for field in store.fields.values():
+        if field.start:
+            by_site = callable(field.start)
+            known[field.name] = field.start(scene.layout.lattice, position) if by_site else field.start
     for name, values in known.items():
         if name in store:
             block[store.rows[name].start] = values

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from psph.fields import OF_MATERIAL, OF_SITE
+from psph.fields import OF_MATERIAL
 from psph.kinds import kinds_in
 from psph.physics.catalogue import Entry
 from psph.scene.solids import meets
@@ -43,7 +43,7 @@ def material_value(material, name: str) -> float:
 
 
 def split(species, names) -> tuple[dict[str, float], tuple[str, ...]]:
-    """Quantities fixed at the start that formulas read, of some ``species``: shared values, and names of
+    """Quantities fixed by the material that formulas read, of some ``species``: shared values, and names of
     those that vary."""
     shared, varying = {}, []
     for name in (field.name for field in OF_MATERIAL):
@@ -54,7 +54,7 @@ def split(species, names) -> tuple[dict[str, float], tuple[str, ...]]:
             shared[name] = values.pop()
         else:
             varying.append(name)
-    return shared, (*varying, *(field.name for field in OF_SITE if field.name in names))
+    return shared, tuple(varying)
 
 
 def has_couples(scene) -> bool:

@@ -24,6 +24,7 @@ from psph.fields import (
     by_name,
     companions,
     filled,
+    fixed,
     view_of,
 )
 from psph.kinds import Kind, kinds_in
@@ -275,8 +276,10 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     told = carried_fields(movement, scene.frame)
     told_by = {e.told_by for e in marking}
     shared, varying = split(species, own | told_by)
+    at_start = tuple(field.name for _, effect, _ in fitted for field in fixed(effect))
+    varying += tuple(name for name in at_start if name in own)
     computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_kinds))
-    refuse_unwritten(scene, called, (*computed, *told))
+    refuse_unwritten(scene, called, (*computed, *told, *at_start))
     seen = tuple(field for name, field in fields.items() if name in own)
     imaged = by_name(OF_EVERY_SCENE, seen).values()
     if scene.layout.mirror_planes:

@@ -8,7 +8,7 @@ from psph.acts import acts_on
 from psph.case.extensions import origin
 from psph.composition.trial import Reads, UnknownField, WrongShape, reads
 from psph.errors import Refused, one_line
-from psph.fields import OF_MATERIAL, OF_SCENE, OF_SITE, Field
+from psph.fields import OF_MATERIAL, OF_SCENE, Field
 from psph.physics.catalogue import Entry
 
 
@@ -56,7 +56,7 @@ def called_with(entry: Entry, effect, reason: str, scene, fields: Mapping[str, F
 
 def refuse_unwritten(scene, called: Iterable[Called], computed: Iterable[str]) -> None:
     """Raise UnknownField where an effect reads what only an absent effect would write."""
-    known = [*computed, *(field.name for field in (*OF_MATERIAL, *OF_SITE, *OF_SCENE))]
+    known = [*computed, *(field.name for field in (*OF_MATERIAL, *OF_SCENE))]
     for call in called:
         for name in sorted((call.reads.own | call.reads.neighbour).difference(known)):
             says = f"reads '{name}', which no effect of this scene writes; it may read {', '.join(known)}"

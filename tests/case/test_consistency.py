@@ -9,6 +9,7 @@ BALL = "{ center = [0.0, 0.0, 0.0], radius = 1.0 }"
 BOX = "{ lower = [0.0, 0.0], upper = [1.0, 0.5] }"
 PERIODIC = 'spacing = 0.1\nperiodic = ["x"]\n'
 CENTRAL = "[physics]\ncentral_friction = {}"
+CARRIED = f'use = ["stress_points.py", "transport.py"]\n{WATER}'
 WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
 
 
@@ -73,11 +74,11 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             'physics.gradient_correction: does not work with physics.pressure_gradient = "minimum"; use',
         ),
         (
-            WATER.replace("[physics]", "[physics]\nparticle_shifting = 0.1\ntransport_velocity = 1.0"),
-            "physics.particle_shifting: physics.transport_velocity shifts particles too; set it to",
+            WATER.replace("[physics]", "[physics]\nparticle_shifting = 0.1\nposition_shift = 0.1"),
+            "physics.particle_shifting: physics.position_shift shifts particles too; set it to",
         ),
         (
-            WATER.replace("[physics]", "[physics]\nxsph = 0.5\ntransport_velocity = 1.0"),
+            CARRIED.replace("[physics]", "[physics]\nxsph = 0.5\ntransport_velocity = 1.0"),
             'physics.xsph: physics.transport_velocity moves particles too; set it to "off", or remove',
         ),
         (
@@ -85,7 +86,7 @@ WALL = f"\n[walls.floor]\nshape.box = {BOX}\n"
             'physics.artificial_stress: works only with physics.pressure_gradient = "symmetric", and',
         ),
         (
-            WATER.replace("[physics]", '[physics]\npressure_gradient = "stress_points"\nxsph = 0.5'),
+            CARRIED.replace("[physics]", '[physics]\npressure_gradient = "stress_points"\nxsph = 0.5'),
             'physics.xsph: physics.pressure_gradient = "stress_points" moves half of the particles too; choose',
         ),
         (
@@ -204,7 +205,7 @@ IN_SPACE = "solids.block = { shape.box = " + BOX + ", density = 1e3, young = 1e6
     ("key", "acts"),
     [
         ("physics.damping_zone = { begin = 0.0, end = 1.0 }", "fluids"),
-        ("physics.xsph = 0.1", "fluids, soils and updated Lagrangian solids"),
+        ("physics.pair_damping = 0.1", "fluids, soils and updated Lagrangian solids"),
     ],
 )
 def test_an_effect_without_matter_to_act_on_is_refused(tmp_path, key, acts):

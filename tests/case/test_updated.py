@@ -58,7 +58,9 @@ def test_beside_water_its_scheme_says_nothing_more(tmp_path):
     water = "fluids.water={shape={box={lower=[2.0, 0.0], upper=[3.0, 1.0]}}}"
     [line] = refusal(tmp_path, BLOCK, water, "scheme=stable")
     assert "fluids: nothing is known" in line
-    lines = refusal(tmp_path, BLOCK, water, "scheme=stable", "physics.xsph=0.3", "physics.position_shift=0.2")
+    lines = refusal(
+        tmp_path, BLOCK, water, "scheme=stable", "physics.pair_damping=0.3", "physics.position_shift=0.2"
+    )
     assert len(lines) == 2 and "physics.position_shift" in lines[1]
 
 

@@ -1,9 +1,8 @@
 """Runs of the shipped cases, and what the tests measure on them."""
 
-from pathlib import Path
-
 import numpy as np
 from mpi4py import MPI
+from remedies import asked
 from scipy.spatial import cKDTree
 
 from psph.case import load
@@ -16,7 +15,8 @@ CASES = "run/cases"
 def finished(case, folder, *overrides):
     """The run of a case of ``CASES`` in this process: on one rank, since the bits are the same on any
     number of them (test_ranks.py), and ranks that share a core with other tests wait for each other."""
-    run(load(Path(CASES) / f"{case}.toml", overrides), folder, MPI.COMM_SELF, say=lambda *_: None)
+    path = asked(f"{CASES}/{case}.toml", folder, overrides)
+    run(load(path, overrides), folder, MPI.COMM_SELF, say=lambda *_: None)
     return Run(folder)
 
 

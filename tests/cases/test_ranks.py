@@ -10,6 +10,7 @@ from jobs import mpirun
 from long import LONG, long_but_for, tell
 from mpi4py import MPI
 from parallel.test_simulation import state
+from remedies import asked
 
 from psph.case import load
 from psph.output.reader import Run
@@ -93,7 +94,8 @@ def test_every_shipped_case_is_here():
 
 def run(case, ranks, folder, *overrides):
     sets = [part for o in (f"time.end={END[case]}", *overrides) for part in ("--set", o)]
-    job = mpirun(ranks, ["-m", "psph", f"{CASES}/{case}.toml", "--out", folder, *sets])
+    path = asked(f"{CASES}/{case}.toml", folder, overrides)
+    job = mpirun(ranks, ["-m", "psph", path, "--out", folder, *sets])
     assert job.returncode == 0, job.stderr
     return Run(folder)
 
@@ -162,8 +164,12 @@ def test_a_few_steps_of_every_case_on_one_and_two_ranks(case):
 @pytest.mark.parametrize(
     "carried",
     [
-        ("physics.transport_velocity=1.0", "physics.pressure_gradient=tensile_control"),
-        ("physics.pressure_gradient=stress_points",),
+        (
+            'use=["transport.py"]',
+            "physics.transport_velocity=1.0",
+            "physics.pressure_gradient=tensile_control",
+        ),
+        ('use=["stress_points.py"]', "physics.pressure_gradient=stress_points"),
     ],
 )
 def test_same_bits_where_particles_are_carried_by_another_velocity(carried, tmp_path):

@@ -32,12 +32,12 @@ def test_tensile_control_feels_no_uniform_tension(tmp_path):
     assert held["largest_speed"].max() < 1.05e-7
 
 
-STRESS_POINTS = "physics.pressure_gradient=stress_points"
+STRESS_POINTS = ('use=["stress_points.py"]', "physics.pressure_gradient=stress_points")
 
 
 def test_stress_points_slow_the_kick_at_the_usual_smoothing(tmp_path):
     """As the paper says of them, they do not remove the instability: at h/dx 1.2 it grows on."""
-    slowed = log(tmp_path / "d", STRESS_POINTS)
+    slowed = log(tmp_path / "d", *STRESS_POINTS)
     plain = log(tmp_path / "e", "time.end=0.01")
     assert slowed["largest_speed"].max() > 0.1
     assert 50.0 < growth_rate(slowed) < 0.2 * growth_rate(plain)
@@ -47,7 +47,7 @@ def test_stress_points_stop_the_kick_where_h_fits_the_spacing_of_either_set(tmp_
     """1.7 = 1.2 times the square root of two; the control is plain SPH with the same h."""
     held, torn = (
         log(tmp_path / name, "space.smoothing=1.7", *sets)["largest_speed"].max()
-        for name, sets in (("f", (STRESS_POINTS,)), ("g", ("time.end=0.03",)))
+        for name, sets in (("f", STRESS_POINTS), ("g", ("time.end=0.03",)))
     )
     assert held < 1.05e-7 and torn > 0.1
 
@@ -57,7 +57,7 @@ def test_stress_points_carry_sound(tmp_path):
 
     def error(spacing):
         sets = ("space.kernel=cubic", "space.smoothing=2.0", f"space.spacing={spacing}", "time.end=1.0")
-        run = finished("sound_wave", tmp_path / str(spacing), *sets, STRESS_POINTS)
+        run = finished("sound_wave", tmp_path / str(spacing), *sets, *STRESS_POINTS)
         return run.errors()["velocity_l2"][-1]
 
     coarse, fine = (error(dx) for dx in (0.0125, 0.00625))

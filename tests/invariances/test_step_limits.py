@@ -9,6 +9,7 @@ from invariances.amplification import amplification
 from invariances.running import begun, by_id
 from invariances.scenes import BLOCK, DX, SAND, SCENES, box, less, scene, stirred_solid, tank
 from long import LONG, long_but_for
+from remedies import uses
 
 from psph.errors import Failed
 
@@ -34,6 +35,7 @@ def lattice(
         "scheme": scheme,
         "space": {"dimensions": dimensions, "spacing": DX, **space},
         "time": {"end": 10.0, "gather_every": gather_every},
+        "use": uses(physics or {}),
         "physics": {"sound_speed": 20.0, **(physics or {})},
         "fluids": {"water": {"shape": {"box": ends}, **fluid}},
     }

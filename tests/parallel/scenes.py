@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import tomli_w
+from remedies import uses
 
 LENGTH, WIDTH, SPACING = 30, 12, 0.1
 """Spacings along the slab axis and across; eight planes of cells for seven ranks."""
@@ -130,7 +131,6 @@ FAMILIES = {
         physics={
             "gradient_correction": (0.5, 1.0),
             "pair_damping": "off",
-            "pair_potential": "off",
             "density_diffusion": "off",
             "fourth_order_diffusion": (0.0, 0.2),
             "reconstructed_damping": {"alpha": 0.03, "in_disorder": 0.3},
@@ -165,7 +165,7 @@ FAMILIES = {
 
 
 def scene(family: Family, seed: int) -> str:
-    """The TOML of a scene; the same for the same seed."""
+    """The TOML of a scene; the same for the same seed.  It may use files of run/remedies beside it."""
     rng = np.random.default_rng(seed)
     sizes = [LENGTH if name == family.along else WIDTH for name in axes(family)]
     sizes = [n * SPACING for n in sizes]
@@ -180,6 +180,8 @@ def scene(family: Family, seed: int) -> str:
         "fluids": dict(_fluids(family, rng, sizes)),
         "perturbations": [_perturbation(rng, sizes) for _ in range(rng.integers(0, 3))],
     }
+    if files := uses(family.physics):
+        case = {"use": files, **case}
     if family.walls:
         case["walls"] = {"wall": _wall_of(family, sizes)}
     if family.moves:

@@ -9,6 +9,7 @@ import pytest
 from jobs import mpirun
 from long import long_but_for, tell
 from parallel.scenes import FAMILIES, scene
+from remedies import FILES, beside
 
 TESTS = Path(__file__).parents[1]
 SHORT = ("tank",)
@@ -31,6 +32,7 @@ def told(folder, steps):
 @pytest.mark.parametrize("name", long_but_for(SHORT, FAMILIES))
 def test_same_bits_however_it_is_run(name, tmp_path):
     seeds = range(1 if name in SHORT else 4)
+    beside(tmp_path, *FILES)
     for seed in seeds:
         path = tmp_path / f"{seed}.toml"
         path.write_text(scene(FAMILIES[name], 1000 * list(FAMILIES).index(name) + seed))

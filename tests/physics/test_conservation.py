@@ -7,17 +7,18 @@ import json
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from jobs import clean_environment
 from physics.pairs import ONE_FOR_ALL, pair_of, sums_of, view
 from physics.test_effects import made
+from remedies import ENTRIES, remedy, using
 from simulation.test_absence import calling_for
 
 from psph.composition.terms import displacement, push, radial, shear
 from psph.fields import filled
-from psph.physics.catalogue import CATALOGUE
 from psph.physics.damping.acoustic import CorrectedDamper
 from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.apparent import ApparentFriction, CentralApparentFriction, FluidAlone
@@ -29,7 +30,7 @@ from psph.physics.fluid.viscosity import (
     NewtonianFriction,
     PairDamping,
 )
-from psph.physics.order.potential import InDisorder, PairPotential, neutral_potential
+from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
 
@@ -47,7 +48,7 @@ DRIFT = 1e-13
 
 def claiming(what):
     """The effects of the catalogue that say that they conserve it."""
-    return [e.effect for e in CATALOGUE if what in getattr(e.effect, "conserves", ())]
+    return [e.effect for e in ENTRIES if what in getattr(e.effect, "conserves", ())]
 
 
 def in_a_scene(effect, dim):
@@ -57,7 +58,7 @@ def in_a_scene(effect, dim):
         "CentralFriction": CentralNewtonianFriction,
         "CorrectedRub": lambda: NewtonianFriction(CorrectedRub()),
         "LaminarViscosity": NewtonianFriction,
-        "PairPotential": lambda: neutral_potential(0.5, 50.0, 0.01, dim, alike=False),
+        "PairPotential": lambda: potential_of_unequal(dim),
         "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
         "CentralApparentFriction": lambda: CentralApparentFriction(LAWS, 1.0, FluidAlone()),
         "PositionShift": lambda: LatticeShift(0.1, -1e-4, 1e-6),
@@ -65,6 +66,13 @@ def in_a_scene(effect, dim):
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()
+
+
+def potential_of_unequal(dim):
+    """The pair potential of a scene of several masses."""
+    several = [SimpleNamespace(mass=mass) for mass in (1.0, 2.0)]
+    scene = SimpleNamespace(species=several, sound_speed=50.0, spacing=0.01, dimensions=dim)
+    return remedy("PairPotential")(0.5).in_scene(scene)
 
 
 def test_the_two_ends_of_a_pair_differ_in_all_that_a_formula_reads():
@@ -122,7 +130,7 @@ def test_torques_between_different_particles_sum_up_to_nothing(effect, dim):
 
 
 @pytest.mark.parametrize("own, other", ((1.0, 1000.0), (1000.0, 1.0)))
-@pytest.mark.parametrize("effect", (PairDamping, ImpactDamping, PairPotential))
+@pytest.mark.parametrize("effect", (PairDamping, ImpactDamping, LocalPotential))
 def test_no_numerical_force_is_stronger_beside_another_fluid_than_in_ones_own(effect, own, other):
     """So air beside water is not blown up, and the limits of the time step hold; water hardly feels air."""
     one, volume, strengths = in_a_scene(effect, 2), 1e-4, {}
@@ -194,12 +202,12 @@ def after_steps(folder, scheme, density, overrides, steps=4):
 
 def boxes():
     """For each effect that claims momentum a box with it, and whole schemes: name, arguments."""
-    for entry in CATALOGUE:
+    for entry in ENTRIES:
         if MOMENTUM in getattr(entry.effect, "conserves", ()):
             overrides = [
                 o for text in calling_for(entry) for o in (text, text.replace("fluids.water", "fluids.oil"))
             ]
-            yield entry.effect.__name__, ("sph", 800.0, sorted(set(overrides)))
+            yield entry.effect.__name__, ("sph", 800.0, [*using(entry.effect), *sorted(set(overrides))])
     yield "the stable scheme", ("stable", 800.0, [])
     yield "the stable scheme, a light fluid", ("stable", 200.0, [])
 

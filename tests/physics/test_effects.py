@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 from long import long_but_for
 from physics.pairs import OPEN, H, pair_of, rates, sums_of, view
+from remedies import ENTRIES, remedy
 
 from psph.composition.pair import take
 from psph.composition.trial import UnknownField, reads
-from psph.physics.catalogue import BUILT_IN, CATALOGUE
+from psph.physics.catalogue import BUILT_IN
 from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
-from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.damping.matter import SeveralMatters
-from psph.physics.damping.riemann import RiemannDissipation
 from psph.physics.fluid.absorbing import Absorbing, DampingZone
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import CorrectionBesideWalls, DifferenceCorrection, GradientCorrection
@@ -36,7 +35,6 @@ from psph.physics.motion import Fixed
 from psph.physics.order.potential import neutral_potential
 from psph.physics.order.shifting import LatticeShift, ParticleShifting, lattice_shift
 from psph.physics.order.stress import NeighbourStress
-from psph.physics.order.transport import XSPH, GeneralisedTransportVelocity, TransportVelocity
 from psph.physics.rigid.motion import Rigid
 from psph.physics.solid.anvil import Anvils
 from psph.physics.surface.free import FreeSurface, TensionFloor
@@ -47,6 +45,13 @@ from psph.physics.walls.repulsive import RepulsiveWall
 from psph.smoothing import kernel
 
 DIMENSIONS = (1, 2, 3)
+
+RiemannDissipation, ConservativeSmoothing, XSPH = map(
+    remedy, ("RiemannDissipation", "ConservativeSmoothing", "XSPH")
+)
+TransportVelocity, GeneralisedTransportVelocity = map(
+    remedy, ("TransportVelocity", "GeneralisedTransportVelocity")
+)
 
 
 def made(effect, dim):
@@ -287,7 +292,6 @@ OFTEN_USED = {
     "ArtificialViscosity",
     "PairDamping",
     "ImpactDamping",
-    "PairPotential",
     "DensityDiffusion",
     "DryWall",
 }
@@ -295,7 +299,7 @@ OFTEN_USED = {
 
 @pytest.mark.parametrize("dim", long_but_for(("2",), DIMENSIONS))
 @pytest.mark.parametrize(
-    "effect", long_but_for(OFTEN_USED, [e.effect for e in CATALOGUE], lambda e: e.__name__)
+    "effect", long_but_for(OFTEN_USED, [e.effect for e in ENTRIES], lambda e: e.__name__)
 )
 def test_compiled_is_plain(effect, dim):
     agree_compiled(made(effect, dim), dim)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from drafts import TANK, draft
 from physics.pairs import pair_of, sums_of, view
+from physics.test_conservation import potential_of_unequal
 
 from psph.case import CaseError, load
 from psph.physics.damping.diffusion import BesideSmoothDensity, DensityDiffusion, TankDiffusion
@@ -15,7 +16,7 @@ from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
 from psph.physics.fluid.viscosity import PairDamping
 from psph.physics.fluid.weight import Steady
-from psph.physics.order.potential import LocalPotential, UnequalPotential, neutral_potential
+from psph.physics.order.potential import LocalPotential
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 
@@ -188,8 +189,7 @@ def potential(dim):
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_the_potential_acts_in_disorder_alone(dim):
-    p, whole = view(dim=dim), neutral_potential(0.5, C, 0.01, dim, alike=False)
-    assert isinstance(whole, UnequalPotential)
+    p, whole = view(dim=dim), potential_of_unequal(dim)
     symmetric = [np.eye(dim)[a, b] for a in range(dim) for b in range(a, dim)]
 
     def force(of_i, of_j):

@@ -120,7 +120,7 @@ def test_what_the_scheme_asks_for_and_the_scene_drops_says_why(tmp_path):
     assert "corrected gradients hold what " in closed["BackgroundPressure"]
     still = not_simulated(tmp_path, BOX, "physics.background_pressure=auto")
     assert still["BackgroundPressure"].endswith(": no pressure is negative at the start, and nothing moves")
-    assert closed["XSPH"] == "the case does not say physics.xsph"
+    assert closed["PairDamping"] == "the case does not say physics.pair_damping"
     rubbed = not_simulated(tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.central_friction={}")
     assert rubbed["LaminarViscosity"].endswith(": physics.central_friction takes its place")
     rubbed = not_simulated(tmp_path, TANK, "fluids.water.viscosity=1e-3", "physics.laplacian_friction={}")
@@ -141,9 +141,9 @@ def test_keys_that_the_case_does_not_name_stand_together_by_table(tmp_path):
     begin = lines.index("Not simulated: the case does not name these keys (docs/case.md)")
     end = next(k for k, line in enumerate(lines) if line.startswith("Time step"))
     told = " ".join(line.strip() for line in lines[begin + 1 : end])
-    assert "physics   pressure_gradient = minimum or difference or tensile_control or stress_points, " in told
+    assert "physics   pressure_gradient = minimum or difference or tensile_control, " in told
     assert "walls     condition = extrapolated or repulsive or penalty" in told
-    assert "xsph" in told and "fluids    rheology" in told
+    assert "position_shift" in told and "fluids    rheology" in told
     assert "no_slip" not in told and "viscosity" not in told.split("fluids")[1] and "gravity" not in told
     assert max(map(len, lines[begin:end])) <= 110
 

@@ -242,15 +242,15 @@ def test_the_shares_add_up_to_what_moved_the_particle(name, tmp_path):
 
 
 def test_the_term_that_pushed_hardest_is_the_one_that_was_made_strong(tmp_path):
-    case = load("run/cases/minimal.toml", ["physics.pair_potential=50.0"])
+    case = load("run/cases/minimal.toml", ["physics.local_potential=50.0"])
     simulation = steps(case, COMM, 1)
     store = simulation.store
     fluid = (store.shown("kind") == 0) * np.linalg.norm(store.shown("acceleration"), axis=1)
     strong = find(simulation, Scene(case), fluid)
-    assert strong.hardest().name == "pair potential"
+    assert strong.hardest().name == "local potential"
     weak = steps(load("run/cases/minimal.toml"), COMM, 1)
     weak = find(weak, Scene(case), (weak.store.shown("id") == strong.id) * 1.0)
-    assert weak.hardest().name != "pair potential"
+    assert weak.hardest().name != "local potential"
 
 
 LEAKING = """

@@ -5,6 +5,7 @@ import time
 
 import pytest
 from drafts import SQUARE, TANK, draft
+from remedies import with_remedies
 
 from psph.case import load
 from psph.runs.explain import explain
@@ -53,9 +54,11 @@ def test_tensile_control_is_neutral_under_tension_alone(tmp_path):
     assert line == drawn
 
 
-def test_of_stress_points_nothing_is_predicted():
+def test_of_stress_points_nothing_is_predicted(tmp_path):
     """They are not neutral: at h/dx 1.2 the kick grows (tests/cases/test_remedies.py)."""
-    _, line = said(paper("negative_pressure_traditional", "physics.pressure_gradient=stress_points"))
+    case = with_remedies("run/cases/negative_pressure_traditional.toml", tmp_path)
+    sets = ['use=["stress_points.py"]', "physics.pressure_gradient=stress_points"]
+    _, line = said(load(case, sets))
     assert line.startswith("  no forecast  ")
 
 
@@ -114,8 +117,9 @@ def test_explain_holds_it(tmp_path):
     assert any(line.startswith("Stability of the square lattice at the start") for line in lines)
 
 
-def test_an_acronym_is_one_word():
-    *_, left = said(paper("negative_pressure_traditional", "physics.xsph=0.5"))
+def test_an_acronym_is_one_word(tmp_path):
+    case = with_remedies("run/cases/negative_pressure_traditional.toml", tmp_path)
+    *_, left = said(load(case, ['use=["transport.py"]', "physics.xsph=0.5"]))
     assert left.split() == ["not", "included", "xsph"]
 
 

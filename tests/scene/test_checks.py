@@ -415,10 +415,11 @@ def test_a_background_pressure_at_a_free_surface_is_warned_of(tmp_path):
 
 
 def test_a_transport_velocity_at_a_free_surface_is_warned_of(tmp_path):
-    [line] = checked(tmp_path, TANK, "physics.transport_velocity=1.0")
+    use = 'use=["transport.py"]'
+    [line] = checked(tmp_path, TANK, use, "physics.transport_velocity=1.0")
     assert line.startswith("case.toml: physics.transport_velocity: moves a free surface outwards")
-    assert checked(tmp_path, CLOSED, "physics.transport_velocity=1.0") == []
-    assert checked(tmp_path, TANK, "physics.generalised_transport_velocity=1.0") == []
+    assert checked(tmp_path, CLOSED, use, "physics.transport_velocity=1.0") == []
+    assert checked(tmp_path, TANK, use, "physics.generalised_transport_velocity=1.0") == []
 
 
 def test_a_slip_in_the_units_is_refused_at_once(tmp_path):

@@ -155,7 +155,7 @@ def name_of(entry):
     return entry.effect.__name__
 
 
-SHORT = ("FreeSurface", "ArtificialViscosity", "PairPotential")
+SHORT = ("FreeSurface", "ArtificialViscosity", "PairDamping")
 WET = [one for one in CATALOGUE if not one.key.startswith("anvils.") and one.effect is not SolidContact]
 """Anvils and contact are there for scenes of solids alone: tests/simulation/test_contact.py."""
 ALONE = [entry for entry in WET if entry.effect.__name__ != "SmoothFace"]

@@ -290,7 +290,12 @@ def test_a_shear_flow_between_mirrors_that_it_sticks_to_stays_as_it_is(tmp_path)
         (TANK, ('space.periodic=["x"]', "space.lower=[0.0, -0.1]", "space.upper=[1.0, 1.0]"), "is periodic"),
         (
             CROSS,
-            (*QUARTER, 'physics.pressure_gradient="stress_points"', "scheme=sph"),
+            (
+                *QUARTER,
+                'use=["stress_points.py"]',
+                'physics.pressure_gradient="stress_points"',
+                "scheme=sph",
+            ),
             'physics.pressure_gradient: "stress_points": does not work with mirrors',
         ),
         (

@@ -1,5 +1,6 @@
 """The verbs ``stability --battery``, ``--remedies`` and ``--walls``."""
 
+import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -16,6 +17,9 @@ from psph.output.errors import NotThere
 from psph.output.reader import Run
 
 CASES = Path(__file__).parents[3] / "run" / "cases" / "hard"
+REMEDIES = CASES.parents[1] / "remedies"
+"""Effects and kernels that stand beside the cases."""
+
 FOLDER = Path("battery")
 
 
@@ -77,7 +81,7 @@ def _run(comm, trial: Trial, column: str, folder: Path) -> Row | None:
     """One run; its row on rank 0."""
     place = folder_of(folder, trial, column)
     try:
-        case = load(CASES / f"{trial.case}.toml", trial.overrides(column))
+        case = load(file_of(comm, trial, column, folder), trial.overrides(column))
     except CaseError as error:
         case = error
     result = perform(case, place, comm, 1, lambda line: None)
@@ -87,6 +91,20 @@ def _run(comm, trial: Trial, column: str, folder: Path) -> Row | None:
         return judged(trial, column, result, {}, 0.0)
     reached = float(Run(place).log()["time"][-1])
     return judged(trial, column, result, measure(place, case, trial.speed), reached)
+
+
+def file_of(comm, trial: Trial, column: str, folder: Path) -> Path:
+    """The file of a trial's case: where it uses a remedy, a copy beside copies of all.  Collective."""
+    file = CASES / f"{trial.case}.toml"
+    if not any(key.startswith("use=") for key in trial.changes[column]):
+        return file
+    beside = folder / "cases"
+    if comm.rank == 0:
+        beside.mkdir(parents=True, exist_ok=True)
+        for one in (file, *REMEDIES.glob("*.py")):
+            shutil.copy(one, beside)
+    comm.Barrier()
+    return beside / file.name
 
 
 def _has_frames(place: Path) -> bool:

@@ -11,11 +11,12 @@ PLAIN = "scheme=sph"
 
 class Remedy(NamedTuple):
     """Keys of a case; ``in_patch``: the same where there is a free surface, with other values; ``without``:
-    keys that it takes out."""
+    keys that it takes out; ``use``: the file of run/remedies that brings it."""
 
     sets: tuple[str, ...]
     in_patch: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
+    use: str = ""
 
     @property
     def name(self) -> str:
@@ -23,6 +24,10 @@ class Remedy(NamedTuple):
         keys = ", ".join(f"{key} = {value}" for key, value in map(_written, self.sets))
         others = ", ".join(value for _, value in map(_written, self.in_patch))
         return f"{keys}, in the patch {others}" if others else keys
+
+    def changes(self, sets: tuple[str, ...]) -> tuple[str, ...]:
+        """All that it changes in a case beside these keys."""
+        return (*([f'use=["{self.use}"]'] if self.use else []), *sets, *self.without)
 
 
 def _written(one: str) -> tuple[str, str]:
@@ -33,8 +38,8 @@ def _written(one: str) -> tuple[str, str]:
 
 REMEDIES = (
     Remedy((PLAIN,)),
-    Remedy(("space.kernel=quadratic",)),
-    Remedy(("space.kernel=spiky",)),
+    Remedy(("space.kernel=quadratic",), use="kernels.py"),
+    Remedy(("space.kernel=spiky",), use="kernels.py"),
     Remedy(("space.kernel=hyperbolic",)),
     Remedy(("physics.artificial_stress=0.2",)),
     Remedy(("physics.artificial_stress=0.2", "physics.artificial_viscosity=0.05")),
@@ -42,16 +47,16 @@ REMEDIES = (
     Remedy(("physics.pressure_gradient=tensile_control", "physics.particle_shifting=0.1")),
     Remedy(("physics.pressure_gradient=minimum",)),
     Remedy(("physics.pressure_gradient=difference",)),
-    Remedy(("physics.pressure_gradient=stress_points",)),
-    Remedy(("physics.pressure_gradient=stress_points", "space.smoothing=1.7")),
-    Remedy(("physics.xsph=0.5",)),
-    Remedy(("physics.transport_velocity=1.0",)),
-    Remedy(("physics.generalised_transport_velocity=1.0",)),
-    Remedy(("physics.riemann_dissipation=3.0",)),
-    Remedy(("physics.conservative_smoothing=0.1",)),
+    Remedy(("physics.pressure_gradient=stress_points",), use="stress_points.py"),
+    Remedy(("physics.pressure_gradient=stress_points", "space.smoothing=1.7"), use="stress_points.py"),
+    Remedy(("physics.xsph=0.5",), use="transport.py"),
+    Remedy(("physics.transport_velocity=1.0",), use="transport.py"),
+    Remedy(("physics.generalised_transport_velocity=1.0",), use="transport.py"),
+    Remedy(("physics.riemann_dissipation=3.0",), use="riemann_dissipation.py"),
+    Remedy(("physics.conservative_smoothing=0.1",), use="conservative_smoothing.py"),
     Remedy(("physics.particle_shifting=0.1",)),
     Remedy(("physics.position_shift=0.1",)),
-    Remedy(("physics.pair_potential=0.008",)),
+    Remedy(("physics.pair_potential=0.008",), use="pair_potential.py"),
     Remedy(("physics.gradient_correction=0.7",)),
     Remedy(("physics.background_pressure=3000",), ("physics.background_pressure=20",)),
     Remedy(("scheme=stable",), without=("physics.density_diffusion=off", "physics.pair_damping=off")),
@@ -78,8 +83,8 @@ def comparison(remedies: Sequence[Remedy] = REMEDIES) -> Comparison:
 
 def trials(remedies: Sequence[Remedy] = REMEDIES) -> tuple[Trial, ...]:
     """Three of the quick battery with its bounds, each under every remedy."""
-    inside = {one.name: one.sets + one.without for one in remedies}
-    surface = {one.name: (one.in_patch or one.sets) + one.without for one in remedies}
+    inside = {one.name: one.changes(one.sets) for one in remedies}
+    surface = {one.name: one.changes(one.in_patch or one.sets) for one in remedies}
     return (
         _judging("4.2", KICKED, 0.1, inside)._replace(speed=1.0, holds=JITTERED.holds),
         _judging("4.2, jitter", JITTERED, 1.0, inside, *BESIDES),

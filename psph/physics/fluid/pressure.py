@@ -105,6 +105,15 @@ class MinimumPressure(NamedTuple):
                 f"{kernel}; choose another kernel"
             )
 
+    @staticmethod
+    def warns(scene: Facts):
+        """A free surface flies apart."""
+        if scene.has_free_surface:
+            yield (
+                '"minimum" is unstable at a free surface, where it only pushes '
+                'outward, and the fluid has one; use "symmetric", or enclose the fluid'
+            )
+
     def linear(self, scene: Facts):
         """Linear theory includes it as it is."""
         return None
@@ -214,6 +223,12 @@ class BackgroundPressure(NamedTuple):
         if is_corrected(scene):
             return "corrected gradients hold what its flow pulls, and the start lacks no more"
         return "no pressure is negative at the start, and nothing moves"
+
+    @staticmethod
+    def warns(scene: Facts):
+        """A free surface flies apart where the case gives the pressure itself."""
+        if scene.physics.background_pressure.pressure != AUTO and scene.has_free_surface:
+            yield "blows a free surface apart, and the fluid has one; leave it out, or enclose the fluid"
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""

@@ -8,12 +8,9 @@ import numpy as np
 from pydantic import Field
 
 from psph.acts import MADE_FOR_FLUIDS
-from psph.composition.pair import Pair
-from psph.fields import view_of
 from psph.formula import helper
 from psph.physics.facts import SOUND_OVER_SPEED, Facts
 from psph.physics.fluid.correction import DISORDER, half_disorder, needs_correction
-from psph.theory.stability import parts
 from psph.vectors import excess, multiply, plus_less_last, scale
 
 CORES = (1.6, 1.6, 1.3228)
@@ -43,38 +40,12 @@ Strength = Annotated[
 """Strength of a potential between pairs, as a case gives it."""
 
 
-class PairPotential(NamedTuple):
-    """Near neighbours repel, farther ones attract: pairs keep their distance, and no pressure is added.
-
-    a_i = −(2K/ρ₀) dx^d Σ_j ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊, scaled to
-    −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
-    Σ r ψ′ of the starting lattice zero: no mean pressure.
-    K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
-    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  It is a potential, so
-    momentum, angular momentum and energy are conserved.  Between two masses the force is that
-    between two of the smaller mass: the heavier one is moved less.
-    """
-
-    refuses = MADE_FOR_FLUIDS
-
-    conserves = ("momentum", "angular momentum")
-
-    strength: Strength = 0.008
-
-    def in_scene(self, scene: Facts):
-        """The potential of the scene's lattice, for one mass or for several."""
-        alike = len({material.mass for material in scene.species}) == 1
-        return neutral_potential(self.strength, scene.sound_speed, scene.spacing, scene.dimensions, alike)
-
-
 class NeutralPotential(NamedTuple):
     """Near neighbours repel, farther ones attract: pairs keep their distance, and no pressure is added.
 
-    The form of :class:`PairPotential` for the lattice of a scene: −ψ′/r as (``core`` − ``steepness`` r)²₊/r
-    + Σ_k ±(``heights`` − ``slopes`` r²)²₊, the last with a minus; times 2K dx^d/ρ₀, 1/s².
+    −ψ′/r of the lattice of a scene as (``core`` − ``steepness`` r)²₊/r + Σ_k ±(``heights`` − ``slopes``
+    r²)²₊, the last with a minus; times 2K dx^d/ρ₀, 1/s².
     """
-
-    conserves = ("momentum", "angular momentum")
 
     core: float
     steepness: float
@@ -82,36 +53,20 @@ class NeutralPotential(NamedTuple):
     slopes: tuple[float, ...]
 
     def radial(self, i, j, pair):
-        """Coefficient of x_ij in the acceleration, 1/s²."""
+        """Coefficient of x_ij in the acceleration between particles of one mass, 1/s²."""
         return _repulsion(self, pair)
-
-    def linear(self, scene: Facts):
-        """The same attraction of pairs in linear theory, among particles of one mass."""
-        one = view_of(("mass",))(1.0)
-
-        def attraction(r):
-            pairs = (Pair(r2=x * x, r=x, inverse_r=1.0 / x) for x in r)
-            return -r * np.array([self.radial(one, one, pair) for pair in pairs])
-
-        return parts.PairForce(attraction)
-
-
-class UnequalPotential(NeutralPotential):
-    """Near neighbours repel, farther ones attract: pairs of different masses.
-
-    :class:`NeutralPotential` times min(m_i, m_j)/m_i.
-    """
-
-    def radial(self, i, j, pair):
-        """Coefficient of x_ij in the acceleration, 1/s²."""
-        return min(1.0, j.mass * (1.0 / i.mass)) * _repulsion(self, pair)
 
 
 class LocalPotential(NamedTuple):
     """The pair potential where particles are in disorder or at a surface, and nowhere else.
 
-    The force of :class:`PairPotential` times ½(g_i + g_j), g = min(|L − 1|²/t², 1): L, which corrects
-    gradients, is 1 where neighbours are in order all around.  psph's own.  It costs a flow in good order
+    a_i = −(2K/ρ₀) dx^d Σ_j ½(g_i + g_j) ψ′(r) x_ij/r, −ψ′/r ∝ (1 − r/R)²₊/r + Σ_k w_k (1 − r²/R_k²)²₊,
+    scaled to −ψ′ = dx^-(d+1) at r = ¾ dx, 1.5 times that in 3D; the last weight, negative, makes the virial
+    Σ r ψ′ of the starting lattice zero: no mean pressure.  g = min(|L − 1|²/t², 1): L, which corrects
+    gradients, is 1 where neighbours are in order all around.  psph's own.
+    K = f ρ₀ (c/10)² is constant: a repulsion that follows the local pressure pumps energy (as the
+    artificial stress of Monaghan 2000, J. Comput. Phys. 159, 290, does).  Between two masses the force is
+    that between two of the smaller mass: the heavier one is moved less.  It costs a flow in good order
     nothing, keeps momentum and angular momentum, and is no potential: energy is not conserved by it.
     """
 
@@ -168,11 +123,9 @@ def _repulsion(potential, pair):
     return plus_less_last(near * near * pair.inverse_r, multiply(parts, parts))
 
 
-def neutral_potential(
-    strength: float, sound_speed: float, dx: float, dimensions: int, alike: bool = True
-) -> NeutralPotential:
+def neutral_potential(strength: float, sound_speed: float, dx: float, dimensions: int) -> NeutralPotential:
     """The potential whose virial vanishes on the row, square or cube lattice of spacing dx, m;
-    ``strength`` f, ``sound_speed`` m/s, ``alike`` if all particles have one mass."""
+    ``strength`` f, ``sound_speed`` m/s."""
     core, ranges = CORES[dimensions - 1], np.array(RANGES[dimensions - 1])
     sites = (k for k in product(range(-3, 4), repeat=dimensions) if any(k))
     r2 = np.array([sum(n * n for n in k) for k in sites], float)
@@ -186,8 +139,7 @@ def neutral_potential(
     height = math.sqrt(float(weights[0]) * dx)
     heights = np.sqrt(np.abs(weights[1:]))  # the last is below zero, the others are not
     slopes = heights / (ranges * dx) ** 2
-    form = NeutralPotential if alike else UnequalPotential
-    return form(height, height / (core * dx), tuple(heights.tolist()), tuple(slopes.tolist()))
+    return NeutralPotential(height, height / (core * dx), tuple(heights.tolist()), tuple(slopes.tolist()))
 
 
 def _forces_over_r(core: float, ranges: np.ndarray, r2: np.ndarray) -> np.ndarray:

@@ -128,28 +128,6 @@ class DensityDiffusion(NamedTuple):
         return -2.0 * strength * uniform.volume * uniform.slope(r) / r
 
 
-class ConservativeSmoothing(NamedTuple):
-    """du_a/dt = −(α c/h) Σ V W u_ab: the filter of Swegle, Hicks & Attaway (1995) as a rate."""
-
-    alpha: float = 0.1
-
-    def damping(self, uniform, r):
-        """In any direction."""
-        rate = self.alpha * uniform.sound_speed / uniform.smoothing_length
-        return 0.0, rate * uniform.volume * uniform.weight(r)
-
-
-class RiemannDissipation(NamedTuple):
-    """dρ_a/dt = c Σ V (ρ_a − ρ_b) W′: what U* of Zhang, Hu & Adams (2017) makes of the density.
-
-    Their p* is limited, and of second order in small disturbances.
-    """
-
-    def meeting(self, uniform, r):
-        """Of density between neighbours, one of them fluid."""
-        return -uniform.sound_speed * uniform.volume * uniform.slope(r)
-
-
 def _rub(uniform, r):
     """−V r W′/(r² + 0.01 h²), 1/m²."""
     singularity = SINGULARITY * uniform.smoothing_length**2
@@ -164,7 +142,5 @@ REMEDIES = {
     "pair_damping": PairDamping,
     "viscosity": Viscosity,
     "density_diffusion": DensityDiffusion,
-    "conservative_smoothing": ConservativeSmoothing,
-    "riemann_dissipation": RiemannDissipation,
 }
 """Those with a single parameter at most, by the name that the command line gives them."""

@@ -9,7 +9,7 @@ from psph.__main__ import main
 from psph.case import load
 from psph.errors import Refused
 from psph.lab.battery import command, comparison, tables
-from psph.lab.battery.command import CASES, compare
+from psph.lab.battery.command import compare, file_of
 from psph.lab.battery.comparison_page import main as on_page
 from psph.lab.battery.measures import MEASURES
 from psph.lab.battery.remedies import PLAIN, REMEDIES, SHOWN, Remedy, trials
@@ -26,8 +26,8 @@ OWN = REMEDIES[-1]
 # The rows
 
 
-def case_of(trial, remedy):
-    return load(CASES / f"{trial.case}.toml", trial.overrides(remedy.name))
+def case_of(trial, remedy, folder):
+    return load(file_of(MPI.COMM_SELF, trial, remedy.name, folder), trial.overrides(remedy.name))
 
 
 def what_acts(case):
@@ -36,12 +36,12 @@ def what_acts(case):
 
 
 @pytest.mark.parametrize("remedy", REMEDIES, ids=NAMES)
-def test_a_remedy_stands_alone_beside_plain_sph(remedy):
+def test_a_remedy_stands_alone_beside_plain_sph(remedy, tmp_path):
     for trial in trials([remedy]):
-        case = case_of(trial, remedy)
+        case = case_of(trial, remedy, tmp_path)
         assert case.scheme == ("stable" if remedy == OWN else "sph")
         assert case.guards.on_trouble == "warn" and case.time.end == trial.end
-        [plain] = [case_of(one, REMEDIES[0]) for one in trials() if one.name == trial.name]
+        [plain] = [case_of(one, REMEDIES[0], tmp_path) for one in trials() if one.name == trial.name]
         assert (what_acts(case) == what_acts(plain)) == (remedy == REMEDIES[0])
 
 

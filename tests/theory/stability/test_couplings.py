@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from long import LONG
 from mpi4py import MPI
+from remedies import remedy, with_remedies
 from stores import seen
 from theory.stability.settings import TENSION, of
 
@@ -11,7 +12,6 @@ from psph.case import load
 from psph.composition.pair import Pair
 from psph.fields import FLUID
 from psph.output.ledger import Ledger
-from psph.physics.damping.filtering import ConservativeSmoothing
 from psph.physics.fluid.friction import Rub, rub
 from psph.runs.setup import lattice_particles, store_of
 from psph.scene import Scene
@@ -108,6 +108,8 @@ def forces(case, positions, densities, velocities):
     return pushed, rate
 
 
+DISSIPATION = ('use=["riemann_dissipation.py"]', "physics.riemann_dissipation=0.0")
+
 MORE = (
     "physics.pressure_gradient=difference",
     "physics.background_pressure=3000",
@@ -140,21 +142,22 @@ MORE = (
             TENSION._replace(
                 remedies=(
                     parts.ArtificialStress(0.3),
-                    parts.RiemannDissipation(),
+                    remedy("RiemannDissipation")().linear(None),
                 )
             ),
-            ("physics.artificial_stress=0.3", "physics.riemann_dissipation=0.0"),
+            ("physics.artificial_stress=0.3", *DISSIPATION),
             marks=LONG,
         ),
     ],
     ids=["symmetric", "minimum", "all", "stressed"],
 )
-def test_the_box_meets_the_forces_of_psph(settings, sets):
+def test_the_box_meets_the_forces_of_psph(settings, sets, tmp_path):
     """The numerical Jacobian of the solver's own loops, along random disturbances of all kinds.
 
     Twice pair damping, once the artificial viscosity: of a(u) and −a(−u) each pair's comes once.
     """
-    case = load("run/cases/negative_pressure_traditional.toml", ["perturbations=off", *sets])
+    path = with_remedies("run/cases/negative_pressure_traditional.toml", tmp_path)
+    case = load(path, ["perturbations=off", *sets])
     system, _ = box_of(couplings(Uniform(settings)), 15, LAYERS)
     rng = np.random.default_rng(5)
     still, thin = np.zeros((225, 2)), np.zeros(441)
@@ -211,7 +214,8 @@ def test_viscosity_is_that_of_the_effect():
 def test_smoothing_is_that_of_the_effect():
     """A pair in the fluid, a distance apart: the effect leaves walls out, the theory has none."""
     uniform, r = Uniform(TENSION), np.array([0.7e-3, 1.6e-3])
-    along, anyhow = parts.ConservativeSmoothing(0.3).damping(uniform, r)
+    effect = remedy("ConservativeSmoothing")(0.3)
+    along, anyhow = effect.linear(None).damping(uniform, r)
     particle = seen(
         position=None,
         mass=900.0 * uniform.volume,
@@ -221,5 +225,5 @@ def test_smoothing_is_that_of_the_effect():
         smoothing_length=uniform.smoothing_length,
     )
     pairs = [Pair(r2=x * x, w=w) for x, w in zip(r, uniform.weight(r))]
-    found = [ConservativeSmoothing(0.3).shear(particle, particle, pair) for pair in pairs]
+    found = [effect.shear(particle, particle, pair) for pair in pairs]
     assert along == 0.0 and found == pytest.approx(-anyhow)

@@ -1,11 +1,14 @@
-"""A filter of the velocity: short waves fade."""
+"""Remedy: a filter of the velocity, under which short waves fade.
+
+A case beside this file says ``use = ["conservative_smoothing.py"]``.
+"""
 
 from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
+from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.facts import Facts
-from psph.theory.stability import parts
 
 STABLE = 0.25
 """αcΔt/h must stay below: the fastest mode of a lattice decays at 1.01 αc/h with any kernel, and
@@ -46,4 +49,18 @@ class ConservativeSmoothing(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.ConservativeSmoothing(self.alpha)
+        return Relaxation(self.alpha)
+
+
+class Relaxation(NamedTuple):
+    """du_a/dt = −(α c/h) Σ V W u_ab: its part in linear theory (psph.theory.stability.parts)."""
+
+    alpha: float
+
+    def damping(self, uniform, r):
+        """In any direction, 1/s."""
+        rate = self.alpha * uniform.sound_speed / uniform.smoothing_length
+        return 0.0, rate * uniform.volume * uniform.weight(r)
+
+
+CATALOGUE = Catalogue(effects=(Entry("physics.conservative_smoothing", ConservativeSmoothing),))

@@ -1,10 +1,14 @@
-"""Stress points: pressure and velocity live at different particles."""
+"""Remedy: stress points, where pressure and velocity live at different particles.
+
+A case beside this file says ``use = ["stress_points.py"]``.
+"""
 
 from typing import NamedTuple
 
 from psph.acts import SYMMETRY
+from psph.fields import VECTOR, Field, Same, Turned
+from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.fluid.pressure import UNEQUAL
-from psph.physics.order.transport import TRANSPORT, moved
 from psph.physics.walls.conditions import MIRROR
 from psph.physics.walls.slip import NO_FLUID
 from psph.vectors import add, scale, zero_like
@@ -14,6 +18,24 @@ TWICE = 2.0
 
 FOLLOWING = 2.0
 """h/c over the time in which a stress point takes the velocity around it."""
+
+TRANSPORT = Field(
+    "transport", "m/s", "velocity of the particle minus that of the fluid", VECTOR, image=Turned
+)
+
+
+def every_other(lattice, position):
+    """1 on every other site of the lattice, 0 between."""
+    return lattice.odd(position)
+
+
+STRESS_POINT = Field(
+    "stress_point",
+    "1",
+    "1 where pressure is borne, 0 where velocity is carried",
+    start=every_other,
+    image=Same,
+)
 
 
 class StressPoints(NamedTuple):
@@ -43,10 +65,13 @@ class StressPoints(NamedTuple):
         v_j, bearing = j.specific_volume, TWICE * j.stress_point * (1.0 - i.stress_point)
         return -bearing * (j.pressure * v_j * v_j) * pair.m_dw_r
 
+    fixed = (STRESS_POINT,)
     writes = TRANSPORT
     lagged = True
 
-    displacement = moved
+    def displacement(self, i, dt):
+        """(ũ − u) Δt, m."""
+        return scale(i.transport, dt)
 
     def start(self, i):
         """Σ V W and Σ V (u_i − u_v) W over velocity points of the fluid."""
@@ -69,3 +94,6 @@ class StressPoints(NamedTuple):
     def longest_step(self, scene):
         """Δt ≤ h/(4c), s: half of the time in which a stress point follows."""
         return 0.5 * scene.smoothing_length / (FOLLOWING * scene.sound_speed)
+
+
+CATALOGUE = Catalogue(effects=(Entry("physics.pressure_gradient=stress_points", StressPoints),))

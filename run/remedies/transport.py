@@ -1,6 +1,7 @@
-"""Particles that are carried by another velocity than that of the fluid.
+"""Remedies: particles that are carried by another velocity than that of the fluid.
 
-Each stores ũ − u as ``transport``, from the sums of the pass before.
+Each stores ũ − u as ``transport``, from the sums of the pass before.  A case beside this file says
+``use = ["transport.py"]``.
 """
 
 from typing import Annotated, NamedTuple
@@ -10,6 +11,7 @@ from pydantic import Field
 from psph.fields import VECTOR, Turned
 from psph.fields import Field as Declared
 from psph.formula import helper
+from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.roles import CARRIER, ORDER
 from psph.vectors import add, dot, scale, subtract, zero_like
 
@@ -131,6 +133,15 @@ class TransportVelocity(NamedTuple):
 
     conflicts = staticmethod(_conflicts)
 
+    @staticmethod
+    def warns(scene):
+        """A free surface flies apart."""
+        if scene.has_free_surface:
+            yield (
+                "moves a free surface outwards, and the fluid has one; use "
+                "physics.generalised_transport_velocity, or enclose the fluid"
+            )
+
 
 class GeneralisedTransportVelocity(NamedTuple):
     """A background pressure of each particle moves particles into order without accelerating the fluid.
@@ -181,3 +192,12 @@ def _pushed(background, total, i):
     """−(h/8c) p_b Σ, m/s; 0 in a wall."""
     span = HALF_STEP * i.smoothing_length / i.sound_speed
     return scale(total, -span * background * i.is_fluid)
+
+
+CATALOGUE = Catalogue(
+    effects=(
+        Entry("physics.xsph", XSPH),
+        Entry("physics.transport_velocity", TransportVelocity),
+        Entry("physics.generalised_transport_velocity", GeneralisedTransportVelocity),
+    )
+)

@@ -1,12 +1,15 @@
-"""Dissipation of a Riemann problem between the two particles of a pair."""
+"""Remedy: dissipation of a Riemann problem between the two particles of a pair.
+
+A case beside this file says ``use = ["riemann_dissipation.py"]``.
+"""
 
 from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
 from psph.formula import where
+from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.facts import Facts
-from psph.theory.stability import parts
 
 STABLE = 0.075
 """cΔt/h must stay below.  The fastest mode of a lattice decays at Sc/h, S ≤ 4.3 over the kernels
@@ -48,4 +51,18 @@ class RiemannDissipation(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.RiemannDissipation()
+        return Meeting()
+
+
+class Meeting(NamedTuple):
+    """dρ_a/dt = c Σ V (ρ_a − ρ_b) W′: what U* makes of the density (psph.theory.stability.parts).
+
+    Their p* is limited, and of second order in small disturbances.
+    """
+
+    def meeting(self, uniform, r):
+        """Of density between neighbours, one of them fluid."""
+        return -uniform.sound_speed * uniform.volume * uniform.slope(r)
+
+
+CATALOGUE = Catalogue(effects=(Entry("physics.riemann_dissipation", RiemannDissipation),))
