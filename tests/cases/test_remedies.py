@@ -4,7 +4,7 @@ import pytest
 from cases.measures import finished, growth_rate
 
 from psph.theory.stability.growth import box_growth
-from psph.theory.stability.parts import ArtificialStress
+from psph.theory.stability.parts import LinearArtificialStress
 from psph.theory.stability.uniform import Settings
 
 pytestmark = pytest.mark.timeout(300)
@@ -20,7 +20,7 @@ def log(folder, *overrides):
 def test_artificial_stress_slows_the_kick_as_linear_theory_says(tmp_path):
     slowed = growth_rate(log(tmp_path / "a", "physics.artificial_stress=0.2", "time.end=0.02"))
     plain = growth_rate(log(tmp_path / "b", "time.end=0.01"))
-    settings = TENSION._replace(remedies=(ArtificialStress(0.2),))
+    settings = TENSION._replace(remedies=(LinearArtificialStress(0.2),))
     predicted = box_growth(settings, BOX).rate
     assert slowed == pytest.approx(predicted, rel=0.15)
     assert plain > 2.0 * slowed

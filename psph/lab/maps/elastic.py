@@ -10,7 +10,7 @@ import numpy as np
 
 from psph.lab.battery.tables import table
 from psph.lab.maps.tables import write
-from psph.theory.stability.elastic import Matter, TotalLagrangian, UpdatedLagrangian
+from psph.theory.stability.elastic import ElasticMatter, TotalLagrangian, UpdatedLagrangian
 from psph.theory.stability.growth import Growth
 from psph.theory.stability.zigzags import Description, elastic_growth, fastest, limp_waves, zigzag
 
@@ -69,10 +69,10 @@ def elastic(comm, out: Path | None) -> None:
         print(f"wrote {folder}: {CSV}, {PAGE}")
 
 
-def matter(poisson: float, **more) -> Matter:
+def matter(poisson: float, **more) -> ElasticMatter:
     """Elastic matter on a square lattice in units of c_l, its density and dx."""
     part = poisson / (1.0 - poisson)
-    return Matter(part, 0.5 * (1.0 - part), **{"stretches": (1.0, 1.0), **more})
+    return ElasticMatter(part, 0.5 * (1.0 - part), **{"stretches": (1.0, 1.0), **more})
 
 
 def survey() -> Iterator[Row]:

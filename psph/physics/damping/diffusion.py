@@ -53,7 +53,7 @@ class DensityDiffusion(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.DensityDiffusion(self.delta)
+        return parts.LinearDiffusion(self.delta)
 
 
 class TankDiffusion(NamedTuple):
@@ -81,7 +81,7 @@ class TankDiffusion(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.DensityDiffusion(self.delta)
+        return parts.LinearDiffusion(self.delta)
 
 
 class FourthOrderDiffusion(NamedTuple):
@@ -160,7 +160,7 @@ class BesideSmoothDensity(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory, of the shortest waves."""
-        return parts.DensityDiffusion(self.delta)
+        return parts.LinearDiffusion(self.delta)
 
 
 @helper

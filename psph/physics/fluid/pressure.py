@@ -237,7 +237,7 @@ class BackgroundPressure(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.BackgroundPressure(self.pressure)
+        return parts.LinearBackground(self.pressure)
 
 
 def is_corrected(scene: Facts) -> bool:
@@ -267,4 +267,4 @@ class CorrectedBackground(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.BackgroundPressure(self.pressure)
+        return parts.LinearBackground(self.pressure)

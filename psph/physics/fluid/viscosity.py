@@ -279,7 +279,7 @@ class PairDamping(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.PairDamping(self.alpha)
+        return parts.LinearPairDamping(self.alpha)
 
 
 class ImpactDamping(NamedTuple):

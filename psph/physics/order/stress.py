@@ -69,4 +69,4 @@ class NeighbourStress(NamedTuple):
 
     def linear(self, scene: Facts):
         """Its part in linear theory."""
-        return parts.ArtificialStress(self.epsilon)
+        return parts.LinearArtificialStress(self.epsilon)

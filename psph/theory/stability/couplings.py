@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.theory.stability import SYMMETRIC
-from psph.theory.stability.parts import Stress
+from psph.theory.stability.parts import PressureTerm
 from psph.theory.stability.uniform import Uniform
 
 FINE = 1e-5
@@ -84,12 +84,12 @@ def couplings(uniform: Uniform) -> Couplings:
     )
 
 
-def _stresses(uniform: Uniform) -> list[Stress]:
+def _stresses(uniform: Uniform) -> list[PressureTerm]:
     """The terms of the pressure gradient."""
     if uniform.settings.form == SYMMETRIC:
-        own = Stress(uniform.pressure, uniform.response)
+        own = PressureTerm(uniform.pressure, uniform.response)
     else:
-        own = Stress(0.0, (uniform.sound_speed / uniform.density) ** 2)
+        own = PressureTerm(0.0, (uniform.sound_speed / uniform.density) ** 2)
     added = [remedy.stress(uniform) for remedy in _with(uniform.settings.remedies, "stress")]
     return [own, *added]
 

@@ -12,13 +12,13 @@ import numpy as np
 
 from psph.smoothing import kernel
 from psph.theory.stability.couplings import FINE, slope_of
-from psph.theory.stability.lattices import Lattice, lattice
+from psph.theory.stability.lattices import BravaisLattice, lattice
 from psph.theory.stability.uniform import of_each
 
 ONE_THIRD = 1.0 / 3.0
 
 
-class Matter(NamedTuple):
+class ElasticMatter(NamedTuple):
     """Elastic matter on a lattice: Lamé's ``lame`` and ``shear`` in Pa, ``density`` at rest in kg/m³.
 
     ``stretches`` along the axes (d,) are those of the whole lattice from rest, where it has ``spacing`` m; 1D
@@ -45,7 +45,7 @@ class Matter(NamedTuple):
         return float(np.sqrt((self.lame + 2.0 * self.shear) / self.density))
 
     @property
-    def at_rest(self) -> "Matter":
+    def at_rest(self) -> "ElasticMatter":
         """The same, not stretched."""
         return self._replace(stretches=(1.0,) * len(self.stretches))
 
@@ -53,9 +53,9 @@ class Matter(NamedTuple):
 class Sites:
     """The neighbours of a particle in stretched matter: ``sites`` R (n, d) m, r (n,), V m^d, the kernel."""
 
-    def __init__(self, matter: Matter):
+    def __init__(self, matter: ElasticMatter):
         made = lattice(matter.lattice, matter.spacing)
-        self.lattice = Lattice(made.basis * np.array(matter.stretches))
+        self.lattice = BravaisLattice(made.basis * np.array(matter.stretches))
         self.smoothing_length = matter.smoothing * matter.spacing
         self.kernel = kernel(matter.kernel, self.smoothing_length, made.dimensions)
         whole = self.lattice.within(self.kernel.support * self.smoothing_length)
@@ -98,11 +98,11 @@ class TotalLagrangian(NamedTuple):
 
     hourglass: float = 1.5
 
-    def sites(self, matter: Matter) -> Sites:
+    def sites(self, matter: ElasticMatter) -> Sites:
         """Those of the lattice to which k belongs."""
         return Sites(matter.at_rest)
 
-    def squares(self, matter: Matter, waves: np.ndarray) -> np.ndarray:
+    def squares(self, matter: ElasticMatter, waves: np.ndarray) -> np.ndarray:
         """Ω of many k (waves, d) in the reference, rad/m: (waves, d, d), 1/s²."""
         around = self.sites(matter)
         phase = waves @ around.sites.T
@@ -126,11 +126,11 @@ class UpdatedLagrangian(NamedTuple):
     exponent: float = 4.0
     corrected: bool = True
 
-    def sites(self, matter: Matter) -> Sites:
+    def sites(self, matter: ElasticMatter) -> Sites:
         """Those of the lattice to which k belongs."""
         return Sites(matter)
 
-    def squares(self, matter: Matter, waves: np.ndarray) -> np.ndarray:
+    def squares(self, matter: ElasticMatter, waves: np.ndarray) -> np.ndarray:
         """Ω of many k (waves, d) in the present, rad/m: (waves, d, d), 1/s²."""
         around = self.sites(matter)
         one, phase = np.eye(len(matter.stretches)), waves @ around.sites.T
@@ -185,7 +185,7 @@ class UpdatedLagrangian(NamedTuple):
         return np.tensordot(sines, moved, 1) - thinned[:, None, None] * np.tensordot(1.0 - still, outer, 1)
 
 
-def tangent(matter: Matter) -> np.ndarray:
+def tangent(matter: ElasticMatter) -> np.ndarray:
     """∂P_ij/∂F_kl of Saint Venant and Kirchhoff's law at the stretches, Pa, (d, d, d, d)."""
     one = np.eye(len(matter.stretches))
     f = np.diag(matter.stretches)

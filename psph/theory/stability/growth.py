@@ -7,7 +7,7 @@ import numpy as np
 
 from psph.theory.stability.couplings import Couplings, couplings
 from psph.theory.stability.errors import StabilityError
-from psph.theory.stability.lattices import Lattice
+from psph.theory.stability.lattices import BravaisLattice
 from psph.theory.stability.system import System
 from psph.theory.stability.uniform import Settings, Uniform
 
@@ -57,7 +57,7 @@ class Zone:
     ``sites`` (n, d) are those of neighbours, m; ``system`` gives the motion of many waves (n, d), rad/m.
     """
 
-    def __init__(self, lattice: Lattice, sites: np.ndarray, system: Callable[[np.ndarray], System]):
+    def __init__(self, lattice: BravaisLattice, sites: np.ndarray, system: Callable[[np.ndarray], System]):
         self.lattice, self.sites, self.waves = lattice, sites, system
         count = WAVES[self.lattice.dimensions]
         self.grid, self.step = zone_grid(self.lattice, count), 1.0 / count
@@ -182,7 +182,7 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
     ), sites[inner] - layers
 
 
-def zone_grid(lattice: Lattice, count: int) -> np.ndarray:
+def zone_grid(lattice: BravaisLattice, count: int) -> np.ndarray:
     """Waves (n, d) in parts of the reciprocal basis, k = 0 left out.
 
     Half of a cell, k and −k being one; of a lattice along the axes as much of each axis.

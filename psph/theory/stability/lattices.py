@@ -20,7 +20,7 @@ OF_SCENES = {1: "row", 2: "square", 3: "cubic"}
 """The lattice on which a case starts, by its dimensions."""
 
 
-class Lattice(NamedTuple):
+class BravaisLattice(NamedTuple):
     """Sites Σ n_i a_i, n whole; the rows of ``basis`` (d, d), in m, are the a_i."""
 
     basis: np.ndarray
@@ -52,14 +52,14 @@ class Lattice(NamedTuple):
         return max(ways, key=lambda k: tuple(np.round(k / unit, 6))) + 0.0
 
 
-def lattice(name: str, spacing: float) -> Lattice:
+def lattice(name: str, spacing: float) -> BravaisLattice:
     """The lattice ``name`` with one particle in ``spacing``^d, m^d; KeyError for an unknown name.
 
     So the ``spacing`` is that of a cubic lattice of the same density: in a hexagonal one the
     nearest neighbours are 1.075 spacings apart, in a bcc 1.091, in an fcc 1.122.
     """
     basis = np.array(_BASES[name], float)
-    return Lattice(basis * (spacing / abs(np.linalg.det(basis)) ** (1.0 / len(basis))))
+    return BravaisLattice(basis * (spacing / abs(np.linalg.det(basis)) ** (1.0 / len(basis))))
 
 
 def _all_of(ranges) -> np.ndarray:

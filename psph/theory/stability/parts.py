@@ -2,7 +2,7 @@
 
 A remedy has those of these that it needs, each given the :class:`Uniform` that is disturbed:
 
-- ``stress(uniform)``: a :class:`Stress`, one more term of the symmetric pressure gradient,
+- ``stress(uniform)``: a :class:`PressureTerm`, one more term of the symmetric pressure gradient,
 - ``force(uniform, r)``: an attraction of pairs within the kernel's support, m/s² (sites,), so that
   a_a = −Σ_b f x_ab/r,
 - ``damping(uniform, r)``: (along, any): a_a = −Σ_b (along r̂ r̂ᵀ + any) u_ab, 1/s (sites,) or 0,
@@ -21,7 +21,7 @@ SINGULARITY = 0.01
 """η² = 0.01 h² beside r², as in the viscosities of psph."""
 
 
-class Stress(NamedTuple):
+class PressureTerm(NamedTuple):
     """The force −Σ_b m_b (s_a + s_b) w(r) ∇W: s = ``pressure``/ρ² at rest, ds/dρ = ``response``."""
 
     pressure: float
@@ -35,7 +35,7 @@ class NormalisedGradient(NamedTuple):
     normalises = True
 
 
-class BackgroundPressure(NamedTuple):
+class LinearBackground(NamedTuple):
     """A constant p_b in the symmetric form, whatever the form of p itself; Pa.
 
     Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214.
@@ -45,10 +45,10 @@ class BackgroundPressure(NamedTuple):
 
     def stress(self, uniform):
         """p_b/ρ², which falls as ρ grows."""
-        return Stress(self.pressure, -2.0 * self.pressure / uniform.density**3)
+        return PressureTerm(self.pressure, -2.0 * self.pressure / uniform.density**3)
 
 
-class ArtificialStress(NamedTuple):
+class LinearArtificialStress(NamedTuple):
     """R (W/W(dx))⁴ beside p/ρ², R = −ε p/ρ² under tension and 0.01 p/ρ² under compression.
 
     Monaghan (2000), J. Comput. Phys. 159, 290, with its n = 4.
@@ -60,7 +60,7 @@ class ArtificialStress(NamedTuple):
         """R as a part of the pressure."""
         part = -self.epsilon if uniform.pressure < 0.0 else 0.01
         [nearest] = uniform.weight(np.array([uniform.spacing]))
-        return Stress(
+        return PressureTerm(
             part * uniform.pressure,
             part * uniform.response,
             lambda r: (uniform.weight(r) / nearest) ** 4,
@@ -77,7 +77,7 @@ class PairForce(NamedTuple):
         return self.attraction(r)
 
 
-class ArtificialViscosity(NamedTuple):
+class LinearArtificialViscosity(NamedTuple):
     """Π = −α c h (u·x)/(r² + 0.01 h²)/ρ, for approach *and* recession.
 
     Monaghan (1992), Annu. Rev. Astron. Astrophys. 30, 543.  His switch, and psph's, lets it act on
@@ -91,7 +91,7 @@ class ArtificialViscosity(NamedTuple):
         return self.alpha * uniform.sound_speed * uniform.smoothing_length * _rub(uniform, r), 0.0
 
 
-class PairDamping(NamedTuple):
+class LinearPairDamping(NamedTuple):
     """Π = −α c h (u·x)/r² ρ₀/ρ², for every pair: Antuono and others (2010)."""
 
     alpha: float = 0.02
@@ -117,7 +117,7 @@ class Viscosity(NamedTuple):
         return 0.0, 2.0 * self.viscosity * _rub(uniform, r)
 
 
-class DensityDiffusion(NamedTuple):
+class LinearDiffusion(NamedTuple):
     """dρ_a/dt = 2 δ h c Σ V (ρ_a − ρ_b) x·∇W/r²: Molteni & Colagrossi (2009)."""
 
     delta: float = 0.1
@@ -136,11 +136,11 @@ def _rub(uniform, r):
 
 REMEDIES = {
     "normalised_gradient": NormalisedGradient,
-    "background_pressure": BackgroundPressure,
-    "artificial_stress": ArtificialStress,
-    "artificial_viscosity": ArtificialViscosity,
-    "pair_damping": PairDamping,
+    "background_pressure": LinearBackground,
+    "artificial_stress": LinearArtificialStress,
+    "artificial_viscosity": LinearArtificialViscosity,
+    "pair_damping": LinearPairDamping,
     "viscosity": Viscosity,
-    "density_diffusion": DensityDiffusion,
+    "density_diffusion": LinearDiffusion,
 }
 """Those with a single parameter at most, by the name that the command line gives them."""

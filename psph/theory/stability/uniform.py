@@ -7,7 +7,7 @@ import numpy as np
 
 from psph.smoothing import kernel
 from psph.theory.stability import SYMMETRIC
-from psph.theory.stability.lattices import Lattice, lattice
+from psph.theory.stability.lattices import BravaisLattice, lattice
 
 STIFF = 10.0
 """Default of c in √(|P|/ρ): P is about ρU², and c ten times the speed U."""
@@ -38,7 +38,7 @@ class Uniform:
         self.pressure, self.density = settings.pressure, settings.density
         self.sound_speed, self.spacing = settings.sound_speed, settings.spacing
         self.smoothing_length = settings.smoothing * settings.spacing
-        self.lattice: Lattice = lattice(settings.lattice, settings.spacing)
+        self.lattice: BravaisLattice = lattice(settings.lattice, settings.spacing)
         self.kernel = kernel(settings.kernel, self.smoothing_length, self.lattice.dimensions)
         self.volume = settings.spacing**self.lattice.dimensions
 

@@ -129,10 +129,10 @@ MORE = (
             TENSION._replace(
                 form="difference",
                 remedies=(
-                    parts.BackgroundPressure(3000.0),
-                    parts.DensityDiffusion(0.2),
-                    parts.ArtificialViscosity(0.3),
-                    parts.PairDamping(0.4),
+                    parts.LinearBackground(3000.0),
+                    parts.LinearDiffusion(0.2),
+                    parts.LinearArtificialViscosity(0.3),
+                    parts.LinearPairDamping(0.4),
                 ),
             ),
             MORE,
@@ -141,7 +141,7 @@ MORE = (
         pytest.param(
             TENSION._replace(
                 remedies=(
-                    parts.ArtificialStress(0.3),
+                    parts.LinearArtificialStress(0.3),
                     remedy("RiemannDissipation")().linear(None),
                 )
             ),

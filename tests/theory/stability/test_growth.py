@@ -123,11 +123,11 @@ def test_is_stable_agrees_with_growth():
 
 def test_a_background_pressure_shifts_the_pressure():
     """With −1 + 2 all is as under +1, but for c² − 2P/ρ; and p_b = |P| leaves sound alone."""
-    lifted = of("hyperbolic", 1.3, pressure=-1.0, remedies=(parts.BackgroundPressure(2.0),))
+    lifted = of("hyperbolic", 1.3, pressure=-1.0, remedies=(parts.LinearBackground(2.0),))
     assert growth(lifted).stable
     assert growth(lifted._replace(smoothing=1.2)).rate == pytest.approx(0.2785, abs=5e-4)
-    assert growth(lifted._replace(remedies=(parts.BackgroundPressure(1.0),))).stable
-    assert not growth(lifted._replace(remedies=(parts.BackgroundPressure(0.5),))).stable
+    assert growth(lifted._replace(remedies=(parts.LinearBackground(1.0),))).stable
+    assert not growth(lifted._replace(remedies=(parts.LinearBackground(0.5),))).stable
 
 
 def test_artificial_stress_holds_only_near_1_1():
@@ -136,7 +136,7 @@ def test_artificial_stress_holds_only_near_1_1():
     def rate(h, *added):
         return growth(TENSION._replace(kernel="hyperbolic", smoothing=h, remedies=added)).rate
 
-    stress = parts.ArtificialStress(0.2)
+    stress = parts.LinearArtificialStress(0.2)
     assert rate(1.1, stress) == 0.0 < 3700.0 < rate(1.1)
     assert all(0.15 * rate(h) < rate(h, stress) < 0.45 * rate(h) for h in (1.0, 1.2, 1.3, 1.4))
 
@@ -174,7 +174,9 @@ def test_a_zero_virial_pair_force_of_the_size_of_the_tension_holds():
     assert held(0.0) > held(0.3) > held(1.0) and held(3.0) == 0.0
 
 
-@pytest.mark.parametrize("friction", (parts.Viscosity(0.2), parts.ArtificialViscosity(0.5)), ids=["ν", "α"])
+@pytest.mark.parametrize(
+    "friction", (parts.Viscosity(0.2), parts.LinearArtificialViscosity(0.5)), ids=["ν", "α"]
+)
 def test_friction_slows_but_never_holds(friction):
     plain = of("cubic", 1.2, pressure=-1.0)
     slowed = plain._replace(remedies=(friction,))
@@ -198,8 +200,8 @@ def test_friction_of_a_single_wave():
 def test_a_box_with_all_remedies_is_bounded_by_the_lattice():
     every = (
         parts.Viscosity(0.05),
-        parts.DensityDiffusion(0.1),
-        parts.ArtificialStress(0.1),
+        parts.LinearDiffusion(0.1),
+        parts.LinearArtificialStress(0.1),
         parts.NormalisedGradient(),
     )
     settings = of("cubic", 1.2, pressure=-1.0, remedies=every)
