@@ -7,7 +7,15 @@ from collections.abc import Iterable, Iterator
 from typing import get_args
 
 from psph.acts import MATTER
-from psph.case.corners import ACTS, IRRELEVANT, Answer, Row, rows_of_effects, rows_of_gauges, rows_of_kinds
+from psph.case.corners import (
+    ACTS,
+    IRRELEVANT,
+    Answer,
+    CornerRow,
+    rows_of_effects,
+    rows_of_gauges,
+    rows_of_kinds,
+)
 from psph.case.gauges import Gauge
 from psph.physics.catalogue import BUILT_IN
 from psph.physics.walls.conditions import CONDITIONS, CORNERS
@@ -44,7 +52,7 @@ def page() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _table(rows: Iterable[Row], said: dict[str, int]) -> Iterator[str]:
+def _table(rows: Iterable[CornerRow], said: dict[str, int]) -> Iterator[str]:
     yield f"| | {' | '.join(TITLES.get(corner, corner) for corner in CORNERS)} |"
     yield "|---" * (1 + len(CORNERS)) + "|"
     for row in rows:

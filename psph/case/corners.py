@@ -74,7 +74,7 @@ def answer(asker: Any, corner: str, refused: Mapping[str, str]) -> Answer:
     return Answer(IRRELEVANT if corner in MATTER or corner in CONDITIONS and of_walls else ACTS)
 
 
-class Row(NamedTuple):
+class CornerRow(NamedTuple):
     """What something that a key asks for does in every corner."""
 
     key: str
@@ -82,25 +82,25 @@ class Row(NamedTuple):
     answers: tuple[Answer, ...]
 
 
-def rows_of_effects(catalogue) -> Iterator[Row]:
+def rows_of_effects(catalogue) -> Iterator[CornerRow]:
     """A row for each effect of a catalogue."""
     for entry in catalogue.effects:
         own = refusals_of_effect if entry.key.startswith("physics.") else refusals
         found = (answer(entry.effect, corner, own(entry.effect)) for corner in CORNERS)
-        yield Row(entry.key, entry.effect.__name__, tuple(found))
+        yield CornerRow(entry.key, entry.effect.__name__, tuple(found))
 
 
-def rows_of_gauges(kinds: Mapping[str, Any]) -> Iterator[Row]:
+def rows_of_gauges(kinds: Mapping[str, Any]) -> Iterator[CornerRow]:
     """A row for each kind of gauge, by its key and table."""
     for key, table in kinds.items():
-        yield Row(key, key, tuple(answer(table, corner, refusals(table)) for corner in CORNERS))
+        yield CornerRow(key, key, tuple(answer(table, corner, refusals(table)) for corner in CORNERS))
 
 
-def rows_of_kinds() -> Iterator[Row]:
+def rows_of_kinds() -> Iterator[CornerRow]:
     """A row for each kind of matter and surroundings that does not go with every other."""
     for one in KINDS:
         said = (between(one, corner) for corner in CORNERS)
-        yield Row(one, one, tuple(Answer(REFUSED, says) if says else Answer(ACTS) for says in said))
+        yield CornerRow(one, one, tuple(Answer(REFUSED, says) if says else Answer(ACTS) for says in said))
 
 
 def present(case) -> dict[str, list[tuple[Location, Any]]]:

@@ -25,7 +25,7 @@ FRONT = "front"
 """The quantity of a probe that follows the fluid."""
 
 
-class Probe:
+class FieldProbe:
     """Fields of the fluid at a point, f = Σ_j W V_j f_j / Σ_j W V_j (Shepard 1968), or their mean over some.
 
     The sums are over the fluid and the walls that it wets, so that at a wall the mean is not that of

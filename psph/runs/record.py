@@ -15,7 +15,7 @@ from psph.output.checkpoint import Saved
 from psph.output.errors import together
 from psph.output.frames import FrameFile
 from psph.output.gauges import gauges_of
-from psph.output.probes import Front, Probe, sensor
+from psph.output.probes import FieldProbe, Front, sensor
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
 from psph.simulation.step import Simulation
 from psph.version import __version__
@@ -35,12 +35,12 @@ class Schedule:
         return True
 
 
-def probes_of(case, mirrors=None) -> list[Probe | Front]:
+def probes_of(case, mirrors=None) -> list[FieldProbe | Front]:
     """The probes that a case asks for, beside ``mirrors`` (psph.composition.mirrors)."""
     return [
         Front(name, AXES.index(p.front))
         if p.front
-        else Probe(name, _points(p, case.space), tuple(p.fields), mirrors)
+        else FieldProbe(name, _points(p, case.space), tuple(p.fields), mirrors)
         for name, p in case.probes.items()
     ]
 
@@ -190,8 +190,8 @@ class Record:
                     f"where {PROBES} has 0 for a pressure, else nan"
                 )
 
-    def _points(self) -> Iterator[Probe]:
-        return (probe for probe in self.probes if isinstance(probe, Probe))
+    def _points(self) -> Iterator[FieldProbe]:
+        return (probe for probe in self.probes if isinstance(probe, FieldProbe))
 
     def write_log(self) -> None:
         """A line of energies, momentum and limits, and one of errors where these are known."""

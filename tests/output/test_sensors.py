@@ -6,7 +6,7 @@ from drafts import TANK, draft, refusal
 from mpi4py import MPI
 
 from psph.output.ledger import Ledger
-from psph.output.probes import Probe, sensor
+from psph.output.probes import FieldProbe, sensor
 from psph.runs.record import probes_of
 from psph.runs.setup import create_particles
 from psph.scene import Scene
@@ -45,7 +45,7 @@ def test_a_sensor_tells_the_mean_over_its_area(tmp_path):
     simulation.settle_pressure()
     probes = probes_of(scene.case)
     wide, over, dry = (probe.sample(simulation.domain, scene.kernel) for probe in probes)
-    points = [Probe("", np.array([1.0, y]), ("pressure",)) for y in (0.15, 0.25, 0.35)]
+    points = [FieldProbe("", np.array([1.0, y]), ("pressure",)) for y in (0.15, 0.25, 0.35)]
     each = [point.sample(simulation.domain, scene.kernel)[0] for point in points]
     assert np.ptp(each) > 1000.0
     assert wide == pytest.approx(np.mean(each), rel=1e-12)
@@ -53,7 +53,7 @@ def test_a_sensor_tells_the_mean_over_its_area(tmp_path):
     # Half of it is above the water: it bears nothing there, and the density is that of the wet part.
     heights = 0.3 + 0.6 * (np.arange(6) + 0.5) / 6
     told = [
-        Probe("", np.array([1.0, y]), ("pressure", "density")).sample(simulation.domain, scene.kernel)
+        FieldProbe("", np.array([1.0, y]), ("pressure", "density")).sample(simulation.domain, scene.kernel)
         for y in heights
     ]
     told = np.array(told)

@@ -3,7 +3,7 @@
 import pytest
 from mpi4py import MPI
 
-from psph.lab.bench.box import Box
+from psph.lab.bench.box import FluidBox
 from psph.output.ledger import Ledger
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
@@ -28,7 +28,7 @@ class Counting(Ledger):
 
 @pytest.mark.parametrize("particles", [400, 4000])
 def test_a_step_has_few_entries_however_many_particles(particles):
-    layout = Box.nearest(2, 20, particles)
+    layout = FluidBox.nearest(2, 20, particles)
     scene = Scene(layout.case())
     plan, ledger = make_plan(scene), Counting()
     simulation = Simulation(scene, plan, layout.create(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, ledger)

@@ -6,7 +6,7 @@ from mpi4py import MPI
 from runs.test_explain import BOX
 
 from psph.lab.study.runs import perform
-from psph.lab.study.study import Study
+from psph.lab.study.study import StudyRuns
 from psph.runs import explain as words
 from psph.runs import memory_check
 from psph.runs.explain import bytes_of_rank, explain
@@ -83,7 +83,7 @@ def test_a_lattice_that_no_machine_holds_is_refused_before_its_sites_are_counted
     case = draft(tmp_path, HUGE)
     for go in (
         lambda: run(case, tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None),
-        lambda: Study(case.file, [], [{}], tmp_path / "study", MPI.COMM_SELF),
+        lambda: StudyRuns(case.file, [], [{}], tmp_path / "study", MPI.COMM_SELF),
     ):
         with pytest.raises(
             TooLittleMemory, match=r"case: about 8e\+10 particles need at least 2.24e\+04 GiB"
@@ -94,7 +94,7 @@ def test_a_lattice_that_no_machine_holds_is_refused_before_its_sites_are_counted
 @pytest.mark.timeout(120)
 def test_a_rung_of_a_study_that_no_machine_holds_does_not_end_the_others(tmp_path):
     case = draft(tmp_path, HUGE, "space.spacing=0.5", "time.end=0.01")
-    study = Study(
+    study = StudyRuns(
         case.file,
         ["space.spacing=0.5", "time.end=0.01"],
         [{"space.spacing": x} for x in (0.5, 1e-5)],

@@ -9,7 +9,7 @@ from mpi4py import MPI
 from runs.guarded import BOX
 
 from psph.case import load
-from psph.output.probes import Probe
+from psph.output.probes import FieldProbe
 from psph.output.reader import Run
 from psph.runs.explain import explain
 from psph.runs.output_size import amount, bytes_per_frame
@@ -98,7 +98,7 @@ def test_amounts_are_readable():
 def test_hundreds_of_probes_read_what_one_alone_would_in_a_time_that_grows_with_them(finished):
     case, folder, simulation = finished
     kernel = Scene(case).kernel
-    probes = [Probe(name, np.array(p.position), tuple(p.fields)) for name, p in case.probes.items()]
+    probes = [FieldProbe(name, np.array(p.position), tuple(p.fields)) for name, p in case.probes.items()]
     last = Run(folder).probes()
     for probe in (probes[0], probes[150], probes[299]):
         values = probe.sample(simulation.domain, kernel)

@@ -13,8 +13,8 @@ from psph.composition.space import softened
 from psph.engine.jit import FAST, register_bits
 from psph.engine.simd import spread, total, turning, width_of
 from psph.lab.bench import DAM
-from psph.lab.bench.box import Box
-from psph.lab.bench.measure import LAYOUTS, Asked, scene_of
+from psph.lab.bench.box import FluidBox
+from psph.lab.bench.measure import LAYOUTS, BenchProblem, scene_of
 from psph.lab.bench.price import DEFAULT, SETTINGS, USUAL
 from psph.output.ledger import Ledger
 from psph.physics.fluid.viscosity import ArtificialViscosity
@@ -89,12 +89,12 @@ def by_hand(
 @pytest.fixture(scope="module")
 def simulation():
     """A shifted 3D box in motion, its axes open as far as pairs are concerned."""
-    scene = Scene(Box.nearest(3, 57, 3000).case().model_copy(update={"precision": "double"}))
+    scene = Scene(FluidBox.nearest(3, 57, 3000).case().model_copy(update={"precision": "double"}))
     open_box = scene.case.model_copy(update={"space": scene.case.space.model_copy(update={"periodic": ()})})
     scene = Scene(open_box)
     plan = make_plan(scene)
     simulation = Simulation(
-        scene, plan, Box.nearest(3, 57, 3000).create(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
+        scene, plan, FluidBox.nearest(3, 57, 3000).create(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
     )
     for component in simulation.store["predicted_velocity"]:
         component[simulation.store.inner] = np.random.default_rng(1).uniform(
@@ -186,7 +186,7 @@ def test_the_standard_loops_take_no_more_instructions_than_counted(dim, setting,
     monkeypatch.setattr(engine_module, "sum_over_neighbours", lambda *call: calls.append(call))
     neighbours = {2: 20, 3: 57}[dim]
     layout = LAYOUTS[DAM](dim, neighbours, 1500)
-    scene = scene_of(Asked(DAM, dim, 1500, neighbours, "double"), layout, SETTINGS[setting])
+    scene = scene_of(BenchProblem(DAM, dim, 1500, neighbours, "double"), layout, SETTINGS[setting])
     plan = make_plan(scene)
     store = layout.create(scene, plan, MPI.COMM_SELF)
     Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())  # its start sums once: types suffice

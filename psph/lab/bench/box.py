@@ -20,7 +20,7 @@ FEWEST_SIDES, CUTOFFS = 16, 4.0
 """The box is at least this wide in spacings, and in supports: neighbours must not meet twice."""
 
 
-class Box(NamedTuple):
+class FluidBox(NamedTuple):
     """A box of ``sides`` spacings along each axis, 1 m wide."""
 
     dimensions: int
@@ -28,7 +28,7 @@ class Box(NamedTuple):
     sides: int
 
     @classmethod
-    def nearest(cls, dimensions: int, neighbours: int, particles: int) -> "Box":
+    def nearest(cls, dimensions: int, neighbours: int, particles: int) -> "FluidBox":
         """The box with about so many particles."""
         least = max(FEWEST_SIDES, math.ceil(CUTOFFS * reach(neighbours, dimensions)))
         return cls(dimensions, neighbours, max(least, round(particles ** (1.0 / dimensions))))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from psph.lab.bench import BLOCK, BOX, DAM, FALLING, PROBLEMS
 from psph.lab.bench.compare import compared
-from psph.lab.bench.measure import AGAINST, PEER, Asked, measure
+from psph.lab.bench.measure import AGAINST, PEER, BenchProblem, measure
 from psph.lab.bench.ranks import on_rank_0
 from psph.lab.bench.results import read_runs
 from psph.lab.bench.roofline import measure_ceiling
@@ -26,10 +26,10 @@ def one(
     particles: int | None,
     neighbours: int | None,
     precision: str = "double",
-) -> list[Asked]:
+) -> list[BenchProblem]:
     """The one problem that is asked for.  BenchError: a number that makes no sense."""
     dimensions = dimensions or DIMENSIONS
-    asked = Asked(
+    asked = BenchProblem(
         problem or BOX,
         dimensions,
         PARTICLES if particles is None else particles,
@@ -52,7 +52,7 @@ def standard(
     particles: int | None,
     neighbours: int | None,
     precision: str = "double",
-) -> list[Asked]:
+) -> list[BenchProblem]:
     """The standard set, around ``particles``.  BenchError: another choice beside it."""
     if problem or dimensions or neighbours is not None:
         raise BenchError("bench --standard has its own problems: leave the other choices out")
@@ -60,7 +60,7 @@ def standard(
     n = usual.particles
     return [
         *(
-            Asked(name, d, n, many, precision)
+            BenchProblem(name, d, n, many, precision)
             for d, many in NEIGHBOURS.items()
             for name in (BOX, DAM, FALLING)
         ),
@@ -73,7 +73,7 @@ def standard(
 
 def bench(
     comm,
-    asked: list[Asked],
+    asked: list[BenchProblem],
     compare: Path | None,
     peer_python: Path | None,
     as_json: bool,

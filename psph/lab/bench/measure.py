@@ -18,7 +18,7 @@ from psph.engine.jit import compiled, processor
 from psph.engine.threads import threads
 from psph.lab.bench import BLOCK, BOX, DAM, FALLING
 from psph.lab.bench.block import Block
-from psph.lab.bench.box import Box
+from psph.lab.bench.box import FluidBox
 from psph.lab.bench.falling import Falling
 from psph.lab.bench.peer import Peer
 from psph.lab.bench.roofline import Ceiling, roof, shares
@@ -39,7 +39,7 @@ WARM_UP, REPEATS, STEPS = 20, 5, 20
 TURNS = 15
 """Blocks where two cases are compared: their difference may be small."""
 
-LAYOUTS = {BOX: Box.nearest, DAM: Tank.nearest, FALLING: Falling.nearest, BLOCK: Block.nearest}
+LAYOUTS = {BOX: FluidBox.nearest, DAM: Tank.nearest, FALLING: Falling.nearest, BLOCK: Block.nearest}
 """For each problem: (dimensions, neighbours, particles) to what lays it out."""
 
 
@@ -50,7 +50,7 @@ SITES = ("dimensions", "spacing", "lower", "upper", "periodic")
 """Keys of ``space`` that say where particles are."""
 
 
-class Asked(NamedTuple):
+class BenchProblem(NamedTuple):
     """A problem by name, about how many particles, neighbours in the bulk, and the precision."""
 
     problem: str
@@ -61,7 +61,7 @@ class Asked(NamedTuple):
 
 
 def measure(
-    asked: Asked,
+    asked: BenchProblem,
     comm,
     ceiling: Ceiling,
     peer_python: Path | None = None,
@@ -130,7 +130,7 @@ def measure(
     return result
 
 
-def scene_of(asked: Asked, layout, against: Sequence[str] = ()) -> Scene:
+def scene_of(asked: BenchProblem, layout, against: Sequence[str] = ()) -> Scene:
     """The problem's scene, with overrides; BenchError where its particles are not the same then."""
     scene = Scene(
         checked(

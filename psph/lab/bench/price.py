@@ -9,7 +9,7 @@ from psph.case.schemes import SCHEMES, STABLE
 from psph.engine.threads import threads
 from psph.lab.bench import DAM
 from psph.lab.bench.falling import FALLEN
-from psph.lab.bench.measure import LAYOUTS, Asked, machine, scene_of, warmed_up
+from psph.lab.bench.measure import LAYOUTS, BenchProblem, machine, scene_of, warmed_up
 from psph.lab.bench.resolution import BALL, KERNEL
 from psph.lab.bench.tank import GRAVITY, HEIGHT
 from psph.lab.errors import BenchError
@@ -46,7 +46,9 @@ def price(comm, dimensions: int, particles: int | None = None, blocks: int | Non
     blocks = blocks or BLOCKS
     if blocks < FIFTHS:
         raise BenchError(f"bench --price --turns {blocks}: give at least {FIFTHS}")
-    asked = Asked(DAM, dimensions, particles or PARTICLES[dimensions], NEIGHBOURS[dimensions], "double")
+    asked = BenchProblem(
+        DAM, dimensions, particles or PARTICLES[dimensions], NEIGHBOURS[dimensions], "double"
+    )
     layout = LAYOUTS[DAM](dimensions, asked.neighbours, asked.particles)
     scenes = {name: scene_of(asked, layout, keys) for name, keys in SETTINGS.items()}
     running = {name: warmed_up(layout, scene, comm)[0] for name, scene in scenes.items()}

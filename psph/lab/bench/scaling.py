@@ -23,7 +23,7 @@ class Machine(NamedTuple):
     """Cores of a node."""
 
 
-class Scene(NamedTuple):
+class SlabScene(NamedTuple):
     """A box of particles cut into slabs, all lengths in spacings."""
 
     particles: int
@@ -65,7 +65,7 @@ class Step(NamedTuple):
         return max(self.compute, self.messages) + self.reduction
 
 
-def model(machine: Machine, scene: Scene, cores: int) -> Step:
+def model(machine: Machine, scene: SlabScene, cores: int) -> Step:
     """The fastest split of the cores into ranks and threads.
 
     A rank owns whole planes, so that the fullest slab has ⌈planes/ranks⌉ of them.  Threads share
@@ -76,7 +76,7 @@ def model(machine: Machine, scene: Scene, cores: int) -> Step:
     return min((_step(machine, scene, *split) for split in splits), key=lambda s: s.seconds)
 
 
-def _step(machine: Machine, scene: Scene, ranks: int, threads: int) -> Step:
+def _step(machine: Machine, scene: SlabScene, ranks: int, threads: int) -> Step:
     owned = math.ceil(scene.planes / ranks) * scene.ghosts
     shared = machine.serial + (1.0 - machine.serial) / threads
     sides = min(ranks - 1, 2)
@@ -97,7 +97,7 @@ def table(machine: Machine = MEASURED) -> Iterator[str]:
     yield "| particles | cores | ranks × threads | ms a step | steps/s | efficiency | bound by |"
     yield "|---|---|---|---|---|---|---|"
     for particles in SIZES:
-        scene = Scene(particles)
+        scene = SlabScene(particles)
         alone = model(machine, scene, 1).seconds
         for cores in CORES:
             step = model(machine, scene, cores)
@@ -109,7 +109,7 @@ def table(machine: Machine = MEASURED) -> Iterator[str]:
             )
 
 
-def _bound(machine: Machine, scene: Scene, step: Step) -> str:
+def _bound(machine: Machine, scene: SlabScene, step: Step) -> str:
     if step.messages > step.compute:
         return "messages"
     if step.reduction > 0.2 * step.seconds:

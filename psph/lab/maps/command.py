@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.lab.maps import picture
-from psph.lab.maps.survey import Row, sentences, survey
+from psph.lab.maps.survey import SurveyRow, sentences, survey
 from psph.lab.maps.tables import CSV, PAGE, PICTURE, UNIT, as_csv, head, line, markdown, subtitle, write
 from psph.smoothing import KERNELS
 from psph.theory.stability import STATES, SYMMETRIC
@@ -96,7 +96,7 @@ def _plain(found: Growth) -> dict:
 
 def _map(settings: Settings, folder: Path, as_json: bool) -> None:
     print(f"fastest growth in {UNIT}; · is stable\n{subtitle(settings)}\n{head()}", flush=True)
-    rows: list[Row] = []
+    rows: list[SurveyRow] = []
     for row in survey(settings):
         rows.append(row)
         print(line(row), flush=True)

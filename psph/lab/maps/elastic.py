@@ -42,7 +42,7 @@ STATES: Mapping[str, tuple[float, float]] = {
 """Stretches of a square lattice; "one way" nothing pulls across, in plane strain."""
 
 
-class Row(NamedTuple):
+class ElasticRow(NamedTuple):
     """A description of elastic matter: its ``limp`` waves (n, 2) in π/dx, ω h/c_l of its softest ``zigzag``
     and of its ``fastest`` wave, all at rest, and the growth in each of ``STATES``, rates in ``UNIT``."""
 
@@ -75,12 +75,12 @@ def matter(poisson: float, **more) -> ElasticMatter:
     return ElasticMatter(part, 0.5 * (1.0 - part), **{"stretches": (1.0, 1.0), **more})
 
 
-def survey() -> Iterator[Row]:
+def survey() -> Iterator[ElasticRow]:
     """Each description, at rest and stretched."""
     for name, of in DESCRIPTIONS.items():
         rest = matter(POISSON)
         found = (elastic_growth(of, matter(POISSON, stretches=s)) for s in STATES.values())
-        yield Row(
+        yield ElasticRow(
             name,
             limp_waves(of, rest),
             zigzag(of, rest),
@@ -89,12 +89,12 @@ def survey() -> Iterator[Row]:
         )
 
 
-def markdown(rows: Sequence[Row]) -> str:
+def markdown(rows: Sequence[ElasticRow]) -> str:
     """The table and what its columns mean."""
     return "\n".join(_markdown(rows)) + "\n"
 
 
-def _markdown(rows: Sequence[Row]) -> Iterator[str]:
+def _markdown(rows: Sequence[ElasticRow]) -> Iterator[str]:
     yield from table(["description", "limp", "zigzag", "fastest", *STATES], [_cells(row) for row in rows])
     yield ""
     yield (
@@ -105,7 +105,7 @@ def _markdown(rows: Sequence[Row]) -> Iterator[str]:
     )
 
 
-def _cells(row: Row) -> list[str]:
+def _cells(row: ElasticRow) -> list[str]:
     rates = ["·" if one.stable else f"{one.rate:.2g}" for one in row.growths]
     return [
         row.description,
@@ -116,7 +116,7 @@ def _cells(row: Row) -> list[str]:
     ]
 
 
-def as_csv(rows: Sequence[Row]) -> str:
+def as_csv(rows: Sequence[ElasticRow]) -> str:
     """Every growth with all its digits and its wave vector, rad/dx."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")

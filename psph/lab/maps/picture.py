@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from psph.lab.maps.survey import Row
+from psph.lab.maps.survey import SurveyRow
 from psph.lab.maps.tables import UNIT
 from psph.output.pictures import style
 from psph.theory.stability import STATES
@@ -26,7 +26,7 @@ COLOURS = LinearSegmentedColormap.from_list("growth", ["#fff3e0", "#f5b041", "#d
 STABLE = style.LINES[0]
 
 
-def draw(path: Path, rows: Sequence[Row], subtitle: str) -> Path:
+def draw(path: Path, rows: Sequence[SurveyRow], subtitle: str) -> Path:
     """Write the picture of a map."""
     norm = LogNorm(SLOW, FAST)
     kernels = list(dict.fromkeys(row.kernel for row in rows))
@@ -46,7 +46,9 @@ def draw(path: Path, rows: Sequence[Row], subtitle: str) -> Path:
     return style.save(figure, path)
 
 
-def _panel(figure: Figure, left: float, top: float, tall: float, rows: list[Row], norm, last: bool) -> None:
+def _panel(
+    figure: Figure, left: float, top: float, tall: float, rows: list[SurveyRow], norm, last: bool
+) -> None:
     axes = style.panel(figure, left, top, WIDTH, tall)
     rates = np.array([[one.rate for one in row.found] for row in rows])
     stable = np.array([[one.stable for one in row.found] for row in rows])

@@ -10,7 +10,7 @@ from psph.theory.stability.uniform import Settings
 from psph.theory.stability.windows import SMOOTHINGS, windows
 
 
-class Row(NamedTuple):
+class SurveyRow(NamedTuple):
     """A kernel under compression or tension: a growth for each of ``SMOOTHINGS``."""
 
     kernel: str
@@ -18,15 +18,15 @@ class Row(NamedTuple):
     found: tuple[Growth, ...]
 
 
-def survey(settings: Settings) -> Iterator[Row]:
+def survey(settings: Settings) -> Iterator[SurveyRow]:
     """Every kernel, under compression and tension; the rest as in ``settings``.  Takes a while."""
     for state, sign in STATES.items():
         for kernel in KERNELS:
             asked = settings._replace(kernel=kernel, pressure=sign * abs(settings.pressure))
-            yield Row(kernel, state, tuple(growth(asked._replace(smoothing=h)) for h in SMOOTHINGS))
+            yield SurveyRow(kernel, state, tuple(growth(asked._replace(smoothing=h)) for h in SMOOTHINGS))
 
 
-def sentences(rows: Sequence[Row]) -> Iterator[str]:
+def sentences(rows: Sequence[SurveyRow]) -> Iterator[str]:
     """Which h/dx are stable, one line a kernel."""
     for state in STATES:
         mine = [row for row in rows if row.state == state]

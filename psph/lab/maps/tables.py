@@ -5,7 +5,7 @@ import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from psph.lab.maps.survey import Row, sentences
+from psph.lab.maps.survey import SurveyRow, sentences
 from psph.output.errors import OutputError, cause
 from psph.theory.stability.parts import REMEDIES
 from psph.theory.stability.uniform import Settings
@@ -39,12 +39,12 @@ def head() -> str:
     return f"{'h/dx':26}" + "".join(f"{h:>7g}" for h in SHOWN)
 
 
-def line(row: Row) -> str:
+def line(row: SurveyRow) -> str:
     """A row for a terminal."""
     return f"{row.kernel:14}{row.state:12}" + "".join(f"{cell:>7}" for cell in _cells(row))
 
 
-def markdown(settings: Settings, rows: Sequence[Row]) -> str:
+def markdown(settings: Settings, rows: Sequence[SurveyRow]) -> str:
     """Title, table and sentences."""
     lines = [
         f"### {settings.lattice.capitalize()} lattice",
@@ -60,7 +60,7 @@ def markdown(settings: Settings, rows: Sequence[Row]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def as_csv(settings: Settings, rows: Sequence[Row]) -> str:
+def as_csv(settings: Settings, rows: Sequence[SurveyRow]) -> str:
     """Every growth with all its digits and its wave vector."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
@@ -103,7 +103,7 @@ def write(path: Path, text: str) -> None:
         raise OutputError(f"{path}: {cause(error)}; choose another folder with --out") from None
 
 
-def _cells(row: Row) -> Iterator[str]:
+def _cells(row: SurveyRow) -> Iterator[str]:
     for h, one in zip(SMOOTHINGS, row.found):
         if h in SHOWN:
             yield STABLE if one.stable else f"{one.rate:.2g}"

@@ -8,7 +8,7 @@ from psph.lab.errors import StudyError
 from psph.lab.study.effects import effects_words, without_each
 from psph.lab.study.ladder import rows, wanted
 from psph.lab.study.runs import DONE, Make
-from psph.lab.study.study import Study
+from psph.lab.study.study import StudyRuns
 
 
 def study(
@@ -44,7 +44,7 @@ def study(
     else:
         every = rows(wanted(case.study.vary, vary), grid or case.study.grid)
     folder = out or Path(f"{case.name}-study")
-    asked = Study(file, sets, every, folder, comm, files, make)
+    asked = StudyRuns(file, sets, every, folder, comm, files, make)
     if not effects:
         asked.refuse_nonsense()
 

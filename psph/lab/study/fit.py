@@ -26,7 +26,7 @@ UNSEEN = 0.01
 """A floor below this part of the finest run's error is none."""
 
 
-class Run(NamedTuple):
+class RunPoint(NamedTuple):
     """What a fit takes of a run: spacing in m, relative error, seconds, particles and steps."""
 
     spacing: float
@@ -47,7 +47,7 @@ class Estimate(NamedTuple):
 class Prediction(NamedTuple):
     """A run, and what was to be expected of it by runs that are not it: error and seconds."""
 
-    run: Run
+    run: RunPoint
     error: Estimate
     seconds: Estimate
 
@@ -59,7 +59,7 @@ class Ladder:
     the same runs.  They know one number less then: neither a floor nor a check of the prediction.
     """
 
-    def __init__(self, runs: Sequence[Run], dimensions: int, estimated: bool = False):
+    def __init__(self, runs: Sequence[RunPoint], dimensions: int, estimated: bool = False):
         self.runs = sorted((r for r in runs if r.error > 0.0), key=lambda r: -r.spacing)
         if len(self.runs) < 2:
             raise ValueError("a ladder needs two runs with an error")

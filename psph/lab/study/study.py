@@ -21,7 +21,7 @@ from psph.scene.checks import warnings
 CSV, PAGE, PICTURE, KEPT = "study.csv", "study.md", "study.png", "study.json"
 
 
-class Study:
+class StudyRuns:
     """The runs of a study in ``folder``; methods are collective but where they say otherwise.
 
     ``file`` is the case, ``sets`` what ``--set`` gave, ``every`` the settings of each run, ``files``
@@ -321,7 +321,9 @@ def ladders_of(
     every = [{k: row[k] for k in keys if k in row} for row in found]
     for shared, places in groups(every):
         part = [found[k] for k in places if found[k]["status"] == DONE]
-        runs = [fit.Run(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part]
+        runs = [
+            fit.RunPoint(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part
+        ]
         enough = len({run.spacing for run in runs if run.error > 0.0}) > 1
         estimated = any(f"{DIFFERENCE}l2" in row for row in part)
         ladder = fit.Ladder(runs, dimensions, estimated) if enough else None

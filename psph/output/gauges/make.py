@@ -22,7 +22,7 @@ from psph.output.gauges.points import CarriedPoints, PointGauge, disc
 from psph.output.gauges.reaction import ReactionGauge
 from psph.output.gauges.run_up import RunUpGauge
 from psph.output.gauges.stress import StressGauge
-from psph.output.probes import Front, Probe
+from psph.output.probes import FieldProbe, Front
 from psph.output.tables import GAUGE
 from psph.scene.outside import WallRegion
 
@@ -74,10 +74,10 @@ def gauge_of(scene, name: str, table, mirrors=None):
         case "highest":
             return PointGauge(Front(name, AXES.index(asked.axis), _of(scene, asked)), every)
         case "point":
-            probe = Probe(name, asked.position, asked.fields, mirrors)
+            probe = FieldProbe(name, asked.position, asked.fields, mirrors)
         case _:
             points = disc(asked.position, AXES.index(asked.axis), asked.diameter, scene.spacing)
-            probe = Probe(name, points, ("pressure",), mirrors)
+            probe = FieldProbe(name, points, ("pressure",), mirrors)
     carrier = _carrier(asked, names)
     return CarriedPoints(probe, every, carrier, probe.points) if carrier else PointGauge(probe, every)
 

@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.output.gauges.carried import Carrier
-from psph.output.probes import Front, Probe
+from psph.output.probes import FieldProbe, Front
 
 
 class PointGauge(NamedTuple):
     """What a ``probe`` (psph.output.probes) measures, ``every`` so many s."""
 
-    probe: Probe | Front
+    probe: FieldProbe | Front
     every: float
 
     def columns(self, scene) -> list[str]:
@@ -27,7 +27,7 @@ class PointGauge(NamedTuple):
 class CarriedPoints(NamedTuple):
     """The same of a probe that a ``carrier`` takes along; ``start`` (n, dim), m, are its points at first."""
 
-    probe: Probe
+    probe: FieldProbe
     every: float
     carrier: Carrier
     start: np.ndarray

@@ -12,7 +12,7 @@ TAUT = 1.0 - 1e-9
 """Over its length: below it a line that only pulls is slack."""
 
 
-class Drawn(NamedTuple):
+class DrawnLine(NamedTuple):
     """A line with its ``ends`` (2, dim), m; ``slack`` where it bears nothing."""
 
     ends: np.ndarray
@@ -33,13 +33,13 @@ class Moorings:
         ]
         self._start = {name: self._particles(name, start) for name in names}
 
-    def at(self, frame: dict) -> Iterator[Drawn]:
+    def at(self, frame: dict) -> Iterator[DrawnLine]:
         """All of them in ``frame``, which has ``group``, ``id`` and ``position``."""
         for name, line in self._lines:
             ends = np.array([self._carried(name, line["at"], frame), self._far_end(line, frame)])
             length = line.get("length", np.linalg.norm(np.subtract(line["at"], line["anchor"])))
             slack = line["pulls_only"] and np.linalg.norm(ends[1] - ends[0]) < TAUT * length
-            yield Drawn(ends, bool(slack))
+            yield DrawnLine(ends, bool(slack))
 
     def _far_end(self, line: dict, frame: dict) -> np.ndarray:
         if "to" in line:

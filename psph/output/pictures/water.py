@@ -10,7 +10,7 @@ FINE, LARGEST = 0.5, 4e7
 """Spacings between the nodes of the grid, unless those would be more in number."""
 
 
-class Sums:
+class SurfaceSums:
     """Kernel sums of particles at ``position`` (n, 3), m, a ``spacing`` apart at rest, on a grid.
 
     Particles are shared out among the nodes around them by their distance along each axis; a Gaussian then
@@ -55,7 +55,7 @@ def fluid_surface(position: np.ndarray, spacing: float, values: np.ndarray | Non
 
     if not np.isfinite(position).all(axis=1).any():
         return None
-    sums = Sums(position, spacing)
+    sums = SurfaceSums(position, spacing)
     filled = sums.of()
     grid = pyvista.ImageData(dimensions=sums.shape, spacing=[sums.step] * 3, origin=sums.origin)
     grid["filled"] = filled.ravel(order="F")

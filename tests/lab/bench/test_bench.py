@@ -10,7 +10,7 @@ from jobs import clean_environment, mpirun
 from psph.lab.bench import command
 from psph.lab.bench.command import bench
 from psph.lab.bench.compare import compared
-from psph.lab.bench.measure import OURS, STEPS, Asked, _beside
+from psph.lab.bench.measure import OURS, STEPS, BenchProblem, _beside
 from psph.lab.bench.report import tables
 from psph.lab.bench.results import KEYS, read_runs
 from psph.lab.errors import BenchError, PeerFailed
@@ -73,7 +73,7 @@ def test_a_peer_that_fails_at_one_problem_does_not_end_the_set(result, monkeypat
 
     monkeypatch.setattr(command, "measure", measure)
     monkeypatch.setattr(command, "measure_ceiling", lambda comm: None)
-    asked = Asked("box", 3, 5000, 57, "double")
+    asked = BenchProblem("box", 3, 5000, 57, "double")
     bench(alone(), [asked, asked], None, "python", as_json=True)
     said = capsys.readouterr().out.splitlines()
     assert said[0] == "bench --peer: LAMMPS blew up; without it:"
@@ -96,7 +96,7 @@ def test_two_ranks_speak_with_one_voice():
 
 
 def test_several_problems_are_one_object(capsys, tmp_path):
-    asked = [Asked("box", 2, 400, 20, "mixed"), Asked("dam", 2, 1500, 20, "double")]
+    asked = [BenchProblem("box", 2, 400, 20, "mixed"), BenchProblem("dam", 2, 1500, 20, "double")]
     bench(alone(), asked, None, None, as_json=True)
     printed = capsys.readouterr().out
     runs = json.loads(printed.splitlines()[-1])["runs"]

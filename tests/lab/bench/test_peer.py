@@ -12,10 +12,10 @@ from jobs import clean_environment
 
 from psph.lab.bench import lammps_solid
 from psph.lab.bench.block import Block
-from psph.lab.bench.box import Box
+from psph.lab.bench.box import FluidBox
 from psph.lab.bench.falling import Falling
 from psph.lab.bench.lammps_fluid import commands, gathered
-from psph.lab.bench.measure import Asked, measure
+from psph.lab.bench.measure import BenchProblem, measure
 from psph.lab.bench.peer import Peer, Processes
 from psph.lab.bench.roofline import Ceiling
 from psph.lab.bench.tank import Tank
@@ -46,7 +46,7 @@ def simulation_of(layout):
 
 
 def test_a_box_in_its_words():
-    layout = Box.nearest(2, 20, 400)
+    layout = FluidBox.nearest(2, 20, 400)
     scene, simulation = simulation_of(layout)
     simulation.step()
     said = sum(commands(scene, simulation), [])
@@ -101,7 +101,9 @@ def test_its_cuts_follow_the_water(python):
     [("box", 2, 20), ("box", 3, 57), ("falling", 2, 20), ("block", 3, 57)],
 )
 def test_they_take_turns(python, problem, dim, neighbours):
-    result = measure(Asked(problem, dim, 3000, neighbours, "double"), alone(), Ceiling(1e10, 1e10), python)
+    result = measure(
+        BenchProblem(problem, dim, 3000, neighbours, "double"), alone(), Ceiling(1e10, 1e10), python
+    )
     peer = result["peer"]
     assert peer["name"] == "LAMMPS" and int(peer["version"]) > 20200101 and peer["ranks"] == 1
     assert peer["ratio"] > 0.0 and peer["skin"] in peer["skins_tried"]
@@ -196,7 +198,7 @@ def rows(state, name):
 
 
 def test_a_blow_up_is_said(python):
-    scene, simulation = simulation_of(Box.nearest(2, 20, 400))
+    scene, simulation = simulation_of(FluidBox.nearest(2, 20, 400))
     with Peer(python, scene, simulation) as peer:
         peer.check()
         peer._processes.ask("commands", ["set group all sph/rho 500.0"])
@@ -230,6 +232,6 @@ def test_without_lammps_it_says_what_to_do():
 
 
 def test_a_python_that_is_not_there(tmp_path):
-    scene, simulation = simulation_of(Box.nearest(2, 20, 400))
+    scene, simulation = simulation_of(FluidBox.nearest(2, 20, 400))
     with pytest.raises(BenchError, match="bench --peer: .*nowhere: No such file.*psph\\[peer\\]"):
         Peer(tmp_path / "nowhere", scene, simulation)

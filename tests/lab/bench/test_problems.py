@@ -7,7 +7,7 @@ from scipy.spatial.distance import pdist
 
 from psph.fields import FLUID
 from psph.lab.bench import falling
-from psph.lab.bench.box import Box
+from psph.lab.bench.box import FluidBox
 from psph.lab.bench.command import one, standard
 from psph.lab.bench.falling import COARSEST, Falling, fall
 from psph.lab.bench.tank import HEIGHT, Tank
@@ -24,7 +24,7 @@ from psph.simulation.step import Simulation
 @pytest.mark.parametrize("many", [20_000, 200_000, 1_000_000])
 @pytest.mark.parametrize(("dim", "neighbours"), [(2, 20), (3, 57), (3, 110)])
 def test_as_many_particles_as_asked(dim, neighbours, many):
-    box = Box.nearest(dim, neighbours, many)
+    box = FluidBox.nearest(dim, neighbours, many)
     fallen = Falling.nearest(dim, neighbours, many)
     assert box.sides**dim == pytest.approx(many, rel=0.05)
     assert Tank.nearest(dim, neighbours, many).particles == pytest.approx(many, rel=0.05)

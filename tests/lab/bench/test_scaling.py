@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from jobs import mpirun
 
-from psph.lab.bench.scaling import MEASURED, Scene, model, table
+from psph.lab.bench.scaling import MEASURED, SlabScene, model, table
 
 PAGE = Path(__file__).parents[3] / "docs" / "scaling.md"
 
@@ -42,7 +42,7 @@ def test_counts_of_real_runs(ranks):
     job = mpirun(ranks, ["-c", COUNTS])
     assert job.returncode == 0, job.stderr
     found = json.loads(job.stdout.splitlines()[-1])
-    scene = Scene(48 * 12 * 12, long=4.0)
+    scene = SlabScene(48 * 12 * 12, long=4.0)
     assert sum(planes for *_, planes in found) == scene.planes
     for rank, (sent, ghosts, _) in enumerate(found):
         sides = (rank > 0) + (rank < ranks - 1)
@@ -52,14 +52,14 @@ def test_counts_of_real_runs(ranks):
 
 
 def test_one_core_is_pairs_alone():
-    step = model(MEASURED, Scene(10**6), 1)
+    step = model(MEASURED, SlabScene(10**6), 1)
     assert step.seconds == pytest.approx(10**6 * MEASURED.particle, rel=1e-9)
     assert (step.ranks, step.threads) == (1, 1)
 
 
 def test_never_more_ranks_than_planes_and_never_slower_with_more_cores():
     for particles in (10**6, 10**8):
-        scene, before = Scene(particles), float("inf")
+        scene, before = SlabScene(particles), float("inf")
         for cores in (1, 4, 16, 64, 256, 1024):
             step = model(MEASURED, scene, cores)
             assert step.ranks <= scene.planes and step.ranks * step.threads <= cores
@@ -69,7 +69,7 @@ def test_never_more_ranks_than_planes_and_never_slower_with_more_cores():
 
 def test_a_slow_network_binds():
     slow = MEASURED._replace(bandwidth=2e8)
-    step = model(slow, Scene(10**7), 64)
+    step = model(slow, SlabScene(10**7), 64)
     assert step.messages > step.compute
 
 

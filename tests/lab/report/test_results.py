@@ -13,7 +13,7 @@ from psph.lab.battery.verdicts import VERDICTS, judged
 from psph.lab.maps import elastic
 from psph.lab.maps import picture as map_picture
 from psph.lab.maps import tables as map_tables
-from psph.lab.maps.survey import Row
+from psph.lab.maps.survey import SurveyRow
 from psph.lab.report.page import report
 from psph.lab.study.report import markdown, write_json
 from psph.lab.study.study import KEPT, PAGE
@@ -97,7 +97,9 @@ def a_map(folder):
     """Two kernels under compression and tension, as ``stability`` writes them."""
     folder.mkdir()
     rows = [
-        Row(kernel, state, tuple(Growth(rate * h, np.array([np.pi, 0.0]), rate == 0.0) for h in SMOOTHINGS))
+        SurveyRow(
+            kernel, state, tuple(Growth(rate * h, np.array([np.pi, 0.0]), rate == 0.0) for h in SMOOTHINGS)
+        )
         for kernel, state, rate in [
             ("cubic", "compression", 0.0),
             ("quintic", "compression", 0.1),
@@ -119,7 +121,10 @@ def an_elastic_table(folder):
     grows = tuple(Growth(0.1 * k, wave, k == 0) for k in (1, 2, 3, 0))
     stands = tuple(Growth(0.0, wave, True) for _ in elastic.STATES)
     limp = np.array([[0.0, 1.0], [1.0, 1.0]])
-    rows = [elastic.Row("total", none, 1.4, 1.5, stands), elastic.Row("updated", limp, 0.0, 1.13, grows)]
+    rows = [
+        elastic.ElasticRow("total", none, 1.4, 1.5, stands),
+        elastic.ElasticRow("updated", limp, 0.0, 1.13, grows),
+    ]
     (folder / elastic.CSV).write_text(elastic.as_csv(rows))
     (folder / elastic.PAGE).write_text(elastic.markdown(rows))
     return folder

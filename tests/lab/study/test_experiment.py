@@ -23,7 +23,7 @@ from psph.lab.study.experiment import read_experiment
 from psph.lab.study.ladder import overrides, rows, wanted
 from psph.lab.study.prediction import predicted
 from psph.lab.study.runs import conditions
-from psph.lab.study.study import Study
+from psph.lab.study.study import StudyRuns
 from psph.output.errors import NotThere
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
@@ -282,7 +282,7 @@ def test_ladders_on_the_command_line(examples, tmp_path):
     def run(asked):
         try:
             every = rows(wanted({}, asked), False)
-            Study(file, [], every, tmp_path / "out", alone()).refuse_nonsense()
+            StudyRuns(file, [], every, tmp_path / "out", alone()).refuse_nonsense()
         except Foreseen as error:
             lines = error.lines if isinstance(error, CaseError) else [str(error)]
             assert all(len(line) < 1500 and not UNPRINTABLE.search(line) for line in lines)

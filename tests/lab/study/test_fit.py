@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from psph.lab.study.fit import Ladder, Run, own_error, richardson
+from psph.lab.study.fit import Ladder, RunPoint, own_error, richardson
 
 
-def run(dx: float, order: float = 2.0, noise: float = 1.0) -> Run:
+def run(dx: float, order: float = 2.0, noise: float = 1.0) -> RunPoint:
     """A run in 2D: error 5 dx^p, 1e-7 s a particle-step and 1e-4 s a step."""
     particles, steps = round(dx**-2), round(10 / dx)
-    return Run(dx, noise * 5.0 * dx**order, 1e-7 * particles * steps + 1e-4 * steps, particles, steps)
+    return RunPoint(dx, noise * 5.0 * dx**order, 1e-7 * particles * steps + 1e-4 * steps, particles, steps)
 
 
 def test_error_and_seconds_of_a_run_that_was_not_made():

@@ -20,7 +20,7 @@ from psph.lab.study.effects import effects_words, without_each
 from psph.lab.study.judge import Judge, known_values, series_errors, value_at
 from psph.lab.study.page import main as on_page
 from psph.lab.study.prediction import predicted
-from psph.lab.study.study import Study, pareto
+from psph.lab.study.study import StudyRuns, pareto
 from psph.output.interpolation import interpolated
 from psph.output.pages import BEGIN, END
 from psph.output.reader import Run
@@ -331,7 +331,7 @@ def test_a_run_that_does_not_fit_into_the_memory_does_not_end_the_study(tmp_path
     needed = bytes_of_rank(Scene(case), make_plan(Scene(case)), 1)
 
     def statuses():
-        made = Study(tmp_path / "wave.toml", ["study.repeats=1"], every, tmp_path / "out", alone())
+        made = StudyRuns(tmp_path / "wave.toml", ["study.repeats=1"], every, tmp_path / "out", alone())
         return [row["status"] for row in made.run(lambda line: None)]
 
     monkeypatch.setattr(memory_check, "free_memory", lambda: 0.9 * needed)

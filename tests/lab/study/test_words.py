@@ -1,6 +1,6 @@
 """Sentences follow from the rows."""
 
-from psph.lab.study.fit import Estimate, Ladder, Run, richardson
+from psph.lab.study.fit import Estimate, Ladder, RunPoint, richardson
 from psph.lab.study.words import advice, against_base, ladder_words, limit_words
 
 
@@ -8,7 +8,7 @@ def ladder(*errors: float) -> Ladder:
     """Runs at 0.04, 0.02, 0.01 m with these errors, their seconds those of 1e-7 s a particle-step."""
     return Ladder(
         [
-            Run(0.04 / 2**k, e, 1e-7 * 625 * 4**k * 100 * 2**k, 625 * 4**k, 100 * 2**k)
+            RunPoint(0.04 / 2**k, e, 1e-7 * 625 * 4**k * 100 * 2**k, 625 * 4**k, 100 * 2**k)
             for k, e in enumerate(errors)
         ],
         2,

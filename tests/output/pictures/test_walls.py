@@ -8,7 +8,7 @@ from psph.case.shapes import Shape
 from psph.output.pictures import bodies as bodies_module
 from psph.output.pictures.bodies import bodies_of, hull, rigid
 from psph.output.pictures.walls import encloses, inwards, surface
-from psph.output.pictures.water import Sums, fluid_surface
+from psph.output.pictures.water import SurfaceSums, fluid_surface
 
 FAR = np.full(3, -np.inf), np.full(3, np.inf)
 
@@ -147,7 +147,7 @@ def cube(count, spacing):
 
 def test_the_sum_of_kernels_is_one_inside_and_keeps_the_volume():
     places = cube(12, 0.05)
-    sums = Sums(places, 0.05)
+    sums = SurfaceSums(places, 0.05)
     grid = sums.of()
     middle = tuple(np.round((0.3 - sums.origin) / sums.step).astype(int))
     assert grid[middle] == pytest.approx(1.0, abs=0.05)  # between the particles of a lattice
@@ -171,5 +171,5 @@ def test_a_drop_of_one_particle_is_seen_and_no_fluid_is_nothing():
 
 def test_a_grid_of_many_nodes_is_made_coarser(monkeypatch):
     monkeypatch.setattr("psph.output.pictures.water.LARGEST", 5000)
-    sums = Sums(cube(12, 0.05), 0.05)
+    sums = SurfaceSums(cube(12, 0.05), 0.05)
     assert np.prod(sums.shape) < 10_000 and sums.of().shape == sums.shape
