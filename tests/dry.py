@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from psph.scene import Scene
-from psph.simulation.floating import Floating
+from psph.simulation.floating import FloatingBodies
 from psph.simulation.plan import make_plan
 from psph.simulation.poses import Poses, corners_of
 
@@ -30,7 +30,7 @@ class Dry:
     def __init__(self, case, dt=2e-3):
         self.scene, self.dt, self.time = Scene(case), dt, 0.0
         plan = make_plan(self.scene)
-        self.floating = Floating(self.scene, plan)
+        self.floating = FloatingBodies(self.scene, plan)
         corners = corners_of(self.scene, plan)
         self.poses = Poses(plan.rigid, corners, None, self.scene.gravity, (self.floating,))
         self.floating.meet(self.poses.maps)

@@ -44,9 +44,9 @@ CIRCLES: list[set[str]] = []
 
 TWICE = """
 Absorbing Case
-Cross Floating Frame Granular Guards Harmonic
-HerschelBulkley Line Matter Meeting Neighbours Paste Plane
-Rows Schedule Steady Strength Table Touching
+Cross Frame Granular Guards
+HerschelBulkley Matter Neighbours
+Rows Strength Table
 Turning
 """
 """Names that classes of several files have: one class a name is the aim, so none is to come."""

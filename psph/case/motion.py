@@ -23,10 +23,10 @@ from psph.case.keys import Table, Text, Vector, key
 from psph.case.paddles import Absorber, Flap, Irregular, OnHinge, Piston, SolitaryWave, Wavemaker
 from psph.case.parameters import Parameters, chosen, last_part, table_of
 from psph.physics.rigid.absorption import Absorbing
-from psph.physics.rigid.laws import Accelerated, Harmonic, Steady, Tabulated
+from psph.physics.rigid.laws import Accelerated, Sinusoidal, SteadyRate, Tabulated
 from psph.physics.rigid.motion import UPWARDS, MotionPart, Rigid
 from psph.physics.rigid.pose import ZERO, in_space
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 
 PADDLES = ("piston", "flap", "irregular", "solitary")
 """Those of the keys of parts that make waves."""
@@ -89,9 +89,9 @@ class Translation(Parameters):
 
     velocity: Vector = key("velocity", unit="m/s")
 
-    def law(self) -> Steady:
+    def law(self) -> SteadyRate:
         """How far it comes."""
-        return Steady((*in_space(self.velocity), 0.0))
+        return SteadyRate((*in_space(self.velocity), 0.0))
 
 
 class Acceleration(Parameters):
@@ -115,9 +115,9 @@ class Rotation(Turning):
     center: Vector | None = CENTER
     axis: Vector | None = AXIS
 
-    def law(self) -> Steady:
+    def law(self) -> SteadyRate:
         """How far it comes."""
-        return Steady((*ZERO, self.speed))
+        return SteadyRate((*ZERO, self.speed))
 
 
 class Sinusoid(Turning):
@@ -144,11 +144,11 @@ class Sinusoid(Turning):
             raise _fault("give either period or frequency")
         return self
 
-    def law(self) -> Harmonic:
+    def law(self) -> Sinusoidal:
         """How far it comes."""
         amplitude = (*in_space(self.amplitude or ()), self.angle or 0.0)
         frequency = self.frequency if self.frequency is not None else 1.0 / self.period
-        return Harmonic(amplitude, 2.0 * math.pi * frequency, self.phase)
+        return Sinusoidal(amplitude, 2.0 * math.pi * frequency, self.phase)
 
 
 class Series(Turning):
@@ -188,7 +188,7 @@ class Series(Turning):
     @property
     def widest_swing(self) -> float:
         """The largest angle of its rows, where some of them turn back; 0 where it turns on and on, rad."""
-        always = Schedule(0.0, math.inf, 0.0)
+        always = ActingTime(0.0, math.inf, 0.0)
         angles = [self._law.ways(always, time)[0][3] for time in self._law.times]
         steps = np.diff(angles)
         turns_back = (steps > 0.0).any() and (steps < 0.0).any()
@@ -292,7 +292,7 @@ class Motion(Table):
         asked: Any = getattr(self, self.way)
         if self.way not in BUILT_IN:
             return chosen(self, self.entries)[self.way]
-        schedule = Schedule(self.start, math.inf if self.end is None else self.end, self.ramp)
+        schedule = ActingTime(self.start, math.inf if self.end is None else self.end, self.ramp)
         law = asked.law(gravity) if self.way in PADDLES else asked.law()
         if self.absorbs:
             return Absorbing(MotionPart(law, schedule), asked.heading, asked.absorption(gravity))

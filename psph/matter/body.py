@@ -30,9 +30,9 @@ class RigidBodies(Kind):
 
     def work(self, rank: Rank) -> Iterator[Work]:
         """Their motion."""
-        from psph.simulation.floating import Floating
+        from psph.simulation.floating import FloatingBodies
 
-        yield Floating(rank.scene, rank.plan)
+        yield FloatingBodies(rank.scene, rank.plan)
 
     def matter_lines(self) -> Iterator[str]:
         """What each is."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from psph.case.parameters import as_numbers
 from psph.physics.rigid.bodies import Bodies, RigidBody
-from psph.physics.rigid.lines import Line, longest_step
+from psph.physics.rigid.lines import SpringLine, longest_step
 from psph.physics.rigid.pose import in_space
 from psph.physics.solid.contact import SolidContact
 from psph.scene.scene import Scene
@@ -53,11 +53,11 @@ def in_words(scene: Scene, body: RigidBody) -> str:
     return f"{body.mass:.4g} kg, {beside}centre ({where}) m; free: {freed}{until}"
 
 
-def lines_of(scene: Scene, order: Sequence[str]) -> tuple[Line, ...]:
+def lines_of(scene: Scene, order: Sequence[str]) -> tuple[SpringLine, ...]:
     """The lines of all bodies, whose rows have the names in ``order``."""
     rows = {name: row for row, name in enumerate(order)}
     return tuple(
-        Line(
+        SpringLine(
             f"{name}.{line}",
             rows[name],
             in_space(table.at),

@@ -18,7 +18,7 @@ MOST_STRAIN = 0.1
 """By which a paste that is to stand may creep until the end of a run."""
 
 
-class Paste(NamedTuple):
+class YieldingFluid(NamedTuple):
     """A fluid that yields in its scene: a paste, or grains under their weight.
 
     Its ``law``, what it ``bears`` by (its yield, or friction) and the ``limit`` of that in Pa; its
@@ -50,7 +50,7 @@ class Paste(NamedTuple):
         return max(self.stress / self.law.largest, self.law.creep_under(self.stress, self.limit))
 
 
-def pastes(scene: Scene) -> Iterator[Paste]:
+def pastes(scene: Scene) -> Iterator[YieldingFluid]:
     """The fluids with a yield stress."""
     for place, (name, fluid) in enumerate(scene.case.flowing.items()):
         law = fluid.rheology and fluid.rheology.law
@@ -62,12 +62,12 @@ def pastes(scene: Scene) -> Iterator[Paste]:
         by_weight = fluid.density * _shearing(scene, place) * thickness
         stress = max(by_weight, law.viscosity(rate, 0.0, 0.0) * rate)
         limit = law.yield_stress
-        yield Paste(
+        yield YieldingFluid(
             f"fluids.{name}.rheology", law, "yield", limit, thickness, pull, stress, law.rate_under(stress)
         )
 
 
-def grains(scene: Scene) -> Iterator[Paste]:
+def grains(scene: Scene) -> Iterator[YieldingFluid]:
     """The grains that weigh on what is below them, at their floor."""
     for place, (name, fluid) in enumerate(scene.case.flowing.items()):
         law, thickness = fluid.rheology and fluid.rheology.law, _thickness(scene, place)
@@ -77,7 +77,7 @@ def grains(scene: Scene) -> Iterator[Paste]:
         pressure, rate = pull * thickness, scene.starting_speed / thickness
         by_weight = fluid.density * _shearing(scene, place) * thickness
         stress = max(by_weight, law.viscosity(rate, pressure, 0.0) * rate)
-        yield Paste(
+        yield YieldingFluid(
             f"fluids.{name}.rheology",
             law,
             "friction",
@@ -141,7 +141,7 @@ def rheology_lines(scene: Scene) -> Iterator[str]:
         yield from _paste_lines(paste)
 
 
-def _paste_lines(paste: Paste) -> Iterator[str]:
+def _paste_lines(paste: YieldingFluid) -> Iterator[str]:
     law, says = paste.law, f"yield stress {paste.law.yield_stress:.3g} Pa"
     if paste.pull:
         plug = law.yield_stress / paste.pull

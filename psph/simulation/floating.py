@@ -18,7 +18,7 @@ BITS = 58
 room for sixteen times that."""
 
 
-class Floating(Work):
+class FloatingBodies(Work):
     """The bodies of a scene among the rigid motions of its ``plan``.
 
     ``rows`` are their places there and ``bodies`` their state (psph.physics.rigid.bodies), the same on

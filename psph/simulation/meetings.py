@@ -34,7 +34,7 @@ class Seen(NamedTuple):
     shift: np.ndarray
 
 
-class Meeting(NamedTuple):
+class ContactPoints(NamedTuple):
     """``points`` (n, dim) m, at the faces of the body of the row ``row`` and of what is ``seen`` by it;
     ``normal`` (n, dim) out of that, and ``gap`` (n,) m between the two."""
 
@@ -60,7 +60,7 @@ class Meetings:
         self.tips: list[Tips] = [one.tips for one in bodies if one.tips]
         self._reach = np.array([tips.reach(tips.middle) for tips in self.tips])
 
-    def near(self, ahead: float) -> Iterator[Meeting]:
+    def near(self, ahead: float) -> Iterator[ContactPoints]:
         """Points nearer than ``ahead`` m to a face that nothing covers: some for each body and face."""
         found, around = [*self._pairs(ahead)], defaultdict(list)
         for row, seen in found:
@@ -76,7 +76,7 @@ class Meetings:
                 points, normal, gap = points[free], normal[free], gap[free]
                 if len(points):
                     which = spread_out(points, gap, normal, MOST * self._d // 2)
-                    yield Meeting(row, seen, points[which], sign * normal[which], gap[which])
+                    yield ContactPoints(row, seen, points[which], sign * normal[which], gap[which])
 
     def depths(self) -> Iterator[tuple[int, Obstacle, float]]:
         """The row of each body, what it overlaps, and how deep, m."""

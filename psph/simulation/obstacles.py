@@ -60,14 +60,16 @@ class Obstacle(NamedTuple):
     @property
     def corners(self) -> np.ndarray | None:
         """Those of a box around it at the start, m; None where it has no end."""
-        return None if isinstance(self.shape, Plane) else np.array([*product(*zip(*bounds(self.shape)))])
+        return None if isinstance(self.shape, MirrorFace) else np.array([*product(*zip(*bounds(self.shape)))])
 
     def faces(self, points: np.ndarray) -> Faces:
         """How far ``points`` (n, dim) are before its faces at the start, m, and the way out."""
-        return self.shape.faces(points) if isinstance(self.shape, Plane) else faces_of(self.shape, points)
+        return (
+            self.shape.faces(points) if isinstance(self.shape, MirrorFace) else faces_of(self.shape, points)
+        )
 
 
-class Plane(NamedTuple):
+class MirrorFace(NamedTuple):
     """The plane across ``axis`` at ``at`` m of a mirror; ``side`` −1 where bodies are below it, else 1."""
 
     axis: int
@@ -98,7 +100,7 @@ def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
             yield Obstacle(key, shape, tips_of(shape, scene.spacing), -1, pose)
     for one in scene.layout.mirror_planes:
         cut = [row for row, (low, up) in ends.items() if low[one.axis] < one.at < up[one.axis]]
-        plane = Plane(one.axis, one.at, 1 if one.side == BELOW else -1)
+        plane = MirrorFace(one.axis, one.at, 1 if one.side == BELOW else -1)
         yield Obstacle("a mirror", plane, None, cuts=tuple(cut))
 
 

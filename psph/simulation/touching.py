@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.physics.rigid.bodies import Bodies
-from psph.physics.rigid.contact import OUT, Touching, Yielding, approach, solve
+from psph.physics.rigid.contact import OUT, BodyContacts, Yielding, approach, solve
 from psph.scene.bodies import contact_of
-from psph.simulation.meetings import Meeting, Meetings
+from psph.simulation.meetings import ContactPoints, Meetings
 
 AHEAD = 0.1
 """Spacings, and twice the way of two bodies in a step, from which points are looked at."""
@@ -35,7 +35,7 @@ class Contacts:
         places = np.array([plan.rigid[row].reference[: scene.dimensions] for row in rows])
         self._meetings = Meetings(scene, plan, rows, maps)
         self._size = np.array([one.reach(at[None]) for one, at in zip(self._meetings.tips, places)])
-        self._touching: Touching | None = None
+        self._touching: BodyContacts | None = None
         self._extra: tuple[np.ndarray, np.ndarray] | None = None
 
     def meet(self, bodies: Bodies, before: tuple[np.ndarray, np.ndarray], then: float, dt: float) -> None:
@@ -63,7 +63,7 @@ class Contacts:
             wanted = np.where(touching.gap < 0.0, wanted, -gap / dt)
             self._extra = _sums(touching, solve(touching, yielding, wanted, 0.0, speed, spin), bodies)
             bodies.shoved(*self._extra)
-        self._touching = Touching(*(of[resting] for of in touching))
+        self._touching = BodyContacts(*(of[resting] for of in touching))
         self._yielding: Yielding = yielding
 
     def rest(self, bodies: Bodies, dt: float) -> None:
@@ -86,14 +86,14 @@ class Contacts:
                 found = Overlap(depth, row, other.key)
         return found
 
-    def near(self, bodies: Bodies, speed: np.ndarray, spin: np.ndarray, dt: float) -> Touching:
+    def near(self, bodies: Bodies, speed: np.ndarray, spin: np.ndarray, dt: float) -> BodyContacts:
         """The points in which bodies may meet in a step of ``dt`` s, at the velocities and spins given."""
         ways = np.sqrt((speed**2).sum(axis=1)) + self._size * np.sqrt((spin**2).sum(axis=1))
         most = AHEAD * self._spacing + 4.0 * dt * float(ways.max())
         found = [self._touching_at(bodies, one) for one in self._meetings.near(most)] or [NOTHING]
-        return Touching(*(np.concatenate(of) for of in zip(*found)))
+        return BodyContacts(*(np.concatenate(of) for of in zip(*found)))
 
-    def _touching_at(self, bodies: Bodies, met: Meeting) -> Touching:
+    def _touching_at(self, bodies: Bodies, met: ContactPoints) -> BodyContacts:
         other, count, d = met.seen.obstacle, len(met.points), met.points.shape[1]
         arms, other_arms, out, told = np.zeros((4, count, 3))
         arms[:, :d], out[:, :d] = met.points - bodies.place[met.row, :d], met.normal
@@ -102,20 +102,20 @@ class Contacts:
         else:
             told[:, :d] = self._meetings.velocity(met.seen, met.points)
         rows = np.full(count, met.row), np.full(count, other.body)
-        return Touching(*rows, arms, other_arms, out, met.gap, told)
+        return BodyContacts(*rows, arms, other_arms, out, met.gap, told)
 
-    def _push(self, bodies: Bodies, touching: Touching, impulse: np.ndarray, dt: float) -> None:
+    def _push(self, bodies: Bodies, touching: BodyContacts, impulse: np.ndarray, dt: float) -> None:
         push, twist = _sums(touching, impulse, bodies)
         bodies.shoved(push, twist)
         bodies.pressing, bodies.twisting = bodies.pressing + push / dt, bodies.twisting + twist / dt
 
 
 NONE, NOWHERE = np.empty(0, np.int64), np.empty((0, 3))
-NOTHING = Touching(NONE, NONE, NOWHERE, NOWHERE, NOWHERE, np.empty(0), NOWHERE)
+NOTHING = BodyContacts(NONE, NONE, NOWHERE, NOWHERE, NOWHERE, np.empty(0), NOWHERE)
 """No contact."""
 
 
-def _sums(touching: Touching, impulse: np.ndarray, bodies: Bodies) -> tuple[np.ndarray, np.ndarray]:
+def _sums(touching: BodyContacts, impulse: np.ndarray, bodies: Bodies) -> tuple[np.ndarray, np.ndarray]:
     """All impulses, N s, and their moments about the reference points, N m s, of each body (n, 3)."""
     push, twist = np.zeros_like(bodies.force), np.zeros_like(bodies.force)
     for rows, arms, sign in (

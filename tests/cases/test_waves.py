@@ -13,7 +13,7 @@ from mpi4py import MPI
 from psph.case import load
 from psph.case.paddles import Irregular
 from psph.output.reader import Run
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 from psph.runs.start import run
 from psph.theory.water_waves import bound_crest, piston_gain, second_harmonic, wave_number
 
@@ -199,7 +199,7 @@ def beside_its_theory(found, seed):
     table = found.gauges()["near"]
     time, level = (window(table, name, 6.0, 24.0) for name in ("time", "near.level"))
     crests = Irregular(height=0.06, period=1.4, depth=DEPTH, seed=seed).crests(9.81)
-    told = [crests.elevation(Schedule(0.0, math.inf, 1.4), t, 0.75) for t in time]
+    told = [crests.elevation(ActingTime(0.0, math.inf, 1.4), t, 0.75) for t in time]
     return 4.0 * level.std(), 4.0 * np.std(told), np.corrcoef(level, told)[0, 1]
 
 

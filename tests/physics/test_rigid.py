@@ -5,22 +5,22 @@ import math
 import numpy as np
 import pytest
 
-from psph.physics.rigid.laws import Accelerated, Harmonic, Steady, Tabulated
+from psph.physics.rigid.laws import Accelerated, Sinusoidal, SteadyRate, Tabulated
 from psph.physics.rigid.motion import MotionPart, Rigid
 from psph.physics.rigid.pose import ZERO, inertia
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 
 SKEW = (1.0 / 3.0, 2.0 / 3.0, -2.0 / 3.0)
 AWAY = (0.3, -0.2, 0.7)
-ALWAYS, RAMPED, ONCE = Schedule(), Schedule(0.2, 1.9, 0.5), Schedule(0.2, 1.9)
+ALWAYS, RAMPED, ONCE = ActingTime(), ActingTime(0.2, 1.9, 0.5), ActingTime(0.2, 1.9)
 TIMES = np.linspace(0.0, 2.0, 9)
 TABLE = np.column_stack([np.sin(TIMES), TIMES**2, np.cos(3.0 * TIMES) - 1.0, 0.4 * np.sin(2.0 * TIMES)])
 LAWS = {
-    "translation": Steady((0.5, -0.3, 0.2, 0.0)),
-    "rotation": Steady((0.0, 0.0, 0.0, 1.7)),
+    "translation": SteadyRate((0.5, -0.3, 0.2, 0.0)),
+    "rotation": SteadyRate((0.0, 0.0, 0.0, 1.7)),
     "acceleration": Accelerated((0.5, -1.0, 0.3, 0.0)),
-    "sinusoid": Harmonic((0.2, 0.1, -0.3, 0.0), 4.0, 0.6),
-    "swing": Harmonic((0.0, 0.0, 0.0, 0.5), 4.0, 0.6),
+    "sinusoid": Sinusoidal((0.2, 0.1, -0.3, 0.0), 4.0, 0.6),
+    "swing": Sinusoidal((0.0, 0.0, 0.0, 0.5), 4.0, 0.6),
     "series": Tabulated(TIMES, TABLE),
 }
 POINT = (0.9, 0.1, -0.4)
@@ -88,8 +88,8 @@ def test_places_are_what_formulas_say():
 
 def test_a_part_moves_what_the_parts_before_it_have_made():
     """A wheel that turns about its hub and travels: the hub as drawn, whatever the wheel has travelled."""
-    turn = MotionPart(Steady((0.0, 0.0, 0.0, 0.5 * math.pi)), ALWAYS, (1.0, 0.0, 0.0))
-    travel = MotionPart(Steady((3.0, 0.0, 0.0, 0.0)))
+    turn = MotionPart(SteadyRate((0.0, 0.0, 0.0, 0.5 * math.pi)), ALWAYS, (1.0, 0.0, 0.0))
+    travel = MotionPart(SteadyRate((3.0, 0.0, 0.0, 0.0)))
     rolling, orbiting = Rigid((turn, travel)).pose(1.0), Rigid((travel, turn)).pose(1.0)
     assert rolling.place((2.0, 0.0, 0.0)) == pytest.approx((4.0, 1.0, 0.0))
     assert orbiting.place((2.0, 0.0, 0.0)) == pytest.approx((1.0, 4.0, 0.0), abs=1e-15)

@@ -17,7 +17,7 @@ OUT = 0.2
 """Part of an overlap that a step takes back."""
 
 
-class Touching(NamedTuple):
+class BodyContacts(NamedTuple):
     """Points in which bodies may meet in a step, each an entry of m.
 
     ``first`` (m,) is the row of a body, ``second`` that of the body it meets, −1 for a wall; ``arms`` and
@@ -46,7 +46,7 @@ class Yielding(NamedTuple):
     turning: np.ndarray
 
 
-def approach(touching: Touching, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
+def approach(touching: BodyContacts, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
     """The speed (m,) m/s at which points of contact part, of bodies with ``velocity`` and ``spin`` (n, 3)."""
     one, other = touching.first, touching.second
     here = velocity[one] + np.cross(spin[one], touching.arms)

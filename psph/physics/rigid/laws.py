@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.physics.rigid.schedule import Rates, Schedule
+from psph.physics.rigid.schedule import ActingTime, Rates
 from psph.vectors import Vector, scale, subtract
 
 Ways = tuple[Vector, Vector, Vector]
@@ -23,12 +23,12 @@ LOOKS = 33
 """Places between two rows of a series at which its spline is looked at."""
 
 
-class Steady(NamedTuple):
+class SteadyRate(NamedTuple):
     """Constant rates: s = v ∫r dt; ``rate`` v in m/s and rad/s."""
 
     rate: Vector
 
-    def ways(self, schedule: Schedule, time: float) -> Ways:
+    def ways(self, schedule: ActingTime, time: float) -> Ways:
         """The law."""
         return _scaled(self.rate, schedule.lasted(time))
 
@@ -38,12 +38,12 @@ class Accelerated(NamedTuple):
 
     change: Vector
 
-    def ways(self, schedule: Schedule, time: float) -> Ways:
+    def ways(self, schedule: ActingTime, time: float) -> Ways:
         """The law."""
         return _scaled(self.change, schedule.twice_lasted(time))
 
 
-class Harmonic(NamedTuple):
+class Sinusoidal(NamedTuple):
     """A sinusoid with ``amplitude`` A in m and rad, ``turn`` ω = 2πf in rad/s and ``phase`` φ in rad.
 
     With a ramp s = r A sin(ωτ + φ), τ = t − start.  Without one it begins where the thing stands:
@@ -54,7 +54,7 @@ class Harmonic(NamedTuple):
     turn: float
     phase: float
 
-    def ways(self, schedule: Schedule, time: float) -> Ways:
+    def ways(self, schedule: ActingTime, time: float) -> Ways:
         """The law."""
         moved, speed, change = faded(schedule, time, self._sine)
         return _scaled(self.amplitude, (moved[0], speed[0], change[0]))
@@ -89,7 +89,7 @@ class Tabulated:
     def __repr__(self) -> str:
         return f"Tabulated({self._digest[:16]})"
 
-    def ways(self, schedule: Schedule, time: float) -> Ways:
+    def ways(self, schedule: ActingTime, time: float) -> Ways:
         """The law: as a sinusoid, with the values of the table in the place of A sin."""
         return faded(schedule, time, self._spline)
 
@@ -126,7 +126,7 @@ def _scaled(vector: Vector, rates: Rates) -> Ways:
     return tuple(scale(vector, rate) for rate in rates)
 
 
-def faded(schedule: Schedule, time: float, law) -> Ways:
+def faded(schedule: ActingTime, time: float, law) -> Ways:
     """A law of the time since the start, by its share; without a ramp as far as it has come since."""
     since = time - schedule.start
     if schedule.ramp > 0.0:

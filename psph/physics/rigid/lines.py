@@ -12,7 +12,7 @@ STEP = 0.2
 """Time steps of at most this over the angular frequency of lines, and over the rate at which they damp."""
 
 
-class Line(NamedTuple):
+class SpringLine(NamedTuple):
     """A spring with a damper between two points: one ``at`` a point of a ``body``, one at an ``anchor``.
 
     ``body`` is its row; ``anchor`` a point in space where ``other`` is None, else one of the body of
@@ -32,7 +32,7 @@ class Line(NamedTuple):
     pulls_only: bool
 
 
-def pulls(lines: Sequence[Line], bodies: Bodies) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def pulls(lines: Sequence[SpringLine], bodies: Bodies) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Forces, N, and torques about the reference points, N m, of all lines on the bodies (n, 3), and the
     tension of each line, N."""
     force, torque = np.zeros_like(bodies.place), np.zeros_like(bodies.place)
@@ -54,7 +54,7 @@ def pulls(lines: Sequence[Line], bodies: Bodies) -> tuple[np.ndarray, np.ndarray
     return force, torque, tensions
 
 
-def longest_step(lines: Sequence[Line], bodies: Bodies) -> float:
+def longest_step(lines: Sequence[SpringLine], bodies: Bodies) -> float:
     """Δt ≤ 0.2/√λ for the springs and 0.2/λ for the dampers, s: λ the largest eigenvalue of M⁻¹K, at most.
 
     Bodies are joined by the sum of their lines, K_ab = Σ_l k_l √(y_la y_lb), with y what an end gives way by,
@@ -65,7 +65,7 @@ def longest_step(lines: Sequence[Line], bodies: Bodies) -> float:
     return STEP / rate if rate > 0.0 else float(np.inf)
 
 
-def _joined(lines: Sequence[Line], bodies: Bodies, what: str) -> float:
+def _joined(lines: Sequence[SpringLine], bodies: Bodies, what: str) -> float:
     """λ by the numbers of that name, 1/s² or 1/s."""
     whole = np.zeros((len(bodies.bodies),) * 2)
     for line in lines:
@@ -77,7 +77,7 @@ def _joined(lines: Sequence[Line], bodies: Bodies, what: str) -> float:
     return float(np.linalg.eigvalsh(whole).max(initial=0.0))
 
 
-def _ends(line: Line, bodies: Bodies):
+def _ends(line: SpringLine, bodies: Bodies):
     """Place and velocity of both ends."""
     first = bodies.at(line.body, np.array(line.at))
     if line.other is None:

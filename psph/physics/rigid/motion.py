@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from psph.fields import WALL
 from psph.physics.rigid.pose import ZERO, Pose, combined, rotation
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 from psph.vectors import Vector, add, scale
 
 UPWARDS = (0.0, 0.0, 1.0)
@@ -20,7 +20,7 @@ class MotionPart(NamedTuple):
     """
 
     law: Any
-    schedule: Schedule = Schedule()
+    schedule: ActingTime = ActingTime()
     center: Vector = ZERO
     axis: Vector = UPWARDS
 

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from psph.physics.rigid.laws import STILL, Ways, faded
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 from psph.theory.water_waves import Component, Running, Solitary
 from psph.vectors import Vector, scale
 
@@ -24,7 +24,7 @@ class Swings(NamedTuple):
     direction: Vector
     swings: tuple[Component, ...]
 
-    def ways(self, schedule: Schedule, time: float) -> Ways:
+    def ways(self, schedule: ActingTime, time: float) -> Ways:
         """The law, switched on and off as a sinusoid is (psph.physics.rigid.laws.Harmonic)."""
         moved, speed, change = faded(schedule, time, self._sum)
         return tuple(scale(self.direction, way[0]) for way in (moved, speed, change))
@@ -45,7 +45,7 @@ class Crests(NamedTuple):
 
     waves: tuple[Running, ...]
 
-    def elevation(self, schedule: Schedule, time: float, distance: float) -> float:
+    def elevation(self, schedule: ActingTime, time: float, distance: float) -> float:
         """η, m, at a ``distance`` x, m, from where the paddle stood at the start."""
         since, share = time - schedule.start, schedule.share(time)[0]
         return share * math.fsum(a * math.cos(w * since - k * distance + p) for a, w, k, p in self.waves)
@@ -72,7 +72,7 @@ class SolitaryStroke(NamedTuple):
         """From the beginning to the end, m."""
         return 2.0 * self._curve(TAIL)[0]
 
-    def ways(self, schedule: Schedule, time: float) -> Ways:
+    def ways(self, schedule: ActingTime, time: float) -> Ways:
         """The law; at rest before the start, and when the stroke is done."""
         since = time - schedule.start
         first = -self._curve(TAIL)[0]
@@ -86,7 +86,7 @@ class SolitaryStroke(NamedTuple):
         change = c * c * ddx * slow / (slow + dx) ** 3
         return tuple(scale(self.direction, way) for way in (x - first, speed, change))
 
-    def elevation(self, schedule: Schedule, time: float, distance: float) -> float:
+    def elevation(self, schedule: ActingTime, time: float, distance: float) -> float:
         """η of its wave, m, at a ``distance``, m, from where the piston stood at the start."""
         since = time - schedule.start - 0.5 * self.duration
         theta = self.wave.outskirts * (self.wave.speed * since - (distance - self._curve(TAIL)[0]))

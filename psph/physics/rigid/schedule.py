@@ -7,7 +7,7 @@ Rates = tuple[float, float, float]
 """A value with its first and second derivative by time."""
 
 
-class Schedule(NamedTuple):
+class ActingTime(NamedTuple):
     """A part acts from ``start`` to ``end``, s; it is switched on, and before the end off, over ``ramp`` s.
 
     Its share rises by r(u) = 10u³ − 15u⁴ + 6u⁵, u = (t − start)/ramp, and falls so before the end: speed and

@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 
 from psph.physics.rigid.bodies import Bodies, RigidBody
 from psph.physics.rigid.laws import Accelerated
-from psph.physics.rigid.lines import Line, longest_step, pulls
+from psph.physics.rigid.lines import SpringLine, longest_step, pulls
 from psph.physics.rigid.motion import MotionPart, Rigid
 from psph.physics.rigid.pose import Pose
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 
 FREE, FIXED = (True,) * 3, (False,) * 3
 BRICK = (2.0, 0.1, -0.2, 0.1, 3.0, 0.15, -0.2, 0.15, 4.5)
@@ -143,7 +143,7 @@ def test_a_hinge_bears_the_moments_that_would_tip_its_body():
 
 
 def test_what_moves_a_body_pushes_it_and_what_is_free_needs_nothing():
-    told = Rigid((MotionPart(Accelerated((2.0, 0.0, 0.5, 0.0)), Schedule()),))
+    told = Rigid((MotionPart(Accelerated((2.0, 0.0, 0.5, 0.0)), ActingTime()),))
     pushed = body(slides=(False, True, False), turns=FIXED, motion=told)
     held = body(held=10.0)
     bodies = moved(Bodies([pushed, body(spin=(2.0, -1.0, 5.0)), held], (0.0, -9.8, 0.0)), 1e-2, 10)
@@ -156,7 +156,7 @@ def test_what_moves_a_body_pushes_it_and_what_is_free_needs_nothing():
 def test_a_pendulum_on_a_hinge_that_speeds_up_leans_back():
     # In the frame of the hinge the weight is turned by atan(a/g): it swings about that angle, let go from rest.
     length, g, a = 0.8, 9.8, 2.0
-    ahead = Rigid((MotionPart(Accelerated((a, 0.0, 0.0, 0.0)), Schedule()),))
+    ahead = Rigid((MotionPart(Accelerated((a, 0.0, 0.0, 0.0)), ActingTime()),))
     bob = body(centre=(0.0, -length, 0.0), pivot=(0.0,) * 3, slides=FIXED, turns=(False, False, True))
     angles = {}
     for name, motion in (("ahead", ahead), ("still", None)):
@@ -175,7 +175,7 @@ def test_a_pendulum_on_a_hinge_that_speeds_up_leans_back():
 
 
 def test_a_body_on_a_spring_swings_as_long_as_it_should_and_a_damper_brakes_it():
-    spring = Line("s", 0, (1.0, -2.0, 0.5), None, (1.0, -2.0, 1.5), 12.0, 1.0, 0.0, False)
+    spring = SpringLine("s", 0, (1.0, -2.0, 0.5), None, (1.0, -2.0, 1.5), 12.0, 1.0, 0.0, False)
     # Thrown off its rest along the line.
     swinging = Bodies([body(velocity=(0.0, 0.0, 0.1))], (0.0,) * 3)
     period = 2.0 * math.pi / math.sqrt(12.0 / 3.0)
@@ -213,7 +213,9 @@ def swung(lines, times):
 def test_lines_are_stable_at_the_limit_of_the_step_however_many_they_are(name):
     """Six dampers, each at its own limit, had blown up.  The limit is of accuracy: five to ten times it, they do."""
     (stiffness, damping), count, beyond = LINES[name]
-    lines = [Line("l", 0, (1.0, -2.0, 0.5), None, (1.0, -2.0, 1.5), stiffness, 1.0, damping, False)] * count
+    lines = [
+        SpringLine("l", 0, (1.0, -2.0, 0.5), None, (1.0, -2.0, 1.5), stiffness, 1.0, damping, False)
+    ] * count
     assert swung(lines, 1.0) < 1.001 and swung(lines, beyond) < 1.001
     with np.errstate(over="ignore", invalid="ignore"):
         assert not swung(lines, 1.2 * beyond) < 1e3
@@ -222,7 +224,7 @@ def test_lines_are_stable_at_the_limit_of_the_step_however_many_they_are(name):
 def test_a_mooring_line_that_goes_slack_keeps_the_energy_at_the_limit_of_the_step():
     """Between two bodies; in steps four times as long it wins a tenth of the speed and more."""
     two = [body(velocity=(0.0, 0.0, -0.1)), body(centre=(1.0, -2.0, 1.5), velocity=(0.0, 0.0, 0.1))]
-    line = Line("l", 0, (1.0, -2.0, 0.5), 1, (1.0, -2.0, 1.5), 12.0, 1.0, 0.0, True)
+    line = SpringLine("l", 0, (1.0, -2.0, 0.5), 1, (1.0, -2.0, 1.5), 12.0, 1.0, 0.0, True)
     struck = moved(Bodies(two, (0.0,) * 3), step := longest_step([line], Bodies(two, (0.0,) * 3)), 30, [line])
     assert step == pytest.approx(0.2 / math.sqrt(8.0)) and struck.velocity[0, 2] == pytest.approx(
         0.1, rel=0.01
@@ -233,7 +235,7 @@ def test_a_mooring_line_that_goes_slack_keeps_the_energy_at_the_limit_of_the_ste
 
 def test_lines_between_bodies_push_back_what_pulls():
     bodies = Bodies([body(), body(mass=5.0, centre=(3.0, 0.0, 0.0))], (0.0,) * 3)
-    line = Line("l", 0, (1.2, -1.8, 0.4), 1, (2.5, 0.3, 0.1), 7.0, 0.5, 0.2, False)
+    line = SpringLine("l", 0, (1.2, -1.8, 0.4), 1, (2.5, 0.3, 0.1), 7.0, 0.5, 0.2, False)
     force, torque, tension = pulls([line], bodies)
     assert tension[0] > 1.0 and force.sum(axis=0) == pytest.approx([0.0] * 3, abs=1e-15)
     total = torque + np.cross(bodies.place, force)

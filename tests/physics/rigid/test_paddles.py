@@ -6,7 +6,7 @@ import pytest
 
 from psph.case.paddles import Flap, Irregular, Piston, SolitaryWave
 from psph.physics.rigid.absorption import Absorption, Correction
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 from psph.theory.water_waves import (
     bound_crest,
     flap_gain,
@@ -80,21 +80,24 @@ def test_the_waves_of_a_spectrum_have_its_height_and_its_peak():
 
 
 LAWS = {
-    "first order": (Piston(height=0.08, period=1.2, depth=0.3, phase=0.3), Schedule(0.2, 5.0, 1.1)),
-    "second order": (Piston(height=0.08, period=1.2, depth=0.3, order=2), Schedule(0.1, math.inf, 2.4)),
+    "first order": (Piston(height=0.08, period=1.2, depth=0.3, phase=0.3), ActingTime(0.2, 5.0, 1.1)),
+    "second order": (Piston(height=0.08, period=1.2, depth=0.3, order=2), ActingTime(0.1, math.inf, 2.4)),
     "to the left": (
         Piston(height=0.08, period=1.2, depth=0.3, direction=[-1.0, 0.0]),
-        Schedule(0.0, 9.0, 0.5),
+        ActingTime(0.0, 9.0, 0.5),
     ),
-    "flap": (Flap(height=0.08, period=1.2, depth=0.3, center=[0.0, 0.1], hinge=0.1), Schedule(0.1, 8.0, 1.0)),
-    "irregular": (Irregular(height=0.06, period=1.4, depth=0.3, components=20), Schedule(0.1, 8.0, 1.0)),
+    "flap": (
+        Flap(height=0.08, period=1.2, depth=0.3, center=[0.0, 0.1], hinge=0.1),
+        ActingTime(0.1, 8.0, 1.0),
+    ),
+    "irregular": (Irregular(height=0.06, period=1.4, depth=0.3, components=20), ActingTime(0.1, 8.0, 1.0)),
     "irregular flap": (
         Irregular(height=0.06, period=1.4, depth=0.3, components=9, center=[0.0, 0.0]),
-        Schedule(0.1, 8.0, 1.0),
+        ActingTime(0.1, 8.0, 1.0),
     ),
-    "grimshaw": (SolitaryWave(height=0.12, depth=0.3, theory="grimshaw"), Schedule(0.25)),
-    "rayleigh": (SolitaryWave(height=0.06, depth=0.3), Schedule(0.25)),
-    "boussinesq": (SolitaryWave(height=0.1, depth=0.3, theory="boussinesq"), Schedule(0.0)),
+    "grimshaw": (SolitaryWave(height=0.12, depth=0.3, theory="grimshaw"), ActingTime(0.25)),
+    "rayleigh": (SolitaryWave(height=0.06, depth=0.3), ActingTime(0.25)),
+    "boussinesq": (SolitaryWave(height=0.1, depth=0.3, theory="boussinesq"), ActingTime(0.0)),
 }
 
 
@@ -116,13 +119,13 @@ def test_speed_and_acceleration_are_derivatives(name):
 
 def test_a_stroke_starts_gently_with_a_ramp():
     law = LAWS["second order"][0].law(G)
-    assert law.ways(Schedule(0.1, math.inf, 2.4), 0.1) == ((0.0,) * 4,) * 3
-    assert law.ways(Schedule(0.1, math.inf, 0.0), 0.1)[1][0] > 0.1
+    assert law.ways(ActingTime(0.1, math.inf, 2.4), 0.1) == ((0.0,) * 4,) * 3
+    assert law.ways(ActingTime(0.1, math.inf, 0.0), 0.1)[1][0] > 0.1
 
 
 def test_strokes_go_where_the_waves_go():
     right, left = (Piston(height=0.08, period=1.2, depth=0.3, direction=d) for d in (None, [-2.0, 0.0]))
-    s = Schedule()
+    s = ActingTime()
     assert right.law(G).ways(s, 0.1)[0][0] == -left.law(G).ways(s, 0.1)[0][0] > 0.0
     oblique = Piston(height=0.08, period=1.2, depth=0.3, direction=[3.0, 4.0, 0.0]).law(G)
     x, y, z, turn = oblique.ways(s, 0.1)[0]
@@ -133,7 +136,7 @@ def test_strokes_go_where_the_waves_go():
 def test_the_top_of_a_flap_goes_where_the_waves_go(direction):
     up = [0.0] * (len(direction) - 1) + [0.3]
     flap = Flap(height=0.06, period=1.2, depth=0.3, center=[0.0] * len(direction), direction=direction)
-    angle = flap.law(G).ways(Schedule(), 0.1)[0][3]
+    angle = flap.law(G).ways(ActingTime(), 0.1)[0][3]
     a = flap.unit_axis
     up = (*up, 0.0)[:3] if len(direction) == 2 else up
     moved = [angle * (a[i - 2] * up[i - 1] - a[i - 1] * up[i - 2]) for i in range(3)]
@@ -155,19 +158,19 @@ def test_a_solitary_stroke_holds_its_equation(theory):
     K, c, h, H = law.wave.outskirts, law.wave.speed, 0.3, 0.06  # noqa: N806
     for n in range(1, 30):
         t = law.duration * n / 30.0
-        (moved, *_), (speed, *_), _ = law.ways(Schedule(start), start + t)
+        (moved, *_), (speed, *_), _ = law.ways(ActingTime(start), start + t)
         x = moved - 0.5 * law.stroke
         theta = K * (c * (t - 0.5 * law.duration) - x)
         eta = H / math.cosh(theta) ** 2
         assert x == pytest.approx(H / (K * h) * math.tanh(theta), abs=1e-12)
         assert speed == pytest.approx(c * eta / (h + eta))
-    assert law.ways(Schedule(start), start + 9.0)[0][0] == pytest.approx(law.stroke)
-    assert law.ways(Schedule(start), start - 0.1) == ((0.0,) * 4,) * 3
+    assert law.ways(ActingTime(start), start + 9.0)[0][0] == pytest.approx(law.stroke)
+    assert law.ways(ActingTime(start), start - 0.1) == ((0.0,) * 4,) * 3
 
 
 def test_the_surface_of_regular_waves_runs_away_from_the_paddle():
     asked = Piston(height=0.08, period=1.2, depth=0.3, order=2, phase=0.4)
-    crests, schedule = asked.crests(G), Schedule(0.2, math.inf, 1.0)
+    crests, schedule = asked.crests(G), ActingTime(0.2, math.inf, 1.0)
     omega, k = 2.0 * math.pi / 1.2, wave_number(2.0 * math.pi / 1.2, 0.3, G)
     kh = 0.3 * k
     second = 0.08**2 * k / 16.0 * math.cosh(kh) * (2.0 + math.cosh(2.0 * kh)) / math.sinh(kh) ** 3
@@ -186,7 +189,7 @@ def test_the_surface_of_regular_waves_runs_away_from_the_paddle():
 
 def test_the_surface_of_a_spectrum_has_its_height():
     crests = Irregular(height=0.06, period=1.4, depth=0.3, components=50).crests(G)
-    heights = [crests.elevation(Schedule(), 0.37 * n, 0.2) for n in range(4000)]
+    heights = [crests.elevation(ActingTime(), 0.37 * n, 0.2) for n in range(4000)]
     assert 4.0 * math.sqrt(sum(h * h for h in heights) / len(heights)) == pytest.approx(0.06, rel=0.05)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from psph.case.paddles import SolitaryWave
-from psph.physics.rigid.schedule import Schedule
+from psph.physics.rigid.schedule import ActingTime
 from psph.theory import water_waves
 
 G, DEPTH = 9.81, 0.3
@@ -65,7 +65,7 @@ def test_grimshaws_wave_is_nearly_the_exact_one(height):
 @pytest.mark.parametrize("theory", ["grimshaw", "rayleigh", "boussinesq"])
 def test_the_surface_of_a_solitary_wave_moves_the_paddle(theory):
     """dx/dt = c η/(h + η) at the paddle, from the elevation of its own."""
-    law, schedule = SolitaryWave(height=0.12, depth=DEPTH, theory=theory).law(G), Schedule(0.5)
+    law, schedule = SolitaryWave(height=0.12, depth=DEPTH, theory=theory).law(G), ActingTime(0.5)
     for n in range(1, 10):
         time = 0.5 + law.duration * n / 10.0
         (x, *_), (speed, *_), _ = law.ways(schedule, time)
