@@ -43,11 +43,7 @@ CIRCLES: list[set[str]] = []
 """Modules that import each other still: none is to come, and one that is gone goes from here."""
 
 TWICE = """
-Absorbing Case
-Cross Frame Granular Guards
-HerschelBulkley Matter Neighbours
-Rows Strength Table
-Turning
+Absorbing Case Matter Rows Table
 """
 """Names that classes of several files have: one class a name is the aim, so none is to come."""
 

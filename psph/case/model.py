@@ -22,7 +22,7 @@ from psph.case.motion import Motions, series_in
 from psph.case.physics import own_law, physics_table
 from psph.case.profiles import OFF, PROFILES, choices
 from psph.case.rheology import Rheology
-from psph.case.running import Checkpoint, Guards, Neighbours, Output, Parallel, Perturbation, Probe
+from psph.case.running import Checkpoint, GuardKeys, NeighbourLists, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import SCHEMES, STABLE, scheme_keys
 from psph.case.shapes import Shape
 from psph.case.soils import Soil
@@ -174,7 +174,7 @@ class Wall(Table):
         return self
 
 
-class Frame(Table):
+class ReferenceFrame(Table):
     """A frame of reference that moves: places and velocities are told in it."""
 
     motion: Motions | None = key(
@@ -224,7 +224,7 @@ class Case(Table):
         "the walls by name: particles that the fluid runs into", {}, max_length=MANY
     )
     bodies: dict[Name, Body] = key("the rigid bodies by name", {}, max_length=MANY)
-    frame: Frame = key("a frame of reference that moves", make=Frame)
+    frame: ReferenceFrame = key("a frame of reference that moves", make=ReferenceFrame)
     probes: dict[Name, Probe] = key("the probes by name: points where fields are measured over time", {})
     gauges: dict[Name, Gauge] = key(
         "the gauges by name: forces, levels, flows and others, each with a table of its own", {}
@@ -236,9 +236,9 @@ class Case(Table):
     checkpoint: Checkpoint = key(
         "when a run writes a checkpoint, besides the one at a signal", make=Checkpoint
     )
-    guards: Guards = key("bounds that a run checks, and what it does when one is exceeded", make=Guards)
+    guards: GuardKeys = key("bounds that a run checks, and what it does when one is exceeded", make=GuardKeys)
     parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
-    neighbours: Neighbours = key("the neighbour lists", make=Neighbours)
+    neighbours: NeighbourLists = key("the neighbour lists", make=NeighbourLists)
     exact: Exact = key("an exact solution of the case, for its initial state and its errors", make=Exact)
     experiments: dict[Name, Experiment] = key("experiments by name: measured curves to compare with", {})
     study: Study = key("the keys that `python -m psph study` varies, and its measure of error", make=Study)

@@ -44,7 +44,7 @@ def _fault(says: str) -> PydanticCustomError:
     return PydanticCustomError("psph", "{says}", {"says": says})
 
 
-class Turning(Table):
+class TurnAbout(Table):
     """What turns: about which point, and in 3D about which axis."""
 
     center: Vector | None = None
@@ -108,7 +108,7 @@ CENTER = key("the point that it turns about, fixed in space unless a later part 
 AXIS = key("the axis that it turns about, by the right-hand rule (3D)", None, otherwise="z in 2D")
 
 
-class Rotation(Turning):
+class Rotation(TurnAbout):
     """A turn at a constant rate about a point."""
 
     speed: float = key("angular velocity; anticlockwise in 2D, by the right-hand rule in 3D", unit="rad/s")
@@ -120,7 +120,7 @@ class Rotation(Turning):
         return SteadyRate((*ZERO, self.speed))
 
 
-class Sinusoid(Turning):
+class Sinusoid(TurnAbout):
     """An oscillation of place or angle."""
 
     amplitude: Vector | None = key("amplitude of a displacement", None, unit="m", otherwise="it turns")
@@ -151,7 +151,7 @@ class Sinusoid(Turning):
         return Sinusoidal(amplitude, 2.0 * math.pi * frequency, self.phase)
 
 
-class Series(Turning):
+class Series(TurnAbout):
     """Places or angles by time, from a CSV file."""
 
     file: Text = key("CSV file in the case's folder or below, with a line of names; # begins a comment")
@@ -296,7 +296,7 @@ class Motion(Table):
         law = asked.law(gravity) if self.way in PADDLES else asked.law()
         if self.absorbs:
             return Absorbing(MotionPart(law, schedule), asked.heading, asked.absorption(gravity))
-        if isinstance(asked, (Turning, Wavemaker)):
+        if isinstance(asked, (TurnAbout, Wavemaker)):
             return MotionPart(law, schedule, asked.pivot, asked.unit_axis)
         return MotionPart(law, schedule)
 
@@ -341,7 +341,7 @@ def series_in(parts: tuple[Motion, ...]) -> list[Series]:
 def way_and_turn(part: Motion) -> tuple[tuple[float, ...], bool]:
     """The direction of a part's displacement, empty where its keys do not tell, and whether it turns."""
     asked = getattr(part, part.way)
-    if isinstance(asked, Turning) and asked.turns:
+    if isinstance(asked, TurnAbout) and asked.turns:
         return (), True
     if isinstance(asked, Wavemaker):
         turns = isinstance(asked, OnHinge) and asked.center is not None
@@ -362,7 +362,7 @@ def misfits(parts: tuple[Motion, ...], dimensions: int, gravity: tuple[float, ..
             yield place, None, f"{how}; give one of: {', '.join(one.known())}"
             continue
         asked = getattr(one, one.way)
-        if isinstance(asked, Turning) and (says := asked.misfits(dimensions)):
+        if isinstance(asked, TurnAbout) and (says := asked.misfits(dimensions)):
             yield place, one.way, says
         if isinstance(asked, Wavemaker) and (says := asked.misfits(dimensions, gravity)):
             yield place, one.way, says

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from psph.case.keys import AXES
-from psph.case.motion import PADDLES, Turning, misfits
+from psph.case.motion import PADDLES, TurnAbout, misfits
 from psph.physics.walls.conditions import MIRROR
 
 NOT_ABSORBING = {"bodies": "a body", "solids": "a clamp"}
@@ -45,7 +45,7 @@ def _frame(case) -> Iterator[tuple[tuple, Any, str]]:
     if any(one.way in PADDLES for one in parts if len(one.ways) == 1):
         yield loc, ..., "a paddle makes waves as a wall in its tank; give it to a wall"
     turns = [getattr(one, one.way) for one in parts if len(one.ways) == 1]
-    axes = [one.axis for one in turns if isinstance(one, Turning) and one.turns]
+    axes = [one.axis for one in turns if isinstance(one, TurnAbout) and one.turns]
     for axis in axes:
         along = [name for name, a in zip(AXES, axis or ()) if a]
         if space.periodic and list(space.periodic) != along:

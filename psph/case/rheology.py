@@ -83,7 +83,7 @@ class Bingham(Paste):
         return self.paste(self.plastic_viscosity, 1.0)
 
 
-class HerschelBulkley(Paste):
+class HerschelBulkleyTable(Paste):
     """A paste whose stress above the yield grows by a power of the rate of strain."""
 
     consistency: float = key("K, stress above the yield at a rate of 1/s", unit="Pa s^n", gt=0)
@@ -108,7 +108,7 @@ class PowerLaw(Table):
         return laws.HerschelBulkley(0.0, self.consistency, self.exponent, 0.0, self.largest_viscosity)
 
 
-class Cross(Table):
+class CrossTable(Table):
     """A fluid whose viscosity passes from one value at rest to another in fast shear."""
 
     viscosity_at_rest: float = key("viscosity in slow shear", unit="Pa s", gt=0)
@@ -122,7 +122,7 @@ class Cross(Table):
         return laws.Cross(self.viscosity_at_rest, self.viscosity_in_shear, self.time, self.exponent)
 
 
-class Granular(Table):
+class GranularTable(Table):
     """Dry grains: friction that grows with the inertial number, the law mu(I)."""
 
     friction: float = key("mu_s, coefficient of friction at rest", unit="1", gt=0)
@@ -163,14 +163,14 @@ class Rheology(Table):
     LAWS: ClassVar = ("bingham", "herschel_bulkley", "power_law", "cross", "granular")
 
     bingham: Bingham | None = key("a paste with a yield stress", None, otherwise="another law")
-    herschel_bulkley: HerschelBulkley | None = key(
+    herschel_bulkley: HerschelBulkleyTable | None = key(
         "a paste that thins or thickens in shear", None, otherwise="another law"
     )
     power_law: PowerLaw | None = key("a power of the rate of strain", None, otherwise="another law")
-    cross: Cross | None = key(
+    cross: CrossTable | None = key(
         "a viscosity that falls from one value to another", None, otherwise="another law"
     )
-    granular: Granular | None = key("dry grains, the law mu(I)", None, otherwise="another law")
+    granular: GranularTable | None = key("dry grains, the law mu(I)", None, otherwise="another law")
 
     @property
     def name(self) -> str:

@@ -72,7 +72,7 @@ class Checkpoint(Table):
     )
 
 
-class Guards(Table):
+class GuardKeys(Table):
     """Bounds that a run checks, and what it does when one is exceeded."""
 
     on_trouble: Literal["stop", "warn"] = key(
@@ -112,7 +112,7 @@ class Parallel(Table):
     axis: Axis | None = key("axis across which the domain is cut into slabs", None, otherwise="the longest")
 
 
-class Neighbours(Table):
+class NeighbourLists(Table):
     """The neighbour lists."""
 
     skin: float = key(

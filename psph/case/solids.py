@@ -32,7 +32,7 @@ class Clamp(Table):
     )
 
 
-class Strength(Table):
+class JohnsonCookTable(Table):
     """The yield stress of Johnson and Cook: (A + B ε^n)(1 + C ln max(rate, 1))(1 − T*^m)."""
 
     yield_stress: float = key("A, at no plastic strain", unit="Pa", gt=0)
@@ -96,7 +96,7 @@ class Solid(Hookean):
     hardening: float = key(
         "growth H of the yield stress with the equivalent plastic strain", 0.0, unit="Pa", ge=0
     )
-    johnson_cook: Strength | None = key(
+    johnson_cook: JohnsonCookTable | None = key(
         "a yield stress that depends on strain, rate and heat, in the place of yield_stress",
         None,
         otherwise="it is elastic, or has yield_stress",

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from psph.case.running import Guards
+from psph.case.running import GuardKeys
 from psph.case.schemes import STABLE
 from psph.fields import FLUID
 from psph.physics.facts import SOUND_OVER_SPEED
@@ -136,7 +136,7 @@ def _walls(scene, guard: str, suspect) -> Iterator[str]:
 
 
 def _bound(guard: str) -> Iterator[str]:
-    if guard in Guards.model_fields:
+    if guard in GuardKeys.model_fields:
         yield (
             f'raise guards.{guard} if this is intended, or give guards.on_trouble = "warn" to '
             "continue in spite of it"

@@ -11,7 +11,7 @@ from psph.engine.simd import spread, total, width_of
 from psph.engine.threads import in_threads
 from psph.physics.solid.shares import bounded, wish
 from psph.simulation.solid_pairs import Rows
-from psph.simulation.solid_table import Table
+from psph.simulation.solid_table import SolidRecords
 from psph.smoothing import weight
 from psph.vectors import dot, nearest_image, subtract
 
@@ -19,11 +19,11 @@ GIVEN = "given"
 """What is read of partners, to be summed."""
 
 
-def shares_of(weights, seen: Table, lists, held: np.ndarray, bring: Callable) -> np.ndarray:
+def shares_of(weights, seen: SolidRecords, lists, held: np.ndarray, bring: Callable) -> np.ndarray:
     """w (rows,) of the first places in ``seen``, of which some are ``held`` by clamps; ``lists`` have all
     their neighbours in the reference.  ``bring`` fetches a column of a table from other ranks: collective."""
     rows, d = len(held), len(seen.view.reference)
-    table = Table({"reference": d, GIVEN: 1}, len(seen.records), 1.0)
+    table = SolidRecords({"reference": d, GIVEN: 1}, len(seen.records), 1.0)
     begin, end = seen.places["reference"]
     table.records[:, :d] = seen.records[:, begin:end]
     around = Rows(table.view, table.records, lists)

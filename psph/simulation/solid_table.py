@@ -6,7 +6,7 @@ from psph.fields import view_of
 from psph.particles.records import record_width
 
 
-class Table:
+class SolidRecords:
     """Records of rows and partners, side by side in memory: ``names`` with the numbers that each takes."""
 
     def __init__(self, widths: dict[str, int], capacity: int, volume: float):

@@ -45,7 +45,7 @@ from psph.simulation.solid_pairs import (
 )
 from psph.simulation.solid_parts import parts_of
 from psph.simulation.solid_shares import shares_of
-from psph.simulation.solid_table import Table
+from psph.simulation.solid_table import SolidRecords
 from psph.smoothing import kernel
 
 PLACES, FLUX = "position", "flux"
@@ -170,7 +170,7 @@ class Solids(Work):
         self._weights = self._weights._replace(
             softening=softening(Metres(self.domain.periods), self._h, longest)
         )
-        tables = [Table(widths, len(everyone), self._volume) for widths in self._widths]
+        tables = [SolidRecords(widths, len(everyone), self._volume) for widths in self._widths]
         self._tables = tables
         self._around = tuple(Rows(one.view, one.records, lists) for one in tables)
         begin, end = tables[0].places[PLACES][0], tables[0].places[self._moving[-1]][1]
@@ -358,7 +358,7 @@ class Solids(Work):
     def _sum_forces(self, first: int, last: int) -> None:
         self._each(self._forces, first, last, self._matter, self._weights, self._around[1], self._force)
 
-    def _put(self, table: Table, name: str, first: int, last: int) -> None:
+    def _put(self, table: SolidRecords, name: str, first: int, last: int) -> None:
         """Bring a field of some rows of a table up to date."""
         rows = np.array(self.store.rows[name], np.uint64)
         self._each(
@@ -376,7 +376,7 @@ class Solids(Work):
         if last > first:
             in_threads(loop, first, last, *args)
 
-    def _bring_of(self, table: Table, name: str) -> None:
+    def _bring_of(self, table: SolidRecords, name: str) -> None:
         self._bring(self.halo.channel(table.records, *table.places[name]))
 
     def _bring(self, channel) -> None:
