@@ -32,7 +32,7 @@ class Dry:
         plan = make_plan(self.scene)
         self.floating = FloatingBodies(self.scene, plan)
         corners = corners_of(self.scene, plan)
-        self.poses = Poses(plan.rigid, corners, None, self.scene.gravity, (self.floating,))
+        self.poses = Poses(plan.materials.rigid, corners, None, self.scene.gravity, (self.floating,))
         self.floating.meet(self.poses.maps)
         self.bodies = self.floating.bodies
         self.bodies.load(np.zeros_like(self.bodies.force), np.zeros_like(self.bodies.force))

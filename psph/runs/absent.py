@@ -23,7 +23,7 @@ def absent_lines(scene, plan: Plan, width: int) -> Iterator[str]:
         yield "Not simulated: left out or switched off"
         for name, why in refused.items():
             yield f"  {name:<{width}}{why}"
-    if not any(one.is_fluid for one in plan.species):
+    if not plan.materials.flows:
         yield "Not simulated: what acts between fluids"
     if tables := _by_table(_unnamed(scene, plan).values()):
         yield "Not simulated: the case does not name these keys (docs/case.md)"

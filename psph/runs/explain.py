@@ -42,7 +42,7 @@ def explain(scene, ranks: int) -> Iterator[str]:
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.support)
     yield from output_lines(scene, plan, neighbours, found.steps)
-    if any(one.is_fluid for one in plan.species):
+    if plan.materials.flows:
         yield from stability_forecast(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
@@ -210,7 +210,8 @@ def acting(plan: Plan) -> list[Acting]:
 def laws_of(plan: Plan) -> list[Acting]:
     """The equations of state of the scene."""
     return [
-        Acting(type(law).__name__, _first_line(law), why) for law, why in zip(plan.laws, plan.law_reasons)
+        Acting(type(law).__name__, _first_line(law), why)
+        for law, why in zip(plan.materials.laws, plan.materials.law_reasons)
     ]
 
 

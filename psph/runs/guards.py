@@ -43,17 +43,18 @@ class Guards:
     def __init__(self, scene, simulation: Simulation, record: Record, folder: Path, say: Callable):
         self.scene, self.simulation, self.record = scene, simulation, record
         self.folder, self.say, self.bounds = folder, say, scene.case.guards
-        self._led = np.array([is_prescribed(one.motion) for one in simulation.plan.species], bool)
+        materials = simulation.plan.materials
+        self._led = materials.where(lambda one: is_prescribed(one.motion))
         moving = [one for one, led in zip(scene.species, self._led) if led]
         whole = any(hasattr(effect, "finish_acceleration") for effect in simulation.plan.effects)
         # What walls give is booked by pairs, of walls that bear a pressure.
         unbooked = moving and (whole or not all(one.bearing for one in moving))
         # A wall that bears no tension (psph.physics.surface.free) stores none.
         bears_none = any(hasattr(effect, "bearing_density") for effect in simulation.plan.effects)
-        self._slack = bears_none & (np.arange(len(simulation.plan.law_of)) >= simulation.plan.free)
+        self._slack = bears_none & (np.arange(len(materials.law_of)) >= materials.free)
         self._books = not unbooked and all(kind.keeps_energy for kind in simulation.plan.matter)
         self.solids = [(WallRegion(scene), None)]
-        self.solids += [(WallRegion(scene, one), row) for row, one in enumerate(simulation.plan.rigid)]
+        self.solids += [(WallRegion(scene, one), row) for row, one in enumerate(materials.rigid)]
         self.seen: Counter[str] = Counter()
         mass = moving_mass(simulation.comm, simulation.store)
         self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
@@ -110,8 +111,8 @@ class Guards:
         m; without an end along an axis that repeats."""
         scene = self.scene
         lower, upper = np.array(scene.layout.lattice.lower), np.array(scene.layout.lattice.upper)
-        if self.simulation.plan.rigid:
-            told = np.ones(len(self.simulation.plan.rigid), bool)
+        if self.simulation.plan.materials.rigid:
+            told = np.ones(len(self.simulation.plan.materials.rigid), bool)
             for kind in self.simulation.engine.kinds:
                 told[list(kind.rows)] &= kind.encloses
             for low, up in zip(*(ends[told] for ends in self.simulation.engine.poses.around)):
@@ -173,8 +174,8 @@ class Guards:
     def _energy(self) -> float:
         """Energy of motion, height, compression and deformation less what walls and frames have given, J."""
         sim, c = self.simulation, self.scene.sound_speed
-        group = sim.store.shown("group")
-        laws, law_of, slack = sim.plan.laws, sim.plan.law_of[group], self._slack[group]
+        materials, group = sim.plan.materials, sim.store.shown("group")
+        laws, law_of, slack = materials.laws, materials.law_of[group], self._slack[group]
 
         def elastic(density, rest):
             density = np.where(slack, np.maximum(density, rest), density)
@@ -304,7 +305,7 @@ class Guards:
                 return f"{who} has {part:.3g} of its rest density{bound}"
             case _ if guard == OVERLAP:
                 (kind, _), group = self._overlap(), int(suspect.value("group"))
-                parts, species = self.scene.layout.parts, self.simulation.plan.species
+                parts, species = self.scene.layout.parts, self.simulation.plan.materials.species
                 key = parts[group].key if group < len(parts) else species[group].name
                 return kind.overlap_words(suspect.id, key) + bound
             case _ if guard == DEPTH:

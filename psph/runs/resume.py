@@ -134,7 +134,7 @@ def _whole(path: Path, comm, case: str) -> Saved | None:
 
 def listed_particles(scene, plan: Plan, saved: Saved) -> Store:
     """A share of the particles of a checkpoint, standing where the lists were made."""
-    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    store = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.materials.kinds)
     ids, groups, listed = saved.share("id", "group", "listed_position")
     block = np.zeros((len(store.data), len(ids)))
     block[list(store.rows["position"])] = listed.T

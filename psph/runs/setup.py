@@ -30,18 +30,24 @@ def create_particles(scene, plan: Plan, comm) -> Store:
     first, groups = int(scene.census.counts.sum()), len(scene.species)
     for kind in plan.matter:
         if made := kind.particles():
-            _append(scene, store, made, groups, first, comm)
+            _append(scene, plan, store, made, groups, first, comm)
             first += len(made.group)
         groups += len(kind.groups())
     return store
 
 
-def _append(scene, store: Store, made: Created, first_group: int, first_id: int, comm) -> None:
+def _append(scene, plan: Plan, store: Store, made: Created, first_group: int, first_id: int, comm) -> None:
     """Add this rank's share of the particles of a kind of matter."""
     begin, end = (len(made.group) * rank // comm.size for rank in (comm.rank, comm.rank + 1))
     group = (made.group[begin:end] + first_group).astype(np.uint8)
     block = block_of(
-        scene, store, group, made.position[begin:end], made.velocity[begin:end], made.density[begin:end]
+        scene,
+        plan.materials,
+        store,
+        group,
+        made.position[begin:end],
+        made.velocity[begin:end],
+        made.density[begin:end],
     )
     for name, values in made.values.items():
         block[list(store.rows[name])] = values[begin:end].reshape(end - begin, -1).T
@@ -61,7 +67,9 @@ def lattice_particles(scene, comm) -> ParticleSet:
 def store_of(scene, plan: Plan, found: ParticleSet) -> Store:
     """A store of these particles of a scene, with the arrays that its plan asks for."""
     store = _empty(scene, plan)
-    block = block_of(scene, store, found.material, found.position, found.velocity, found.density)
+    block = block_of(
+        scene, plan.materials, store, found.material, found.position, found.velocity, found.density
+    )
     store.append(found.id, found.material, block)
     return store
 
@@ -78,12 +86,12 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     examples = (
         tuple((one.effects, one.reductions) for one in plan.passes),
         plan.kernel,
-        plan.laws,
+        plan.materials.laws,
         plan.space,
-        plan.motions,
-        plan.loaded is not None,
+        plan.materials.motions,
+        plan.materials.loaded is not None,
         (
-            bool(plan.rigid) or None,
+            bool(plan.materials.rigid) or None,
             bool(scene.frame) or None,
             *(f.name in plan.arrays or None for f in OF_MOTION),
         ),
@@ -146,7 +154,7 @@ def _rehearse(scene, plan: Plan, store: Store) -> None:
 
 def _empty(scene, plan: Plan) -> Store:
     """A store with the arrays that a plan asks for."""
-    return Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.kinds)
+    return Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.materials.kinds)
 
 
 def _few_particles(scene, plan: Plan, store: Store) -> None:
@@ -158,5 +166,5 @@ def _few_particles(scene, plan: Plan, store: Store) -> None:
         [0.5 * (a + b) for a, b in zip(scene.layout.lower, scene.layout.upper)], (len(groups), 1)
     )
     density = np.full(len(groups), scene.species[0].density)
-    block = block_of(scene, store, groups, middle, np.zeros_like(middle), density)
+    block = block_of(scene, plan.materials, store, groups, middle, np.zeros_like(middle), density)
     store.append(np.arange(len(groups)), groups, block)

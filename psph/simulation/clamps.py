@@ -18,8 +18,8 @@ class Clamps:
 
     def __init__(self, scene, plan, store):
         self._plan, self._store, self._periods = plan, store, scene.layout.periods
-        self._moves = np.array([isinstance(one.motion, MovingClamp) for one in scene.species], bool)
-        self._maps = np.zeros((len(plan.rigid), 3, store.dimensions, 1 + store.dimensions))
+        self._moves = plan.materials.where(lambda one: isinstance(one.motion, MovingClamp))
+        self._maps = np.zeros((len(plan.materials.rigid), 3, store.dimensions, 1 + store.dimensions))
         self._carry, self._book = settled(carry), settled(book)
 
     def settle(self, columns: np.ndarray, masses: np.ndarray) -> None:
@@ -30,11 +30,11 @@ class Clamps:
     def carry(self, time: float) -> None:
         """Put them where they are at ``time``, s, within a step of the fluid."""
         store, plan = self._store, self._plan
-        for row, motion in enumerate(plan.rigid):
+        for row, motion in enumerate(plan.materials.rigid):
             self._maps[row] = maps(motion.pose(time), store.dimensions)
         names = ANCHOR.name, "position", "velocity", "predicted_velocity"
         arrays = (store[name] for name in names)
-        self._each(self._carry, store.group, plan.pose_of, self._maps, self._periods, *arrays)
+        self._each(self._carry, store.group, plan.materials.pose_of, self._maps, self._periods, *arrays)
 
     def book(self, dt: float) -> None:
         """The work that they have done in a step of ``dt`` s, by the forces at its end."""

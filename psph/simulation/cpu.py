@@ -50,19 +50,20 @@ class Engine:
         rank = Rank(scene, plan, store, self.domain, ledger)
         self.kinds = tuple(work for kind in plan.matter for work in kind.work(rank))
         movers = tuple(work for work in self.kinds if work.rows)
-        self.poses = Poses(plan.rigid, corners_of(scene, plan), scene.frame, scene.gravity, movers)
+        groups = plan.materials
+        self.poses = Poses(groups.rigid, corners_of(scene, plan), scene.frame, scene.gravity, movers)
         for work in self.kinds:
             work.meet(self.poses.maps)
         self._rules = Rules(
             plan.carriers,
-            plan.laws,
-            plan.law_of,
-            plan.given_pressure,
-            plan.free,
-            plan.motions,
-            plan.motion_of,
+            groups.laws,
+            groups.law_of,
+            groups.given_pressure,
+            groups.free,
+            groups.motions,
+            groups.motion_of,
             self.poses.maps,
-            plan.pose_of if plan.rigid else None,
+            groups.pose_of if groups.rigid else None,
             self.poses.frame,
             scene.layout.periods,
             plan.pulls.booked,
@@ -266,7 +267,7 @@ class Engine:
             return
         for loop, args in self._loops_of(one):
             in_threads(loop, first, last, *args)
-        if one.gives_rates and self.plan.loaded is not None:
+        if one.gives_rates and self.plan.materials.loaded is not None:
             for columns, lists in self.neighbourhood.dry_beside_fluid(first, last):
                 self._load_dry(one, first, last, columns, lists)
 
@@ -298,12 +299,12 @@ class Engine:
         rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)))
         rest = None
-        if one.gives_rates and plan.loaded is not None:
-            rest = Unloaded(plan.loaded, s.group)
+        if one.gives_rates and plan.materials.loaded is not None:
+            rest = Unloaded(plan.materials.loaded, s.group)
             reductions, written = one.reductions, sums.written
             if COUPLE.name in s and plan.loads is Loads:
                 reductions, written = (*reductions, Couple(one.effects)), (*written, s[COUPLE.name])
-            summed = Summed(one.effects, reductions, plan.loads(plan.loaded, s.group))
+            summed = Summed(one.effects, reductions, plan.loads(plan.materials.loaded, s.group))
             told = sums._replace(acceleration=s[LOAD.name], written=written)
             yield self._load, (summed, *seen, told)
         summed = Summed(one.effects, one.reductions, rest)

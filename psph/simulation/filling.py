@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from psph.fields import APART, OF_MATERIAL, OTHER
+from psph.fields import APART, OF_MATERIAL
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
 from psph.physics.solid.contact import COVER, FACE
@@ -11,11 +11,12 @@ from psph.physics.stress.deviator import DEVIATOR
 from psph.physics.stress.faces import OF_FACES
 from psph.scene.faces import drawn_faces
 from psph.scene.smooth import smooth_faces
-from psph.simulation.groups import material_value, species_of
+from psph.simulation.materials import Materials
 
 
-def block_of(scene, store: Store, species, position, velocity, density) -> np.ndarray:
-    """Rows of ``store`` (rows, n) for particles of these ``species`` (n,) that begin there."""
+def block_of(scene, materials: Materials, store: Store, species, position, velocity, density) -> np.ndarray:
+    """Rows of ``store`` (rows, n) for particles of these rows of the table, ``species`` (n,), that begin
+    there."""
     block = np.zeros((len(store.data), len(species)))
     starting = {"position": position, "velocity": velocity, "predicted_velocity": velocity}
     for name, values in (starting | {ANCHOR.name: position, REFERENCE.name: position}).items():
@@ -33,11 +34,8 @@ def block_of(scene, store: Store, species, position, velocity, density) -> np.nd
             if field.name in store:
                 block[list(store.rows[field.name])] = normal.T
     known = {"density": density}
-    known |= {
-        field.name: np.array([material_value(s, field.name) for s in species_of(scene)])[species]
-        for field in OF_MATERIAL
-    }
-    known[APART.name] = np.array([one.kind == OTHER for one in species_of(scene)])[species]
+    known |= {field.name: materials.values(field.name)[species] for field in OF_MATERIAL}
+    known[APART.name] = materials.apart[species]
     for field in store.fields.values():
         if field.start:
             by_site = callable(field.start)

@@ -32,13 +32,13 @@ class FloatingBodies(Work):
     encloses = False
 
     def __init__(self, scene, plan):
-        self.rows = [row for row, motion in enumerate(plan.rigid) if isinstance(motion, RigidBody)]
-        own = [plan.rigid[row] for row in self.rows]
+        self.rows = [row for row, motion in enumerate(plan.materials.rigid) if isinstance(motion, RigidBody)]
+        own = [plan.materials.rigid[row] for row in self.rows]
         self.bodies, self._dimensions = Bodies(own, plan.pulls.uniform), scene.dimensions
         self.masses = shares_of(scene) if plan.pulls.bodies else None
         self.lines = lines_of(scene, [one.name for one in own])
         self.tensions = np.zeros(len(self.lines))
-        self.body_of = np.full(len(plan.species), -1)
+        self.body_of = np.full(len(plan.materials.species), -1)
         for group, one in enumerate(scene.species):
             if isinstance(one.motion, RigidBody):
                 self.body_of[group] = own.index(one.motion)

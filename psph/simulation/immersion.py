@@ -48,7 +48,7 @@ class Immersion(Work):
     def __init__(self, solids, scene, plan, store, domain, ledger):
         self.solids, self.plan, self.store = solids, plan, store
         self.contact = WetContact(scene, plan, store, domain, ledger) if plan.touching else None
-        self._moves = np.array([isinstance(one.motion, Immersed) for one in scene.species], bool)
+        self._moves = plan.materials.where(lambda one: isinstance(one.motion, Immersed))
         self._drift, self._kick, self._show, self._book = map(settled, (drift, kick, show, book))
 
     def begin(self) -> None:

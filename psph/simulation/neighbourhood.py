@@ -54,7 +54,7 @@ class Neighbourhood:
         ``spent`` are the seconds that this rank's pairs took since it was last done, by which slabs are cut;
         ``kinds`` of matter take out what is not to be met.
         """
-        bring_back(self.store, self.plan.planes, self.plan.free)
+        bring_back(self.store, self.plan.planes, self.plan.materials.free)
         self.domain.rebuild(spent)
         self.sort_out(kinds)
         self.skin.renew()

@@ -92,7 +92,7 @@ def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
             scene.census.motions[part],
             scene.layout.parts[part].shape,
         )
-        pose = int(plan.pose_of[part]) if is_rigid(motion) else -1
+        pose = int(plan.materials.pose_of[part]) if is_rigid(motion) else -1
         if isinstance(motion, RigidBody):
             ends[row := rows.index(pose)] = bounds(shape)
             yield Obstacle(key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose)

@@ -49,9 +49,9 @@ class Paddles(Work):
     name = "paddles"
 
     def __init__(self, scene, plan):
-        self.rows = [row for row, motion in enumerate(plan.rigid) if isinstance(motion, Absorbing)]
+        self.rows = [row for row, motion in enumerate(plan.materials.rigid) if isinstance(motion, Absorbing)]
         self._dimensions = scene.dimensions
-        self._motions = [plan.rigid[row] for row in self.rows]
+        self._motions = [plan.materials.rigid[row] for row in self.rows]
         self.corrections = [Correction() for _ in self.rows]
         self._rest: list[float] = []
         groups = ([n for n, one in enumerate(scene.species) if one.motion == m] for m in self._motions)

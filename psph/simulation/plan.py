@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from psph.composition.count import flops_per_pair
 from psph.composition.loads import Loads
 from psph.composition.mirrors import mirrors_of
@@ -18,8 +16,6 @@ from psph.fields import (
     IDENTITY,
     OF_EVERY_SCENE,
     OF_MATERIAL,
-    OTHER,
-    WALL,
     Field,
     by_name,
     companions,
@@ -30,14 +26,13 @@ from psph.fields import (
 from psph.kinds import Kind, kinds_in
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK, is_prescribed
+from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK
 from psph.physics.solid.deformation import SMOOTHING
-from psph.physics.solid.material import NO_SOLID
 from psph.scene.solids import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
-from psph.simulation.groups import has_couples, is_given_pressure, laws, material_value, species_of, split
 from psph.simulation.limits import step_limits
-from psph.simulation.movement import carried_fields, movement_of
+from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
+from psph.simulation.movement import carried_fields
 from psph.simulation.passes import Pass, array_of, make_passes, pass_of_contacts
 from psph.simulation.plan_of_solids import OfSolids
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
@@ -79,16 +74,8 @@ class Plan(OfSolids):
     dropped: dict[str, str]
     """Of effects that the case asks for and the scene has no use for: by their names, why."""
     kernel: Any
-    laws: tuple[Any, ...]
-    """The equations of state of its fluids and walls."""
-    law_of: np.ndarray
-    """The number of the law of each group."""
-    given_pressure: np.ndarray
-    """Whether a pass gives the particles of a group their pressure: (groups,)."""
-    bearing: np.ndarray
-    """Whether the particles of a group bear a pressure: (groups,)."""
-    law_reasons: tuple[str, ...]
-    """The keys of the case that called for each."""
+    materials: Materials
+    """What holds for each group of particles."""
     planes: tuple[Plane, ...]
     """Mirrors: planes of symmetry, and walls that are one."""
     mirrors: Any
@@ -116,33 +103,12 @@ class Plan(OfSolids):
     """Fields that an effect gives a rate, beside velocity and density."""
     matter: tuple[Kind, ...]
     """The kinds of matter of the scene, which declare what they add (psph.kinds)."""
-    species: tuple[Any, ...]
-    """The groups of particles (psph.scene.species.Species)."""
-    apart: np.ndarray
-    """Whether the particles of a group are in ordinary passes neither seen nor see others: (groups,)."""
-    kinds: tuple[int, ...]
-    """The kind of each group, as frames tell them (psph.fields)."""
-    free: np.uint8
-    """How many groups move freely: these come first."""
-    motions: tuple[Any, ...]
-    """The prescribed motions of the scene's walls that deform them."""
-    motion_of: np.ndarray
-    """The number of the motion of each group: psph.physics.motion."""
-    rigid: tuple[Any, ...]
-    """The motions that have a pose: psph.simulation.poses."""
-    pose_of: np.ndarray
-    """The row of the pose of each group; 0 where it has none."""
-    loaded: np.ndarray | None
-    """Whether the push of the fluid alone, or of elastic solids where nothing flows, is summed on the
-    particles of a group: (groups,); None: on none."""
     loads: Any
-    """How it is summed (psph.composition.loads)."""
+    """How the push on groups that are loaded is summed (psph.composition.loads)."""
     renewed: tuple[str, ...]
     """What ghosts need of it that kinds of matter fill anew just before the sums."""
     solids: tuple[Any, ...]
     """The elastic solids (psph.physics.solid.material)."""
-    solid_of: np.ndarray
-    """The number of the elastic solid of each group, NO_SOLID where it is of none: (groups,)."""
     solid_smoothing_length: float
     """That of the solids' own kernel, m."""
     cfl: float
@@ -188,7 +154,7 @@ class Plan(OfSolids):
     @cached_property
     def moves_walls(self) -> bool:
         """Whether walls move as they are told, or a kind of matter by its own work."""
-        return bool(self.motions or self.rigid) or any(kind.moves for kind in self.matter)
+        return bool(self.materials.motions or self.materials.rigid) or any(kind.moves for kind in self.matter)
 
     def of(self, name: str) -> Any:
         """The kind of matter of that name, or None."""
@@ -259,21 +225,18 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     written += tuple(field for _, effect, _ in fitted for field in getattr(effect, "drawn", ()))
     evolving = tuple(field for field in written if field.evolves)
     further = tuple(field for one in evolving for field in companions(one))
-    matter, species = kinds_in(scene), species_of(scene)
-    movement = movement_of(species)
-    apart = np.array([one.kind == OTHER for one in species], bool)
+    matter = kinds_in(scene)
+    materials = materials_of(scene, catalogue.states, [effect for _, effect, _ in fitted])
+    species, flows = materials.species, materials.flows
     of_kinds = tuple(field for kind in matter for field in kind.fields) + followed_fields(scene)
-    of_kinds += (APART,) if apart.any() else ()
+    of_kinds += (APART,) if materials.apart.any() else ()
     fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_kinds)
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
-    flows = any(one.is_fluid for one in species)
     present, pulls = {entry for entry, *_ in fitted}, pulls_of(called, scene.dimensions, flows)
-    own_laws = laws(scene, catalogue.states)
-    led = [is_prescribed(one.motion) and (flows or one.kind == WALL) for one in species]
-    loaded = np.array([one.loaded for one in species], bool) | np.array(led, bool)
-    for_loads = LOADED_READ * (flows and bool(loaded.any()))
+    loaded = materials.loaded is not None
+    for_loads = LOADED_READ * (flows and loaded)
     own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
-    told = carried_fields(movement, scene.frame)
+    told = carried_fields(materials, scene.frame)
     told_by = {e.told_by for e in marking}
     shared, varying = split(species, own | told_by)
     at_start = tuple(field.name for _, effect, _ in fitted for field in fixed(effect))
@@ -285,7 +248,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     if scene.layout.mirror_planes:
         refuse_without_image(scene, called, fields)
     told = {name for name in told if name in own or name not in ONLY_READ}
-    told |= {LOAD.name} if loaded.any() else set()
+    told |= {LOAD.name} if loaded else set()
     told |= {COUPLE.name} if has_couples(scene) else set()
     told |= {WORK.name} if pulls.booked or pulls.booked_in_solids else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
@@ -312,13 +275,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
             if entry not in present
         },
         kernel=scene.kernel,
-        laws=tuple(law for _, law in own_laws),
-        law_of=np.array([[*own_laws].index((type(one.law), one.law)) for one in species], np.uint8),
-        given_pressure=np.array(
-            [any(is_given_pressure(c.effect, one) for c in called) for one in species], bool
-        ),
-        bearing=np.array([one.bearing for one in species], bool),
-        law_reasons=tuple(own_laws.values()),
+        materials=materials,
         planes=scene.layout.mirror_planes,
         mirrors=mirrors_of(scene.layout.mirror_planes, scene.gravity, scene.layout.reach.cutoff, imaged),
         precision=case.precision,
@@ -341,16 +298,9 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         ),
         evolving=evolving,
         matter=matter,
-        species=species,
-        apart=apart,
-        kinds=tuple(one.kind for one in species),
-        free=np.uint8(sum(one.mobile for one in species)),
-        **movement._asdict(),
-        loaded=loaded if loaded.any() else None,
         loads=next((how for kind in matter if (how := kind.loads(passes))), Loads),
         renewed=tuple(name for name in refreshed if name in renewed),
         solids=scene.starts.solids,
-        solid_of=np.array([NO_SOLID if one.elastic is None else one.elastic for one in species], np.uint8),
         solid_smoothing_length=SMOOTHING * scene.spacing,
         cfl=case.time.cfl,
         fixed_step=case.time.step,

@@ -4,29 +4,29 @@ import math
 from functools import cached_property
 from typing import Any
 
-from psph.fields import FLUID, WALL
+from psph.fields import WALL
 from psph.physics.motion import MovingClamp
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.material import remembers
 from psph.physics.solid.plastic import Lasting
+from psph.simulation.materials import Materials
 from psph.simulation.passes import Pass
 
 
 class OfSolids:
     """The part of a plan (psph.simulation.plan) that follows from its elastic solids."""
 
-    kinds: tuple[int, ...]
+    materials: Materials
     arrays: tuple[str, ...]
     passes: tuple[Pass, ...]
     met: Pass | None
-    rigid: tuple[Any, ...]
     solids: tuple[Any, ...]
     extremes: Any
 
     @property
     def immersed(self) -> bool:
         """Whether elastic solids stand in a fluid."""
-        return bool(self.solids) and FLUID in self.kinds
+        return bool(self.solids) and self.materials.flows
 
     @property
     def touching(self) -> bool:
@@ -41,7 +41,7 @@ class OfSolids:
     @property
     def pressed(self) -> bool:
         """Whether elastic solids look for what moves as a whole: bodies, and walls."""
-        return self.touching and any(one.kind == WALL for one in self.rigid)
+        return self.touching and any(one.kind == WALL for one in self.materials.rigid)
 
     @property
     def substeps(self) -> bool:
@@ -60,7 +60,7 @@ class OfSolids:
     @property
     def grips(self) -> tuple[Any, ...]:
         """The motions of clamps that move, among those that are rigid."""
-        return tuple(one for one in self.rigid if isinstance(one, MovingClamp))
+        return tuple(one for one in self.materials.rigid if isinstance(one, MovingClamp))
 
     @cached_property
     def solid_laws(self) -> tuple:

@@ -49,7 +49,7 @@ class Population:
         if n and self.domain.comm.rank == 0:
             species = np.full(n, group, np.uint8)
             density = np.full(n, self.scene.species[group].density)
-            block = block_of(self.scene, store, species, position, velocity, density)
+            block = block_of(self.scene, self.plan.materials, store, species, position, velocity, density)
             block[store.rows["specific_volume"].start] = 1.0 / density
             store.append(self.next_id + np.arange(n), species, block)
         self.next_id += n

@@ -112,8 +112,10 @@ class Poses:
 def corners_of(scene, plan) -> np.ndarray:
     """The corners of boxes around the particles of each rigid motion at the start, m (rows, 2^dim, dim)."""
     found = []
-    for row in range(len(plan.rigid)):
-        moved = [n for n, s in enumerate(scene.species) if is_rigid(s.motion) and plan.pose_of[n] == row]
+    for row in range(len(plan.materials.rigid)):
+        moved = [
+            n for n, s in enumerate(scene.species) if is_rigid(s.motion) and plan.materials.pose_of[n] == row
+        ]
         ends = scene.census.lowest[moved].min(axis=0), scene.census.highest[moved].max(axis=0)
         found.append(list(product(*zip(*ends))))
     return np.array(found)

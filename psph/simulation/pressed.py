@@ -27,8 +27,7 @@ class Pressed(Work):
 
     def __init__(self, scene, plan, store):
         self._scene, self._plan, self._store = scene, plan, store
-        own = [one.kind == WALL and is_rigid(one.motion) for one in scene.species]
-        self._own = np.array(own, bool)
+        self._own = plan.materials.where(lambda one: one.kind == WALL and is_rigid(one.motion))
         self._carry, self._twist, self._load = settled(carry), settled(twist), settled(load)
 
     def meet(self, maps: np.ndarray) -> None:
@@ -85,7 +84,7 @@ class Pressed(Work):
         )
 
     def _each(self, loop, *args) -> None:
-        told = self._columns, self._store.group, self._plan.pose_of, self._maps, self._drawn
+        told = self._columns, self._store.group, self._plan.materials.pose_of, self._maps, self._drawn
         in_threads(loop, 0, len(self._columns), *told, *args)
 
 

@@ -82,7 +82,7 @@ class Solids(Work):
         self.clamps, self.loads, self._faces, self._cracks = parts_of(scene, plan, store, self.comm)
         if self._cracks:
             self._widths[1].update({LOOSENED: 1, STRENGTH: 1})
-        self._solid_of = plan.solid_of
+        self._solid_of = plan.materials.solid_of
         self._rows = self.halo = None
         loops = (sum_moments, sum_gradients, sum_inner_forces, measure, push_solids, fill_places)
         self._moments, self._gradients, self._forces, self._measure, self._push, self._fill = map(

@@ -32,7 +32,7 @@ class Contacts:
     def __init__(self, scene, plan, rows, maps: np.ndarray):
         contact, self._spacing = contact_of(scene), scene.spacing
         self._friction, self._restitution = contact.friction, contact.restitution
-        places = np.array([plan.rigid[row].reference[: scene.dimensions] for row in rows])
+        places = np.array([plan.materials.rigid[row].reference[: scene.dimensions] for row in rows])
         self._meetings = Meetings(scene, plan, rows, maps)
         self._size = np.array([one.reach(at[None]) for one, at in zip(self._meetings.tips, places)])
         self._touching: BodyContacts | None = None

@@ -27,15 +27,15 @@ class Wetting:
 
     def settle(self) -> None:
         """Lists are new, or taken up: the rows of dry walls become empty."""
-        s, plan, lists = self.store, self.plan, self.domain.lists
+        s, materials, lists = self.store, self.plan.materials, self.domain.lists
         undecided, self._rows = np.zeros(s.owned, bool), Rows(lists.lengths.copy(), np.zeros(s.owned, bool))
         safe, wet = self.reach.support - self.reach.skin, s[self.effect.marks.name]
         self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)
-        self._each(find_resting, s.group, plan.free, self._rows.rest)
-        if plan.loaded is not None:
+        self._each(find_resting, s.group, materials.free, self._rows.rest)
+        if materials.loaded is not None:
             beside = np.zeros(s.owned, bool)
-            self._each(find_beside_fluid, plan.loaded, s.group, s[self.effect.told_by], beside)
+            self._each(find_beside_fluid, materials.loaded, s.group, s[self.effect.told_by], beside)
             self._loaded = np.uint64(s.low) + np.flatnonzero(beside & self._rows.rest).astype(np.uint64)
         lists.lengths[: s.owned][self._rows.rest & (wet[s.inner] == 0.0)] = 0
 
@@ -63,7 +63,7 @@ class Wetting:
     def _kinds(self) -> tuple:
         """What the loops read of a particle but its place."""
         s = self.store
-        return s.group, self.plan.bearing, s[self.effect.told_by], s[self.effect.marks.name]
+        return s.group, self.plan.materials.bearing, s[self.effect.told_by], s[self.effect.marks.name]
 
     def _mark(self, walls: np.ndarray) -> None:
         s, reach = self.store, (self.reach.support, self.domain.periods)

@@ -118,7 +118,9 @@ def test_sums_of_the_same_step_come_in_a_pass_of_their_own(case):
 def test_without_guests_a_scene_has_one_pass_and_no_stage_for_them(tmp_path, case):
     path = case()
     plan = begin(path).plan
-    assert len(plan.passes) == 1 and not plan.motions and not plan.of("regions") and not plan.evolving
+    assert (
+        len(plan.passes) == 1 and not plan.materials.motions and not plan.of("regions") and not plan.evolving
+    )
     assert len(begin(case("passing")).stages) == len(begin(case()).stages) + 1
 
 

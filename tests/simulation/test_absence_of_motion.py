@@ -84,6 +84,6 @@ def test_arrays_and_stages_come_with_what_needs_them(begun):
     assert brought & set(floating.plan.arrays) == {"anchor", "work", "load"}
     runs = [[stage.run for stage in one.stages] for one in (plain, gauged, paddled, floating)]
     assert [push_bodies in each for each in runs] == [False] * 3 + [True]
-    assert plain.plan.loaded is None and plain.engine.poses.maps is None
+    assert plain.plan.materials.loaded is None and plain.engine.poses.maps is None
     halos = [one.plan.refreshed + one.plan.ghost_fields for one in (plain, gauged, paddled, floating)]
     assert halos[1:] == halos[:1] * 3

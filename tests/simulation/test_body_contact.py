@@ -134,7 +134,7 @@ def test_without_bodies_nothing_is_stored_summed_or_asked_of_the_step_for_them(t
     assert plan.pressed and plan.of("bodies") and {"load", "couple", "anchor", "work"} <= {*plan.arrays}
     others = "bodies=off", "walls.end={shape={box={lower=[-0.02,-0.01],upper=[0.0,0.03]}}}"
     alone = make_plan(Scene(draft(tmp_path, HAMMER, *others)))
-    assert alone.touching and not alone.pressed and alone.loaded is None
+    assert alone.touching and not alone.pressed and alone.materials.loaded is None
     assert {"load", "couple", "anchor", "work", "is_fluid"}.isdisjoint(alone.arrays)
 
 

@@ -136,7 +136,7 @@ def test_a_drifting_box_of_any_period(seed):
     for _ in range(12):
         for one in (mixed, double):
             one.step()
-        way = max(way, double.skin.drifted)
+        way = max(way, double.neighbourhood.skin.drifted)
         order = [np.argsort(one.store.owned_rows("id")) for one in (mixed, double)]
         # Velocities are rounded at 20 m/s, and differ by what pressures have made of them.
         for name, bound in (("acceleration", 2.0 * WORST), ("density_rate", 40.0 * WORST)):

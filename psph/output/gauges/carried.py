@@ -15,4 +15,4 @@ class Carrier(NamedTuple):
 
         Each is at X + R (x₀ − c) by the pose of what carries it (psph.physics.rigid.pose).
         """
-        return simulation.engine.poses.carried(simulation.plan.pose_of[self.group], points)
+        return simulation.engine.poses.carried(simulation.plan.materials.pose_of[self.group], points)

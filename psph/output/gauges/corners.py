@@ -67,8 +67,8 @@ class Corners:
     def _found(self, simulation) -> Shares:
         plan, domain = simulation.plan, simulation.domain
         space = _Torus(domain.periods)
-        kinds = np.array(plan.kinds)
-        parts = (kinds == WALL) & plan.bearing & np.isin(plan.motion_of, (FIXED, RIGID))
+        kinds = np.array(plan.materials.kinds)
+        parts = (kinds == WALL) & plan.materials.bearing & np.isin(plan.materials.motion_of, (FIXED, RIGID))
         ids, groups, places, meeting = self._near_others(simulation, space, parts)
         frames = axes_of(simulation)
         faces = [
@@ -141,9 +141,9 @@ class Corners:
 def axes_of(simulation) -> np.ndarray:
     """The axes of the lattice of each group as it has turned, in the columns (groups, dim, dim)."""
     plan = simulation.plan
-    axes = np.repeat(np.eye(simulation.store.dimensions)[None], len(plan.kinds), axis=0)
-    for group in np.flatnonzero(plan.motion_of == RIGID):
-        axes[group] = simulation.engine.poses.maps[plan.pose_of[group], PLACE][:, 1:]
+    axes = np.repeat(np.eye(simulation.store.dimensions)[None], len(plan.materials.kinds), axis=0)
+    for group in np.flatnonzero(plan.materials.motion_of == RIGID):
+        axes[group] = simulation.engine.poses.maps[plan.materials.pose_of[group], PLACE][:, 1:]
     return axes
 
 

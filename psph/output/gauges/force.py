@@ -99,9 +99,9 @@ class ForceGauge(NamedTuple):
         store, domain = simulation.store, simulation.domain
         places = gone(simulation, held)
         groups, plan = store.shown("group")[held], simulation.plan
-        rigid = plan.motion_of[groups] == RIGID
-        for row in np.unique(plan.pose_of[groups[rigid]]):
-            own = rigid & (plan.pose_of[groups] == row)
+        rigid = plan.materials.motion_of[groups] == RIGID
+        for row in np.unique(plan.materials.pose_of[groups[rigid]]):
+            own = rigid & (plan.materials.pose_of[groups] == row)
             places[own] = simulation.engine.poses.beside(row, places[own], domain.periods)
         return places
 

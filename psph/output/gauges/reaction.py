@@ -61,9 +61,9 @@ class ReactionGauge(NamedTuple):
         store, plan = simulation.store, simulation.plan
         group, told = store.shown("group")[rows], np.zeros((len(rows), store.dimensions))
         for number in self.groups:
-            if plan.motion_of[number] == RIGID:
+            if plan.materials.motion_of[number] == RIGID:
                 own = group == number
-                pose = plan.rigid[plan.pose_of[number]].pose(simulation.time)
+                pose = plan.materials.rigid[plan.materials.pose_of[number]].pose(simulation.time)
                 places = in_space(tuple(store.shown(ANCHOR.name)[rows[own]].T))
                 told[own] = np.stack(np.broadcast_arrays(*pose.acceleration_of(places)), axis=1)[
                     :, : store.dimensions
