@@ -105,8 +105,8 @@ def mirrors_of(planes: Sequence[Plane], gravity, reach: float, fields: Iterable[
     pull = tuple(float(g) or None for g in gravity)
     rule_of = {field.name: field.image and field.image() for field in fields}
     rules = view_of(tuple(rule_of))(**rule_of)
-    found = (_reflection(list(filter(None, chosen)), pull, rules) for chosen in product(*beside))
-    return Mirrors(tuple(found), reach, np.uint64(0))
+    reflections = (_reflection(list(filter(None, chosen)), pull, rules) for chosen in product(*beside))
+    return Mirrors(tuple(reflections), reach, np.uint64(0))
 
 
 def _reflection(chosen: list[Plane], gravity: tuple[float | None, ...], rules) -> Reflection:

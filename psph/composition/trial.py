@@ -112,7 +112,7 @@ def _rates(effect, i, j, pair, dimensions: int) -> None:
 
 def _check(effect, name: str, value, width: int | None) -> None:
     """Raise WrongShape where a formula gives a tuple for a number, or none of so many numbers."""
-    found = len(value) if isinstance(value, tuple) else None
-    if found != width:
-        kinds = [f"a tuple of {one} numbers" if one else "a number" for one in (found, width)]
+    given = len(value) if isinstance(value, tuple) else None
+    if given != width:
+        kinds = [f"a tuple of {one} numbers" if one else "a number" for one in (given, width)]
         raise WrongShape(f"{type(effect).__name__}.{name} gives {kinds[0]}; let it give {kinds[1]}")

@@ -243,16 +243,16 @@ def _places(function) -> dict[str, tuple[Any, str]]:
     codes = list(_codes(function.__code__))
     used = sorted({name for code in codes for name in code.co_names})
     table = function.__globals__
-    found: dict[str, tuple[Any, str]] = {name: (table, name) for name in used if name in table}
+    named: dict[str, tuple[Any, str]] = {name: (table, name) for name in used if name in table}
     modules = [one for one in map(table.get, used) if isinstance(one, types.ModuleType)]
     modules += [one for code in codes for one in _imported(code, table.get("__package__"))]
     for module in modules:  # and theirs: a.b.c
         if not _is_outside(module):
             has = [name for name in used if hasattr(module, name)]
-            found |= {f"{module.__name__}.{name}": (module, name) for name in has}
+            named |= {f"{module.__name__}.{name}": (module, name) for name in has}
             inner = [getattr(module, name) for name in has]
             modules += [one for one in inner if isinstance(one, types.ModuleType) and one not in modules]
-    return found
+    return named
 
 
 def _there(place: tuple[Any, str]) -> Any:
@@ -266,10 +266,10 @@ def _imported(code: types.CodeType, package: str | None) -> list[types.ModuleTyp
     if dis.opmap["IMPORT_NAME"] not in code.co_code[::2]:
         return []
     names = [name for one in code.co_names for name in (one, f"{package}.{one}")]
-    found = [sys.modules[name] for name in names if name in sys.modules]
-    if not found:
+    modules = [sys.modules[name] for name in names if name in sys.modules]
+    if not modules:
         raise UnknownContent(f"{code!r} imports what is not there yet")
-    return found
+    return modules
 
 
 def _defaults(values: Iterable[Any]) -> list[dict[str, Any]]:
@@ -281,18 +281,18 @@ def _defaults(values: Iterable[Any]) -> list[dict[str, Any]]:
 @functools.cache
 def _templates(count: int) -> dict[int, list[Any]]:
     """Numba's templates for functions, by identity; there are ``count`` of them."""
-    found: dict[int, list[Any]] = {}
+    stand_ins: dict[int, list[Any]] = {}
     for value, kind in builtin_registry.globals[:count]:
-        found.setdefault(id(value), []).append(kind)
-    return found
+        stand_ins.setdefault(id(value), []).append(kind)
+    return stand_ins
 
 
 def _stand_ins(function) -> list[Any]:
     """What compiled code has in a function's place, by psph.engine.jit or by numba itself."""
     if function in STAND_INS or hasattr(function, HOW):
         return STAND_INS.get(function, [])
-    found = _templates(len(builtin_registry.globals)).get(id(function), [])
-    parts = [part for kind in found for part in getattr(kind, "templates", [kind])]
+    stand_ins = _templates(len(builtin_registry.globals)).get(id(function), [])
+    parts = [part for kind in stand_ins for part in getattr(kind, "templates", [kind])]
     if not all(hasattr(part, "_overload_func") for part in parts):
         raise UnknownContent(f"{function!r} is what numba's templates say")
     return [part._overload_func for part in parts]
@@ -333,23 +333,23 @@ def _text(code: types.CodeType, docs: str | None) -> str:
 
 def _words(values: Iterable[Any]) -> frozenset[str]:
     """The words that might name a method, among some values and in tuples of them."""
-    found: set[str] = set()
+    words: set[str] = set()
     for value in values:
         if isinstance(value, str) and value.isidentifier():
-            found.add(value)
+            words.add(value)
         elif isinstance(value, (tuple, frozenset)):
-            found |= _words(value)
-    return frozenset(found)
+            words |= _words(value)
+    return frozenset(words)
 
 
 def _attributes(cls: type) -> dict[str, Any]:
     """What may be named of a class: methods and constants, also of the classes that it extends."""
-    found: dict[str, Any] = {}
+    members: dict[str, Any] = {}
     for one in reversed(cls.__mro__):
         if not _comes_from_outside(one.__module__.partition(".")[0]):
-            found |= vars(one)
+            members |= vars(one)
     places = set(getattr(cls, "_fields", ()))
-    return {name: value for name, value in found.items() if name not in places}
+    return {name: value for name, value in members.items() if name not in places}
 
 
 def _classes(kinds: Iterable[Any]) -> Iterator[type]:

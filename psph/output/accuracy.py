@@ -34,14 +34,14 @@ class Accuracy:
         store = self.domain.store
         fluid = store.owned_rows("kind") == FLUID
         x = self.domain.inside(store.owned_rows("position"))[fluid]
-        found: list[float] = []
+        errors: list[float] = []
         for field in self.fields:
             exact = getattr(self.solution, field)(x, time, self.setting)
             off = store.owned_rows(field)[fluid] - exact
             if field in self.solution.up_to_a_constant:
                 off, exact = off - self._mean(off), exact - self._mean(exact)
-            found += norms(self.domain.comm, _size(off), _size(exact))
-        return found
+            errors += norms(self.domain.comm, _size(off), _size(exact))
+        return errors
 
     def _mean(self, values: np.ndarray) -> float:
         ones = np.ones_like(values)

@@ -62,12 +62,12 @@ def checkpoint_path(folder: Path, step: int) -> Path:
 
 def checkpoints(folder: Path) -> list[Path]:
     """The checkpoints in a folder, the newest first."""
-    found = [
+    numbered = [
         (int(name[1]), path)
         for path in Path(folder).glob("checkpoint-*.h5")
         if (name := _NAME.fullmatch(path.name))
     ]
-    return [path for _, path in sorted(found, reverse=True)]
+    return [path for _, path in sorted(numbered, reverse=True)]
 
 
 def half_written(folder: Path) -> list[Path]:
@@ -278,14 +278,14 @@ class Saved:
 
     def _agreed(self, read):
         """The result of ``read``; CheckpointError on every rank if it failed on any."""
-        found = trouble = None
+        result = trouble = None
         try:
-            found = read()
+            result = read()
         except (OSError, RuntimeError, KeyError, ValueError) as error:
             trouble = self._damaged(error)
         for text in filter(None, self.comm.allgather(trouble)):
             raise CheckpointError(text)
-        return found
+        return result
 
     def _damaged(self, why: Exception | str) -> str:
         return f"{self.path}: damaged: {why if isinstance(why, str) else cause(why)}"

@@ -18,8 +18,8 @@ class NotThere(Refused):
 def cause(error: Exception) -> str:
     """The system's message, without the details that HDF5 adds."""
     text = getattr(error, "strerror", None) or str(error)
-    found = re.search(r"error message = '([^']+)'", text)
-    return found[1] if found else text.splitlines()[0]
+    message = re.search(r"error message = '([^']+)'", text)
+    return message[1] if message else text.splitlines()[0]
 
 
 @contextmanager

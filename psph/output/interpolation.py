@@ -27,9 +27,9 @@ def interpolated(
     near = share.sum(axis=1) > 0.0
     padded = np.concatenate([values, values[:1]])  # where there are fewer, the share is zero
     share[near] /= share[near].sum(axis=1, keepdims=True)
-    found = np.einsum("nk,nk...->n...", share, padded[who])
-    found[~near] = values[tree.query(at[~near])[1]]
-    return found
+    averages = np.einsum("nk,nk...->n...", share, padded[who])
+    averages[~near] = values[tree.query(at[~near])[1]]
+    return averages
 
 
 def folded(position: np.ndarray, lengths: np.ndarray) -> np.ndarray:

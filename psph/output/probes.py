@@ -91,8 +91,8 @@ class FieldProbe:
         radius = kernel.support / kernel.inverse_h
         near = np.empty(store.owned, np.int64)
         first, last = store.low, store.low + store.owned
-        found = find_near(point, domain.periods, store["position"], first, last, radius * radius, near)
-        near = near[:found]
+        count = find_near(point, domain.periods, store["position"], first, last, radius * radius, near)
+        near = near[:count]
         fluid = store.kinds[store.group[near]] == FLUID
         if DryWall.marks in store:
             near, fluid = (x[store[DryWall.marks][near] > 0.0] for x in (near, fluid))

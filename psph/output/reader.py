@@ -25,15 +25,15 @@ class Run:
 
     def __init__(self, folder: Path, name: str | None = None):
         self.folder = Path(folder)
-        found = sorted(self.folder.glob("*.h5" if name is None else f"{name}.h5"))
-        found = [path for path in found if index_of(path)] or found
-        if len(found) != 1:
-            names = ", ".join(path.name for path in found) or "none"
+        files = sorted(self.folder.glob("*.h5" if name is None else f"{name}.h5"))
+        files = [path for path in files if index_of(path)] or files
+        if len(files) != 1:
+            names = ", ".join(path.name for path in files) or "none"
             raise NotThere(
                 f"{self.folder}: the folder of a run holds one file of frames (.h5), "
                 f"here: {names}; give the folder that psph wrote to"
             )
-        self.path = found[0]
+        self.path = files[0]
 
     @property
     def attributes(self) -> dict:
@@ -97,8 +97,8 @@ class Run:
     def gauges(self) -> dict[str, dict[str, np.ndarray]]:
         """The columns of each gauge by the gauge's name."""
         begin, end = GAUGE.split("{}")
-        found = sorted(self.folder.glob(GAUGE.format("*")))
-        return {path.name.removeprefix(begin).removesuffix(end): _columns(path) for path in found}
+        tables = sorted(self.folder.glob(GAUGE.format("*")))
+        return {path.name.removeprefix(begin).removesuffix(end): _columns(path) for path in tables}
 
     def measured(self, column: str) -> dict[str, np.ndarray]:
         """The table, of the probes or of a gauge, that has a column such as ``tip.front``; empty: none."""

@@ -59,8 +59,8 @@ Kind = tuple[tuple[int, ...], np.dtype]
 
 def index_of(frames: Path) -> Path | None:
     """The file that lists the ``frames`` of a run for viewers, by this or an earlier version, if any."""
-    found = (frames.with_suffix(ending) for ending in (ENDING, EARLIER))
-    return next((path for path in found if path.exists()), None)
+    paths = (frames.with_suffix(ending) for ending in (ENDING, EARLIER))
+    return next((path for path in paths if path.exists()), None)
 
 
 def item(file: Path, name: str, kind: Kind) -> str:

@@ -127,10 +127,10 @@ class Corners:
         if not len(middle) or not len(places):
             return own
         distance, face = space.nearest(places, middle, MOST, self.support)
-        found = np.isfinite(distance)
-        face = np.where(found, face, 0)
+        near = np.isfinite(distance)
+        face = np.where(near, face, 0)
         depth = -(space.apart(places[:, None], middle[face]) * normal[face]).sum(axis=2)
-        beyond = found & (depth > 0.0) & (depth < self.support - 0.5 * self.spacing)
+        beyond = near & (depth > 0.0) & (depth < self.support - 0.5 * self.spacing)
         beyond &= touch[own[:, None], groups[face]]
         distance = distance + np.where(groups[face] == own[:, None], 0.0, TIE * self.spacing)
         best = np.where(beyond, distance, np.inf).argmin(axis=1)

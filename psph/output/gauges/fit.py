@@ -29,7 +29,7 @@ def fitted(comm, away: np.ndarray, reach: float, values: np.ndarray) -> np.ndarr
     right = weight[:, None, None] * basis[:, :, None] * values[:, None, :]
     flat = (table.reshape(len(away), (1 + d) * table.shape[2]) for table in (squares, right))
     sums = exact_sums(comm, np.column_stack([*flat]))
-    matrix, found = sums[: (1 + d) ** 2].reshape(1 + d, 1 + d), sums[(1 + d) ** 2 :].reshape(1 + d, k)
+    matrix, right_sides = sums[: (1 + d) ** 2].reshape(1 + d, 1 + d), sums[(1 + d) ** 2 :].reshape(1 + d, k)
     if not matrix[0, 0] > 0.0:
         return np.full(k, np.nan)
-    return np.linalg.lstsq(matrix, found, rcond=1e-9)[0][0]
+    return np.linalg.lstsq(matrix, right_sides, rcond=1e-9)[0][0]

@@ -51,9 +51,9 @@ class ForceGauge(NamedTuple):
             couples = store.shown("mass")[bearing, None] * store.shown(COUPLE.name)[bearing]
             for of_all, own in zip(twist, couples.T):
                 of_all[: len(bearing)] += own
-        found = exact_sums(simulation.comm, np.column_stack([force, *twist]))
+        total = exact_sums(simulation.comm, np.column_stack([force, *twist]))
         floating = simulation.engine.of("bodies")
-        return found + self._contacts(floating, about[0]) if floating else found
+        return total + self._contacts(floating, about[0]) if floating else total
 
     def _contacts(self, floating, point: np.ndarray) -> np.ndarray:
         """Force and moment about a ``point`` (dim,) m of the contacts of bodies among the groups."""

@@ -65,7 +65,7 @@ class LevelGauge(NamedTuple):
         """S over what the walls leave, at the ends of the parts of the line (parts + 1,)."""
         store, plan, domain = simulation.store, simulation.plan, simulation.domain
         ends = self._ends(simulation)
-        found = np.zeros((2, self.parts + 1), np.int64)
+        weights = np.zeros((2, self.parts + 1), np.int64)
         first, last = store.low, store.low + store.owned
         part = np.where(counted(store.kinds, self.of), 0, NEITHER).astype(np.int8)
         part[list(self.walls)] = 1
@@ -79,8 +79,8 @@ class LevelGauge(NamedTuple):
             around = (plan.kernel, domain.periods, store.view())
             for begin, end in stretches(step, self.parts, radius, domain.periods):
                 start = add(foot, scale(step, float(begin))) if begin else foot
-                weigh_line(start, step, radius, *around, first, last, part, found[:, begin:end])
-        fluid, wall = whole_sums(simulation.comm, found).astype(np.float64) / UNIT
+                weigh_line(start, step, radius, *around, first, last, part, weights[:, begin:end])
+        fluid, wall = whole_sums(simulation.comm, weights).astype(np.float64) / UNIT
         left = 1.0 - wall
         share = np.where(left > LEAST_LEFT, fluid / np.maximum(left, LEAST_LEFT), 0.0)
         return share if self.buried is None else np.where(self.buried, WITHIN_WALLS, share)

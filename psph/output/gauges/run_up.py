@@ -55,8 +55,8 @@ class RunUpGauge(NamedTuple):
         aside = np.linalg.norm(away - distance[:, None] * along, axis=1)
         reached = distance[aside < BESIDE * self.spacing] + 0.5 * length
         half = 0.5 * self.spacing * np.abs(along).sum()
-        found = tongue(self._farthest(simulation.comm, reached, length), GAP * self.spacing)
-        run_up = min(found + half, length) if found > -np.inf else 0.0
+        tip = tongue(self._farthest(simulation.comm, reached, length), GAP * self.spacing)
+        run_up = min(tip + half, length) if tip > -np.inf else 0.0
         return run_up, run_up * float(along @ np.array(self.up))
 
     def _farthest(self, comm, reached: np.ndarray, length: float) -> np.ndarray:

@@ -63,7 +63,7 @@ def probe_charts(run: Run, case: dict) -> list[Chart]:
 
 def gauge_charts(run: Run, dimensions: int) -> dict[str, list[Chart]]:
     """For each gauge one chart for each quantity that it measures."""
-    found = {}
+    charts_of = {}
     for gauge, table in run.gauges().items():
         charts: dict[str, Chart] = {}
         for column, values in table.items():
@@ -72,8 +72,8 @@ def gauge_charts(run: Run, dimensions: int) -> dict[str, list[Chart]]:
             field, part = quantity_of(column)
             unit = unit_of(field, dimensions)
             charts.setdefault(field, Chart(field, unit, table["time"], {}, {})).curves[part or field] = values
-        found[gauge] = [one for chart in charts.values() for one in apart(chart)]
-    return {gauge: charts for gauge, charts in found.items() if charts}
+        charts_of[gauge] = [one for chart in charts.values() for one in apart(chart)]
+    return {gauge: charts for gauge, charts in charts_of.items() if charts}
 
 
 def apart(chart: Chart) -> Iterator[Chart]:

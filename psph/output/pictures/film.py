@@ -75,9 +75,9 @@ def film_of(show: Show, path: Path | None, whole: bool) -> str:
 
 def encoder() -> str | None:
     """The ffmpeg on the PATH, or that of the package imageio-ffmpeg."""
-    found = shutil.which("ffmpeg")
-    if found:
-        return found
+    installed = shutil.which("ffmpeg")
+    if installed:
+        return installed
     try:
         from imageio_ffmpeg import get_ffmpeg_exe
 

@@ -111,9 +111,9 @@ def _vorticity(case: dict) -> Quantity:
         volume = rest[frame["group"][fluid]] / frame["density"][fluid] * space["spacing"] ** dimensions
         reach = 2.0 * space["smoothing"] * space["spacing"]
         omega = vorticity(frame["position"][fluid], frame["velocity"][fluid], volume, reach, periods)
-        found = np.full(len(fluid), np.nan)
-        found[fluid] = omega if omega.ndim == 1 else np.linalg.norm(omega, axis=1)
-        return found
+        sizes = np.full(len(fluid), np.nan)
+        sizes[fluid] = omega if omega.ndim == 1 else np.linalg.norm(omega, axis=1)
+        return sizes
 
     reads = (VELOCITY, "density", "group")
     plane = dimensions == 2

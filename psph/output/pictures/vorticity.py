@@ -28,7 +28,7 @@ def vorticity(
     sound = np.isfinite(position).all(axis=1)
     gradient = np.full((len(position), position.shape[1], position.shape[1]), np.nan)
     x, u, v = folded(position[sound], lengths), velocity[sound], volume[sound]
-    found = np.empty((len(x), *gradient.shape[1:]))
+    gradients = np.empty((len(x), *gradient.shape[1:]))
     tree = cKDTree(x, boxsize=lengths)
     for first in range(0, len(x), BLOCK):
         rows = slice(first, first + BLOCK)
@@ -42,8 +42,8 @@ def vorticity(
         weights = slope[..., None] * away  # -W'/r x_ji, but for a factor that M takes out again
         moments = np.einsum("nka,nkb->nab", away, weights, optimize=True)
         turned = np.einsum("nka,nkb->nab", u[who] - u[rows, None], weights, optimize=True)
-        found[rows] = turned @ _inverse(moments)
-    gradient[sound] = found
+        gradients[rows] = turned @ _inverse(moments)
+    gradient[sound] = gradients
     if position.shape[1] == 2:
         return gradient[:, 1, 0] - gradient[:, 0, 1]
     pairs = ((2, 1), (0, 2), (1, 0))
@@ -54,6 +54,6 @@ def _inverse(moments: np.ndarray) -> np.ndarray:
     """M⁻¹ of symmetric matrices (n, dim, dim); NaN where M is all but singular."""
     sizes = np.linalg.eigvalsh(moments)
     good = sizes[:, 0] > ALONE * sizes[:, -1]
-    found = np.full_like(moments, np.nan)
-    found[good] = np.linalg.inv(moments[good])
-    return found
+    inverses = np.full_like(moments, np.nan)
+    inverses[good] = np.linalg.inv(moments[good])
+    return inverses

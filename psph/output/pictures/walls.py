@@ -76,10 +76,10 @@ def _lines(parts: list[Shape], spacing: float, lower: np.ndarray, upper: np.ndar
     Where a part is round, a grid of the spacing too.
     """
     ends = [end for part in parts for end in bounds(part)]
-    found = [np.unique(x[np.isfinite(x)]) for x in np.array([lower, upper, *ends]).T]
+    cuts = [np.unique(x[np.isfinite(x)]) for x in np.array([lower, upper, *ends]).T]
     if all(isinstance(part.form, Box) for part in parts):
-        return found
-    return [np.union1d(x, np.arange(x[0], x[-1], spacing)) for x in found]
+        return cuts
+    return [np.union1d(x, np.arange(x[0], x[-1], spacing)) for x in cuts]
 
 
 def _faces(form: Box | Ball | Cylinder | Mesh, lines: list[np.ndarray], spacing: float) -> Triangles:

@@ -64,7 +64,7 @@ def fluid_surface(position: np.ndarray, spacing: float, values: np.ndarray | Non
         mean = np.full_like(filled, np.nan)
         np.divide(sums.of(values), known, out=mean, where=known > 1e-6)
         grid["values"] = mean.ravel(order="F")
-    found = grid.contour([LEVEL], scalars="filled")
-    if not found.n_points:
+    surface = grid.contour([LEVEL], scalars="filled")
+    if not surface.n_points:
         return None
-    return found.smooth_taubin(n_iter=20, pass_band=0.1).compute_normals(split_vertices=False)
+    return surface.smooth_taubin(n_iter=20, pass_band=0.1).compute_normals(split_vertices=False)
