@@ -103,14 +103,18 @@ class Domain:
         self._arrange(0.0)
 
     def _arrange(self, spent: float) -> None:
+        # In this order: who owns which plane is known once cells are counted on the new grid, and only in
+        # sorted columns is a plane one slice, of which the halo and the lists are made.
         self._sort(self._balance_and_migrate(spent))
         if self.lanes is not None:
             self._list(self.lanes)
+        # Ghosts too, though their owners hold the same number: no message carries listed positions.
         for now, listed in zip(self.store["position"], self.store["listed_position"]):
             listed[: self.store.total] = now[: self.store.total]
 
     def _list(self, lanes: int) -> None:
         """Ghosts, and the neighbours of every owned particle."""
+        # Ids and groups of ghosts do not travel: a loop may ask a ghost for fields alone.
         self.halo.refresh(self.ghost_fields + self.refreshed)
         self.lists = neighbours.build(
             self._used_lists(),
@@ -127,6 +131,8 @@ class Domain:
     def interior(self) -> tuple[int, int]:
         """Columns of the owned particles that have no ghost among their neighbours."""
         per_plane = self.grid.plane_cells
+        # Plane 0 of ``starts`` holds the ghosts below, planes 1 to ``planes`` are owned.  A cell is
+        # as wide as the cutoff, so that only the outermost owned plane on either side sees ghosts.
         first = self.starts[2 * per_plane] if self._partner(-1) != MPI.PROC_NULL else self.store.low
         last = self.store.low + self.store.owned
         if self._partner(1) != MPI.PROC_NULL:
@@ -135,13 +141,14 @@ class Domain:
 
     def _used_lists(self) -> neighbours.Neighbours:
         """The old lists, to be filled again, and given back where they are too short."""
+        # The domain lets go of them, or both would be held while longer ones are made.
         room, self.lists = self.lists, neighbours.empty(0, 0)
         return room
 
     def _partner(self, step: int) -> int:
         rank = self.comm.rank + step
         if self.periods[self.axis] is not None:
-            return rank % self.comm.size
+            return rank % self.comm.size  # of one rank itself: its ghosts are its own far plane
         return rank if 0 <= rank < self.comm.size else MPI.PROC_NULL
 
     def inside(self, position: np.ndarray) -> np.ndarray:
@@ -236,8 +243,10 @@ class Domain:
             return cells
         planes = planes_of(cells, self.grid)
         histogram = np.bincount(planes, minlength=self.grid.counts[0])
+        # Each rank computes the bounds from sums over all: none is told by another which planes it owns.
         self.bounds = rebalanced(self._costs(histogram, spent), self.bounds, self.comm.size)
         owner = np.repeat(np.arange(self.comm.size, dtype=np.int32), np.diff(self.bounds))[planes]
+        # Cells follow the columns, and those have changed wherever particles came or went.
         return self._cells() if migrate(self.comm, self.store, owner) else cells
 
     def _costs(self, mine: np.ndarray, spent: float) -> np.ndarray:
@@ -258,15 +267,19 @@ class Domain:
         base = int(self.bounds[self.comm.rank]) * per_plane
         owned = np.empty(self.planes * per_plane + 1, np.int64)
         order = np.empty(store.owned, np.uint32)
+        # By id within a cell: a sum then meets its neighbours in the same order, and has the same bits,
+        # however particles came here, from whichever rank or restart.
         sort_by_cell(cells, store.id, store.low, base, owned, order)
         del cells  # as long as a field
         filled = np.diff(owned)
+        # A neighbour sorts its plane by the same rule: its counts by cell are all that places its particles
+        # here, where they come as one slice, in the owner's order.
         below, above = self._trade_planes(filled[:per_plane], filled[-per_plane:])
         store.reorder(order, int(below.sum()), int(above.sum()))
         counts = np.concatenate([below, filled, above])
         self.starts = np.concatenate([[0], np.cumsum(counts)])
         if self.halo is not None:
-            self.halo.free()
+            self.halo.free()  # its requests name columns of the order before
         self.halo = Halo(
             self.comm,
             store,
@@ -280,6 +293,7 @@ class Domain:
         """Cell counts of the ghost planes below and above, from the ranks that own them."""
         below, above = np.zeros_like(lowest), np.zeros_like(highest)
         down, up = self._partner(-1), self._partner(1)
+        # At an open end nothing comes, and the counts stay zero: no ghosts there.
         self.comm.Sendrecv(highest, up, recvbuf=below, source=down)
         self.comm.Sendrecv(lowest, down, recvbuf=above, source=up)
         return below, above

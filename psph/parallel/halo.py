@@ -21,6 +21,8 @@ class Halo:
         self.comm, self.store = comm, store
         self.below, self.above = below, above
         end = store.low + store.owned
+        # First column and number of columns of each.  Ghosts below, owned ones and ghosts above lie in this
+        # order; the plane that is sent lies at the end of the owned ones that faces its receiver.
         self._slices = {
             "send_below": (store.low, lowest),
             "send_above": (end - highest, highest),
@@ -31,6 +33,7 @@ class Halo:
 
     def start(self, names: tuple[str, ...]) -> None:
         """Begin to refresh these fields of the ghosts; nothing else may write them until `finish`."""
+        # Made once, used in each step: a request holds addresses in ``store.data``, until the next rebuild.
         if names not in self._requests:
             self._requests[names] = self._prepare(names)
         MPI.Prequest.Startall(self._requests[names])
@@ -61,6 +64,7 @@ class Halo:
         rows = [row for name in names for row in self.store.rows[name]]
         data, comm = self.store.data, self.comm
         requests = []
+        # What one rank sends upward the other receives from below: the tag is the way, not the side.
         for side, partner, tag in (
             ("receive_below", self.below, UPWARD),
             ("receive_above", self.above, DOWNWARD),

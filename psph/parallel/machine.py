@@ -33,10 +33,10 @@ def free_memory() -> float:
 
 def _of_machine() -> float:
     try:
-        found = re.search(r"MemAvailable:\s*(\d+) kB", MEMORY.read_text())
+        available = re.search(r"MemAvailable:\s*(\d+) kB", MEMORY.read_text())
     except OSError:
-        found = None
-    return 1024.0 * int(found[1]) if found else float("inf")
+        available = None
+    return 1024.0 * int(available[1]) if available else float("inf")
 
 
 def _of_groups() -> Iterator[float]:

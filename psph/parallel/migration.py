@@ -17,6 +17,7 @@ def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
     comm.Allreduce(MPI.IN_PLACE, moved, MPI.SUM)
     if moved == 0:
         return False
+    # By rank, and stable: what goes to one rank keeps its order and is one run of rows.
     leaving = leaving[np.argsort(owner[leaving], kind="stable")]
     columns = store.low + leaving
     fields = len(store.data)
@@ -25,6 +26,7 @@ def migrate(comm: MPI.Comm, store: Store, owner: np.ndarray) -> bool:
     parcel[:, fields] = store.id[columns].view(np.float64)  # the bits, not the value
     parcel[:, fields + 1] = store.group[columns]
     received, _ = exchange(comm, parcel, np.bincount(owner[leaving], minlength=comm.size))
+    # The order of arrival differs with the number of ranks; the sort by cell and id that follows undoes that.
     staying = (store.low + np.flatnonzero(owner == comm.rank)).astype(np.uint32)
     store.reorder(staying, 0, 0)
     store.append(

@@ -23,15 +23,15 @@ def sent_rows(comm: MPI.Comm, rows: np.ndarray, to: np.ndarray) -> tuple[np.ndar
     """
     order = np.argsort(to, kind="stable")
     parcel = np.ascontiguousarray(rows[order], np.int64).view(np.float64)  # the bits, not the values
-    found, incoming = exchange(comm, parcel, np.bincount(to, minlength=comm.size))
-    return found.view(np.int64), np.repeat(np.arange(comm.size), incoming), order
+    received, incoming = exchange(comm, parcel, np.bincount(to, minlength=comm.size))
+    return received.view(np.int64), np.repeat(np.arange(comm.size), incoming), order
 
 
 def answered(comm: MPI.Comm, answers: np.ndarray, asked_by: np.ndarray, order: np.ndarray) -> np.ndarray:
     """Give each row of ``answers`` back to the rank that asked; what comes, in the order of the questions."""
-    found, _, _ = sent_rows(comm, answers, asked_by)
-    back = np.empty_like(found)
-    back[order] = found
+    received, _, _ = sent_rows(comm, answers, asked_by)
+    back = np.empty_like(received)
+    back[order] = received
     return back
 
 
@@ -40,6 +40,7 @@ def owners(comm: MPI.Comm, held: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 
     Raises LostPartner on every rank where no rank holds one of them.
     """
+    # Every rank tells the directory what it holds, then asks it: two exchanges, whatever has moved where.
     told, told_by, _ = sent_rows(comm, held[:, None], held % comm.size)
     order = np.argsort(told[:, 0], kind="stable")
     known, holder = told[order, 0], told_by[order]
@@ -47,16 +48,17 @@ def owners(comm: MPI.Comm, held: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     place = np.minimum(np.searchsorted(known, asked[:, 0]), max(len(known) - 1, 0))
     there = known[place] == asked[:, 0] if len(known) else np.zeros(len(asked), bool)
     answer = np.where(there, holder[place], -1) if len(known) else np.full(len(asked), -1)
-    found = answered(comm, answer[:, None], asked_by, sent)[:, 0]
-    missing = np.array(wanted[found < 0].min(initial=np.iinfo(np.int64).max))
+    holders = answered(comm, answer[:, None], asked_by, sent)[:, 0]
+    missing = np.array(wanted[holders < 0].min(initial=np.iinfo(np.int64).max))
     comm.Allreduce(MPI.IN_PLACE, missing, MPI.MIN)
     if missing < np.iinfo(np.int64).max:
         raise LostPartner(f"particle {int(missing)} of a solid is lost: its neighbours hold on to it")
-    return found
+    return holders
 
 
 def follow(comm: MPI.Comm, rows: ReferenceRows, ids: np.ndarray) -> ReferenceRows:
     """The rows of the particles ``ids`` that this rank owns now, from the ranks that had them; collective."""
+    # Who has no row for a particle has just received it; whoever gave it away still has the row, until here.
     wanted = ids[rows.places(ids) < 0]
     longest = np.array([len(wanted), rows.counts.max(initial=0)])
     comm.Allreduce(MPI.IN_PLACE, longest, MPI.MAX)
@@ -68,9 +70,9 @@ def follow(comm: MPI.Comm, rows: ReferenceRows, ids: np.ndarray) -> ReferenceRow
         answer = np.full((len(asked), 1 + longest[1]), -1)
         answer[:, 0] = sizes
         answer[:, 1:][np.arange(longest[1]) < sizes[:, None]] = entries
-        found = answered(comm, answer, asked_by, order)
-        came = found[:, 1:][np.arange(longest[1]) < found[:, :1]]
-        counts, partners = np.concatenate([counts, found[:, 0]]), np.concatenate([partners, came])
+        received = answered(comm, answer, asked_by, order)
+        came = received[:, 1:][np.arange(longest[1]) < received[:, :1]]
+        counts, partners = np.concatenate([counts, received[:, 0]]), np.concatenate([partners, came])
         kept = np.concatenate([kept, wanted])
     return ReferenceRows.of(kept, counts, partners)
 
@@ -85,6 +87,7 @@ class PartnerHalo:
     def __init__(self, comm: MPI.Comm, owned: np.ndarray, wanted: np.ndarray):
         self.comm = comm
         ranks = owners(comm, owned, wanted)
+        # By rank: what one rank sends fills one run of rows.  By id within: asked and answered in one order.
         order = np.lexsort((wanted, ranks))
         self.ids, self._counts = wanted[order], np.bincount(ranks, minlength=comm.size)
         asked, asked_by, _ = sent_rows(comm, self.ids[:, None], ranks[order])
@@ -97,6 +100,7 @@ class PartnerHalo:
 
     def channel(self, table: np.ndarray, first: int, last: int) -> list[MPI.Prequest]:
         """Persistent requests for the places ``first`` to ``last`` of the partners' rows of ``table``."""
+        # A type of part of a row: a block of places sends these columns of chosen rows, without a copy.
         row = table.strides[0]
         one = MPI.DOUBLE.Create_contiguous(last - first).Create_resized(0, row)
         requests = []

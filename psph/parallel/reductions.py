@@ -24,9 +24,9 @@ def world() -> MPI.Comm:
 
 def largest(comm: MPI.Comm, values) -> np.ndarray:
     """The largest of each value over all ranks; collective."""
-    found = np.array(values, dtype=np.float64)
-    comm.Allreduce(MPI.IN_PLACE, found, MPI.MAX)
-    return found
+    maxima = np.array(values, dtype=np.float64)
+    comm.Allreduce(MPI.IN_PLACE, maxima, MPI.MAX)
+    return maxima
 
 
 def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
@@ -42,10 +42,11 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     if rows:
         with np.errstate(invalid="ignore"):
             np.maximum(columns.max(axis=1), -columns.min(axis=1), out=extremes)
-    extremes[np.isnan(extremes)] = np.inf
+    extremes[np.isnan(extremes)] = np.inf  # a maximum over ranks may lose a NaN, but no infinity
     count = np.array(rows, dtype=np.int64)
     peaks = largest(comm, extremes)
     comm.Allreduce(MPI.IN_PLACE, count, MPI.SUM)
+    # Whole numbers add up to the same bits in any order where the sum fits: a bit for each doubling of terms.
     room = BITS - max(int(count), 1).bit_length()
     finite = np.isfinite(peaks)
     scales = room - np.where(finite, np.frexp(np.where(finite, peaks, 0.0))[1], 0)

@@ -96,11 +96,12 @@ class Skin:
 
         ``speed``, ``acceleration`` and ``shift`` (m/s) are the largest of the scene.
         """
+        # All of these are the same on every rank, so all ranks measure, keep or rebuild together.
         before, self._before = self._before, [acceleration, dt]
         self._add(acceleration, dt, shift)
         if self._closing is None or not self._bounded(dt, speed):
             if self._worn:
-                return False
+                return False  # a measurement would hardly buy a step
             self._measure()
             self._acceleration = self._shift = self._longest_step = 0.0
             self._add(acceleration, dt, shift)
@@ -144,9 +145,10 @@ class Skin:
         boxes = bounding_boxes(
             store.data, *rows, domain.starts, domain.planes, grid.counts, grid.reach, grid.periodic
         )
+        # Ghosts are in the boxes, so that a pair across two slabs is seen by at least one of their ranks.
         mine = largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic)
-        found = largest(domain.comm, [*mine, *self._across_planes()]).tolist()
-        apart, closing, drifted, *across = found
+        squares = largest(domain.comm, [*mine, *self._across_planes()]).tolist()
+        apart, closing, drifted, *across = squares
         # From an image a particle differs across the plane by the sum of both, along it as from the other.
         ways, speeds = across[::2], across[1::2]
         self._apart, self._closing = (apart + 4.0 * sum(ways)) ** 0.5, (closing + 4.0 * sum(speeds)) ** 0.5
@@ -164,6 +166,6 @@ class Skin:
                 for name in ("position", "listed_position", "predicted_velocity")
             )
             near = np.abs(x - plane.at) < NEAR_PLANE * self.domain.cutoff
-            found = (float(np.square(ways[near]).max(initial=0.0)) for ways in (x - listed, v))
-            most[plane.axis] = list(map(max, most[plane.axis], found))
+            largest_squares = (float(np.square(ways[near]).max(initial=0.0)) for ways in (x - listed, v))
+            most[plane.axis] = list(map(max, most[plane.axis], largest_squares))
         return [square for squares in most.values() for square in squares]

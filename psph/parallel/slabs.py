@@ -45,6 +45,7 @@ def partition(costs: np.ndarray, ranks: int) -> np.ndarray:
     reached = np.concatenate([[0], np.cumsum(costs)])
     rank = np.arange(ranks + 1)
     goals = float(reached[-1]) * (rank / ranks)
+    # Each cut is at the boundary of planes that is nearest to its goal.
     above = np.clip(np.searchsorted(reached, goals), 1, planes)
     cuts = above - (goals - reached[above - 1] < reached[above] - goals)
     cuts[[0, ranks]] = 0, planes
@@ -63,6 +64,7 @@ def rebalanced(costs: np.ndarray, bounds: np.ndarray | None, ranks: int) -> np.n
     best = partition(costs, ranks)
     if bounds is None or bounds[-1] != len(costs):
         return best
+    # Costs are whole numbers that all ranks have summed: none can keep what another gives up.
     keep = dearest(costs, bounds) <= TOLERATED * dearest(costs, best)
     return bounds if keep else best
 

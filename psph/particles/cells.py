@@ -48,10 +48,12 @@ def make_grid(axis: int, cutoff: float, lower, upper, periods) -> Grid:
     ``axis`` is the slab axis; ``periods`` holds a length or None for each axis.
     """
     dimensions = len(lower)
+    # The slab axis first, so slowest: planes across it are runs of cells, and of sorted columns.
     axes = (axis, *(d for d in range(dimensions) if d != axis))
     counts, inverse = [], []
     for rank, d in enumerate(axes):
         finest = rank == dimensions - 1 and dimensions > 1
+        # A whole number of cells, each at least so wide: the next cell holds all that is in reach.
         size = cutoff / COLUMNS_PER_CUTOFF if finest else cutoff
         extent = upper[d] - lower[d]
         n = max(1, int(extent / size))

@@ -32,6 +32,7 @@ def bounding_boxes(data, position, listed, velocity, starts, planes, counts, rea
     low, high = np.zeros(shape), np.zeros(shape)
     low[:, :, : len(position)], high[:, :, : len(position)] = HIGH, LOW
     fill_boxes(data, position, listed, velocity, starts, counts[2], wide, blocks, low, high)
+    # Along a line the margins repeat its ends; across lines the comparison itself wraps round.
     if periodic[2]:
         margins = np.r_[:MARGIN, blocks + MARGIN : blocks + 2 * MARGIN]
         images = (margins - MARGIN) % blocks + MARGIN

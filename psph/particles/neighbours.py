@@ -65,9 +65,11 @@ def build(
     """
     owned = store.owned
     position, cutoff = in_single_precision(store, grid, int(starts[0]), cutoff)
+    # The guess of entries need not be right; the same lists come of any.
     if len(room.begin) < owned:
         room = empty(owned + owned // SPARE, max(len(room.lists), 64 * owned + 1024))
     near = Near(position, periods, cutoff * cutoff)
+    # How many entries there are is known once they are written: too little room, and all is done again.
     while True:
         parts = in_threads(fill, 1, planes + 1, near, grid, starts, store.low, owned, lanes, room)
         needed = max(parts)

@@ -22,6 +22,7 @@ class ReferenceRows(NamedTuple):
     @classmethod
     def of(cls, ids: np.ndarray, counts: np.ndarray, partners: np.ndarray) -> "ReferenceRows":
         """Rows in any order, ``counts`` (n,) partners each, one after another, put into order."""
+        # Ids that rise let :meth:`places` search by halves; partners keep their order, and sums their bits.
         order = np.argsort(ids, kind="stable")
         begin = np.concatenate([[0], np.cumsum(counts)])
         chosen = _entries(begin[:-1][order], counts[order])
@@ -37,8 +38,8 @@ class ReferenceRows(NamedTuple):
         """The rows of these ids, −1 where there is none."""
         if not len(self.ids):
             return np.full(len(ids), -1)
-        found = np.minimum(np.searchsorted(self.ids, ids), len(self.ids) - 1)
-        return np.where(self.ids[found] == ids, found, -1)
+        places = np.minimum(np.searchsorted(self.ids, ids), len(self.ids) - 1)
+        return np.where(self.ids[places] == ids, places, -1)
 
     def chosen(self, ids: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """How many partners each of these ids has, and these one after another; every id has a row."""

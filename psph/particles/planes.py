@@ -13,6 +13,7 @@ def bring_back(store, planes: Iterable[Plane], free: int) -> None:
     that sticks it keeps its own velocity.  Those of groups from number ``free`` on stay where their motion
     has them.
     """
+    # Owned particles alone: a ghost is brought back by its owner, before the halo shows it.
     for plane in planes:
         x = store["position"][plane.axis][store.inner]
         crossed = ((x - plane.at) * plane.side > 0.0) & (store.group[store.inner] < free)

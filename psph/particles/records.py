@@ -69,14 +69,15 @@ class Records:
     def view(self):
         """A neighbour: an array for what its record holds, else the shared value, FOLDED or None."""
         store = self.store
-        if self._of is not store.view():  # the store has new arrays
-            found = type(store.view())(
+        # The store makes a new view whenever it replaces its arrays: the old one names memory that is gone.
+        if self._of is not store.view():
+            seen = type(store.view())(
                 *(
                     store[self._seen[name]] if placed else store.constants.get(name)
                     for name, placed in self._shown
                 )
             )
-            self._view = found._replace(is_fluid=FOLDED) if self._folded else found
+            self._view = seen._replace(is_fluid=FOLDED) if self._folded else seen
             self._of = store.view()
         return self._view
 

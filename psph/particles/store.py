@@ -58,6 +58,7 @@ class Store:
             width = field.width(dimensions)
             self.rows[name] = range(first, first + width)
             first += width
+        # Numbers of ghosts below, owned particles and ghosts above: whoever writes them moves columns too.
         self.low = self.owned = self.high = 0
         self._seen_in, self._view = view, None
         self._arrays: dict[int, np.ndarray | tuple[np.ndarray, ...]] = {}  # by the first row
@@ -74,17 +75,17 @@ class Store:
     def __getitem__(self, name: str):
         """The field over all columns: an array, or a tuple of component arrays."""
         rows = self.rows[name]
-        if (found := self._arrays.get(rows.start)) is None:
+        if (shown := self._arrays.get(rows.start)) is None:
             arrays = tuple(self.data[row] for row in rows)
-            found = self._arrays[rows.start] = arrays if self.fields[name].composed else arrays[0]
-        return found
+            shown = self._arrays[rows.start] = arrays if self.fields[name].composed else arrays[0]
+        return shown
 
     def arrays_of(self, stored: str | tuple[str, ...] | None):
         """What takes a sum: the array of a number, those of several numbers in a row, or None."""
         if not isinstance(stored, tuple):
             return stored and self[stored]
-        found = (self[name] for name in stored)
-        return tuple(array for one in found for array in (one if isinstance(one, tuple) else (one,)))
+        entries = (self[name] for name in stored)
+        return tuple(array for one in entries for array in (one if isinstance(one, tuple) else (one,)))
 
     def rotate(self, *names: str) -> None:
         """Each field takes the rows of the one before, the first those of the last; no copy.
@@ -145,6 +146,7 @@ class Store:
             values = block.T if self.fields[name].composed else block[0]
         else:
             values = np.full(self.owned, self.constants[name])
+        # A view: what writes through it would change particles behind the step's back.
         values.flags.writeable = False
         return values
 
@@ -159,6 +161,7 @@ class Store:
             )
         if columns + SLACK <= self.capacity:
             return
+        # Spare room, or each rebuild with a few ghosts more would make all arrays anew.
         wide = columns + columns // SPARE + SLACK
 
         def widened(old: np.ndarray) -> np.ndarray:
@@ -179,7 +182,7 @@ class Store:
         """Add owned particles behind the last; ``block`` (rows, n).  Ghosts are lost."""
         n = len(ids)
         end = self.low + self.owned
-        self.high = 0
+        self.high = 0  # the ghosts above stood in these columns
         self.reserve(end + n)
         self.data[:, end : end + n] = block
         self.id[end : end + n] = ids
@@ -190,6 +193,7 @@ class Store:
         """Let the owned columns become the columns ``order``, behind ``low`` ghosts to come."""
         n = len(order)
         self.reserve(max(low + n + high, self.total))
+        # In place, a row at a time: a second block would double the memory of a run.
         permute(self.data, order, low, np.empty(n))
         for array in (self.id, self.group):
             array[low : low + n] = array[order]
