@@ -366,7 +366,9 @@ def test_no_force_on_walls_that_bear_none(tmp_path, condition):
 def test_scenes_without_forces_sum_no_loads(tmp_path):
     plain, asked = (make_plan(Scene(draft(tmp_path, text))) for text in (TANK, AT_REST))
     assert plain.materials.loaded is None and "load" not in plain.arrays
-    assert asked.loaded.tolist() == [False, True] and set(asked.arrays) - set(plain.arrays) == {"load"}
+    assert asked.materials.loaded.tolist() == [False, True] and set(asked.arrays) - set(plain.arrays) == {
+        "load"
+    }
     level = draft(tmp_path, WATER, "gauges.top.highest.axis='y'")
     assert make_plan(Scene(level)).arrays == make_plan(Scene(draft(tmp_path))).arrays
 
