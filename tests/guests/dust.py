@@ -5,7 +5,7 @@ Grains have a mass and no volume.  Over the stopping time t a grain g takes on t
     m_g dv_g/dt = −(1/t) Σ_f m_g V_f W_gf u_gf + m_g g,
 
 and each f feels the opposite: momentum is kept, and the work becomes heat.  Grains of which half the
-neighbourhood is wall lie still.  After Monaghan & Kocharyan (1995), Comput. Phys. Commun. 87, 225.
+neighbourhood is wall lie still on it, and go with it.  After Monaghan & Kocharyan (1995), Comput. Phys. Commun. 87, 225.
 """
 
 from typing import ClassVar, NamedTuple
@@ -70,6 +70,28 @@ class Bed(NamedTuple):
 
     def finish_value(self, total, i, kernel):
         """The part."""
+        return total
+
+
+class Ground(NamedTuple):
+    """Grains know how that wall moves."""
+
+    across = True
+    writes = Field(
+        "ground", "m/s", "velocity of that wall, times this part", VECTOR, saved=True, image=Drifting
+    )
+
+    def start(self, i):
+        """No neighbour yet."""
+        return zero_like(i.position)
+
+    def gather(self, total, i, j, pair):
+        """Add V_j W_ij v_j of a wall."""
+        wall = where(j.drag_rate > 0.0, 0.0, 1.0 - j.is_fluid)
+        return add(total, scale(j.velocity, wall * j.mass * j.specific_volume * pair.w))
+
+    def finish_value(self, total, i, kernel):
+        """The velocity, m/s, times the part."""
         return total
 
 
@@ -197,13 +219,15 @@ class Moving(Work):
             heat[inner] -= 0.5 * dt * mass * drag[inner] * (v - 0.25 * dt * a)[inner]
 
     def push(self):
-        """The drag of all, which the passes have summed; what lies in its bed is held."""
+        """The drag of all, which the passes have summed; what lies in its bed goes with it."""
         own, inner = self.own, self.store.inner
         still = own[self.store["bed"][own] >= STILL]
-        for a, drag, v in zip(*(self.store[name] for name in ("acceleration", "drag", "velocity"))):
+        names = ("acceleration", "drag", "velocity", "ground")
+        for a, drag, v, ground in zip(*(self.store[name] for name in names)):
             a[inner] += drag[inner]
-            self.store[HEAT.name][still] += 0.5 * self.store.view().mass[still] * v[still] ** 2
-            a[still] = v[still] = 0.0
+            bed = ground[still] / self.store["bed"][still]
+            self.store[HEAT.name][still] += 0.5 * self.store.view().mass[still] * (v[still] - bed) ** 2
+            a[still], v[still] = 0.0, bed
 
     def kick(self, dt):
         """The second kick."""
@@ -220,4 +244,7 @@ class Moving(Work):
         return (float(exact_sums(self.comm, self.store.shown(HEAT.name)[:, None])[0]),)
 
 
-CATALOGUE = Catalogue(effects=(Entry("dust.*", Drag), Entry("dust.*", Bed)), kinds=(Entry("dust", Dust),))
+CATALOGUE = Catalogue(
+    effects=(Entry("dust.*", Drag), Entry("dust.*", Bed), Entry("dust.*", Ground)),
+    kinds=(Entry("dust", Dust),),
+)

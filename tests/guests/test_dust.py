@@ -115,6 +115,28 @@ def test_grains_settle_at_g_times_their_stopping_time_and_lie_on_the_ground(path
     assert store.shown("position")[lies][:, 1].min() > -0.05
 
 
+def test_grains_that_lie_on_a_wall_that_moves_go_with_it(path):
+    """Everything drifts at 5 m/s: grains that begin in the floor do so too."""
+    drifting = (
+        (
+            "fluids.gas.shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }",
+            "fluids.gas = { velocity = [5.0, 0.0], shape.box = { lower = [0.0, 0.2], upper = [1.0, 0.8] } }\n"
+            "walls.floor = { shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.2] }, "
+            "motion.translation = [5.0, 0.0] }",
+        ),
+        ("lower = [-0.025, -0.025], upper = [0.975, 0.975]", "lower = [0.0, 0.1], upper = [1.0, 0.6]"),
+        ("velocity = [1.0, 0.5]", "velocity = [5.0, 0.0]"),
+    )
+    simulation = begin(path(*drifting))
+    for _ in range(10):
+        simulation.step()
+    store = simulation.store
+    grains = store.shown("kind") == OTHER
+    lies = grains & (store.shown("bed") >= 0.5)
+    assert 0 < np.count_nonzero(lies) < np.count_nonzero(grains)
+    assert np.abs(store.shown("velocity")[grains] - [5.0, 0.0]).max() < 1e-9
+
+
 @pytest.mark.parametrize(
     ("pairs", "says"),
     [
