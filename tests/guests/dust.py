@@ -10,20 +10,16 @@ neighbourhood is wall lie still on it, and go with it.  After Monaghan & Kochary
 
 from typing import ClassVar, NamedTuple
 
-import numpy as np
-
 from psph.acts import BODIES, FRAME, SOILS, SOLIDS, SYMMETRY, UPDATED
 from psph.case.keys import Table, Vector, key
 from psph.case.shapes import Shape
 from psph.fields import VECTOR, Drifting, Field, Same
 from psph.formula import where
-from psph.kinds import Created, Kind, Stage, Work
+from psph.kinds import Stage
+from psph.matter.free import FreeKind, FreeParticles
 from psph.parallel.reductions import exact_sums
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import OfItsKind
 from psph.physics.walls.conditions import MIRROR
-from psph.scene.sites import sites_in
-from psph.scene.species import Species
 from psph.vectors import add, scale, zero_like
 
 RATE = Field("drag_rate", "1/s", "1 over the stopping time of a grain, 0 of what is no grain", image=Same)
@@ -104,14 +100,13 @@ class Grains(Table):
     velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
 
 
-class Dust(Kind):
+class Dust(FreeKind):
     """The grains by name, which settle in fluids and drag them."""
 
     name = "dust"
     table = Grains
     columns = ("drag_heat",)
     fields = (RATE, HEAT)
-    moves = True
     refuses: ClassVar = dict.fromkeys((SOILS, UPDATED, SOLIDS, BODIES, MIRROR, SYMMETRY, FRAME), ALONE)
 
     @classmethod
@@ -120,39 +115,16 @@ class Dust(Kind):
         if not case.fluids:
             yield ("dust",), ..., "there is no fluid to drag it; give one"
 
-    def faults(self):
-        """Shapes without a site."""
-        for name, one in self._tables.items():
-            if not len(self._sites(one)):
-                yield f"dust.{name}.shape: no grain lies in it; make it larger than space.spacing"
-
     def warnings(self):
         """A step that is short for the drag alone."""
         sound = self.scene.smoothing_length / self.scene.sound_speed
-        for name, one in self._tables.items():
+        for name, one in self.tables.items():
             if one.stopping_time < 0.1 * sound:
                 yield f"dust.{name}.stopping_time: {one.stopping_time:g} s makes short steps; give more"
 
-    def groups(self):
-        """One for each table."""
-        law, volume = self.scene.species[0].law, self.scene.spacing**self.scene.dimensions
-        return tuple(
-            Species(name, OfItsKind(), one.density, 0.0, one.density * volume, law)
-            for name, one in self._tables.items()
-        )
-
-    def particles(self):
-        """A grain between any sites of the fluid."""
-        tables, zeros = [*self._tables.values()], (0.0,) * self.scene.dimensions
-        places = [self._sites(one) for one in tables]
-        group = np.repeat(np.arange(len(places)), [len(x) for x in places])
-        velocity = np.array([one.velocity or zeros for one in tables])[group]
-        density, rate = np.array([(one.density, 1.0 / one.stopping_time) for one in tables])[group].T
-        return Created(group, np.concatenate(places), velocity, density, {RATE.name: rate})
-
-    def rehearsed(self):
-        """A grain too."""
-        return (len(self.scene.species),)
+    def values_of(self, one):
+        """A grain knows its stopping time."""
+        return {RATE.name: 1.0 / one.stopping_time}
 
     def stages(self):
         """Drag comes when all sums are there, before the second kick."""
@@ -165,54 +137,29 @@ class Dust(Kind):
     def limits(self, plan, speed, acceleration):
         """Half the shortest stopping time, less where grains outweigh the fluid (explicit drag)."""
         fluid = min(one.density for one in self.scene.species if one.is_fluid)
-        for name, one in self._tables.items():
+        for name, one in self.tables.items():
             yield 0.5 * one.stopping_time / (1.0 + one.density / fluid), f"drag of dust.{name}"
 
     def matter_lines(self):
         """What each is."""
-        for name, one in self._tables.items():
+        for name, one in self.tables.items():
             says = (
-                f"{len(self._sites(one)):,} grains, {one.density:g} kg/m3, stopped in {one.stopping_time:g} s"
+                f"{len(self.sites(one)):,} grains, {one.density:g} kg/m3, stopped in {one.stopping_time:g} s"
             )
             yield f"  dust        {name}: {says}"
 
     def work(self, rank):
         """How grains move."""
-        yield Moving(rank, len(self.scene.species), len(self._tables))
-
-    @property
-    def _tables(self):
-        return self.scene.case.dust
-
-    def _sites(self, one):
-        return sites_in(self.scene, one.shape, offset=0.5)
+        yield Moving(self, rank)
 
 
-class Moving(Work):
-    """The grains of a rank: those of so ``many`` groups from the ``first`` on."""
+class Moving(FreeParticles):
+    """The grains of a rank."""
 
     name = "dust"
 
-    def __init__(self, rank, first, many):
-        self.store, self.comm, self.groups = rank.store, rank.domain.comm, range(first, first + many)
-        self.settle()
-
-    def settle(self):
-        """Their columns."""
-        store = self.store
-        self.own = store.low + np.flatnonzero(np.isin(store.group[store.inner], self.groups))
-
-    def advance(self, time, dt, largest_speed):
-        """Kick, drift, predict."""
-        own, names = self.own, ("position", "velocity", "predicted_velocity", "acceleration")
-        for x, v, ahead, a in zip(*(self.store[name] for name in names)):
-            v[own] += 0.5 * dt * a[own]
-            x[own] += dt * v[own]
-            ahead[own] = v[own] + 0.5 * dt * a[own]
-        self._heat(dt)
-
-    def _heat(self, dt):
-        """What drag takes in half a kick, after it: by the mean velocity in it."""
+    def kicked(self, dt):
+        """What drag takes in half a kick: by the mean velocity in it."""
         inner, heat = self.store.inner, self.store[HEAT.name]
         mass = self.store.view().mass[inner]
         for v, a, drag in zip(*(self.store[name] for name in ("velocity", "acceleration", "drag"))):
@@ -228,16 +175,6 @@ class Moving(Work):
             bed = ground[still] / self.store["bed"][still]
             self.store[HEAT.name][still] += 0.5 * self.store.view().mass[still] * (v[still] - bed) ** 2
             a[still], v[still] = 0.0, bed
-
-    def kick(self, dt):
-        """The second kick."""
-        own, v2, a2 = self.own, np.zeros(len(self.own)), np.zeros(len(self.own))
-        for v, a in zip(self.store["velocity"], self.store["acceleration"]):
-            v[own] += 0.5 * dt * a[own]
-            v2, a2 = v2 + v[own] ** 2, a2 + a[own] ** 2
-        self._heat(dt)
-        trouble = 0.0 if np.isfinite(v2 + a2).all() else np.inf
-        return 0.0, a2.max(initial=0.0), trouble, 0.0, v2.max(initial=0.0)
 
     def booked(self):
         """The heat of all, J."""

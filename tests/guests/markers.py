@@ -2,16 +2,11 @@
 
 from typing import NamedTuple
 
-import numpy as np
-
 from psph.case.keys import Table, key
 from psph.case.shapes import Shape
-from psph.fields import OTHER, VECTOR, Drifting, Field
-from psph.kinds import Created, Kind, Work
+from psph.fields import VECTOR, Drifting, Field
+from psph.matter.free import FreeKind, FreeParticles
 from psph.physics.catalogue import Catalogue, Entry
-from psph.physics.motion import OfItsKind
-from psph.scene.sites import sites_in
-from psph.scene.species import Species
 from psph.vectors import add, scale, zero_like
 
 
@@ -38,47 +33,33 @@ class Marker(Table):
     shape: Shape = key("where they are at the start")
 
 
-class Markers(Kind):
+class Markers(FreeKind):
     """The markers by name."""
 
-    name, table, moves = "markers", Marker, True
+    name, table = "markers", Marker
 
-    def groups(self):
-        water = self.scene.species[0]
-        mass = 1e-9 * water.mass
-        return tuple(Species(name, OfItsKind(), water.density, 0.0, mass, water.law) for name in self._tables)
+    def density_of(self, one):
+        return self.scene.species[0].density
 
-    def particles(self):
-        places = [sites_in(self.scene, one.shape, offset=0.5) for one in self._tables.values()]
-        group = np.repeat(np.arange(len(places)), [len(x) for x in places])
-        position = np.concatenate(places)
-        density = np.full(len(group), self.scene.species[0].density)
-        return Created(group, position, np.zeros_like(position), density, {})
-
-    def rehearsed(self):
-        return (len(self.scene.species),)
+    def mass_of(self, one):
+        return 1e-9 * self.scene.species[0].mass
 
     def work(self, rank):
-        yield Going(rank.store)
-
-    @property
-    def _tables(self):
-        return self.scene.case.markers
+        yield Going(self, rank)
 
 
-class Going(Work):
+class Going(FreeParticles):
     """The markers of a rank."""
 
-    def __init__(self, store):
-        self.store = store
-
     def advance(self, time, dt, largest_speed):
-        s = self.store
-        own = s.low + np.flatnonzero(s.shown("kind") == OTHER)
+        s, own = self.store, self.own
         for x, v, ahead, of in zip(s["position"], s["velocity"], s["predicted_velocity"], s["current"]):
             v[own] += of[own]
             x[own] += dt * v[own]
             ahead[own] = v[own]
+
+    def kick(self, dt):
+        """They have no acceleration."""
 
 
 CATALOGUE = Catalogue(effects=(Entry("markers.*", Current),), kinds=(Entry("markers", Markers),))

@@ -158,11 +158,27 @@ def test_what_a_case_cannot_ask_of_it_is_refused(pairs, says, path):
         load(path(*pairs))
 
 
+def test_two_kinds_have_groups_of_their_own(path):
+    """Each moves its own particles: the control is what both would take from the first group on."""
+    dye = "markers.dye.shape.box = { lower = [0.1, 0.1], upper = [0.3, 0.2] }\n[dust.silt]"
+    case = path(('use = ["dust.py"]', 'use = ["dust.py", "markers.py"]'), ("[dust.silt]", dye))
+    shutil.copy(Path(__file__).parent / "markers.py", case.parent)
+    simulation = begin(case)
+    store, grains = simulation.store, simulation.engine.of("dust")
+    assert store.group[grains.own].tolist() == [1] * 400
+    before = store.shown("position").copy()
+    simulation.step()
+    moved = np.abs(store.shown("position") - before).max(axis=1)
+    assert np.count_nonzero(store.shown("group") == 2) == 8
+    assert moved[store.shown("group") == 1].min() > 0.5 * simulation.time > 0.0
+    assert moved[store.shown("group") == 2].max() < 0.1 * simulation.time  # the fluid is at rest at first
+
+
 def test_its_checks_are_those_of_psph(path):
     empty = [
         ("lower = [-0.025, -0.025], upper = [0.975, 0.975]", "lower = [0.51, 0.51], upper = [0.52, 0.52]")
     ]
-    with pytest.raises(CaseError, match="dust.silt.shape: no grain lies in it"):
+    with pytest.raises(CaseError, match="dust.silt.shape: no site lies in it"):
         check(Scene(load(path(*empty))))
     brief = Scene(load(path(("stopping_time = 0.05", "stopping_time = 1e-5"))))
     assert [line for line in check(brief) if "dust.silt.stopping_time: 1e-05 s makes short steps" in line]
