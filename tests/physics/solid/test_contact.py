@@ -20,7 +20,7 @@ class Particle(NamedTuple):
     face: Any
     cover: Any
     face_rate: Any = (0.0, 0.0)
-    slip: Any = (0.0, 0.0)
+    contact_slip: Any = (0.0, 0.0)
 
 
 def normal(degrees, length=1.0):
@@ -119,7 +119,7 @@ def test_the_push_and_what_turns_normals_are_the_derivatives_of_the_energy(one, 
 @pytest.mark.parametrize("kind", [Touching, Rubbing])
 def test_no_moment_is_left_with_that_on_the_normals(kind, one, other, x):
     """x_ij × f + N_i × T_i + N_j × T_j = 0, with damping and friction."""
-    effect, u, slipped = contact(kind, 0.5, 0.3), (-3.0, 5.0), one._replace(slip=(1e-5, 2e-5))
+    effect, u, slipped = contact(kind, 0.5, 0.3), (-3.0, 5.0), one._replace(contact_slip=(1e-5, 2e-5))
     moments = [cross(x, force(effect, slipped, other, x, u))]
     moments += [cross(slipped.face, turning(effect, slipped, other, x, u))]
     moments += [cross(other.face, turning(effect, other, slipped, -x, tuple(-np.array(u))))]
@@ -163,7 +163,7 @@ def test_friction_is_coulombs_and_holds_what_has_slipped_little():
     assert slow @ along == pytest.approx(-share * CALMING * dashpot(effect, RUBBER, STEEL) * 1e-6)
     coming = force(effect, RUBBER, STEEL, x, -5.0 * out)  # no part of u along the normal rubs
     assert coming == pytest.approx(push * out)
-    little, much = (RUBBER._replace(slip=tuple(s * along)) for s in (1e-7, 1.0))
+    little, much = (RUBBER._replace(contact_slip=tuple(s * along)) for s in (1e-7, 1.0))
     held = force(effect, little, STEEL, x) @ along
     assert held == pytest.approx(-share * modulus(effect, RUBBER, STEEL) * 0.5e-7)
     assert force(effect, much, STEEL, x) == pytest.approx(push * (out - 0.3 * along))
