@@ -3,10 +3,10 @@
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from psph.case.matter import Matter
+from psph.case.matter import FreeMatter
 
 
-class Hookean(Matter):
+class Hookean(FreeMatter):
     """Matter with Young's modulus E, Poisson's ratio ν and a density at rest."""
 
     viscosity: ClassVar = 0.0

@@ -19,7 +19,7 @@ def _velocity(value: Any, validate) -> Any:
     return validate(value)
 
 
-class Matter(Table):
+class FreeMatter(Table):
     """Particles that move freely, and how they start."""
 
     shape: Shape = key("where it is at the start")

@@ -16,7 +16,7 @@ from psph.case.errors import dotted
 from psph.case.extensions import versions
 from psph.case.gauges import Gauge
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
-from psph.case.matter import Matter
+from psph.case.matter import FreeMatter
 from psph.case.mesh import Mesh
 from psph.case.motion import Motions, series_in
 from psph.case.physics import own_law, physics_table
@@ -107,7 +107,7 @@ class Time(Table):
 Law, LAW = own_law()
 
 
-class Fluid(Matter):
+class Fluid(FreeMatter):
     """A fluid: where it is at the start, and what it is."""
 
     shape: Shape = key("where the fluid is at the start")

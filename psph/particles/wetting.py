@@ -8,7 +8,7 @@ from psph.engine.jit import compiled, elementwise
 from psph.vectors import at, dot, nearest_image, subtract
 
 
-class Rows(NamedTuple):
+class DryRows(NamedTuple):
     """Of the lists of each particle the whole ``lengths``, and whether it may ``rest`` while it is dry."""
 
     lengths: np.ndarray
@@ -29,7 +29,7 @@ def mark_wet(first, last, walls, low, lists, rows, support, periods, position, g
     where it leaves the support: between the two it stays what it was, so that water that trembles does not
     make a wall at the edge of its reach lose its pressure again and again.  ``lists`` are
     :class:`psph.particles.neighbours.Neighbours` of the particles from column ``low`` on, whose row becomes
-    empty in a dry wall that :class:`Rows` let rest; ``is_fluid`` 1 in a fluid, else 0.  Particles of a
+    empty in a dry wall that :class:`DryRows` let rest; ``is_fluid`` 1 in a fluid, else 0.  Particles of a
     ``group`` that is not ``bearing`` stay dry.
     """
     for w in range(np.uint64(first), np.uint64(last)):

@@ -6,7 +6,7 @@ from psph.engine.threads import in_threads
 from psph.parallel.domain import Domain
 from psph.particles.reach import Reach
 from psph.particles.store import Store
-from psph.particles.wetting import Rows, find_beside_fluid, find_resting, find_undecided, mark_wet
+from psph.particles.wetting import DryRows, find_beside_fluid, find_resting, find_undecided, mark_wet
 from psph.simulation.plan import Plan
 
 
@@ -23,12 +23,15 @@ class Wetting:
     def __init__(self, effect, plan: Plan, store: Store, domain: Domain, reach: Reach):
         self.effect, self.plan, self.store, self.domain, self.reach = effect, plan, store, domain, reach
         self._undecided = self._loaded = np.zeros(0, np.uint64)
-        self._rows = Rows(np.zeros(0, np.uint32), np.zeros(0, bool))
+        self._rows = DryRows(np.zeros(0, np.uint32), np.zeros(0, bool))
 
     def settle(self) -> None:
         """Lists are new, or taken up: the rows of dry walls become empty."""
         s, materials, lists = self.store, self.plan.materials, self.domain.lists
-        undecided, self._rows = np.zeros(s.owned, bool), Rows(lists.lengths.copy(), np.zeros(s.owned, bool))
+        undecided, self._rows = (
+            np.zeros(s.owned, bool),
+            DryRows(lists.lengths.copy(), np.zeros(s.owned, bool)),
+        )
         safe, wet = self.reach.support - self.reach.skin, s[self.effect.marks.name]
         self._each(find_undecided, safe, self.domain.periods, s["listed_position"], *self._kinds, undecided)
         self._undecided = np.uint64(s.low) + np.flatnonzero(undecided).astype(np.uint64)

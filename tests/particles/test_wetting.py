@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from psph.particles.neighbours import Neighbours
-from psph.particles.wetting import Rows, find_beside_fluid, find_resting, find_undecided, mark_wet
+from psph.particles.wetting import DryRows, find_beside_fluid, find_resting, find_undecided, mark_wet
 
 SUPPORT, SKIN, PERIOD = 1.0, 0.2, 10.0
 
@@ -29,7 +29,7 @@ def wet_at(distance, before, other_is_fluid=1.0, rests=True, **more):
     """Whether a wall is wet with a neighbour at a distance, if it was before; if not, its row may be empty."""
     position, group, bears, is_fluid, wet = a_pair(distance, before, other_is_fluid, **more)
     both, lists = np.array([0, 1], np.uint64), lists_of(1, 0)
-    rows = Rows(lists.lengths.copy(), np.array([rests, False]))
+    rows = DryRows(lists.lengths.copy(), np.array([rests, False]))
     mark_wet(0, 2, both, 0, lists, rows, SUPPORT, (PERIOD,), position, group, bears, is_fluid, wet)
     assert wet[1] == other_is_fluid  # fluid counts as wet, a wall beside a wall does not
     assert lists.lengths.tolist() == [wet[0] if rests else 1, 1]

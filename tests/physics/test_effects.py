@@ -17,7 +17,7 @@ from psph.composition.trial import UnknownField, reads
 from psph.physics.catalogue import BUILT_IN
 from psph.physics.damping.diffusion import DensityDiffusion, TankDiffusion
 from psph.physics.damping.matter import SeveralMatters
-from psph.physics.fluid.absorbing import Absorbing, DampingZone
+from psph.physics.fluid.absorbing import AbsorbingZone, DampingZone
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import CorrectionBesideWalls, DifferenceCorrection, GradientCorrection
 from psph.physics.fluid.gravity import CentralForce, Gravity
@@ -257,7 +257,7 @@ def test_a_central_force_pulls_to_its_centre():
 def test_a_damping_zone_takes_speed_within_it_alone(begin, end, axis):
     """a = −β s² v, s from 0 where the zone begins to 1 where it ends."""
     zone = DampingZone(begin, end, axis, 8.0).in_scene(SimpleNamespace(dimensions=2))
-    assert isinstance(zone, Absorbing) and zone.longest_step(None) == pytest.approx(0.5 / 8.0)
+    assert isinstance(zone, AbsorbingZone) and zone.longest_step(None) == pytest.approx(0.5 / 8.0)
     d, v = "xy".index(axis), (0.3, -0.7)
 
     def at(s, velocity=v, shear_modulus=0.0):

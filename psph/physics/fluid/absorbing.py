@@ -53,7 +53,7 @@ class DampingZone(NamedTuple):
         """The form that knows its axis as a vector."""
         slope = 1.0 / (self.end - self.begin)
         growth = tuple(slope if name == self.axis else 0.0 for name in "xyz"[: scene.dimensions])
-        return Absorbing(growth, self.begin * slope, self.strength)
+        return AbsorbingZone(growth, self.begin * slope, self.strength)
 
 
 class OtherDampingZone(DampingZone):
@@ -66,7 +66,7 @@ class OtherDampingZone(DampingZone):
             yield "begins where it ends; give another end"
 
 
-class Absorbing(NamedTuple):
+class AbsorbingZone(NamedTuple):
     """Waves fade in a zone of the fluid, so that its end does not reflect them.
 
     :class:`DampingZone` in a scene: s = g·x − s₀, with the ``growth`` g of s in 1/m and its ``offset`` s₀.
