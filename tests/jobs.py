@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import traceback
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -25,6 +26,28 @@ YIELDING = {"OMPI_MCA_mpi_yield_when_idle": "1"}
 """A rank that waits leaves its core to the others: there are more of them than cores, tests beside them."""
 
 
+APART = {
+    "stdin": subprocess.DEVNULL,
+    "stdout": subprocess.PIPE,
+    "stderr": subprocess.PIPE,
+    "text": True,
+    "start_new_session": True,
+}
+"""Of a job that a signal to the tests does not reach, and whose words the tests read."""
+
+
+def of_all_ranks(main):
+    """``main(Path, int)`` of a script, with its arguments; a rank that fails ends the others, which would wait
+    for ever."""
+    from mpi4py import MPI
+
+    try:
+        main(Path(sys.argv[1]), int(sys.argv[2]))
+    except BaseException:
+        traceback.print_exc()
+        MPI.COMM_WORLD.Abort(1)
+
+
 @contextmanager
 def started(n, args, *, env=None, **popen):
     """The running `subprocess.Popen` of such a job; it is ended when the body fails."""
@@ -32,11 +55,7 @@ def started(n, args, *, env=None, **popen):
     with subprocess.Popen(
         ["mpirun", *flags, "-n", str(n), sys.executable, *map(str, args)],
         env=clean_environment() | YIELDING | (env or {}),
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
+        **APART,
         **popen,
     ) as job:
         try:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 import slurm
-from jobs import clean_environment, mpirun
+from jobs import APART, clean_environment, mpirun
 from long import LONG, tell
 from runs.resuming import BOX, same_files
 
@@ -91,11 +91,7 @@ def turn_of(home, queue, *arguments, turn=0, number=77):
         ["bash", SCRIPT, *map(str, arguments)],
         cwd=home,
         env=clean_environment() | told | spread | again,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
+        **APART,
     ) as job:
         try:
             yield job

@@ -206,6 +206,19 @@ def test_commands_are_accepted(page, command, drop):
         assert words[0] in PROGRAMS
 
 
+def in_the_sources(words, timeout):
+    """A command of Python, run in the folder of psph's sources."""
+    return subprocess.run(
+        [sys.executable, *words],
+        cwd=ROOT,
+        env=clean_environment(),
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+    )
+
+
 @pytest.mark.parametrize(
     "command",
     list(
@@ -221,15 +234,7 @@ def test_cheap_commands_run(command, drop):
     words = [
         str(drop) if word == drop.name else word for word in shlex.split(command.partition(" > ")[0])[1:]
     ]
-    job = subprocess.run(
-        [sys.executable, *words],
-        cwd=ROOT,
-        env=clean_environment(),
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
+    job = in_the_sources(words, 120)
     assert job.returncode == 0 and not job.stderr and job.stdout
 
 
@@ -240,15 +245,7 @@ def test_cheap_commands_run(command, drop):
 def test_stability_commands_say_something(command, tmp_path):
     """Each with its last line, or the files that it tells of."""
     words = shlex.split(command.replace("results", str(tmp_path)))[1:]
-    job = subprocess.run(
-        [sys.executable, *words],
-        cwd=ROOT,
-        env=clean_environment(),
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=150,
-    )
+    job = in_the_sources(words, 150)
     assert job.returncode == 0 and not job.stderr
     last = job.stdout.splitlines()[-1]
     if "--out" in words:

@@ -7,6 +7,19 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline 
 from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 
+def cloud(count, dimensions, seed=0):
+    """The fields of ``count`` particles, all numbers different; ids need 64 bits."""
+    random = np.random.default_rng(seed)
+    return {
+        "id": np.arange(count) + 2**40,
+        "kind": (np.arange(count) % 2).astype(np.uint8),
+        "position": random.random((count, dimensions)),
+        "velocity": random.random((count, dimensions)),
+        "density": random.random(count),
+        "pressure": random.random(count),
+    }
+
+
 def seen_by_vtk(path):
     """(times, points, fields) of each frame, as ParaView's reader has them."""
     reader = vtkXdmfReader()

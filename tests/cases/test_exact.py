@@ -7,26 +7,12 @@ import math
 
 import numpy as np
 import pytest
-from cases.measures import by_id, finished
+from cases.measures import by_id
 
 from psph.case import load
 from psph.scene import Scene
 
 pytestmark = pytest.mark.timeout(300)
-
-
-@pytest.fixture(scope="module")
-def ran(tmp_path_factory):
-    """A function: case and overrides → its finished run, each run once."""
-    done = {}
-
-    def run(case, *overrides):
-        key = (case, *overrides)
-        if key not in done:
-            done[key] = finished(case, tmp_path_factory.mktemp(case), *overrides)
-        return done[key]
-
-    return run
 
 
 def error(run, name, time):

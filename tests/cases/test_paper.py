@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from cases.measures import CASES, by_id, checkerboard, finished, growth_rate, window
+from cases.measures import CASES, by_id, checkerboard, growth_rate, window
 
 from psph.case import load
 from psph.physics.fluid.viscosity import LaplacianFriction
@@ -21,20 +21,6 @@ pytestmark = pytest.mark.timeout(1000)
 
 BOX = 15
 """Particles that move along an edge of case 4.2."""
-
-
-@pytest.fixture(scope="module")
-def ran(tmp_path_factory):
-    """A function: case and overrides → its finished run, each run once."""
-    done = {}
-
-    def run(case, *overrides):
-        key = (case, *overrides)
-        if key not in done:
-            done[key] = finished(case, tmp_path_factory.mktemp(case), *overrides)
-        return done[key]
-
-    return run
 
 
 def centre(run):

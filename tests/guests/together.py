@@ -5,10 +5,9 @@
 
 import hashlib
 import json
-import sys
-import traceback
 from pathlib import Path
 
+from jobs import of_all_ranks
 from mpi4py import MPI
 from parallel.alike import begun, go
 from runs.resuming import keep, state, taken_up
@@ -55,8 +54,4 @@ def main(path: Path, steps: int) -> None:
 
 
 if __name__ == "__main__":
-    try:
-        main(Path(sys.argv[1]), int(sys.argv[2]))
-    except BaseException:
-        traceback.print_exc()
-        WORLD.Abort(1)  # the others would wait for ever
+    of_all_ranks(main)

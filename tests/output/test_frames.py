@@ -9,26 +9,13 @@ import sys
 import h5py
 import numpy as np
 import pytest
-from viewers import padded, seen_by_meshio, seen_by_vtk
+from viewers import cloud, padded, seen_by_meshio, seen_by_vtk
 
 from psph.fields import SAVED, by_name
 from psph.output import rows as hdf5
 from psph.output.errors import OutputError
 from psph.output.frames import FrameFile, funnel_notice
 from psph.output.reader import Run
-
-
-def cloud(count, dimensions, seed=0):
-    """The fields of ``count`` particles, all numbers different; ids need 64 bits."""
-    random = np.random.default_rng(seed)
-    return {
-        "id": np.arange(count) + 2**40,
-        "kind": (np.arange(count) % 2).astype(np.uint8),
-        "position": random.random((count, dimensions)),
-        "velocity": random.random((count, dimensions)),
-        "density": random.random(count),
-        "pressure": random.random(count),
-    }
 
 
 @pytest.mark.parametrize("dimensions", [1, 2, 3])

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from output.test_frames import cloud
+from viewers import cloud
 
 from psph.output.frames import FrameFile
 from psph.output.reader import Run

@@ -6,12 +6,10 @@ each scene: what happened, and {"WAY on N": digest}.
 
 import hashlib
 import json
-import sys
-import traceback
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
+from jobs import of_all_ranks
 from mpi4py import MPI
 from runs.resuming import Counted, keep, state, taken_up
 
@@ -205,8 +203,4 @@ def main(folder, steps):
 
 
 if __name__ == "__main__":
-    try:
-        main(Path(sys.argv[1]), int(sys.argv[2]))
-    except BaseException:
-        traceback.print_exc()
-        WORLD.Abort(1)  # the others would wait for ever
+    of_all_ranks(main)

@@ -9,7 +9,7 @@ from contextlib import contextmanager, nullcontext
 import h5py
 import numpy as np
 import pytest
-from viewers import padded, seen_by_meshio, seen_by_vtk
+from viewers import cloud, padded, seen_by_meshio, seen_by_vtk
 
 from psph.output import rows as hdf5
 from psph.output.errors import OutputError, together
@@ -37,17 +37,6 @@ def way(request, monkeypatch):
     elif not h5py.get_config().mpi:
         pytest.skip("h5py is built without MPI")
     return request.param
-
-
-def cloud(count, dimensions, seed=0):
-    random = np.random.default_rng(seed)
-    return {
-        "id": np.arange(count) + 2**40,
-        "kind": (np.arange(count) % 2).astype(np.uint8),
-        "position": random.random((count, dimensions)),
-        "velocity": random.random((count, dimensions)),
-        "pressure": random.random(count),
-    }
 
 
 def share(arrays, comm, sizes):
