@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from psph.case.parameters import as_numbers
+from psph.physics.fluid.friction import friction_step
 from psph.physics.rigid.bodies import Bodies, RigidBody
 from psph.physics.rigid.lines import SpringLine, longest_step
 from psph.physics.rigid.pose import in_space
@@ -77,7 +78,9 @@ def body_step(scene: Scene) -> float:
     """The longest step that the bodies of a scene stand, s.
 
     That of their lines; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within
-    h of its surface A, whose push in a step would move it too far, or turn it.  Contact is hard, and asks for
+    h of its surface A, whose push in a step would move it too far, or turn it.  A viscous fluid brakes such a
+    body within M/ρAh of the time in which it comes to rest itself: Δt ≤ 2M/ρAh of the limit of its viscosity.
+    Contact is hard, and asks for
     no step of its own; that with elastic solids has one (psph.physics.solid.contact).
     """
     own = scene.census.rigid_bodies
@@ -90,7 +93,18 @@ def body_step(scene: Scene) -> float:
             layer = scene.species[number].density * filled.surface(scene.dimensions) * h
             share = _lightest(bodies, row, filled) / layer
             shortest = min(shortest, 0.5 * share**0.5 * h / c) if share < 1.0 else shortest
+            if share < 0.5 and (thickest := _thickest(scene)):
+                shortest = min(shortest, 2.0 * share * friction_step(scene, thickest))
     return shortest
+
+
+def _thickest(scene: Scene) -> float:
+    """The largest kinematic viscosity that a fluid may have, m²/s."""
+    fluids = (one for one in scene.species if one.is_fluid)
+    return max(
+        scene.rheologies[one.rheology - 1].largest / one.density if one.rheology else one.viscosity
+        for one in fluids
+    )
 
 
 def _lightest(bodies: Bodies, row: int, filled: Volume) -> float:
