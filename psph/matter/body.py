@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from psph.kinds import Kind, Rank, Stage, Work
-from psph.scene.bodies import body_step, in_words
+from psph.scene.bodies import BRAKED, body_step, braked, in_words, lightest_share
 
 
 class RigidBodies(Kind):
@@ -19,14 +19,22 @@ class RigidBodies(Kind):
         """The longest step that they stand, s."""
         return body_step(self.scene)
 
+    @cached_property
+    def share(self) -> float:
+        """The least mass of one over that of the fluid beside it."""
+        return lightest_share(self.scene)
+
     def stages(self) -> Mapping[str, Stage]:
         """Their kick comes before that of the particles, with the new forces."""
         return {"kick": Stage(push_bodies, push_bodies)}
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
-        """The longest step that they stand."""
+        """The longest step that they stand, beside what brakes a light body too."""
         if self.longest_step < np.inf:
             yield self.longest_step, "bodies"
+        for call in plan.called if self.share < BRAKED else ():
+            if getattr(call.effect, "brakes", False):
+                yield braked(self.share, call.effect.longest_step(plan.extremes)), f"{call.title} of bodies"
 
     def work(self, rank: Rank) -> Iterator[Work]:
         """Their motion."""

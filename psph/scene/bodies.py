@@ -84,18 +84,35 @@ def body_step(scene: Scene) -> float:
     no step of its own; that with elastic solids has one (psph.physics.solid.contact).
     """
     own = scene.census.rigid_bodies
-    bodies = Bodies(own, scene.gravity)
-    shortest = longest_step(lines_of(scene, [one.name for one in own]), bodies)
-    h, c = scene.smoothing_length, scene.sound_speed
-    for row, number in enumerate(scene.layout.parts.bodies):
-        if scene.case.flowing and (any(own[row].slides) or any(own[row].turns)):
-            filled = volume_of(scene.layout, number)
-            layer = scene.species[number].density * filled.surface(scene.dimensions) * h
-            share = _lightest(bodies, row, filled) / layer
-            shortest = min(shortest, 0.5 * share**0.5 * h / c) if share < 1.0 else shortest
-            if share < 0.5 and (thickest := _thickest(scene)):
-                shortest = min(shortest, 2.0 * share * friction_step(scene, thickest))
+    shortest = longest_step(lines_of(scene, [one.name for one in own]), Bodies(own, scene.gravity))
+    share = lightest_share(scene)
+    if share < 1.0:
+        shortest = min(shortest, 0.5 * share**0.5 * scene.smoothing_length / scene.sound_speed)
+    if share < BRAKED and (thickest := _thickest(scene)):
+        shortest = min(shortest, braked(share, friction_step(scene, thickest)))
     return shortest
+
+
+BRAKED = 0.5
+"""Part of the fluid within h of its surface below which friction brakes a body faster than the fluid."""
+
+
+def braked(share: float, step: float) -> float:
+    """The longest step, s, of a body with such a ``share`` where fluid alone stands ``step``."""
+    return min(share / BRAKED, 1.0) * step
+
+
+def lightest_share(scene: Scene) -> float:
+    """The least mass of a body that may move over that of the fluid within h of its surface, M/ρAh."""
+    bodies, found = Bodies(scene.census.rigid_bodies, scene.gravity), [math.inf]
+    for row, number in enumerate(scene.layout.parts.bodies):
+        own = bodies.bodies[row]
+        if scene.case.flowing and (any(own.slides) or any(own.turns)):
+            filled = volume_of(scene.layout, number)
+            surface = filled.surface(scene.dimensions)
+            layer = scene.species[number].density * surface * scene.smoothing_length
+            found.append(_lightest(bodies, row, filled) / layer)
+    return min(found)
 
 
 def _thickest(scene: Scene) -> float:

@@ -29,6 +29,7 @@ class AcousticDamper(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
+    brakes = True
 
     alpha: Annotated[float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})] = 0.3
 
@@ -71,6 +72,7 @@ class CorrectedDamper(NamedTuple):
     """
 
     conserves = ("momentum",)
+    brakes = True
 
     alpha: float
 

@@ -259,6 +259,8 @@ class PairDamping(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
+    brakes = True
+    """A light body too, faster than the fluid: see psph.scene.bodies.braked."""
 
     alpha: Annotated[float, Field(ge=0, description="coefficient α", json_schema_extra={"unit": "1"})] = 0.02
 
