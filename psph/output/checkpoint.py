@@ -263,8 +263,8 @@ class Saved:
     def _check_rows(self) -> None:
         first, last = self._share()
         expected = self.header["checksums"]
-        own = self._agreed(lambda: [checksum(self._rows(n, first, last), first) for n in expected])
-        for name, computed in zip(expected, wrapped_sums(self.comm, own)):
+        checksums = self._agreed(lambda: [checksum(self._rows(n, first, last), first) for n in expected])
+        for name, computed in zip(expected, wrapped_sums(self.comm, checksums)):
             if computed != expected[name]:
                 raise CheckpointError(self._damaged(f"the dataset {name} does not match its checksum"))
 

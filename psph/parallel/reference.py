@@ -33,14 +33,14 @@ def reference_rows(
     domain = Domain(comm, store, extent, support, Travels(("position", "number", "body"), ()))
     domain.rebuild()  # by X: who owns a particle here is not who owns it in the simulation
     counts, partners = _near(domain, support * CLOSED)
-    own = store.inner
-    number = store["number"][own].astype(np.int64)
+    inner = store.inner
+    number = store["number"][inner].astype(np.int64)
     # Rows of one length, so that any of them can go to any rank; −1 fills them up.
     longest = comm.allreduce(int(counts.max(initial=0)), op=_largest)
     rows = np.full((len(number), 2 + longest), -1)
     rows[:, 0], rows[:, 1] = number, counts
     rows[:, 2:][np.arange(longest) < counts[:, None]] = partners
-    received, _, _ = sent_rows(comm, rows, store["home"][own].astype(np.int64))
+    received, _, _ = sent_rows(comm, rows, store["home"][inner].astype(np.int64))
     domain.halo.free()
     ids, counts, partners = received[:, 0], received[:, 1], received[:, 2:]
     return ReferenceRows.of(ids, counts, partners[np.arange(longest) < counts[:, None]])

@@ -16,9 +16,9 @@ def part(lists: Neighbours, store, apart: np.ndarray, lanes: int) -> Neighbours:
     padded = -(-lengths.astype(np.uint64) // np.uint64(lanes)) * np.uint64(lanes)
     ends = np.cumsum(padded, dtype=np.uint64)
     total = int(ends[-1]) if len(ends) else 0
-    own = Neighbours(ends - padded, lengths, entries_for(total))
-    move_apart(store.owned, store.low, lists, apart, own, padded)
-    return own
+    parted = Neighbours(ends - padded, lengths, entries_for(total))
+    move_apart(store.owned, store.low, lists, apart, parted, padded)
+    return parted
 
 
 @compiled

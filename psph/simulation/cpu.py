@@ -163,10 +163,10 @@ class Engine:
 
     def potential(self) -> np.ndarray:
         """Potential energy by mass of this rank's particles, J/kg (n,), but for that of uniform pulls."""
-        found = np.zeros(self.store.total)
+        energies = np.zeros(self.store.total)
         if held := self.plan.pulls.held:
-            self.each(self._potential, held, self.store.view(), found)
-        return found[self.store.inner]
+            self.each(self._potential, held, self.store.view(), energies)
+        return energies[self.store.inner]
 
     def stored_energy(self) -> float:
         """Energy that kinds of matter store, as solids do by their deformation, J; collective."""

@@ -84,8 +84,8 @@ class Immersion(Work):
 
     def kick(self, dt: float) -> tuple[float, ...]:
         """Half of the new push of the fluid; returns what psph.simulation.integrator.kick does, of solids."""
-        found = self._each(self._kick, self._columns, 0.0, 0.5 * dt, *self._seen)
-        fastest, strain = (max(of) for of in zip(*found)) if found else (0.0, 0.0)
+        extremes = self._each(self._kick, self._columns, 0.0, 0.5 * dt, *self._seen)
+        fastest, strain = (max(of) for of in zip(*extremes)) if extremes else (0.0, 0.0)
         return 0.0, 0.0, strain, 0.0, fastest
 
     def listed(self) -> None:

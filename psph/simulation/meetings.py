@@ -62,10 +62,10 @@ class Meetings:
 
     def near(self, ahead: float) -> Iterator[ContactPoints]:
         """Points nearer than ``ahead`` m to a face that nothing covers: some for each body and face."""
-        found, around = [*self._pairs(ahead)], defaultdict(list)
-        for row, seen in found:
+        pairs, around = [*self._pairs(ahead)], defaultdict(list)
+        for row, seen in pairs:
             around[row].append(seen)
-        for row, seen in found:
+        for row, seen in pairs:
             for tips, face, sign in self._sides(row, seen):
                 others = [one for one in around[row] if one is not tips and one is not face]
                 points, normal, gap, out = self._before(tips, face, ahead)
@@ -151,15 +151,15 @@ class Meetings:
         face goes on bare as far aside: a floor that is drawn in two parts has no edge where these meet, and a
         wall that stands on a floor keeps its foot.
         """
-        step, found, goes_on = NEARBY * self._spacing, *np.zeros((2, len(feet)), bool)
+        step, touches, goes_on = NEARBY * self._spacing, *np.zeros((2, len(feet)), bool)
         away = [self._faces(one, feet).away for one in others] if len(feet) else []
         others = [one for one, far in zip(others, away) if far.min() < FAR * step]
         if not others:
-            return found, goes_on
-        found = (np.abs(np.min(away, axis=0)) < TOUCH * step) & ~self._bare(others, feet, normal)
-        which = np.flatnonzero(found)
+            return touches, goes_on
+        touches = (np.abs(np.min(away, axis=0)) < TOUCH * step) & ~self._bare(others, feet, normal)
+        which = np.flatnonzero(touches)
         if not len(which):
-            return found, goes_on
+            return touches, goes_on
         feet, normal = feet[which], normal[which]
         along = np.eye(self._d)[:, None] - normal.T[:, :, None] * normal  # (axis, n, dim)
         size = np.sqrt((along**2).sum(axis=2, keepdims=True))
@@ -170,11 +170,11 @@ class Meetings:
         same = np.tile(size[:, :, 0] > SLANT, (2, 1)).ravel() & (np.abs(beside.away) < TOUCH * step)
         same &= (beside.normal * ways).sum(axis=1) > 1.0 - ASKEW
         bare = same & self._bare(others, flat, ways)
-        found[which], goes_on[which] = (
+        touches[which], goes_on[which] = (
             ~bare.reshape(there.shape[:2]).any(axis=0),
             same.reshape(there.shape[:2]).any(axis=0),
         )
-        return found, goes_on
+        return touches, goes_on
 
     def _bare(self, others: Sequence[Seen], feet: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """Whether none of ``others`` is before a face at ``feet``."""

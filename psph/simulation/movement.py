@@ -57,8 +57,8 @@ def carried_fields(movement: Movement, frame) -> tuple[str, ...]:
 def _distinct(species, one_of) -> tuple:
     """The different motions of some species that are ``one_of`` these."""
     # By type too: named tuples of different types are equal where their values are.
-    found = {(type(s.motion), s.motion) for s in species if one_of(s.motion)}
-    return tuple(motion for _, motion in sorted(found, key=str))
+    motions = {(type(s.motion), s.motion) for s in species if one_of(s.motion)}
+    return tuple(motion for _, motion in sorted(motions, key=str))
 
 
 def _row(motion, among: tuple) -> int:

@@ -110,8 +110,8 @@ TRUE_MASS = {"mass": INERTIA.name}
 def pass_of_contacts(called, stored: tuple[str, ...]) -> Pass | None:
     """That of the contacts of elastic solids in a fluid; None where nothing touches."""
     own = [one for one in called if hasattr(one.effect, "push") and set(one.acts).isdisjoint(FLOWING)]
-    found = make_passes(own, stored, lambda name: TRUE_MASS.get(name, array_of(name, stored)))
-    return found[0] if found else None
+    passes = make_passes(own, stored, lambda name: TRUE_MASS.get(name, array_of(name, stored)))
+    return passes[0] if passes else None
 
 
 def _pass(place, effects, reductions, called, before, stored, seen_as, every, also=()) -> Pass:

@@ -103,22 +103,22 @@ class Poses:
 
     def _mapped(self, chosen: np.ndarray) -> np.ndarray:
         """The corners by an affine map each: sums in a fixed order, on any processor."""
-        found = np.repeat(chosen[:, None, :, 0], self._corners.shape[1], axis=1)
+        places = np.repeat(chosen[:, None, :, 0], self._corners.shape[1], axis=1)
         for e in range(self._dimensions):
-            found = found + chosen[:, None, :, 1 + e] * self._corners[:, :, None, e]
-        return found
+            places = places + chosen[:, None, :, 1 + e] * self._corners[:, :, None, e]
+        return places
 
 
 def corners_of(scene, plan) -> np.ndarray:
     """The corners of boxes around the particles of each rigid motion at the start, m (rows, 2^dim, dim)."""
-    found = []
+    corners = []
     for row in range(len(plan.materials.rigid)):
         moved = [
             n for n, s in enumerate(scene.species) if is_rigid(s.motion) and plan.materials.pose_of[n] == row
         ]
         ends = scene.census.lowest[moved].min(axis=0), scene.census.highest[moved].max(axis=0)
-        found.append(list(product(*zip(*ends))))
-    return np.array(found)
+        corners.append(list(product(*zip(*ends))))
+    return np.array(corners)
 
 
 def _longest(vectors: np.ndarray) -> float:

@@ -47,11 +47,11 @@ def called_with(entry: Entry, effect, reason: str, scene, fields: Mapping[str, F
     Raises UnknownField or WrongShape with the file that brought it.
     """
     try:
-        found = reads(effect, scene.dimensions, scene.kernel, fields)
+        seen = reads(effect, scene.dimensions, scene.kernel, fields)
     except (UnknownField, WrongShape) as error:
         raise type(error)(_line(scene, effect, str(error))) from None
     declares = entry.effect if hasattr(entry.effect, "acts") else effect
-    return Called(effect, reason, found, entry.effect.__name__, acts_on(declares))
+    return Called(effect, reason, seen, entry.effect.__name__, acts_on(declares))
 
 
 def refuse_unwritten(scene, called: Iterable[Called], computed: Iterable[str]) -> None:

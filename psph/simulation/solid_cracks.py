@@ -44,11 +44,11 @@ class Cracks:
 
     def strengths(self, ids: np.ndarray, number: np.ndarray) -> np.ndarray:
         """Of the particles ``ids`` (n,) of the solids ``number`` (n,)."""
-        found = np.ones(len(ids))
+        factors = np.ones(len(ids))
         for n, (one, seed) in enumerate(zip(self._solids, self._seeds)):
             if one.flaws:
-                found[number == n] = strengths(ids[number == n], seed, one.flaws)
-        return found
+                factors[number == n] = strengths(ids[number == n], seed, one.flaws)
+        return factors
 
     def cut(self, around, columns: np.ndarray, number: np.ndarray) -> bool:
         """Cut the bonds of the rows ``around`` that are stretched too far; whether there were any here."""

@@ -24,8 +24,8 @@ class SolidOverlap(Work):
         """The particles of this rank that are more than ``depth`` spacings inside another solid, a body or a
         wall; None where there are none on any rank."""
         lists = self._immersion.contact.lists if self._immersion else self._domain.lists
-        found = inside_others(store, self._domain, lists, self._spacing, depth)
-        return found.astype(float) if largest(self._domain.comm, [found.any()])[0] > 0.0 else None
+        crowded = inside_others(store, self._domain, lists, self._spacing, depth)
+        return crowded.astype(float) if largest(self._domain.comm, [crowded.any()])[0] > 0.0 else None
 
     def overlap_words(self, number: int, key: str) -> str:
         """Who is inside."""
@@ -39,10 +39,10 @@ def inside_others(store, domain, lists, spacing: float, depth: float) -> np.ndar
     The weight 1 − r²/R², R = 2.5dx, of the particles of others in its ``lists`` is compared with what is
     within R before a plane ``depth`` behind the particle.
     """
-    low, found = store.low, np.zeros(store.owned)
+    low, crowding = store.low, np.zeros(store.owned)
     seen = lists, store["position"], domain.periods, REACH * spacing
-    in_threads(settled(crowd), low, low + store.owned, low, *seen, found)
-    return found > filled(depth / REACH, store.dimensions) * whole(store.dimensions)
+    in_threads(settled(crowd), low, low + store.owned, low, *seen, crowding)
+    return crowding > filled(depth / REACH, store.dimensions) * whole(store.dimensions)
 
 
 def whole(dimensions: int) -> float:

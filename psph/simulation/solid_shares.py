@@ -29,12 +29,12 @@ def shares_of(weights, seen: SolidRecords, lists, held: np.ndarray, bring: Calla
     around = Rows(table.view, table.records, lists)
 
     def smoothed(given: np.ndarray) -> np.ndarray:
-        found = np.zeros(rows)
+        smoothed = np.zeros(rows)
         table.records[:rows, d] = given
         bring(table, GIVEN)
         if rows:
-            in_threads(smooth, 0, rows, weights, around, found)
-        return found
+            in_threads(smooth, 0, rows, weights, around, smoothed)
+        return smoothed
 
     volume = seen.view.volume
     q = wish(smoothed(np.full(rows, volume)))

@@ -80,18 +80,18 @@ class Contacts:
 
     def deepest(self, bodies: Bodies) -> "Overlap":
         """Where a body is deepest inside another, a wall or a mirror."""
-        found = Overlap(0.0, -1, "")
+        deepest = Overlap(0.0, -1, "")
         for row, other, depth in self._meetings.depths():
-            if depth > found.depth:
-                found = Overlap(depth, row, other.key)
-        return found
+            if depth > deepest.depth:
+                deepest = Overlap(depth, row, other.key)
+        return deepest
 
     def near(self, bodies: Bodies, speed: np.ndarray, spin: np.ndarray, dt: float) -> BodyContacts:
         """The points in which bodies may meet in a step of ``dt`` s, at the velocities and spins given."""
         ways = np.sqrt((speed**2).sum(axis=1)) + self._size * np.sqrt((spin**2).sum(axis=1))
         most = AHEAD * self._spacing + 4.0 * dt * float(ways.max())
-        found = [self._touching_at(bodies, one) for one in self._meetings.near(most)] or [NOTHING]
-        return BodyContacts(*(np.concatenate(of) for of in zip(*found)))
+        contacts = [self._touching_at(bodies, one) for one in self._meetings.near(most)] or [NOTHING]
+        return BodyContacts(*(np.concatenate(of) for of in zip(*contacts)))
 
     def _touching_at(self, bodies: Bodies, met: ContactPoints) -> BodyContacts:
         other, count, d = met.seen.obstacle, len(met.points), met.points.shape[1]

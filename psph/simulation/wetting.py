@@ -54,8 +54,8 @@ class Wetting:
     def dry_beside_fluid(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
         """The columns from ``first`` to ``last`` that are dry, list fluid, and bear a load; and the
         whole lengths of all rows."""
-        found = self._loaded[(self._loaded >= first) & (self._loaded < last)]
-        return found[self.store[self.effect.marks.name][found] == 0.0], self._rows.lengths
+        walls = self._loaded[(self._loaded >= first) & (self._loaded < last)]
+        return walls[self.store[self.effect.marks.name][walls] == 0.0], self._rows.lengths
 
     @property
     def longest(self) -> int:

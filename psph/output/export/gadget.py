@@ -51,11 +51,11 @@ def _fill(file: h5py.File, exported: Exported, k: int) -> None:
     file.create_group("Header").attrs.update(_header(exported, k, frame["position"], counts))
     file.create_group("Units").attrs.update(_SI)
     for number in np.flatnonzero(counts):
-        own = part == number
+        of_kind = part == number
         group = file.create_group(f"PartType{number}")
         for name, rows in frame.items():
-            _add(group, _called(name), in_space(rows, dimensions)[own], exported.units[name])
-        _add(group, "Masses", exported.masses[frame["group"][own]], "kg")
+            _add(group, _called(name), in_space(rows, dimensions)[of_kind], exported.units[name])
+        _add(group, "Masses", exported.masses[frame["group"][of_kind]], "kg")
         _add(group, "SmoothingLength", np.full(counts[number], exported.support), "m")
 
 

@@ -29,10 +29,10 @@ class DisplacementGauge(NamedTuple):
     def row(self, simulation) -> list[float]:
         """The values, the same on every rank."""
         store = simulation.store
-        own = np.flatnonzero(np.isin(store.shown("group"), self.groups))
-        reference = store.shown("reference")[own]
+        columns = np.flatnonzero(np.isin(store.shown("group"), self.groups))
+        reference = store.shown("reference")[columns]
         away = nearest(reference - np.array(self.at), simulation.domain.periods)
-        moved = gone(simulation, own) - reference
+        moved = gone(simulation, columns) - reference
         return fitted(simulation.comm, away, self.reach, moved).tolist()
 
 

@@ -46,8 +46,8 @@ class RunUpGauge(NamedTuple):
         length = math.dist(self.foot, self.top)
         along = (top - foot) / length
         store = simulation.store
-        own = counted(store.kinds, self.of)[store.shown("group")]
-        away = store.shown("position")[own] - 0.5 * (foot + top)
+        counting = counted(store.kinds, self.of)[store.shown("group")]
+        away = store.shown("position")[counting] - 0.5 * (foot + top)
         for axis, period in enumerate(simulation.domain.periods):
             if period is not None:
                 away[:, axis] -= period * np.rint(away[:, axis] / period)

@@ -35,10 +35,10 @@ class StressGauge(NamedTuple):
     def row(self, simulation) -> list[float]:
         """The values, the same on every rank."""
         store = simulation.store
-        own = np.isin(store.shown("group"), self.groups)
-        places = store.shown("reference" if self.keeps else "position")[own]
+        chosen = np.isin(store.shown("group"), self.groups)
+        places = store.shown("reference" if self.keeps else "position")[chosen]
         away = nearest(places - np.array(self.at), simulation.domain.periods)
-        stress = fitted(simulation.comm, away, self.reach, self._of_particles(store, own))
+        stress = fitted(simulation.comm, away, self.reach, self._of_particles(store, chosen))
         if store.dimensions == 2:
             whole = np.diag([stress[0], stress[2], stress[3]])
             whole[0, 1] = whole[1, 0] = stress[1]
@@ -49,13 +49,13 @@ class StressGauge(NamedTuple):
         deviator = whole - mean * np.eye(3)
         return [*stress.tolist(), float(mean), float(np.sqrt(1.5 * (deviator**2).sum()))]
 
-    def _of_particles(self, store, own: np.ndarray) -> np.ndarray:
+    def _of_particles(self, store, chosen: np.ndarray) -> np.ndarray:
         """σ of the particles ``own``, Pa (n, 6), in 2D xx, xy, yy and zz (n, 4)."""
         plane = store.dimensions == 2
         if self.keeps:
-            parts = [store.shown(STRESS.name)[own]]
-            return np.column_stack([*parts, store.shown(STRESS_ZZ.name)[own]] if plane else parts)
-        s, pressure = store.shown(DEVIATOR.name)[own], store.shown("pressure")[own]
+            parts = [store.shown(STRESS.name)[chosen]]
+            return np.column_stack([*parts, store.shown(STRESS_ZZ.name)[chosen]] if plane else parts)
+        s, pressure = store.shown(DEVIATOR.name)[chosen], store.shown("pressure")[chosen]
         if plane:
             s = np.column_stack([s, -(s[:, 0] + s[:, 2])])
         return s - pressure[:, None] * np.array(
