@@ -97,7 +97,7 @@ def test_many_rows_travel_in_pieces(comm, mpi_tmp_path, way):
 
 def test_little_is_written_by_rank_0_alone(comm, mpi_tmp_path, monkeypatch):
     """All ranks at once would wait for each other: a run that is told to end has a second."""
-    monkeypatch.setattr(hdf5, "AT_ONCE", 20 * (8 + 1 + 3 * 8 + 3 * 8 + 8 + 8))
+    monkeypatch.setattr(hdf5, "AT_ONCE", 20 * (8 + 1 + 3 * 8 + 3 * 8 + 8 + 8 + 8))
     monkeypatch.setattr(hdf5, "parallel_hdf5", lambda: True)
     together = []
     monkeypatch.setattr(hdf5, "fill_collectively", lambda *_: together.append(True))
