@@ -5,7 +5,7 @@ record, guards, checkpoint, `explain` and `check` go through the kinds of a scen
 psph have a room each in psph/matter; files that a case uses bring others (docs/recipes/kind.md).
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from importlib import import_module
 from typing import Any, ClassVar, NamedTuple
 
@@ -13,6 +13,7 @@ import numpy as np
 
 CATALOGUE = (
     "psph.matter.soil:Soils",
+    "psph.matter.solid:UpdatedSolids",
     "psph.matter.solid:ElasticSolids",
     "psph.matter.fluid:Fluids",
     "psph.matter.body:RigidBodies",
@@ -21,6 +22,11 @@ CATALOGUE = (
 )
 """Module and class of each kind that psph has, in the order in which they are asked.  They are named here and
 imported when a scene is there, since they stand above all that asks them."""
+
+
+TOPICS = ("matter", "reach", "messages", "passes", "steps", "friction")
+"""Of lines for `explain`: what it is; how far its particles see others; what it sends in each step beside the
+halo; passes over neighbours of its own; what it does within a step; its friction."""
 
 
 class Stage(NamedTuple):
@@ -134,6 +140,15 @@ class Work:
         """The values of the columns that its kind adds to log.csv; the same bits on any number of ranks."""
         return ()
 
+    def pushing(self, groups: Sequence[int], about: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        """Force, N (3,), and moment, N m (3,) about the point ``about`` (dim,) m, of its own contacts on what
+        has these ``groups``; None where it has none."""
+        return None
+
+    def pairs(self) -> int:
+        """Pairs of particles in passes of its own, on this rank."""
+        return 0
+
     def bytes_held(self) -> int:
         """Bytes of its lists and tables on this rank."""
         return 0
@@ -175,6 +190,11 @@ class Kind:
         return bool(getattr(case, cls.name, None))
 
     @classmethod
+    def drains(cls, case: Any) -> bool:
+        """Whether particles may vanish by it, so that what flows can come to have a free surface."""
+        return False
+
+    @classmethod
     def contradictions(cls, case: Any) -> Iterator[tuple]:
         """What contradicts itself in its tables of a case (psph.case.findings.Finding)."""
         yield from ()
@@ -198,6 +218,13 @@ class Kind:
     def particles(self) -> Created | None:
         """The particles of these groups."""
         return None
+
+    def starts(
+        self, fields: Container[str], species: np.ndarray, position: np.ndarray
+    ) -> Iterator[tuple[str, np.ndarray]]:
+        """With what particles begin that the scene's lattice has: those of these ``fields``, by name, that it
+        knows to be other than zero, (n, components) for ``species`` (n,) at ``position`` (n, dim)."""
+        yield from ()
 
     @property
     def fields(self) -> tuple:
@@ -233,28 +260,13 @@ class Kind:
         """What it does on a rank within a step."""
         yield from ()
 
-    def matter_lines(self) -> Iterator[str]:
-        """For `explain`: what it is."""
+    def lines(self, plan: Any, dt: float) -> Iterator[tuple[str, str]]:
+        """For `explain`: lines, each with its topic (``TOPICS``); ``dt`` is the longest step in s."""
         yield from ()
 
-    def reach_lines(self, plan: Any) -> Iterator[str]:
-        """For `explain`: how far its particles see others."""
-        yield from ()
-
-    def message_lines(self, plan: Any) -> Iterator[str]:
-        """For `explain`: what it sends in each step beside the halo."""
-        yield from ()
-
-    def pass_lines(self, plan: Any) -> Iterator[str]:
-        """For `explain`: passes over neighbours of its own."""
-        yield from ()
-
-    def step_lines(self, plan: Any, dt: float) -> Iterator[str]:
-        """For `explain`: what it does within a step of ``dt`` s."""
-        yield from ()
-
-    def friction_lines(self, plan: Any) -> Iterator[str]:
-        """For `explain`: its friction, and what numerical friction acts as beside it."""
+    def advice(self, guard: str, suspect: Any) -> Iterator[str]:
+        """What to try after a ``guard`` stopped a run, the most promising first; ``suspect`` is the particle
+        at fault (psph.runs.worst_particle)."""
         yield from ()
 
     def cure(self, limit: str) -> str:

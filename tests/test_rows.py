@@ -7,8 +7,8 @@ from theory.solutions.test_solutions import FLOWS, places
 from psph.case.model import Fluid
 from psph.physics.fluid.state import Linear, Tait
 from psph.rows import projected
+from psph.scene.fluid.still import Still
 from psph.scene.species import Start
-from psph.scene.still import Still
 
 N = 103
 

@@ -1,16 +1,17 @@
 """Rigid bodies of a case: what they are, what holds them, and the rules between their keys."""
 
 from collections.abc import Iterator
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Strict
 
-from psph.acts import FRAME, ONE
+from psph.acts import BODIES, FRAME, ONE
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.keys import AXES, Name, Table, Vector, key
 from psph.case.motion import Motions, way_and_turn
+from psph.case.placed import Placed
 from psph.case.shapes import Shape
 from psph.physics.walls.conditions import BEARING, DYNAMIC
 
@@ -43,7 +44,7 @@ class Line(Table):
     pulls_only: bool = key("it is slack when shorter than its length: a mooring line without weight", False)
 
 
-class Body(Table):
+class Body(Placed):
     """A rigid body that the fluid, its weight and lines move."""
 
     shape: Shape = key("where the body is at the start; it takes the place of fluids there")
@@ -93,10 +94,29 @@ class Body(Table):
         otherwise="the first fluid",
     )
 
+    word: ClassVar = BODIES
+    called: ClassVar = "body"
+    rigid: ClassVar = True
+    keeps_form: ClassVar = True
+    always_loaded: ClassVar = True
+    not_absorbing: ClassVar = "a body"
+    alone: ClassVar = (
+        "rigid bodies need a fluid or an elastic solid; add a table [fluids.NAME], small and out of their "
+        "way if they are dry"
+    )
     refuses: ClassVar = {
         ONE: "bodies need two or three dimensions",
         FRAME: "bodies know of no frame that moves; remove one of the two, or move the tank",
     }
+
+    def motions(self) -> dict[tuple, Any]:
+        """In what it is not free to do."""
+        return {(): self.motion}
+
+    @classmethod
+    def contradictions(cls, case) -> Iterator[Finding]:
+        """Bodies that cannot be."""
+        yield from held_together(case)
 
     def freed(self, dimensions: int) -> tuple[str, ...]:
         """What it is free to do."""

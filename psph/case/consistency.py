@@ -6,21 +6,16 @@ from typing import Any
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from psph.acts import refusals
-from psph.case.bodies import held_together
-from psph.case.corners import cornered, of_kinds
+from psph.case.corners import cornered, of_kinds, of_tables
 from psph.case.errors import advise, with_points
-from psph.case.findings import Finding, Location, asked_of, not_of
+from psph.case.findings import Finding, Location, asked_of, frictions_of, not_of
 from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
-from psph.case.parameters import last_part
+from psph.case.placed import Placed
 from psph.case.schemes import STABLE
-from psph.case.soils import earthen
-from psph.case.solids import elastic
-from psph.case.study import EXACT
-from psph.physics.roles import FRICTION, ROLES
+from psph.physics.roles import ROLES
 from psph.physics.walls.slip import NoSlip
-from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 
 def contradictions(case) -> list[InitErrorDetails]:
@@ -31,27 +26,21 @@ def contradictions(case) -> list[InitErrorDetails]:
         _axes,
         _domain,
         _mirrored,
-        _hydrostatic,
         _exact,
         _effects,
         cornered,
         _continued,
         moved,
-        _regions,
         _friction,
-        _rheologies,
         probed,
         gauged,
-        _names,
-        held_together,
-        elastic,
-        earthen,
+        of_tables,
         of_kinds,
         _single,
         _stepped,
         due,
     )
-    if not case.flowing and not case.solids:
+    if not case.movers:
         return [_without_matter(case)]
     wrong = list(_dimensions(case))
     more = (finding for rule in rules for finding in rule(case))
@@ -64,21 +53,16 @@ def contradictions(case) -> list[InitErrorDetails]:
 
 
 def _without_matter(case) -> InitErrorDetails:
-    """A case must have fluids, or solids; rigid bodies alone are told that they need a fluid."""
-    if case.bodies:
-        says = (
-            "rigid bodies need a fluid or an elastic solid; add a table [fluids.NAME], small and out of "
-            "their way if they are dry"
-        )
-        return {
-            "type": PydanticCustomError("psph", "{says}", {"says": says}),
-            "loc": ("bodies",),
-            "input": {},
-        }
-    if "fluids" not in case.model_fields_set:
-        return {"type": "missing", "loc": ("fluids",), "input": {}}
+    """A case must have something that moves freely; what cannot be alone says so."""
+    for table, _, of in case.entries:
+        if of.alone:
+            says = PydanticCustomError("psph", "{says}", {"says": of.alone})
+            return {"type": says, "loc": (table,), "input": {}}
+    first = next(iter(case.tables_of(Placed)))
+    if first not in case.model_fields_set:
+        return {"type": "missing", "loc": (first,), "input": {}}
     lengths = {"field_type": "Dictionary", "min_length": 1, "actual_length": 0}
-    return {"type": "too_short", "loc": ("fluids",), "input": {}, "ctx": lengths}
+    return {"type": "too_short", "loc": (first,), "input": {}, "ctx": lengths}
 
 
 def _named(case) -> Iterator[Finding]:
@@ -157,11 +141,11 @@ def _is_vector(value: Any) -> bool:
 
 def _square(case) -> Iterator[Finding]:
     dimensions = case.space.dimensions
-    for name, fluid in case.flowing.items():
-        rows = fluid.velocity_gradient
+    for entry in case.movers:
+        rows = entry.of.velocity_gradient
         if rows and len(rows) != dimensions:
             yield (
-                ("soils" if name in case.soils else "fluids", name, "velocity_gradient"),
+                (*entry.loc, "velocity_gradient"),
                 rows,
                 (
                     f"{len(rows)} row{'s' * (len(rows) > 1)} in a case with space.dimensions = "
@@ -225,19 +209,6 @@ def _mirrored(case) -> Iterator[Finding]:
             yield loc, side, 'gravity pulls through it; a wall with condition = "mirror" bears weight'
 
 
-def _hydrostatic(case) -> Iterator[Finding]:
-    gravity = case.physics.gravity
-    pulls = zip(AXES, gravity.acceleration) if gravity is not None else ()
-    if any(g for axis, g in pulls if axis not in case.space.periodic):
-        return
-    says = "there is no gravity; give physics.gravity, or a pressure in Pa"
-    if gravity is not None and any(gravity.acceleration):
-        says = "gravity pulls along periodic axes alone, where nothing has a height; give a pressure in Pa"
-    for name, fluid in case.fluids.items():
-        if fluid.pressure == "hydrostatic":
-            yield ("fluids", name, "pressure"), fluid.pressure, says
-
-
 def _exact(case) -> Iterator[Finding]:
     given = [name for name, value in case.exact if value is not None]
     for extra in given[1:]:
@@ -246,106 +217,31 @@ def _exact(case) -> Iterator[Finding]:
             ...,
             f"a case has one exact solution at most, and also has {given[0]}; remove one",
         )
-    fields = known(SOLUTIONS[given[0]]) if given else ()
-    for name, fluid in case.fluids.items():
-        for field in ("velocity", "pressure"):
-            if getattr(fluid, field) == EXACT and field not in fields:
-                yield (
-                    ("fluids", name, field),
-                    EXACT,
-                    (
-                        f"the exact solution {given[0]} has no {field}; give numbers"
-                        if given
-                        else "the case has no exact solution; give [exact], or numbers"
-                    ),
-                )
 
 
 def _continued(case) -> Iterator[Finding]:
-    for name, wall in case.boundaries.items():
-        if wall.continues is not None and wall.continues not in case.flowing:
-            yield (
-                (case.table_of(name), name, "continues"),
-                wall.continues,
-                (f"no fluid has this name; {advise(wall.continues, case.flowing)}"),
-            )
-
-
-def _regions(case) -> Iterator[Finding]:
-    """Regions that are none, or that let a fluid in that is none."""
-    names = [last_part(entry) for entry in case.catalogue.regions]
-    for name, region in getattr(case, "regions", {}).items():
-        if all(getattr(region, one) is None for one in names):
-            yield ("regions", name), ..., f"does not say what happens there; give one of: {', '.join(names)}"
-        if region.into is not None and region.into not in case.fluids:
-            yield (
-                ("regions", name, "into"),
-                region.into,
-                (f"no fluid has this name; {advise(region.into, case.fluids)}"),
-            )
+    known = [entry.name for entry in case.movers if entry.of.flows]
+    for entry in (one for one in case.entries if one.of.rigid):
+        if (continued := entry.of.continues) is not None and continued not in known:
+            says = f"no fluid has this name; {advise(continued, known)}"
+            yield (*entry.loc, "continues"), continued, says
 
 
 def _friction(case) -> Iterator[Finding]:
-    rubs = any(fluid.rubs for fluid in case.flowing.values())
-    named = _frictions(case)
-    for name, wall in case.boundaries.items():
+    rubs = any(entry.of.rubs for entry in case.movers)
+    named = frictions_of(case)
+    for entry in (one for one in case.entries if one.of.rigid):
+        wall, loc = entry.of, (*entry.loc, "no_slip")
         if wall.no_slip and not rubs:
             yield (
-                (case.table_of(name), name, "no_slip"),
+                loc,
                 True,
                 ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove no_slip"),
             )
         elif wall.no_slip and (says := refusals(NoSlip).get(wall.condition)):
-            yield (case.table_of(name), name, "no_slip"), True, says
+            yield loc, True, says
         elif wall.no_slip and named:
-            yield (
-                (case.table_of(name), name, "no_slip"),
-                True,
-                (f"does not work with physics.{named[0]}; remove one of the two"),
-            )
-
-
-def _frictions(case) -> list[str]:
-    """The keys of ``physics`` that ask for a friction of fluids."""
-    return [name for name, _, effect in asked_of(case) if FRICTION in getattr(effect, "roles", ())]
-
-
-def _rheologies(case) -> Iterator[Finding]:
-    fluids = case.fluids
-    for name in () if any(fluid.rubs for fluid in fluids.values()) else _frictions(case):
-        yield (
-            ("physics", name),
-            ...,
-            "no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove this key",
-        )
-    for name, fluid in fluids.items():
-        if fluid.rheology is None:
-            continue
-        if case.physics.laplacian_friction is not None:
-            yield (
-                ("physics", "laplacian_friction"),
-                ...,
-                f"is for constant viscosities; remove it, or fluids.{name}.rheology",
-            )
-        if fluid.viscosity:
-            yield (
-                ("fluids", name, "viscosity"),
-                fluid.viscosity,
-                "the fluid also has a rheology, which gives its viscosity; remove one of the two",
-            )
-        grains = fluid.rheology.granular
-        if grains is not None and grains.grain_density < fluid.density:
-            yield (
-                ("fluids", name, "rheology", "granular", "grain_density"),
-                grains.grain_density,
-                f"grains with room between them weigh {fluid.density:g} kg/m³ (fluids.{name}.density), and a "
-                "grain itself less; give a larger grain_density",
-            )
-
-
-def _names(case) -> Iterator[Finding]:
-    for name in case.walls.keys() & case.fluids.keys():
-        yield ("walls", name), ..., "a fluid has this name too; give the wall another"
+            yield loc, True, f"does not work with physics.{named[0]}; remove one of the two"
 
 
 LARGEST_SINGLE = 1e36

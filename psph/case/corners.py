@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 from psph.acts import (
     BODIES,
     DIMENSIONS,
-    FLUIDS,
     FRAME,
     MATTER,
     MIXED,
@@ -22,6 +21,7 @@ from psph.acts import (
 )
 from psph.case.bodies import Body
 from psph.case.findings import Finding, Location, asked_of
+from psph.case.placed import Answering
 from psph.case.soils import Soil
 from psph.case.solids import Solid
 from psph.case.updated import Updated
@@ -107,11 +107,6 @@ def present(case) -> dict[str, list[tuple[Location, Any]]]:
     """The corners that a case has, each with the keys that say so and their values; none of its dimension,
     which no key can take out."""
     found: dict[str, list[tuple[Location, Any]]] = {
-        FLUIDS: [(("fluids",), ...)] if case.fluids else [],
-        SOILS: [(("soils",), ...)] if case.soils else [],
-        UPDATED: [(("solids", name, "description"), one.description) for name, one in case.updated.items()],
-        SOLIDS: [(("solids",), ...)] if case.referred else [],
-        BODIES: [(("bodies",), ...)] if case.bodies else [],
         FRAME: [(("frame", "motion"), ...)] if case.frame.motion else [],
         SEAM: [(("space", "periodic"), case.space.periodic)] if case.space.periodic else [],
         SYMMETRY: [(("space", "symmetry"), ...)] if case.space.symmetry else [],
@@ -119,8 +114,10 @@ def present(case) -> dict[str, list[tuple[Location, Any]]]:
     }
     for entry in case.catalogue.kinds:
         found[entry.effect.name] = [((entry.effect.name,), ...)] if entry.effect.is_in(case) else []
-    for name, wall in case.walls.items():
-        found.setdefault(wall.condition, []).append((("walls", name, "condition"), wall.condition))
+    for table, name, one in case.entries:
+        keys = found.setdefault(one.word, [])
+        if (said := one.said(table, name)) not in keys:
+            keys.append(said)
     return {corner: keys for corner, keys in found.items() if keys}
 
 
@@ -182,6 +179,12 @@ def _of_other_matter(case, name: str, effect, here) -> Iterator[Finding]:
         value = getattr(table, key)
         if kind not in here and value != effect._field_defaults[key]:
             yield ("physics", name, key), value, f"is of {kind}, and the case has none: {cure}"
+
+
+def of_tables(case) -> Iterator[Finding]:
+    """What contradicts itself in tables that answer for themselves."""
+    for of in case.tables_of(Answering).values():
+        yield from of.contradictions(case)
 
 
 def of_kinds(case) -> Iterator[Finding]:

@@ -10,6 +10,7 @@ from psph.case.model import MANY, Case, Fluid, Space, Wall
 from psph.case.motion import motions_type
 from psph.case.parameters import last_part, summary, table_of
 from psph.case.physics import own_law, physics_table
+from psph.case.regions import OfRegions
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
@@ -50,7 +51,7 @@ def case_model(catalogue: Catalogue) -> type[Case]:
     if catalogue.regions:
         region = create_model(
             "Region",
-            __base__=table_of("Region", "A region.", catalogue.regions),
+            __base__=(OfRegions, table_of("Region", "A region.", catalogue.regions)),
             __doc__="Where particles appear or vanish.",
             into=(Name | None, key("the fluid that comes", None, otherwise="the first fluid")),
         )

@@ -5,6 +5,7 @@ from typing import Any
 
 from psph.acts import one_sided
 from psph.case.errors import dotted
+from psph.physics.roles import FRICTION
 
 Location = tuple[str | int, ...]
 Finding = tuple[Location, Any, str]
@@ -27,6 +28,11 @@ def asked_of(case) -> Iterator[tuple[str, Any, Any]]:
         value = getattr(case.physics, name, None) if table == "physics" else None
         if value is not None and (value == choice or not choice):
             yield name, value if choice else ..., entry.effect
+
+
+def frictions_of(case) -> list[str]:
+    """The keys of ``physics`` that ask for a friction of fluids."""
+    return [name for name, _, effect in asked_of(case) if FRICTION in getattr(effect, "roles", ())]
 
 
 def keys_one_sided(case) -> list[str]:

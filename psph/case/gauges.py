@@ -1,12 +1,17 @@
 """Gauges of a case: numbers that a run measures over time, each in a file of its own."""
 
+from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Strict, model_validator
 from pydantic_core import PydanticCustomError
 
-from psph.acts import BODIES, MATTER, SOILS, SOLIDS, UPDATED
-from psph.case.keys import Axis, Name, Table, Text, Vector, key
+from psph.acts import BODIES, MATTER, SOILS, SOLIDS, UPDATED, refusals
+from psph.case.errors import advise
+from psph.case.findings import Finding, keys_one_sided
+from psph.case.keys import Axis, Name, Table, Vector, key
+from psph.case.placed import Placed
+from psph.case.solids import Reaction
 from psph.physics.walls.conditions import BEARING, CONDITIONS
 
 MOVES_WITH = key(
@@ -41,6 +46,31 @@ class Force(Table):
         otherwise="the point stays where it is in space",
     )
 
+    def contradictions(self, case) -> Iterator[Finding]:
+        """Where no force is known: by effects that are not pushed back, and of what is not pushed."""
+        for one_sided in keys_one_sided(case):
+            says = f"{one_sided} does not push back what pushes, so that no force on a wall is known"
+            yield (), ..., f"{says}; take another"
+        entries = sorted(case.entries, key=lambda entry: not entry.of.rigid)
+        pushed = {entry.name: entry.of for entry in entries if entry.of.pushed(case)}
+        for place, name in enumerate(self.on):
+            if name not in pushed:
+                says = f"no {_or_listed(_pushed_words(case))} has this name; {advise(name, pushed)}"
+                yield ("on", place), name, says
+            elif says := refusals(self).get(pushed[name].word):
+                yield ("on", place), name, says
+
+
+def _pushed_words(case) -> list[str]:
+    """What a case can have a force on, in words: what is rigid, and what else it has that may be pushed."""
+    here = [type(entry.of).called for entry in case.entries if entry.of.called]
+    return list(dict.fromkeys([of.called for of in case.tables_of(Placed).values() if of.rigid] + here))
+
+
+def _or_listed(words: list[str]) -> str:
+    """``a, b or c``."""
+    return f"{', '.join(words[:-1])} or {words[-1]}"
+
 
 def has_a_length(line):
     """Refuse a line that ends where it begins."""
@@ -49,7 +79,13 @@ def has_a_length(line):
     return line
 
 
-class Level(Table):
+class OfFlow(Table):
+    """What is measured of what flows."""
+
+    measures: ClassVar = "fluid or soil"
+
+
+class Level(OfFlow):
     """Water level along a straight line, as a wave gauge measures it."""
 
     foot: Vector = key("the lower end of the line, from which the level is counted", unit="m")
@@ -60,7 +96,7 @@ class Level(Table):
     _has_a_length = model_validator(mode="after")(has_a_length)
 
 
-class RunUp(Table):
+class RunUp(OfFlow):
     """How far the tongue of the fluid reaches up a slope: along the slope, and in height."""
 
     foot: Vector = key("the lower end of a line on the slope, from which the run-up is counted", unit="m")
@@ -71,7 +107,7 @@ class RunUp(Table):
     _has_a_length = model_validator(mode="after")(has_a_length)
 
 
-class Highest(Table):
+class Highest(OfFlow):
     """The largest coordinate of the fluid along an axis: its front, or its highest drop."""
 
     axis: Axis = key("the axis")
@@ -97,7 +133,7 @@ class Sensor(Table):
     moves_with: Name | None = MOVES_WITH
 
 
-class Flow(Table):
+class Flow(OfFlow):
     """Flow of the fluid through a section across an axis, positive along it."""
 
     lower: Vector = key("lowest corner of the section; along one axis equal to 'upper'", unit="m")
@@ -120,6 +156,7 @@ class MotionOf(Table):
     """Place, turn, speed of a rigid body, and what acts on it."""
 
     acts: ClassVar = (BODIES,)
+    measures: ClassVar = "body"
 
     of: Name = key("the name of the body")
 
@@ -128,6 +165,7 @@ class Displacement(Table):
     """How far a point of a solid has moved, by the straight line fitted to the particles around it."""
 
     acts: ClassVar = (UPDATED, SOLIDS)
+    measures: ClassVar = "solid"
 
     of: Name = key("the name of the solid")
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")
@@ -137,6 +175,7 @@ class StressAt(Table):
     """Stress at a point of a solid or a soil, by the straight function fitted to the particles around it."""
 
     acts: ClassVar = (SOILS, UPDATED, SOLIDS)
+    measures: ClassVar = "solid or soil"
 
     of: Name = key("the name of the solid or the soil")
     at: Vector = key(
@@ -144,23 +183,6 @@ class StressAt(Table):
         "Lagrangian solid it stays in space",
         unit="m",
     )
-
-
-class Reaction(Table):
-    """Force and moment that the supports of solids bear: clamps and anvils."""
-
-    acts: ClassVar = (SOLIDS,)
-    refuses: ClassVar = {
-        UPDATED: "of the clamps of an updated Lagrangian solid no force is summed; give it "
-        'description = "total"'
-    }
-
-    of: Annotated[tuple[Text, ...], Strict(False)] = key(
-        "the keys of clamps and anvils, taken together, such as solids.beam.clamped, "
-        "solids.beam.clamps.root or anvils.floor",
-        min_length=1,
-    )
-    about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
 
 
 ANOTHER_KIND = "one kind of gauge is required"

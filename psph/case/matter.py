@@ -6,7 +6,8 @@ import numpy as np
 from pydantic import WrapValidator
 from pydantic_core import PydanticCustomError
 
-from psph.case.keys import Table, Vector, key
+from psph.case.keys import Vector, key
+from psph.case.placed import Placed
 from psph.case.shapes import Shape
 from psph.case.study import EXACT
 from psph.rows import projected
@@ -19,7 +20,7 @@ def _velocity(value: Any, validate) -> Any:
     return validate(value)
 
 
-class FreeMatter(Table):
+class FreeMatter(Placed):
     """Particles that move freely, and how they start."""
 
     shape: Shape = key("where it is at the start")

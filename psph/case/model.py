@@ -4,32 +4,31 @@ import re
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, TypeVar, get_args
 
 import tomli_w
-from pydantic import PrivateAttr, Strict, ValidationError, WrapValidator, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import PrivateAttr, Strict, ValidationError, model_validator
 
 from psph.case.bodies import Body
 from psph.case.consistency import contradictions, walk
 from psph.case.errors import dotted
 from psph.case.extensions import versions
+from psph.case.fluids import Fluid
 from psph.case.gauges import Gauge
 from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
-from psph.case.matter import FreeMatter
 from psph.case.mesh import Mesh
 from psph.case.motion import Motions, series_in
-from psph.case.physics import own_law, physics_table
+from psph.case.physics import physics_table
+from psph.case.placed import Answering, Named, Placed
 from psph.case.profiles import OFF, PROFILES, choices
-from psph.case.rheology import Rheology
 from psph.case.running import Checkpoint, GuardKeys, NeighbourLists, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import SCHEMES, STABLE, scheme_keys
-from psph.case.shapes import Shape
 from psph.case.soils import Soil
 from psph.case.solids import Anvil, Solid
-from psph.case.study import EXACT, Experiment, Study, exact_table
+from psph.case.study import Experiment, Study, exact_table
+from psph.case.walls import Wall
 from psph.physics.catalogue import BUILT_IN, Catalogue
-from psph.physics.walls.conditions import BEARING, CONDITIONS, DYNAMIC, MIRROR
+from psph.physics.walls.conditions import BEARING
 from psph.smoothing import KERNELS
 
 if TYPE_CHECKING:  # made from the catalogues of effects and solutions
@@ -38,18 +37,10 @@ if TYPE_CHECKING:  # made from the catalogues of effects and solutions
 else:
     Physics, Exact = physics_table(), exact_table()
 
+T = TypeVar("T", bound=Answering)
+
 LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
 """How tomli_w writes a list of numbers or words, one a line."""
-
-
-def _pressure(value: Any, validate) -> Any:
-    """One message for anything that is not a pressure."""
-    try:
-        return validate(value)
-    except ValidationError as error:
-        raise PydanticCustomError(
-            "psph", 'not a pressure; give a number in Pa, "hydrostatic" or "exact"'
-        ) from error
 
 
 class Space(Table):
@@ -102,76 +93,6 @@ class Time(Table):
         "corrected gradients and other slow sums are renewed every so many steps", 1, ge=1
     )
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
-
-
-Law, LAW = own_law()
-
-
-class Fluid(FreeMatter):
-    """A fluid: where it is at the start, and what it is."""
-
-    shape: Shape = key("where the fluid is at the start")
-    density: float = key("density at zero pressure", 1000.0, unit="kg/m3", gt=0)
-    viscosity: float = key("kinematic viscosity; 0: inviscid", 0.0, unit="m2/s", ge=0)
-    rheology: Rheology | None = key(
-        "a viscosity that depends on the rate of strain, as that of mud or grains",
-        None,
-        otherwise="the constant `viscosity`",
-    )
-    equation_of_state: Law = LAW
-    pressure: Annotated[Literal["hydrostatic", EXACT] | float, WrapValidator(_pressure)] = key(
-        'pressure at the start: a number, "hydrostatic" (needs gravity) or "exact" (needs [exact])',
-        0.0,
-        unit="Pa",
-    )
-
-    @property
-    def rubs(self) -> bool:
-        """Whether it has a friction of its own."""
-        return bool(self.viscosity) or self.rheology is not None
-
-
-class Wall(Table):
-    """A wall: particles that stay where they are, or move as they are told."""
-
-    shape: Shape = key("where the wall is")
-    velocity: Vector | None = key(
-        "velocity at which its surface drags viscous fluid along, as a belt does: the wall itself stays",
-        None,
-        unit="m/s",
-        otherwise="zeros",
-    )
-    motion: Motions | None = key(
-        "how the wall moves: one part, or a list of parts that act one after the other",
-        None,
-        otherwise="it stays where it is",
-    )
-    no_slip: bool = key(
-        "the fluid has the wall's velocity at the face of the wall; needs a viscosity",
-        False,
-    )
-    condition: Literal[CONDITIONS] = key(
-        "dynamic: the density of the wall's particles evolves as that of the fluid; extrapolated: their "
-        "pressure is that of the nearby fluid, continued hydrostatically; repulsive: they repel the fluid; "
-        "penalty: they push back what is nearer than half a spacing (these two bear no pressure); mirror: "
-        "there are no particles, and the fluid is mirrored at a plane: the shape is a box along a whole side "
-        "of the fluids, or a box around them minus a box",
-        DYNAMIC,
-    )
-    continues: Name | None = key(
-        "the fluid, or soil, whose density and initial pressure the wall has",
-        None,
-        otherwise="the first fluid, or soil",
-    )
-    displaces: bool = key("it replaces fluid and soil where they overlap at the start, as a body does", False)
-
-    @model_validator(mode="after")
-    def _has_particles_to_displace(self) -> Self:
-        if self.displaces and self.condition == MIRROR:
-            raise PydanticCustomError(
-                "psph", "displaces is of a wall with particles, which a mirror has not; remove it"
-            )
-        return self
 
 
 class ReferenceFrame(Table):
@@ -266,35 +187,44 @@ class Case(Table):
         """Names of walls, bodies and solids on which the fluid's push is asked for; with a wall all that bear
         it, since parts that meet share it."""
         gauged = {name for gauge in self.gauges.values() if gauge.force for name in gauge.force.on}
-        if not gauged.isdisjoint(self.boundaries):
-            gauged |= {name for name, one in self.boundaries.items() if one.condition in BEARING}
-        return gauged | set(self.bodies)
+        rigid = {name: one for _, name, one in self.entries if one.rigid}
+        if not gauged.isdisjoint(rigid):
+            gauged |= {name for name, one in rigid.items() if one.condition in BEARING}
+        return gauged | {name for _, name, one in self.entries if one.always_loaded}
+
+    @classmethod
+    def tables_of(cls, kind: type[T]) -> dict[str, type[T]]:
+        """The tables whose entries are of this ``kind``, with the type of these, in their order."""
+        types = {name: get_args(field.annotation)[-1:] for name, field in cls.model_fields.items()}
+        return {
+            name: of
+            for name, last in types.items()
+            for of in last
+            if isinstance(of, type) and issubclass(of, kind)
+        }
+
+    @property
+    def entries(self) -> tuple[Named, ...]:
+        """All that holds particles: what flows, what else moves freely, then what is rigid."""
+        found = [
+            Named(table, *one) for table in self.tables_of(Placed) for one in getattr(self, table).items()
+        ]
+        return tuple(sorted(found, key=lambda entry: (not entry.of.moves_freely, not entry.of.flows)))
 
     @property
     def flowing(self) -> dict[str, Any]:
-        """What moves freely and finds its neighbours in space, by name: fluids, soils, then solids that are
-        updated Lagrangian."""
-        return {**self.fluids, **self.soils, **self.updated}
+        """What moves freely and finds its neighbours in space, by name."""
+        return {name: one for _, name, one in self.entries if one.flows}
 
     @property
-    def updated(self) -> dict[str, Solid]:
-        """The solids whose neighbours are those of the present, by name."""
-        return {name: solid for name, solid in self.solids.items() if solid.is_updated}
+    def boundaries(self) -> dict[str, Any]:
+        """What is rigid, by name."""
+        return {name: one for _, name, one in self.entries if one.rigid}
 
     @property
-    def referred(self) -> dict[str, Solid]:
-        """The solids whose neighbours are those of the start, by name: total Lagrangian."""
-        return {name: solid for name, solid in self.solids.items() if not solid.is_updated}
-
-    @property
-    def boundaries(self) -> dict[str, Wall | Body]:
-        """Walls and bodies by name."""
-        return {**self.walls, **self.bodies}
-
-    def table_of(self, name: str) -> str:
-        """The table that holds what has this name: solids may share it with others, which come first."""
-        tables = ("walls", "bodies", "fluids", "soils", "solids")
-        return next(table for table in tables if name in getattr(self, table))
+    def movers(self) -> tuple[Named, ...]:
+        """All whose particles forces move one by one."""
+        return tuple(entry for entry in self.entries if entry.of.moves_freely)
 
     @property
     def series(self) -> list:
@@ -304,9 +234,11 @@ class Case(Table):
     @property
     def motions(self) -> dict[tuple[str, ...], tuple]:
         """The parts of each motion of the case, by the location of its key."""
-        found = {(self.table_of(name), name): one.motion for name, one in self.boundaries.items()}
-        for name, solid in self.solids.items():
-            found |= {("solids", name, "clamps", grip): one.motion for grip, one in solid.clamps.items()}
+        found = {
+            (*entry.loc, *within): parts
+            for entry in sorted(self.entries, key=lambda entry: not entry.of.rigid)
+            for within, parts in entry.of.motions().items()
+        }
         found[("frame",)] = self.frame.motion
         return {(*loc, "motion"): parts for loc, parts in found.items() if parts}
 
@@ -372,18 +304,20 @@ class Case(Table):
         end, zeros = self.time.end, (0.0,) * self.space.dimensions
         _fill(self.space, origin=zeros)
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
-        for matter in (*self.flowing.values(), *self.referred.values()):
-            _fill(matter, velocity=zeros, velocity_center=zeros)
-        for solid in self.referred.values():
-            _fill(solid, continues=next(iter(self.fluids), None))
+        for mover in self.movers:
+            _fill(mover.of, velocity=zeros, velocity_center=zeros)
         for gauge in self.gauges.values():
             _fill(gauge, every=self.output.probes)
             if turned := gauge.force or gauge.reaction:
                 _fill(turned, about=zeros)
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
-        for solid in self.boundaries.values():
-            _fill(solid, velocity=zeros, continues=next(iter(self.flowing), None))
+        first = next((entry.name for entry in self.movers if entry.of.flows), None)
+        for _, _, one in self.entries:
+            if not one.flows:
+                _fill(one, continues=first)
+            if one.rigid:
+                _fill(one, velocity=zeros)
         return self
 
 

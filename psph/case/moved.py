@@ -5,21 +5,23 @@ from typing import Any
 
 from psph.case.keys import AXES
 from psph.case.motion import PADDLES, TurnAbout, misfits
+from psph.case.placed import Placed
 from psph.physics.walls.conditions import MIRROR
-
-NOT_ABSORBING = {"bodies": "a body", "solids": "a clamp"}
-"""Tables whose motions do not answer to the water, and what they hold."""
 
 
 def moved(case) -> Iterator[tuple[tuple, Any, str]]:
     """Motions that are none, or none here: location, value and message."""
-    gravity = case.physics.gravity.acceleration if case.physics.gravity else ()
+    gravity, tables = (
+        case.physics.gravity.acceleration if case.physics.gravity else (),
+        case.tables_of(Placed),
+    )
     for loc, parts in case.motions.items():
         for place, name, says in misfits(parts, case.space.dimensions, gravity):
             inner = (place,) if len(parts) > 1 else ()
             yield (*loc, *inner, *([name] if name else [])), ..., says
-        if loc[0] in NOT_ABSORBING and any(len(one.ways) == 1 and one.absorbs for one in parts):
-            yield loc, ..., f"a wall may absorb waves, {NOT_ABSORBING[loc[0]]} not; remove absorb"
+        what = tables[loc[0]].not_absorbing if loc[0] in tables else ""
+        if what and any(len(one.ways) == 1 and one.absorbs for one in parts):
+            yield loc, ..., f"a wall may absorb waves, {what} not; remove absorb"
     yield from _walls(case)
     yield from _frame(case)
 

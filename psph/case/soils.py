@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from psph.acts import BODIES, FRAME, MIXED, ONE, SOLIDS, UPDATED
+from psph.acts import BODIES, FRAME, MIXED, ONE, SOILS, SOLIDS, UPDATED
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
@@ -63,6 +63,7 @@ class Soil(Hookean):
     )
     water_density: float = key("density of that water", 1000.0, unit="kg/m3", gt=0)
 
+    word: ClassVar = SOILS
     rubs: ClassVar = True
     refuses: ClassVar = {
         ONE: "soils need two or three dimensions",
@@ -73,6 +74,11 @@ class Soil(Hookean):
             (REPULSIVE, PENALTY), 'bears no stress of soil; take "dynamic", "extrapolated" or "mirror"'
         ),
     }
+
+    @classmethod
+    def contradictions(cls, case) -> Iterator[Finding]:
+        """Soils that cannot be."""
+        yield from earthen(case)
 
     @property
     def at_rest(self) -> float:

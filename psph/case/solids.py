@@ -1,16 +1,19 @@
 """Elastic solids of a case, and the rules between their keys."""
 
 from collections.abc import Iterator
-from typing import ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
+from pydantic import Strict
+
+import psph.acts as words
 from psph.acts import BODIES, refusals
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
-from psph.case.keys import Name, Table, Vector, key
+from psph.case.keys import Name, Table, Text, Vector, key
 from psph.case.motion import PADDLES, Motions
 from psph.case.shapes import Shape
-from psph.case.updated import OF_SOLIDS, TOTAL, UPDATED, updated
+from psph.case.updated import OF_SOLIDS, TOTAL, UPDATED, referred_in, updated, updated_in
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS
 from psph.physics.solid.laws import LAWS
@@ -143,8 +146,32 @@ class Solid(Hookean):
     loads: dict[Name, SolidLoad] = key("forces on parts of the solid, by name", {})
     load_rise: float = key("time in which the loads grow to their full size", 0.0, unit="s", ge=0)
 
-    rubs: ClassVar = False
+    called: ClassVar = "solid in a fluid"
+    keeps_form: ClassVar = True
+    not_absorbing: ClassVar = "a clamp"
     refuses: ClassVar = OF_SOLIDS
+
+    @property
+    def word(self) -> str:
+        """By its description."""
+        return words.UPDATED if self.is_updated else words.SOLIDS
+
+    def pushed(self, case) -> bool:
+        """Where it stands in a fluid."""
+        return bool(case.fluids)
+
+    def motions(self) -> dict[tuple, Any]:
+        """Those of its clamps."""
+        return {("clamps", name): clamp.motion for name, clamp in self.clamps.items()}
+
+    def said(self, table: str, name: str) -> tuple[tuple, Any]:
+        """Its description, where that is not the usual one."""
+        return ((table, name, "description"), self.description) if self.is_updated else ((table,), ...)
+
+    @classmethod
+    def contradictions(cls, case) -> Iterator[Finding]:
+        """Solids that cannot be."""
+        yield from elastic(case)
 
     @property
     def is_updated(self) -> bool:
@@ -175,6 +202,33 @@ def anvils_of(case) -> list[str]:
     return [f"anvils.{name}" for name in case.anvils]
 
 
+class Reaction(Table):
+    """Force and moment that the supports of solids bear: clamps and anvils."""
+
+    acts: ClassVar = (words.SOLIDS,)
+    refuses: ClassVar = {
+        words.UPDATED: "of the clamps of an updated Lagrangian solid no force is summed; give it "
+        'description = "total"'
+    }
+
+    of: Annotated[tuple[Text, ...], Strict(False)] = key(
+        "the keys of clamps and anvils, taken together, such as solids.beam.clamped, "
+        "solids.beam.clamps.root or anvils.floor",
+        min_length=1,
+    )
+    about: Vector | None = key("point about which moments are taken", None, unit="m", otherwise="zeros")
+
+    def contradictions(self, case) -> Iterator[Finding]:
+        """Supports that are not there, or of which no force is known."""
+        known = [*clamps_of(referred_in(case)), *anvils_of(case)]
+        for place, support in enumerate(self.of):
+            if support in clamps_of(updated_in(case)):
+                yield ("of", place), support, refusals(self)[words.UPDATED]
+            elif support not in known:
+                says = f"no clamp or anvil has this key; {advise(support, known)}"
+                yield ("of", place), support, says
+
+
 OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
 
 NOT_MET = "nothing is known of contact between solids and these; remove one of the two"
@@ -187,7 +241,7 @@ def elastic(case) -> Iterator[Finding]:
             yield ("anvils",), ..., "nothing feels them but solids; remove them, or give [solids.NAME]"
         return
     yield from _yielding(case)
-    yield from updated(case) if case.updated else _meeting(case)
+    yield from updated(case) if updated_in(case) else _meeting(case)
     for name, anvil in case.anvils.items():
         if not any(anvil.normal):
             yield ("anvils", name, "normal"), anvil.normal, "has no direction; give the way out of the plane"
@@ -203,12 +257,6 @@ def elastic(case) -> Iterator[Finding]:
             says = f"no fluid has this name; {advise(solid.continues, case.fluids)}"
             says = says if case.fluids else "there is no fluid to see the solid; remove it"
             yield (*here, name, "continues"), solid.continues, says
-        rows = solid.velocity_gradient
-        if rows and len(rows) != case.space.dimensions:
-            says = (
-                f"{len(rows)} rows in {case.space.dimensions}D; give one for each component of the velocity"
-            )
-            yield (*here, name, "velocity_gradient"), rows, says
 
 
 def _meeting(case) -> Iterator[Finding]:
@@ -216,14 +264,15 @@ def _meeting(case) -> Iterator[Finding]:
     contact = case.physics.contact is not None
     if contact or not case.flowing:
         yield from _rigid(case)
-    for name in case.bodies if case.flowing else case.boundaries:
-        here = (case.table_of(name), name)
-        if not contact:
-            yield here, ..., f"solids do not feel {here[0]} without contact; give physics.contact = {{}}"
+    rigid = [entry for entry in case.entries if entry.of.rigid]
+    for table, name, _ in rigid:
+        if not contact and (name in case.bodies or not case.flowing):
+            says = f"solids do not feel {table} without contact; give physics.contact = {{}}"
+            yield (table, name), ..., says
     if case.flowing:
         return
-    for name, one in case.boundaries.items():
-        here = (case.table_of(name), name)
+    for table, name, one in rigid:
+        here = (table, name)
         given = {
             "velocity": name in case.walls and any(one.velocity or ()),
             "condition": one.condition != type(one).model_fields["condition"].default,

@@ -1,9 +1,9 @@
 """Solids whose neighbours are those of the present, and the rules between their keys."""
 
 from collections.abc import Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from psph import acts
+import psph.acts as acts
 from psph.case.findings import Finding
 
 TOTAL, UPDATED = "total", "updated"
@@ -47,14 +47,24 @@ class Updated:
     }
 
 
+def updated_in(case) -> dict[str, Any]:
+    """The solids of a case whose neighbours are those of the present, by name."""
+    return {name: solid for name, solid in case.solids.items() if solid.is_updated}
+
+
+def referred_in(case) -> dict[str, Any]:
+    """The solids of a case whose neighbours are those of the start, by name: total Lagrangian."""
+    return {name: solid for name, solid in case.solids.items() if not solid.is_updated}
+
+
 def updated(case) -> Iterator[Finding]:
     """What updated Lagrangian solids do not know, in a case that has some."""
-    here = ("solids", next(iter(case.updated)), "description")
+    here = ("solids", next(iter(updated_in(case))), "description")
     if case.anvils:
         yield here, UPDATED, "nothing is known of updated Lagrangian solids beside anvils; remove one"
-    for name in case.updated.keys() & case.walls.keys():
+    for name in updated_in(case).keys() & case.walls.keys():
         yield ("solids", name), ..., "a wall has this name too; give the solid another"
-    for name, solid in case.updated.items():
+    for name, solid in updated_in(case).items():
         for key_of in OF_REFERENCE:
             default = type(solid).model_fields[key_of].get_default(call_default_factory=True)
             if getattr(solid, key_of) != default:

@@ -5,8 +5,13 @@ from functools import cached_property
 
 import numpy as np
 
+from psph.fields import Field
 from psph.kinds import Kind, Rank, Stage, Work
+from psph.physics.motion import COUPLE
 from psph.scene.bodies import BRAKED, body_step, braked, in_words, lightest_share
+from psph.scene.body_checks import body_faults, body_warnings, period_faults
+from psph.scene.body_parts import bodies_of
+from psph.scene.solids import meets
 
 
 class RigidBodies(Kind):
@@ -23,6 +28,20 @@ class RigidBodies(Kind):
     def share(self) -> float:
         """The least mass of one over that of the fluid beside it."""
         return lightest_share(self.scene)
+
+    def faults(self) -> Iterator[str]:
+        """Bodies that a mirror or a period does not let turn or go."""
+        yield from body_faults(self.scene)
+        yield from period_faults(self.scene)
+
+    def warnings(self) -> Iterator[str]:
+        """Numbers of theirs that are likely a slip."""
+        yield from body_warnings(self.scene)
+
+    @property
+    def fields(self) -> tuple[Field, ...]:
+        """Contacts with elastic solids turn the normals of their faces, and so have a moment."""
+        return (COUPLE,) if meets(self.scene) else ()
 
     def stages(self) -> Mapping[str, Stage]:
         """Their kick comes before that of the particles, with the new forces."""
@@ -42,10 +61,10 @@ class RigidBodies(Kind):
 
         yield FloatingBodies(rank.scene, rank.plan)
 
-    def matter_lines(self) -> Iterator[str]:
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """What each is."""
-        for body in self.scene.census.rigid_bodies:
-            yield f"  body        {body.name}: {in_words(self.scene, body)}"
+        for body in bodies_of(self.scene.census):
+            yield "matter", f"  body        {body.name}: {in_words(self.scene, body)}"
 
 
 def push_bodies(simulation) -> None:

@@ -3,8 +3,11 @@
 from collections.abc import Iterator
 
 from psph.kinds import Kind
-from psph.scene.rheologies import rheology_lines
+from psph.scene.fluid.advice import fluid_advice
+from psph.scene.fluid.checks import fluid_warnings
+from psph.scene.fluid.rheologies import rheology_lines
 from psph.scene.sites import sites_within
+from psph.scene.waving import wave_faults
 
 NARROWEST = 22
 """Characters of a column of names."""
@@ -25,18 +28,31 @@ class Fluids(Kind):
         if acceleration > 0.0:
             yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
 
-    def reach_lines(self, plan) -> Iterator[str]:
-        """The kernel."""
+    def faults(self) -> Iterator[str]:
+        """Waves that cannot be."""
+        yield from wave_faults(self.scene)
+
+    def warnings(self) -> Iterator[str]:
+        """What is likely not meant."""
+        yield from fluid_warnings(self.scene)
+
+    def advice(self, guard: str, suspect) -> Iterator[str]:
+        """Of the speed of sound, pressure, walls and friction."""
+        yield from fluid_advice(self.scene, guard, suspect)
+
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
+        """The kernel, viscosities, and what numerical friction stands for beside them."""
         scene, space = self.scene, self.scene.case.space
         support = scene.support
         yield (
+            "reach",
             f"  kernel      {space.kernel}, h = {scene.smoothing_length:g} m "
             f"(h/dx {space.smoothing:g}), support {support:g} m, "
-            f"about {sites_within(scene, support):.0f} neighbours"
+            f"about {sites_within(scene, support):.0f} neighbours",
         )
+        yield from (("friction", line) for line in self._friction(plan))
 
-    def friction_lines(self, plan) -> Iterator[str]:
-        """Viscosities, and what numerical friction stands for beside them."""
+    def _friction(self, plan) -> Iterator[str]:
         for place, line in enumerate(rheology_lines(self.scene)):
             if not place:
                 yield "Viscosities that depend on the rate of strain"

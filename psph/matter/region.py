@@ -1,9 +1,11 @@
 """Regions where particles appear or vanish: what they add to a scene (psph.kinds)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 
 from psph.kinds import Kind, Stage
-from psph.physics.region import next_time
+from psph.physics.region import is_sink, next_time
+from psph.scene.regions import regions_in
 from psph.simulation.stages import nothing
 
 
@@ -13,14 +15,28 @@ class Regions(Kind):
     name = "regions"
     keeps_energy = False
 
+    @cached_property
+    def regions(self) -> tuple:
+        """What they do (psph.physics.region)."""
+        return tuple(region for region, _ in regions_in(self.scene.case))
+
+    @classmethod
+    def drains(cls, case) -> bool:
+        """Whether particles may vanish."""
+        return any(is_sink(region) for region, _ in regions_in(case))
+
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
+        """What each does."""
+        for region in self.regions:
+            yield "matter", f"  region      {type(region).__name__}: {type(region).__doc__.splitlines()[0]}"
+
     def stages(self) -> Mapping[str, Stage]:
         """Particles come and go before new lists are made."""
         return {"renew_lists": Stage(self._populate, nothing)}
 
     def _populate(self, simulation) -> None:
         """Take particles out and let others in, where new lists are due or a region asks for them."""
-        regions = [region for region, _ in self.scene.layout.regions]
-        if simulation.listed and next_time(regions, simulation.time) > simulation.then:
+        if simulation.listed and next_time(self.regions, simulation.time) > simulation.then:
             return
         with simulation.ledger("populate"):
             simulation.population.renew(simulation.then)

@@ -1,9 +1,13 @@
 """Soils: what they add to a scene (psph.kinds).  Their stress is that of effects (psph.physics.stress)."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
+
+import numpy as np
 
 from psph.kinds import Kind
-from psph.scene.soils import soil_lines
+from psph.physics.stress.deviator import DEVIATOR
+from psph.scene.soils import soil_lines, soil_warnings
+from psph.scene.stressed import deviator_of
 
 
 class Soils(Kind):
@@ -11,6 +15,19 @@ class Soils(Kind):
 
     name = "soils"
 
-    def matter_lines(self) -> Iterator[str]:
+    def warnings(self) -> Iterator[str]:
+        """Numbers of theirs that are likely a slip."""
+        yield from soil_warnings(self.scene)
+
+    def starts(
+        self, fields: Container[str], species: np.ndarray, position: np.ndarray
+    ) -> Iterator[tuple[str, np.ndarray]]:
+        """The stress of their weight."""
+        if DEVIATOR.name in fields:
+            deviator = deviator_of(self.scene.starts.layers, species, position)
+            yield DEVIATOR.name, deviator
+            yield f"predicted_{DEVIATOR.name}", deviator
+
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """Strength and waves of each."""
-        yield from soil_lines(self.scene)
+        yield from (("matter", line) for line in soil_lines(self.scene))

@@ -1,19 +1,23 @@
 """Elastic solids, alone or in a fluid: what they add to a scene (psph.kinds)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
+from psph.case.updated import referred_in, updated_in
 from psph.composition.loads import Pushes
 from psph.composition.space import Metres
 from psph.fields import FLUID, Field
 from psph.kinds import Kind, Rank, Work
 from psph.particles.records import record_width
-from psph.physics.solid.contact import FACE, OF_FRICTION, REACH
+from psph.physics.solid.contact import COVER, FACE, OF_FRICTION, REACH
 from psph.physics.solid.deformation import DRAWN, KERNEL, SMOOTHING, places_of, support_of
 from psph.physics.solid.material import STEP, is_damped
+from psph.scene.faces import drawn_faces
 from psph.scene.sites import sites_within
-from psph.scene.solid_checks import solid_lines
+from psph.scene.solid_checks import fast_start, solid_advice, solid_faults, solid_lines, solid_warnings
 from psph.scene.solids import solid_fields
 
 NUMBER, ROW, ENTRY = 8, 12, 4
@@ -21,6 +25,26 @@ NUMBER, ROW, ENTRY = 8, 12, 4
 
 FLOPS = 100
 """Operations of a pair in both passes of a solid, in 2D and 3D about as many."""
+
+
+class UpdatedSolids(Kind):
+    """Elastic solids whose neighbours are those of the present: they share the pair loop with what flows, and
+    their stress is that of effects (psph.physics.stress)."""
+
+    name = "updated"
+
+    @classmethod
+    def is_in(cls, case) -> bool:
+        """Where there are some."""
+        return bool(updated_in(case))
+
+    def faults(self) -> Iterator[str]:
+        """Solids too thin for any stress."""
+        yield from solid_faults(self.scene)
+
+    def warnings(self) -> Iterator[str]:
+        """Numbers of theirs that are likely a slip."""
+        yield from solid_warnings(self.scene)
 
 
 class ElasticSolids(Kind):
@@ -39,7 +63,34 @@ class ElasticSolids(Kind):
     @classmethod
     def is_in(cls, case) -> bool:
         """Where there are some that are not updated Lagrangian."""
-        return bool(case.referred)
+        return bool(referred_in(case))
+
+    def faults(self) -> Iterator[str]:
+        """Solids too thin for any stress, and clamps and loads that hold nothing."""
+        yield from solid_faults(self.scene)
+
+    def warnings(self) -> Iterator[str]:
+        """Numbers of theirs that are likely a slip."""
+        yield from solid_warnings(self.scene)
+
+    def advice(self, guard: str, suspect) -> Iterator[str]:
+        """Of their steps, laws and damping; alone also of the speed of an impact."""
+        yield from fast_start(self.scene) if guard == "speed" and not self.immersed else ()
+        yield from solid_advice(self.scene)
+
+    def starts(
+        self, fields: Container[str], species: np.ndarray, position: np.ndarray
+    ) -> Iterator[tuple[str, np.ndarray]]:
+        """The faces that the case draws, of what touches, and how far below these it is."""
+        if FACE.name in fields:
+            normal, depth = drawn_faces(self.scene.layout, species, position)
+            yield FACE.name, normal
+            yield COVER.name, depth[:, None]
+
+    @property
+    def made(self) -> tuple:
+        """What they are made of (psph.physics.solid.material)."""
+        return self.scene.starts.solids
 
     @property
     def fields(self) -> tuple[Field, ...]:
@@ -94,11 +145,16 @@ class ElasticSolids(Kind):
 
             yield SolidOverlap(rank, immersion)
 
-    def matter_lines(self) -> Iterator[str]:
-        """What each is."""
-        yield from solid_lines(self.scene)
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
+        """What each is, and how they see each other and step."""
+        yield from (("matter", line) for line in solid_lines(self.scene))
+        yield from (("reach", line) for line in self._reach(plan))
+        yield "messages", self._message(plan)
+        passes = "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
+        yield "passes", passes
+        yield from (("steps", line) for line in self._steps(plan, dt))
 
-    def reach_lines(self, plan) -> Iterator[str]:
+    def _reach(self, plan) -> Iterator[str]:
         """Their kernel, and how far they touch."""
         h = plan.solid_smoothing_length
         neighbours = sites_within(self.scene, support_of(h))
@@ -112,20 +168,16 @@ class ElasticSolids(Kind):
                 f"reach {self.scene.layout.reach.cutoff:.4g} m"
             )
 
-    def message_lines(self, plan) -> Iterator[str]:
+    def _message(self, plan) -> str:
         """What partners on other ranks get."""
         d = self.scene.dimensions
         first, second = places_of(d, is_damped(plan.solids))
-        yield (
+        return (
             f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "
             f"stress, {NUMBER * (second - 2 * d)} bytes each"
         )
 
-    def pass_lines(self, plan) -> Iterator[str]:
-        """Two."""
-        yield "Passes over the neighbours in the reference, two a step: deformation, then inner forces"
-
-    def step_lines(self, plan, dt: float) -> Iterator[str]:
+    def _steps(self, plan, dt: float) -> Iterator[str]:
         """How many steps they take in a step of the fluid, and why."""
         if not plan.substeps:
             return

@@ -1,13 +1,17 @@
 """Walls: what they add to a scene (psph.kinds)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from functools import cached_property
+
+import numpy as np
 
 from psph.case.keys import AXES
 from psph.kinds import Kind, Rank, Stage, Work
 from psph.physics.motion import deforms
 from psph.physics.rigid.absorption import Absorbing
-from psph.scene.motion_checks import motion_lines
+from psph.physics.stress.faces import OF_FACES
+from psph.scene.motion_checks import motion_faults, motion_lines
+from psph.scene.smooth import smooth_faces
 from psph.scene.waving import wave_lines
 
 
@@ -26,6 +30,18 @@ class Walls(Kind):
         """Every scene has room for them: mirrors, frames and clamps move as they are told too."""
         return True
 
+    def faults(self) -> Iterator[str]:
+        """Motions that leave what numbers can tell."""
+        yield from motion_faults(self.scene)
+
+    def starts(
+        self, fields: Container[str], species: np.ndarray, position: np.ndarray
+    ) -> Iterator[tuple[str, np.ndarray]]:
+        """The faces of smooth ones, along which soils and solids slide."""
+        if own := [field.name for field in OF_FACES if field.name in fields]:
+            normal = smooth_faces(self.scene, species, position)
+            yield from ((name, normal) for name in own)
+
     def stages(self) -> Mapping[str, Stage]:
         """Paddles answer to the level at the end of the step, after the kick."""
         return {"find_limits": Stage(measure_levels, measure_levels)} if self.absorbs else {}
@@ -37,8 +53,11 @@ class Walls(Kind):
 
             yield Paddles(rank.scene, rank.plan)
 
-    def matter_lines(self) -> Iterator[str]:
+    def lines(self, plan, dt: float) -> Iterator[tuple[str, str]]:
         """How they move, and where mirrors stand."""
+        yield from (("matter", line) for line in self._matter())
+
+    def _matter(self) -> Iterator[str]:
         scene = self.scene
         yield from motion_lines(scene)
         yield from wave_lines(scene)

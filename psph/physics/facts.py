@@ -36,9 +36,8 @@ class Facts(Protocol):
     """Fluids and walls (psph.scene.species.Species)."""
     rheologies: Sequence[Any]
     """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
-    stressed: Any
-    """What bears an evolved stress (psph.scene.stressed): the ``laws`` that bound it, the largest
-    ``diffusion`` of that of soils, 0 without."""
+    strengths: Sequence[Any]
+    """The laws that bound an evolved stress (psph.physics.stress.strength)."""
     anvils: Sequence[Any]
     """A point of each rigid plane that solids may hit in m, and the unit vector out of it."""
     has_free_surface: bool

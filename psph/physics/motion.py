@@ -54,18 +54,21 @@ class Free(NamedTuple):
     """Particles move as forces have them."""
 
     kind = FLUID
+    goes_free = True
 
 
 class Elastic(NamedTuple):
     """Particles of a solid, whose forces come from their neighbours of the start."""
 
     kind = SOLID
+    goes_free = True
 
 
 class Immersed(NamedTuple):
     """Particles of a solid in a fluid, moved in steps of its own: to the fluid a wall that moves."""
 
     kind = SOLID
+    goes_free = True
 
 
 class Fixed(NamedTuple):
@@ -105,6 +108,16 @@ FREE, FIXED, RIGID, PRESCRIBED = 0, 1, 2, 3
 def is_free(motion) -> bool:
     """Whether forces move particles."""
     return isinstance(motion, (Free, Elastic))
+
+
+def goes_free(motion) -> bool:
+    """Whether forces say where what moves so goes, at least along an axis."""
+    return getattr(motion, "goes_free", False)
+
+
+def told_of(motion):
+    """What of a motion the case tells: its ``motion`` where other things too say how it goes, or None."""
+    return getattr(motion, "motion", motion)
 
 
 def is_prescribed(motion) -> bool:

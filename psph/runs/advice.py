@@ -3,17 +3,8 @@
 from collections.abc import Iterator
 
 from psph.case.running import GuardKeys
-from psph.case.schemes import STABLE
-from psph.fields import FLUID
-from psph.physics.facts import SOUND_OVER_SPEED
-from psph.physics.solid.laws import SaintVenantKirchhoff
-from psph.physics.walls.conditions import DYNAMIC
-from psph.scene.pressureless_walls import unbearing_walls
-from psph.scene.solid_checks import fast_start
-from psph.scene.walls import layers_needed, thinnest_walls
-
-FASTER = 2.0
-"""A larger c is proposed if the expected speed exceeds c/10 by this factor."""
+from psph.kinds import kinds_in
+from psph.scene.steps import shorter_step
 
 
 def advice(scene, guard: str, suspect) -> list[str]:
@@ -21,118 +12,10 @@ def advice(scene, guard: str, suspect) -> list[str]:
     if guard == "overlap":
         return [
             "let a motion that forces a body into another end before, or let the other give way",
-            *_shorter_step(scene),
+            *shorter_step(scene),
             *_bound(guard),
         ]
-    if not scene.case.flowing:
-        return [*(fast_start(scene) if guard == "speed" else ()), *_solids(scene), *_bound(guard)]
-    return [
-        *(_solids(scene) if scene.starts.solids else ()),
-        *_driven(scene, guard, suspect),
-        *_long_step(scene),
-        *_scheme(scene),
-        *_pressure(scene, suspect),
-        *_walls(scene, guard, suspect),
-        *_sound(scene, guard),
-        *_friction(scene),
-        *_shorter_step(scene),
-        *_bound(guard),
-    ]
-
-
-def _solids(scene) -> Iterator[str]:
-    if scene.case.time.step is not None:
-        yield "remove time.step: the waves in the solids set the step then"
-    softens = any(isinstance(one.law, SaintVenantKirchhoff) for one in scene.starts.solids)
-    law = 'law = "neo-hookean", which stands more compression, ' if softens else ""
-    yield f"give {law}a larger hourglass, or some damping; look at the units of young, density and loads"
-
-
-def _driven(scene, guard: str, suspect) -> Iterator[str]:
-    c, speed = scene.sound_speed, suspect.speed
-    if scene.layout.driven and guard in ("energy", "speed", "density") and speed > c / SOUND_OVER_SPEED:
-        yield (
-            f"raise physics.sound_speed to {SOUND_OVER_SPEED * speed:.3g} m/s or more: gravity along a "
-            f"periodic axis drives this flow, it has reached c/{c / speed:.2g}, and c is meant for c/10"
-        )
-
-
-def _long_step(scene) -> Iterator[str]:
-    step, cfl = scene.case.time.step, scene.case.time.cfl
-    limit = cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
-    if step is not None and step > limit:
-        yield f"remove time.step = {step:g}: time.cfl = {cfl:g} would allow {limit:.2g} s"
-
-
-def _shorter_step(scene) -> Iterator[str]:
-    step, cfl = scene.case.time.step, scene.case.time.cfl
-    if step is None:
-        yield f"try a smaller time.cfl, {cfl / 2:g} instead of {cfl:g}"
-    else:
-        yield f"try a smaller time.step than {step:g} s"
-
-
-def _scheme(scene) -> Iterator[str]:
-    if scene.case.scheme != STABLE and not scene.case.updated:
-        yield f'try scheme = "{STABLE}" in place of "{scene.case.scheme}" and its keys'
-
-
-def _pressure(scene, suspect) -> Iterator[str]:
-    physics, open_air = scene.case.physics, scene.has_free_surface
-    if not scene.case.fluids:
-        return  # soils bear as much tension as they are told, and solids any
-    if physics.pressure_gradient == "minimum" and open_air:
-        yield ('give physics.pressure_gradient = "symmetric": "minimum" (p⁻) is unstable at a free surface')
-    if not (suspect.value("pressure") < 0.0 or scene.lowest_pressure < 0.0):
-        return
-    if open_air and physics.tension_floor is None:
-        yield "give physics.tension_floor = 0.98: the fluid is under tension"
-    elif not open_air and physics.background_pressure is None:
-        yield 'give physics.background_pressure = "auto": the fluid is under tension'
-
-
-def _friction(scene) -> Iterator[str]:
-    physics = scene.case.physics
-    viscous = any(fluid.rubs for fluid in scene.case.flowing.values())
-    damped = physics.artificial_viscosity or physics.pair_damping or physics.reconstructed_damping
-    if not damped and not viscous:
-        yield "give physics.artificial_viscosity = 0.05: this fluid has no damping"
-
-
-def _sound(scene, guard: str) -> Iterator[str]:
-    c = scene.sound_speed
-    expected = scene.speeds.undriven
-    if not scene.case.fluids:
-        if guard == "density":
-            yield "give a larger young: densities differ by (speed/c)², and c is that of its waves"
-        return
-    if expected > FASTER * c / SOUND_OVER_SPEED:
-        yield (
-            f"raise physics.sound_speed to {SOUND_OVER_SPEED * expected:.3g} m/s, ten times the "
-            f"expected speed; it is {c:g}"
-        )
-    elif guard == "density":
-        yield f"raise physics.sound_speed from {c:.4g} m/s: densities differ by (speed/c)²"
-
-
-def _walls(scene, guard: str, suspect) -> Iterator[str]:
-    near_wall = (suspect.around.shown("kind") != FLUID).any()
-    if guard != "depth" and not near_wall:
-        return
-    need, names = layers_needed(scene.layout), [material.name for material in scene.species]
-    for name in unbearing_walls(scene):
-        condition = scene.case.walls[name].condition
-        yield (
-            f'give walls.{name}.condition = "{DYNAMIC}": with "{condition}" it bears no '
-            "pressure, and lets through what comes fast"
-        )
-    for material, (layers, _) in thinnest_walls(scene.layout).items():
-        yield f"make walls.{names[material]} thicker: {need} spacings instead of {layers}"
-    if guard == "depth":
-        yield (
-            "make the walls higher if it jumped over a rim; else use a finer space.spacing: a fast particle "
-            "then interacts with more wall particles"
-        )
+    return [*(line for kind in kinds_in(scene) for line in kind.advice(guard, suspect)), *_bound(guard)]
 
 
 def _bound(guard: str) -> Iterator[str]:

@@ -4,7 +4,8 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from psph.kinds import count_of
+from psph.errors import Refused
+from psph.kinds import TOPICS, count_of
 from psph.output.tables import GAUGE
 from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
@@ -31,21 +32,33 @@ def explain(scene, ranks: int) -> Iterator[str]:
     """Lines that describe the plan of a scene on so many ranks."""
     plan = make_plan(scene)
     particles = count_of(scene)
-    yield from _scene_lines(scene, plan, particles)
-    yield from _rank_lines(scene, plan, ranks)
-    yield from _pass_lines(scene, plan)
+    said = _said_by_kinds(scene, plan)
+    yield from _scene_lines(scene, plan, particles, said)
+    yield from _rank_lines(scene, plan, ranks, said)
+    yield from _pass_lines(scene, plan, said)
     yield from matter_lines(scene.case, plan)
     yield from _step_lines(scene, plan)
-    for kind in plan.matter:
-        yield from kind.friction_lines(plan)
+    yield from said["steps"]
+    yield from said["friction"]
     found = forecast(scene, plan, ranks)
     yield from forecast_lines(found, ranks, scene.case.time.end)
     neighbours = sites_within(scene, scene.support)
     yield from output_lines(scene, plan, neighbours, found.steps)
-    if plan.materials.flows:
-        yield from stability_forecast(scene, plan)
+    yield from stability_forecast(scene, plan)
     for line in hints(scene, plan):
         yield f"Hint: {line}"
+
+
+def _said_by_kinds(scene, plan: Plan) -> dict[str, list[str]]:
+    """What the kinds of matter of a scene say, by topic."""
+    longest, _ = plan.longest_step(scene.expected_speed, pull(scene))
+    found: dict[str, list[str]] = {topic: [] for topic in TOPICS}
+    for kind in plan.matter:
+        for topic, line in kind.lines(plan, longest):
+            if topic not in found:
+                raise Refused(f"{kind.name}: lines: {topic}: no such topic; give one of {', '.join(TOPICS)}")
+            found[topic].append(line)
+    return found
 
 
 def slab_planes(scene) -> int:
@@ -110,26 +123,22 @@ def _cutoff(scene) -> float:
     return scene.layout.reach.cutoff
 
 
-def _scene_lines(scene, plan: Plan, particles: int) -> Iterator[str]:
+def _scene_lines(scene, plan: Plan, particles: int, said: dict[str, list[str]]) -> Iterator[str]:
     case = scene.case
     yield f"{case.title or case.name} ({case.file})"
     yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
     yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
-    for kind in plan.matter:
-        yield from kind.matter_lines()
+    yield from said["matter"]
     for line in described(scene):
         yield f"  mesh        {line}"
-    for region, _ in scene.layout.regions:
-        yield f"  region      {type(region).__name__}: {_first_line(region)}"
     for name, table in scene.tables.items():
         yield f"  table       {name}.csv: {_first_line(table)}"
     for name, gauge in case.gauges.items():
         measures = _first_line(getattr(gauge, gauge.kind))
         yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
-    for kind in plan.matter:
-        yield from kind.reach_lines(plan)
+    yield from said["reach"]
 
 
 def _preset_lines(case) -> Iterator[str]:
@@ -145,7 +154,7 @@ def _preset_lines(case) -> Iterator[str]:
                 yield f"              {key} = {value}"
 
 
-def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
+def _rank_lines(scene, plan: Plan, ranks: int, said: dict[str, list[str]]) -> Iterator[str]:
     planes = slab_planes(scene)
     check_ranks(ranks, planes)
     own, listed = bytes_per_particle(scene, plan)
@@ -171,19 +180,17 @@ def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
             f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
             f"{sent:,.0f} bytes from a rank"
         )
-    for kind in plan.matter:
-        yield from kind.message_lines(plan)
+    yield from said["messages"]
     if plan.ghost_fields:
         yield f"              once a rebuild: {', '.join(plan.ghost_fields)}"
 
 
-def _pass_lines(scene, plan: Plan) -> Iterator[str]:
+def _pass_lines(scene, plan: Plan, said: dict[str, list[str]]) -> Iterator[str]:
     yield from _early_passes(plan)
     if plan.passes:
         flops = plan.flops_per_pair(scene.layout.periods)
         yield f"Pass over the neighbours, one a step, {flops} flops a pair"
-    for kind in plan.matter:
-        yield from kind.pass_lines(plan)
+    yield from said["passes"]
     effects, laws = acting(plan), laws_of(plan)
     width = _column([one.name for one in (*effects, *laws)] + [e.effect.__name__ for e in plan.absent])
     for one in effects:
@@ -248,5 +255,3 @@ def _step_lines(scene, plan: Plan) -> Iterator[str]:
     width = _column(name for _, name in limits)
     for step, name in limits:
         yield f"  {name:<{width}}{step:.3g} s"
-    for kind in plan.matter:
-        yield from kind.step_lines(plan, min(limits)[0])

@@ -18,7 +18,10 @@ NEAR = 1e-4
 
 
 def stability_forecast(scene, plan: Plan) -> Iterator[str]:
-    """Whether small waves grow at the start, how fast, and which h/dx is stable."""
+    """Whether small waves grow at the start, how fast, and which h/dx is stable; nothing where all keep their
+    neighbours."""
+    if not any(part.flows for part in scene.layout.parts):
+        return
     lattice, form = OF_SCENES[scene.dimensions], scene.case.physics.pressure_gradient
     yield (
         f"Stability of the {lattice} lattice at the start, {form} pressure gradient "
@@ -103,8 +106,9 @@ def _extremes(scene) -> Iterator[tuple[float, Start]]:
     both signs that c is made for: ρc²/100.
     """
     found: dict[bool, tuple[float, Start]] = {}
-    for fluid in scene.layout.parts.flowing:
-        start = scene.starts.states[fluid]
+    for part, start in zip(scene.layout.parts, scene.starts.states):
+        if not part.flows:
+            continue
         own = start.layer.highest if start.layer else start.pressure
         expected = start.rest_density * (scene.sound_speed / STIFF) ** 2
         for pressure in (own,) if own else (expected, -expected):

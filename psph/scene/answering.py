@@ -7,6 +7,7 @@ import numpy as np
 
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.solid.contact import LAYER
+from psph.scene.body_parts import bodies_of
 from psph.scene.census import Census
 from psph.scene.faces import drawn_faces
 
@@ -19,9 +20,9 @@ def answer(census: Census, friction: bool) -> float:
     its velocity and spin to the speed along w of the point of its face at r: along the normal, or with
     ``friction``, and at edges, along each axis.  M⁻¹ is 1/M and I⁻¹ in what the body is free to do.
     """
-    if not census.layout.case.bodies:
+    if not (bodies := bodies_of(census)):
         return 0.0
-    yielding = Bodies(census.rigid_bodies, census.layout.gravity).yielding(math.inf)
+    yielding = Bodies(bodies, census.layout.gravity).yielding(math.inf)
     found = []
     for row, sliding in enumerate(yielding.sliding):
         root = np.zeros((6, 6))
@@ -34,7 +35,7 @@ def answer(census: Census, friction: bool) -> float:
 
 def _pressed(census: Census, row: int, friction: bool) -> Iterator[np.ndarray]:
     """√b G of the particles of the faces of a body, m in turns (n, 6), by chunks."""
-    layout, point = census.layout, census.rigid_bodies[row].reference
+    layout, point = census.layout, bodies_of(census)[row].reference
     number, d = layout.parts.bodies[row], layout.dimensions
     for begin, end in layout.lattice.chunks():
         held = layout.materials(begin, end) == number

@@ -7,10 +7,12 @@ import numpy as np
 
 from psph.case.parameters import as_numbers
 from psph.physics.fluid.friction import friction_step
-from psph.physics.rigid.bodies import Bodies, RigidBody
+from psph.physics.rigid.bodies import Bodies
+from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.lines import SpringLine, longest_step
 from psph.physics.rigid.pose import in_space
 from psph.physics.solid.contact import SolidContact
+from psph.scene.body_parts import bodies_of
 from psph.scene.scene import Scene
 from psph.scene.volumes import Volume, volume_of
 
@@ -23,7 +25,7 @@ def shares_of(scene: Scene) -> np.ndarray:
     the particles about their mean x̄, so that Σ w x₀ = M c.
     """
     found, d = [], scene.dimensions
-    for number, one in zip(scene.layout.parts.bodies, scene.census.rigid_bodies):
+    for number, one in zip(scene.layout.parts.bodies, bodies_of(scene.census)):
         filled, each = volume_of(scene.layout, number), one.mass / float(scene.census.sizes[number])
         spread = filled.spread[:d, :d] - scene.spacing**2 / 12.0 * np.eye(d)
         slope = np.linalg.pinv(spread, rcond=1e-9) @ (np.array(one.centre) - filled.centre)[:d]
@@ -83,7 +85,7 @@ def body_step(scene: Scene) -> float:
     Contact is hard, and asks for
     no step of its own; that with elastic solids has one (psph.physics.solid.contact).
     """
-    own = scene.census.rigid_bodies
+    own = bodies_of(scene.census)
     shortest = longest_step(lines_of(scene, [one.name for one in own]), Bodies(own, scene.gravity))
     share = lightest_share(scene)
     if share < 1.0:
@@ -104,7 +106,7 @@ def braked(share: float, step: float) -> float:
 
 def lightest_share(scene: Scene) -> float:
     """The least mass of a body that may move over that of the fluid within h of its surface, M/ρAh."""
-    bodies, found = Bodies(scene.census.rigid_bodies, scene.gravity), [math.inf]
+    bodies, found = Bodies(bodies_of(scene.census), scene.gravity), [math.inf]
     for row, number in enumerate(scene.layout.parts.bodies):
         own = bodies.bodies[row]
         if scene.case.flowing and (any(own.slides) or any(own.turns)):

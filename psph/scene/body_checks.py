@@ -8,6 +8,7 @@ import numpy as np
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.keys import AXES
 from psph.scene.bodies import body_step, density_ratio
+from psph.scene.body_parts import bodies_of
 from psph.scene.lattice import TOLERANCE
 from psph.scene.lattice_fit import is_of_boxes
 from psph.scene.scene import Scene
@@ -56,7 +57,7 @@ def period_faults(scene: Scene) -> Iterator[str]:
     The arms of its torque are those of the nearest images, which are others there.  Turns about the axis
     that repeats ask for no arm along it.
     """
-    for number, one in zip(scene.layout.parts.bodies, scene.census.rigid_bodies):
+    for number, one in zip(scene.layout.parts.bodies, bodies_of(scene.census)):
         for d, period in enumerate(scene.layout.periods):
             if period is None or not any(free for axis, free in enumerate(one.turns) if axis != d):
                 continue
@@ -103,7 +104,7 @@ def _far_points(scene: Scene) -> Iterator[str]:
 
 def _slight(scene: Scene) -> Iterator[str]:
     """A line for each body that is given less inertia than one of its cells would have."""
-    for one in scene.census.rigid_bodies:
+    for one in bodies_of(scene.census):
         if scene.case.bodies[one.name].inertia is None:
             continue
         moments = np.linalg.eigvalsh(np.reshape(one.inertia, (3, 3)))
@@ -169,8 +170,9 @@ def _crushing(scene: Scene) -> Iterator[str]:
     """
     gravity = scene.layout.height_gravity
     pull = math.hypot(*gravity)
-    floor = float(scene.census.bottom[list(scene.layout.parts.flowing)].min(initial=math.inf))
-    for number, one in zip(scene.layout.parts.bodies, scene.census.rigid_bodies):
+    flowing = [part.number for part in scene.layout.parts if part.flows]
+    floor = float(scene.census.bottom[flowing].min(initial=math.inf))
+    for number, one in zip(scene.layout.parts.bodies, bodies_of(scene.census)):
         ratio, bottom = density_ratio(scene, one), float(scene.census.bottom[number])
         if ratio <= 1.0 or not any(slides and g for slides, g in zip(one.slides, gravity)):
             continue
@@ -200,7 +202,7 @@ def _afloat(scene: Scene) -> Iterator[str]:
     """A line for each body that will not float, or fall, as is likely meant."""
     yield from _lopsided(scene)
     yield from _crushing(scene)
-    for one in scene.census.rigid_bodies:
+    for one in bodies_of(scene.census):
         ratio = density_ratio(scene, one)
         if not LIGHTEST <= ratio <= HEAVIEST:
             depth = " per metre of depth" if scene.dimensions == 2 else ""

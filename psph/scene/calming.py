@@ -1,7 +1,8 @@
 """Elastic solids in fluids: the damping that calms what a step of the fluid does not resolve."""
 
 from psph.physics.solid.material import ElasticSolid, calming_viscosity
-from psph.scene.faces import across
+from psph.scene.faces import thinnest
+from psph.scene.parts.solid import ElasticPart
 from psph.scene.speeds import Speeds
 
 DEEPEST = 4
@@ -12,11 +13,10 @@ thick a solid is (docs/coupling.md)."""
 def damped_solids(speeds: Speeds) -> tuple[ElasticSolid, ...]:
     """The elastic solids of a scene, with the viscosity η of each in Pa s: as given, or what calms it in a
     fluid."""
+    parts = [part for part in speeds.layout.parts if isinstance(part, ElasticPart)]
     return tuple(
-        one._replace(viscosity=_damping(speeds, number, part.table))
-        for number, (one, part) in enumerate(
-            zip(speeds.layout.solids, (part for part in speeds.layout.parts if part.is_elastic))
-        )
+        part.made._replace(viscosity=_damping(speeds, number, part.table))
+        for number, part in enumerate(parts)
     )
 
 
@@ -32,7 +32,8 @@ def impedance(speeds: Speeds, number: int, table) -> float:
     H is its thickness, or the depth to which waves along its face reach, 4 spacings.
     """
     density = max(fluid.density for fluid in speeds.layout.case.fluids.values())
-    thickness = min(across(speeds.census, number)[0], DEEPEST) * speeds.layout.spacing
+    thickness = min(thinnest(speeds.census, speeds.layout.parts.solids[number])[0], DEEPEST)
+    thickness *= speeds.layout.spacing
     return density * speeds.sound_speed * step_of_fluid(speeds) / (table.density * thickness)
 
 

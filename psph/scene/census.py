@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from psph.physics.rigid.bodies import RigidBody
 from psph.scene.layout import Layout
 from psph.scene.meshes.drawn import sites_in
-from psph.scene.volumes import rigid_bodies
+from psph.scene.volumes import moved_as_whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +30,19 @@ class Census:
     clashes: dict[tuple[int, int], tuple[float, ...]] = field(default_factory=dict)
 
     @cached_property
-    def rigid_bodies(self) -> tuple[RigidBody, ...]:
-        """What the bodies of the case are: mass and inertia are those of their sites."""
-        return rigid_bodies(self.layout)
+    def motions(self) -> tuple[Any, ...]:
+        """How the particles of each part move (psph.physics.motion); where the case leaves that to forces on
+        the whole, by the mass and the inertia of its sites."""
+        return tuple(
+            moved_as_whole(self.layout, part) if part.motion is None else part.motion
+            for part in self.layout.parts
+        )
 
     @cached_property
-    def motions(self) -> tuple[Any, ...]:
-        """How the particles of each part move (psph.physics.motion)."""
-        bodies = dict(zip(self.layout.parts.bodies, self.rigid_bodies))
-        return tuple(bodies.get(part.number, part.motion) for part in self.layout.parts)
+    def flow(self) -> tuple[np.ndarray, np.ndarray]:
+        """The lowest and the highest coordinates of the sites of all that flows, m (dim,)."""
+        flowing = [part.number for part in self.layout.parts if part.flows]
+        return self.lowest[flowing].min(axis=0), self.highest[flowing].max(axis=0)
 
     @cached_property
     def mesh_sites(self) -> tuple[int, ...]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from itertools import chain, product
+from itertools import chain
 
 import numpy as np
 
@@ -10,26 +10,16 @@ from psph.case import CaseError
 from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
 from psph.kinds import kinds_in
-from psph.physics.facts import SOUND_OVER_SPEED
-from psph.scene.body_checks import body_faults, body_warnings, period_faults
-from psph.scene.density_ratios import several_fluids
-from psph.scene.gauging import gauge_warnings, inside_walls, off_solids, outside_domain
+from psph.scene.gauging import off_solids, outside_domain
 from psph.scene.lattice import TOLERANCE
 from psph.scene.lattice_fit import misfits
 from psph.scene.meshes import report as meshes
-from psph.scene.motion_checks import FARTHEST, motion_faults, motion_warnings, overshoots
+from psph.scene.motion_checks import FARTHEST, motion_warnings, overshoots
 from psph.scene.parts import Part
-from psph.scene.pressureless_walls import unbearing_warnings
-from psph.scene.rheologies import rheology_warnings
 from psph.scene.scene import Scene
 from psph.scene.shapes import bounds, shown
-from psph.scene.soils import soil_warnings
-from psph.scene.solid_checks import solid_faults, solid_warnings
 from psph.scene.solved import exact_faults
-from psph.scene.start_checks import driven_flow, effect_warnings, start_warnings
-from psph.scene.units import in_degrees, in_millimetres, slips
-from psph.scene.walls import layers_needed, thinnest_walls
-from psph.scene.waving import wave_faults, wave_warnings
+from psph.scene.units import in_degrees, in_millimetres
 
 SLABS_IN_A_PERIOD = 3
 """A periodic axis must hold that many cut-off radii: then no particle meets another twice, and all
@@ -65,16 +55,9 @@ def faults(scene: Scene) -> Iterator[str]:
         *_site_faults(scene),
         *outside_domain(scene),
         *off_solids(scene),
-        *body_faults(scene),
         *exact_faults(scene),
     ]
-    places = places or [
-        *(line for kind in kinds_in(scene) for line in kind.faults()),
-        *period_faults(scene),
-        *solid_faults(scene),
-        *motion_faults(scene),
-        *wave_faults(scene),
-    ]
+    places = places or [line for kind in kinds_in(scene) for line in kind.faults()]
     for line in places or _state_faults(scene):  # an empty shape has no pressure, and no motion
         yield f"{scene.case.file}: {line}"
 
@@ -123,12 +106,9 @@ def _far_faults(scene: Scene) -> Iterator[str]:
 
 def warnings(scene: Scene) -> Iterator[str]:
     """Everything that will run, but probably not as intended."""
-    for kind in (*OF_EVERY_SCENE, *(OF_FLUIDS if scene.case.flowing else (body_warnings,))):
-        for line in kind(scene):
-            yield f"{scene.case.file}: {line}"
-    for kind in kinds_in(scene):
-        for line in kind.warnings():
-            yield f"{scene.case.file}: {line}"
+    of_kinds = (kind.warnings() for kind in kinds_in(scene))
+    for line in chain(*(one(scene) for one in OF_EVERY_SCENE), *of_kinds):
+        yield f"{scene.case.file}: {line}"
 
 
 def _domain_faults(scene: Scene) -> Iterator[str]:
@@ -169,10 +149,10 @@ def _spacing_faults(scene: Scene) -> Iterator[str]:
     """A spacing that leaves what moves without a particle, and that none of it is thick enough for."""
     thickness = {part.key: min(up - low for low, up in zip(*bounds(part.shape))) for part in _moving(scene)}
     thickest = max(thickness, key=thickness.get)
-    kind = "fluids" if scene.case.flowing else "solids"
+    table, _, _ = thickest.partition(".")
     if scene.spacing > thickness[thickest]:
         yield (
-            f"space.spacing: {scene.spacing:g} m is larger than the {kind}: {thickest} is "
+            f"space.spacing: {scene.spacing:g} m is larger than the {table}: {thickest} is "
             f"{thickness[thickest]:.3g} m thick; give at most a tenth of that, "
             f"{0.1 * thickness[thickest]:.2g}"
         )
@@ -181,17 +161,16 @@ def _spacing_faults(scene: Scene) -> Iterator[str]:
 def _site_faults(scene: Scene) -> Iterator[str]:
     census, parts = scene.census, scene.layout.parts
     for part, size in zip(parts, census.sizes):
-        if not size and part.is_clamp:
+        if not size and part.of_another:
             yield f"{part.key}: holds no particle of the solid; let the shapes meet"
-        elif not size and any(census.sizes[n] for n in parts.of_solid(part.number)):
+        elif not size and any(census.sizes[n] for n in parts.of_whole(part.number)):
             yield f"{part.key}: its clamps hold all of it; leave a part of it free"
         elif not size:
             yield (
                 f"{part.key}.shape: no lattice site lies in it; make it larger than space.spacing, or move it"
             )
     for (one, other), site in sorted(census.clashes.items()):
-        rigid = parts[one].is_wall or parts[one].is_body
-        if not rigid or parts[other].is_body:
+        if not parts[one].rigid or parts[other].moves_whole:
             move = "" if parts[one].flows else "move one, or "
             yield (
                 f"{parts[other].key}.shape: overlaps {parts[one].key} at {shown(site)}; {move}subtract "
@@ -239,83 +218,15 @@ def _state_faults(scene: Scene) -> Iterator[str]:
             "(by this spacing and speed of sound), lost in the rounding of the time; give "
             f"less than {0.9 * MOST_STEPS * longest:.2g}"
         )
-    for name, start in zip(scene.case.flowing, scene.starts.states):
+    for part, start in zip(scene.layout.parts, scene.starts.states):
+        if not part.flows:
+            continue
         density = float(start.density(np.array([[0.0] * scene.dimensions]))[0])
         if not start.layer and not start.exact and not density > 0.0:
             yield (
-                f"fluids.{name}.pressure: {start.pressure:g} Pa leaves no density at a speed of "
+                f"{part.key}.pressure: {start.pressure:g} Pa leaves no density at a speed of "
                 f"sound of {speed:g} m/s; raise the pressure or physics.sound_speed"
             )
-
-
-def _thin_walls(scene: Scene) -> Iterator[str]:
-    need = layers_needed(scene.layout)
-    for material, (layers, site) in sorted(thinnest_walls(scene.layout).items()):
-        reach = scene.kernel.support * scene.case.space.smoothing
-        part = scene.layout.parts[material]
-        what, other_cure = ("body", ", or space.spacing smaller") if part.is_body else ("wall", "")
-        yield (
-            f"{part.key}.shape: {layers} layer{'s' * (layers != 1)} of particles at "
-            f"{shown(site)}, the kernel reaches over {reach:.3g}; make the {what} at least "
-            f"{need} spacings ({need * scene.spacing:.6g} m) thick{other_cure}"
-        )
-
-
-def kernel_sums(scene: Scene) -> tuple[float, float]:
-    """Σ W dx^d over the lattice, the particle itself included: in the interior, and in the
-    outermost row of a half space."""
-    reach = math.ceil(scene.kernel.support * scene.case.space.smoothing)
-    interior = surface = 0.0
-    for site in product(range(-reach, reach + 1), repeat=scene.dimensions):
-        share = scene.kernel.w(math.hypot(*site) * scene.spacing) * scene.spacing**scene.dimensions
-        interior += share
-        surface += share if site[-1] <= 0 else 0.0
-    return interior, surface
-
-
-def _surface_threshold(scene: Scene) -> Iterator[str]:
-    effect = scene.case.physics.free_surface
-    if effect is None:
-        return
-    interior, surface = kernel_sums(scene)
-    sums = f"the kernel sum is {interior:.3f} inside and {surface:.3f} in the surface row"
-    between = f"a value between {surface:.3f} and {interior:.3f}, or another space.smoothing"
-    if surface >= effect.threshold:
-        yield (f"physics.free_surface: {effect.threshold:g} detects no surface, {sums}; give {between}")
-    elif interior < effect.threshold:
-        yield (
-            f"physics.free_surface: {effect.threshold:g} treats every particle as surface, {sums}; "
-            f"give {between}"
-        )
-
-
-def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
-    physics = scene.case.physics
-    rubs = (
-        physics.artificial_viscosity
-        or physics.pair_damping
-        or physics.reconstructed_damping
-        or any(fluid.rubs for fluid in scene.case.flowing.values())
-    )
-    disordered = any(fluid.jitter for fluid in scene.case.flowing.values())
-    if physics.pressure_gradient == "minimum" and disordered and not rubs:
-        yield (
-            'physics.pressure_gradient: "minimum" does not restore order, and the fluid starts '
-            "disordered and without friction: its particles will speed up; give a viscosity, "
-            'physics.artificial_viscosity, or scheme = "stable"'
-        )
-
-
-def _slow_sound(scene: Scene) -> Iterator[str]:
-    if not scene.case.fluids:
-        return  # soils have the waves of their moduli
-    least = SOUND_OVER_SPEED * scene.speeds.undriven
-    if scene.case.fluids and scene.sound_speed < least * (1.0 - TOLERANCE):
-        yield (
-            f"physics.sound_speed: {scene.sound_speed:g} is below ten times the expected speed, "
-            f"{scene.speeds.undriven:.3g} m/s, so density will vary by more than 1 %; "
-            f"raise it to {least:.3g}"
-        )
 
 
 def _jitter(scene: Scene) -> Iterator[str]:
@@ -336,29 +247,8 @@ OF_EVERY_SCENE = (
     motion_warnings,
     overshoots,
     in_degrees,
-    soil_warnings,
-    solid_warnings,
     _jitter,
     meshes.remarks,
     misfits,
 )
 """What warns of the parts of any scene."""
-
-OF_FLUIDS = (
-    wave_warnings,
-    _thin_walls,
-    _surface_threshold,
-    effect_warnings,
-    start_warnings,
-    _minimum_in_disorder,
-    _slow_sound,
-    driven_flow,
-    unbearing_warnings,
-    inside_walls,
-    gauge_warnings,
-    several_fluids,
-    slips,
-    rheology_warnings,
-    body_warnings,
-)
-"""What warns of fluids, and of what they meet."""

@@ -1,6 +1,4 @@
-"""The elastic solids of a layout: how thick they are, and the faces that the case draws of them."""
-
-import math
+"""How thick the parts of a layout are, and the faces that the case draws of them."""
 
 import numpy as np
 
@@ -13,14 +11,10 @@ FLAT = 0.95
 """Length of the mean of the normals half a spacing around a particle from which no edge is near."""
 
 
-def across(census: Census, number: int) -> tuple[int, int]:
-    """The fewest particles that a solid has along an axis, its clamped part with it, and that axis."""
-    return thinnest(census, census.layout.parts.solids[number])
-
-
 def thinnest(census: Census, material: int) -> tuple[int, int]:
-    """The same of any material that moves freely."""
-    layout, parts = census.layout, census.layout.parts.of_solid(material)
+    """The fewest particles that a part that moves freely has along an axis, what is clamped with it, and
+    that axis."""
+    layout, parts = census.layout, census.layout.parts.of_whole(material)
     low, high = census.lowest[parts].min(axis=0), census.highest[parts].max(axis=0)
     counts = np.rint((high - low) / layout.spacing).astype(int) + 1
     for d, period in enumerate(layout.periods):
@@ -40,9 +34,10 @@ def drawn_faces(layout: Layout, species: np.ndarray, position: np.ndarray) -> tu
     normal, depth = np.zeros_like(position), np.full(len(position), 0.5)
     for number in np.unique(species):
         part = layout.parts[number]
-        if part.flows or part.elastic is not None and may_crack(layout, part.elastic):
+        whole = layout.parts[part.whole]
+        if part.flows or whole.may_crack:
             continue
-        drawn = layout.parts[part.whole if part.elastic is not None else number].shape
+        drawn = (whole if whole.keeps_neighbours else part).shape
         shape = endless(drawn, layout.lower, layout.upper, layout.periods)
         rows = species == number
         found = faces_of(shape, position[rows])
@@ -58,8 +53,3 @@ def drawn_faces(layout: Layout, species: np.ndarray, position: np.ndarray) -> tu
             -found.away / layout.spacing,
         )
     return normal, depth
-
-
-def may_crack(layout: Layout, number: int) -> bool:
-    """Whether bonds of an elastic solid may be cut."""
-    return layout.solids[number].critical_stretch < math.inf

@@ -49,14 +49,15 @@ def off_solids(scene: Scene) -> Iterator[str]:
     for name, gauge in scene.case.gauges.items():
         if (asked := gauge.displacement or gauge.stress) is None:
             continue
-        if asked.of not in scene.case.referred:
+        kept = next((p for p in scene.layout.parts if p.name == asked.of and p.keeps_neighbours), None)
+        if kept is None:
             yield from _outside(scene, f"gauges.{name}.{gauge.kind}.at", asked.at)
             continue
         places = np.meshgrid(*(x + around for x in asked.at), indexing="ij")
         grid = [scene.layout.folded(d, place) for d, place in enumerate(places)]
-        if not inside(scene.case.solids[asked.of].shape, grid, TOLERANCE * scene.spacing).any():
+        if not inside(kept.shape, grid, TOLERANCE * scene.spacing).any():
             yield (
-                f"gauges.{name}.{gauge.kind}.at: {shown(asked.at)} lies off solids.{asked.of}; give a point "
+                f"gauges.{name}.{gauge.kind}.at: {shown(asked.at)} lies off {kept.key}; give a point "
                 "in it or on its face"
             )
 

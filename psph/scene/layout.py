@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, reduce
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -12,25 +13,20 @@ import numpy as np
 from psph.case import Case
 from psph.case.keys import AXES
 from psph.case.motion import motion_of
-from psph.case.parameters import as_numbers, chosen
+from psph.case.parameters import as_numbers
 from psph.moments import normalised
 from psph.particles.reach import Reach
-from psph.physics.solid.contact import REACH
-from psph.physics.solid.material import ElasticSolid
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.lattice import TOLERANCE, Lattice, lattice_around
 from psph.scene.meshes.drawn import Drawn, drawn
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.parts import Parts, parts_of
 from psph.scene.parts.order import among
-from psph.scene.parts.solid import anvils_in, solids_in
+from psph.scene.parts.solid import anvils_in
 from psph.scene.shapes import Corner, Grid, bounds, inside
 from psph.smoothing import kernel
 from psph.theory.solutions.catalogue import SOLUTIONS
 from psph.theory.solutions.setting import Surroundings
-
-BEYOND = 0.1
-"""Spacings: more than two particles approach each other in a step of a fluid."""
 
 NONE = 255
 """In place of a part: a site without a particle."""
@@ -119,16 +115,11 @@ class Layout:
 
     @property
     def reach(self) -> Reach:
-        """How far particles feel and see each other: by the kernel; elastic solids alone within 2.5 spacings,
-        and what the kernel reaches beyond that is skin, one spacing at least.  In a fluid they touch
-        before new lists are made: lists then reach a little farther."""
+        """How far particles feel and see each other: as far as the part that reaches farthest."""
         whole = Reach.uniform(self.kernel, self.smoothing_length, self.case.neighbours.skin)
-        support = REACH * self.spacing
-        if self.case.flowing:
-            touches = self.case.referred and self.case.physics.contact is not None
-            farther = whole._replace(support=max(whole.support, support + BEYOND * self.spacing))
-            return farther if touches else whole
-        return Reach(support, max(whole.cutoff - support, self.spacing))
+        contact = self.case.physics.contact is not None
+        asked = (part.reach(whole, self.spacing, contact) for part in self.parts)
+        return max(filter(None, asked), key=attrgetter("support"))
 
     @property
     def wall_reach(self) -> int:
@@ -139,22 +130,6 @@ class Layout:
     def names(self) -> tuple[str, ...]:
         """Of all parts."""
         return tuple(part.name for part in self.parts)
-
-    @cached_property
-    def regions(self) -> tuple[tuple[Any, int], ...]:
-        """Where particles appear or vanish, each with the number of the fluid that comes."""
-        tables = getattr(self.case, "regions", {}).values()
-        fluids = list(self.case.flowing)
-        return tuple(
-            (region, fluids.index(table.into) if table.into else 0)
-            for table in tables
-            for region in chosen(table, self.case.catalogue.regions).values()
-        )
-
-    @cached_property
-    def solids(self) -> tuple[ElasticSolid, ...]:
-        """The total Lagrangian solids, without the damping that depends on the speed of sound."""
-        return solids_in(self.case, any(self.periods))
 
     @cached_property
     def anvils(self) -> tuple[tuple[Corner, Corner], ...]:
@@ -190,7 +165,7 @@ class Layout:
 
     def flows(self, held: np.ndarray) -> np.ndarray:
         """True where ``held`` is a part that flows."""
-        return among(held, self.parts.flowing)
+        return among(held, [part.number for part in self.parts if part.flows])
 
     def stands(self, held: np.ndarray) -> np.ndarray:
         """True where ``held`` is a part that does not flow: an elastic solid, a clamp, a wall, a body."""
@@ -205,7 +180,7 @@ class Layout:
             whole = masks[of]
             masks[clamp] = masks[clamp] & whole
             masks[of] = whole & ~masks[clamp]
-        taking = [masks[part.number] for part in self.parts if part.displaces or part.is_body]
+        taking = [masks[part.number] for part in self.parts if part.displaces]
         if not taking:
             return masks
         taken = reduce(np.logical_or, taking)

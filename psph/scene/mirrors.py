@@ -20,7 +20,7 @@ def planes_of(case: Case) -> tuple[Plane, ...]:
     found = [(f"space.symmetry: {side}", plane) for side, plane in _of_domain(case)]
     for name, wall in case.walls.items():
         if wall.condition == MIRROR:
-            held = around([bounds(fluid.shape) for fluid in case.flowing.values()])
+            held = around([bounds(entry.of.shape) for entry in case.movers if entry.of.flows])
             found += [(f"walls.{name}", plane) for plane in _of_wall(case, name, wall, held)]
     seen: dict[tuple[int, int], str] = {}
     for key, plane in found:

@@ -9,18 +9,9 @@ import numpy as np
 from psph.case.errors import dotted
 from psph.case.keys import AXES, Table
 from psph.case.motion import BUILT_IN, RADIANS
-from psph.physics.motion import is_rigid
+from psph.physics.motion import goes_free, is_rigid
 from psph.physics.rigid.motion import MotionPart, Rigid
-from psph.scene.moving import (
-    MOMENTS,
-    Sweep,
-    frame_sweep,
-    goes_free,
-    moments,
-    moved_on,
-    moving_parts,
-    taken_back,
-)
+from psph.scene.moving import MOMENTS, Sweep, frame_sweep, moments, moved_on, moving_parts, taken_back
 from psph.scene.scene import Scene
 
 FARTHEST = 2e9
@@ -104,10 +95,11 @@ def _plain(value) -> str:
 
 def motion_warnings(scene: Scene) -> Iterator[str]:
     """What of the motions of walls and bodies may not be meant so."""
+    compresses = any(part.flows and not part.keeps_form for part in scene.layout.parts)
     for number, part, found in moving_parts(scene.census):
         key = f"{part}.motion"
         share = found.speed / scene.sound_speed
-        if share > QUICK and (scene.case.fluids or not scene.case.solids):
+        if share > QUICK and compresses:
             yield (
                 f"{key}: {found.speed:.3g} m/s is {share:.2g} of the speed of sound, which compresses the "
                 f"fluid before it; give physics.sound_speed = {10.0 * found.speed:.3g} or more"

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.physics.motion import Immersed, is_free, is_rigid
-from psph.physics.rigid.bodies import RigidBody
+from psph.physics.motion import is_rigid, told_of
 from psph.physics.rigid.pose import PLACE, maps
 from psph.scene.census import Census
 from psph.scene.layout import Layout
@@ -54,7 +53,7 @@ def moving_parts(census: Census) -> Iterator[tuple[int, str, Sweep]]:
     """Each wall and body that moves rigidly as it is told: its number among the species, its key and what
     it does."""
     for number, one in enumerate(census.motions):
-        told = one.motion if isinstance(one, RigidBody) else one
+        told = told_of(one)
         if is_rigid(told):
             low, high = (tuple(end.tolist()) for end in _box(census, number))
             yield number, census.layout.parts[number].key, sweep(told, low, high, census.layout.case.time.end)
@@ -76,15 +75,12 @@ def frame_sweep(layout: Layout) -> Sweep | None:
 def largest_speed(census: Census) -> float:
     """Of walls and bodies that move as they are told, and of bodies that start with a spin, m/s."""
     told = (found.speed for _, _, found in moving_parts(census))
-    return max((*told, *_spinning_speeds(census)), default=0.0)
-
-
-def _spinning_speeds(census: Census) -> Iterator[float]:
-    """|V| + |ω| r of each body at the start, m/s, with its corner at r farthest from what it turns about."""
-    d = census.layout.dimensions
-    for number, one in zip(census.layout.parts.bodies, census.rigid_bodies):
-        far = np.abs(np.array(_box(census, number)) - one.reference[:d]).max(axis=0)
-        yield math.hypot(*one.velocity) + math.hypot(*one.spin) * math.hypot(*far)
+    starting = (
+        one.starting_speed(*_box(census, number))
+        for number, one in enumerate(census.motions)
+        if hasattr(one, "starting_speed")
+    )
+    return max((*told, *starting), default=0.0)
 
 
 def fastest_corner(census: Census, number: int, velocity: tuple[float, ...]) -> float:
@@ -109,23 +105,14 @@ def falling_speed(census: Census) -> float:
     framed = frame_sweep(layout)
     pull = math.hypot(*layout.height_gravity) + (framed.acceleration if framed else 0.0)
     tops, bottoms = census.top[movers].tolist(), census.bottom[movers].tolist()
-    for number, one in zip(layout.parts.bodies, census.rigid_bodies):
-        lowest, highest = float(census.bottom[number]), float(census.top[number])
-        if any(slides and g for slides, g in zip(one.slides, layout.height_gravity)):
-            tops.append(lowest - layout.spacing)
-            bottoms.append(lowest)
-        elif one.pivot is not None and any(one.turns):
-            tops.append(highest)
-            bottoms.append(lowest)
+    for one, lowest, highest in zip(census.motions, census.bottom.tolist(), census.top.tolist()):
+        if not hasattr(one, "fall"):
+            continue
+        if ends := one.fall(lowest, highest, layout.spacing, layout.height_gravity):
+            tops.append(ends[0])
+            bottoms.append(ends[1])
     height = max(tops) - min(bottoms) + layout.spacing
     return math.sqrt(2.0 * pull * max(height, 0.0))
-
-
-def goes_free(motion) -> bool:
-    """Whether forces say where a part goes, at least along an axis."""
-    if isinstance(motion, RigidBody):
-        return any((*motion.slides, *motion.turns))
-    return is_free(motion) or isinstance(motion, Immersed)
 
 
 def moved_on(motion, points: np.ndarray, time: float, dimensions: int) -> np.ndarray:

@@ -72,7 +72,7 @@ class Scene:
     starting_speed = property(attrgetter("speeds.starting"))
     species = property(attrgetter("starts.species"))
     rheologies = property(attrgetter("starts.rheologies"))
-    stressed = property(attrgetter("starts.stressed"))
+    strengths = property(attrgetter("starts.strengths"))
     has_free_surface = property(attrgetter("starts.has_free_surface"))
     lowest_pressure = property(attrgetter("starts.lowest_pressure"))
     starting_fullness = property(attrgetter("starts.fullness"))

@@ -5,8 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.case.updated import referred_in
+from psph.physics.solid.laws import SaintVenantKirchhoff
 from psph.scene.calming import calming, impedance
-from psph.scene.faces import across, thinnest
+from psph.scene.faces import thinnest
 from psph.scene.lattice import TOLERANCE
 from psph.scene.parts.solid import ElasticPart, UpdatedPart
 from psph.scene.scene import Scene
@@ -47,23 +49,23 @@ def solid_faults(scene: Scene) -> Iterator[str]:
                 f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
             )
         for load, table in scene.case.solids[name].loads.items():
-            if not _pulls(scene, scene.layout.parts.of_solid(number), table.shape):
+            if not _pulls(scene, scene.layout.parts.of_whole(number), table.shape):
                 yield f"solids.{name}.loads.{load}.shape: no particle of the solid lies in it; move it there"
 
 
 def solid_warnings(scene: Scene) -> Iterator[str]:
     """A line for each number of a solid that is likely not meant."""
-    case = scene.case
-    if len(case.referred) > 1 and case.physics.contact is None and not case.flowing:
+    case, referred = scene.case, referred_in(scene.case)
+    if len(referred) > 1 and case.physics.contact is None and not case.flowing:
         yield (
-            f"solids: {', '.join(case.referred)} do not feel each other, and run through each other where "
+            f"solids: {', '.join(referred)} do not feel each other, and run through each other where "
             "they meet; give physics.contact = {}"
         )
-    if case.referred and not case.flowing:
+    if referred and not case.flowing:
         yield from fast_start(scene)
     for number, name in _elastic(scene):
         yield from _of_either_description(scene, number, name)
-    for solid, (number, (name, table)) in enumerate(zip(scene.layout.parts.solids, case.referred.items())):
+    for solid, (number, (name, table)) in enumerate(zip(scene.layout.parts.solids, referred.items())):
         if table.hourglass == 0:
             yield f"solids.{name}.hourglass: 0 leaves zigzags of particles without stiffness; remove it"
         yield from _numbers(f"solids.{name}", table)
@@ -86,6 +88,15 @@ def fast_start(scene: Scene) -> Iterator[str]:
             f"guards.speed: {most:g}, and the solids start at {speed:.3g} speeds of sound: the run would "
             f"stop at once; give guards.speed = {2.0 * speed:.2g} if this is intended"
         )
+
+
+def solid_advice(scene: Scene) -> Iterator[str]:
+    """What to try after a guard stopped a run of solids."""
+    if scene.case.time.step is not None:
+        yield "remove time.step: the waves in the solids set the step then"
+    softens = any(isinstance(one.law, SaintVenantKirchhoff) for one in scene.starts.solids)
+    law = 'law = "neo-hookean", which stands more compression, ' if softens else ""
+    yield f"give {law}a larger hourglass, or some damping; look at the units of young, density and loads"
 
 
 def _elastic(scene: Scene) -> Iterator[tuple[int, str]]:
@@ -137,7 +148,7 @@ def _numbers(key: str, table) -> Iterator[str]:
 
 def _behind_anvils(scene: Scene, number: int, key: str) -> Iterator[str]:
     """A line for each anvil that pushes a solid from the start."""
-    parts = scene.layout.parts.of_solid(number)
+    parts = scene.layout.parts.of_whole(number)
     for name, (place, normal) in zip(scene.case.anvils, scene.layout.anvils):
         nearest = np.inf
         for first, last in scene.layout.lattice.chunks():
@@ -204,8 +215,8 @@ def solid_lines(scene: Scene) -> Iterator[str]:
     parts = scene.layout.parts
     for solid, number in enumerate(parts.solids):
         one, name, table = scene.starts.solids[solid], parts[number].name, parts[number].table
-        wide, axis = across(scene.census, solid)
-        clamped = sum(int(scene.census.sizes[n]) for n in parts.of_solid(number) if n != number)
+        wide, axis = thinnest(scene.census, number)
+        clamped = sum(int(scene.census.sizes[n]) for n in parts.of_whole(number) if n != number)
         count = int(scene.census.sizes[number]) + clamped
         yield (
             f"  solid       {name}: {_law(table)}, E {table.young:g} Pa, ν {table.poisson:g}, waves of "

@@ -19,7 +19,7 @@ def exact_faults(scene: Scene) -> Iterator[str]:
 
 def _unlike(scene: Scene) -> Iterator[str]:
     """Fluids that are not the one of the solution: what it asks of a fluid is that of the first."""
-    fluids = {f"{scene.case.table_of(name)}.{name}": fluid for name, fluid in scene.case.flowing.items()}
+    fluids = {part.key: part.table for part in scene.layout.parts if part.flows}
     first = next(iter(fluids))
     for asked in asked_of_fluid(scene.layout.exact, scene.layout.surroundings):
         values = {key: getattr(fluid, asked, 0.0) for key, fluid in fluids.items()}

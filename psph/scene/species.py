@@ -102,7 +102,8 @@ class Start(NamedTuple):
     """State of a material before the first step.
 
     p = ``pressure`` everywhere, or ``exact`` of the positions (n, dim), or that of a ``layer`` under its own
-    weight, of a fluid (psph.scene.still) or a soil (psph.scene.stressed).  ``law`` is the equation of state.
+    weight, of a fluid (psph.scene.fluid.still) or a soil (psph.scene.stressed).  ``law`` is the equation of
+    state.
     """
 
     law: Any

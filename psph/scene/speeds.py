@@ -11,9 +11,9 @@ from psph.case import CaseError
 from psph.case.study import EXACT
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.scene.census import Census
+from psph.scene.fluid.periodic_gravity import creeping_speed, driven_speed
 from psph.scene.layout import Layout
 from psph.scene.moving import falling_speed, fastest_corner, largest_speed
-from psph.scene.periodic_gravity import creeping_speed, driven_speed
 from psph.scene.perturbations import kicked_velocities, kicks_of
 
 
@@ -67,16 +67,15 @@ class Speeds:
     @cached_property
     def sound_speed(self) -> float:
         """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow; no less than
-        the fastest wave of what bears an evolved stress, and that where there is no fluid.
+        the fastest wave of what flows and has moduli; that, or the one of solids, where all have some.
 
         Raises CaseError where nothing moves and nothing falls.
         """
         case = self.layout.case
-        if not case.flowing:
-            return max(one.wave_speed for one in self.layout.solids)
-        stressed = (part.table.wave_speed for part in self.layout.parts if part.bears_stress)
-        waves = max(stressed, default=0.0)
-        if not case.fluids:
+        movers = [part for part in self.layout.parts if part.moves_freely]
+        heard = [part.wave_speed for part in movers if part.flows] or [part.wave_speed for part in movers]
+        waves = max(heard)
+        if all(heard):
             return waves
         given = case.physics.sound_speed
         if given is None and not self.expected > 0.0:

@@ -7,18 +7,19 @@ from typing import Any
 
 import numpy as np
 
+from psph.case.fluids import HYDROSTATIC
 from psph.case.study import EXACT
 from psph.physics.solid.material import ElasticSolid
 from psph.scene.calming import damped_solids
 from psph.scene.census import Census
+from psph.scene.fluid.opening import has_free_surface
+from psph.scene.fluid.still import Still, stills_of
 from psph.scene.layout import Layout
-from psph.scene.opening import has_free_surface
 from psph.scene.parts import Known
 from psph.scene.parts.fluid import rheologies_of
 from psph.scene.species import Species, Start
 from psph.scene.speeds import Speeds
-from psph.scene.still import HYDROSTATIC, Still, stills_of
-from psph.scene.stressed import Stressed, stressed_of
+from psph.scene.stressed import Layer, layers_of
 from psph.theory.solutions.setting import Setting
 
 
@@ -54,9 +55,15 @@ class Starts:
         return rheologies_of(self.layout.case)
 
     @cached_property
-    def stressed(self) -> Stressed:
-        """What bears an evolved stress: soils."""
-        return stressed_of(self.census)
+    def strengths(self) -> tuple[Any, ...]:
+        """The different laws that bound an evolved stress (psph.physics.stress.strength)."""
+        laws = (part.strength(self.layout.gravity) for part in self.layout.parts)
+        return tuple(dict.fromkeys(law for law in laws if law is not None))
+
+    @cached_property
+    def layers(self) -> dict[int, Layer]:
+        """How each soil starts that is under its own weight, by its number."""
+        return layers_of(self.census)
 
     @cached_property
     def stills(self) -> dict[int, Still]:
@@ -76,7 +83,7 @@ class Starts:
         known = Known(
             self.speeds.sound_speed,
             self.rheologies,
-            self.stressed.laws,
+            self.strengths,
             tuple(one.density * one.wave_speed**2 for one in self.solids),
             self.census.lowest,
             self.census.highest,
@@ -100,7 +107,7 @@ class Starts:
 
     @cached_property
     def has_free_surface(self) -> bool:
-        """Whether a fluid has a free surface at the start, or can have one (psph.scene.opening)."""
+        """Whether a fluid has a free surface at the start, or can have one (psph.scene.fluid.opening)."""
         return has_free_surface(self.census)
 
     @property
@@ -128,7 +135,8 @@ class Starts:
         Equal masses do not fill the lattice where the pressure differs from place to place.
         """
         filled, volume = [1.0], self.layout.spacing**self.layout.dimensions
-        for fluid, pressures in zip(self.layout.parts.flowing, self._pressures):
+        flowing = (part.number for part in self.layout.parts if part.flows)
+        for fluid, pressures in zip(flowing, self._pressures):
             start, mass = self.states[fluid], self.species[fluid].mass
             for pressure in pressures:
                 rho = start.law.density(np.float64(pressure), start.rest_density, start.sound_speed)
@@ -146,13 +154,13 @@ class Starts:
             sound_speed=self.speeds.sound_speed,
             pressure=0.0 if hydrostatic or exact else pressure,
             exact=(lambda x: self.layout.exact.pressure(x, 0.0, self.setting)) if exact else None,
-            layer=self.stills.get(number) if hydrostatic else self.stressed.layers.get(number),
+            layer=self.stills.get(number) if hydrostatic else self.layers.get(number),
         )
 
     @cached_property
     def _pressures(self) -> tuple[tuple[float, float], ...]:
         """The lowest and the highest pressure of each fluid at the start, Pa."""
-        return tuple(self._range_of_pressure(fluid) for fluid in self.layout.parts.flowing)
+        return tuple(self._range_of_pressure(part.number) for part in self.layout.parts if part.flows)
 
     def _range_of_pressure(self, fluid: int) -> tuple[float, float]:
         start, layout = self.states[fluid], self.layout

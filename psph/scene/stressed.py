@@ -1,7 +1,7 @@
 """What bears an evolved stress in a scene: laws, waves, and soils under their own weight at the start."""
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,41 +60,28 @@ class Layer(NamedTuple):
         return (1.0 - self.at_rest) * self.stress(position)[1][:, None] * rows
 
 
-class Stressed(NamedTuple):
-    """What bears an evolved stress in a scene (psph.physics.stress): soils.
-
-    ``laws``: the different ones that bound a stress (psph.physics.stress.strength); ``diffusion``: how
-    strongly the stress of a soil spreads between neighbours at most, 0 without; ``layers``: how each soil
-    starts that starts under its own weight, by its number.
-    """
-
-    laws: tuple[Any, ...]
-    diffusion: float
-    layers: dict[int, Layer]
-
-    def deviator(self, species: np.ndarray, position: np.ndarray) -> np.ndarray:
-        """The deviatoric stress at the start, Pa (n, dim(dim + 1)/2), of particles of ``species`` (n,)."""
-        dimensions = position.shape[1]
-        found = np.zeros((len(species), dimensions * (dimensions + 1) // 2))
-        for number, layer in self.layers.items():
-            rows = species == number
-            found[rows] = layer.deviator(position[rows])
-        return found
-
-
 def soils_of(census: Census) -> list[SoilPart]:
     """The soils of a scene."""
     return [part for part in census.layout.parts if isinstance(part, SoilPart)]
 
 
-def stressed_of(census: Census) -> Stressed:
-    """What bears an evolved stress in a scene."""
-    soils, gravity = soils_of(census), census.layout.gravity
-    laws = tuple(dict.fromkeys(soil.strength(gravity) for soil in soils))
-    diffusion = max((soil.table.stress_diffusion for soil in soils), default=0.0)
-    resting = [soil for soil in soils if soil.table.geostatic] if any(gravity) else []
+def layers_of(census: Census) -> dict[int, Layer]:
+    """How each soil starts that starts under its own weight, by its number."""
+    gravity = census.layout.gravity
+    resting = [soil for soil in soils_of(census) if soil.table.geostatic] if any(gravity) else []
     held = columns(census.layout, int(np.abs(gravity).argmax())) if resting else None
-    return Stressed(laws, diffusion, {soil.number: layer_of(census, soil, held) for soil in resting})
+    return {soil.number: layer_of(census, soil, held) for soil in resting}
+
+
+def deviator_of(layers: dict[int, Layer], species: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """The deviatoric stress at the start, Pa (n, dim(dim + 1)/2), of particles of ``species`` (n,) at
+    ``position`` (n, dim): that of ``layers``, else none."""
+    dimensions = position.shape[1]
+    found = np.zeros((len(species), dimensions * (dimensions + 1) // 2))
+    for number, layer in layers.items():
+        rows = species == number
+        found[rows] = layer.deviator(position[rows])
+    return found
 
 
 def layer_of(census: Census, part: SoilPart, held) -> Layer:

@@ -6,7 +6,7 @@ import numpy as np
 
 from psph.case.bodies import SLIDES, TURNS
 from psph.case.motion import motion_of
-from psph.physics.rigid.bodies import RigidBody
+from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.pose import in_space
 from psph.scene.lattice import lattice_around
 from psph.scene.layout import Layout
@@ -67,12 +67,8 @@ def drawn_volume(layout: Layout, shape) -> float:
     return float(count) * fine**layout.dimensions
 
 
-def rigid_bodies(layout: Layout) -> tuple[RigidBody, ...]:
-    """The bodies of a layout."""
-    return tuple(_body(layout, part) for part in layout.parts if part.is_body)
-
-
-def _body(layout: Layout, part: Part) -> RigidBody:
+def moved_as_whole(layout: Layout, part: Part) -> RigidBody:
+    """How a part moves that keeps its form under forces."""
     table, filled, dimensions = part.table, volume_of(layout, part.number), layout.dimensions
     mass = table.mass or table.density * filled.volume
     inertia = filled.inertia(mass)

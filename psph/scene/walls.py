@@ -66,7 +66,7 @@ def thinnest_walls(layout: Layout) -> Thin:
     count in the same way: fluid may come to them.
     """
     need, wet, dry = layers_needed(layout), Thin(), Thin()
-    if not (layout.parts.walls or layout.case.flowing and layout.case.referred):
+    if not any(part.ends_kernel for part in layout.parts):
         return wet
     for first, last in layout.lattice.chunks():
         held = with_surroundings(layout, first, last, need)

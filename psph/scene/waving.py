@@ -101,7 +101,7 @@ def wave_faults(scene: Scene) -> Iterator[str]:
 
     The bed lies at the foot of the fluids, or the depth below their surface.
     """
-    for waves in waves_of(scene) if scene.case.flowing else ():
+    for waves in waves_of(scene):
         asked = waves.asked
         if not isinstance(asked, OnHinge) or asked.center is None:
             continue
@@ -171,11 +171,8 @@ def _stroke(law: Swings, asked: Any) -> float:
 
 def _water(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """The corners of the box around all fluids, m."""
-    fluids, half = list(scene.layout.parts.flowing), 0.5 * scene.spacing
-    return (
-        scene.census.lowest[fluids].min(axis=0) - half,
-        scene.census.highest[fluids].max(axis=0) + half,
-    )
+    (low, high), half = scene.census.flow, 0.5 * scene.spacing
+    return low - half, high + half
 
 
 def _depth_warnings(scene: Scene, waves: Waves) -> Iterator[str]:

@@ -67,8 +67,8 @@ def _values(node, keys: list[str], path: str = "", given: bool = True):
     head, *rest = keys
     names = list(node) if head == "*" else [head]
     if isinstance(node, Case) and head == WALLS:
-        for name, solid in node.boundaries.items():
-            yield from _values(solid, rest[1:], f"{node.table_of(name)}.{name}")
+        for table, name, one in (entry for entry in node.entries if entry.of.rigid):
+            yield from _values(one, rest[1:], f"{table}.{name}")
         return
     for name in names:
         below = node[name] if isinstance(node, dict) else getattr(node, name)

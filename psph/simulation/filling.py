@@ -3,14 +3,10 @@
 import numpy as np
 
 from psph.fields import APART, OF_MATERIAL
+from psph.kinds import kinds_in
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
-from psph.physics.solid.contact import COVER, FACE
 from psph.physics.solid.deformation import REFERENCE
-from psph.physics.stress.deviator import DEVIATOR
-from psph.physics.stress.faces import OF_FACES
-from psph.scene.faces import drawn_faces
-from psph.scene.smooth import smooth_faces
 from psph.simulation.materials import Materials
 
 
@@ -22,17 +18,9 @@ def block_of(scene, materials: Materials, store: Store, species, position, veloc
     for name, values in (starting | {ANCHOR.name: position, REFERENCE.name: position}).items():
         if name in store:
             block[list(store.rows[name])] = values.T
-    if DEVIATOR.name in store:
-        for name in (DEVIATOR.name, f"predicted_{DEVIATOR.name}"):
-            block[list(store.rows[name])] = scene.stressed.deviator(species, position).T
-    if FACE.name in store:
-        normal, depth = drawn_faces(scene.layout, species, position)
-        block[list(store.rows[FACE.name])], block[store.rows[COVER.name].start] = normal.T, depth
-    if any(field.name in store for field in OF_FACES):
-        normal = smooth_faces(scene, species, position)
-        for field in OF_FACES:
-            if field.name in store:
-                block[list(store.rows[field.name])] = normal.T
+    for kind in kinds_in(scene):
+        for name, values in kind.starts(store.fields, species, position):
+            block[list(store.rows[name])] = values.T
     known = {"density": density}
     known |= {field.name: materials.values(field.name)[species] for field in OF_MATERIAL}
     known[APART.name] = materials.apart[species]

@@ -1,13 +1,14 @@
 """The rigid bodies of a simulation: what pushes them, and the maps that place their particles."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from psph.engine.settled import settled
 from psph.kinds import Work
 from psph.parallel.reductions import whole_sums
-from psph.physics.rigid.bodies import Bodies, RigidBody, crossing
+from psph.physics.rigid.bodies import Bodies, crossing
+from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.lines import pulls
 from psph.physics.rigid.pushes import add_pushes
 from psph.scene.bodies import lines_of, shares_of
@@ -83,6 +84,14 @@ class FloatingBodies(Work):
         found = self.contacts.deepest(self.bodies)
         inner = self.bodies.bodies[found.body].name
         return f"bodies.{inner} is {found.depth:.3g} m inside {found.other}"
+
+    def pushing(self, groups: Sequence[int], about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Force and moment of the contacts of bodies among the groups."""
+        bodies, point = self.bodies, np.zeros(3)
+        own = np.isin(np.arange(len(bodies.bodies)), self.body_of[list(groups)])
+        point[: len(about)] = about
+        twist = bodies.twisting + np.cross(bodies.place - point, bodies.pressing)
+        return bodies.pressing[own].sum(axis=0), twist[own].sum(axis=0)
 
     def summary(self, poses, lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
         """A line for each body that is beyond the scene's walls in whole, but not above."""

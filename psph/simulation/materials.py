@@ -10,7 +10,6 @@ from psph.kinds import kinds_in
 from psph.physics.catalogue import Entry
 from psph.physics.motion import is_prescribed
 from psph.physics.solid.material import NO_SOLID
-from psph.scene.solids import meets
 from psph.simulation.calling import called_for
 from psph.simulation.movement import movement_of
 
@@ -102,11 +101,9 @@ def laws(scene, entries: Iterable[Entry]) -> dict[tuple[type, Any], str]:
     """
     [(_, shared)] = filter(None, (called_for(scene.case, entry) for entry in entries))
     reasons: dict[tuple[type, Any], dict[str, None]] = {}
-    for (name, fluid), one in zip(scene.case.flowing.items(), scene.species):
-        own = fluid.equation_of_state and f"fluids.{name}.equation_of_state = {fluid.equation_of_state}"
-        if one.shear_modulus:
-            own = f"{scene.case.table_of(name)}.{name}.young"
-        reasons.setdefault((type(one.law), one.law), {})[own or shared] = None
+    for part, one in zip(scene.layout.parts, scene.species):
+        if part.flows:
+            reasons.setdefault((type(one.law), one.law), {})[part.law_key or shared] = None
     for one in scene.species[len(reasons) and len(scene.species) :]:  # of solids alone: none bears a pressure
         reasons.setdefault((type(one.law), one.law), {})[shared] = None
     return {law: "; ".join(keys) for law, keys in reasons.items()}
@@ -138,9 +135,6 @@ def split(species, names) -> tuple[dict[str, float], tuple[str, ...]]:
 
 
 def has_couples(scene) -> bool:
-    """Whether the push of a viscous fluid on a wall or a body is asked for, and what has a moment; or that of
-    elastic solids on bodies, whose contacts turn the normals of their faces."""
-    if scene.case.bodies and meets(scene):
-        return True
+    """Whether the push of a viscous fluid on a wall or a body is asked for, which has a moment."""
     rubbed = any(one.loaded and one.rubs for one in scene.species if not one.is_fluid)
     return scene.dimensions > 1 and rubbed and any(one.rubs for one in scene.species if one.is_fluid)

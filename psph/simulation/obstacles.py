@@ -9,7 +9,7 @@ import numpy as np
 from psph.case.shapes import Ball, Disc, Shape
 from psph.composition.mirrors import BELOW
 from psph.physics.motion import Fixed, is_rigid
-from psph.physics.rigid.bodies import RigidBody
+from psph.physics.rigid.body import RigidBody
 from psph.scene.distance import Faces, corners_of, faces_of
 from psph.scene.shapes import bounds
 

@@ -27,16 +27,15 @@ from psph.kinds import Kind, kinds_in
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK
-from psph.physics.solid.deformation import SMOOTHING
 from psph.scene.solids import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
 from psph.simulation.movement import carried_fields
 from psph.simulation.passes import Pass, array_of, make_passes, pass_of_contacts
-from psph.simulation.plan_of_solids import OfSolids
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
 from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
+from psph.simulation.solid_plan import OfSolids
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
@@ -107,10 +106,6 @@ class Plan(OfSolids):
     """How the push on groups that are loaded is summed (psph.composition.loads)."""
     renewed: tuple[str, ...]
     """What ghosts need of it that kinds of matter fill anew just before the sums."""
-    solids: tuple[Any, ...]
-    """The elastic solids (psph.physics.solid.material)."""
-    solid_smoothing_length: float
-    """That of the solids' own kernel, m."""
     cfl: float
     fixed_step: float | None
     extremes: Any
@@ -155,10 +150,6 @@ class Plan(OfSolids):
     def moves_walls(self) -> bool:
         """Whether walls move as they are told, or a kind of matter by its own work."""
         return bool(self.materials.motions or self.materials.rigid) or any(kind.moves for kind in self.matter)
-
-    def of(self, name: str) -> Any:
-        """The kind of matter of that name, or None."""
-        return next((kind for kind in self.matter if kind.name == name), None)
 
     @cached_property
     def starts_twice(self) -> bool:
@@ -260,7 +251,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         case.time.gather_every,
         for_loads,
     )
-    met = pass_of_contacts(called, stored) if flows and scene.starts.solids else None
+    pushing = flows and any(kind.pushes_within for kind in matter)
+    met = pass_of_contacts(called, stored) if pushing else None
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in (*passes, *([met] if met else [])) for name in one.neighbour_fields}
@@ -300,8 +292,6 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         matter=matter,
         loads=next((how for kind in matter if (how := kind.loads(passes))), Loads),
         renewed=tuple(name for name in refreshed if name in renewed),
-        solids=scene.starts.solids,
-        solid_smoothing_length=SMOOTHING * scene.spacing,
         cfl=case.time.cfl,
         fixed_step=case.time.step,
         extremes=Extremes(

@@ -5,6 +5,7 @@ import numpy as np
 from psph.fields import FLUID
 from psph.kinds import count_of
 from psph.physics.region import is_source
+from psph.scene.regions import regions_of
 from psph.simulation.filling import block_of
 
 
@@ -16,13 +17,14 @@ class Population:
     def __init__(self, scene, plan, domain):
         self.scene, self.plan, self.domain = scene, plan, domain
         self.next_id, self.asked = count_of(scene), 0.0
+        self.regions = regions_of(scene.layout)
 
     def renew(self, time: float) -> None:
         """Take out and let in what the regions say up to ``time``, s; new lists have to follow."""
-        for region, _ in self.scene.layout.regions:
+        for region, _ in self.regions:
             if hasattr(region, "vanish"):
                 self._take_out(region, time)
-        for region, group in self.scene.layout.regions:
+        for region, group in self.regions:
             if is_source(region):
                 self._let_in(*region.appear(self.asked, time), group)
         self.asked = time

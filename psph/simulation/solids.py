@@ -321,6 +321,10 @@ class Solids(Work):
         lists = self._around[0].lists
         return float(lists.lengths.mean()) if self._owned else 0.0
 
+    def pairs(self) -> int:
+        """In the reference."""
+        return round(self.neighbours * self.rows)
+
     def booked(self) -> tuple[float]:
         """Their stored energy, J."""
         return (self.energy(),)

@@ -12,13 +12,13 @@ from psph.parallel.reductions import largest
 def stages_of(plan) -> Iterator[Stage]:
     """What a step of this plan does, in order: the stages of every step, and before each of them those that
     kinds of matter have there.  Raises Refused where a kind has one before a stage that there is not."""
-    names = [stage.run.__name__ for stage in OF_EVERY_STEP]
     for kind in plan.matter:
-        for other in sorted(kind.stages().keys() - set(names)):
-            raise Refused(f"{kind.name}: stages: {other}: no such stage; give one of {', '.join(names)}")
-    for stage in OF_EVERY_STEP:
+        for other in sorted(kind.stages().keys() - OF_EVERY_STEP.keys()):
+            known = ", ".join(OF_EVERY_STEP)
+            raise Refused(f"{kind.name}: stages: {other}: no such stage; give one of {known}")
+    for name, stage in OF_EVERY_STEP.items():
         for kind in plan.matter:
-            if own := kind.stages().get(stage.run.__name__):
+            if own := kind.stages().get(name):
                 yield own
         yield stage
 
@@ -96,11 +96,11 @@ def find_limits(simulation) -> None:
     simulation.impacts.see(simulation.acceleration)
 
 
-OF_EVERY_STEP = (
-    Stage(predict, predict),
-    Stage(renew_lists, begin_lists),
-    Stage(sum_over_pairs, begin_sums),
-    Stage(kick, begin_rates),
-    Stage(find_limits, find_limits),
-)
-"""The stages of every step, in order."""
+OF_EVERY_STEP = {
+    "predict": Stage(predict, predict),
+    "renew_lists": Stage(renew_lists, begin_lists),
+    "sum_over_pairs": Stage(sum_over_pairs, begin_sums),
+    "kick": Stage(kick, begin_rates),
+    "find_limits": Stage(find_limits, find_limits),
+}
+"""The stages of every step, in order, by the names before which kinds of matter have theirs."""

@@ -69,3 +69,9 @@ def test_both_descriptions_in_one_case_are_refused(tmp_path):
         "updated", "total"
     ).replace("0.0, 0.0], upper = [1", "2.0, 0.0], upper = [3").replace("clamped.box", "#")
     assert any("beside solids that are total" in line for line in refusal(tmp_path, both))
+
+
+def test_a_gradient_of_another_dimension_is_told_once_of_the_table_that_has_it(tmp_path):
+    """Not as one of a fluid, which the case has not."""
+    [line] = refusal(tmp_path, BLOCK, "solids.block.velocity_gradient=[[0.0, 1.0]]")
+    assert "solids.block.velocity_gradient: [[0.0, 1.0]]: 1 row in a case with" in line

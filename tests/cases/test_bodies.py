@@ -16,6 +16,7 @@ from trimesh.intersections import slice_faces_plane
 
 from psph.case import load
 from psph.scene import Scene
+from psph.scene.body_parts import bodies_of
 
 RHO, G = 1000.0, 9.81
 
@@ -40,7 +41,7 @@ def test_a_cylinder_on_a_spring_carries_the_water_around_it(spacing, outer, tmp_
     )
     table = finished("cylinder_on_spring", tmp_path / "run", *wider).gauges()["cylinder"]
     times = crossings(table["time"], table["cylinder.centre_x"] - 0.005)
-    [body] = Scene(load(f"{CASES}/cylinder_on_spring.toml", wider)).census.rigid_bodies
+    [body] = bodies_of(Scene(load(f"{CASES}/cylinder_on_spring.toml", wider)).census)
     added = (outer**2 + 0.1**2) / (outer**2 - 0.1**2)
     exact = 2.0 * math.pi * math.sqrt(body.mass * (1.0 + added) / 3308.0)
     assert 2.0 * np.diff(times)[:4].mean() == pytest.approx(exact, rel=0.03)

@@ -140,13 +140,13 @@ class Dust(FreeKind):
         for name, one in self.tables.items():
             yield 0.5 * one.stopping_time / (1.0 + one.density / fluid), f"drag of dust.{name}"
 
-    def matter_lines(self):
+    def lines(self, plan, dt):
         """What each is."""
         for name, one in self.tables.items():
             says = (
                 f"{len(self.sites(one)):,} grains, {one.density:g} kg/m3, stopped in {one.stopping_time:g} s"
             )
-            yield f"  dust        {name}: {says}"
+            yield "matter", f"  dust        {name}: {says}"
 
     def work(self, rank):
         """How grains move."""

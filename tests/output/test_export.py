@@ -17,7 +17,7 @@ from psph.errors import Refused
 from psph.fields import SAVED
 from psph.output.errors import NotThere, OutputError
 from psph.output.export.command import PROGRAMS, export
-from psph.output.export.parts import BODY, FLUID, WALL
+from psph.output.export.parts import PARTS as NAMES
 from psph.output.frames import FrameFile
 from psph.output.pictures.names import remove_pictures
 from psph.output.reader import Run
@@ -49,6 +49,7 @@ BLOCK = """
 density = 500.0
 shape.box = {{ lower = [{first}], upper = [{middle}] }}
 """
+FLUID, WALL, BODY = (NAMES.index(name) for name in ("fluid", "wall", "rigid body"))
 PARTS = {1: [FLUID, FLUID, WALL], 2: [FLUID, FLUID, WALL, BODY], 3: [FLUID, FLUID, WALL, BODY]}
 """What the groups are: water, oil, the tank, a block."""
 MOMENTS = (0.0, 0.25, 0.5)

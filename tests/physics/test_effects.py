@@ -152,9 +152,9 @@ def test_an_extrapolated_wall_has_the_pressure_of_the_fluid_and_its_weight(dim, 
     """Of a wall that moves g − a_w is the weight; the mean stress of a soil takes (1 + 2K₀)/3 of it."""
     gravity = (2.0, -9.8, 0.5)[:dim]
     wall = SimpleNamespace(extrapolated=True, motion=Rigid(()) if moves else Fixed())
-    stressed = SimpleNamespace(laws=(None,) if soils else ())
+    strengths = (None,) if soils else ()
     effect = ExtrapolatedWall().in_scene(
-        SimpleNamespace(gravity=gravity, frame=None, species=(wall,), stressed=stressed)
+        SimpleNamespace(gravity=gravity, frame=None, species=(wall,), strengths=strengths)
     )
     p = view(n=5, dim=dim)
     gravity = np.add(gravity, [x[1] for x in p.apparent]) if moves else gravity

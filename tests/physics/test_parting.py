@@ -20,7 +20,7 @@ def facts(floor, surface, species, laws=()):
         physics=SimpleNamespace(tension_floor=floor),
         has_free_surface=surface,
         species=species,
-        stressed=SimpleNamespace(laws=laws),
+        strengths=laws,
     )
 
 

@@ -6,6 +6,8 @@ import pytest
 from drafts import TANK, draft
 from mpi4py import MPI
 
+from psph.errors import Refused
+from psph.matter.soil import Soils
 from psph.output.ledger import Ledger
 from psph.runs.absent import absent
 from psph.runs.explain import bytes_per_particle, bytes_per_refresh, explain
@@ -166,3 +168,11 @@ def test_an_effect_has_one_name(tmp_path):
     said = "\n".join(explain(Scene(draft(tmp_path, TANK, "scheme=stable")), 1))
     assert "fourth order diffusion  " in said and "position shift" in said
     assert "tank diffusion" not in said and "lattice shift" not in said
+
+
+def test_a_topic_that_there_is_not_is_refused(tmp_path, monkeypatch):
+    """A line under it would be left out, and nothing would say so; the control is explain itself."""
+    monkeypatch.setattr(Soils, "is_in", classmethod(lambda cls, case: True))
+    monkeypatch.setattr(Soils, "lines", lambda self, plan, dt: iter([("mater", "sand")]))
+    with pytest.raises(Refused, match="soils: lines: mater: no such topic; give one of matter, reach, "):
+        list(explain(Scene(draft(tmp_path, TANK)), 1))

@@ -16,13 +16,14 @@ from psph.case import load
 from psph.output.checkpoint import checkpoints
 from psph.output.pictures.closeup import _slice
 from psph.output.reader import Run
-from psph.runs.advice import _friction, advice
+from psph.runs.advice import advice
 from psph.runs.guards import EVERY
 from psph.runs.post_mortem import PICTURE, REPORT
 from psph.runs.resume import take_up
 from psph.runs.start import resume
 from psph.runs.worst_particle import find
 from psph.scene import Scene
+from psph.scene.fluid.advice import _friction
 from psph.simulation.step import BlowUp, Simulation
 
 COMM = MPI.COMM_SELF

@@ -105,7 +105,10 @@ def test_a_signal_in_the_midst_of_a_step_is_heard_at_its_end(tmp_path, monkeypat
             os.kill(os.getpid(), signal.SIGUSR1)
         honest(simulation)
 
-    every = tuple(one._replace(run=interrupted) if one.run is honest else one for one in stages.OF_EVERY_STEP)
+    every = {
+        name: one._replace(run=interrupted) if one.run is honest else one
+        for name, one in stages.OF_EVERY_STEP.items()
+    }
     monkeypatch.setattr(stages, "OF_EVERY_STEP", every)
     with pytest.raises(Stopped, match="stopped by SIGUSR1"):
         run(boxed(tmp_path, MPI.COMM_SELF), tmp_path / "run", MPI.COMM_SELF, say=lambda *_: None)

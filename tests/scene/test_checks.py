@@ -8,8 +8,8 @@ from drafts import CHANNEL, TANK, WATER, draft
 
 from psph.case import CaseError
 from psph.scene import Scene, check
-from psph.scene.checks import kernel_sums
-from psph.scene.periodic_gravity import driven_speed
+from psph.scene.fluid.checks import kernel_sums
+from psph.scene.fluid.periodic_gravity import driven_speed
 
 PERIODIC = ("space.periodic=['x']", "space.lower=[0.0, 0.0]", "space.upper=[1.0, 2.0]")
 FALLING = re.compile("no wall holds 100% of the fluid: it falls for ever")

@@ -35,7 +35,7 @@ def ground(gravity, lower, shapes):
 def borne(scene, name, x):
     """Pressure along gravity of a soil at the points ``x`` (n, dim), Pa."""
     x = np.array(x, float)
-    layer = scene.stressed.layers[list(scene.case.flowing).index(name)]
+    layer = scene.starts.layers[scene.layout.names.index(name)]
     rows = layer.deviator(x)
     diagonal = {2: (0, 2), 3: (0, 3, 5)}[x.shape[1]][layer.axis]
     return layer.pressure(x) - rows[:, diagonal]

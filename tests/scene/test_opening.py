@@ -1,4 +1,4 @@
-"""Whether a fluid that is closed in at the start can have a free surface: psph.scene.opening."""
+"""Whether a fluid that is closed in at the start can have a free surface: psph.scene.fluid.opening."""
 
 import pytest
 from drafts import draft

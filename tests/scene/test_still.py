@@ -1,4 +1,4 @@
-"""Fluids under their own weight at the start: psph.scene.still."""
+"""Fluids under their own weight at the start: psph.scene.fluid.still."""
 
 import numpy as np
 import pytest

@@ -15,6 +15,7 @@ from psph.physics.motion import COUPLE
 from psph.physics.rigid.pose import rotation
 from psph.runs.setup import create_particles
 from psph.scene import Scene, check
+from psph.scene.body_parts import bodies_of
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 
@@ -287,7 +288,7 @@ inertia = 0.25
 centre = [0.71, 0.6]
 """
     )
-    plate, ring = Scene(draft(tmp_path, text)).census.rigid_bodies
+    plate, ring = bodies_of(Scene(draft(tmp_path, text)).census)
     assert plate.mass == pytest.approx(700.0 * 0.03)
     assert plate.centre == pytest.approx((0.35, 0.55, 0.0))
     assert plate.inertia[8] == pytest.approx(21.0 * (0.09 + 0.01) / 12.0)

@@ -25,8 +25,10 @@ def plan_with(before: str):
 
 def test_the_stage_of_a_kind_comes_before_that_which_it_names():
     found = list(stages.stages_of(plan_with("kick")))
-    names = [stage.run.__name__ for stage in found]
-    assert found[names.index("kick") - 1] is OWN and len(found) == len(stages.OF_EVERY_STEP) + 1
+    assert (
+        found[found.index(stages.OF_EVERY_STEP["kick"]) - 1] is OWN
+        and len(found) == len(stages.OF_EVERY_STEP) + 1
+    )
 
 
 def test_a_stage_before_one_that_there_is_not_is_refused():

@@ -61,7 +61,7 @@ grown: it was pushed."""
 def measure(folder: Path, case, speed: float) -> dict[str, float]:
     """All measures of the run in ``folder``; ``speed`` is the case's own, m/s."""
     run, scene = Run(folder), Scene(case)
-    if case.solids:
+    if any(part.moves_freely and part.keeps_form for part in scene.layout.parts):
         return solid_measures.measure_solids(run, case)
     log, frames = run.log(), [run.frame(k) for k in range(len(run.times))]
     fluids = [{n: v[f["kind"] == FLUID] for n, v in f.items()} for f in frames]

@@ -3,8 +3,10 @@
 from typing import NamedTuple
 
 from psph.case import Case
+from psph.lab.bench import lammps_solid
 from psph.particles.store import Store
 from psph.runs.setup import create_particles
+from psph.scene.sites import sites_within
 from psph.simulation.plan import Plan
 
 DENSITY, YOUNG, POISSON, SPIN = 1100.0, 17.0e6, 0.45, 5.0
@@ -20,10 +22,16 @@ class Block(NamedTuple):
     dimensions: int
     sides: int
 
+    peer = lammps_solid
+
     @classmethod
     def nearest(cls, dimensions: int, neighbours: int, particles: int) -> "Block":
         """The block with about so many particles; their ``neighbours`` are those of every solid."""
         return cls(dimensions, max(1, round(particles ** (1.0 / dimensions))))
+
+    def in_bulk(self, scene, simulation) -> float:
+        """Neighbours of a particle in the interior, in the reference."""
+        return sites_within(scene, lammps_solid.support(scene, simulation))
 
     def case(self) -> Case:
         """The block as a case."""

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from psph.case import Case
 from psph.case.schemes import PLAIN
+from psph.lab.bench import lammps_fluid
 from psph.lab.bench.resolution import KERNEL, reach, smoothing
 from psph.particles.store import Store
 from psph.runs.setup import create_particles
@@ -27,11 +28,17 @@ class FluidBox(NamedTuple):
     neighbours: int
     sides: int
 
+    peer = lammps_fluid
+
     @classmethod
     def nearest(cls, dimensions: int, neighbours: int, particles: int) -> "FluidBox":
         """The box with about so many particles."""
         least = max(FEWEST_SIDES, math.ceil(CUTOFFS * reach(neighbours, dimensions)))
         return cls(dimensions, neighbours, max(least, round(particles ** (1.0 / dimensions))))
+
+    def in_bulk(self, scene, simulation) -> int:
+        """Neighbours of a particle in the interior."""
+        return self.neighbours
 
     def case(self) -> Case:
         """The box as a case."""

@@ -9,6 +9,7 @@ from numpy.random import Generator, Philox
 
 from psph.case import Case
 from psph.fields import FLUID, WALL
+from psph.lab.bench import lammps_fluid
 from psph.lab.bench.tank import GRAVITY, HEIGHT, Tank
 from psph.output.interpolation import interpolated
 from psph.output.ledger import Ledger
@@ -40,6 +41,8 @@ class Falling(NamedTuple):
     coarse: Tank
     times: int
 
+    peer = lammps_fluid
+
     @classmethod
     def nearest(cls, dimensions: int, neighbours: int, particles: int) -> "Falling":
         """The one with about so many particles, split by 2, 4, 8... along each axis."""
@@ -50,6 +53,10 @@ class Falling(NamedTuple):
             coarse = fine._replace(across=fine.across // times, tall=fine.tall // times)
             if coarse.across <= COARSEST[dimensions]:
                 return cls(coarse, times)
+
+    def in_bulk(self, scene, simulation) -> int:
+        """Neighbours of a particle in the interior."""
+        return self.coarse.neighbours
 
     def case(self) -> Case:
         """The fine tank with its walls; the water is still a column at rest."""

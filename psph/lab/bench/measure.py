@@ -25,10 +25,8 @@ from psph.lab.bench.roofline import Ceiling, roof, shares
 from psph.lab.bench.tank import Tank
 from psph.lab.errors import BenchError
 from psph.output.ledger import Ledger
-from psph.physics.solid.deformation import support_of
 from psph.runs.setup import compile_ahead
 from psph.scene import Scene
-from psph.scene.sites import sites_within
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 from psph.vectors import dot, nearest_image, subtract
@@ -80,10 +78,8 @@ def measure(
     simulation, compiling = warmed_up(layout, scene, comm)
     rival = warmed_up(layout, rival_scene, comm)[0] if against else None
     count, pairs, entries = _work(simulation, scene)
-    in_bulk = asked.neighbours
-    if scene.case.solids:
-        in_bulk = sites_within(scene, support_of(simulation.plan.solid_smoothing_length))
-    with Peer(peer_python, scene, simulation) if peer_python else nullcontext() as peer:
+    in_bulk = layout.in_bulk(scene, simulation)
+    with Peer(peer_python, scene, simulation, layout.peer) if peer_python else nullcontext() as peer:
         simulation.ledger.seconds.clear()
         rebuilds = simulation.domain.rebuilds
         runners = {OURS: partial(_timed, simulation, comm)}
@@ -99,7 +95,7 @@ def measure(
     phases = _mean_over_ranks(simulation.ledger, comm)
     rates = Rates.of(ours, count)
     shared = {}
-    if not scene.case.solids:  # one loop over pairs, whose operations the plan counts
+    if simulation.plan.passes:  # one loop over pairs, whose operations the plan counts
         shared = shares(simulation, ceiling, pairs, entries, phases["pairs"] / (blocks * STEPS))
     cores = comm.size * threads()
     result = {
@@ -219,8 +215,8 @@ def _mean_over_ranks(ledger: Ledger, comm) -> dict[str, float]:
 def _work(simulation: Simulation, scene) -> tuple[int, int, int]:
     """Particles, ordered pairs inside the kernel's support and entries of the lists, in all."""
     store, lists, comm = simulation.store, simulation.domain.lists, simulation.comm
-    if solids := simulation.engine.of("solids"):
-        pairs = round(solids.neighbours * solids.rows)
+    if not simulation.plan.passes:
+        pairs = sum(work.pairs() for work in simulation.engine.kinds)
         return tuple(comm.allreduce(n) for n in (store.owned, pairs, pairs))
     support = scene.support
     inside = count_inside(

@@ -13,7 +13,7 @@ from functools import partial
 from multiprocessing.connection import Connection, Listener, wait
 from pathlib import Path
 
-from psph.lab.bench import lammps_fluid, lammps_side, lammps_solid
+from psph.lab.bench import lammps_side
 from psph.lab.bench.ranks import on_rank_0
 from psph.lab.errors import BenchError, PeerFailed
 
@@ -33,13 +33,12 @@ FOREIGN = ("OMPI_", "PMIX_", "PMI_", "ORTE_", "PRTE_", "HYDRA_", "MPI_")
 class Peer:
     """LAMMPS with the particles of a simulation as they are now; a context; collective.
 
-    ``python`` is an interpreter that has LAMMPS, with its ``mpiexec`` beside it.  Raises
-    BenchError on all ranks if LAMMPS fails.
+    ``python`` is an interpreter that has LAMMPS, with its ``mpiexec`` beside it; ``words`` say the problem
+    in its own (psph.lab.bench.lammps_fluid).  Raises BenchError on all ranks if LAMMPS fails.
     """
 
-    def __init__(self, python: Path, scene, simulation):
-        self.comm, self._scene = simulation.comm, scene
-        self._words = lammps_solid if scene.case.solids else lammps_fluid
+    def __init__(self, python: Path, scene, simulation, words):
+        self.comm, self._scene, self._words = simulation.comm, scene, words
         particles, cores = self._words.gathered(simulation), _cores(self.comm)
 
         def begin() -> dict:

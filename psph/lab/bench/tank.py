@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from psph.case import Case
 from psph.case.schemes import PLAIN
+from psph.lab.bench import lammps_fluid
 from psph.lab.bench.resolution import KERNEL, reach, smoothing
 from psph.particles.store import Store
 from psph.runs.setup import create_particles
@@ -33,6 +34,8 @@ class Tank(NamedTuple):
     neighbours: int
     across: int
     tall: int
+
+    peer = lammps_fluid
 
     @classmethod
     def nearest(cls, dimensions: int, neighbours: int, particles: int, times: int = 1) -> "Tank":
@@ -69,6 +72,10 @@ class Tank(NamedTuple):
     def refined(self, times: int) -> "Tank":
         """The same tank with ``times`` sites in place of one along each axis."""
         return self._replace(across=times * self.across, tall=times * self.tall)
+
+    def in_bulk(self, scene, simulation) -> int:
+        """Neighbours of a particle in the interior."""
+        return self.neighbours
 
     def case(self) -> Case:
         """The column at rest, its pressure hydrostatic, at the start of the dam break."""

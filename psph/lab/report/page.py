@@ -70,7 +70,7 @@ def _of_case(folder: Path, remarks: list[str]) -> dict:
         case, left_out = load_to_read(folder / COPY)
         scene = Scene(case)
         plan = make_plan(scene)
-        expected = list(stability_forecast(scene, plan)) if scene.case.flowing else []
+        expected = list(stability_forecast(scene, plan))
         ranks = read_summary(folder).get("ranks", 1)
         return {
             "plan": "\n".join(explain(scene, ranks)),

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from psph.fields import FLUID as FLUID_KIND
-from psph.output.export import parts
 from psph.output.export.parts import Exported
 from psph.output.pictures import style
 from psph.output.pictures.names import PARAVIEW
@@ -80,8 +79,10 @@ view.CameraFocalPoint = [0.0, 0.0, 0.0]
 view.CameraViewUp = [0.0, 0.0, 1.0]"""
 _PLANE = 'view.InteractionMode = "2D"'
 
-_OPACITY = {parts.FLUID: 1.0, parts.WALL: 0.3, parts.SOLID: 1.0, parts.BODY: 1.0}
-_PLAIN = {parts.WALL: style.WALLS, parts.BODY: style.BODIES}
+_OPACITY = {"wall": 0.3}
+"""Of what is not opaque, by how it looks (psph.scene.parts.part)."""
+
+_PLAIN = {"wall": style.WALLS, "rigid body": style.BODIES}
 """Colours of what is not shown by its speed."""
 
 
@@ -93,10 +94,10 @@ def write_paraview(exported: Exported, folder: Path) -> Path:
     """
     index = index_of(exported.run.path) or exported.run.path.with_suffix(ENDING)
     frames = Path(os.path.relpath(index, folder)).as_posix()
-    of_group = exported.parts(np.arange(len(exported.names)))
+    looks = (part.looks for part in exported.scene.layout.parts)
     shown = [
-        (name, k, k, _rgb(_PLAIN[part]) if part in _PLAIN else None, _OPACITY[part])
-        for k, (name, part) in enumerate(zip(exported.names, of_group.tolist()))
+        (name, k, k, _rgb(_PLAIN[one]) if one in _PLAIN else None, _OPACITY.get(one, 1.0))
+        for k, (name, one) in enumerate(zip(exported.names, looks))
     ]
     text = _SCRIPT.format(
         name=exported.stem,

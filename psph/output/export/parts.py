@@ -11,9 +11,9 @@ from psph.output.checkpoint import COPY
 from psph.output.errors import NotThere
 from psph.output.reader import Run
 from psph.scene import Scene
+from psph.scene.parts.part import LOOKS
 
-FLUID, WALL, SOLID, BODY = range(4)
-PARTS = ("fluid", "wall", "elastic solid", "rigid body")
+PARTS = LOOKS
 """What ``part`` counts.  ``kind`` of the frames does not tell walls from bodies."""
 
 
@@ -56,12 +56,7 @@ class Exported:
 
     def parts(self, group: np.ndarray) -> np.ndarray:
         """Which of PARTS each particle is of, uint8 (n,), by its ``group`` (n,)."""
-        parts = self.scene.layout.parts
-        of_group = np.full(len(self.names), WALL, np.uint8)
-        of_group[list(parts.flowing)] = FLUID
-        of_group[[*parts.solids, *parts.clamps]] = SOLID
-        of_group[list(parts.bodies)] = BODY
-        return of_group[group]
+        return np.array([PARTS.index(part.looks) for part in self.scene.layout.parts], np.uint8)[group]
 
 
 def in_space(rows: np.ndarray, dimensions: int) -> np.ndarray:

@@ -52,18 +52,12 @@ class ForceGauge(NamedTuple):
             for of_all, own in zip(twist, couples.T):
                 of_all[: len(bearing)] += own
         total = exact_sums(simulation.comm, np.column_stack([force, *twist]))
-        floating = simulation.engine.of("bodies")
-        return total + self._contacts(floating, about[0]) if floating else total
-
-    def _contacts(self, floating, point: np.ndarray) -> np.ndarray:
-        """Force and moment about a ``point`` (dim,) m of the contacts of bodies among the groups."""
-        bodies, d = floating.bodies, len(point)
-        own = np.isin(np.arange(len(bodies.bodies)), floating.body_of[list(self.groups)])
-        about = np.zeros(3)
-        about[:d] = point
-        twist = bodies.twisting + np.cross(bodies.place - about, bodies.pressing)
+        d = store.dimensions
         turned = ["xyz".index(axis) for axis in turns(d)]
-        return np.concatenate([bodies.pressing[own, :d].sum(axis=0), twist[own][:, turned].sum(axis=0)])
+        for work in simulation.engine.kinds:
+            if pushing := work.pushing(self.groups, about[0]):
+                total = total + np.concatenate([pushing[0][:d], pushing[1][turned]])
+        return total
 
     def _shared(self, simulation) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the particles in whose load another part has a share, and what these parts win of it, or

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from psph.case.keys import AXES
-from psph.case.solids import anvils_of, clamps_of
 from psph.moments import seam_shares
 from psph.output.flowing import ALL
 from psph.output.gauges.carried import Carrier
@@ -49,7 +48,7 @@ def gauge_of(scene, name: str, table, mirrors=None):
             groups = tuple(k for on in asked.on for k in _groups(scene, on))
             return ForceGauge(name, every, groups, asked.about, _corners(scene), _carrier(asked, names))
         case "reaction":
-            return ReactionGauge(name, every, *_supports(scene, asked.of), asked.about)
+            return ReactionGauge.of(scene, name, every, asked)
         case "level":
             parts = max(1, math.ceil(math.dist(asked.foot, asked.top) / scene.spacing * PER_SPACING - 1e-9))
             beside = _beside(scene, asked)
@@ -63,13 +62,13 @@ def gauge_of(scene, name: str, table, mirrors=None):
             [axis] = (d for d, ends in enumerate(zip(asked.lower, asked.upper)) if ends[0] == ends[1])
             return FlowGauge(name, every, axis, asked.lower, asked.upper, _of(scene, asked))
         case "motion":
-            restrained = scene.case.bodies[asked.of].restrained(scene.dimensions)
-            return MotionGauge(name, every, asked.of, restrained)
+            return MotionGauge.of(scene, name, every, asked)
         case "displacement":
             groups = tuple(_groups(scene, asked.of))
             return DisplacementGauge(name, every, groups, asked.at, REACH * scene.spacing)
         case "stress":
-            groups, keeps = tuple(_groups(scene, asked.of)), asked.of in scene.case.referred
+            groups = tuple(_groups(scene, asked.of))
+            keeps = any(scene.layout.parts[group].keeps_neighbours for group in groups)
             return StressGauge(name, every, groups, asked.at, REACH * scene.spacing, keeps)
         case "highest":
             return PointGauge(Front(name, AXES.index(asked.axis), _of(scene, asked)), every)
@@ -109,21 +108,14 @@ def _carrier(asked, names) -> Carrier | None:
     return None if asked.moves_with is None else Carrier(names.index(asked.moves_with))
 
 
-def _supports(scene, keys) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """The groups of the clamps and the numbers of the anvils with these ``keys``."""
-    clamps, anvils = clamps_of(scene.case.referred), anvils_of(scene.case)
-    held = (n for n, key in zip(scene.layout.parts.clamps, clamps) if key in keys)
-    return tuple(held), tuple(k for k, key in enumerate(anvils) if key in keys)
-
-
 def _of(scene, asked) -> tuple[int, ...]:
     """The groups that a gauge of what flows counts."""
     return ALL if asked.of is None else tuple(_groups(scene, asked.of))
 
 
 def _groups(scene, name: str) -> Iterator[int]:
-    """The groups of what has a name; of an elastic solid its clamped part among them."""
-    solids = list(scene.case.referred)
-    for group, one in enumerate(scene.species):
-        if name in (one.name, None if one.elastic is None else solids[one.elastic]):
-            yield group
+    """The groups of what has a name; of what keeps its neighbours the clamped parts among them."""
+    parts = scene.layout.parts
+    for part in parts:
+        if name == part.name or parts[part.whole].keeps_neighbours and name == parts[part.whole].name:
+            yield part.number

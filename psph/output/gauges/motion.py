@@ -23,6 +23,11 @@ class MotionGauge(NamedTuple):
     body: str
     restrained: bool
 
+    @classmethod
+    def of(cls, scene, name: str, every: float, asked) -> "MotionGauge":
+        """That of a table of the case."""
+        return cls(name, every, asked.of, scene.case.bodies[asked.of].restrained(scene.dimensions))
+
     def columns(self, scene) -> list[str]:
         """Their names, without the time."""
         axes, round_about = "xyz"[: scene.dimensions], turns(scene.dimensions)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.case.solids import anvils_of
 from psph.fields import SOLID
 from psph.output.gauges.displacement import gone
 from psph.output.gauges.force import moments, turns
@@ -30,6 +31,13 @@ class ReactionGauge(NamedTuple):
     groups: tuple[int, ...]
     planes: tuple[int, ...]
     about: tuple[float, ...]
+
+    @classmethod
+    def of(cls, scene, name: str, every: float, asked) -> "ReactionGauge":
+        """That of a table of the case, by the keys of clamps and anvils."""
+        held = (part.number for part in scene.layout.parts if part.of_another and part.key in asked.of)
+        planes = (number for number, key in enumerate(anvils_of(scene.case)) if key in asked.of)
+        return cls(name, every, tuple(held), tuple(planes), asked.about)
 
     def columns(self, scene) -> list[str]:
         """Their names, without the time: ``foot.reaction_x``, ``foot.reaction_moment_z``."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.case.shapes import Shape
+from psph.output.pictures.groups import spreading_of
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.lattice import TOLERANCE
 from psph.scene.mirrors import around, faces_before
@@ -36,7 +37,7 @@ def _walls(case: dict) -> Iterator[tuple[int, float]]:
     walls = [wall for wall in case.get("walls", {}).values() if wall.get("condition") == MIRROR]
     if not walls:
         return
-    held = around([bounds(Shape.model_validate(fluid["shape"])) for fluid in case["fluids"].values()])
+    held = around([bounds(Shape.model_validate(one["shape"])) for _, one in spreading_of(case)])
     for wall in walls:
         shape, slack = Shape.model_validate(wall["shape"]), TOLERANCE * case["space"]["spacing"]
         yield from ((axis, at) for axis, _, at in faces_before(shape, held, slack))

@@ -7,6 +7,7 @@ import numpy as np
 
 from psph.fields import FLUID, PRESSURE
 from psph.output.errors import NotThere
+from psph.output.pictures.groups import matter_of, spreading_of
 from psph.output.pictures.vorticity import vorticity
 from psph.output.reader import Run
 
@@ -16,8 +17,6 @@ SAMPLES, FEW_SAMPLES = 25, 4
 """Frames over a run that the limits of the colours are taken from; those of a field that takes long."""
 VON_MISES, DEVIATOR = "von_mises", "deviator"
 """The stress √(3J₂), where frames hold the deviator that it follows from, and no field of its own."""
-MATERIALS = ("fluids", "walls")
-"""Tables of a case whose names ``group`` counts, in this order."""
 
 
 class Quantity(NamedTuple):
@@ -55,7 +54,7 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
                 "",
                 (GROUP,),
                 _size_of(GROUP),
-                names=(*case.get("fluids", ()), *case.get("soils", ()), *case.get("solids", ())),
+                names=tuple(name for name, _ in matter_of(case)),
                 bodies=tuple(case.get("bodies", ())),
             )
     saved = run.fields
@@ -100,11 +99,11 @@ def _vorticity(case: dict) -> Quantity:
     dimensions = space["dimensions"]
     if dimensions == 1:
         raise NotThere("plot --field vorticity: a flow along one axis has none; choose another field")
-    flowing = case.get("fluids", {}) | case.get("soils", {})
+    flowing = spreading_of(case)
     if not flowing:
         raise NotThere("plot --field vorticity: the run has no fluid; choose von_mises, or another field")
     periods = periods_of(case)
-    rest = np.array([material["density"] for material in flowing.values()])
+    rest = np.array([material["density"] for _, material in flowing])
 
     def values(frame: dict) -> np.ndarray:
         fluid = frame["kind"] == FLUID

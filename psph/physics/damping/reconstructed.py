@@ -72,7 +72,7 @@ class ReconstructedDamping(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows the spacing."""
         more = max(self.in_disorder - self.alpha, 0.0)
-        images = EndingAtPlanes() if scene.stressed.laws else Whole()
+        images = EndingAtPlanes() if scene.strengths else Whole()
         return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2, more, images)
 
     @staticmethod

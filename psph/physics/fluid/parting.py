@@ -62,4 +62,4 @@ def hold_of(scene: Facts) -> Hold:
     floor = scene.physics.tension_floor is not None and scene.has_free_surface
     if not floor or all(one.is_fluid for one in scene.species):
         return Holding()
-    return PartingBesideSoils() if scene.stressed.laws else Parting()
+    return PartingBesideSoils() if scene.strengths else Parting()

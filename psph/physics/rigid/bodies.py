@@ -6,14 +6,12 @@ them all, with the same bits.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.fields import WALL
+from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.contact import Yielding
-from psph.physics.rigid.pose import Pose, in_space
-from psph.vectors import Vector
+from psph.physics.rigid.pose import in_space
 
 FIRST_TO_LAST = ((2, 0.5), (1, 0.5), (0, 1.0), (1, 0.5), (2, 0.5))
 """Principal axes, and the part of the step for which a body turns about each."""
@@ -46,41 +44,6 @@ KEPT = (
     "twisting",
 )
 """The arrays of a state."""
-
-
-class RigidBody(NamedTuple):
-    """What a rigid body is, and what holds it.
-
-    ``mass`` in kg (per m of depth in 2D); ``centre`` of mass at the start, m; ``inertia`` about it, kg
-    m², nine numbers by rows; ``velocity`` in m/s and ``spin`` in rad/s at the start.  It is free to move
-    along the axes of ``slides`` and to turn about the axes of ``turns``: none, one or three of them.
-    ``pivot``, m: a point of the body that stays where it is, about which it turns.  Until the time
-    ``held``, s, it stays, and then sets off with ``velocity`` and ``spin``.  ``motion`` has the pose of
-    what is not free, None for a body that is held there.
-    """
-
-    name: str
-    mass: float
-    centre: Vector
-    inertia: Vector
-    velocity: Vector
-    spin: Vector
-    slides: tuple[bool, ...]
-    turns: tuple[bool, ...]
-    pivot: Vector | None = None
-    held: float = 0.0
-    motion: Any = None
-
-    kind = WALL
-
-    def pose(self, time: float) -> Pose:
-        """Where what is not free has the body at ``time``, s."""
-        return self.motion.pose(time) if self.motion else Pose(self.reference, self.reference)
-
-    @property
-    def reference(self) -> Vector:
-        """The point about which it turns, m: its pivot, or its centre of mass."""
-        return self.centre if self.pivot is None else self.pivot
 
 
 class Bodies:

@@ -86,11 +86,12 @@ class DeviatorRate(NamedTuple):
     def in_scene(self, scene: Facts):
         """Where soils ask for it, the form whose stress spreads between neighbours too; in matter that never
         yields the correction fades sooner: else particles with few neighbours, at an edge, tear out."""
-        if not scene.stressed.laws:
+        if not scene.strengths:
             return DeviatorRate(FEWEST_OF_ELASTIC ** (max(scene.dimensions, 2) / 2.0), faces_of(scene))
-        if not scene.stressed.diffusion:
+        diffusion = max(one.stress_diffusion for one in scene.species)
+        if not diffusion:
             return DeviatorRate(self.least, faces_of(scene))
-        return DiffusedDeviatorRate(scene.stressed.diffusion, levelled(scene), faces_of(scene))
+        return DiffusedDeviatorRate(diffusion, levelled(scene), faces_of(scene))
 
     def start(self, i):
         """No neighbour yet."""

@@ -113,7 +113,7 @@ class Strength(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """With the laws of the scene; None where no stress has a limit."""
-        return Strength((Unbounded(), *laws)) if (laws := scene.stressed.laws) else None
+        return Strength((Unbounded(), *laws)) if (laws := scene.strengths) else None
 
     def why_absent(self, scene: Facts):
         """What it lacks."""

@@ -90,7 +90,7 @@ class TensionFloor(NamedTuple):
         open."""
         if not scene.has_free_surface:
             return None
-        return FloorBesideSoils(self.least) if scene.stressed.laws else self
+        return FloorBesideSoils(self.least) if scene.strengths else self
 
     def why_absent(self, scene: Facts):
         """What the fluid lacks."""

@@ -50,7 +50,7 @@ class ExtrapolatedWall(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows gravity, and where such a wall or the frame moves its acceleration too."""
         gravity = tuple(g or None for g in scene.gravity)
-        leaning = Leaning() if scene.stressed.laws else Floating()
+        leaning = Leaning() if scene.strengths else Floating()
         moving = any(one.extrapolated and is_prescribed(one.motion) for one in scene.species)
         if moving or scene.frame is not None:
             return ExtrapolatedInMotion(gravity, leaning)

@@ -23,6 +23,11 @@ class HookeanPart(Part):
         """Its pressure is linear in its density, by its bulk modulus."""
         return Hooke(self.table.bulk_modulus, self.largest_tension)
 
+    @property
+    def law_key(self) -> str:
+        """By its moduli."""
+        return f"{self.key}.young"
+
     def shown(self, known: Known) -> dict[str, Any]:
         """Its density and the speed of its pressure waves."""
         return super().shown(known) | {"wave_speed": self.table.wave_speed}
@@ -37,6 +42,11 @@ class StressedPart(HookeanPart):
 
     flows = True
     bears_stress = True
+
+    @property
+    def wave_speed(self) -> float:
+        """By its moduli."""
+        return self.table.wave_speed
 
     def own(self, known: Known) -> dict[str, Any]:
         """Its strength does not depend on pressure."""

@@ -1,12 +1,13 @@
 """The order of the parts of a case: what flows, elastic solids, their clamped parts, walls, bodies."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from psph.case import Case
 from psph.case.motion import motion_of
+from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
 from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed, MovingClamp
 from psph.physics.walls.conditions import MIRROR
@@ -14,7 +15,7 @@ from psph.scene.parts.fluid import FluidPart
 from psph.scene.parts.part import Part
 from psph.scene.parts.rigid import BodyPart, WallPart
 from psph.scene.parts.soil import SoilPart
-from psph.scene.parts.solid import ClampPart, ElasticPart, UpdatedPart, clamps_in
+from psph.scene.parts.solid import ClampPart, ElasticPart, UpdatedPart, clamps_in, solids_in
 
 FIRST_BODY = 2
 """Number of a first rigid body or elastic solid among solids: 0 is no solid, 1 a wall."""
@@ -31,7 +32,7 @@ class Parts(tuple[Part, ...]):
     @property
     def solids(self) -> range:
         """Total Lagrangian solids."""
-        return _run(part for part in self if part.is_elastic)
+        return _run(part for part in self if part.keeps_neighbours)
 
     @property
     def movers(self) -> range:
@@ -41,7 +42,7 @@ class Parts(tuple[Part, ...]):
     @property
     def clamps(self) -> range:
         """The clamped parts of solids."""
-        return _run(part for part in self if part.is_clamp)
+        return _run(part for part in self if part.of_another)
 
     @property
     def walls(self) -> range:
@@ -51,21 +52,22 @@ class Parts(tuple[Part, ...]):
     @property
     def bodies(self) -> range:
         """Rigid bodies."""
-        return _run(part for part in self if part.is_body)
+        return _run(part for part in self if part.moves_whole)
 
     @property
     def boundaries(self) -> range:
         """Walls and rigid bodies."""
-        return _run(part for part in self if part.is_wall or part.is_body)
+        return _run(part for part in self if part.rigid)
 
-    def of_solid(self, solid: int) -> list[int]:
-        """The numbers of a solid and of its clamped parts."""
-        return [part.number for part in self if part.whole == solid]
+    def of_whole(self, number: int) -> list[int]:
+        """The numbers of a part and of what is clamped of it."""
+        return [part.number for part in self if part.whole == number]
 
 
-def among(held: np.ndarray, numbers: range) -> np.ndarray:
-    """True where the number of a part in ``held`` is one of ``numbers``."""
-    return (held >= numbers.start) & (held < numbers.stop)
+def among(held: np.ndarray, numbers: Sequence[int]) -> np.ndarray:
+    """True where the number of a part in ``held`` is one of ``numbers``, which follow one on another."""
+    low, high = (numbers[0], numbers[-1]) if numbers else (1, 0)
+    return (held >= low) & (held <= high)
 
 
 def _run(parts: Iterator[Part]) -> range:
@@ -75,7 +77,7 @@ def _run(parts: Iterator[Part]) -> range:
 
 def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     """The parts of a case with this ``gravity``, m/s²."""
-    flowing, referred = list(case.flowing), list(case.referred)
+    flowing, referred = list(case.flowing), list(referred_in(case))
     found: list[Part] = []
 
     def add(kind: type[Part], name: str, key: str, table, motion, loaded: bool = False, **more: Any) -> None:
@@ -91,11 +93,11 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         add(FluidPart, name, f"fluids.{name}", fluid, Free(), solid=0)
     for name, soil in case.soils.items():
         add(SoilPart, name, f"soils.{name}", soil, Free(), solid=0)
-    for name, solid in case.updated.items():
+    for name, solid in updated_in(case).items():
         add(UpdatedPart, name, f"solids.{name}", solid, Free(), solid=0)
-    for number, (name, solid) in enumerate(case.referred.items()):
+    for number, ((name, solid), made) in enumerate(zip(referred_in(case).items(), solids_in(case))):
         more: dict[str, Any] = {"source": continued(solid)} if flowing else {}
-        more |= {"solid": FIRST_BODY + number, "elastic": number, "loaded": bool(flowing)}
+        more |= {"solid": FIRST_BODY + number, "elastic": number, "made": made, "loaded": bool(flowing)}
         add(ElasticPart, name, f"solids.{name}", solid, Immersed() if flowing else Elastic(), **more)
     for name, key, clamp in clamps_in(case):
         whole = found[[*flowing, *referred].index(name)]

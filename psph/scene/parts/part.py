@@ -9,6 +9,10 @@ from psph.case import Case
 from psph.case.parameters import last_part
 from psph.case.shapes import Shape
 from psph.fields import WALL
+from psph.particles.reach import Reach
+
+LOOKS = ("fluid", "wall", "elastic solid", "rigid body")
+"""As what particles are shown by other programs, in the order of its numbers there."""
 
 
 class Known(NamedTuple):
@@ -55,16 +59,28 @@ class Part:
 
     flows: ClassVar[bool] = False
     """Whether it moves freely and finds its neighbours in space."""
-    is_elastic: ClassVar[bool] = False
-    """Whether it is a total Lagrangian solid, which moves freely."""
-    is_clamp: ClassVar[bool] = False
-    """Whether it is a clamped part of a solid."""
+    keeps_neighbours: ClassVar[bool] = False
+    """Whether it moves freely and its neighbours are those of the start."""
+    rigid: ClassVar[bool] = False
+    """Whether its particles keep their places to each other, or go where the case says."""
     is_wall: ClassVar[bool] = False
-    """Whether it is a wall."""
-    is_body: ClassVar[bool] = False
-    """Whether it is a rigid body."""
+    """Whether it is a wall, which may take the place of what flows."""
     bears_stress: ClassVar[bool] = False
     """Whether its deviatoric stress evolves (psph.physics.stress)."""
+    keeps_form: ClassVar[bool] = False
+    """Whether it keeps its form, so that it may hang, stand or fly by itself."""
+    looks: ClassVar[str] = LOOKS[0]
+    """As what it is shown."""
+
+    @property
+    def of_another(self) -> bool:
+        """Whether it is clamped, and so a part of another."""
+        return self.whole != self.number
+
+    @property
+    def moves_whole(self) -> bool:
+        """Whether forces move it as a whole."""
+        return self.motion is None
 
     @property
     def shape(self) -> Shape:
@@ -74,7 +90,7 @@ class Part:
     @property
     def moves_freely(self) -> bool:
         """Whether forces move its particles one by one."""
-        return self.flows or self.is_elastic
+        return self.flows or self.keeps_neighbours
 
     @property
     def jitter(self) -> float:
@@ -83,14 +99,47 @@ class Part:
 
     @property
     def displaces(self) -> bool:
-        """Whether it is a wall that takes the place of what flows."""
+        """Whether it takes the place of what flows."""
         return False
+
+    @property
+    def wave_speed(self) -> float:
+        """Of the fastest wave that its own moduli give it, m/s; 0 where its speed of sound is chosen."""
+        return 0.0
+
+    def reach(self, whole: Reach, spacing: float, contact: bool) -> Reach | None:
+        """How far its particles feel and see others, where that is not told by other parts.
+
+        ``whole`` is by the kernel; ``contact`` says whether the case asks for that of solids.
+        """
+        return whole if self.flows else None
+
+    def strength(self, gravity: tuple[float, ...]) -> Any:
+        """The law that bounds its stress (psph.physics.stress.strength), under ``gravity`` in m/s², or
+        None."""
+        return None
 
     def law(self, case: Case):
         """Its equation of state: the one that it names, or that of all."""
         name = getattr(self.table, "equation_of_state", None) or case.physics.equation_of_state
         [law] = (entry.effect for entry in case.catalogue.states if last_part(entry) == name)
         return law()
+
+    @property
+    def may_crack(self) -> bool:
+        """Whether it may get new faces."""
+        return False
+
+    @property
+    def ends_kernel(self) -> bool:
+        """Whether it has to be as thick as the kernel reaches, beside what flows."""
+        return self.is_wall
+
+    @property
+    def law_key(self) -> str:
+        """The key of the case that calls for its equation of state; empty where that is the one of all."""
+        name = getattr(self.table, "equation_of_state", None)
+        return f"{self.key}.equation_of_state = {name}" if name else ""
 
     def shown(self, known: Known) -> dict[str, Any]:
         """Of its species what others have too that continue it."""

@@ -9,6 +9,8 @@ class RigidPart(Part):
     """What keeps its form."""
 
     jitter = 0.0
+    keeps_form = True
+    rigid = True
 
     def own(self, known: Known) -> dict[str, Any]:
         """What it sets to the fluid before it; beside elastic solids the largest of their moduli."""
@@ -23,6 +25,7 @@ class WallPart(RigidPart):
     """A wall with particles."""
 
     is_wall = True
+    looks = "wall"
 
     @property
     def displaces(self) -> bool:
@@ -33,4 +36,5 @@ class WallPart(RigidPart):
 class BodyPart(RigidPart):
     """A rigid body."""
 
-    is_body = True
+    looks = "rigid body"
+    displaces = True

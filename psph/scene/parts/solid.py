@@ -2,23 +2,63 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 from psph.case import Case
+from psph.case.updated import referred_in, updated_in
+from psph.particles.reach import Reach
+from psph.physics.motion import Immersed
+from psph.physics.solid.contact import REACH as CONTACT
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS, SMOOTHING
 from psph.physics.solid.material import MADE_OF, ElasticSolid, solid_of
 from psph.scene.parts.hookean import HookeanPart, StressedPart
 from psph.scene.parts.part import Known
 
+BEYOND = 0.1
+"""Spacings: more than two particles approach each other in a step of a fluid."""
+
 
 class UpdatedPart(StressedPart):
     """A solid whose neighbours are those of the present: updated Lagrangian."""
 
+    keeps_form = True
 
+
+@dataclass(frozen=True)
 class ElasticPart(HookeanPart):
-    """A solid whose neighbours are those of the start: total Lagrangian."""
+    """A solid whose neighbours are those of the start: total Lagrangian; ``made`` is what it is made of,
+    without the damping that depends on the speed of sound."""
 
-    is_elastic = True
+    made: Any = None
+
+    keeps_neighbours = True
+    keeps_form = True
+    looks = "elastic solid"
+
+    @property
+    def ends_kernel(self) -> bool:
+        """In a fluid."""
+        return isinstance(self.motion, Immersed)
+
+    @property
+    def may_crack(self) -> bool:
+        """Whether its bonds may be cut."""
+        return self.made.critical_stretch < math.inf
+
+    @property
+    def wave_speed(self) -> float:
+        """Of what it is made of."""
+        return self.made.wave_speed
+
+    def reach(self, whole: Reach, spacing: float, contact: bool) -> Reach | None:
+        """Alone it touches others within 2.5 spacings, and what the kernel reaches beyond that is skin, one
+        spacing at least.  In a fluid it touches before new lists are made: lists then reach a little
+        farther."""
+        support = CONTACT * spacing
+        if not isinstance(self.motion, Immersed):
+            return Reach(support, max(whole.cutoff - support, spacing))
+        return whole._replace(support=max(whole.support, support + BEYOND * spacing)) if contact else None
 
     def own(self, known: Known) -> dict[str, Any]:
         """Beside its shear modulus what contacts know of it."""
@@ -28,7 +68,8 @@ class ElasticPart(HookeanPart):
 class ClampPart(HookeanPart):
     """A clamped part of a solid."""
 
-    is_clamp = True
+    keeps_form = True
+    looks = "elastic solid"
 
     def own(self, known: Known) -> dict[str, Any]:
         """The same as its solid, whose deviatoric stress does not evolve here."""
@@ -44,18 +85,18 @@ def _met(part: HookeanPart, known: Known) -> dict[str, Any]:
 
 def clamps_in(case: Case) -> Iterator[tuple[str, str, Any]]:
     """Of each clamp the name of its solid, its key in the table of that, and its own table."""
-    for name, solid in (case.updated | case.referred).items():
+    for name, solid in (updated_in(case) | referred_in(case)).items():
         for key, clamp in solid.grips.items():
             yield name, key, clamp
 
 
-def solids_in(case: Case, repeats: bool) -> tuple[ElasticSolid, ...]:
-    """The total Lagrangian solids of a case, without damping; ``repeats`` says whether an axis does.
+def solids_in(case: Case) -> tuple[ElasticSolid, ...]:
+    """The total Lagrangian solids of a case, without damping.
 
     What is drawn out along an axis that repeats is a plate and has the hourglass control of 2D, so that both
     do the same.
     """
-    shared = case.space.dimensions == 3 and not repeats
+    shared = case.space.dimensions == 3 and not case.space.periodic
     return tuple(
         solid_of(
             name,
@@ -66,7 +107,7 @@ def solids_in(case: Case, repeats: bool) -> tuple[ElasticSolid, ...]:
             mie_gruneisen=table.mie_gruneisen and dict(table.mie_gruneisen),
             length=SMOOTHING * case.space.spacing,
         )
-        for name, table in case.referred.items()
+        for name, table in referred_in(case).items()
     )
 
 

@@ -5,6 +5,7 @@ from long import LONG
 from mpi4py import MPI
 
 from psph.case import load
+from psph.case.updated import updated_in
 from psph.lab.battery.command import CASES, _run
 from psph.lab.battery.measures import MEASURES
 from psph.lab.battery.solid_kinds import REMEDIES, SHOWN, SOLIDS, TRIALS
@@ -25,9 +26,9 @@ def test_every_column_fits_every_trial(trial):
     assert {name for shown in SHOWN.values() for name in shown} <= MEASURES.keys()
     for column in trial.columns:
         case = case_of(trial, column)
-        assert bool(case.updated) == (column in REMEDIES) == (case.scheme == "solid")
-        assert (case.physics.artificial_stress is None) == (column == BARE or not case.updated)
-        assert not case.updated or case.physics.contact is None
+        assert bool(updated_in(case)) == (column in REMEDIES) == (case.scheme == "solid")
+        assert (case.physics.artificial_stress is None) == (column == BARE or not updated_in(case))
+        assert not updated_in(case) or case.physics.contact is None
 
 
 def test_operations_are_those_of_all_neighbours_in_all_passes():

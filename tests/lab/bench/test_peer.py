@@ -199,7 +199,7 @@ def rows(state, name):
 
 def test_a_blow_up_is_said(python):
     scene, simulation = simulation_of(FluidBox.nearest(2, 20, 400))
-    with Peer(python, scene, simulation) as peer:
+    with Peer(python, scene, simulation, FluidBox.peer) as peer:
         peer.check()
         peer._processes.ask("commands", ["set group all sph/rho 500.0"])
         with pytest.raises(BenchError, match="LAMMPS blew up: densities of 0.5 to 0.5 of"):
@@ -234,4 +234,4 @@ def test_without_lammps_it_says_what_to_do():
 def test_a_python_that_is_not_there(tmp_path):
     scene, simulation = simulation_of(FluidBox.nearest(2, 20, 400))
     with pytest.raises(BenchError, match="bench --peer: .*nowhere: No such file.*psph\\[peer\\]"):
-        Peer(tmp_path / "nowhere", scene, simulation)
+        Peer(tmp_path / "nowhere", scene, simulation, FluidBox.peer)

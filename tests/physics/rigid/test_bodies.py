@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from psph.physics.rigid.bodies import Bodies, RigidBody
+from psph.physics.rigid.bodies import Bodies
+from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.laws import Accelerated
 from psph.physics.rigid.lines import SpringLine, longest_step, pulls
 from psph.physics.rigid.motion import MotionPart, Rigid

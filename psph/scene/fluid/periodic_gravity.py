@@ -46,8 +46,7 @@ def _pull(layout: Layout) -> float:
 
 def _widths(census: Census) -> list[tuple[int, float]]:
     """Each axis that does not repeat, and how far the fluids reach along it, m."""
-    layout, fluids = census.layout, list(census.layout.parts.flowing)
-    top, bottom = census.highest[fluids].max(axis=0), census.lowest[fluids].min(axis=0)
+    layout, (bottom, top) = census.layout, census.flow
     return [
         (d, float(top[d] - bottom[d]) + layout.spacing)
         for d, period in enumerate(layout.periods)
@@ -67,7 +66,7 @@ def _held_speeds(layout: Layout, pull: float, gap: float, depth: float) -> Itera
     """The speeds in m/s that fluids reach under ``pull`` m/s² between plates ``gap`` m apart, and grains of
     this ``depth``, m, on a slope."""
     down = math.hypot(*(g for g, period in zip(layout.gravity, layout.periods) if period is None))
-    for fluid in layout.case.flowing.values():
+    for fluid in (part.table for part in layout.parts if part.flows):
         if fluid.viscosity:
             yield pull * gap**2 / (8.0 * fluid.viscosity)
         elif fluid.rheology and isinstance(fluid.rheology.law, HerschelBulkley):

@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 
 from psph.case.findings import asked_of
+from psph.case.fluids import HYDROSTATIC
 from psph.physics.facts import SOUND_OVER_SPEED
-from psph.scene.periodic_gravity import driven_speed
+from psph.scene.fluid.periodic_gravity import driven_speed
+from psph.scene.fluid.still import felt_gravity, stills_of
 from psph.scene.scene import Scene
-from psph.scene.still import HYDROSTATIC, felt_gravity, stills_of
 
 TOO_FAST = 0.2
 """Mach number that a flow should stay below: its density then varies by some per cent."""

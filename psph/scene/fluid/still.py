@@ -15,9 +15,6 @@ from psph.scene.columns import columns, connected, order_of
 from psph.scene.layout import NONE, Layout
 from psph.scene.walls import with_surroundings
 
-HYDROSTATIC = "hydrostatic"
-"""The pressure at the start of a fluid that is under its own weight."""
-
 
 class Still(NamedTuple):
     """A fluid under its own weight and that of others: p = above + weight (surface − height), m and Pa.

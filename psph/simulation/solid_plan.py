@@ -5,8 +5,10 @@ from functools import cached_property
 from typing import Any
 
 from psph.fields import WALL
+from psph.kinds import Kind
 from psph.physics.motion import MovingClamp
 from psph.physics.solid.cracks import CUT
+from psph.physics.solid.deformation import SMOOTHING
 from psph.physics.solid.material import remembers
 from psph.physics.solid.plastic import Lasting
 from psph.simulation.materials import Materials
@@ -20,8 +22,23 @@ class OfSolids:
     arrays: tuple[str, ...]
     passes: tuple[Pass, ...]
     met: Pass | None
-    solids: tuple[Any, ...]
+    matter: tuple[Kind, ...]
     extremes: Any
+
+    def of(self, name: str) -> Any:
+        """The kind of matter of that name, or None."""
+        return next((kind for kind in self.matter if kind.name == name), None)
+
+    @cached_property
+    def solids(self) -> tuple[Any, ...]:
+        """The elastic solids (psph.physics.solid.material)."""
+        kind = self.of("solids")
+        return kind.made if kind else ()
+
+    @property
+    def solid_smoothing_length(self) -> float:
+        """That of the solids' own kernel, m."""
+        return SMOOTHING * self.extremes.spacing
 
     @property
     def immersed(self) -> bool:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from psph.physics.fluid.friction import friction_step
 from psph.physics.fluid.rheology import Granular, HerschelBulkley
@@ -52,7 +52,7 @@ class YieldingFluid(NamedTuple):
 
 def pastes(scene: Scene) -> Iterator[YieldingFluid]:
     """The fluids with a yield stress."""
-    for place, (name, fluid) in enumerate(scene.case.flowing.items()):
+    for place, key, fluid in _fluids(scene):
         law = fluid.rheology and fluid.rheology.law
         if not isinstance(law, HerschelBulkley) or not law.yield_stress:
             continue
@@ -63,13 +63,13 @@ def pastes(scene: Scene) -> Iterator[YieldingFluid]:
         stress = max(by_weight, law.viscosity(rate, 0.0, 0.0) * rate)
         limit = law.yield_stress
         yield YieldingFluid(
-            f"fluids.{name}.rheology", law, "yield", limit, thickness, pull, stress, law.rate_under(stress)
+            f"{key}.rheology", law, "yield", limit, thickness, pull, stress, law.rate_under(stress)
         )
 
 
 def grains(scene: Scene) -> Iterator[YieldingFluid]:
     """The grains that weigh on what is below them, at their floor."""
-    for place, (name, fluid) in enumerate(scene.case.flowing.items()):
+    for place, key, fluid in _fluids(scene):
         law, thickness = fluid.rheology and fluid.rheology.law, _thickness(scene, place)
         pull = fluid.density * abs(scene.gravity[_across(scene, _sizes(scene, place))])
         if not isinstance(law, Granular) or not pull:
@@ -78,7 +78,7 @@ def grains(scene: Scene) -> Iterator[YieldingFluid]:
         by_weight = fluid.density * _shearing(scene, place) * thickness
         stress = max(by_weight, law.viscosity(rate, pressure, 0.0) * rate)
         yield YieldingFluid(
-            f"fluids.{name}.rheology",
+            f"{key}.rheology",
             law,
             "friction",
             law.friction * pressure,
@@ -88,6 +88,11 @@ def grains(scene: Scene) -> Iterator[YieldingFluid]:
             law.rate_under(stress, pressure),
             MOST_OF_GRAINS,
         )
+
+
+def _fluids(scene: Scene) -> list[tuple[int, str, Any]]:
+    """Number, key and table of each part that flows."""
+    return [(part.number, part.key, part.table) for part in scene.layout.parts if part.flows]
 
 
 def _thickness(scene: Scene, place: int) -> float:
@@ -129,14 +134,14 @@ def _across(scene: Scene, sizes: list[float]) -> int:
 def rheology_lines(scene: Scene) -> Iterator[str]:
     """What ``explain`` says of the laws: yield, plug, Bingham number, creep, and the cost of the cap."""
     sound = scene.case.time.cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
-    for name, fluid in scene.case.flowing.items():
+    for _, key, fluid in _fluids(scene):
         if fluid.rheology:
             cap = fluid.rheology.law.largest
             times = sound / friction_step(scene, cap / fluid.density)
             longer = (
                 f"steps {times:.2g} times shorter than sound allows" if times > 1.0 else "no shorter steps"
             )
-            yield f"fluids.{name}: {fluid.rheology.name}, at most {cap:.3g} Pa s: {longer}"
+            yield f"{key}: {fluid.rheology.name}, at most {cap:.3g} Pa s: {longer}"
     for paste in pastes(scene):
         yield from _paste_lines(paste)
 

@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 
 from psph.composition.mirrors import ABOVE, BELOW
-from psph.physics.motion import is_rigid
-from psph.physics.region import is_sink
+from psph.kinds import in_case
+from psph.physics.motion import goes_free, is_rigid
 from psph.scene.census import Census
 from psph.scene.columns import connected
 from psph.scene.lattice import TOLERANCE, sites_between
-from psph.scene.moving import goes_free, moments, moved_on, taken_back
+from psph.scene.moving import moments, moved_on, taken_back
 from psph.scene.shapes import inside
 from psph.scene.walls import touches_air
 
@@ -36,7 +36,7 @@ def has_free_surface(census: Census) -> bool:
     within do not.
     """
     layout = census.layout
-    if touches_air(layout) or any(is_sink(region) for region, _ in layout.regions):
+    if touches_air(layout) or any(kind.drains(layout.case) for kind in in_case(layout.case)):
         return True
     motions = (census.motions[part.number] for part in layout.parts if not part.flows)
     return any(goes_free(one) or is_rigid(one) for one in motions) and _opens(census)
@@ -67,8 +67,7 @@ class _Room:
 
     def __init__(self, census: Census):
         self.census, self.layout = census, census.layout
-        layout, fluids = census.layout, list(census.layout.parts.flowing)
-        low, high = census.lowest[fluids].min(axis=0), census.highest[fluids].max(axis=0)
+        layout, (low, high) = census.layout, census.flow
         self.axes = tuple(range(layout.dimensions))
         self.around = [d for d in self.axes if layout.periods[d] is not None]
         self.mirrored = {(plane.axis, plane.side) for plane in layout.mirror_planes}

@@ -1,0 +1,54 @@
+"""What several fluids of different density can do wrong in a scene."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from psph.scene.parts import Part
+from psph.scene.scene import Scene
+
+LARGEST_RATIO = 5.0
+"""Of the densities of two fluids in one scene.  A still layer of a fifth of the density on water keeps its
+pressure within some per cent; at a tenth the pressure is 19 % off, at a twentieth 64 %: docs/limits.md."""
+
+ALIKE = 0.01
+"""Densities that differ by less than this part are one for a wall."""
+
+
+def several_fluids(scene: Scene) -> Iterator[str]:
+    """Warnings of a scene with fluids of different density, a line each."""
+    fluids = [part for part in scene.layout.parts if part.flows]
+    for one, other in combinations(fluids, 2):
+        own, beside = one.table.density, other.table.density
+        ratio = max(own / beside, beside / own)
+        if ratio > LARGEST_RATIO:
+            yield (
+                f"{other.key}.density: {beside:g} beside {own:g} kg/m3 of "
+                f"{one.key}, a ratio of {ratio:.3g}: pressures are far off above {LARGEST_RATIO:g} "
+                "(docs/limits.md); bring the "
+                "two densities nearer to each other"
+            )
+    if len(fluids) > 1:
+        yield from _walls_of_another_fluid(scene, fluids)
+
+
+def _walls_of_another_fluid(scene: Scene, fluids: list[Part]) -> Iterator[str]:
+    """What does not flow has the density of one fluid: beside another one pressures do not balance."""
+    parts, found = scene.layout.parts, set()
+    for first, last in scene.layout.lattice.chunks():
+        held = scene.layout.materials(first, last)
+        for fluid in fluids:
+            beside = set(held[scene.layout.touching(fluid.number, first, last)].tolist())
+            found |= {(wall, fluid.number) for wall in beside}
+    for part in (one for one in parts if not one.flows and one.whole == one.number):
+        own, numbers = parts[part.source], parts.of_whole(part.number)
+        for fluid in fluids:
+            density = fluid.table.density
+            beside = any((number, fluid.number) in found for number in numbers)
+            if beside and abs(density / own.table.density - 1.0) > ALIKE:
+                cure = "let it continue the fluid that it touches most"
+                if part.is_wall:
+                    cure = f'make the part there a wall of its own with continues = "{fluid.name}"'
+                yield (
+                    f'{part.key}.continues: "{own.name}", but it touches {fluid.key} of {density:g} kg/m3 '
+                    f"too, and currents arise along it; {cure}"
+                )
