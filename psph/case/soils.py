@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from psph.acts import BODIES, FRAME, MIXED, ONE, SOILS, SOLIDS, UPDATED
+from psph.acts import FRAME, MIXED, ONE, SOILS, SOLIDS, UPDATED
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
@@ -67,7 +67,7 @@ class Soil(Hookean):
     rubs: ClassVar = True
     refuses: ClassVar = {
         ONE: "soils need two or three dimensions",
-        **{one: ALONE.format(one) for one in (SOLIDS, UPDATED, BODIES)},
+        **{one: ALONE.format(one) for one in (SOLIDS, UPDATED)},
         MIXED: 'soils are computed in double precision, since strains are small; use "double"',
         FRAME: "soils know of no frame that moves; remove one of the two",
         **dict.fromkeys(

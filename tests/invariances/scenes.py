@@ -226,6 +226,20 @@ SCENES = {
         walls={"tank": tank(motion=[SWING, SWAY])},
         physics={"gravity": PULL},
     ),
+    "body on soil": scene(
+        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
+        walls={"floor": {"shape": box((-0.5, -0.5), (2.0, 0.0)), "no_slip": True}},
+        bodies={
+            "block": {
+                "shape": box((0.25, 1.0), (0.75, 1.5)),
+                "density": 1200.0,
+                "velocity": [0.4, -0.5],
+                "spin": 0.5,
+                "no_slip": True,
+            }
+        },
+        physics={"gravity": PULL},
+    ),
     "falling sand": scene(
         soils={
             "sand": {

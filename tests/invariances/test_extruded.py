@@ -21,6 +21,7 @@ KINDS = (
     "solid",
     "solid in water",
     "soil",
+    "body on soil",
     "updated",
 )
 """Scenes without their disorder: noise is another in 3D."""

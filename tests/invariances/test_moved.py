@@ -20,6 +20,7 @@ MOVED = (
     "updated",
     "solids that meet",
     "soil",
+    "body on soil",
     "mud by bingham",
     "extrapolated",
 )
