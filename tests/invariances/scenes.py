@@ -68,7 +68,8 @@ def tank(layers=4, **keys):
 def poured(walls, fluids=None, **tables):
     """Water in a tank under gravity."""
     physics = {"gravity": PULL, **tables.pop("physics", {})}
-    hole = 0.6 if len(tables.get("bodies", ())) > 1 else 0.35 if "bodies" in tables else 0.0
+    things = sum(len(tables.get(kind, ())) for kind in ("bodies", "solids"))
+    hole = 0.6 * (things > 1) or 0.35 * ("bodies" in tables)
     return scene(
         fluids=fluids or {"water": water()},
         walls=walls,
@@ -210,6 +211,20 @@ SCENES = {
                 **RUBBER,
             }
         },
+    ),
+    "block and body in oil": poured(
+        {"tank": tank(no_slip=True)},
+        {"water": water(viscosity=0.1)},
+        solids={"block": {"shape": box((0.25, 0.25), (0.625, 0.75)), "velocity": [1.0, 0.3], **RUBBER}},
+        bodies={
+            "disc": {
+                "shape": {"disc": {"center": [0.9375, 0.5], "radius": 0.25}},
+                "density": 1500.0,
+                "velocity": [-3.0, 0.2],
+                "spin": 2.0,
+            }
+        },
+        physics={"contact": {"friction": 0.3}},
     ),
     "soil": scene(
         soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
