@@ -10,6 +10,10 @@ from psph.scene.layout import Layout
 FLAT = 0.95
 """Length of the mean of the normals half a spacing around a particle from which no edge is near."""
 
+BESIDE = 0.499
+"""Spacings to the places around: just less than half, which leads to the middle of a plate of two particles,
+where rounding alone says which face is nearer."""
+
 
 def thinnest(census: Census, material: int) -> tuple[int, int]:
     """The fewest particles that a part that moves freely has along an axis, what is clamped with it, and
@@ -43,7 +47,7 @@ def drawn_faces(layout: Layout, species: np.ndarray, position: np.ndarray) -> tu
         found = faces_of(shape, position[rows])
         mean = np.zeros_like(found.normal)
         for d in range(layout.dimensions):
-            for way in (-0.5, 0.5):
+            for way in (-BESIDE, BESIDE):
                 beside = position[rows].copy()
                 beside[:, d] += way * layout.spacing
                 mean += faces_of(shape, beside).normal / (2.0 * layout.dimensions)

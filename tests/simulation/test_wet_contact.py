@@ -2,15 +2,18 @@
 
 import numpy as np
 import pytest
+import tomli_w
 from contacts import ASKEW, BARS, HAMMER, PUDDLE, bodies_of, energy, hardest, motion, until, wrong
 from drafts import draft, refusal
 from gauging import start
+from invariances.scenes import RUBBER, box, scene
 from long import LONG
 from mpi4py import MPI
 from simulation.test_immersion import momentum
 
 from psph.runs.start import run
 from psph.scene import Scene
+from psph.scene.faces import drawn_faces
 from psph.simulation import immersion
 from psph.simulation.plan import make_plan
 
@@ -172,6 +175,24 @@ def test_a_run_with_bodies_and_solids_ends_well(tmp_path):
     said = []
     run(case, tmp_path / "done", MPI.COMM_SELF, say=lambda line, stream=None: said.append(line))
     assert [line for line in said if "steps in" in line]
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("periodic", [[], ["x"]])
+def test_both_sides_of_a_plate_of_two_particles_are_faces(tmp_path, mirrored, periodic):
+    """From half a spacing within its rows rounding said which face is nearer: one side of it had no normal."""
+    way = -1.0 if mirrored else 1.0
+    ends = [sorted((way * a, way * b)) for a, b in ((0.0, 1.5), (0.625, 0.875))]
+    (lower, upper), (left, right) = ends
+    tables = scene(
+        solids={"plate": {"shape": box((left, -0.5), (right, 0.75)), **RUBBER}},
+        space={"periodic": periodic, "lower": [lower, -1.0], "upper": [upper, 2.0]},
+        physics={"contact": {}},
+    )
+    layout = Scene(draft(tmp_path, tomli_w.dumps(tables))).layout
+    sides = np.array([[left + 0.0625, 0.0625], [right - 0.0625, 0.0625]])
+    normal, depth = drawn_faces(layout, np.zeros(2, int), sides)
+    assert normal.tolist() == [[-1.0, 0.0], [1.0, 0.0]] and depth == pytest.approx(0.5)
 
 
 STICKS = ("fluids.water.viscosity=0.01", "walls.tank.no_slip=true")
