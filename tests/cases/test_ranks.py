@@ -61,6 +61,7 @@ END = {
     "soils/vertical_cut": 0.1,
     "soils/slope": 0.1,
     "soils/blade": 0.03,
+    "soils/sliding_block": 0.02,
     "soils/submerged_slide": 0.05,
     "solids/spinning_plate": 0.005,
     "solids/oscillating_plate": 0.01,

@@ -151,6 +151,12 @@ def loaded(folder, text, name="edited"):
     return module
 
 
+@pytest.fixture(autouse=True)
+def read_anew(monkeypatch):
+    """Python takes a file of the same second and length for one that it has translated."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+
+
 @pytest.mark.parametrize("way", HIDDEN)
 def test_what_gets_into_a_loop_by_a_detour_is_in_its_key(way, tmp_path, monkeypatch):
     """Or the loop has none, and is compiled each time."""

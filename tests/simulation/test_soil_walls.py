@@ -9,6 +9,7 @@ from long import LONG
 from mpi4py import MPI
 
 from psph.fields import FLUID
+from psph.matter import wall
 from psph.output.gauges.make import gauges_of
 from psph.output.ledger import Ledger
 from psph.physics.damping import reconstructed
@@ -16,7 +17,6 @@ from psph.physics.stress import deviator, faces
 from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.scene.smooth import smooth_faces
-from psph.simulation import filling
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 
@@ -114,7 +114,7 @@ def test_normals_that_point_at_the_soil_kick_it_out_of_corners(tmp_path, monkeyp
         normal[corner] = np.sqrt(0.5)
         return normal
 
-    monkeypatch.setattr(filling, "smooth_faces", aslant)
+    monkeypatch.setattr(wall, "smooth_faces", aslant)
     bed, _ = begun(draft(tmp_path, BED))
     assert fastest(advanced(bed, 0.02)) > 0.02
 
