@@ -35,6 +35,9 @@ from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
 from psph.simulation.rules import Columns, Rules
 
+ON_DUE = np.array([False, True])
+"""In the place of the groups that are loaded, where columns are numbered 1 if they are due, else 0."""
+
 
 class Engine:
     """Advances and sums the particles of ``store``, a rank's share of a scene, as ``plan`` says.
@@ -265,24 +268,25 @@ class Engine:
         """One pass over the neighbours of the particles in some columns."""
         if first == last:
             return
-        for loop, args in self._loops_of(one):
+        loops = [*self._loops_of(one)]
+        for loop, args in loops:
             in_threads(loop, first, last, *args)
         if one.gives_rates and self.plan.materials.loaded is not None:
             for columns, lists in self.neighbourhood.dry_beside_fluid(first, last):
-                self._load_dry(one, first, last, columns, lists)
+                self._load_dry(one, *loops[0], columns, lists)
 
-    def _load_dry(self, one: Pass, first: int, last: int, columns: np.ndarray, lists) -> None:
-        """The load alone of some ``columns``, walls that are dry: all else of them stays as without fluid."""
-        loop, (summed, metric, view, around, sums) = next(self._loops_of(one))
+    def _load_dry(self, one: Pass, loop, args: tuple, columns: np.ndarray, lists) -> None:
+        """The load alone of some ``columns``, walls that are dry, by the ``loop`` of loads: all else
+        of them stays as without fluid."""
+        summed, metric, view, around, sums = args
         due = np.zeros(self.store.total, np.uint8)
         due[columns] = 1
-        asked = summed._replace(loads=summed.loads._replace(loaded=np.array([False, True]), group=due))
-        data, before = self.store.data, self.store.data[:, columns]
-        in_threads(loop, first, last, asked, metric, view, around._replace(lists=lists), sums)
-        names = (name for name in (LOAD.name, COUPLE.name) if name in self.store)
-        for row in (row for name in names for row in self.store.rows[name]):
-            before[row] = data[row, columns]
-        data[:, columns] = before
+        asked = summed._replace(loads=summed.loads._replace(loaded=ON_DUE, group=due))
+        rows = [row for name in ("density_rate", *one.filled) for row in self.store.rows[name]]
+        kept, data = np.ix_(rows, columns), self.store.data
+        before = data[kept]
+        in_threads(loop, columns[0], columns[-1] + 1, asked, metric, view, around._replace(lists=lists), sums)
+        data[kept] = before
 
     def prepare_sums(self, share: int, shares: int) -> None:
         """Compile or load one of so many ``shares`` of the passes, by their types alone."""

@@ -42,8 +42,12 @@ class Pass(NamedTuple):
     @property
     def written(self) -> set[str]:
         """The fields that it fills."""
-        names = (name for stored in self.stores for name in _each(stored))
-        return {all_of for name in names for all_of in _with_it(name)}
+        return {all_of for name in self.filled for all_of in _with_it(name)}
+
+    @property
+    def filled(self) -> tuple[str, ...]:
+        """The same by their own names alone."""
+        return tuple(name for stored in self.stores for name in _each(stored))
 
     @property
     def gives_rates(self) -> bool:
