@@ -15,24 +15,39 @@ BEGIN, END = 0.40, 0.60
 """Seconds around the impact."""
 
 
-@pytest.mark.long
-@pytest.mark.timeout(900)
-def test_arrival_impulse_and_plateau_of_the_pressure_on_the_box(tmp_path):
-    """Measured: 0.415 s, 1,359 Pa s and 2,978 Pa; here 0.434 s, 1,640 Pa s and 3,300 Pa.  With a jitter of 0.01 to
-    0.03 at the start the impulse is 1,420 to 1,520 Pa s, the mean of all four 1.11 of the measured one with a
-    spread of 0.07: hence 0.25.  The peak is several times too high (docs/limits.md), so that it is bounded from
-    below too: who mends it shall see it here."""
-    path = Path(CASES) / "dam_break_on_box.toml"
-    job = mpirun(2, ["-m", "psph", path, "--out", tmp_path / "run"], timeout=800)
+JITTERS = (0.01, 0.02, 0.03)
+"""Other starts, in spacings: what a splash does depends on the last place of its numbers."""
+
+
+def pressure_at_p1(folder, *sets):
+    """Times, s, and the pressure at P1, Pa, of a run."""
+    told = [word for one in sets for word in ("--set", one)]
+    job = mpirun(
+        2, ["-m", "psph", Path(CASES) / "dam_break_on_box.toml", "--out", folder, *told], timeout=800
+    )
     assert job.returncode == 0, job.stderr
-    table = Run(tmp_path / "run").probes()
-    time, pressure = table["time"], np.nan_to_num(table["P1.pressure"])
-    measured_times, measured = read_experiment(load(path), "kleefsman_p1")
+    table = Run(folder).probes()
+    return table["time"], np.nan_to_num(table["P1.pressure"])
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1500)
+def test_arrival_impulse_and_plateau_of_the_pressure_on_the_box(tmp_path):
+    """Measured: 0.415 s, 1,359 Pa s and 2,978 Pa; here 0.434 s, 1,510 Pa s on average over four starts, from 1,420 to
+    1,640, and 3,300 Pa.  The peak is several times too high (docs/limits.md), so that it is bounded from below
+    too: who mends it shall see it here."""
+    time, pressure = pressure_at_p1(tmp_path / "run")
+    case = load(Path(CASES) / "dam_break_on_box.toml")
+    measured_times, measured = read_experiment(case, "kleefsman_p1")
     told = np.interp(np.linspace(BEGIN, END, 400), measured_times, measured)
-    struck = (time >= BEGIN) & (time <= END)
     arrival = time[np.argmax(pressure > 500.0)]
     assert arrival == pytest.approx(0.415, abs=0.02)
-    assert pressure[struck].mean() == pytest.approx(told.mean(), rel=0.25)
+    starts = [(time, pressure)]
+    for jitter in JITTERS:
+        sets = (f"fluids.water.jitter={jitter}", f"time.end={END}", "output.probes=0.001")
+        starts.append(pressure_at_p1(tmp_path / f"{jitter}", *sets))
+    means = [p[(t >= BEGIN) & (t <= END)].mean() for t, p in starts]
+    assert np.mean(means) == pytest.approx(told.mean(), rel=0.15)
     late = (time > END) & (time < 1.8)
     plateau = np.interp(np.linspace(END, 1.8, 400), measured_times, measured).mean()
     assert pressure[late].mean() == pytest.approx(plateau, rel=0.2)
