@@ -260,6 +260,10 @@ class Kind:
         """What it does on a rank within a step."""
         yield from ()
 
+    def planned(self, plan: Any) -> Any:
+        """What its own rooms ask of a ``plan``, made once (psph.simulation.plan); None: nothing."""
+        return None
+
     def lines(self, plan: Any, dt: float) -> Iterator[tuple[str, str]]:
         """For `explain`: lines, each with its topic (``TOPICS``); ``dt`` is the longest step in s."""
         yield from ()

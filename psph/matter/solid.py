@@ -19,6 +19,7 @@ from psph.scene.faces import drawn_faces
 from psph.scene.sites import sites_within
 from psph.scene.solid_checks import fast_start, solid_advice, solid_faults, solid_lines, solid_warnings
 from psph.scene.solids import solid_fields
+from psph.simulation.solid_plan import NAME, SolidPlan, solid_plan
 
 NUMBER, ROW, ENTRY = 8, 12, 4
 """Bytes of a number, of the position of a list, and of a neighbour in it."""
@@ -27,7 +28,19 @@ FLOPS = 100
 """Operations of a pair in both passes of a solid, in 2D and 3D about as many."""
 
 
-class UpdatedSolids(Kind):
+class SolidMatter(Kind):
+    """What elastic solids have in common, however they find their neighbours."""
+
+    def faults(self) -> Iterator[str]:
+        """Solids too thin for any stress, and clamps and loads that hold nothing."""
+        yield from solid_faults(self.scene)
+
+    def warnings(self) -> Iterator[str]:
+        """Numbers of theirs that are likely a slip."""
+        yield from solid_warnings(self.scene)
+
+
+class UpdatedSolids(SolidMatter):
     """Elastic solids whose neighbours are those of the present: they share the pair loop with what flows, and
     their stress is that of effects (psph.physics.stress)."""
 
@@ -38,20 +51,12 @@ class UpdatedSolids(Kind):
         """Where there are some."""
         return bool(updated_in(case))
 
-    def faults(self) -> Iterator[str]:
-        """Solids too thin for any stress."""
-        yield from solid_faults(self.scene)
 
-    def warnings(self) -> Iterator[str]:
-        """Numbers of theirs that are likely a slip."""
-        yield from solid_warnings(self.scene)
-
-
-class ElasticSolids(Kind):
+class ElasticSolids(SolidMatter):
     """The elastic solids of a scene, which keep their neighbours of the start; ``immersed`` where they stand
     in a fluid."""
 
-    name = "solids"
+    name = NAME
     columns = ("stored_energy",)
     pushes_within = True
 
@@ -64,14 +69,6 @@ class ElasticSolids(Kind):
     def is_in(cls, case) -> bool:
         """Where there are some that are not updated Lagrangian."""
         return bool(referred_in(case))
-
-    def faults(self) -> Iterator[str]:
-        """Solids too thin for any stress, and clamps and loads that hold nothing."""
-        yield from solid_faults(self.scene)
-
-    def warnings(self) -> Iterator[str]:
-        """Numbers of theirs that are likely a slip."""
-        yield from solid_warnings(self.scene)
 
     def advice(self, guard: str, suspect) -> Iterator[str]:
         """Of their steps, laws and damping; alone also of the speed of an impact."""
@@ -111,15 +108,19 @@ class ElasticSolids(Kind):
         """Where nothing flows they are what pushes."""
         return None if self.immersed or not passes else Pushes
 
+    def planned(self, plan) -> SolidPlan:
+        """What they touch, and how they step."""
+        return SolidPlan(plan, self.made)
+
     def heeds(self, plan) -> tuple:
         """Contacts, within their own steps in a fluid."""
-        return plan.met.effects if plan.met and plan.substeps else ()
+        return plan.met.effects if plan.met and solid_plan(plan).substeps else ()
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """That of their waves, if they make no steps of their own, and without a fluid that of the largest
         acceleration."""
-        h = plan.solid_smoothing_length
-        for one in () if plan.substeps else plan.solids:
+        own, h = solid_plan(plan), solid_plan(plan).smoothing_length
+        for one in () if own.substeps else own.solids:
             yield one.longest_step(h, speed), f"waves in solids.{one.name}"
         if acceleration > 0.0 and not self.immersed:
             yield STEP * (h / acceleration) ** 0.5, "force"
@@ -127,7 +128,8 @@ class ElasticSolids(Kind):
     def work(self, rank: Rank) -> Iterator[Work]:
         """What each part of it does; each is imported where it is there."""
         scene, plan, store, domain, ledger = rank
-        if plan.pressed:
+        own = solid_plan(plan)
+        if own.pressed:
             from psph.simulation.pressed import Pressed
 
             yield Pressed(scene, plan, store)
@@ -135,12 +137,12 @@ class ElasticSolids(Kind):
 
         solids, immersion = Solids(scene, plan, store, domain, ledger), None
         yield solids
-        if plan.immersed:
+        if own.immersed:
             from psph.simulation.immersion import Immersion
 
             immersion = Immersion(solids, scene, plan, store, domain, ledger)
             yield immersion
-        if plan.touching:
+        if own.touching:
             from psph.simulation.solid_overlap import SolidOverlap
 
             yield SolidOverlap(rank, immersion)
@@ -156,13 +158,13 @@ class ElasticSolids(Kind):
 
     def _reach(self, plan) -> Iterator[str]:
         """Their kernel, and how far they touch."""
-        h = plan.solid_smoothing_length
+        h = solid_plan(plan).smoothing_length
         neighbours = sites_within(self.scene, support_of(h))
         yield (
             f"  kernel      of solids: {KERNEL}, h = {h:g} m "
             f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
         )
-        if plan.touching:
+        if solid_plan(plan).touching:
             yield (
                 f"  contact     within {REACH * self.scene.spacing:g} m of other solids and walls; lists "
                 f"reach {self.scene.layout.reach.cutoff:.4g} m"
@@ -171,7 +173,7 @@ class ElasticSolids(Kind):
     def _message(self, plan) -> str:
         """What partners on other ranks get."""
         d = self.scene.dimensions
-        first, second = places_of(d, is_damped(plan.solids))
+        first, second = places_of(d, is_damped(self.made))
         return (
             f"  partners    twice a step: places, {NUMBER * (first - d)} bytes each, then what carries the "
             f"stress, {NUMBER * (second - 2 * d)} bytes each"
@@ -179,14 +181,15 @@ class ElasticSolids(Kind):
 
     def _steps(self, plan, dt: float) -> Iterator[str]:
         """How many steps they take in a step of the fluid, and why."""
-        if not plan.substeps:
+        own = solid_plan(plan)
+        if not own.substeps:
             return
         from psph.simulation.immersion import substeps
 
-        h, speed = plan.solid_smoothing_length, self.scene.expected_speed
-        count = substeps(plan.solids, h, dt, speed, plan.contact_step)
-        known = ((one.longest_step(h, speed), f"solids.{one.name}") for one in plan.solids)
-        longest, name = min([*known, (plan.contact_step, "their contact")])
+        h, speed = own.smoothing_length, self.scene.expected_speed
+        count = substeps(own.solids, h, dt, speed, own.contact_step)
+        known = ((one.longest_step(h, speed), f"solids.{one.name}") for one in own.solids)
+        longest, name = min([*known, (own.contact_step, "their contact")])
         yield (
             f"  solids make {count} steps in a step of {dt:.3g} s, under one push of the fluid: {name} "
             f"stands {longest:.3g} s; each is two passes over the reference and two messages to partners"
@@ -194,8 +197,10 @@ class ElasticSolids(Kind):
 
     def bytes_of_particle(self, plan) -> float:
         """The records, the reference list and the row of ids."""
-        entries = sites_within(self.scene, support_of(plan.solid_smoothing_length)) + (Metres.lanes - 1) / 2
-        widths = map(record_width, places_of(self.scene.dimensions, is_damped(plan.solids)))
+        entries = (
+            sites_within(self.scene, support_of(solid_plan(plan).smoothing_length)) + (Metres.lanes - 1) / 2
+        )
+        widths = map(record_width, places_of(self.scene.dimensions, is_damped(self.made)))
         return NUMBER * sum(widths) + (ENTRY + NUMBER) * entries + ROW
 
     def flops(self) -> float:
@@ -204,11 +209,12 @@ class ElasticSolids(Kind):
 
     def examples(self, plan) -> tuple:
         """Their laws, and what they have beside their stress."""
+        own = solid_plan(plan)
         return (
-            tuple((law, bool(one.viscosity) or None) for law, one in zip(plan.solid_laws, plan.solids)),
+            tuple((law, bool(one.viscosity) or None) for law, one in zip(own.laws, own.solids)),
             DRAWN.name in plan.arrays or None,
-            plan.cracks or None,
-            bool(plan.grips) or None,
+            own.cracks or None,
+            bool(own.grips) or None,
         )
 
     def rehearsed(self) -> tuple[int, ...]:

@@ -27,6 +27,7 @@ from psph.engine.threads import in_threads
 from psph.kinds import Work
 from psph.physics.motion import LOAD, WORK, Immersed
 from psph.physics.solid.deformation import INERTIA
+from psph.simulation.solid_plan import solid_plan
 from psph.simulation.wet_contact import WetContact
 from psph.vectors import add, at, dot, put, scale
 
@@ -47,7 +48,7 @@ class Immersion(Work):
 
     def __init__(self, solids, scene, plan, store, domain, ledger):
         self.solids, self.plan, self.store = solids, plan, store
-        self.contact = WetContact(scene, plan, store, domain, ledger) if plan.touching else None
+        self.contact = WetContact(scene, plan, store, domain, ledger) if solid_plan(plan).touching else None
         self._moves = plan.materials.where(lambda one: isinstance(one.motion, Immersed))
         self._drift, self._kick, self._show, self._book = map(settled, (drift, kick, show, book))
 
@@ -64,9 +65,9 @@ class Immersion(Work):
         """
         if not dt > 0.0:
             return
-        plan, solids = self.plan, self.solids
-        stands = plan.solids, plan.solid_smoothing_length, dt, speed, plan.contact_step
-        count = substeps(*stands) if plan.substeps else 1
+        plan, solids, own = self.plan, self.solids, solid_plan(self.plan)
+        stands = own.solids, own.smoothing_length, dt, speed, own.contact_step
+        count = substeps(*stands) if own.substeps else 1
         part, columns, seen = dt / count, self._columns, self._seen
         shown = tuple(np.zeros(len(columns)) for _ in range(self.store.dimensions))
         for n in range(1, count + 1):

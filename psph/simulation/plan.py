@@ -35,7 +35,6 @@ from psph.simulation.movement import carried_fields
 from psph.simulation.passes import Pass, array_of, make_passes, pass_of_contacts
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
 from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
-from psph.simulation.solid_plan import OfSolids
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
@@ -65,7 +64,7 @@ Extremes = namedtuple("Extremes", (*OF_SCENE, *(f.name for f in OF_MATERIAL)))
 
 
 @dataclass(frozen=True)
-class Plan(OfSolids):
+class Plan:
     """What will be simulated.  It prints itself: see psph.runs.explain."""
 
     called: tuple[Called, ...]
@@ -110,6 +109,16 @@ class Plan(OfSolids):
     fixed_step: float | None
     extremes: Any
     """The scene's shared values, and the largest of those that differ by material."""
+
+    def of(self, name: str) -> Any:
+        """The kind of matter of that name, or None."""
+        return next((kind for kind in self.matter if kind.name == name), None)
+
+    @cached_property
+    def planned(self) -> dict[str, Any]:
+        """What kinds of matter have planned for their own rooms, by their names."""
+        made = ((kind.name, kind.planned(self)) for kind in self.matter)
+        return {name: one for name, one in made if one is not None}
 
     @cached_property
     def effects(self) -> tuple:

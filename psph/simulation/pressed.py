@@ -14,6 +14,7 @@ from psph.physics.rigid.mapped import linear
 from psph.physics.rigid.pose import PLACE, VELOCITY
 from psph.physics.solid.contact import FACE, FACE_RATE, MET, TURNING
 from psph.scene.faces import drawn_faces
+from psph.simulation.solid_plan import solid_plan
 from psph.vectors import add, at, dot, put, scale, subtract
 
 
@@ -26,7 +27,7 @@ class Pressed(Work):
     """
 
     def __init__(self, scene, plan, store):
-        self._scene, self._plan, self._store = scene, plan, store
+        self._scene, self._plan, self._store, self._solids = scene, plan, store, solid_plan(plan)
         self._own = plan.materials.where(lambda one: one.kind == WALL and is_rigid(one.motion))
         self._carry, self._twist, self._load = settled(carry), settled(twist), settled(load)
 
@@ -47,17 +48,17 @@ class Pressed(Work):
 
     def begin(self) -> None:
         """In a fluid contacts are summed before the passes of all."""
-        if self._plan.immersed:
+        if self._solids.immersed:
             self._turn(0.0)
 
     def advance(self, time: float, dt: float, largest_speed: float) -> None:
         """The same after a drift."""
-        if self._plan.immersed and dt > 0.0:
+        if self._solids.immersed and dt > 0.0:
             self._turn(dt)
 
     def before_sums(self, dt: float) -> None:
         """Where solids are alone the pass of all sums contacts."""
-        if self._plan.alone:
+        if self._solids.alone:
             self._turn(dt)
 
     def _turn(self, dt: float) -> None:
@@ -70,7 +71,7 @@ class Pressed(Work):
         """The moment of contacts by the normals, and the work that they do so in a step of ``dt`` s."""
         s = self._store
         couple = s[COUPLE.name] if COUPLE.name in s else None
-        if self._plan.immersed:
+        if self._solids.immersed:
             in_threads(self._load, 0, len(self._whole), self._whole, s[MET.name], s[LOAD.name])
         self._each(
             self._twist,
@@ -78,7 +79,7 @@ class Pressed(Work):
             s[TURNING.name],
             s.view(),
             couple,
-            self._plan.immersed,
+            self._solids.immersed,
             s[WORK.name],
             dt,
         )

@@ -8,6 +8,7 @@ from psph.engine.settled import settled
 from psph.engine.threads import in_threads
 from psph.particles.partners import padded_lists
 from psph.physics.solid.cracks import BITS, CUT, DAMAGE, FEWEST, FLATTEST, strengths
+from psph.simulation.solid_plan import solid_plan
 from psph.vectors import at, determinant, dot, nearest_image, subtract
 
 
@@ -21,9 +22,9 @@ class Cracks:
 
     def __init__(self, scene, plan, store):
         self.store, self.periods = store, scene.layout.periods
-        self._solids = plan.solids
+        self._solids = solid_plan(plan).solids
         self._seeds = [table.seed for table in scene.case.solids.values()]
-        self._critical = np.array([one.critical_stretch for one in plan.solids])
+        self._critical = np.array([one.critical_stretch for one in self._solids])
         self._cut, self._weaken = settled(cut_bonds), settled(weaken)
 
     def left(self, columns: np.ndarray, counts: np.ndarray, entries: np.ndarray, multiple: int):

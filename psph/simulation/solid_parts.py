@@ -2,13 +2,15 @@
 
 from psph.physics.solid.contact import FACE
 from psph.physics.solid.deformation import DRAWN
+from psph.simulation.solid_plan import solid_plan
 
 
 def parts_of(scene, plan, store, comm) -> tuple:
     """What moves clamps, pulls parts of solids, carries faces that touch, and cuts bonds; None for each that
     a plan has no use for."""
+    own = solid_plan(plan)
     clamps = loads = faces = cracks = None
-    if plan.grips:
+    if own.grips:
         from psph.simulation.clamps import Clamps
 
         clamps = Clamps(scene, plan, store)
@@ -20,7 +22,7 @@ def parts_of(scene, plan, store, comm) -> tuple:
         from psph.simulation.solid_faces import SolidFaces
 
         faces = SolidFaces(scene, store)
-    if plan.cracks:
+    if own.cracks:
         from psph.simulation.solid_cracks import Cracks
 
         cracks = Cracks(scene, plan, store)

@@ -1,54 +1,41 @@
-"""What a plan says of its elastic solids: what they touch, where they stand, and how they step."""
+"""What elastic solids have planned: what they touch, where they stand, and how they step."""
 
 import math
 from functools import cached_property
 from typing import Any
 
 from psph.fields import WALL
-from psph.kinds import Kind
 from psph.physics.motion import MovingClamp
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import SMOOTHING
 from psph.physics.solid.material import remembers
 from psph.physics.solid.plastic import Lasting
-from psph.simulation.materials import Materials
-from psph.simulation.passes import Pass
+
+NAME = "solids"
+"""Of their kind (psph.kinds)."""
 
 
-class OfSolids:
-    """The part of a plan (psph.simulation.plan) that follows from its elastic solids."""
+class SolidPlan:
+    """What follows from a ``plan`` (psph.simulation.plan) for its elastic ``solids``
+    (psph.physics.solid.material)."""
 
-    materials: Materials
-    arrays: tuple[str, ...]
-    passes: tuple[Pass, ...]
-    met: Pass | None
-    matter: tuple[Kind, ...]
-    extremes: Any
-
-    def of(self, name: str) -> Any:
-        """The kind of matter of that name, or None."""
-        return next((kind for kind in self.matter if kind.name == name), None)
-
-    @cached_property
-    def solids(self) -> tuple[Any, ...]:
-        """The elastic solids (psph.physics.solid.material)."""
-        kind = self.of("solids")
-        return kind.made if kind else ()
+    def __init__(self, plan: Any, solids: tuple[Any, ...]):
+        self._plan, self.solids = plan, solids
 
     @property
-    def solid_smoothing_length(self) -> float:
+    def smoothing_length(self) -> float:
         """That of the solids' own kernel, m."""
-        return SMOOTHING * self.extremes.spacing
+        return SMOOTHING * self._plan.extremes.spacing
 
     @property
     def immersed(self) -> bool:
         """Whether elastic solids stand in a fluid."""
-        return bool(self.solids) and self.materials.flows
+        return bool(self.solids) and self._plan.materials.flows
 
     @property
     def touching(self) -> bool:
         """Whether elastic solids look for each other: a pass then begins the sums of their forces."""
-        return bool(self.solids and (self.met if self.immersed else self.passes))
+        return bool(self.solids and (self._plan.met if self.immersed else self._plan.passes))
 
     @property
     def alone(self) -> bool:
@@ -58,7 +45,7 @@ class OfSolids:
     @property
     def pressed(self) -> bool:
         """Whether elastic solids look for what moves as a whole: bodies, and walls."""
-        return self.touching and any(one.kind == WALL for one in self.materials.rigid)
+        return self.touching and any(one.kind == WALL for one in self._plan.materials.rigid)
 
     @property
     def substeps(self) -> bool:
@@ -71,16 +58,16 @@ class OfSolids:
     @property
     def contact_step(self) -> float:
         """The longest step that contacts in a fluid stand, s; infinity without."""
-        effects = self.met.effects if self.met else ()
-        return min((one.longest_step(self.extremes) for one in effects), default=math.inf)
+        effects = self._plan.met.effects if self._plan.met else ()
+        return min((one.longest_step(self._plan.extremes) for one in effects), default=math.inf)
 
     @property
     def grips(self) -> tuple[Any, ...]:
         """The motions of clamps that move, among those that are rigid."""
-        return tuple(one for one in self.materials.rigid if isinstance(one, MovingClamp))
+        return tuple(one for one in self._plan.materials.rigid if isinstance(one, MovingClamp))
 
     @cached_property
-    def solid_laws(self) -> tuple:
+    def laws(self) -> tuple:
         """The laws of the solids; elastic ones beside one that yields have a memory too, and leave it."""
         laws = tuple(one.law for one in self.solids)
         if not remembers(self.solids):
@@ -90,4 +77,9 @@ class OfSolids:
     @property
     def cracks(self) -> bool:
         """Whether bonds of a solid may be cut."""
-        return CUT.name in self.arrays
+        return CUT.name in self._plan.arrays
+
+
+def solid_plan(plan: Any) -> SolidPlan:
+    """What elastic solids have planned; of a plan without them, that of none."""
+    return plan.planned.get(NAME) or SolidPlan(plan, ())

@@ -44,6 +44,7 @@ from psph.simulation.solid_pairs import (
     sum_moments,
 )
 from psph.simulation.solid_parts import parts_of
+from psph.simulation.solid_plan import solid_plan
 from psph.simulation.solid_shares import shares_of
 from psph.simulation.solid_table import SolidRecords
 from psph.smoothing import kernel
@@ -67,13 +68,14 @@ class Solids(Work):
     def __init__(self, scene, plan, store, domain, ledger):
         self.scene, self.plan, self.store, self.domain, self.ledger = scene, plan, store, domain, ledger
         self.comm, d = domain.comm, scene.dimensions
-        solids, periods = plan.solids, domain.periods
-        self._h = plan.solid_smoothing_length
+        self._planned = planned = solid_plan(plan)
+        solids, periods = planned.solids, domain.periods
+        self._h = planned.smoothing_length
         own, damped = kernel(KERNEL, self._h, d), is_damped(solids)
         self.support = support_of(self._h)
         sums = (Gradient(periods), *([GradientRate()] if damped else []))
         numbers = (np.array([getattr(s, n) for s in solids]) for n in ("stiffness", "viscosity", "density"))
-        self._matter = Matter(plan.solid_laws, sums, None, *numbers)
+        self._matter = Matter(planned.laws, sums, None, *numbers)
         self._weights = Weights(own, periods, softening(Metres(periods), self._h, 0))
         self._volume = scene.spacing**d
         moving = {PLACES: d} | ({"predicted_velocity": d} if damped else {})
@@ -91,7 +93,7 @@ class Solids(Work):
 
     def listed(self) -> None:
         """Solids feel only other ones in space."""
-        if self.plan.alone:
+        if self._planned.alone:
             first, lists = self.store.low, self.domain.lists
             in_threads(keep_others, first, first + self.store.owned, first, lists, self.store["solid"])
 
@@ -186,7 +188,7 @@ class Solids(Work):
             every = padded_lists(*whole, Metres.lanes)
             held = ~among(self.store.group[self._columns], self.scene.layout.parts.movers)
             found = shares_of(self._weights, tables[0], every, held, self._bring_of)
-            shared = np.array([one.shared for one in self.plan.solids])[self._matter.number]
+            shared = np.array([one.shared for one in self._planned.solids])[self._matter.number]
             self.store[SHARE.name][self._columns] = np.where(shared, found, 1.0)
         if self._cracks:
             strength = self._cracks.strengths(ids, self._matter.number)
@@ -201,14 +203,14 @@ class Solids(Work):
 
     def before_sums(self, dt: float) -> None:
         """Stress and faces, where solids touch."""
-        if self.plan.alone:
+        if self._planned.alone:
             self.strain(dt)
 
     def after_sums(self, time: float, dt: float) -> None:
         """All forces of solids that touch or stand alone; those in a fluid have steps of their own."""
-        if self.plan.alone:
+        if self._planned.alone:
             self.push(time, dt)
-        elif not self.plan.immersed:
+        elif not self._planned.immersed:
             self.sum(time, dt)
 
     def strain(self, dt: float) -> None:
@@ -257,7 +259,7 @@ class Solids(Work):
                 self._push,
                 0,
                 rows,
-                None if self.plan.touching else self.plan.pulls.solids,
+                None if self._planned.touching else self.plan.pulls.solids,
                 store.view(),
                 self._columns,
                 self._inverse_density,
@@ -346,7 +348,7 @@ class Solids(Work):
 
     def _memory(self, dt: float) -> Memory | None:
         """What particles remember, ``dt`` s after they last yielded; None where no solid does."""
-        if not remembers(self.plan.solids):
+        if not remembers(self._planned.solids):
             return None
         store = self.store
         warm = all(field.name in store for field in OF_HEAT)

@@ -10,6 +10,7 @@ from runs.resuming import go_on_elsewhere
 from psph.case import load
 from psph.parallel.partner_halo import LostPartner, PartnerHalo, follow, owners
 from psph.particles.partners import ReferenceRows
+from psph.simulation.solid_plan import solid_plan
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -214,7 +215,7 @@ def test_a_scene_without_solids_carries_nothing_for_them():
     from parallel.test_simulation import box
 
     simulation = start(box(2, False, 0), COMM)
-    assert simulation.engine.of("solids") is None and not simulation.plan.solids
+    assert simulation.engine.of("solids") is None and not solid_plan(simulation.plan).solids
     names = set(simulation.store.fields)
     assert names.isdisjoint(
         {"reference", "moment", "stress", "von_mises", "stored_energy", "drawn", "plastic_metric"}

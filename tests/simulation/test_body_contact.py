@@ -24,6 +24,7 @@ from long import LONG
 
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
+from psph.simulation.solid_plan import solid_plan
 
 
 def test_a_hammer_and_a_bar_part_as_waves_have_it(tmp_path):
@@ -131,10 +132,14 @@ def test_the_work_by_normals_that_turn_is_in_the_books(tmp_path, turns, part, al
 
 def test_without_bodies_nothing_is_stored_summed_or_asked_of_the_step_for_them(tmp_path):
     plan = make_plan(Scene(draft(tmp_path, HAMMER)))
-    assert plan.pressed and plan.of("bodies") and {"load", "couple", "anchor", "work"} <= {*plan.arrays}
+    assert (
+        solid_plan(plan).pressed
+        and plan.of("bodies")
+        and {"load", "couple", "anchor", "work"} <= {*plan.arrays}
+    )
     others = "bodies=off", "walls.end={shape={box={lower=[-0.02,-0.01],upper=[0.0,0.03]}}}"
     alone = make_plan(Scene(draft(tmp_path, HAMMER, *others)))
-    assert alone.touching and not alone.pressed and alone.materials.loaded is None
+    assert solid_plan(alone).touching and not solid_plan(alone).pressed and alone.materials.loaded is None
     assert {"load", "couple", "anchor", "work", "is_fluid"}.isdisjoint(alone.arrays)
 
 

@@ -12,6 +12,7 @@ from psph.runs.setup import create_particles
 from psph.scene import Scene, check
 from psph.simulation.immersion import substeps
 from psph.simulation.plan import make_plan
+from psph.simulation.solid_plan import solid_plan
 from psph.simulation.step import Simulation
 
 BAR = """
@@ -184,10 +185,11 @@ def test_what_a_hub_gives_to_flap_and_water_is_what_they_gain(tmp_path):
         return mass @ velocity, (mass * np.linalg.norm(velocity, axis=1)).sum()
 
     (before, size), given, force = momentum(), np.zeros(2), given_by_hub(flap)
+    own = solid_plan(flap.plan)
     for _ in range(40):
         flap.step()
         pace = flap.previous_speed
-        assert substeps(flap.plan.solids, flap.plan.solid_smoothing_length, flap.dt, pace) == 1
+        assert substeps(own.solids, own.smoothing_length, flap.dt, pace) == 1
         after = given_by_hub(flap)
         given += 0.5 * flap.dt * (force + after)
         force = after
@@ -199,7 +201,7 @@ def test_what_a_hub_gives_to_flap_and_water_is_what_they_gain(tmp_path):
 def test_within_a_step_of_the_water_the_clamp_goes_on(tmp_path, monkeypatch):
     """Stiffer, the flap makes several steps in one of the water: at each its hub is where the time has it."""
     flap = begun(draft(tmp_path, FLAP, "solids.flap.young=2e7"))
-    store, solids = flap.store, flap.engine.of("solids")
+    store, solids, own = flap.store, flap.engine.of("solids"), solid_plan(flap.plan)
     seen, plain = [], solids.sum
 
     def watched(time, dt):
@@ -217,7 +219,7 @@ def test_within_a_step_of_the_water_the_clamp_goes_on(tmp_path, monkeypatch):
     for _ in range(3):
         flap.step()
     times, away, faster = np.transpose(seen)
-    count = substeps(flap.plan.solids, flap.plan.solid_smoothing_length, flap.dt, flap.previous_speed)
+    count = substeps(own.solids, own.smoothing_length, flap.dt, flap.previous_speed)
     assert count > 3 and len(seen) >= 3 * count and times[-1] == flap.time
     assert np.diff(times) == pytest.approx(flap.dt / count, rel=0.3)
     assert away.max() < 1e-14 and faster.max() < 1e-13

@@ -12,6 +12,7 @@ from psph.physics.fluid.continuity import Continuity
 from psph.scene import Scene, check
 from psph.simulation.immersion import substeps
 from psph.simulation.plan import make_plan
+from psph.simulation.solid_plan import solid_plan
 
 STIRRED = """
 [space]
@@ -61,14 +62,14 @@ def momentum(simulation):
 def test_fluids_and_a_solid_keep_the_momentum_of_both(seen, density, tmp_path):
     """In whosever density the fluids see it."""
     simulation = start(draft(tmp_path, STIRRED, f"solids.block.continues={seen}"))
-    plan = simulation.plan
+    planned = solid_plan(simulation.plan)
     before, size = momentum(simulation)
     block = simulation.store.shown("group") == 2
     own = (simulation.store.shown("inertia") / simulation.store.shown("mass"))[block]
     assert own == pytest.approx(2500.0 / density)
     for _ in range(40):
         simulation.step()
-    count = substeps(plan.solids, plan.solid_smoothing_length, simulation.dt, simulation.previous_speed)
+    count = substeps(planned.solids, planned.smoothing_length, simulation.dt, simulation.previous_speed)
     assert count > 3
     after, _ = momentum(simulation)
     store, block = simulation.store, simulation.store.shown("group") == 2
@@ -81,10 +82,10 @@ def test_fluids_and_a_solid_keep_the_momentum_of_both(seen, density, tmp_path):
 
 
 def test_the_number_of_steps_follows_from_the_solid_and_the_step(tmp_path):
-    plan = make_plan(Scene(draft(tmp_path, STIRRED)))
-    longest = plan.solids[0].longest_step(plan.solid_smoothing_length, 1.0)
+    planned = solid_plan(make_plan(Scene(draft(tmp_path, STIRRED))))
+    longest = planned.solids[0].longest_step(planned.smoothing_length, 1.0)
     for dt, count in ((0.1 * longest, 1), (longest, 1), (1.01 * longest, 2), (7.5 * longest, 8)):
-        assert substeps(plan.solids, plan.solid_smoothing_length, dt, 1.0) == count
+        assert substeps(planned.solids, planned.smoothing_length, dt, 1.0) == count
 
 
 def test_a_solid_beside_another_fluid_than_the_one_it_continues_is_said(tmp_path):
@@ -187,7 +188,7 @@ def swing(case, end):
 
 def test_a_stiff_plate_under_water_is_calm_and_without_viscosity_it_is_not(tmp_path):
     calm, control = (draft(tmp_path, PLATE, *more) for more in ((), ("solids.plate.damping=1.0",)))
-    viscosity = make_plan(Scene(calm)).solids[0].viscosity
+    viscosity = solid_plan(make_plan(Scene(calm))).solids[0].viscosity
     assert 5e4 < viscosity < 2e5 and make_plan(Scene(control)).solids[0].viscosity == 1.0
     assert swing(calm, 0.06) < 1e-3  # it swings under the weight of the water, 7e-4 J at most
     assert swing(control, 0.06) > 1e-2

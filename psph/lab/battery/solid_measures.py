@@ -15,6 +15,7 @@ from psph.scene import Scene
 from psph.scene.sites import sites_within
 from psph.simulation.plan import make_plan
 from psph.simulation.solid_pairs import Weights, inner_force, reference_pair
+from psph.simulation.solid_plan import solid_plan
 from psph.smoothing import kernel
 
 OF_SOLIDS = {
@@ -62,9 +63,10 @@ def operations(scene, plan) -> float:
     if plan.passes:
         around = sites_within(scene, scene.support)
         of_passes = around * plan.flops_per_pair(scene.layout.periods)
-    if not plan.solids:
+    own_plan = solid_plan(plan)
+    if not own_plan.solids:
         return of_passes
-    h = plan.solid_smoothing_length
+    h = own_plan.smoothing_length
     own, d = kernel(KERNEL, h, scene.dimensions), scene.dimensions
     apart = (0.5 * h / d**0.5,) * d
     shown = {"reference": apart, "position": apart, "flux": (1.0,) * d * d}

@@ -4,6 +4,7 @@ import numpy as np
 
 from psph.lab.bench.lammps_space import balancing, box, by_id
 from psph.physics.solid.deformation import support_of
+from psph.simulation.solid_plan import solid_plan
 
 STYLE, CHECKED = "smd/tlsph", ("x",)
 
@@ -20,7 +21,7 @@ FAR = 2.0
 
 def support(scene, simulation) -> float:
     """Of its kernel, m: that of psph's."""
-    return support_of(simulation.plan.solid_smoothing_length)
+    return support_of(solid_plan(simulation.plan).smoothing_length)
 
 
 def commands(scene, simulation) -> tuple[list[str], list[str]]:
