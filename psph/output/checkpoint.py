@@ -134,7 +134,7 @@ def _lay_out(path: Path, shapes: dict, rows: dict, header: dict, frames: bytes) 
     path.touch()
     hdf5.reserve(path, room + hdf5.MARGIN + len(frames) + hdf5.size_of(shapes, rows))
     with hdf5.open_file(path, "w", userblock_size=room, libver="v110") as file:
-        hdf5.create_datasets(file, shapes, rows)
+        hdf5.create_datasets(file.id, shapes, rows)
         file[FRAMES] = np.frombuffer(frames, np.uint8)
     return room
 

@@ -1,13 +1,15 @@
 """All frames of a run in one HDF5 file, written by all ranks at once.
 
-Rank 0 alone lays a frame out (names, shapes, attributes: about a millisecond), all ranks fill it
-together, rank 0 puts the time on it.  So a frame with a time is whole.  A run that is killed in the
-millisecond of the layout may leave a file that does not open; a checkpoint brings it back.
+Rank 0 alone lays a frame out (names, shapes, attributes: half a millisecond), all ranks fill it
+together, rank 0 puts the time on it.  So a frame with a time is whole.  What is small rank 0 writes
+alone, and opens the file once.  A run that is killed while HDF5 writes the layout, for a tenth of a
+millisecond, may leave a file that does not open; a checkpoint brings it back.
 """
 
 import math
 import os
 from collections.abc import Iterable
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import numpy as np
@@ -75,17 +77,24 @@ class FrameFile:
         first, total = sum(counts[: self.comm.rank]), sum(counts)
         rows = self._rows(frame, arrays, first, total)
         shapes = {name: (total, *part.shape[1:]) for name, part in rows.items()}
-        with together(self.comm, self.path):
-            if self.comm.rank == 0:
-                self._lay_out(frame, step, shapes, rows)
-        with together(self.comm, self.path):
-            hdf5.fill(self.path, self.comm, rows, counts)
-        with together(self.comm, self.path):
-            if self.comm.rank == 0:
-                with hdf5.open_file(self.path, "r+") as file:
-                    file[frame].attrs.modify("time", float(time))
-                kinds = {name: (shapes[name], part.dtype) for name, part in rows.items()}
-                self._index.add(frame, time, kinds)
+        file, stays_open = None, hdf5.by_rank_0(self.comm, rows, counts)
+        with ExitStack() as held:
+            with together(self.comm, self.path):
+                if self.comm.rank == 0:
+                    file = held.enter_context(hdf5.opened(self.path))
+                    self._lay_out(file, frame, step, shapes, rows)
+                    if not stays_open:
+                        held.close()
+            with together(self.comm, self.path):
+                hdf5.fill(self.path, self.comm, rows, counts, file if stays_open else None)
+            with together(self.comm, self.path):
+                if self.comm.rank == 0:
+                    if not stays_open:
+                        file = held.enter_context(hdf5.opened(self.path))
+                    hdf5.complete(file, frame, "time", float(time))
+                    held.close()
+                    kinds = {name: (shapes[name], part.dtype) for name, part in rows.items()}
+                    self._index.add(frame, time, kinds)
 
     def complete_index(self) -> None:
         """List all frames so far for viewers."""
@@ -96,6 +105,8 @@ class FrameFile:
     def close(self) -> None:
         """As :meth:`complete_index`, as far as it goes; not collective, a rank may be lost."""
         if self.comm.rank == 0:
+            with suppress(OSError):
+                hdf5.give_back(self.path)
             self._index.complete_if_possible()
 
     def sync(self) -> None:
@@ -150,14 +161,10 @@ class FrameFile:
                 self._places += [hdf5.place_of(dataset) for dataset in file[frame].values()]
         self._index.restore(listed)
 
-    def _lay_out(self, frame: str, step: int, shapes: dict, rows: dict) -> None:
+    def _lay_out(self, file, frame: str, step: int, shapes: dict, rows: dict) -> None:
         hdf5.reserve(self.path, hdf5.MARGIN + hdf5.size_of(shapes, rows))
-        with hdf5.open_file(self.path, "r+") as file:
-            self._places += hdf5.create_datasets(file, shapes, rows)
-            for name in shapes:
-                field = self._field(name)
-                file[name].attrs.update(unit=field.unit, meaning=field.meaning)
-            file[frame].attrs.update(time=math.nan, step=step)  # no time yet: not whole
+        self._places += hdf5.create_datasets(file, shapes, rows, self._texts)
+        hdf5.describe(file, frame, {"time": math.nan, "step": step})  # no time yet: not whole
 
     def _found(self, file, frame: str) -> tuple[str, float, dict]:
         """A frame's name, time, and the shape and type of its datasets in the order of the fields."""
@@ -167,7 +174,8 @@ class FrameFile:
         kinds = {name: (dataset.shape, dataset.dtype) for name, dataset in datasets.items()}
         return frame, float(file[frame].attrs["time"]), kinds
 
-    def _field(self, name: str) -> Field:
-        """The field of the dataset ``name``."""
+    def _texts(self, name: str) -> dict[str, str]:
+        """What the dataset ``name`` says of itself."""
         kind, name = name.split("/")[0], name.split("/")[-1]
-        return self._fields[CONNECTIVITY.name if kind == CONNECTIVITY.name else name]
+        field = self._fields[CONNECTIVITY.name if kind == CONNECTIVITY.name else name]
+        return {"unit": field.unit, "meaning": field.meaning}

@@ -9,6 +9,10 @@ import ctypes
 import errno
 import math
 import os
+import resource
+from collections.abc import Callable
+from contextlib import contextmanager, nullcontext, suppress
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +26,9 @@ all write so little together they wait for each other rather than for the disk."
 
 MARGIN = 1 << 16
 """Bytes for the structure of what is laid out: headers, names, attributes."""
+
+KEEP_SIZE = 1
+"""For Linux's fallocate: the file stays as long as it is (FALLOC_FL_KEEP_SIZE)."""
 
 
 def parallel_hdf5() -> bool:
@@ -38,21 +45,50 @@ def open_file(path: Path, mode: str, **how):
     return h5py.File(path, mode, **({} if "driver" in how else {"locking": False}), **how)
 
 
-def reserve(path: Path, size: int) -> None:
-    """Take ``size`` more bytes of the disk, or raise OSError and leave the file as it was.
+@contextmanager
+def opened(path: Path):
+    """The file, to be changed, as HDF5 itself knows it: h5py's own objects take longer than a small frame.
 
-    HDF5 gives back what it does not use when it closes the file.  Where the file system cannot
-    allocate, it is only asked whether so much is free.
+    Until it is closed only the numbers of datasets reach the disk for sure, the rest by :func:`complete`.
+    """
+    from h5py import h5f, h5p
+
+    access = h5p.create(h5p.FILE_ACCESS)
+    access.set_fclose_degree(h5f.CLOSE_STRONG)  # with all that is open in it
+    access.set_file_locking(False, True)
+    file = h5f.open(os.fsencode(path), h5f.ACC_RDWR, access)
+    try:
+        yield file
+    except BaseException:
+        with suppress(OSError, RuntimeError):  # the first error says more
+            file.close()
+        raise
+    file.close()
+
+
+def reserve(path: Path, size: int) -> None:
+    """Take ``size`` more bytes of the disk, or raise OSError; the file keeps its contents and its length.
+
+    What is not used stays behind its end until it is cut (:func:`give_back`): a file that HDF5 had to
+    cut when it closes it would be waited for.  Where the file system cannot allocate, it is only asked
+    whether so much is free.
     """
     with open(path, "r+b") as file:
         end = file.seek(0, os.SEEK_END)
+        longest = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+        if 0 <= longest < end + size:
+            raise OSError(errno.EFBIG, os.strerror(errno.EFBIG))
         failure = _allocate(file.fileno(), end, size)
         if failure in (errno.EOPNOTSUPP, errno.ENOSYS):
             disk = os.fstatvfs(file.fileno())
             failure = errno.ENOSPC if disk.f_bavail * disk.f_frsize < size else 0
         if failure:
-            file.truncate(end)
             raise OSError(failure, os.strerror(failure))
+
+
+def give_back(path: Path) -> None:
+    """Free what was reserved behind the end of a file."""
+    os.truncate(path, os.path.getsize(path))
 
 
 def _allocate(number: int, offset: int, size: int) -> int:
@@ -61,14 +97,21 @@ def _allocate(number: int, offset: int, size: int) -> int:
     ``os.posix_fallocate`` will not do: where the file system cannot allocate, glibc writes to every
     block in its place, gigabytes for a large frame.
     """
-    call = getattr(ctypes.CDLL(None, use_errno=True), "fallocate", None)
+    call = _fallocate()
     if call is None:
         return errno.ENOSYS
-    call.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_int64, ctypes.c_int64]
-    while call(number, 0, offset, size) != 0:
+    while call(number, KEEP_SIZE, offset, size) != 0:
         if ctypes.get_errno() != errno.EINTR:  # a signal: psph remembers it, and tries again
             return ctypes.get_errno()
     return 0
+
+
+@cache
+def _fallocate():
+    call = getattr(ctypes.CDLL(None, use_errno=True), "fallocate", None)
+    if call is not None:
+        call.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_int64, ctypes.c_int64]
+    return call
 
 
 def sync(path: Path) -> None:
@@ -85,21 +128,90 @@ def size_of(shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> int:
     return sum(math.prod(shape) * rows[name].itemsize for name, shape in shapes.items())
 
 
-def create_datasets(file, shapes: dict[str, tuple], rows: dict[str, np.ndarray]) -> list[tuple[int, int]]:
+def create_datasets(
+    file, shapes: dict[str, tuple], rows: dict[str, np.ndarray], texts: Callable[[str], dict] | None = None
+) -> list[tuple[int, int]]:
     """Datasets of these ``shapes``, contiguous, with the types of ``rows``; rank 0 alone.
 
-    Returns where their numbers will lie.
+    ``file`` as :func:`opened` gives it; ``texts`` of a name are the attributes of its dataset.  Returns
+    where their numbers will lie.
     """
+    from h5py import h5d, h5s
+
+    places, groups = [], {}
+    for name, shape in shapes.items():
+        folder, _, last = name.rpartition("/")
+        if folder not in groups:
+            groups[folder] = _group(file, folder)
+        kind = _kind(rows[name].dtype)
+        dataset = h5d.create(groups[folder], last.encode(), kind, h5s.create_simple(shape), _contiguous())
+        places.append((dataset.get_offset() or 0, dataset.get_storage_size()))
+        if texts:
+            _describe(dataset, texts(name))
+    return places
+
+
+@cache
+def _contiguous():
+    """How a dataset is made whose space is taken at once, so that filling changes nothing of the file's
+    structure."""
+    from h5py import h5d, h5p
+
+    way = h5p.create(h5p.DATASET_CREATE)
+    way.set_alloc_time(h5d.ALLOC_TIME_EARLY)
+    way.set_fill_time(h5d.FILL_TIME_NEVER)
+    way.set_obj_track_times(False)
+    return way
+
+
+@cache
+def _kind(dtype: np.dtype):
+    """HDF5's name of a type of numbers or texts."""
+    from h5py import h5t
+
+    return h5t.py_create(dtype, logical=True)
+
+
+def _group(file, name: str):
+    """The group ``name`` of an open file, made with all that it stands in where there is none."""
+    from h5py import h5g, h5p
+
+    if name.encode() in file:
+        return h5g.open(file, name.encode())
+    between = h5p.create(h5p.LINK_CREATE)
+    between.set_create_intermediate_group(True)
+    return h5g.create(file, name.encode(), lcpl=between)
+
+
+def describe(file, name: str, attributes: dict[str, str | float | int]) -> None:
+    """Give a group of an open file, as :func:`opened` gives it, attributes that it lacks."""
+    from h5py import h5o
+
+    _describe(h5o.open(file, name.encode()), attributes)
+
+
+def _describe(place, attributes: dict[str, str | float | int]) -> None:
+    from h5py import h5a, h5s
+
+    scalar = h5s.create(h5s.SCALAR)
+    for key, value in attributes.items():
+        content = _text(value) if isinstance(value, str) else np.array(value)
+        h5a.create(place, key.encode(), _kind(content.dtype), scalar).write(content)
+
+
+@cache
+def _text(value: str) -> np.ndarray:
     import h5py
 
-    # Space is taken now, so that filling changes nothing of the structure of the file.
-    taken = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
-    taken.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
-    taken.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
-    return [
-        place_of(file.create_dataset(name, shape, rows[name].dtype, dcpl=taken))
-        for name, shape in shapes.items()
-    ]
+    return np.array(value, h5py.string_dtype())
+
+
+def complete(file, name: str, key: str, value: float) -> None:
+    """Give an attribute of an open file its last value, behind all else that was changed."""
+    from h5py import h5a, h5f, h5o
+
+    h5f.flush(file)
+    h5a.open(h5o.open(file, name.encode()), key.encode()).write(np.array(value))
 
 
 def place_of(dataset) -> tuple[int, int]:
@@ -107,28 +219,47 @@ def place_of(dataset) -> tuple[int, int]:
     return dataset.id.get_offset() or 0, dataset.id.get_storage_size()
 
 
-def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> None:
+def by_rank_0(comm, rows: dict[str, np.ndarray], counts: list[int]) -> bool:
+    """Whether rank 0 writes the rows of all ranks; else each writes its own."""
+    return comm.size == 1 or sum(counts) * _bytes_per_row(rows) <= AT_ONCE or not parallel_hdf5()
+
+
+def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int], file=None) -> None:
     """Write the ``rows`` of this rank, by dataset, behind those of the ranks before it; collective.
 
     ``counts`` are the rows of each rank.  Arrays may be views of any layout: one at a time is
-    copied, or a piece of it, to spare memory.
+    copied, or a piece of it, to spare memory.  ``file`` is that at ``path`` where rank 0, which
+    writes it alone (:func:`by_rank_0`), has it open.
     """
-    if comm.size == 1:
-        with open_file(path, "r+") as file:
-            for name, part in rows.items():
-                for start in range(0, len(part), CHUNK):
-                    file[name][start : start + CHUNK] = part[start : start + CHUNK]
-    elif sum(counts) * _bytes_per_row(rows) <= AT_ONCE:
-        _fill_at_once(path, comm, rows)
-    elif parallel_hdf5():
-        with open_file(path, "r+", driver="mpio", comm=comm) as file:
-            fill_collectively(file, rows, sum(counts[: comm.rank]))
-    elif comm.rank == 0:
-        _fill_for_all(path, comm, rows, counts)
+    if not by_rank_0(comm, rows, counts):
+        with open_file(path, "r+", driver="mpio", comm=comm) as shared:
+            fill_collectively(shared, rows, sum(counts[: comm.rank]))
+        return
+    if sum(counts) * _bytes_per_row(rows) <= AT_ONCE:
+        pieces = _at_once(comm, rows, counts)
     else:
-        for part in rows.values():
-            for start in range(0, len(part), CHUNK):
-                comm.Send(np.ascontiguousarray(part[start : start + CHUNK]), dest=0)
+        pieces = _pieces(comm, rows, counts)
+    try:
+        if comm.rank == 0:
+            with nullcontext(file) if file else opened(path) as own:
+                _write(own, pieces)
+    finally:
+        # After a failure too: the other ranks must get rid of what they send.
+        for _ in pieces:
+            pass
+
+
+def _write(file, pieces) -> None:
+    """Write what comes, (name, first row, rows) each."""
+    from h5py import h5d, h5s
+
+    for name, start, piece in pieces:
+        dataset, within = h5d.open(file, name.encode()), h5s.ALL
+        if dataset.shape != piece.shape:
+            within = dataset.get_space()
+            within.select_hyperslab((start, *(0 for _ in piece.shape[1:])), piece.shape)
+        memory = h5s.create_simple(piece.shape)
+        dataset.write(memory, within, np.ascontiguousarray(piece))
 
 
 def _bytes_per_row(rows: dict[str, np.ndarray]) -> int:
@@ -136,13 +267,44 @@ def _bytes_per_row(rows: dict[str, np.ndarray]) -> int:
     return sum(math.prod(part.shape[1:]) * part.itemsize for part in rows.values())
 
 
-def _fill_at_once(path: Path, comm, rows: dict[str, np.ndarray]) -> None:
-    """Rank 0 gathers the rows of all ranks in one message each, and writes them."""
-    shares = comm.gather([np.ascontiguousarray(part) for part in rows.values()])
-    if comm.rank == 0:
-        with open_file(path, "r+") as file:
-            for name, parts in zip(rows, zip(*shares, strict=True), strict=True):
-                file[name][...] = np.concatenate(parts)
+def _at_once(comm, rows: dict[str, np.ndarray], counts: list[int]):
+    """On rank 0 the rows of all ranks, which come in one message from each: (name, 0, rows)."""
+    if comm.size == 1:
+        yield from ((name, 0, part) for name, part in rows.items() if len(part))
+        return
+    width, total = _bytes_per_row(rows), sum(counts)
+    mine = [np.ascontiguousarray(part).reshape(-1).view(np.uint8) for part in rows.values()]
+    all_rows = np.empty(total * width if comm.rank == 0 else 0, np.uint8)
+    comm.Gatherv(np.concatenate(mine), (all_rows, [count * width for count in counts]))
+    if comm.rank != 0:
+        return
+    shares = np.split(all_rows, np.cumsum(counts)[:-1] * width)
+    for name, part in rows.items():
+        row = math.prod(part.shape[1:]) * part.itemsize
+        ends = [count * row for count in counts]
+        whole = np.concatenate([share[:end] for share, end in zip(shares, ends)])
+        shares = [share[end:] for share, end in zip(shares, ends)]
+        if total:
+            yield name, 0, whole.view(part.dtype).reshape(total, *part.shape[1:])
+
+
+def _pieces(comm, rows: dict[str, np.ndarray], counts: list[int]):
+    """On rank 0 the rows of all ranks in turn, never more than a piece in memory: (name, first row, rows)."""
+    for name, part in rows.items():
+        if comm.rank == 0:
+            yield from ((name, at, part[at : at + CHUNK]) for at in range(0, len(part), CHUNK))
+        else:
+            for start in range(0, len(part), CHUNK):
+                comm.Send(np.ascontiguousarray(part[start : start + CHUNK]), dest=0)
+            continue
+        start = counts[0]
+        for source in range(1, comm.size):
+            end = start + counts[source]
+            while start < end:
+                piece = np.empty((min(CHUNK, end - start), *part.shape[1:]), part.dtype)
+                comm.Recv(piece, source)
+                yield name, start, piece
+                start += len(piece)
 
 
 def fill_collectively(file, rows: dict[str, np.ndarray], first: int) -> None:
@@ -167,30 +329,3 @@ def fill_collectively(file, rows: dict[str, np.ndarray], first: int) -> None:
             failure = error
     if failure:
         raise failure
-
-
-def _fill_for_all(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int]) -> None:
-    """Rank 0 writes its own rows and those that arrive, never more than a piece in memory."""
-    pieces = _pieces(comm, rows, counts)
-    try:
-        with open_file(path, "r+") as file:
-            for name, start, piece in pieces:
-                file[name][start : start + len(piece)] = piece
-    finally:
-        # After a failure too: the other ranks must get rid of what they send.
-        for _ in pieces:
-            pass
-
-
-def _pieces(comm, rows: dict[str, np.ndarray], counts: list[int]):
-    """Yield (name, first row, rows) of rank 0 and of every other rank in turn."""
-    for name, part in rows.items():
-        yield name, 0, part
-        start = counts[0]
-        for source in range(1, comm.size):
-            end = start + counts[source]
-            while start < end:
-                piece = np.empty((min(CHUNK, end - start), *part.shape[1:]), part.dtype)
-                comm.Recv(piece, source)
-                yield name, start, piece
-                start += len(piece)

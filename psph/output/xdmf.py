@@ -12,6 +12,7 @@ import os
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from time import monotonic
 from typing import NamedTuple
 from xml.sax.saxutils import escape
 
@@ -50,6 +51,9 @@ NAME, TIME = "<frame>", "<time>"
 
 PARTICLES = "particles"
 
+PAUSE = 1.0
+"""Seconds from one writing of the index to the next while frames come."""
+
 ENDING, EARLIER = ".xdmf", ".xmf"
 """Of the file's name.  PyVista knows the first alone; runs of earlier versions have the second."""
 
@@ -84,9 +88,9 @@ class _Frame(NamedTuple):
 class XdmfIndex:
     """The ``.xdmf`` beside the HDF5 file ``frames``; it lists the frames that are whole.
 
-    It is rewritten whenever the frames have grown by its own size since it was last: so all its
-    writings together are no more than the frames, however many.  Where frames are larger than
-    their lines here, that is at each frame; else it is behind until :meth:`complete`.
+    It is rewritten where the frames have grown by its own size since it was last, so all its writings
+    together are no more than the frames, however many; and once a ``PAUSE``, since a file system that keeps
+    its order takes some milliseconds for it.  In between it is behind, until :meth:`complete`.
     """
 
     def __init__(self, frames: Path):
@@ -97,7 +101,7 @@ class XdmfIndex:
     def add(self, frame: str, time: float, kinds: dict[str, Kind]) -> None:
         """List a frame; ``kinds`` holds its datasets by their name in the HDF5 file."""
         self._list(frame, time, kinds)
-        if self._frames.stat().st_size - self._seen >= self._size:
+        if monotonic() >= self._next and self._frames.stat().st_size - self._seen >= self._size:
             self._write()
 
     def remove(self) -> None:
@@ -129,6 +133,7 @@ class XdmfIndex:
         self._behind = False
         self._size = len(HEAD.format(name=PARTICLES)) + len(TAIL)
         self._seen = 0  # bytes of the frames when the index was last written
+        self._next = 0.0  # when it may be written again, by the clock
 
     def _list(self, frame: str, time: float, kinds: dict[str, Kind]) -> None:
         fields = tuple(
@@ -148,6 +153,7 @@ class XdmfIndex:
             file.writelines(self._lines())
         os.replace(fresh, self.path)
         self._seen, self._behind = self._frames.stat().st_size, False
+        self._next = monotonic() + PAUSE
 
     def _lines(self) -> Iterator[str]:
         yield HEAD.format(name=PARTICLES)

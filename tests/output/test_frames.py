@@ -54,6 +54,7 @@ def test_viewers_see_every_frame(tmp_path, alone, dimensions, name):
     written = [cloud(20 + k, dimensions, k) for k in range(2)]  # the number may change
     for k, arrays in enumerate(written):
         frames.write(k, 0.25 * k, k, arrays)
+    frames.complete_index()
     seen = seen_by_vtk(frames.path.with_suffix(".xdmf"))
     assert len(seen) == 2
     for k, (time, points, fields) in enumerate(seen):
@@ -82,6 +83,7 @@ def test_meshio_sees_every_frame(tmp_path, alone, dimensions):
     written = [cloud(20, dimensions, k) for k in range(2)]
     for k, arrays in enumerate(written):
         frames.write(k, 0.25 * k, k, arrays)
+    frames.complete_index()
     seen = seen_by_meshio(tmp_path / "tank.xdmf")
     assert len(seen) == 2
     for k, (time, points, fields) in enumerate(seen):
@@ -179,7 +181,20 @@ def test_room_on_the_disk_is_taken_or_refused(tmp_path):
     path = tmp_path / "tank.h5"
     path.write_bytes(b"head")
     hdf5.reserve(path, 1 << 20)
-    assert path.stat().st_size == (1 << 20) + 4 and 512 * path.stat().st_blocks >= 1 << 20
+    assert path.read_bytes() == b"head" and 512 * path.stat().st_blocks >= 1 << 20
     with pytest.raises(OSError):
         hdf5.reserve(path, 1 << 60)
-    assert path.stat().st_size == (1 << 20) + 4
+    hdf5.give_back(path)
+    assert path.read_bytes() == b"head" and 512 * path.stat().st_blocks < 1 << 20
+
+
+def test_a_frame_opens_the_file_once_and_cuts_nothing(tmp_path, alone, monkeypatch):
+    """Each time takes as long as the numbers of a small frame, and a cut is waited for."""
+    frames, opened, calls = FrameFile(tmp_path / "tank.h5", alone, {}), hdf5.opened, []
+    monkeypatch.setattr(hdf5, "opened", lambda path: calls.append(path) or opened(path))
+    frames.write(0, 0.0, 0, cloud(5, 2))
+    assert calls == [frames.path]
+    with h5py.File(frames.path) as file:
+        assert file.id.get_filesize() == frames.path.stat().st_size
+    frames.close()
+    assert 512 * frames.path.stat().st_blocks < frames.path.stat().st_size + hdf5.MARGIN

@@ -14,6 +14,7 @@ from long import LONG, tell
 from mpi4py import MPI
 from viewers import seen_by_meshio, seen_by_vtk
 
+from psph.output import xdmf
 from psph.output.frames import FrameFile
 from psph.output.reader import Run
 
@@ -33,6 +34,12 @@ def cloud(frame, count=5):
 def write(frames, first, last):
     for k in range(first, last):
         frames.write(k, 0.5 * k, 3 * k, cloud(k))
+
+
+@pytest.fixture(autouse=True)
+def unhurried(monkeypatch):
+    """The index may be written at any time."""
+    monkeypatch.setattr(xdmf, "PAUSE", 0.0)
 
 
 @pytest.fixture
@@ -78,6 +85,21 @@ def test_large_frames_are_seen_at_once(tmp_path, alone):
     for k in range(20):
         frames.write(k, 0.5 * k, k, cloud(k, count=500))
         assert listed(tmp_path / "tank.xdmf") == k + 1
+
+
+def test_the_index_is_written_once_a_pause(tmp_path, alone, replaced, monkeypatch):
+    """A run of many frames a second would wait for its file system at each."""
+    clock = [0.0]
+    monkeypatch.setattr(xdmf, "PAUSE", 1.0)
+    monkeypatch.setattr(xdmf, "monotonic", lambda: clock[0])
+    frames, seen = FrameFile(tmp_path / "tank.h5", alone, {}), []
+    for k in range(11):
+        clock[0] = 0.3 * k
+        frames.write(k, 0.5 * k, k, cloud(k, count=500))
+        seen.append(listed(tmp_path / "tank.xdmf"))
+    assert seen == [1, 1, 1, 1, 5, 5, 5, 5, 9, 9, 9] and len(replaced) == 3
+    frames.complete_index()
+    assert listed(tmp_path / "tank.xdmf") == 11
 
 
 def test_tiny_frames_are_seen_after_a_while_and_at_the_end(tmp_path, alone):

@@ -44,7 +44,7 @@ def test_a_rank_knows_its_rows_past_2_31(tmp_path, monkeypatch):
     monkeypatch.setattr(hdf5, "fill", lambda *call: filled.append(call))
     frames = FrameFile(tmp_path / "tank.h5", SecondRank(), {})
     frames.write(0, 0.0, 0, {"position": np.ones((3, 2))})
-    [(_, _, rows, counts)] = filled
+    [(_, _, rows, counts, _)] = filled
     assert counts == [FIRST, 3]
     connectivity = rows[f"connectivity/{FIRST + 3}"]
     assert connectivity.dtype == np.int64
@@ -60,7 +60,8 @@ def test_rows_past_2_31_land_in_their_place(tmp_path, alone, reserved):
         "frames/00000/id": np.arange(FIRST, total),
     }
     shapes = {name: (total, *part.shape[1:]) for name, part in rows.items()}
-    frames._lay_out("frames/00000", 7, shapes, rows)
+    with hdf5.opened(frames.path) as file:
+        frames._lay_out(file, "frames/00000", 7, shapes, rows)
     assert reserved[-1] > total * (24 + 8) > 2**36
     with h5py.File(frames.path, "r+", driver="mpio", comm=MPI.COMM_SELF) as file:
         hdf5.fill_collectively(file, rows, FIRST)
