@@ -6,7 +6,7 @@ import numpy as np
 
 from psph.kinds import Kind
 from psph.physics.stress.deviator import DEVIATOR
-from psph.scene.soils import soil_lines, soil_warnings
+from psph.scene.soils import soil_faults, soil_lines, soil_warnings
 from psph.scene.stressed import deviator_of
 
 
@@ -14,6 +14,10 @@ class Soils(Kind):
     """Soils, which share the pair loop with what flows."""
 
     name = "soils"
+
+    def faults(self) -> Iterator[str]:
+        """Soils that start pressed together beyond any law."""
+        yield from soil_faults(self.scene)
 
     def warnings(self) -> Iterator[str]:
         """Numbers of theirs that are likely a slip."""

@@ -12,6 +12,10 @@ LIGHTEST, HEAVIEST = 500.0, 4000.0
 MOST_SAG = 0.05
 """Strain under its own weight above which soil is too soft to be taken for a solid ground."""
 
+MOST_PRESSED = 1.0
+"""Mean pressure at the start over the bulk modulus beyond which no soil is started: its density would be
+e times that at rest, on a lattice spaced for that at rest."""
+
 RADIANS = 1.6
 """Angles of friction below this many degrees, and above 0, are likely in radians: π/2 is 1.57."""
 
@@ -28,6 +32,34 @@ def soil_lines(scene: Scene) -> Iterator[str]:
         yield (
             f"  soil        {part.name}: {says}; slides on planes of {slides:.3g}°, "
             f"bears {bears:.3g} Pa of mean tension; waves of {soil.wave_speed:.4g} m/s"
+        )
+
+
+def soil_faults(scene: Scene) -> Iterator[str]:
+    """A line for each soil that starts pressed together beyond what its law of elasticity can mean.
+
+    Its density at its lowest particle is ρ₀ exp(p/K) (psph.physics.stress.bulk), p = u + σ_v (1 + 2K₀)/3,
+    with the pressure u of the water in its pores and σ_v that its grains bear along gravity.
+    """
+    for number, layer in scene.starts.layers.items():
+        soil, foot = scene.layout.parts[number].table, float(scene.census.bottom[number])
+        water, borne, most = layer.water(foot), layer.largest_weight(foot), MOST_PRESSED * soil.bulk_modulus
+        pressure = water + borne * (1.0 + 2.0 * soil.at_rest) / 3.0
+        if pressure <= most:
+            continue
+        if water > most >= borne:
+            key, value, cure = "water_level", f"{layer.level:g} m", "a level nearer to the ground"
+        elif borne <= most and soil.at_rest > 1.0:
+            key, value, cure = "rest_coefficient", f"{soil.at_rest:g}", "1 or less"
+        elif soil.density > HEAVIEST:
+            key, value, cure = "density", f"{soil.density:g} kg/m³", f"{HEAVIEST:g} or less"
+        else:
+            enough = soil.young * max(pressure, borne) / (MOST_SAG * soil.bulk_modulus)
+            key, value, cure = "young", f"{soil.young:g} Pa", f"{enough:.2g} or more, or geostatic = false"
+        yield (
+            f"{scene.layout.parts[number].key}.{key}: {value}, and the pressure at its lowest particle at "
+            f"the start is {pressure:.3g} Pa, {pressure / soil.bulk_modulus:.3g} times its bulk modulus; "
+            f"give {cure}"
         )
 
 

@@ -39,12 +39,21 @@ class Layer(NamedTuple):
         sites = np.rint((position[:, order] - self.first[order]) / self.spacing).astype(int)
         sites = tuple(np.clip(sites, 0, np.array(self.burden.shape) - 1).T)
         top, height = self.top[sites[:-1]], self.sign * position[:, self.axis]
-        water = self.pores * np.maximum(self.level - height, 0.0)
+        water = self.water(height)
         whole = (
             self.burden[sites] + self.weight * (top - height) + self.pores * np.maximum(self.level - top, 0.0)
         )
         inside = height < top
         return np.where(inside, water, 0.0), np.where(inside, np.maximum(whole - water, 0.0), 0.0)
+
+    def water(self, height):
+        """Pressure of the water in the pores at a ``height`` in m, Pa."""
+        return self.pores * np.maximum(self.level - height, 0.0)
+
+    def largest_weight(self, foot: float) -> float:
+        """The most that its grains bear along gravity where it goes down to ``foot``, m, by its weight and
+        that of soils above; the water of its pores not taken off, Pa."""
+        return float(self.burden.max() + self.weight * (self.top.max() - foot))
 
     def pressure(self, position: np.ndarray) -> np.ndarray:
         """p = −tr σ/3, Pa (n,)."""

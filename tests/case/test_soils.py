@@ -46,6 +46,28 @@ def test_what_no_soil_can_be_is_refused_in_one_line(overrides, says, tmp_path):
     assert says in line
 
 
+@pytest.mark.parametrize(
+    ("override", "says"),
+    [
+        (
+            "young=1.0",
+            "soils.bank.young: 1 Pa, and the pressure at its lowest particle at the start is 546 Pa",
+        ),
+        ("young=1e-30", "give 2.1e+04 or more, or geostatic = false"),
+        ("density=1e30", "soils.bank.density: 1e+30 kg/m³"),
+        ("rest_coefficient=1e30", "soils.bank.rest_coefficient: 1e+30"),
+        ("water_level=1e30", "soils.bank.water_level: 1e+30 m"),
+    ],
+)
+def test_a_soil_pressed_beyond_its_law_is_refused_in_one_line(override, says, tmp_path):
+    """By the density at its lowest particle, rho exp(p/K), which overflows; without its weight at the start it has none."""
+    with pytest.raises(CaseError) as error:
+        check(Scene(draft(tmp_path, TANK, SAND, f"soils.bank.{override}")))
+    [line] = error.value.lines
+    assert says in line
+    check(Scene(draft(tmp_path, TANK, SAND, f"soils.bank.{override}", "soils.bank.geostatic=false")))
+
+
 def test_a_soil_alone_has_its_own_waves(tmp_path):
     with pytest.raises(CaseError, match="soils have waves of their own"):
         draft(tmp_path, TANK.split("[fluids")[0], SAND, "physics.sound_speed=30.0")
