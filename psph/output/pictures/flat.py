@@ -24,6 +24,9 @@ they have moved apart a little."""
 TELLING = 4.0
 """Size in points (1/72 inch) above which single particles are visible."""
 
+SMALLEST_DOT, LARGEST_DOT = 2.0, 6.0
+"""Points of a dot in 1D, whose height is a value."""
+
 
 class Slice(NamedTuple):
     """The plane across ``axis`` at ``place`` m."""
@@ -99,7 +102,7 @@ class Flat:
         fluid = frame["kind"] != WALL
         axes.set_xlim(self.lower[0], self.upper[0])
         if self.room.dimensions == 1:
-            _dots(axes, frame["position"][:, 0], values, fluid)
+            _dots(axes, frame["position"][:, 0], values, fluid, spacing)
             axes.set_ylim(*_padded(scale.norm.vmin, scale.norm.vmax))
         else:
             places = frame["position"][:, [self.across, self.up]]
@@ -139,9 +142,12 @@ def circles(axes: Axes, places: np.ndarray, spacing: float, **colours) -> Ellips
     return axes.add_collection(drawn, autolim=False)
 
 
-def _dots(axes: Axes, places: np.ndarray, values: np.ndarray, fluid: np.ndarray) -> None:
+def _dots(axes: Axes, places: np.ndarray, values: np.ndarray, fluid: np.ndarray, spacing: float) -> None:
+    """Values over places in 1D, as dots half as wide as their particles, within what the eye can tell."""
+    lower, upper = axes.get_xlim()
+    size = min(max(36 * style.width(axes) / (upper - lower) * spacing, SMALLEST_DOT), LARGEST_DOT)
     for chosen, colour in ((~fluid, style.WALLS), (fluid, style.LINES[0])):
-        axes.plot(places[chosen], values[chosen], ".", ms=4, mew=0, color=colour)
+        axes.plot(places[chosen], values[chosen], "o", ms=size, mew=0, color=colour)
 
 
 def _padded(low: float, high: float) -> tuple[float, float]:

@@ -13,6 +13,9 @@ from psph.output.pictures.scale import Scale
 MOST = (1.0, 99.0)
 """Percentiles of the places along an axis between which most particles lie."""
 
+FARTHEST = 3.0
+"""Sizes of a scene, its longest, that most of it may go beyond its start and still be shown."""
+
 
 class Panel(Protocol):
     """How a frame is drawn into a panel of a page."""
@@ -75,10 +78,15 @@ def room_of(case: dict, boxes: Sequence[np.ndarray], most: Sequence[np.ndarray])
     dimensions, spacing = case["space"]["dimensions"], case["space"]["spacing"]
     extents = np.array(boxes)
     size = extents[0, 1] - extents[0, 0] + spacing
-    # What a run that blows up throws far away must not make the rest small; a thin beam that bends is seen.
-    bulk = np.array(most)
-    low = np.maximum(np.minimum(bulk[:, 0].min(axis=0), extents[0, 0]), extents[0, 0] - size.max())
-    high = np.minimum(np.maximum(bulk[:, 1].max(axis=0), extents[0, 1]), extents[0, 1] + size.max())
+    # What a run that blows up throws far away must not make the rest small; a thin beam that bends and a
+    # strip that is drawn out are seen.  So most particles may reach further by the size of the scene from one
+    # frame to the next, and by a few sizes in all.
+    low, high, step = extents[0, 0], extents[0, 1], size.max()
+    for lowest, highest in np.array(most):
+        low = np.maximum(np.minimum(lowest, low), low - step)
+        high = np.minimum(np.maximum(highest, high), high + step)
+    low = np.maximum(low, extents[0, 0] - FARTHEST * step)
+    high = np.minimum(high, extents[0, 1] + FARTHEST * step)
     lower = np.maximum(extents[:, 0].min(axis=0), low - size) - spacing / 2
     upper = np.minimum(extents[:, 1].max(axis=0), high + size) + spacing / 2
     gravity = case.get("physics", {}).get("gravity", {}).get("acceleration", [0.0] * dimensions)

@@ -186,6 +186,17 @@ def test_a_thin_beam_that_bends_is_seen_whole(run_with, alone, sag, lowest):
     assert reached == pytest.approx(lowest, abs=0.2) if sag < 10 else reached > lowest  # not what blew up
 
 
+def test_a_strip_that_is_drawn_out_is_seen_whole(run_with, alone):
+    """To four times its length over several frames: the ends were cut off beyond three times."""
+    run = run_with(box(40, 2))
+    frames = FrameFile(run.path, alone, {"case": run.case_text})
+    for k in range(4):
+        shape = box(40, 2)
+        shape["position"][:, 0] *= 1.0 + k
+        frames.write(k, 0.1 * k, k, shape | {"pressure": np.linspace(0, 1, 80)})
+    assert Show(run, None, "pressure").panel.upper[0] == pytest.approx(16.0, abs=0.3)
+
+
 @pytest.mark.parametrize("scale", [1.0, 0.01, 2e-4])
 @pytest.mark.parametrize("layers", [2, 4, 12])
 def test_numbers_of_a_low_panel_do_not_overlap_and_stay_on_the_page(run_with, layers, scale):
