@@ -195,6 +195,34 @@ class Kind:
         return False
 
     @classmethod
+    def has_free_surface(cls, census: Any) -> bool:
+        """Whether it has a free surface at the start or can have one, by the second value of a scene
+        (psph.scene.census)."""
+        return False
+
+    @classmethod
+    def driven_speed(cls, census: Any) -> float:
+        """The most that gravity along periodic axes can make of its speed by the end of the run, m/s."""
+        return 0.0
+
+    @classmethod
+    def creeping_speed(cls, census: Any) -> float:
+        """The speed of it that sets that of sound where gravity along periodic axes drives it slowly, m/s."""
+        return 0.0
+
+    @classmethod
+    def materials(cls, speeds: Any) -> Any:
+        """What its parts are made of, for its own rooms, by the third value of a scene (psph.scene.speeds);
+        None: what their tables say."""
+        return None
+
+    @classmethod
+    def layers(cls, census: Any) -> Mapping[int, Any]:
+        """How each of its parts starts that is under its own weight, by the number of the part: values with a
+        ``pressure(position)`` and its ``highest`` in Pa."""
+        return {}
+
+    @classmethod
     def contradictions(cls, case: Any) -> Iterator[tuple]:
         """What contradicts itself in its tables of a case (psph.case.findings.Finding)."""
         yield from ()

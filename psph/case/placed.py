@@ -1,11 +1,12 @@
 """What a case places: tables whose entries have particles, and what each of them answers."""
 
+import math
 from collections.abc import Iterator
 from typing import Any, ClassVar, NamedTuple
 
 from psph.acts import FLOWING, SOLIDS
 from psph.case.findings import Finding, Location
-from psph.case.keys import Table
+from psph.case.keys import Table, Vector, key
 
 
 class Answering(Table):
@@ -67,6 +68,19 @@ class Placed(Answering):
     def said(self, table: str, name: str) -> tuple[Location, Any]:
         """The key that says so, and its value."""
         return (table,), ...
+
+
+class HardPlane(Answering):
+    """A rigid plane without an end, that holds no particles: matter with forces of its own may hit it."""
+
+    at: Vector = key("a point of the plane", unit="m")
+    normal: Vector = key("direction out of it, of any length", unit="1")
+
+    @property
+    def outward(self) -> tuple[float, ...]:
+        """The unit vector out of it."""
+        size = math.hypot(*self.normal)
+        return tuple(n / size for n in self.normal)
 
 
 class Named(NamedTuple):

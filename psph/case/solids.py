@@ -12,6 +12,7 @@ from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Name, Table, Text, Vector, key
 from psph.case.motion import PADDLES, Motions
+from psph.case.placed import HardPlane
 from psph.case.shapes import Shape
 from psph.case.updated import OF_SOLIDS, TOTAL, UPDATED, referred_in, updated, updated_in
 from psph.physics.solid.anvil import Anvils
@@ -67,10 +68,9 @@ class Shocked(Table):
     )
 
 
-class Anvil(Table):
+class Anvil(HardPlane):
     """A rigid, frictionless plane, endless, that solids may hit."""
 
-    at: Vector = key("a point of the plane", unit="m")
     normal: Vector = key("direction out of it, towards the solids, of any length", unit="1")
 
 

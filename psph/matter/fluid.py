@@ -1,11 +1,15 @@
 """What flows: fluids, soils and updated Lagrangian solids share one pair loop, one kernel and one step."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from psph.case.fluids import HYDROSTATIC
 from psph.kinds import Kind
 from psph.scene.fluid.advice import fluid_advice
 from psph.scene.fluid.checks import fluid_warnings
+from psph.scene.fluid.opening import has_free_surface
+from psph.scene.fluid.periodic_gravity import creeping_speed, driven_speed
 from psph.scene.fluid.rheologies import rheology_lines
+from psph.scene.fluid.still import Still, stills_of
 from psph.scene.sites import sites_within
 from psph.scene.waving import wave_faults
 
@@ -20,6 +24,27 @@ class Fluids(Kind):
     """All that moves freely and finds its neighbours in space."""
 
     name = "flowing"
+
+    @classmethod
+    def has_free_surface(cls, census) -> bool:
+        """Whether it has one, or can (psph.scene.fluid.opening)."""
+        return has_free_surface(census)
+
+    @classmethod
+    def driven_speed(cls, census) -> float:
+        """By what friction lets it (psph.scene.fluid.periodic_gravity)."""
+        return driven_speed(census)
+
+    @classmethod
+    def creeping_speed(cls, census) -> float:
+        """√(gH) (psph.scene.fluid.periodic_gravity)."""
+        return creeping_speed(census)
+
+    @classmethod
+    def layers(cls, census) -> Mapping[int, Still]:
+        """Columns of fluids whose pressure is hydrostatic (psph.scene.fluid.still)."""
+        parts = (part for part in census.layout.parts if part.flows)
+        return stills_of(census, [part.number for part in parts if part.table.pressure == HYDROSTATIC])
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """That of sound, and that of the largest acceleration."""

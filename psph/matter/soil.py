@@ -1,19 +1,24 @@
 """Soils: what they add to a scene (psph.kinds).  Their stress is that of effects (psph.physics.stress)."""
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Mapping
 
 import numpy as np
 
 from psph.kinds import Kind
 from psph.physics.stress.deviator import DEVIATOR
 from psph.scene.soils import soil_faults, soil_lines, soil_warnings
-from psph.scene.stressed import deviator_of
+from psph.scene.stressed import Layer, deviator_of, layers_of
 
 
 class Soils(Kind):
     """Soils, which share the pair loop with what flows."""
 
     name = "soils"
+
+    @classmethod
+    def layers(cls, census) -> Mapping[int, Layer]:
+        """Ground under its own weight (psph.scene.stressed)."""
+        return layers_of(census)
 
     def faults(self) -> Iterator[str]:
         """Soils that start pressed together beyond any law."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from psph.acts import SOLIDS
 from psph.case.updated import referred_in, updated_in
 from psph.composition.loads import Pushes
 from psph.composition.space import Metres
@@ -15,11 +16,12 @@ from psph.particles.records import record_width
 from psph.physics.solid.contact import COVER, FACE, OF_FRICTION, REACH
 from psph.physics.solid.deformation import DRAWN, KERNEL, SMOOTHING, places_of, support_of
 from psph.physics.solid.material import STEP, is_damped
+from psph.scene.calming import damped_solids, solids_of
 from psph.scene.faces import drawn_faces
 from psph.scene.sites import sites_within
 from psph.scene.solid_checks import fast_start, solid_advice, solid_faults, solid_lines, solid_warnings
 from psph.scene.solids import solid_fields
-from psph.simulation.solid_plan import NAME, SolidPlan, solid_plan
+from psph.simulation.solid_plan import SolidPlan, solid_plan
 
 NUMBER, ROW, ENTRY = 8, 12, 4
 """Bytes of a number, of the position of a list, and of a neighbour in it."""
@@ -56,7 +58,7 @@ class ElasticSolids(SolidMatter):
     """The elastic solids of a scene, which keep their neighbours of the start; ``immersed`` where they stand
     in a fluid."""
 
-    name = NAME
+    name = SOLIDS
     columns = ("stored_energy",)
     pushes_within = True
 
@@ -84,10 +86,15 @@ class ElasticSolids(SolidMatter):
             yield FACE.name, normal
             yield COVER.name, depth[:, None]
 
+    @classmethod
+    def materials(cls, speeds) -> tuple:
+        """What they are made of (psph.physics.solid.material), damped in a fluid."""
+        return damped_solids(speeds)
+
     @property
     def made(self) -> tuple:
-        """What they are made of (psph.physics.solid.material)."""
-        return self.scene.starts.solids
+        """The same of this scene's."""
+        return solids_of(self.scene.starts)
 
     @property
     def fields(self) -> tuple[Field, ...]:

@@ -38,8 +38,8 @@ class Facts(Protocol):
     """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
     strengths: Sequence[Any]
     """The laws that bound an evolved stress (psph.physics.stress.strength)."""
-    anvils: Sequence[Any]
-    """A point of each rigid plane that solids may hit in m, and the unit vector out of it."""
+    hard_planes: Sequence[Any]
+    """A point of each rigid plane without particles in m, and the unit vector out of it."""
     has_free_surface: bool
     lowest_pressure: float
     """Of a fluid at the start, Pa."""

@@ -1,5 +1,6 @@
 """Elastic solids in fluids: the damping that calms what a step of the fluid does not resolve."""
 
+from psph.acts import SOLIDS
 from psph.physics.solid.material import ElasticSolid, calming_viscosity
 from psph.scene.faces import thinnest
 from psph.scene.parts.solid import ElasticPart
@@ -18,6 +19,11 @@ def damped_solids(speeds: Speeds) -> tuple[ElasticSolid, ...]:
         part.made._replace(viscosity=_damping(speeds, number, part.table))
         for number, part in enumerate(parts)
     )
+
+
+def solids_of(starts) -> tuple[ElasticSolid, ...]:
+    """What the elastic solids of a scene are made of, by its fourth value (psph.scene.starts)."""
+    return starts.materials.get(SOLIDS, ())
 
 
 def _damping(speeds: Speeds, number: int, table) -> float:

@@ -14,6 +14,7 @@ from psph.case import Case
 from psph.case.keys import AXES
 from psph.case.motion import motion_of
 from psph.case.parameters import as_numbers
+from psph.case.placed import HardPlane
 from psph.moments import normalised
 from psph.particles.reach import Reach
 from psph.physics.walls.conditions import MIRROR
@@ -22,7 +23,6 @@ from psph.scene.meshes.drawn import Drawn, drawn
 from psph.scene.mirrors import around, clipped, planes_of
 from psph.scene.parts import Parts, parts_of
 from psph.scene.parts.order import among
-from psph.scene.parts.solid import anvils_in
 from psph.scene.shapes import Corner, Grid, bounds, inside
 from psph.smoothing import kernel
 from psph.theory.solutions.catalogue import SOLUTIONS
@@ -132,9 +132,10 @@ class Layout:
         return tuple(part.name for part in self.parts)
 
     @cached_property
-    def anvils(self) -> tuple[tuple[Corner, Corner], ...]:
-        """A point of each anvil in m, and the unit vector out of it."""
-        return anvils_in(self.case)
+    def hard_planes(self) -> tuple[tuple[Corner, Corner], ...]:
+        """A point in m of each rigid plane that the case has, and the unit vector out of it."""
+        tables = (getattr(self.case, name).values() for name in self.case.tables_of(HardPlane))
+        return tuple((one.at, one.outward) for table in tables for one in table)
 
     @cached_property
     def exact(self):
@@ -175,11 +176,10 @@ class Layout:
         """For each part, True at the sites that it claims."""
         tolerance = TOLERANCE * self.spacing
         masks = [np.broadcast_to(inside(part.shape, grid, tolerance), shape) for part in self.parts]
-        for clamp in self.parts.clamps:
-            of = self.parts[clamp].whole
-            whole = masks[of]
-            masks[clamp] = masks[clamp] & whole
-            masks[of] = whole & ~masks[clamp]
+        for part in (part for part in self.parts if part.of_another):
+            whole = masks[part.whole]
+            masks[part.number] = masks[part.number] & whole
+            masks[part.whole] = whole & ~masks[part.number]
         taking = [masks[part.number] for part in self.parts if part.displaces]
         if not taking:
             return masks

@@ -66,7 +66,7 @@ class Scene:
     support = property(attrgetter("layout.support"))
     gravity = property(attrgetter("layout.gravity"))
     frame = property(attrgetter("layout.frame"))
-    anvils = property(attrgetter("layout.anvils"))
+    hard_planes = property(attrgetter("layout.hard_planes"))
     sound_speed = property(attrgetter("speeds.sound_speed"))
     expected_speed = property(attrgetter("speeds.expected"))
     starting_speed = property(attrgetter("speeds.starting"))

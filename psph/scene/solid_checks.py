@@ -7,7 +7,7 @@ import numpy as np
 from psph.case.keys import AXES
 from psph.case.updated import referred_in
 from psph.physics.solid.laws import SaintVenantKirchhoff
-from psph.scene.calming import calming, impedance
+from psph.scene.calming import calming, impedance, solids_of
 from psph.scene.faces import thinnest
 from psph.scene.lattice import TOLERANCE
 from psph.scene.parts.solid import ElasticPart, UpdatedPart
@@ -94,7 +94,7 @@ def solid_advice(scene: Scene) -> Iterator[str]:
     """What to try after a guard stopped a run of solids."""
     if scene.case.time.step is not None:
         yield "remove time.step: the waves in the solids set the step then"
-    softens = any(isinstance(one.law, SaintVenantKirchhoff) for one in scene.starts.solids)
+    softens = any(isinstance(one.law, SaintVenantKirchhoff) for one in solids_of(scene.starts))
     law = 'law = "neo-hookean", which stands more compression, ' if softens else ""
     yield f"give {law}a larger hourglass, or some damping; look at the units of young, density and loads"
 
@@ -117,7 +117,7 @@ def _of_either_description(scene: Scene, number: int, name: str) -> Iterator[str
     if not LIGHTEST <= table.density <= HEAVIEST:
         yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
     own = scene.layout.parts[number].elastic
-    wave = table.wave_speed if own is None else scene.starts.solids[own].wave_speed
+    wave = table.wave_speed if own is None else solids_of(scene.starts)[own].wave_speed
     if wave < SLOWEST * scene.expected_speed and not table.mie_gruneisen:
         yield (
             f"solids.{name}.young: waves of {wave:.3g} m/s, where {scene.expected_speed:.3g} m/s are "
@@ -149,7 +149,7 @@ def _numbers(key: str, table) -> Iterator[str]:
 def _behind_anvils(scene: Scene, number: int, key: str) -> Iterator[str]:
     """A line for each anvil that pushes a solid from the start."""
     parts = scene.layout.parts.of_whole(number)
-    for name, (place, normal) in zip(scene.case.anvils, scene.layout.anvils):
+    for name, (place, normal) in zip(scene.case.anvils, scene.layout.hard_planes):
         nearest = np.inf
         for first, last in scene.layout.lattice.chunks():
             own = np.isin(scene.layout.materials(first, last), parts)
@@ -214,7 +214,7 @@ def solid_lines(scene: Scene) -> Iterator[str]:
     """What the solids are, in words, for `explain`."""
     parts = scene.layout.parts
     for solid, number in enumerate(parts.solids):
-        one, name, table = scene.starts.solids[solid], parts[number].name, parts[number].table
+        one, name, table = solids_of(scene.starts)[solid], parts[number].name, parts[number].table
         wide, axis = thinnest(scene.census, number)
         clamped = sum(int(scene.census.sizes[n]) for n in parts.of_whole(number) if n != number)
         count = int(scene.census.sizes[number]) + clamped

@@ -11,6 +11,7 @@ from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE,
 from psph.physics.solid.material import is_heated, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
+from psph.scene.calming import solids_of
 from psph.scene.scene import Scene
 
 
@@ -18,7 +19,7 @@ def followed_fields(scene: Scene) -> tuple[Field, ...]:
     """What particles carry because gauges follow them: where they were, and how often they have crossed."""
     gauges = scene.case.gauges.values()
     followed = any(gauge.displacement for gauge in gauges)
-    counted = followed or scene.starts.solids and any(gauge.reaction or gauge.force for gauge in gauges)
+    counted = followed or solids_of(scene.starts) and any(gauge.reaction or gauge.force for gauge in gauges)
     across = (CROSSED,) if counted and any(scene.layout.periods) else ()
     return (*([REFERENCE] if followed else []), *across)
 
@@ -28,12 +29,12 @@ def solid_fields(scene: Scene) -> tuple[Field, ...]:
     fluid."""
     across = tuple(field for field in followed_fields(scene) if field == CROSSED)
     loaded = any(table.loads for table in scene.case.solids.values())
-    lasting = OF_PLASTIC if remembers(scene.starts.solids) else ()
-    lasting += OF_HEAT if is_heated(scene.starts.solids) else ()
+    lasting = OF_PLASTIC if remembers(solids_of(scene.starts)) else ()
+    lasting += OF_HEAT if is_heated(solids_of(scene.starts)) else ()
     plane = [STRESS_ZZ] if scene.dimensions == 2 else []
-    shares = [SHARE] if any(one.shared for one in scene.starts.solids) else []
+    shares = [SHARE] if any(one.shared for one in solids_of(scene.starts)) else []
     wet = [INERTIA] if scene.case.flowing else []
-    cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in scene.starts.solids) else ()
+    cracks = OF_CRACKS if any(one.critical_stretch < math.inf for one in solids_of(scene.starts)) else ()
     meeting = OF_CONTACT if meets(scene) else ()
     meeting += OF_FRICTION if meeting and scene.physics.contact.friction else ()
     meeting += (MET,) if meeting and scene.case.flowing else ()

@@ -9,9 +9,9 @@ import numpy as np
 
 from psph.case import CaseError
 from psph.case.study import EXACT
+from psph.kinds import in_case
 from psph.physics.facts import SOUND_OVER_SPEED
 from psph.scene.census import Census
-from psph.scene.fluid.periodic_gravity import creeping_speed, driven_speed
 from psph.scene.layout import Layout
 from psph.scene.moving import falling_speed, fastest_corner, largest_speed
 from psph.scene.perturbations import kicked_velocities, kicks_of
@@ -45,8 +45,8 @@ class Speeds:
     def expected(self) -> float:
         """The largest speed to come as far as it can be told, m/s: the undriven one, and what gravity along
         a periodic axis drives, where no exact solution says how fast that is."""
-        driven = 0.0 if self.layout.exact else driven_speed(self.census)
-        return max(self.undriven, driven)
+        kinds = () if self.layout.exact else in_case(self.layout.case)
+        return max([self.undriven, *(kind.driven_speed(self.census) for kind in kinds)])
 
     @cached_property
     def undriven(self) -> float:
@@ -86,4 +86,5 @@ class Speeds:
                     "speed that you expect"
                 ]
             )
-        return max(given or SOUND_OVER_SPEED * max(self.expected, creeping_speed(self.census)), waves)
+        creeping = (kind.creeping_speed(self.census) for kind in in_case(case))
+        return max(given or SOUND_OVER_SPEED * max(self.expected, *creeping), waves)

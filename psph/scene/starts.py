@@ -7,19 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from psph.case.fluids import HYDROSTATIC
 from psph.case.study import EXACT
-from psph.physics.solid.material import ElasticSolid
-from psph.scene.calming import damped_solids
+from psph.kinds import in_case
 from psph.scene.census import Census
-from psph.scene.fluid.opening import has_free_surface
-from psph.scene.fluid.still import Still, stills_of
 from psph.scene.layout import Layout
 from psph.scene.parts import Known
-from psph.scene.parts.fluid import rheologies_of
 from psph.scene.species import Species, Start
 from psph.scene.speeds import Speeds
-from psph.scene.stressed import Layer, layers_of
 from psph.theory.solutions.setting import Setting
 
 
@@ -45,14 +39,16 @@ class Starts:
         return Setting(**vars(self.layout.surroundings), sound_speed=self.speeds.sound_speed)
 
     @cached_property
-    def solids(self) -> tuple[ElasticSolid, ...]:
-        """What the elastic solids are made of."""
-        return damped_solids(self.speeds)
+    def materials(self) -> dict[str, Any]:
+        """What kinds of matter are made of, by their names (psph.kinds)."""
+        made = ((kind.name, kind.materials(self.speeds)) for kind in in_case(self.layout.case))
+        return {name: one for name, one in made if one is not None}
 
     @cached_property
     def rheologies(self) -> tuple[Any, ...]:
         """The laws of viscosities that depend on the rate of strain (psph.physics.fluid.rheology)."""
-        return rheologies_of(self.layout.case)
+        laws = (part.rheology for part in self.layout.parts)
+        return tuple(dict.fromkeys(law for law in laws if law is not None))
 
     @cached_property
     def strengths(self) -> tuple[Any, ...]:
@@ -61,15 +57,12 @@ class Starts:
         return tuple(dict.fromkeys(law for law in laws if law is not None))
 
     @cached_property
-    def layers(self) -> dict[int, Layer]:
-        """How each soil starts that is under its own weight, by its number."""
-        return layers_of(self.census)
-
-    @cached_property
-    def stills(self) -> dict[int, Still]:
-        """How each fluid starts that is under its own weight, by its number."""
-        resting = (part for part in self.layout.parts if part.flows and part.table.pressure == HYDROSTATIC)
-        return stills_of(self.census, [part.number for part in resting])
+    def layers(self) -> dict[int, Any]:
+        """How each part starts that is under its own weight, by its number (psph.kinds)."""
+        found: dict[int, Any] = {}
+        for kind in in_case(self.layout.case):
+            found |= kind.layers(self.census)
+        return found
 
     @cached_property
     def states(self) -> tuple[Start, ...]:
@@ -84,7 +77,7 @@ class Starts:
             self.speeds.sound_speed,
             self.rheologies,
             self.strengths,
-            tuple(one.density * one.wave_speed**2 for one in self.solids),
+            tuple(part.wave_modulus for part in layout.parts if part.keeps_neighbours),
             self.census.lowest,
             self.census.highest,
             layout.gravity,
@@ -107,8 +100,8 @@ class Starts:
 
     @cached_property
     def has_free_surface(self) -> bool:
-        """Whether a fluid has a free surface at the start, or can have one (psph.scene.fluid.opening)."""
-        return has_free_surface(self.census)
+        """Whether a fluid has a free surface at the start, or can have one (psph.kinds)."""
+        return any(kind.has_free_surface(self.census) for kind in in_case(self.layout.case))
 
     @property
     def lowest_pressure(self) -> float:
@@ -147,14 +140,13 @@ class Starts:
         """The state of a part that others have too."""
         part = self.layout.parts[number]
         pressure = part.table.pressure
-        hydrostatic, exact = (pressure == word for word in (HYDROSTATIC, EXACT))
         return Start(
             law=part.law(self.layout.case),
             rest_density=part.table.density,
             sound_speed=self.speeds.sound_speed,
-            pressure=0.0 if hydrostatic or exact else pressure,
-            exact=(lambda x: self.layout.exact.pressure(x, 0.0, self.setting)) if exact else None,
-            layer=self.stills.get(number) if hydrostatic else self.layers.get(number),
+            pressure=0.0 if isinstance(pressure, str) else pressure,
+            exact=(lambda x: self.layout.exact.pressure(x, 0.0, self.setting)) if pressure == EXACT else None,
+            layer=self.layers.get(number),
         )
 
     @cached_property

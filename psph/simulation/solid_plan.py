@@ -4,15 +4,13 @@ import math
 from functools import cached_property
 from typing import Any
 
+from psph.acts import SOLIDS
 from psph.fields import WALL
 from psph.physics.motion import MovingClamp
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import SMOOTHING
 from psph.physics.solid.material import remembers
 from psph.physics.solid.plastic import Lasting
-
-NAME = "solids"
-"""Of their kind (psph.kinds)."""
 
 
 class SolidPlan:
@@ -82,4 +80,4 @@ class SolidPlan:
 
 def solid_plan(plan: Any) -> SolidPlan:
     """What elastic solids have planned; of a plan without them, that of none."""
-    return plan.planned.get(NAME) or SolidPlan(plan, ())
+    return plan.planned.get(SOLIDS) or SolidPlan(plan, ())

@@ -27,9 +27,9 @@ class Anvils(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """With the planes of the scene, or None."""
-        if not scene.anvils:
+        if not scene.hard_planes:
             return None
-        return Anvils(tuple(scene.anvils), 0.5 * scene.spacing, (scene.sound_speed / scene.spacing) ** 2)
+        return Anvils(tuple(scene.hard_planes), 0.5 * scene.spacing, (scene.sound_speed / scene.spacing) ** 2)
 
     def body(self, i):
         """The push, m/s²."""

@@ -114,6 +114,17 @@ class Part:
         """
         return whole if self.flows else None
 
+    @property
+    def wave_modulus(self) -> float:
+        """Of the fastest wave of what it is made of, ρ₀ c_l² in Pa, by which contacts are stiff; 0: it has
+        none."""
+        return 0.0
+
+    @property
+    def rheology(self) -> Any:
+        """The law of its viscosity where that depends on the rate of strain, or None."""
+        return None
+
     def strength(self, gravity: tuple[float, ...]) -> Any:
         """The law that bounds its stress (psph.physics.stress.strength), under ``gravity`` in m/s², or
         None."""

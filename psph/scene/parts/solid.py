@@ -51,6 +51,11 @@ class ElasticPart(HookeanPart):
         """Of what it is made of."""
         return self.made.wave_speed
 
+    @property
+    def wave_modulus(self) -> float:
+        """Of what it is made of."""
+        return self.made.density * self.made.wave_speed**2
+
     def reach(self, whole: Reach, spacing: float, contact: bool) -> Reach | None:
         """Alone it touches others within 2.5 spacings, and what the kernel reaches beyond that is skin, one
         spacing at least.  In a fluid it touches before new lists are made: lists then reach a little
@@ -116,9 +121,3 @@ def _control(table, shared: bool) -> dict[str, Any]:
     if table.hourglass is not None:
         return {"hourglass": table.hourglass, "shared": False}
     return {"hourglass": SHARED_HOURGLASS if shared else HOURGLASS, "shared": shared}
-
-
-def anvils_in(case: Case) -> tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]:
-    """A point of each anvil of a case in m, and the unit vector out of it."""
-    tables = case.anvils.values()
-    return tuple((one.at, tuple(n / math.hypot(*one.normal) for n in one.normal)) for one in tables)
