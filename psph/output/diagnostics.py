@@ -35,7 +35,7 @@ def energies_and_momentum(
     ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.  Order-independent sums, the same
     bits on any number of ranks; collective.
     """
-    moved = np.flatnonzero(store.shown("kind") != WALL)
+    moved = np.flatnonzero((store.kinds != WALL)[store.shown("group")])
     mass, speeds, places = (_of(store, name, moved) for name in (_inert(store), "velocity", "position"))
     kinetic = 0.5 * mass * np.add.reduce(speeds**2, axis=0)
     height = mass * (np.broadcast_to(potential, store.owned)[moved] - projected(places.T, gravity))
@@ -44,8 +44,7 @@ def energies_and_momentum(
 
 def _of(store: Store, name: str, which: np.ndarray) -> np.ndarray:
     """Values of the owned particles ``which`` (m,), a row for each component of a field with several."""
-    values = store.shown(name)
-    return values.T[..., which]
+    return np.take(store.shown(name).T, which, axis=-1)
 
 
 def total_energy(
@@ -95,6 +94,6 @@ def _inert(store: Store) -> str:
 
 def density_error(comm: MPI.Comm, store: Store) -> float:
     """Largest |ρ/ρ₀ − 1| of the fluid; collective."""
-    fluid = np.flatnonzero(store.shown("kind") == FLUID)
+    fluid = np.flatnonzero((store.kinds == FLUID)[store.shown("group")])
     ratio = _of(store, "density", fluid) / _of(store, "rest_density", fluid)
     return float(largest(comm, [np.abs(ratio - 1.0).max(initial=0.0)])[0])

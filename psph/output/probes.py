@@ -12,6 +12,7 @@ from psph.fields import FLUID, PRESSURE, SAVED, by_name, view_of
 from psph.output.flowing import ALL, counted
 from psph.parallel.domain import Domain
 from psph.parallel.reductions import exact_sums, largest
+from psph.particles.store import Store
 from psph.physics.walls.dry import DryWall
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
@@ -50,60 +51,64 @@ class FieldProbe:
 
     def sample(self, domain: Domain, kernel) -> np.ndarray:
         """Values in the order of :meth:`columns` on every rank; where no fluid is near, 0 for a pressure and
-        NaN for all else.
+        NaN for all else.  Collective."""
+        return self.values(domain.store, exact_sums(domain.comm, self.terms(domain, kernel)))
+
+    def terms(self, domain: Domain, kernel) -> np.ndarray:
+        """What this rank adds to the sums that :meth:`values` take: for each point W V_j in the fluid, W V_j,
+        W V_j f_j, a row for each particle and image near.
 
         Every rank finds the near ones among its own particles, wherever these have drifted since
-        the lists were made; the sums do not depend on how particles are spread.  Collective.
+        the lists were made; the sums do not depend on how particles are spread.
         """
-        seen = [self._around(domain, kernel, point) for point in self.points]
-        width = 2 + sum(len(domain.store.rows[field]) for field in self.fields)
-        terms = np.zeros((sum(map(len, seen)), len(seen) * width))
-        last = 0
-        for place, own in enumerate(seen):
-            first, last = last, last + len(own)
-            terms[first:last, place * width : (place + 1) * width] = own
-        sums = exact_sums(domain.comm, terms).reshape(len(seen), width)
-        self.rows += 1
-        wet = sums[:, 0] > 0.0
-        if not wet.any():
-            self.dry += 1
-        values = sums[wet, 2:] / sums[wet, 1:2]
-        # What no fluid reaches bears no pressure.
-        counted = [
-            len(wet) if f == PRESSURE.name else wet.sum() for f in self.fields for _ in domain.store.rows[f]
+        rows = np.array([row for field in self.fields for row in domain.store.rows[field]], np.int64)
+        seen = [
+            self._seen(domain, kernel, point, m, rows)
+            for point in self.points
+            for m in range(images(self.mirrors))
         ]
+        if len(seen) == 1:
+            return seen[0]
+        terms = np.zeros((sum(map(len, seen)), len(self.points) * (2 + len(rows))))
+        last = 0
+        for k, near in enumerate(seen):
+            first, last = last, last + len(near)
+            place = k // images(self.mirrors) * (2 + len(rows))
+            terms[first:last, place : place + 2 + len(rows)] = near
+        return terms
+
+    def values(self, store: Store, sums: np.ndarray) -> np.ndarray:
+        """What :meth:`sample` returns, of the sums of the :meth:`terms` of all ranks."""
+        sums = sums.reshape(len(self.points), -1)
+        wet = sums[:, 0] > 0.0
+        reached = int(np.count_nonzero(wet))
+        self.rows += 1
+        self.dry += not reached
+        # What no fluid reaches bears no pressure.
+        counted = [len(wet) if f == PRESSURE.name else reached for f in self.fields for _ in store.rows[f]]
         with np.errstate(invalid="ignore"):
-            return values.sum(axis=0) / counted  # 0/0 where all is dry
+            return (sums[wet, 2:] / sums[wet, 1:2]).sum(axis=0) / counted  # 0/0 where all is dry
 
-    def _around(self, domain: Domain, kernel, point) -> np.ndarray:
-        """Of this rank's particles around a point, and of images: W V_j in the fluid, W V_j, W V_j f_j."""
-        seen = (self._seen(domain, kernel, point, m) for m in range(images(self.mirrors)))
-        fluid, terms = map(np.concatenate, zip(*seen))
-        return np.column_stack([terms[:, 0] * fluid, terms])
-
-    def _seen(self, domain: Domain, kernel, point, m: int) -> tuple[np.ndarray, np.ndarray]:
-        """Which of this rank's particles in reach, or of their images m in mirrors, are fluid; and W V_j and
-        W V_j f_j of each."""
+    def _seen(self, domain: Domain, kernel, point, m: int, rows: np.ndarray) -> np.ndarray:
+        """The :meth:`terms` of one point, of this rank's particles in reach or of their images m in
+        mirrors."""
         store = domain.store
         # An image is as far from the point as the particle from the image of the point.
         point = self.mirrors.reflections[m].seen(point) if m else tuple(map(float, point))
-        rows = np.array([row for field in self.fields for row in store.rows[field]], np.int64)
         radius = kernel.support / kernel.inverse_h
         near = np.empty(store.owned, np.int64)
         first, last = store.low, store.low + store.owned
         count = find_near(point, domain.periods, store["position"], first, last, radius * radius, near)
         near = near[:count]
-        fluid = store.kinds[store.group[near]] == FLUID
         if DryWall.marks in store:
-            near, fluid = (x[store[DryWall.marks][near] > 0.0] for x in (near, fluid))
-        terms = np.empty((len(near), 1 + len(rows)))
-        weigh(point, kernel, domain.periods, store.view(), near, store.data, rows, terms)
+            near = near[store[DryWall.marks][near] > 0.0]
+        terms = np.empty((len(near), 2 + len(rows)))
+        weigh(point, kernel, domain.periods, _weighed(store), near, store.data, rows, terms)
         if m:
-            values = np.column_stack(
-                list(values_behind(self.mirrors.reflections[m], store, near, self.fields))
-            )
-            terms[:, 1:] = terms[:, :1] * values
-        return fluid, terms
+            values = values_behind(self.mirrors.reflections[m], store, near, self.fields)
+            terms[:, 2:] = terms[:, 1:2] * np.column_stack(list(values))
+        np.multiply(terms[:, 1], (store.kinds == FLUID)[store.group[near]], out=terms[:, 0])
+        return terms
 
 
 def sensor(position, extent, spacing: float) -> np.ndarray:
@@ -129,8 +134,8 @@ class Front:
     def sample(self, domain: Domain, kernel) -> np.ndarray:
         """The value on every rank; collective."""
         store = domain.store
-        fluid = counted(store.kinds, self.of)[store.owned_rows("group")]
-        reach = store.owned_rows("position")[fluid, self.axis].max(initial=-np.inf)
+        fluid = counted(store.kinds, self.of)[store.shown("group")]
+        reach = store["position"][self.axis][store.inner].max(where=fluid, initial=-np.inf)
         return np.array(largest(domain.comm, [float(reach)]))
 
 
@@ -149,6 +154,15 @@ def values_behind(reflection, store, near: np.ndarray, fields: tuple[str, ...]) 
         yield from value if isinstance(value, tuple) else (value,)
 
 
+WEIGHED = ("position", "mass", "specific_volume")
+"""What the weight of a particle at a point is made of."""
+
+
+def _weighed(store: Store):
+    """The particles with no more than that: so scenes of other effects share the loop."""
+    return view_of(WEIGHED)(*map(store.value, WEIGHED))
+
+
 @elementwise
 def find_near(point, periods, position, first, last, radius2, near):
     """Columns from ``first`` to ``last`` within the radius of ``point``; returns how many."""
@@ -162,11 +176,11 @@ def find_near(point, periods, position, first, last, radius2, near):
 
 @elementwise
 def weigh(point, kernel, periods, view, near, data, rows, terms):
-    """Fill ``terms``: W V_j and W V_j f_j of each near column, f the ``rows`` of ``data``."""
+    """Fill ``terms`` but the first: W V_j and W V_j f_j of each near column, f the ``rows`` of ``data``."""
     for n in range(len(near)):
         j = take(view, near[n])
         x = nearest_image(subtract(point, j.position), periods)
         share = weight(kernel, math.sqrt(dot(x, x))) * j.mass * j.specific_volume
-        terms[n, 0] = share
+        terms[n, 1] = share
         for m in range(len(rows)):
-            terms[n, m + 1] = share * data[rows[m], near[n]]
+            terms[n, m + 2] = share * data[rows[m], near[n]]

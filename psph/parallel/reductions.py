@@ -1,6 +1,7 @@
 """Numbers over all ranks that do not depend on how particles are spread over them."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from mpi4py import MPI
@@ -36,28 +37,60 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     number of terms, and integers are added.  The error is at most n/2 units; NaN or infinity in a
     column makes its sum NaN.  Collective.
     """
-    columns = np.atleast_2d(terms).T
-    rows = columns.shape[1]
-    extremes = np.zeros(len(columns))
-    if rows:
-        with np.errstate(invalid="ignore"):
-            np.maximum(columns.max(axis=1), -columns.min(axis=1), out=extremes)
+    return exact_sums_of(comm, [terms])[0]
+
+
+def exact_sums_of(comm: MPI.Comm, parts: Sequence[np.ndarray]) -> list[np.ndarray]:
+    """:func:`exact_sums` of each of several ``parts`` (n, k), in the messages of one; collective."""
+    columns = [np.ascontiguousarray(np.atleast_2d(terms).T) for terms in parts]
+    ends = np.cumsum([len(part) for part in columns]).tolist()
+    places = [slice(end - len(part), end) for part, end in zip(columns, ends)]
+    extremes = np.zeros(ends[-1])
+    with np.errstate(invalid="ignore"):
+        for part, place in zip(columns, places):
+            if part.size:
+                np.maximum(part.max(axis=1), -part.min(axis=1), out=extremes[place])
     extremes[np.isnan(extremes)] = np.inf  # a maximum over ranks may lose a NaN, but no infinity
-    count = np.array(rows, dtype=np.int64)
-    peaks = largest(comm, extremes)
-    comm.Allreduce(MPI.IN_PLACE, count, MPI.SUM)
+    counts = np.array([part.shape[1] for part in columns], dtype=np.int64)
+    peaks = largest(comm, extremes).tolist()
+    comm.Allreduce(MPI.IN_PLACE, counts, MPI.SUM)
     # Whole numbers add up to the same bits in any order where the sum fits: a bit for each doubling of terms.
-    room = BITS - max(int(count), 1).bit_length()
-    finite = np.isfinite(peaks)
-    scales = room - np.where(finite, np.frexp(np.where(finite, peaks, 0.0))[1], 0)
-    total = np.zeros(len(columns), np.int64)
-    wide = max(CHUNK // max(len(columns), 1), 1)
-    for first in range(0, rows, wide):
-        part = np.ldexp(columns[finite, first : first + wide], scales[finite, None])
-        total[finite] += np.rint(part, out=part).astype(np.int64).sum(axis=1)
+    rooms = [BITS - max(count, 1).bit_length() for count in counts.tolist()]
+    scales = [
+        room - math.frexp(peak)[1] if math.isfinite(peak) else 0
+        for room, place in zip(rooms, places)
+        for peak in peaks[place]
+    ]
+    total = np.zeros(ends[-1], np.int64)
+    for part, place in zip(columns, places):
+        _add_whole(part, peaks[place], scales[place], total[place])
     comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
-    sums = np.array([math.ldexp(int(t), -scale) for t, scale in zip(total, scales.tolist())])
-    return np.where(finite, sums, np.nan)
+    sums = np.array(
+        [
+            math.ldexp(whole, -scale) if math.isfinite(peak) else math.nan
+            for whole, scale, peak in zip(total.tolist(), scales, peaks)
+        ]
+    )
+    return [sums[place] for place in places]
+
+
+def _add_whole(columns: np.ndarray, peaks: list[float], scales: list[int], total: np.ndarray) -> None:
+    """Add to ``total`` the terms of each column whose peak is finite, in units of 2^-scale."""
+    finite = [math.isfinite(peak) for peak in peaks]
+    if not all(finite):
+        columns = np.where(np.array(finite)[:, None], columns, 0.0)
+    wide = max(CHUNK // max(len(columns), 1), 1)
+    # Powers of two: a product is exact but below 2^-1022, and what is left there is rounded to zero anyway.
+    factors = [np.array([math.ldexp(1.0, part) for part in half])[:, None] for half in _halves(scales)]
+    for first in range(0, columns.shape[1], wide):
+        part = columns[:, first : first + wide] * factors[0]
+        part *= factors[1]
+        total += np.rint(part, out=part).astype(np.int64).sum(axis=1)
+
+
+def _halves(scales: list[int]) -> tuple[list[int], list[int]]:
+    """Two powers whose product is 2^scale: one alone may be larger than any number."""
+    return [scale // 2 for scale in scales], [scale - scale // 2 for scale in scales]
 
 
 def whole_sums(comm: MPI.Comm, values: np.ndarray) -> np.ndarray:
