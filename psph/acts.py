@@ -4,23 +4,67 @@ Each says so itself: ``acts`` names the matter on which it acts, and ``refuses``
 cure, for each of these words beside which it does not work.  All else follows (psph.case.corners).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
 
 from psph.formula import helper, where
 
-FLUIDS, SOILS, UPDATED, SOLIDS, BODIES = (
-    "fluids",
-    "soils",
-    "updated Lagrangian solids",
-    "solids",
-    "rigid bodies",
-)
-"""Kinds of matter: what flows, elastic solids that keep their neighbours of the start, and what is rigid."""
+
+class Word(str):
+    """The word for a kind of matter, and what is asked of it by those who do not know it.
+
+    ``single`` is one of it.  It ``flows`` where its particles move freely and find their neighbours in space;
+    else it is ``bonded`` where they do and keep those of the start, and ``whole`` where forces move it as a
+    whole.
+    """
+
+    single: str
+    flows: bool
+    bonded: bool
+    whole: bool
+
+    def __new__(cls, word: str, single: str, flows: bool = False, bonded: bool = False, whole: bool = False):
+        made = super().__new__(cls, word)
+        made.single, made.flows, made.bonded, made.whole = single, flows, bonded, whole
+        return made
+
+
+FLUIDS = Word("fluids", "fluid", flows=True)
+SOILS = Word("soils", "soil", flows=True)
+UPDATED = Word("updated Lagrangian solids", "updated", flows=True)
+SOLIDS = Word("solids", "solid", bonded=True)
+BODIES = Word("rigid bodies", "body", whole=True)
 
 MATTER = (FLUIDS, SOILS, UPDATED, SOLIDS, BODIES)
+"""Kinds of matter: what flows, elastic solids that keep their neighbours of the start, and what is rigid."""
 
-FLOWING = (FLUIDS, SOILS, UPDATED)
-"""What moves freely and finds its neighbours in space: these share one pair loop."""
+FLOWING = tuple(one for one in MATTER if one.flows)
+"""What shares one pair loop."""
+
+BONDED = tuple(one for one in MATTER if one.bonded)
+"""What has passes of its own over its neighbours of the start."""
+
+WHOLE = tuple(one for one in MATTER if one.whole)
+"""What is pushed as a whole."""
+
+T = TypeVar("T")
+_SPEAKERS: dict[str, Any] = {}
+
+
+def speaks_for(*words: str) -> Callable[[T], T]:
+    """What it decorates says for these ``words`` beside what they do not work: it has ``refuses``."""
+
+    def kept(speaker: T) -> T:
+        _SPEAKERS.update(dict.fromkeys(words, speaker))
+        return speaker
+
+    return kept
+
+
+def speakers(words: Iterable[str]) -> dict[str, Any]:
+    """What speaks for some of these ``words``, in their order."""
+    return {word: _SPEAKERS[word] for word in words if word in _SPEAKERS}
+
 
 FRAME, SEAM, SYMMETRY, MIXED = "moving frames", "periodic axes", "planes of symmetry", "mixed precision"
 """Surroundings, beside walls, which have the words of psph.physics.walls.conditions."""
@@ -67,7 +111,7 @@ def refusals(asker) -> Mapping[str, str]:
 
 def refusals_of_effect(effect) -> Mapping[str, str]:
     """The same of an effect that a key of ``physics`` asks for: forces on bodies and solids need answers."""
-    unanswered = {BODIES: UNANSWERED.format("body"), SOLIDS: UNANSWERED.format("solid")}
+    unanswered: dict[str, str] = {one: UNANSWERED.format(one.single) for one in (*WHOLE, *BONDED)}
     return {**(unanswered if one_sided(effect) else {}), **refusals(effect)}
 
 

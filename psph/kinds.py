@@ -268,6 +268,11 @@ class Kind:
         """Fields that its work fills anew just before the ``passes`` over neighbours are summed."""
         return ()
 
+    def own_pass(self, called: Sequence, stored: Sequence[str]) -> Any:
+        """A pass over neighbours within steps of its own (psph.simulation.passes), of the effects ``called``
+        for and with the arrays ``stored``; None: it has none."""
+        return None
+
     def loads(self, passes: Sequence) -> Any:
         """How pushes on walls and bodies are summed (psph.composition.loads); None: it does not matter."""
         return None

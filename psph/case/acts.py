@@ -26,7 +26,7 @@ HEAD = """\
 *For whoever combines parts of psph: all tables. docs/acts.md says how to read them.*
 """
 
-TITLES = dict(zip(MATTER, ("fluid", "soil", "updated", "solid", "body")))
+TITLES: dict[str, str] = {one: one.single for one in MATTER}
 TITLES |= {one: f"`{one}`" for one in CONDITIONS}
 TITLES |= {"moving frames": "frame", "periodic axes": "seam", "planes of symmetry": "symmetry"}
 TITLES |= {"mixed precision": "mixed"}

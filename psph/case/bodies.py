@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Strict
 
-from psph.acts import BODIES, FRAME, ONE
+from psph.acts import BODIES, FRAME, ONE, speaks_for
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.keys import AXES, Name, Table, Vector, key
@@ -44,6 +44,7 @@ class Line(Table):
     pulls_only: bool = key("it is slack when shorter than its length: a mooring line without weight", False)
 
 
+@speaks_for(BODIES)
 class Body(Placed):
     """A rigid body that the fluid, its weight and lines move."""
 

@@ -4,42 +4,23 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from psph.acts import (
-    BODIES,
     DIMENSIONS,
     FRAME,
     MATTER,
     MIXED,
     SEAM,
-    SOILS,
-    SOLIDS,
     SYMMETRY,
-    UPDATED,
     acts_on,
     keys_of_matter,
     refusals,
     refusals_of_effect,
+    speakers,
 )
-from psph.case.bodies import Body
 from psph.case.findings import Finding, Location, asked_of
 from psph.case.placed import Answering
-from psph.case.soils import Soil
-from psph.case.solids import Solid
-from psph.case.updated import Updated
-from psph.physics.fluid.frame import MovingFrame
-from psph.physics.walls.conditions import CONDITIONS, CORNERS, MIRROR, Mirror
+from psph.physics.walls.conditions import CONDITIONS, CORNERS
 
 ACTS, REFUSED, IRRELEVANT = "acts", "refused", "irrelevant"
-
-KINDS: dict[str, Any] = {
-    SOILS: Soil,
-    UPDATED: Updated,
-    SOLIDS: Solid,
-    BODIES: Body,
-    MIRROR: Mirror,
-    FRAME: MovingFrame,
-    SYMMETRY: Mirror,
-}
-"""What says of itself beside what it does not work."""
 
 
 class Answer(NamedTuple):
@@ -49,14 +30,20 @@ class Answer(NamedTuple):
     says: str = ""
 
 
+def speaking() -> dict[str, Any]:
+    """The kinds of matter and the surroundings that say beside what they do not work, with what does so."""
+    return speakers(CORNERS)
+
+
 def kinds_of(case) -> dict[str, Any]:
     """The same with the kinds of matter of files that a case uses."""
-    return KINDS | {entry.effect.name: entry.effect for entry in case.catalogue.kinds}
+    return speaking() | {entry.effect.name: entry.effect for entry in case.catalogue.kinds}
 
 
 def between(one: str, other: str) -> str:
     """Why two kinds of matter or surroundings do not go together; empty where they do."""
-    return refusals(KINDS.get(one)).get(other) or refusals(KINDS.get(other)).get(one, "")
+    known = speaking()
+    return refusals(known.get(one)).get(other) or refusals(known.get(other)).get(one, "")
 
 
 def answer(asker: Any, corner: str, refused: Mapping[str, str]) -> Answer:
@@ -66,7 +53,8 @@ def answer(asker: Any, corner: str, refused: Mapping[str, str]) -> Answer:
     acts = acts_on(asker)
     if corner in acts:
         return Answer(ACTS)
-    needs = [kind for kind, of in KINDS.items() if of is asker] or [kind for kind in acts if kind in MATTER]
+    needs = [kind for kind, of in speaking().items() if of is asker]
+    needs = needs or [kind for kind in acts if kind in MATTER]
     apart = [between(kind, corner) for kind in needs]
     if all(apart):
         return Answer(REFUSED, apart[0])
@@ -98,7 +86,7 @@ def rows_of_gauges(kinds: Mapping[str, Any]) -> Iterator[CornerRow]:
 
 def rows_of_kinds() -> Iterator[CornerRow]:
     """A row for each kind of matter and surroundings that does not go with every other."""
-    for one in KINDS:
+    for one in speaking():
         said = (between(one, corner) for corner in CORNERS)
         yield CornerRow(one, one, tuple(Answer(REFUSED, says) if says else Answer(ACTS) for says in said))
 

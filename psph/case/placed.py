@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, ClassVar, NamedTuple
 
-from psph.acts import FLOWING, SOLIDS
+from psph.acts import BONDED, FLOWING
 from psph.case.findings import Finding, Location
 from psph.case.keys import Table, Vector, key
 
@@ -55,7 +55,7 @@ class Placed(Answering):
     @property
     def moves_freely(self) -> bool:
         """Whether forces move its particles one by one."""
-        return self.flows or self.word == SOLIDS
+        return self.flows or self.word in BONDED
 
     def pushed(self, case) -> bool:
         """Whether what flows pushes it, so that a force on it is known."""

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from psph.acts import FRAME, MIXED, ONE, SOILS, SOLIDS, UPDATED
+from psph.acts import FRAME, MIXED, ONE, SOILS, SOLIDS, UPDATED, speaks_for
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Vector, key
@@ -15,6 +15,7 @@ ALONE = "soils push no {} and feel none; remove one of the two, or draw it as a 
 """What soils say beside what is rigid or elastic."""
 
 
+@speaks_for(SOILS)
 class Soil(Hookean):
     """Soil: elastic until it yields by friction and cohesion."""
 

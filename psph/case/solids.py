@@ -74,6 +74,7 @@ class Anvil(HardPlane):
     normal: Vector = key("direction out of it, towards the solids, of any length", unit="1")
 
 
+@words.speaks_for(words.SOLIDS)
 class Solid(Hookean):
     """An elastic solid: total or updated Lagrangian SPH."""
 

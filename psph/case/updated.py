@@ -34,6 +34,7 @@ OF_SOLIDS = {
 """Beside what solids of either description do not work (psph.acts)."""
 
 
+@acts.speaks_for(acts.UPDATED)
 class Updated:
     """Beside what updated Lagrangian solids do not work."""
 

@@ -21,7 +21,7 @@ from psph.scene.faces import drawn_faces
 from psph.scene.sites import sites_within
 from psph.scene.solid_checks import fast_start, solid_advice, solid_faults, solid_lines, solid_warnings
 from psph.scene.solids import solid_fields
-from psph.simulation.solid_plan import SolidPlan, solid_plan
+from psph.simulation.solid_plan import SolidPlan, pass_of_contacts, solid_plan
 
 NUMBER, ROW, ENTRY = 8, 12, 4
 """Bytes of a number, of the position of a list, and of a neighbour in it."""
@@ -110,6 +110,10 @@ class ElasticSolids(SolidMatter):
         """What contacts read of a ghost that is found anew just before they are summed, where nothing
         flows."""
         return () if self.immersed or not passes else tuple(field.name for field in (FACE, *OF_FRICTION))
+
+    def own_pass(self, called: Sequence, stored: Sequence[str]) -> Any:
+        """In a fluid that of their contacts."""
+        return pass_of_contacts(called, tuple(stored)) if self.immersed else None
 
     def loads(self, passes: Sequence) -> Any:
         """Where nothing flows they are what pushes."""

@@ -40,7 +40,7 @@ class Clamps:
         """The work that they have done in a step of ``dt`` s, by the forces at its end."""
         store = self._store
         arrays = (store[name] for name in ("velocity", "acceleration", WORK.name))
-        self._each(self._book, dt, self._masses, self._plan.pulls.solids, store.view(), *arrays)
+        self._each(self._book, dt, self._masses, self._plan.pulls.bonded, store.view(), *arrays)
 
     def _each(self, loop, *args) -> None:
         in_threads(loop, 0, len(self._columns), self._columns, *args)

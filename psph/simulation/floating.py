@@ -36,7 +36,7 @@ class FloatingBodies(Work):
         self.rows = [row for row, motion in enumerate(plan.materials.rigid) if isinstance(motion, RigidBody)]
         own = [plan.materials.rigid[row] for row in self.rows]
         self.bodies, self._dimensions = Bodies(own, plan.pulls.uniform), scene.dimensions
-        self.masses = shares_of(scene) if plan.pulls.bodies else None
+        self.masses = shares_of(scene) if plan.pulls.whole else None
         self.lines = lines_of(scene, [one.name for one in own])
         self.tensions = np.zeros(len(self.lines))
         self.body_of = np.full(len(plan.materials.species), -1)
@@ -64,7 +64,7 @@ class FloatingBodies(Work):
         """The second half of the kick at ``time``, s, by body forces and the pushes that the last pass of the
         ``engine`` has summed; without a step ``dt`` these alone.  Collective."""
         of_each = self.body_of, self.bodies.place, self.units, engine.domain.periods
-        of_each += self._plan.pulls.bodies, self.masses
+        of_each += self._plan.pulls.whole, self.masses
         parts = engine.each(self._push, *of_each, engine.view(0.0), engine.columns())
         self.load(sum(parts), engine.domain.comm)
         if dt > 0.0:

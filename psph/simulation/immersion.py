@@ -76,7 +76,7 @@ class Immersion(Work):
                 solids.clamps.carry(time - (count - n) * part)
             self._sum(time - dt + n * part, part)
             self._each(self._kick, columns, 0.5 * part, 0.5 * part, *seen)
-            if booked := plan.pulls.booked_in_solids:
+            if booked := plan.pulls.booked_in_bonds:
                 names = ("velocity", INERTIA.name, WORK.name)
                 arrays = (self.store[name] for name in names)
                 self._each(self._book, columns, part, booked, self.store.view(), *arrays)

@@ -2,9 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from psph.acts import FLOWING
 from psph.fields import PRESSURE, SPECIFIC_VOLUME, filled
-from psph.physics.solid.deformation import INERTIA
 
 
 class SumsInACircle(TypeError):
@@ -105,17 +103,6 @@ def make_passes(
 def array_of(name: str, stored: tuple[str, ...]) -> str:
     """The array that formulas see under a name: the predicted one of what evolves."""
     return f"predicted_{name}" if f"predicted_{name}" in stored else name
-
-
-TRUE_MASS = {"mass": INERTIA.name}
-"""What contacts in a fluid see in place of the mass that solids show that."""
-
-
-def pass_of_contacts(called, stored: tuple[str, ...]) -> Pass | None:
-    """That of the contacts of elastic solids in a fluid; None where nothing touches."""
-    own = [one for one in called if hasattr(one.effect, "push") and set(one.acts).isdisjoint(FLOWING)]
-    passes = make_passes(own, stored, lambda name: TRUE_MASS.get(name, array_of(name, stored)))
-    return passes[0] if passes else None
 
 
 def _pass(place, effects, reductions, called, before, stored, seen_as, every, also=()) -> Pass:

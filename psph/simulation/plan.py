@@ -32,7 +32,7 @@ from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
 from psph.simulation.movement import carried_fields
-from psph.simulation.passes import Pass, array_of, make_passes, pass_of_contacts
+from psph.simulation.passes import Pass, array_of, make_passes
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
 from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
 
@@ -92,7 +92,7 @@ class Plan:
     arrays: tuple[str, ...]
     passes: tuple[Pass, ...]
     met: Pass | None
-    """The pass of the contacts of elastic solids in a fluid (psph.simulation.wet_contact)."""
+    """The pass of a kind of matter within steps of its own (psph.kinds.Kind.own_pass)."""
     refreshed: tuple[str, ...]
     """What ghosts need before the first pass of every step."""
     ghost_fields: tuple[str, ...]
@@ -250,7 +250,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     told = {name for name in told if name in own or name not in ONLY_READ}
     told |= {LOAD.name} if loaded else set()
     told |= {COUPLE.name} if has_couples(scene) else set()
-    told |= {WORK.name} if pulls.booked or pulls.booked_in_solids else set()
+    told |= {WORK.name} if pulls.booked or pulls.booked_in_bonds else set()
     stored = tuple(n for n in fields if n in computed or n in varying or n in told)
     paired = shares_loop(called, flows)
     passes = make_passes(
@@ -260,8 +260,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         case.time.gather_every,
         for_loads,
     )
-    pushing = flows and any(kind.pushes_within for kind in matter)
-    met = pass_of_contacts(called, stored) if pushing else None
+    met = next(filter(None, (kind.own_pass(called, stored) for kind in matter)), None)
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in (*passes, *([met] if met else [])) for name in one.neighbour_fields}

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.acts import BODIES, FLOWING, SOLIDS
+from psph.acts import BONDED, FLOWING, WHOLE
 from psph.composition import terms
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
@@ -17,22 +17,23 @@ class Pulls(NamedTuple):
     """The effects of a scene that have a body force.
 
     ``uniform`` m/s² is the sum of those that are the same everywhere: what is rigid bears it at its centre of
-    mass, and its potential is a height.  On rigid ``bodies`` the others are summed over their particles;
-    ``solids`` are pulled by all of theirs.  ``held`` have another potential.  The work of what has none is
-    booked, of ``booked`` on what moves in the passes over neighbours, of ``booked_in_solids`` on solids in a
-    fluid; where it only takes energy, as an effect says with ``dissipates``, it need not be.
+    mass, and its potential is a height.  On what moves as a ``whole`` the others are summed over its
+    particles; what is ``bonded`` to its neighbours of the start is pulled by all.  ``held`` have another
+    potential.  The work of what has none is booked, of ``booked`` on what moves in the passes over
+    neighbours, of ``booked_in_bonds`` on what is bonded in a fluid; where it only takes energy, as an effect
+    says with ``dissipates``, it need not be.
     """
 
     uniform: Vector
-    bodies: tuple[Any, ...]
-    solids: tuple[Any, ...]
+    whole: tuple[Any, ...]
+    bonded: tuple[Any, ...]
     held: tuple[Any, ...]
     booked: tuple[Any, ...]
-    booked_in_solids: tuple[Any, ...]
+    booked_in_bonds: tuple[Any, ...]
 
     def ask(self, effect) -> bool:
-        """Whether kick, or the push of bodies, asks an effect what it does to a particle."""
-        return any(effect is one for one in (*self.bodies, *self.booked))
+        """Whether kick, or the push of what moves as a whole, asks an effect what it does to a particle."""
+        return any(effect is one for one in (*self.whole, *self.booked))
 
     def heights(self, periods: Sequence[float | None]) -> Vector:
         """The uniform pull along axes that do not repeat, else zero, m/s²: across a period there is no
@@ -40,28 +41,29 @@ class Pulls(NamedTuple):
         return tuple(g if period is None else 0.0 for g, period in zip(self.uniform, periods))
 
 
-def shares_loop(called: Iterable[Called], flowing: bool) -> tuple[Called, ...]:
-    """The effects that act in the passes over neighbours: on what flows, or on solids where nothing does."""
-    matter = FLOWING if flowing else (SOLIDS,)
+def shares_loop(called: Iterable[Called], flows: bool) -> tuple[Called, ...]:
+    """The effects that act in the passes over neighbours: on what flows, or where nothing does on what is
+    bonded."""
+    matter = FLOWING if flows else BONDED
     return tuple(call for call in called if not set(matter).isdisjoint(call.acts))
 
 
-def pulls_of(called: Iterable[Called], dimensions: int, flowing: bool) -> Pulls:
-    """What pulls in a scene, where something may be ``flowing``."""
+def pulls_of(called: Iterable[Called], dimensions: int, flows: bool) -> Pulls:
+    """What pulls in a scene, where something may flow: ``flows``."""
     called = tuple(call for call in called if hasattr(call.effect, "body"))
-    pulling, moving = [one.effect for one in called], [one.effect for one in shares_loop(called, flowing)]
-    on_bodies = [one.effect for one in called if BODIES in one.acts]
-    whole = (0.0,) * dimensions
+    pulling, moving = [one.effect for one in called], [one.effect for one in shares_loop(called, flows)]
+    on_whole = [one.effect for one in called if not set(WHOLE).isdisjoint(one.acts)]
+    uniform = (0.0,) * dimensions
     for one in pulling:
-        whole = add(whole, one.body(None)) if _is_uniform(one) else whole
-    solids = [one.effect for one in called if SOLIDS in one.acts]
+        uniform = add(uniform, one.body(None)) if _is_uniform(one) else uniform
+    bonded = [one.effect for one in called if not set(BONDED).isdisjoint(one.acts)]
     return Pulls(
-        whole,
-        tuple(one for one in on_bodies if not _is_uniform(one)),
-        tuple(solids),
+        uniform,
+        tuple(one for one in on_whole if not _is_uniform(one)),
+        tuple(bonded),
         tuple(one for one in pulling if hasattr(one, "potential")),
         tuple(filter(_is_booked, moving)),
-        tuple(filter(_is_booked, solids)) if flowing else (),
+        tuple(filter(_is_booked, bonded)) if flows else (),
     )
 
 

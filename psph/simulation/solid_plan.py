@@ -4,13 +4,24 @@ import math
 from functools import cached_property
 from typing import Any
 
-from psph.acts import SOLIDS
+from psph.acts import FLOWING, SOLIDS
 from psph.fields import WALL
 from psph.physics.motion import MovingClamp
 from psph.physics.solid.cracks import CUT
-from psph.physics.solid.deformation import SMOOTHING
+from psph.physics.solid.deformation import INERTIA, SMOOTHING
 from psph.physics.solid.material import remembers
 from psph.physics.solid.plastic import Lasting
+from psph.simulation.passes import Pass, array_of, make_passes
+
+TRUE_MASS = {"mass": INERTIA.name}
+"""What contacts in a fluid see in place of the mass that solids show that."""
+
+
+def pass_of_contacts(called, stored: tuple[str, ...]) -> Pass | None:
+    """That of the contacts of elastic solids in a fluid; None where nothing touches."""
+    own = [one for one in called if hasattr(one.effect, "push") and set(one.acts).isdisjoint(FLOWING)]
+    passes = make_passes(own, stored, lambda name: TRUE_MASS.get(name, array_of(name, stored)))
+    return passes[0] if passes else None
 
 
 class SolidPlan:

@@ -259,7 +259,7 @@ class Solids(Work):
                 self._push,
                 0,
                 rows,
-                None if self._planned.touching else self.plan.pulls.solids,
+                None if self._planned.touching else self.plan.pulls.bonded,
                 store.view(),
                 self._columns,
                 self._inverse_density,

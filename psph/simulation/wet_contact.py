@@ -15,7 +15,7 @@ from psph.particles.others import Others
 from psph.particles.records import Records
 from psph.physics.solid.contact import MET
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
-from psph.simulation.passes import TRUE_MASS
+from psph.simulation.solid_plan import TRUE_MASS
 from psph.vectors import add, at, put
 
 
@@ -64,7 +64,7 @@ class WetContact:
         """The acceleration of the particles in ``columns`` by contacts and body forces."""
         s = self._store
         arrays = s[MET.name], s["acceleration"]
-        in_threads(self._begin, 0, len(columns), columns, self._plan.pulls.solids, s.view(), *arrays)
+        in_threads(self._begin, 0, len(columns), columns, self._plan.pulls.bonded, s.view(), *arrays)
 
     def bytes_held(self) -> int:
         """Bytes of records and lists."""

@@ -34,12 +34,12 @@ from psph.case.acts import gauge_kinds, page
 from psph.case.corners import (
     ACTS,
     IRRELEVANT,
-    KINDS,
     REFUSED,
     answer,
     between,
     rows_of_effects,
     rows_of_gauges,
+    speaking,
 )
 from psph.physics.catalogue import BUILT_IN, Catalogue, Entry
 from psph.physics.fluid.gravity import Gravity
@@ -124,7 +124,7 @@ def test_the_page_has_every_effect_and_gauge_and_numbers_what_is_refused(capsys)
 
 
 def test_every_sentence_is_a_line_that_says_what_to_do():
-    askers = [*KINDS.values(), *gauge_kinds().values(), *(entry.effect for entry in BUILT_IN.effects)]
+    askers = [*speaking().values(), *gauge_kinds().values(), *(entry.effect for entry in BUILT_IN.effects)]
     for asker in askers:
         for corner, says in refusals(asker).items():
             assert corner in CORNERS and "\n" not in says
@@ -171,7 +171,7 @@ def test_what_an_effect_refuses_is_refused(name, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("one", "corner"), [(one, corner) for one in KINDS for corner in CORNERS if between(one, corner)]
+    ("one", "corner"), [(one, corner) for one in speaking() for corner in CORNERS if between(one, corner)]
 )
 def test_kinds_that_do_not_go_together_are_refused(one, corner, tmp_path):
     lines = refusal(tmp_path, scene(one, corner))

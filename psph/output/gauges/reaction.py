@@ -81,7 +81,7 @@ class ReactionGauge(NamedTuple):
     def _on_anvil(self, simulation, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the particles of solids, and with what each presses on an anvil, N (n, dim)."""
         store = simulation.store
-        [anvils] = (one for one in simulation.plan.pulls.solids if isinstance(one, Anvils))
+        [anvils] = (one for one in simulation.plan.pulls.bonded if isinstance(one, Anvils))
         place, normal = anvils.planes[number]
         rows = np.flatnonzero(store.shown("kind") == SOLID)
         depth = pressed(anvils.half, tuple(store.shown("position")[rows].T), place, normal)

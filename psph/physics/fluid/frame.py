@@ -2,9 +2,10 @@
 
 from typing import NamedTuple
 
-from psph.acts import FLUIDS
+from psph.acts import FLUIDS, FRAME, speaks_for
 
 
+@speaks_for(FRAME)
 class MovingFrame(NamedTuple):
     """The frame of reference moves: the fluid feels the forces of inertia, and gravity turns.
 

@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from psph.acts import DIMENSIONS, FRAME, MATTER, MIXED, ONE, SEAM, SYMMETRY
+from psph.acts import DIMENSIONS, FRAME, MATTER, MIXED, ONE, SEAM, SYMMETRY, speaks_for
 
 DYNAMIC = "dynamic"
 """Its particles have a density, which evolves as that of the fluid (psph.physics.walls.dry)."""
@@ -33,6 +33,7 @@ CORNERS = (*MATTER, *CONDITIONS, FRAME, SEAM, SYMMETRY, *DIMENSIONS, MIXED)
 """All that an effect may act on, or refuse: kinds of matter, walls by their condition, surroundings."""
 
 
+@speaks_for(MIRROR, SYMMETRY)
 class Mirror:
     """Beside what a plane mirror does not work (psph.acts)."""
 
