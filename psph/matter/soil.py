@@ -7,7 +7,7 @@ import numpy as np
 from psph.kinds import Kind
 from psph.physics.stress.deviator import DEVIATOR
 from psph.scene.soils import soil_faults, soil_lines, soil_warnings
-from psph.scene.stressed import Layer, deviator_of, layers_of
+from psph.scene.stressed import Layer, deviator_of, layers_of, started
 
 
 class Soils(Kind):
@@ -33,7 +33,7 @@ class Soils(Kind):
     ) -> Iterator[tuple[str, np.ndarray]]:
         """The stress of their weight."""
         if DEVIATOR.name in fields:
-            deviator = deviator_of(self.scene.starts.layers, species, position)
+            deviator = deviator_of(started(self.scene.starts.layers), species, position)
             yield DEVIATOR.name, deviator
             yield f"predicted_{DEVIATOR.name}", deviator
 

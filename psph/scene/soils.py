@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from psph.scene.scene import Scene
-from psph.scene.stressed import soils_of
+from psph.scene.stressed import soils_of, started
 
 LIGHTEST, HEAVIEST = 500.0, 4000.0
 """kg/m³: peat with its pores, and ore."""
@@ -41,7 +41,7 @@ def soil_faults(scene: Scene) -> Iterator[str]:
     Its density at its lowest particle is ρ₀ exp(p/K) (psph.physics.stress.bulk), p = u + σ_v (1 + 2K₀)/3,
     with the pressure u of the water in its pores and σ_v that its grains bear along gravity.
     """
-    for number, layer in scene.starts.layers.items():
+    for number, layer in started(scene.starts.layers).items():
         soil, foot = scene.layout.parts[number].table, float(scene.census.bottom[number])
         water, borne, most = layer.water(foot), layer.largest_weight(foot), MOST_PRESSED * soil.bulk_modulus
         pressure = water + borne * (1.0 + 2.0 * soil.at_rest) / 3.0

@@ -1,6 +1,7 @@
 """What bears an evolved stress in a scene: laws, waves, and soils under their own weight at the start."""
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,13 +83,17 @@ def layers_of(census: Census) -> dict[int, Layer]:
     return {soil.number: layer_of(census, soil, held) for soil in resting}
 
 
-def deviator_of(layers: dict[int, Any], species: np.ndarray, position: np.ndarray) -> np.ndarray:
+def started(layers: Mapping[int, Any]) -> dict[int, Layer]:
+    """Those of soils among the ``layers`` of all that starts under its own weight (psph.scene.starts)."""
+    return {number: layer for number, layer in layers.items() if isinstance(layer, Layer)}
+
+
+def deviator_of(layers: dict[int, Layer], species: np.ndarray, position: np.ndarray) -> np.ndarray:
     """The deviatoric stress at the start, Pa (n, dim(dim + 1)/2), of particles of ``species`` (n,) at
-    ``position`` (n, dim): that of ``layers`` of soils, else none."""
+    ``position`` (n, dim): that of ``layers``, else none."""
     dimensions = position.shape[1]
     found = np.zeros((len(species), dimensions * (dimensions + 1) // 2))
-    own = ((number, layer) for number, layer in layers.items() if isinstance(layer, Layer))
-    for number, layer in own:
+    for number, layer in layers.items():
         rows = species == number
         found[rows] = layer.deviator(position[rows])
     return found

@@ -16,6 +16,7 @@ from psph.scene import Scene
 from psph.scene.faces import drawn_faces
 from psph.simulation import immersion
 from psph.simulation.plan import make_plan
+from psph.simulation.solid_plan import solid_plan
 
 
 def test_beside_a_puddle_out_of_the_way_solids_and_bodies_meet_as_without(tmp_path):
@@ -33,7 +34,7 @@ def test_beside_a_puddle_out_of_the_way_solids_and_bodies_meet_as_without(tmp_pa
 
 def test_their_own_steps_are_as_short_as_contact_asks_and_twice_as_long_is_not_right(tmp_path, monkeypatch):
     keys = "physics.contact.stiffness=4.0", "solids.short.damping=0.0", "solids.long.damping=0.0", *PUDDLE
-    longest = make_plan(Scene(draft(tmp_path, BARS, *keys))).contact_step
+    longest = solid_plan(make_plan(Scene(draft(tmp_path, BARS, *keys)))).contact_step
     case = draft(tmp_path, BARS, *keys, f"time.step={6.0 * longest}")
     assert wrong(start(case), 0.012) < 2e-3
     monkeypatch.setattr(immersion, "substeps", lambda *told: 3)
