@@ -36,7 +36,7 @@ Text = Annotated[str, AfterValidator(_one_line)]
 class Table(BaseModel):
     """A table of a case: unknown keys are refused, and so are strings or booleans for numbers."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
 
 
 def key(

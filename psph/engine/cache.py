@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from numba.core.compiler import CompileResult
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 MOST_BYTES = 2 * 2**30
@@ -109,11 +110,17 @@ class LoopCache:
         self.cache, self.name = cache, name
 
     def load_overload(self, signature, target):
-        """The compiled loop for a signature, or None."""
-        target.refresh()
+        """The compiled loop for a signature, or None.
+
+        A loop that is loaded needs numba's runtime alone; all else that numba asks of ``target`` before it
+        compiles would take longer than all loops.
+        """
         name = self.name(signature)
         kept = name and self.cache.load(name)
-        return kept and CompileResult._rebuild(target, *kept)
+        if not kept:
+            return None
+        rtsys.initialize(target)
+        return CompileResult._rebuild(target, *kept)
 
     def save_overload(self, signature, loop):
         """Keep a compiled loop."""

@@ -11,10 +11,10 @@ a reader that comes in between gets half a file, and half an XML file opens nowh
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from html import escape  # xml.sax.saxutils, which does the same, loads what browses the web
 from pathlib import Path
 from time import monotonic
 from typing import NamedTuple
-from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -74,7 +74,7 @@ def item(file: Path, name: str, kind: Kind) -> str:
         shape=" ".join(map(str, shape)),
         number="UChar" if dtype == np.uint8 else {"f": "Float", "i": "Int"}[dtype.kind],
         bytes=dtype.itemsize,
-        file=escape(file.name),
+        file=escape(file.name, quote=False),
         name=name,
     )
 
