@@ -6,7 +6,6 @@ import sys
 import time
 import traceback
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
-from pathlib import Path
 
 from psph.errors import Failed, Foreseen, Refused, one_line
 from psph.runs.watch import listen
@@ -117,10 +116,10 @@ def _plot(options, comm) -> None:
 
     if comm.rank != 0:
         return
-    if options.solids:
-        from psph.output.pictures.solids import solids
+    if options.triangles:
+        from psph.output.pictures.triangles import triangles
 
-        print(solids(options.folder))
+        print(triangles(options.folder))
         return
     cut = slice_of(options.cut) if options.cut else None
     shown = (options.times, options.field, cut, options.surface)
@@ -192,22 +191,11 @@ def _study(options, comm) -> None:
 
 def _stability(options, comm) -> None:
     if options.compared:
-        from psph.lab.battery.command import compare
-        from psph.lab.battery.remedies import comparison
-        from psph.lab.battery.solid_kinds import SOLIDS
-        from psph.lab.battery.wall_kinds import WALLS
-        from psph.lab.maps.elastic import elastic
+        from psph.lab import comparisons
 
         if options.battery or options.quick:
             raise Refused(f"stability --{options.compared}: stands alone; leave --battery and --quick out")
-        if options.compared == "elastic":
-            elastic(comm, options.out)
-            return
-        kinds = {"remedies": (comparison(), SOLIDS), "walls": (WALLS,), "solids": (SOLIDS,)}
-        first, *others = kinds[options.compared]
-        compare(comm, first, options.out)
-        for other in others:
-            compare(comm, other, (options.out or Path(first.name)) / other.name)
+        comparisons.run(options.compared, comm, options.out)
         return
     if options.battery or options.quick:
         from psph.lab.battery.command import battery

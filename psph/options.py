@@ -10,6 +10,7 @@ from typing import NoReturn
 
 from psph.errors import Refused, one_line
 from psph.lab.bench import PROBLEMS
+from psph.lab.comparisons import OFFERED
 from psph.output.export.command import PROGRAMS
 from psph.theory.stability import FORMS, STATES
 from psph.theory.stability.lattices import LATTICES
@@ -164,6 +165,7 @@ def _add_plot_options(plot: argparse.ArgumentParser) -> None:
     plot.add_argument("--surface", action="store_true", help="in 3D, the surface of the fluid, not particles")
     plot.add_argument(
         "--solids",
+        dest="triangles",
         action="store_true",
         help="in 3D, no pictures but walls and bodies as triangles for viewers, in FOLDER/solids",
     )
@@ -251,34 +253,10 @@ def _add_stability_options(stability: argparse.ArgumentParser) -> None:
         "--battery", action="store_true", help="run the hard cases under every scheme instead"
     )
     stability.add_argument("--quick", action="store_true", help="the part of the battery that takes a minute")
-    stability.add_argument(
-        "--remedies",
-        dest="compared",
-        action="store_const",
-        const="remedies",
-        help="run each remedy alone in cases in which plain SPH fails instead, then what --solids runs",
-    )
-    stability.add_argument(
-        "--walls",
-        dest="compared",
-        action="store_const",
-        const="walls",
-        help="run hard cases with walls of every condition instead",
-    )
-    stability.add_argument(
-        "--solids",
-        dest="compared",
-        action="store_const",
-        const="solids",
-        help="run elastic solids in total and updated Lagrangian SPH instead",
-    )
-    stability.add_argument(
-        "--elastic",
-        dest="compared",
-        action="store_const",
-        const="elastic",
-        help="waves of an elastic lattice in total and updated Lagrangian SPH instead",
-    )
+    for name, offer in OFFERED.items():
+        stability.add_argument(
+            f"--{name}", dest="compared", action="store_const", const=name, help=offer.says
+        )
     stability.add_argument(
         "--out",
         action=_Folder,

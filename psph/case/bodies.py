@@ -98,6 +98,7 @@ class Body(Placed):
     word: ClassVar = BODIES
     called: ClassVar = "body"
     rigid: ClassVar = True
+    whole: ClassVar = True
     keeps_form: ClassVar = True
     always_loaded: ClassVar = True
     not_absorbing: ClassVar = "a body"

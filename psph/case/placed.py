@@ -1,7 +1,7 @@
 """What a case places: tables whose entries have particles, and what each of them answers."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple
 
 from psph.acts import BONDED, FLOWING
@@ -28,6 +28,8 @@ class Placed(Answering):
     """Whether it moves as a whole, as it is told, or not at all: what moves freely runs into it."""
     keeps_form: ClassVar[bool] = False
     """Whether it keeps its form, so that it may hang, stand or fly by itself."""
+    whole: ClassVar[bool] = False
+    """Whether forces move it as a whole."""
     poured: ClassVar[bool] = False
     """Whether a region may let more of it in."""
     always_loaded: ClassVar[bool] = False
@@ -60,6 +62,11 @@ class Placed(Answering):
     def pushed(self, case) -> bool:
         """Whether what flows pushes it, so that a force on it is known."""
         return self.rigid
+
+    @classmethod
+    def held_parts(cls, entry: Mapping[str, Any]) -> int:
+        """How many parts of an entry are groups of particles of their own, as a file has it."""
+        return 0
 
     def motions(self) -> dict[Location, Any]:
         """The parts of each motion of it that is told, by the location of its key in the entry."""

@@ -1,6 +1,6 @@
 """Elastic solids of a case, and the rules between their keys."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Strict
@@ -151,6 +151,11 @@ class Solid(Hookean):
     keeps_form: ClassVar = True
     not_absorbing: ClassVar = "a clamp"
     refuses: ClassVar = OF_SOLIDS
+
+    @classmethod
+    def held_parts(cls, entry: Mapping[str, Any]) -> int:
+        """Its clamps."""
+        return len(entry.get("clamps", ())) + ("clamped" in entry)
 
     @property
     def word(self) -> str:

@@ -1,8 +1,10 @@
 """Remedies: single additions to plain SPH, and the trials in which plain SPH fails."""
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NamedTuple
 
+from psph.lab.battery.command import compare
 from psph.lab.battery.comparison import Comparison, judging
 from psph.lab.battery.trials import QUICK, Trial
 
@@ -97,3 +99,8 @@ def _judging(
 ) -> Trial:
     sets = (*trial.sets, PLAIN, *besides)
     return judging(trial, name, changes, shown=SHOWN[name][0], end=end, sets=sets)
+
+
+def remedies(comm, out: Path | None) -> None:
+    """Run each of psph's own into the folder ``out``; collective."""
+    compare(comm, comparison(), out)

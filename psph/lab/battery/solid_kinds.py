@@ -1,6 +1,9 @@
 """Elastic solids in both descriptions, with and without what each adds, in the same trials."""
 
+from pathlib import Path
+
 from psph.case.updated import UPDATED
+from psph.lab.battery.command import compare
 from psph.lab.battery.comparison import Comparison
 from psph.lab.battery.trials import Bound, Trial
 
@@ -88,3 +91,8 @@ TRIALS = (
 )
 
 SOLIDS = Comparison("solids", "description", TRIALS, SHOWN)
+
+
+def solids(comm, out: Path | None) -> None:
+    """Run them into the folder ``out``; collective."""
+    compare(comm, SOLIDS, out)

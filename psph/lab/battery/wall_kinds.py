@@ -1,5 +1,8 @@
 """Walls of every condition in the same trials."""
 
+from pathlib import Path
+
+from psph.lab.battery.command import compare
 from psph.lab.battery.comparison import Comparison, judging
 from psph.lab.battery.tables import SECONDS
 from psph.lab.battery.trials import BATTERY, Bound, Trial
@@ -40,3 +43,8 @@ TRIALS = (
 )
 
 WALLS = Comparison("walls", "condition", TRIALS, SHOWN, measures_down=True)
+
+
+def walls(comm, out: Path | None) -> None:
+    """Run them into the folder ``out``; collective."""
+    compare(comm, WALLS, out)

@@ -82,7 +82,7 @@ _PLANE = 'view.InteractionMode = "2D"'
 _OPACITY = {"wall": 0.3}
 """Of what is not opaque, by how it looks (psph.scene.parts.part)."""
 
-_PLAIN = {"wall": style.WALLS, "rigid body": style.BODIES}
+_PLAIN = {"wall": style.WALLS, "rigid body": style.WHOLE}
 """Colours of what is not shown by its speed."""
 
 

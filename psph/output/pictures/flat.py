@@ -51,7 +51,7 @@ def slice_of(text: str) -> Slice:
 class Flat:
     """The particles of a room in a plane; of a room in 3D those at ``cut``.
 
-    ``mirrors`` (axis and place, m) are lines.  Particles of the group ``first_body`` and later are of rigid
+    ``mirrors`` (axis and place, m) are lines.  Particles of the group ``first_whole`` and later are of rigid
     bodies; None: there are none.  ``moorings`` are theirs, or None.  Raises NotThere if the room does not
     reach there.
     """
@@ -61,10 +61,10 @@ class Flat:
         room: Room,
         cut: Slice | None = None,
         mirrors: Sequence[tuple[int, float]] = (),
-        first_body: int | None = None,
+        first_whole: int | None = None,
         moorings: Moorings | None = None,
     ):
-        self.room, self.cut, self.mirrors, self.first_body = room, cut, mirrors, first_body
+        self.room, self.cut, self.mirrors, self.first_whole = room, cut, mirrors, first_whole
         self.moorings = moorings
         self.variant, self.remark = "", ""
         level = room.level
@@ -106,11 +106,11 @@ class Flat:
             axes.set_ylim(*_padded(scale.norm.vmin, scale.norm.vmax))
         else:
             places = frame["position"][:, [self.across, self.up]]
-            rigid = np.zeros(len(fluid), bool)
-            if self.first_body is not None:
-                rigid = ~fluid & (frame["group"] >= self.first_body)
-                circles(axes, places[rigid], spacing, facecolors=style.BODIES)
-            circles(axes, places[~fluid & ~rigid], spacing, facecolors=style.WALLS)
+            whole = np.zeros(len(fluid), bool)
+            if self.first_whole is not None:
+                whole = ~fluid & (frame["group"] >= self.first_whole)
+                circles(axes, places[whole], spacing, facecolors=style.WHOLE)
+            circles(axes, places[~fluid & ~whole], spacing, facecolors=style.WALLS)
             drawn = circles(axes, places[fluid], spacing, norm=scale.norm, cmap=scale.colours)
             drawn.set_array(values[fluid])
             axes.set_ylim(self.lower[1], self.upper[1])

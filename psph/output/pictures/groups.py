@@ -20,20 +20,35 @@ def spreading_of(case: dict) -> list[tuple[str, dict]]:
     return [one for named in tables for one in named.items()]
 
 
-def solids_of(case: dict) -> list[dict]:
-    """The tables of walls and bodies that have particles, in the order in which ``group`` counts them."""
+def standing_of(case: dict) -> list[dict]:
+    """The tables of what is rigid and has particles, in the order in which ``group`` counts them."""
     rigid = (table for table, of in PLACED.items() if of.rigid)
-    solids = [one for table in rigid for one in case.get(table, {}).values()]
-    return [one for one in solids if one.get("condition") != MIRROR]
+    found = [one for table in rigid for one in case.get(table, {}).values()]
+    return [one for one in found if one.get("condition") != MIRROR]
+
+
+def wholes_of(case: dict) -> dict[str, dict]:
+    """The tables of what forces move as a whole, by name: ``group`` counts it last."""
+    return {name: one for table in _of_wholes() for name, one in case.get(table, {}).items()}
+
+
+def wholes_called(case: dict) -> str:
+    """These in one word: the name of the only one, or of their table; empty where there is none."""
+    found = [*wholes_of(case)]
+    return found[0] if len(found) == 1 else next((one for one in _of_wholes() if case.get(one)), "")
 
 
 def first_wall(case: dict) -> int:
-    """The ``group`` of the first wall, or body: below are fluids, soils, solids, and clamps."""
-    matter = [one for _, one in matter_of(case)]
-    clamps = sum(len(one.get("clamps", ())) + ("clamped" in one) for one in matter)
-    return len(matter) + clamps
+    """The ``group`` of the first that is rigid: below is what forces move particle by particle, and what is
+    held of it."""
+    held = (of.held_parts(one) for table, of in PLACED.items() for one in case.get(table, {}).values())
+    return len(matter_of(case)) + sum(held)
 
 
-def first_body(case: dict) -> int:
-    """The ``group`` of the first body, if there are any: those of walls are below."""
-    return first_wall(case) + len(solids_of(case)) - len(case.get("bodies", ()))
+def first_whole(case: dict) -> int:
+    """The ``group`` of the first that forces move as a whole, if there are any: those of walls are below."""
+    return first_wall(case) + len(standing_of(case)) - len(wholes_of(case))
+
+
+def _of_wholes() -> list[str]:
+    return [table for table, of in PLACED.items() if of.whole]

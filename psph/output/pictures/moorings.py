@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from psph.output.pictures.bodies import rigid
-from psph.output.pictures.groups import first_body
+from psph.output.pictures.carried import rigid
+from psph.output.pictures.groups import first_whole, wholes_of
 
 TAUT = 1.0 - 1e-9
 """Over its length: below it a line that only pulls is slack."""
@@ -23,9 +23,9 @@ class Moorings:
     """The lines of the bodies of a ``case``, whose first frame is ``start``."""
 
     def __init__(self, case: dict, start: dict):
-        names = list(case["bodies"])
-        self._groups = dict(zip(names, range(first_body(case), first_body(case) + len(names))))
-        self._lines = [(name, line) for name, one in case["bodies"].items() for line in lines_of(one)]
+        wholes, names = wholes_of(case), list(wholes_of(case))
+        self._groups = dict(zip(names, range(first_whole(case), first_whole(case) + len(names))))
+        self._lines = [(name, line) for name, one in wholes.items() for line in lines_of(one)]
         space = case["space"]
         self._periods = [
             space["upper"][d] - space["lower"][d] if axis in space.get("periodic", ()) else np.inf
@@ -61,9 +61,9 @@ class Moorings:
         )
 
 
-def lines_of(body: dict) -> list[dict]:
+def lines_of(one: dict) -> list[dict]:
     """The tables of the lines of a body."""
-    return list(body.get("lines", {}).values())
+    return list(one.get("lines", {}).values())
 
 
 def moorings_of(case: dict, start: dict) -> Moorings | None:
@@ -73,4 +73,4 @@ def moorings_of(case: dict, start: dict) -> Moorings | None:
 
 def has_moorings(case: dict) -> bool:
     """Whether a body has a line."""
-    return any(lines_of(body) for body in case.get("bodies", {}).values())
+    return any(lines_of(one) for one in wholes_of(case).values())

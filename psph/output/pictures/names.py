@@ -14,7 +14,7 @@ from psph.physics.solid.plastic import OF_PLASTIC
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
 REPORT = "report.html"
-SOLIDS = "solids"
+TRIANGLES = "solids"
 """The folder of walls and bodies as triangles."""
 PARAVIEW = "paraview.py"
 """The script with which ParaView shows a run."""
@@ -53,5 +53,5 @@ def remove_pictures(folder: Path) -> None:
             or _GAUGED.fullmatch(path.name)
         ):
             path.unlink()
-        elif path.name in (SOLIDS, *EXPORTS.values()) and path.is_dir():
+        elif path.name in (TRIANGLES, *EXPORTS.values()) and path.is_dir():
             rmtree(path)

@@ -7,7 +7,7 @@ import numpy as np
 
 from psph.fields import FLUID, PRESSURE
 from psph.output.errors import NotThere
-from psph.output.pictures.groups import matter_of, spreading_of
+from psph.output.pictures.groups import matter_of, spreading_of, wholes_called
 from psph.output.pictures.vorticity import vorticity
 from psph.output.reader import Run
 
@@ -23,9 +23,9 @@ class Quantity(NamedTuple):
     """Something to colour by: ``values`` (n,) in ``unit`` of a frame that holds the fields ``reads``.
 
     ``name`` stands in the names of files.  ``signed``: its sign matters as much as its size: zero is in the
-    middle of its colours.  ``names`` has those of the fluids where it counts them, ``bodies``
-    those of the rigid bodies, which share a colour.  ``of_fluids``: where there are any, the limits of the
-    colours are theirs, since stresses of solids beside them are of another size.
+    middle of its colours.  ``names`` has those of the fluids where it counts them, ``whole`` the
+    word for what is moved as a whole, which shares a colour.  ``of_fluids``: where there are any, the limits
+    of the colours are theirs, since stresses of solids beside them are of another size.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Quantity(NamedTuple):
     values: Callable[[dict], np.ndarray]
     signed: bool = False
     names: tuple[str, ...] = ()
-    bodies: tuple[str, ...] = ()
+    whole: str = ""
     samples: int = SAMPLES
     of_fluids: bool = False
 
@@ -55,7 +55,7 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
                 (GROUP,),
                 _size_of(GROUP),
                 names=tuple(name for name, _ in matter_of(case)),
-                bodies=tuple(case.get("bodies", ())),
+                whole=wholes_called(case),
             )
     saved = run.fields
     if field == VON_MISES and DEVIATOR in saved and field not in saved:
@@ -71,7 +71,7 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
 def usual(run: Run, case: dict) -> str:
     """The field to be seen where none is asked for: the pressure, and of a run of elastic solids alone the
     von Mises stress."""
-    return PRESSURE.name if case.get("fluids") or VON_MISES not in run.fields else VON_MISES
+    return PRESSURE.name if spreading_of(case) or VON_MISES not in run.fields else VON_MISES
 
 
 def _size_of(field: str) -> Callable[[dict], np.ndarray]:

@@ -108,6 +108,5 @@ def _named(quantity: Quantity) -> Scale:
     count = len(quantity.names)
     colours = ListedColormap([style.LINES[k % len(style.LINES)] for k in range(count)])
     norm = Normalize(-0.5, count - 0.5)
-    called = "bodies" if len(quantity.bodies) > 1 else "".join(quantity.bodies)
-    others = ((called, style.BODIES),) if called else ()
+    others = ((quantity.whole, style.WHOLE),) if quantity.whole else ()
     return Scale(quantity.title, norm, colours, "neither", 1.0, "", quantity.names, others)

@@ -14,7 +14,7 @@ from psph.fields import FLUID, WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
-from psph.output.pictures.groups import first_body
+from psph.output.pictures.groups import first_whole, wholes_of
 from psph.output.pictures.mirrors import mirrors_of, with_mirrors
 from psph.output.pictures.moorings import has_moorings, moorings_of
 from psph.output.pictures.quantities import quantity, usual
@@ -65,7 +65,7 @@ class Show:
             raise NotThere(f"{run.path}: no frame yet; wait for the first one")
         self.case = tomllib.loads(run.case_text)
         self.title = self.case.get("title") or run.path.stem
-        self._solid = _refuse_in_a_plane(self.case["space"]["dimensions"], cut, smooth)
+        self._spatial = _refuse_in_a_plane(self.case["space"]["dimensions"], cut, smooth)
         self.quantity = quantity(run, self.case, field or usual(run, self.case))
         self.chosen = self._chosen(times)
         self.frame = lru_cache(maxsize=1)(self._frame)
@@ -83,33 +83,33 @@ class Show:
     @property
     def _told_apart(self) -> tuple[str, ...]:
         """Fields that tell which wall or body a particle is of, where that is drawn."""
-        if self._solid or has_moorings(self.case):
+        if self._spatial or has_moorings(self.case):
             return ("group", "id")
-        return ("group",) if "bodies" in self.case else ()
+        return ("group",) if wholes_of(self.case) else ()
 
     def _panel_and_scale(self, cut: Slice | None, smooth: bool) -> tuple[Panel, Scale]:
-        if self._solid:
-            from psph.output.pictures import solid
+        if self._spatial:
+            from psph.output.pictures import spatial
 
-            solid.pyvista()  # missing, it is missed before any work
+            spatial.pyvista()  # missing, it is missed before any work
         sample = spread(len(self.times), self.quantity.samples)
         glances = [self._glance(k) for k in with_progress(sample, "looking at the run", "frames")]
         scale = scale_of(self.quantity, [glance.values for glance in glances])
         mirrors = mirrors_of(self.case)
         boxes = [with_mirrors(glance.box, mirrors) for glance in glances]
         room = room_of(self.case, boxes, [glance.most for glance in glances])
-        if not self._solid:
-            bodies = first_body(self.case) if "bodies" in self.case else None
+        if not self._spatial:
+            whole = first_whole(self.case) if wholes_of(self.case) else None
             lines = moorings_of(self.case, self._whole(0)) if room.dimensions == 2 else None
-            return Flat(room, cut, mirrors, bodies, lines), scale
-        return solid.scene(
+            return Flat(room, cut, mirrors, whole, lines), scale
+        return spatial.scene(
             self.case, self.run.folder, self._whole(0), room, [glance.groups for glance in glances], smooth
         ), scale
 
     def _glance(self, k: int) -> Glance:
         frame = self._whole(k)
         places, values = frame["position"], frame["values"][self._counts(frame["kind"])]
-        groups = np.unique(frame["group"]).tolist() if self._solid else []
+        groups = np.unique(frame["group"]).tolist() if self._spatial else []
         boxes = {group: box_around(places[frame["group"] == group]) for group in groups}
         return Glance(box_around(places), around_most(places), boxes, values[:: len(values) // VALUES + 1])
 

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from psph.output.errors import OutputError, cause
 
-INK, PALE, WALLS, BODIES = "#22262b", "#6b7280", "#c3c8cf", "#a0623d"
+INK, PALE, WALLS, WHOLE = "#22262b", "#6b7280", "#c3c8cf", "#a0623d"
 LINES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Okabe and Ito (2008): colours that colour-blind readers can distinguish."""
 LEFT, RIGHT, TOP, BOTTOM = 0.8, 1.1, 0.8, 0.6

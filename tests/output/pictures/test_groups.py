@@ -7,7 +7,7 @@ import pytest
 from drafts import draft
 
 from psph.case import load
-from psph.output.pictures.groups import first_body, first_wall
+from psph.output.pictures.groups import first_wall, first_whole
 from psph.output.pictures.mirrors import mirrors_of
 from psph.scene import Scene
 
@@ -23,7 +23,7 @@ def test_walls_and_bodies_come_after_all_that_forces_move_and_its_clamps(name):
     case = load(CASES / f"{name}.toml")
     parts, told = Scene(case).layout.parts, tomllib.loads(case.to_toml())
     assert first_wall(told) == (parts.boundaries.start or len(parts)) > 0
-    assert first_body(told) == (parts.bodies.start or len(parts))
+    assert first_whole(told) == (parts.bodies.start or len(parts))
 
 
 def test_a_mirror_before_soil_alone_is_drawn(tmp_path):

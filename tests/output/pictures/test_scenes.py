@@ -198,7 +198,7 @@ def with_body(run):
 
 def brown(image):
     """Pixels (height, width) of the hue of bodies, lit or in the shade."""
-    hue = np.array([int(style.BODIES[k : k + 2], 16) for k in (1, 3, 5)], float)
+    hue = np.array([int(style.WHOLE[k : k + 2], 16) for k in (1, 3, 5)], float)
     rgb = image[..., :3].astype(float)
     return (rgb @ hue) / (np.linalg.norm(rgb, axis=-1) * np.linalg.norm(hue) + 1e-9) > 0.998
 

@@ -5,8 +5,8 @@ import pytest
 import trimesh
 
 from psph.case.shapes import Shape
-from psph.output.pictures import bodies as bodies_module
-from psph.output.pictures.bodies import bodies_of, hull, rigid
+from psph.output.pictures import carried
+from psph.output.pictures.carried import carried_parts, hull, rigid
 from psph.output.pictures.walls import encloses, inwards, surface
 from psph.output.pictures.water import SurfaceSums, fluid_surface
 
@@ -108,7 +108,7 @@ def test_a_body_goes_where_its_particles_go(tank3d):
     import tomllib
 
     case = tomllib.loads(tank3d.case_text)
-    tank, block = bodies_of(case, tank3d.frame(0), 0.1, tank3d.folder)
+    tank, block = carried_parts(case, tank3d.frame(0), 0.1, tank3d.folder)
     assert (tank.around, block.around) == (True, False)
     assert np.array_equal(tank.at(tank3d.frame(2)), tank.faces)
     here, there = block.at(tank3d.frame(0)), block.at(tank3d.frame(2))
@@ -125,7 +125,7 @@ def test_a_body_goes_where_its_particles_go(tank3d):
 def test_a_body_that_was_bent_gets_a_surface_around_its_particles(tank3d):
     import tomllib
 
-    block = list(bodies_of(tomllib.loads(tank3d.case_text), tank3d.frame(0), 0.1, tank3d.folder))[1]
+    block = list(carried_parts(tomllib.loads(tank3d.case_text), tank3d.frame(0), 0.1, tank3d.folder))[1]
     frame = tank3d.frame(0)
     frame["position"][(frame["group"] == 3) & (frame["position"][:, 2] > 0.1)] += [0.1, 0, 0]
     bent = block.at(frame)
@@ -135,8 +135,8 @@ def test_a_body_that_was_bent_gets_a_surface_around_its_particles(tank3d):
 def test_what_has_no_shape_gets_a_surface_around_its_particles(tank3d, monkeypatch):
     import tomllib
 
-    monkeypatch.setattr(bodies_module, "solids_of", lambda case: [])
-    found = list(bodies_of(tomllib.loads(tank3d.case_text), tank3d.frame(0), 0.1, tank3d.folder))
+    monkeypatch.setattr(carried, "standing_of", lambda case: [])
+    found = list(carried_parts(tomllib.loads(tank3d.case_text), tank3d.frame(0), 0.1, tank3d.folder))
     assert [body.group for body in found] == [2, 3]
     assert all(len(body.faces) > 100 for body in found)
 

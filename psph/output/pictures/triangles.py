@@ -10,7 +10,7 @@ import numpy as np
 from psph.errors import Refused
 from psph.output.errors import NotThere
 from psph.output.pictures import names
-from psph.output.pictures.bodies import DrawnBody, bodies_of
+from psph.output.pictures.carried import Carried, carried_parts
 from psph.output.pictures.walls import Triangles
 from psph.output.progress import with_progress
 from psph.output.reader import Run
@@ -31,7 +31,7 @@ _GRID = """      <Grid Name="{name}" GridType="Uniform">
 """
 
 
-def solids(folder: Path) -> Path:
+def triangles(folder: Path) -> Path:
     """Write walls and bodies in every frame of the run in ``folder``; the path of the XDMF file.
 
     It stands in the folder ``solids`` beside an HDF5 file with ``points`` (n, 3) in m, ``corners`` (m, 3),
@@ -45,29 +45,29 @@ def solids(folder: Path) -> Path:
     if not len(run.times):
         raise NotThere(f"{run.path}: no frame yet; wait for the first one")
     start = run.frame(0, "position", "kind", "group", "id")
-    bodies = list(bodies_of(case, start, case["space"]["spacing"], run.folder))
-    if not bodies:
+    parts = list(carried_parts(case, start, case["space"]["spacing"], run.folder))
+    if not parts:
         raise Refused("plot --solids: the run has no walls and no bodies; leave it out")
-    (run.folder / names.SOLIDS).mkdir(exist_ok=True)
-    path = run.folder / names.SOLIDS / run.path.name
+    (run.folder / names.TRIANGLES).mkdir(exist_ok=True)
+    path = run.folder / names.TRIANGLES / run.path.name
     fresh = path.with_name(f"{path.name}.new")
     with h5py.File(fresh, "w") as file:
         grids = [
-            _grid(file, path, bodies, run, k)
+            _grid(file, path, parts, run, k)
             for k in with_progress(range(len(run.times)), "moving walls", "frames")
         ]
     os.replace(fresh, path)
     index = path.with_suffix(ENDING)
-    index.write_text(HEAD.format(name=names.SOLIDS) + "".join(grids) + TAIL, encoding="utf-8")
+    index.write_text(HEAD.format(name=names.TRIANGLES) + "".join(grids) + TAIL, encoding="utf-8")
     return index
 
 
-def _grid(file: h5py.File, path: Path, bodies: list[DrawnBody], run: Run, k: int) -> str:
+def _grid(file: h5py.File, path: Path, parts: list[Carried], run: Run, k: int) -> str:
     """The element of frame ``k``, whose arrays are written into ``file``."""
     frame = run.frame(k, "position", "group", "id")
-    faces = [body.at(frame) for body in bodies]
+    faces = [part.at(frame) for part in parts]
     arrays = dict(zip(("points", "corners"), _joined(np.concatenate(faces))))
-    arrays["group"] = np.repeat([body.group for body in bodies], [len(one) for one in faces]).astype(np.int64)
+    arrays["group"] = np.repeat([part.group for part in parts], [len(one) for one in faces]).astype(np.int64)
     items = {
         name: item(path, _kept(file, name, k, rows), (rows.shape, rows.dtype))
         for name, rows in arrays.items()

@@ -10,7 +10,7 @@ from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 from psph.errors import Refused
 from psph.output.frames import FrameFile
 from psph.output.pictures.names import remove_pictures
-from psph.output.pictures.solids import solids
+from psph.output.pictures.triangles import triangles
 from psph.output.reader import Run
 
 BLOCK = 3
@@ -31,7 +31,7 @@ def seen_by_vtk(path):
 
 
 def test_viewers_see_a_block_turn_in_a_tank_that_stands(tank3d):
-    frames = list(seen_by_vtk(solids(tank3d.folder)))
+    frames = list(seen_by_vtk(triangles(tank3d.folder)))
     assert [time for time, _, _ in frames] == tank3d.times.tolist()
     (_, first, group), *_, (_, last, group_at_end) = frames
     assert set(group) == set(group_at_end) == {2, BLOCK}
@@ -54,7 +54,7 @@ def test_viewers_see_a_block_turn_in_a_tank_that_stands(tank3d):
 
 
 def test_meshio_reads_the_triangles(tank3d):
-    with meshio.xdmf.TimeSeriesReader(solids(tank3d.folder)) as reader:
+    with meshio.xdmf.TimeSeriesReader(triangles(tank3d.folder)) as reader:
         points, cells = reader.read_points_cells()
         times = [reader.read_data(k)[0] for k in range(reader.num_steps)]
     assert cells[0].type == "triangle" and cells[0].data.max() == len(points) - 1
@@ -62,8 +62,8 @@ def test_meshio_reads_the_triangles(tank3d):
 
 
 def test_they_leave_the_run_as_it_was(tank3d):
-    path = solids(tank3d.folder)
-    assert len(Run(tank3d.folder).times) == 3 and solids(tank3d.folder) == path
+    path = triangles(tank3d.folder)
+    assert len(Run(tank3d.folder).times) == 3 and triangles(tank3d.folder) == path
     remove_pictures(tank3d.folder)
     assert not path.parent.exists()
 
@@ -71,4 +71,4 @@ def test_they_leave_the_run_as_it_was(tank3d):
 def test_a_run_in_a_plane_has_none(tmp_path, alone):
     FrameFile(tmp_path / "tank.h5", alone, {"case": "space = { dimensions = 2, spacing = 0.1 }"})
     with pytest.raises(Refused, match="plot --solids: the run has 2 dimensions; leave it out"):
-        solids(tmp_path)
+        triangles(tmp_path)

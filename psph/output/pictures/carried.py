@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from psph.case.shapes import Shape
 from psph.fields import WALL
-from psph.output.pictures.groups import first_body, first_wall, solids_of
+from psph.output.pictures.groups import first_wall, first_whole, standing_of
 from psph.output.pictures.view import box_around
 from psph.output.pictures.walls import Triangles, encloses, inwards, surface
 from psph.output.pictures.water import fluid_surface
@@ -17,12 +17,12 @@ BENT = 0.2
 """Spacings by which particles may miss a motion without deformation."""
 
 
-class DrawnBody:
-    """A wall of ``group``, or a body that is ``rigid``: its ``faces`` (n, 3, 3), m, in the frame ``start``;
-    ``around`` the fluid?"""
+class Carried:
+    """A wall of ``group``, or what is moved as a ``whole``: its ``faces`` (n, 3, 3), m, in the frame
+    ``start``; ``around`` the fluid?"""
 
-    def __init__(self, group: int, faces: Triangles, around: bool, rigid: bool, start: dict, spacing: float):
-        self.rigid = rigid
+    def __init__(self, group: int, faces: Triangles, around: bool, whole: bool, start: dict, spacing: float):
+        self.whole = whole
         self.group, self.faces, self.around, self.spacing = group, faces, around, spacing
         self._ids, self._rest = self._particles(start)
 
@@ -64,7 +64,7 @@ def hull(places: np.ndarray, spacing: float) -> Triangles:
     return np.empty((0, 3, 3)) if around is None else around.points[around.regular_faces].astype(float)
 
 
-def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator[DrawnBody]:
+def carried_parts(case: dict, start: dict, spacing: float, folder: Path) -> Iterator[Carried]:
     """All that is not fluid in ``case`` (3D), whose first frame is ``start``; its files are in ``folder``.
 
     What has no shape in the case, or one whose file is gone, gets a surface around its particles.
@@ -75,7 +75,7 @@ def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator
     )
     wet = start["kind"] != WALL
     inner = box_around(start["position"][wet])
-    held = [_shape(one["shape"], folder) for one in solids_of(case)]
+    held = [_shape(one["shape"], folder) for one in standing_of(case)]
     known = {group: shape for group, shape in enumerate(held, first_wall(case)) if shape}
     for group in sorted(known.keys() | set(start["group"][~wet].tolist())):
         if shape := known.get(group):
@@ -83,7 +83,7 @@ def bodies_of(case: dict, start: dict, spacing: float, folder: Path) -> Iterator
             faces = inwards(faces, shape) if around else faces
         else:
             faces, around = hull(start["position"][start["group"] == group], spacing), False
-        yield DrawnBody(group, faces, around, group >= first_body(case), start, spacing)
+        yield Carried(group, faces, around, group >= first_whole(case), start, spacing)
 
 
 def _shape(table: dict, folder: Path) -> Shape | None:

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from psph.errors import Refused
 from psph.fields import WALL
 from psph.output.pictures import style
-from psph.output.pictures.bodies import DrawnBody, bodies_of
 from psph.output.pictures.camera import ANGLE, Camera, before, directions
+from psph.output.pictures.carried import Carried, carried_parts
 from psph.output.pictures.moorings import Moorings, moorings_of
 from psph.output.pictures.ruler import rulers
 from psph.output.pictures.scale import Scale
@@ -58,12 +58,12 @@ def scene(
 
     What stands still is seen whole, but for the thickness of walls around the fluid.
     """
-    bodies = list(bodies_of(case, start, room.spacing, folder))
-    still = [body for body in bodies if _stands([one[body.group] for one in boxes if body.group in one])]
-    seen = {body.group for body in still}
-    visible = [body.faces.reshape(-1, 3) for body in still]
+    parts = list(carried_parts(case, start, room.spacing, folder))
+    still = [part for part in parts if _stands([one[part.group] for one in boxes if part.group in one])]
+    seen = {part.group for part in still}
+    visible = [part.faces.reshape(-1, 3) for part in still]
     visible += [box for one in boxes for group, box in one.items() if group not in seen]
-    return View3D(room, bodies, np.concatenate(visible), smooth, moorings_of(case, start))
+    return View3D(room, parts, np.concatenate(visible), smooth, moorings_of(case, start))
 
 
 def _stands(boxes: Sequence[np.ndarray]) -> bool:
@@ -72,10 +72,10 @@ def _stands(boxes: Sequence[np.ndarray]) -> bool:
 
 
 class View3D:
-    """The whole of a ``room`` with its ``bodies``, seen by one camera from the left, the front and above.
+    """All of a ``room`` with its rigid ``parts``, seen by one camera from the left, the front and above.
 
     It shows the box around all of the ``visible`` points, (n, 3) m.  ``smooth``: the fluid has a surface in
-    place of particles; ``moorings``: the lines of bodies, or None.  Raises Refused where 3D cannot be drawn.
+    place of particles; ``moorings``: lines, or None.  Raises Refused where 3D cannot be drawn.
     """
 
     keyed = True
@@ -83,12 +83,12 @@ class View3D:
     def __init__(
         self,
         room: Room,
-        bodies: Iterable[DrawnBody],
+        parts: Iterable[Carried],
         visible: np.ndarray,
         smooth: bool,
         moorings: Moorings | None = None,
     ):
-        self.room, self.bodies, self.smooth, self.moorings = room, list(bodies), smooth, moorings
+        self.room, self.parts, self.smooth, self.moorings = room, list(parts), smooth, moorings
         self.variant = self.remark = "surface" if smooth else ""
         self.lower = np.maximum(room.lower, visible.min(axis=0))
         self.upper = np.minimum(room.upper, visible.max(axis=0))
@@ -119,8 +119,8 @@ class View3D:
             plotter.set_background("white")
             fluid = (frame["kind"] != WALL) & self.room.holds(frame["position"])
             self._add_fluid(plotter, frame["position"][fluid], frame["values"][fluid], scale)
-            for body in self.bodies:
-                self._add_body(plotter, body, body.at(frame))
+            for part in self.parts:
+                self._add_part(plotter, part, part.at(frame))
             for one in self.moorings.at(frame) if self.moorings else ():
                 colour = style.PALE if one.slack else style.INK
                 plotter.add_lines(one.ends, color=colour, width=2 * FINER)
@@ -160,12 +160,12 @@ class View3D:
             setattr(actor.prop, name, share)
         plotter.add_actor(actor)
 
-    def _add_body(self, plotter, body: DrawnBody, faces: np.ndarray) -> None:
+    def _add_part(self, plotter, part: Carried, faces: np.ndarray) -> None:
         if not len(faces):
             return
-        seen = {"color": style.WALLS, "opacity": AROUND if body.around else WITHIN, "culling": "back"}
-        if body.rigid:  # one that a mirror or the domain's end cuts is seen from inside too
-            seen = {"color": style.BODIES, "culling": "back" if body.around else None}
+        seen = {"color": style.WALLS, "opacity": AROUND if part.around else WITHIN, "culling": "back"}
+        if part.whole:  # one that a mirror or the domain's end cuts is seen from inside too
+            seen = {"color": style.WHOLE, "culling": "back" if part.around else None}
         corners = faces.reshape(-1, 3)
         hull = self._pv.PolyData.from_regular_faces(corners, np.arange(len(corners)).reshape(-1, 3)).clean()
         plotter.add_mesh(hull, ambient=0.4, diffuse=0.7, **seen)
