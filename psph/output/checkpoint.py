@@ -21,6 +21,7 @@ import json
 import os
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -165,6 +166,15 @@ def _frame_digest(file, room: int, size: int, places: dict[str, list[int]]) -> s
         digest.update(file.read(max(offset - reached, 0)))
         reached = offset + length
     return digest.hexdigest()
+
+
+def of_other_sources(folder: Path) -> bool:
+    """Whether the newest checkpoint in a folder was written by other sources than these; False where there is
+    none to be read."""
+    for path in checkpoints(folder)[:1]:
+        with suppress(OSError, ValueError), open(path, "rb") as file:
+            return Saved._foreign(_read_header(file))
+    return False
 
 
 class Saved:

@@ -81,7 +81,7 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
         lacks = "is a file" if folder.is_file() else "there is no such folder"
         lacks = "holds no run" if folder.is_dir() else lacks
         raise CheckpointError(f"{folder}: {lacks}: give the folder that a run has written")
-    case = load(folder / COPY, _allowed(extend), "--set", given)
+    case = _case_of(folder, comm, _allowed(extend), given)
     found = comm.bcast(checkpoints(folder) if comm.rank == 0 else None)
     if not found:
         raise CheckpointError(
@@ -95,6 +95,24 @@ def take_up(folder: Path, comm, extend: Sequence[str] = (), chosen: str | None =
             f"{saved.path}: time.end = {case.time.end:g} s is not after it, at {now:.6g} s: give a later end"
         )
     return case.under(saved.header["name"]), saved
+
+
+def _case_of(folder: Path, comm, extend: Sequence[str], given):
+    """The case of the run in ``folder``, with the keys to change; CheckpointError where other sources wrote
+    it and these do not take it as it is."""
+    try:
+        return load(folder / COPY, extend, "--set", given)
+    except CaseError:
+        if not comm.bcast(checkpoint.of_other_sources(folder) if comm.rank == 0 else None):
+            raise
+        try:
+            load(folder / COPY, (), "--set", given)
+        except CaseError as error:
+            raise CheckpointError(
+                f"{error.lines[0]}; other sources of psph wrote this run: resume it with those, "
+                "or start it again"
+            ) from None
+        raise
 
 
 def _allowed(extend: Sequence[str]) -> Sequence[str]:

@@ -220,6 +220,26 @@ def test_later_sources_with_other_defaults_say_so(whole, tmp_path, monkeypatch):
         resume(folder, COMM, **QUIET)
 
 
+def test_a_run_with_a_key_that_has_departed_is_for_the_sources_that_wrote_it(whole, tmp_path, monkeypatch):
+    """To give ``use``, as a case that has not run should, would make it another case."""
+    folder = copy(whole, tmp_path / "run")
+    text = (folder / "case.toml").read_text()
+    (folder / "case.toml").write_text(text.replace("[physics]\n", "[physics]\nxsph = 0.5\n"))
+    with pytest.raises(CaseError, match='give use = \\["transport.py"\\]$'):
+        resume(folder, COMM, **QUIET)
+    monkeypatch.setattr(checkpoint, "SOURCES", "later ones")
+    with pytest.raises(CheckpointError) as error:
+        resume(folder, COMM, **QUIET)
+    said = str(error.value)
+    assert (
+        said.startswith(f"{folder}/case.toml: physics.xsph: is in a file of its own; ") and "\n" not in said
+    )
+    assert said.endswith("; other sources of psph wrote this run: resume it with those, or start it again")
+    (folder / "case.toml").write_text(text)
+    with pytest.raises(CaseError, match="time.end"):  # what the user gives is the user's
+        resume(folder, COMM, ["time.end=-1.0"], **QUIET)
+
+
 def test_a_folder_without_any_says_so(whole, tmp_path):
     folder = copy(whole, tmp_path / "run")
     for path in checkpoints(folder):
