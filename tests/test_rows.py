@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from theory.solutions.test_solutions import FLOWS, places
 
-from psph.case.model import Fluid
+from psph.case.fluids import Fluid
 from psph.physics.fluid.state import Linear, Tait
 from psph.rows import projected
 from psph.scene.fluid.still import Still

@@ -5,12 +5,13 @@ from typing import Any, Literal
 
 from pydantic import create_model
 
+from psph.case.basics import Space
 from psph.case.keys import Name, key
-from psph.case.model import MANY, Case, Fluid, Space, Wall
-from psph.case.motion import motions_type
+from psph.case.model import Case
 from psph.case.parameters import last_part, summary, table_of
-from psph.case.physics import own_law, physics_table
-from psph.case.regions import OfRegions
+from psph.case.physics import physics_table
+from psph.case.placed import Answering
+from psph.case.tables import FURTHER, MANY
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.smoothing import KERNELS
 
@@ -27,10 +28,9 @@ def case_model(catalogue: Catalogue) -> type[Case]:
         return Case
     physics = physics_table(catalogue.effects + catalogue.states)
     fields: dict[str, Any] = {"physics": (physics, key("what acts on the fluids", make=physics))}
-    if catalogue.states != BUILT_IN.states:
-        law = own_law(catalogue.states)
-        fluid = create_model("Fluid", __base__=Fluid, __doc__=Fluid.__doc__, equation_of_state=law)
-        fields["fluids"] = (dict[Name, fluid], Case.model_fields["fluids"])
+    for name, of in Case.tables_of(Answering).items():
+        if (table := of.with_more(catalogue)) is not of:
+            fields[name] = (dict[Name, table], Case.model_fields[name])
     if catalogue.kernels:
         names = (*KERNELS, *map(last_part, catalogue.kernels))
         told = key("smoothing kernel", names[0])
@@ -44,18 +44,9 @@ def case_model(catalogue: Catalogue) -> type[Case]:
     if catalogue.tables:
         tables = table_of("Tables", "Further tables of a run.", catalogue.tables)
         fields["tables"] = (tables, key("further tables that the run writes", make=tables))
-    if catalogue.motions:
-        moved = (motions_type(catalogue.motions) | None, Wall.model_fields["motion"])
-        wall = create_model("Wall", __base__=Wall, __doc__=Wall.__doc__, motion=moved)
-        fields["walls"] = (dict[Name, wall], Case.model_fields["walls"])
-    if catalogue.regions:
-        region = create_model(
-            "Region",
-            __base__=(OfRegions, table_of("Region", "A region.", catalogue.regions)),
-            __doc__="Where particles appear or vanish.",
-            into=(Name | None, key("the fluid that comes", None, otherwise="the first fluid")),
-        )
-        fields["regions"] = (dict[Name, region], key("where particles appear or vanish, by name", {}))
+    for name, (of, says) in FURTHER.items():
+        if (table := of.with_more(catalogue)) is not of:
+            fields[name] = (dict[Name, table], key(says, {}))
     kinds: tuple[Any, ...] = tuple(entry.effect for entry in catalogue.kinds)
     for kind in kinds:
         table = create_model(kind.table.__name__, __base__=kind.table, __doc__=kind.table.__doc__)

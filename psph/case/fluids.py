@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import ValidationError, WrapValidator
+from pydantic import ValidationError, WrapValidator, create_model
 from pydantic_core import PydanticCustomError
 
 from psph.acts import FLUIDS
@@ -11,9 +11,11 @@ from psph.case.findings import Finding, frictions_of
 from psph.case.keys import AXES, key
 from psph.case.matter import FreeMatter
 from psph.case.physics import own_law
+from psph.case.placed import Answering
 from psph.case.rheology import Rheology
 from psph.case.shapes import Shape
 from psph.case.study import EXACT
+from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 
 HYDROSTATIC = "hydrostatic"
@@ -57,6 +59,14 @@ class Fluid(FreeMatter):
     def rubs(self) -> bool:
         """Whether it has a friction of its own."""
         return bool(self.viscosity) or self.rheology is not None
+
+    @classmethod
+    def with_more(cls, catalogue: Catalogue) -> type[Answering]:
+        """With further equations of state."""
+        if catalogue.states == BUILT_IN.states:
+            return cls
+        law = own_law(catalogue.states)
+        return create_model("Fluid", __base__=cls, __doc__=cls.__doc__, equation_of_state=law)
 
     @classmethod
     def contradictions(cls, case) -> Iterator[Finding]:

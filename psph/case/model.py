@@ -4,95 +4,36 @@ import re
 from functools import cached_property
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeAlias, TypeVar, get_args
 
 import tomli_w
 from pydantic import PrivateAttr, Strict, ValidationError, model_validator
 
-from psph.case.bodies import Body
 from psph.case.consistency import contradictions, walk
 from psph.case.errors import dotted
 from psph.case.extensions import versions
-from psph.case.fluids import Fluid
 from psph.case.gauges import Gauge
-from psph.case.keys import SIDES, Axis, Name, Table, Text, Vector, key
+from psph.case.keys import Name, Table, key
 from psph.case.mesh import Mesh
 from psph.case.motion import Motions, series_in
-from psph.case.physics import physics_table
 from psph.case.placed import Answering, Named, Placed
-from psph.case.profiles import OFF, PROFILES, choices
+from psph.case.profiles import OFF, choices
 from psph.case.running import Checkpoint, GuardKeys, NeighbourLists, Output, Parallel, Perturbation, Probe
-from psph.case.schemes import SCHEMES, STABLE, scheme_keys
-from psph.case.soils import Soil
-from psph.case.solids import Anvil, Solid
+from psph.case.schemes import scheme_keys
 from psph.case.study import Experiment, Study, exact_table
-from psph.case.walls import Wall
+from psph.case.tables import WithMatter
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.physics.walls.conditions import BEARING
-from psph.smoothing import KERNELS
 
-if TYPE_CHECKING:  # made from the catalogues of effects and solutions
-    Physics: TypeAlias = Any
+if TYPE_CHECKING:  # made from the catalogue of solutions
     Exact: TypeAlias = Any
 else:
-    Physics, Exact = physics_table(), exact_table()
+    Exact = exact_table()
 
 T = TypeVar("T", bound=Answering)
 
 LIST_OVER_LINES = re.compile(r"\[\n((?: +[^\s\[\]{}]+,\n)+) *\]")
 """How tomli_w writes a list of numbers or words, one a line."""
-
-
-class Space(Table):
-    """Dimensions, resolution and extent."""
-
-    dimensions: int = key("number of dimensions, 1 to 3", ge=1, le=3)
-    spacing: float = key("distance between particles at the start", unit="m", gt=0)
-    smoothing: float = key(
-        "smoothing length h in units of the spacing, h/dx",
-        1.4,
-        unit="1",
-        ge=0.6,
-        le=4,
-    )
-    kernel: Literal[tuple(KERNELS)] = key("smoothing kernel", next(iter(KERNELS)))
-    normalised: bool = key(
-        "divide the kernel gradient by its first moment on the initial lattice",
-        False,
-    )
-    periodic: Annotated[tuple[Axis, ...], Strict(False)] = key("periodic axes", ())
-    symmetry: Annotated[tuple[Literal[SIDES], ...], Strict(False)] = key(
-        "sides of the domain that are planes of symmetry: the flow before one is mirrored behind it", ()
-    )
-    lower: Vector | None = key(
-        "lowest corner of the domain; required where an axis is periodic or has a plane of symmetry",
-        None,
-        unit="m",
-        otherwise="found from the shapes",
-    )
-    upper: Vector | None = key(
-        "highest corner of the domain; required where an axis is periodic or has a plane of symmetry",
-        None,
-        unit="m",
-        otherwise="found from the shapes",
-    )
-    origin: Vector | None = key(
-        "origin of the lattice: particles start at origin + (k + 1/2) spacing, k whole",
-        None,
-        unit="m",
-        otherwise="zeros",
-    )
-
-
-class Time(Table):
-    """Simulated time and time steps."""
-
-    end: float = key("simulated time at which the run ends", unit="s", gt=0)
-    cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.5)
-    gather_every: int = key(
-        "corrected gradients and other slow sums are renewed every so many steps", 1, ge=1
-    )
-    step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 
 
 class ReferenceFrame(Table):
@@ -105,46 +46,12 @@ class ReferenceFrame(Table):
     )
 
 
-MANY = 100
-"""Limit on fluids and on walls: a material is stored as one byte."""
-
-
-class Case(Table):
+class Case(WithMatter):
     """A case with every default filled in that does not depend on the particles.
 
     Made by :func:`psph.case.load`.  ``file`` is where it came from, ``name`` its stem.
     """
 
-    title: Text = key("title of the case, one line", "")
-    use: Annotated[tuple[Text, ...], Strict(False)] = key(
-        "Python files in the folder of the case or below that bring effects, motions or regions", ()
-    )
-    scheme: Literal[tuple(SCHEMES)] = key(
-        "stable: the default; sph: plain SPH; ssph: the paper's; solid: for updated Lagrangian solids; "
-        "for keys that the case does not give",
-        STABLE,
-    )
-    profile: Literal[tuple(PROFILES)] | None = key(
-        "changes of the default scheme by one name", None, otherwise="no profile"
-    )
-    precision: Literal["double", "mixed"] = key(
-        "mixed: pairs in single precision, particles and time integration in double", "double"
-    )
-    space: Space = key("dimensions, resolution and extent")
-    time: Time = key("simulated time and time steps")
-    physics: Physics = key("forces and other effects on the fluids", make=Physics)
-    fluids: dict[Name, Fluid] = key(
-        "the fluids by name: where each is at the start, and what it is",
-        {},
-        max_length=MANY,
-    )
-    soils: dict[Name, Soil] = key("the soils by name: alone, or beside fluids", {}, max_length=MANY)
-    solids: dict[Name, Solid] = key("the elastic solids by name: alone, or in fluids", {}, max_length=MANY)
-    anvils: dict[Name, Anvil] = key("rigid planes that solids may hit, by name", {}, max_length=MANY)
-    walls: dict[Name, Wall] = key(
-        "the walls by name: particles that the fluid runs into", {}, max_length=MANY
-    )
-    bodies: dict[Name, Body] = key("the rigid bodies by name", {}, max_length=MANY)
     frame: ReferenceFrame = key("a frame of reference that moves", make=ReferenceFrame)
     probes: dict[Name, Probe] = key("the probes by name: points where fields are measured over time", {})
     gauges: dict[Name, Gauge] = key(

@@ -7,6 +7,7 @@ from typing import Any, ClassVar, NamedTuple
 from psph.acts import BONDED, FLOWING
 from psph.case.findings import Finding, Location
 from psph.case.keys import Table, Vector, key
+from psph.physics.catalogue import Catalogue
 
 
 class Answering(Table):
@@ -16,6 +17,11 @@ class Answering(Table):
     def contradictions(cls, case) -> Iterator[Finding]:
         """What contradicts itself in such tables of a case, whether it has entries or not."""
         yield from ()
+
+    @classmethod
+    def with_more(cls, catalogue: Catalogue) -> "type[Answering]":
+        """Such an entry with all that a ``catalogue`` offers for it; itself where that is what psph has."""
+        return cls
 
 
 class Placed(Answering):

@@ -2,14 +2,30 @@
 
 from collections.abc import Iterator
 
+from pydantic import create_model
+
 from psph.case.errors import advise
 from psph.case.findings import Finding
-from psph.case.parameters import last_part
+from psph.case.keys import Name, key
+from psph.case.parameters import last_part, table_of
 from psph.case.placed import Answering
+from psph.physics.catalogue import Catalogue
 
 
-class OfRegions(Answering):
-    """What the table of regions answers, whatever files offer for it."""
+class Region(Answering):
+    """Where particles appear or vanish."""
+
+    @classmethod
+    def with_more(cls, catalogue: Catalogue) -> type[Answering]:
+        """With what files offer: psph has none of its own."""
+        if not catalogue.regions:
+            return cls
+        return create_model(
+            "Region",
+            __base__=(cls, table_of("Region", "A region.", catalogue.regions)),
+            __doc__=cls.__doc__,
+            into=(Name | None, key("the fluid that comes", None, otherwise="the first fluid")),
+        )
 
     @classmethod
     def contradictions(cls, case) -> Iterator[Finding]:

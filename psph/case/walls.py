@@ -2,13 +2,14 @@
 
 from typing import Any, ClassVar, Literal, Self
 
-from pydantic import model_validator
+from pydantic import create_model, model_validator
 from pydantic_core import PydanticCustomError
 
 from psph.case.keys import Name, Vector, key
-from psph.case.motion import Motions
-from psph.case.placed import Placed
+from psph.case.motion import Motions, motions_type
+from psph.case.placed import Answering, Placed
 from psph.case.shapes import Shape
+from psph.physics.catalogue import Catalogue
 from psph.physics.walls.conditions import CONDITIONS, DYNAMIC, MIRROR
 
 
@@ -49,6 +50,14 @@ class Wall(Placed):
     called: ClassVar = "wall"
     rigid: ClassVar = True
     keeps_form: ClassVar = True
+
+    @classmethod
+    def with_more(cls, catalogue: Catalogue) -> type[Answering]:
+        """With further motions."""
+        if not catalogue.motions:
+            return cls
+        moved = (motions_type(catalogue.motions) | None, cls.model_fields["motion"])
+        return create_model("Wall", __base__=cls, __doc__=cls.__doc__, motion=moved)
 
     @property
     def word(self) -> str:

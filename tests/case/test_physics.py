@@ -5,8 +5,8 @@ from typing import Annotated, NamedTuple
 import pytest
 from pydantic import Field, ValidationError
 
-from psph.case.model import Fluid, Wall
 from psph.case.physics import physics_table
+from psph.case.tables import Fluid, Wall
 from psph.physics.catalogue import CATALOGUE, Entry
 
 
