@@ -173,6 +173,9 @@ PRESSURE = Field(
 )
 SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces read it", image=StillVolume)
 
+REFERENCE = Field("reference", "m", "place in the undeformed solid", VECTOR)
+"""Where particles were at the start, of what keeps its neighbours or is followed by a gauge."""
+
 CROSSED = Field("crossed", "1", "periods by which a particle has been taken back into the domain", VECTOR)
 
 OF_EVERY_SCENE = (

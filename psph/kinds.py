@@ -195,6 +195,17 @@ class Kind:
         return False
 
     @classmethod
+    def motion_of(cls, layout: Any, part: Any) -> Any:
+        """How a part of a layout moves that forces move as a whole, by its sites (psph.physics.motion); None:
+        it is none of its own."""
+        return None
+
+    @classmethod
+    def answer(cls, census: Any, friction: bool) -> float:
+        """How much what moves as a whole answers to contacts (psph.physics.facts.Facts.answer)."""
+        return 0.0
+
+    @classmethod
     def has_free_surface(cls, census: Any) -> bool:
         """Whether it has a free surface at the start or can have one, by the second value of a scene
         (psph.scene.census)."""

@@ -8,16 +8,29 @@ import numpy as np
 from psph.fields import Field
 from psph.kinds import Kind, Rank, Stage, Work
 from psph.physics.motion import COUPLE
+from psph.physics.rigid.body import RigidBody
+from psph.scene.answering import answer
 from psph.scene.bodies import BRAKED, body_step, braked, in_words, lightest_share
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.body_parts import bodies_of
 from psph.scene.solids import meets
+from psph.scene.volumes import moved_as_whole
 
 
 class RigidBodies(Kind):
     """Rigid bodies that forces move."""
 
     name = "bodies"
+
+    @classmethod
+    def motion_of(cls, layout, part) -> RigidBody:
+        """By the mass and the inertia of its sites."""
+        return moved_as_whole(layout, part)
+
+    @classmethod
+    def answer(cls, census, friction: bool) -> float:
+        """By their masses and arms (psph.scene.answering)."""
+        return answer(census, friction)
 
     @cached_property
     def longest_step(self) -> float:

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 from psph.kinds import Kind, Stage
-from psph.physics.region import is_sink, next_time
-from psph.scene.regions import regions_in
+from psph.physics.region import is_sink, is_source, next_time
+from psph.scene.regions import regions_in, regions_of
 from psph.simulation.stages import nothing
 
 
@@ -19,6 +19,13 @@ class Regions(Kind):
     def regions(self) -> tuple:
         """What they do (psph.physics.region)."""
         return tuple(region for region, _ in regions_in(self.scene.case))
+
+    @cached_property
+    def _of_parts(self) -> tuple[tuple, tuple]:
+        """Where particles vanish, and where they appear, each of these with the number of what comes."""
+        found = regions_of(self.scene.layout)
+        sinks = tuple(region for region, _ in found if is_sink(region))
+        return sinks, tuple((region, group) for region, group in found if is_source(region))
 
     @classmethod
     def drains(cls, case) -> bool:
@@ -39,5 +46,5 @@ class Regions(Kind):
         if simulation.listed and next_time(self.regions, simulation.time) > simulation.then:
             return
         with simulation.ledger("populate"):
-            simulation.population.renew(simulation.then)
+            simulation.population.renew(*self._of_parts, simulation.then)
         simulation.listed = False

@@ -51,7 +51,7 @@ def total_energy(
     comm: MPI.Comm,
     store: Store,
     gravity: Sequence[float],
-    elastic: Callable,
+    compressed: Callable,
     led: np.ndarray,
     potential: np.ndarray | float = 0.0,
 ) -> float:
@@ -59,16 +59,16 @@ def total_energy(
 
     ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.
 
-    Groups that are ``led`` (groups,) move as they are told: they count as walls.  ``elastic`` takes densities
-    and rest densities (n,) and gives u, J/kg.  NaN where a density is below zero.  The same bits on any
-    number of ranks; collective.
+    Groups that are ``led`` (groups,) move as they are told: they count as walls.  ``compressed`` takes
+    densities and rest densities (n,) and gives u, J/kg.  NaN where a density is below zero.  The same bits on
+    any number of ranks; collective.
     """
     inner = store.inner
     moved = sum(
         x[inner] * -g + 0.5 * v[inner] ** 2 for x, v, g in zip(store["position"], store["velocity"], gravity)
     )
     with np.errstate(invalid="ignore", divide="ignore"):
-        stored = elastic(store.shown("density"), store.shown("rest_density"))
+        stored = compressed(store.shown("density"), store.shown("rest_density"))
     moves = (store.shown("kind") != WALL) & ~led[store.shown("group")]
     moving = store.shown(_inert(store)) * np.where(moves, moved + potential, 0.0)
     energy = moving + store.shown("mass") * stored

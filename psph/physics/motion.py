@@ -13,9 +13,9 @@ it stood at the start, m) and the time (s), which are compiled into the loops:
 Neither is integrated, so that particles never drift from where they belong, however many steps a run takes.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from psph.fields import AXIAL, FLUID, MATRIX, OTHER, SOLID, VECTOR, WALL, Field, Turned, VelocityGradient
+from psph.fields import AXIAL, FLUID, MATRIX, OTHER, VECTOR, WALL, Field, Turned, VelocityGradient
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
 
@@ -55,44 +55,13 @@ class Free(NamedTuple):
 
     kind = FLUID
     goes_free = True
-
-
-class Elastic(NamedTuple):
-    """Particles of a solid, whose forces come from their neighbours of the start."""
-
-    kind = SOLID
-    goes_free = True
-
-
-class Immersed(NamedTuple):
-    """Particles of a solid in a fluid, moved in steps of its own: to the fluid a wall that moves."""
-
-    kind = SOLID
-    goes_free = True
+    is_free = True
 
 
 class Fixed(NamedTuple):
     """Particles stay where they are."""
 
     kind = WALL
-
-
-class Clamped(NamedTuple):
-    """Particles of a solid that stay where they are."""
-
-    kind = SOLID
-
-
-class MovingClamp(NamedTuple):
-    """Particles of a solid that move as a whole by a rigid ``motion``, as they are told."""
-
-    motion: Any
-
-    kind = SOLID
-
-    def pose(self, time: float):
-        """The pose of the whole at ``time``, s."""
-        return self.motion.pose(time)
 
 
 class OfItsKind(NamedTuple):
@@ -107,7 +76,7 @@ FREE, FIXED, RIGID, PRESCRIBED = 0, 1, 2, 3
 
 def is_free(motion) -> bool:
     """Whether forces move particles."""
-    return isinstance(motion, (Free, Elastic))
+    return getattr(motion, "is_free", False)
 
 
 def goes_free(motion) -> bool:

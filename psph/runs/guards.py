@@ -53,8 +53,8 @@ class Guards:
         bears_none = any(hasattr(effect, "bearing_density") for effect in simulation.plan.effects)
         self._slack = bears_none & (np.arange(len(materials.law_of)) >= materials.free)
         self._books = not unbooked and all(kind.keeps_energy for kind in simulation.plan.matter)
-        self.solids = [(WallRegion(scene), None)]
-        self.solids += [(WallRegion(scene, one), row) for row, one in enumerate(materials.rigid)]
+        self._walls = [(WallRegion(scene), None)]
+        self._walls += [(WallRegion(scene, one), row) for row, one in enumerate(materials.rigid)]
         self.seen: Counter[str] = Counter()
         mass = moving_mass(simulation.comm, simulation.store)
         self._unit = 0.5 * mass * (scene.sound_speed / SOUND_OVER_SPEED) ** 2
@@ -152,9 +152,9 @@ class Guards:
         hidden = store.shown("kind") == FLUID
         places = self.simulation.domain.inside(store.shown("position")[hidden])
         deep = np.zeros(len(places), bool)
-        for solid, row in self.solids:
+        for wall, row in self._walls:
             then, once = self._taken_back(row, places)
-            deep |= solid.deep(then, self.bounds.depth, once)
+            deep |= wall.deep(then, self.bounds.depth, once)
         hidden[hidden] = deep
         return hidden
 
@@ -177,7 +177,7 @@ class Guards:
         materials, group = sim.plan.materials, sim.store.shown("group")
         laws, law_of, slack = materials.laws, materials.law_of[group], self._slack[group]
 
-        def elastic(density, rest):
+        def compressed(density, rest):
             density = np.where(slack, np.maximum(density, rest), density)
             stored = laws[0].energy(density, rest, c)
             for number, law in enumerate(laws[1:], 1):
@@ -185,7 +185,7 @@ class Guards:
             return stored
 
         heights, held = sim.plan.pulls.heights(self.scene.layout.periods), sim.engine.potential()
-        whole = total_energy(sim.comm, sim.store, heights, elastic, self._led, held)
+        whole = total_energy(sim.comm, sim.store, heights, compressed, self._led, held)
         whole += sim.engine.stored_energy()
         return whole - (work_done(sim.comm, sim.store) if sim.plan.books_work else 0.0)
 

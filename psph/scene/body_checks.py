@@ -129,9 +129,9 @@ def _lopsided(scene: Scene) -> Iterator[str]:
         mesh = table.shape.mesh
         if mesh is None or mesh.shell or table.centre is not None:
             continue
-        from psph.scene.meshes.mass import solid_of
+        from psph.scene.meshes.mass import enclosed_by
 
-        filled, drawn = volume_of(scene.layout, scene.layout.names.index(name)), solid_of(mesh)
+        filled, drawn = volume_of(scene.layout, scene.layout.names.index(name)), enclosed_by(mesh)
         up = int(np.abs(scene.gravity).argmax())
         for d in (d for d in range(scene.dimensions) if d != up and not scene.gravity[d]):
             mean = -drawn.inertia[d, up] / drawn.volume  # of (x − c)(z − c), as filled.spread has it

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from psph.kinds import in_case
 from psph.scene.layout import Layout
 from psph.scene.meshes.drawn import sites_in
-from psph.scene.volumes import moved_as_whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,10 +33,12 @@ class Census:
     def motions(self) -> tuple[Any, ...]:
         """How the particles of each part move (psph.physics.motion); where the case leaves that to forces on
         the whole, by the mass and the inertia of its sites."""
-        return tuple(
-            moved_as_whole(self.layout, part) if part.motion is None else part.motion
-            for part in self.layout.parts
-        )
+        kinds = tuple(in_case(self.layout.case))
+
+        def own(part: Any) -> Any:
+            return next(filter(None, (kind.motion_of(self.layout, part) for kind in kinds)))
+
+        return tuple(own(part) if part.moves_whole else part.motion for part in self.layout.parts)
 
     @cached_property
     def flow(self) -> tuple[np.ndarray, np.ndarray]:

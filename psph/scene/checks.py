@@ -10,7 +10,7 @@ from psph.case import CaseError
 from psph.case.consistency import MOST_STEPS
 from psph.case.keys import AXES
 from psph.kinds import kinds_in
-from psph.scene.gauging import off_solids, outside_domain
+from psph.scene.gauging import off_parts, outside_domain
 from psph.scene.lattice import TOLERANCE
 from psph.scene.lattice_fit import misfits
 from psph.scene.meshes import report as meshes
@@ -54,7 +54,7 @@ def faults(scene: Scene) -> Iterator[str]:
         *_mirror_faults(scene),
         *_site_faults(scene),
         *outside_domain(scene),
-        *off_solids(scene),
+        *off_parts(scene),
         *exact_faults(scene),
     ]
     places = places or [line for kind in kinds_in(scene) for line in kind.faults()]

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from psph.fields import CROSSED, REFERENCE, Field
 from psph.scene.lattice import TOLERANCE
 from psph.scene.moving import moving_parts
 from psph.scene.outside import WallRegion
@@ -42,7 +43,7 @@ def _outside(scene: Scene, key: str, point: tuple[float, ...]) -> Iterator[str]:
         yield f"{key}: {shown(point)} lies outside {where}; move it inside"
 
 
-def off_solids(scene: Scene) -> Iterator[str]:
+def off_parts(scene: Scene) -> Iterator[str]:
     """A line for each point whose displacement or stress is asked for and that lies off its solid; of what
     keeps no neighbours of the start, for each outside the domain."""
     around = np.linspace(-BESIDE, BESIDE, 7) * scene.spacing
@@ -67,8 +68,8 @@ def inside_walls(scene: Scene) -> Iterator[str]:
     may begin there."""
     still, species = WallRegion(scene), {one.name: one for one in scene.species}
     for key, point, carrier in _points(scene, "position"):
-        solid = WallRegion(scene, species[carrier].motion) if carrier else still
-        if solid.deep(np.array([point]), BURIED)[0]:
+        walls = WallRegion(scene, species[carrier].motion) if carrier else still
+        if walls.deep(np.array([point]), BURIED)[0]:
             yield f"{key}: {shown(point)} lies in a wall, where there is no fluid to measure; move it out"
 
 
@@ -128,3 +129,13 @@ def _points(scene: Scene, *keys: str) -> Iterator[tuple[str, tuple[float, ...], 
         for key in keys:
             if (point := getattr(one, key, None)) is not None:
                 yield f"{table}.{key}", point, getattr(one, "moves_with", None)
+
+
+def followed_fields(scene: Scene) -> tuple[Field, ...]:
+    """What particles carry because gauges follow them: where they were, and how often they have crossed."""
+    gauges = scene.case.gauges.values()
+    followed = any(gauge.displacement for gauge in gauges)
+    bonded = any(part.keeps_neighbours for part in scene.layout.parts)
+    counted = followed or bonded and any(gauge.reaction or gauge.force for gauge in gauges)
+    across = (CROSSED,) if counted and any(scene.layout.periods) else ()
+    return (*([REFERENCE] if followed else []), *across)

@@ -6,7 +6,7 @@ from typing import Any
 
 from psph.case import Case
 from psph.case.parameters import chosen
-from psph.scene.answering import answer
+from psph.kinds import in_case
 from psph.scene.census import Census, take_census
 from psph.scene.layout import Layout, lay_out
 from psph.scene.particles import ParticleSet, fill
@@ -79,5 +79,5 @@ class Scene:
     standing_tension = property(attrgetter("starts.standing_tension"))
 
     def answer(self, friction: bool) -> float:
-        """How much rigid bodies answer to contacts with elastic solids, 1/kg (psph.scene.answering)."""
-        return answer(self.census, friction)
+        """How much rigid bodies answer to contacts with elastic solids, 1/kg (psph.kinds)."""
+        return max(kind.answer(self.census, friction) for kind in in_case(self.case))

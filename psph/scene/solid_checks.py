@@ -116,7 +116,7 @@ def _of_either_description(scene: Scene, number: int, name: str) -> Iterator[str
         )
     if not LIGHTEST <= table.density <= HEAVIEST:
         yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
-    own = scene.layout.parts[number].elastic
+    own = scene.layout.parts[number].bonded
     wave = table.wave_speed if own is None else solids_of(scene.starts)[own].wave_speed
     if wave < SLOWEST * scene.expected_speed and not table.mie_gruneisen:
         yield (

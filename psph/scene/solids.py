@@ -7,21 +7,13 @@ from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import MET, OF_CONTACT, OF_FRICTION, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
-from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, REFERENCE, STRESS_ZZ
+from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, STRESS_ZZ
 from psph.physics.solid.material import is_heated, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
 from psph.scene.calming import solids_of
+from psph.scene.gauging import followed_fields
 from psph.scene.scene import Scene
-
-
-def followed_fields(scene: Scene) -> tuple[Field, ...]:
-    """What particles carry because gauges follow them: where they were, and how often they have crossed."""
-    gauges = scene.case.gauges.values()
-    followed = any(gauge.displacement for gauge in gauges)
-    counted = followed or solids_of(scene.starts) and any(gauge.reaction or gauge.force for gauge in gauges)
-    across = (CROSSED,) if counted and any(scene.layout.periods) else ()
-    return (*([REFERENCE] if followed else []), *across)
 
 
 def solid_fields(scene: Scene) -> tuple[Field, ...]:

@@ -20,7 +20,7 @@ class Species(NamedTuple):
     (psph.physics.walls.conditions); ``loaded`` where the fluid's push on it is asked for;
     ``rheology`` is the number of the law of its viscosity among those of the scene from 1 on, 0 where that is
     constant; ``solid`` is 0 for a fluid, 1 for a wall, and the number of a rigid body or elastic solid from 2
-    on; ``elastic`` is the number of the elastic solid that it is of, or None; ``shear_modulus`` in Pa that of
+    on; ``bonded`` is the number of the elastic solid that it is of, or None; ``shear_modulus`` in Pa that of
     matter whose deviatoric stress evolves (psph.physics.stress), else 0; ``strength`` the number of the law
     that bounds this stress among those of the scene from 1 on, 0 where none does, and ``cone_tip`` in Pa the
     mean tension that leaves it no strength; ``wave_modulus`` in Pa is
@@ -41,7 +41,7 @@ class Species(NamedTuple):
     loaded: bool = False
     solid: int = 0
     rheology: int = 0
-    elastic: int | None = None
+    bonded: int | None = None
     shear_modulus: float = 0.0
     strength: int = 0
     cone_tip: float = 0.0

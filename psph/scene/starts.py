@@ -91,7 +91,7 @@ class Starts:
                 law=start.law,
                 loaded=part.loaded,
                 solid=part.solid,
-                elastic=part.elastic,
+                bonded=part.bonded,
                 **layout.parts[part.source].shown(known),
                 **part.own(known),
             )

@@ -7,9 +7,10 @@ from psph.composition.pair import take
 from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.engine.threads import in_threads
-from psph.physics.motion import ANCHOR, WORK, MovingClamp
+from psph.physics.motion import ANCHOR, WORK
 from psph.physics.rigid.mapped import affine
 from psph.physics.rigid.pose import PLACE, VELOCITY, maps
+from psph.physics.solid.motion import MovingClamp
 from psph.vectors import at, dot, nearest_to, put, subtract
 
 

@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from psph.fields import APART, OF_MATERIAL
+from psph.fields import APART, OF_MATERIAL, REFERENCE
 from psph.kinds import kinds_in
 from psph.particles.store import Store
 from psph.physics.motion import ANCHOR
-from psph.physics.solid.deformation import REFERENCE
 from psph.simulation.materials import Materials
 
 

@@ -9,9 +9,11 @@ from psph.fields import OF_MATERIAL, OTHER, WALL
 from psph.kinds import kinds_in
 from psph.physics.catalogue import Entry
 from psph.physics.motion import is_prescribed
-from psph.physics.solid.material import NO_SOLID
 from psph.simulation.calling import called_for
 from psph.simulation.movement import movement_of
+
+NOT_BONDED = 255
+"""Number of what keeps no neighbours of the start."""
 
 
 class Materials(NamedTuple):
@@ -47,8 +49,8 @@ class Materials(NamedTuple):
     """The motions that have a pose (psph.simulation.poses)."""
     pose_of: np.ndarray
     """The row of the pose, 0 without one."""
-    solid_of: np.ndarray
-    """The number of the elastic solid, NO_SOLID where it is of none."""
+    bonded_to: np.ndarray
+    """The number of what its particles are bonded in, NOT_BONDED where they are not."""
     loaded: np.ndarray | None
     """Whether the push of the fluid alone, or of elastic solids where nothing flows, is summed on its
     particles; None: on none."""
@@ -88,7 +90,7 @@ def materials_of(scene, states: Iterable[Entry], effects: Sequence) -> Materials
         law_of=each(lambda one: [*own_laws].index((type(one.law), one.law)), np.uint8),
         bearing=each(lambda one: one.bearing),
         given_pressure=each(lambda one: any(is_given_pressure(effect, one) for effect in effects)),
-        solid_of=each(lambda one: NO_SOLID if one.elastic is None else one.elastic, np.uint8),
+        bonded_to=each(lambda one: NOT_BONDED if one.bonded is None else one.bonded, np.uint8),
         loaded=loaded if loaded.any() else None,
         **movement._asdict(),
     )

@@ -13,10 +13,6 @@ from psph.physics.motion import (
     RIGID,
     WHIRL,
     WORK,
-    Clamped,
-    Fixed,
-    Immersed,
-    OfItsKind,
     deforms,
     is_free,
     is_rigid,
@@ -71,6 +67,6 @@ def _number(motion, motions: tuple) -> int:
     """The number of a motion in compiled loops."""
     if is_free(motion):
         return FREE
-    if isinstance(motion, (Fixed, Clamped, Immersed, OfItsKind)):
-        return FIXED
-    return RIGID if is_rigid(motion) else PRESCRIBED + _row(motion, motions)
+    if is_rigid(motion):
+        return RIGID
+    return PRESCRIBED + _row(motion, motions) if deforms(motion) else FIXED

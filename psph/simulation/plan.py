@@ -27,7 +27,7 @@ from psph.kinds import Kind, kinds_in
 from psph.particles.planes import Plane
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.motion import APPARENT, COUPLE, LOAD, OF_MOTION, WHIRL, WORK
-from psph.scene.solids import followed_fields
+from psph.scene.gauging import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split

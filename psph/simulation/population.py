@@ -1,32 +1,31 @@
 """Particles that appear and vanish while a scene runs, the same on any number of ranks."""
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 
 from psph.fields import FLUID
 from psph.kinds import count_of
-from psph.physics.region import is_source
-from psph.scene.regions import regions_of
 from psph.simulation.filling import block_of
 
 
 class Population:
     """Who is there: ``next_id`` is the number that the next particle gets, ``asked`` the time (s) up
-    to which the regions of the scene have been asked.  Both are the same on every rank.
+    to which those have been asked who take out and let in.  Both are the same on every rank.
     """
 
     def __init__(self, scene, plan, domain):
         self.scene, self.plan, self.domain = scene, plan, domain
         self.next_id, self.asked = count_of(scene), 0.0
-        self.regions = regions_of(scene.layout)
 
-    def renew(self, time: float) -> None:
-        """Take out and let in what the regions say up to ``time``, s; new lists have to follow."""
-        for region, _ in self.regions:
-            if hasattr(region, "vanish"):
-                self._take_out(region, time)
-        for region, group in self.regions:
-            if is_source(region):
-                self._let_in(*region.appear(self.asked, time), group)
+    def renew(self, sinks: Iterable, sources: Iterable[tuple[Any, int]], time: float) -> None:
+        """Take out what ``sinks`` say up to ``time``, s, and let in what ``sources`` say, each with the group
+        of what comes (psph.physics.region); new lists have to follow."""
+        for sink in sinks:
+            self._take_out(sink, time)
+        for source, group in sources:
+            self._let_in(*source.appear(self.asked, time), group)
         self.asked = time
 
     def state(self) -> dict:
@@ -37,11 +36,11 @@ class Population:
         """Go on from there."""
         self.next_id, self.asked = state["next_id"], state["asked"]
 
-    def _take_out(self, region, time: float) -> None:
+    def _take_out(self, sink, time: float) -> None:
         store = self.domain.store
         fluid = np.flatnonzero(store.shown("kind") == FLUID)
         places = self.domain.inside(store.shown("position")[fluid])
-        gone = fluid[region.vanish(places, store.shown("velocity")[fluid], time)]
+        gone = fluid[sink.vanish(places, store.shown("velocity")[fluid], time)]
         staying = np.delete(np.arange(store.owned), gone)
         store.reorder((store.low + staying).astype(np.uint32), 0, 0)
 

@@ -6,10 +6,10 @@ from typing import Any
 
 from psph.acts import FLOWING, SOLIDS
 from psph.fields import WALL
-from psph.physics.motion import MovingClamp
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import INERTIA, SMOOTHING
 from psph.physics.solid.material import remembers
+from psph.physics.solid.motion import MovingClamp
 from psph.physics.solid.plastic import Lasting
 from psph.simulation.passes import Pass, array_of, make_passes
 

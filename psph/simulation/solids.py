@@ -27,10 +27,11 @@ from psph.physics.solid.deformation import (
     pressure_of,
     support_of,
 )
-from psph.physics.solid.material import NO_SOLID, is_damped, remembers
+from psph.physics.solid.material import is_damped, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
 from psph.scene.parts.order import among
+from psph.simulation.materials import NOT_BONDED
 from psph.simulation.solid_memory import Memory
 from psph.simulation.solid_pairs import (
     Matter,
@@ -69,8 +70,7 @@ class Solids(Work):
         self.scene, self.plan, self.store, self.domain, self.ledger = scene, plan, store, domain, ledger
         self.comm, d = domain.comm, scene.dimensions
         self._planned = planned = solid_plan(plan)
-        solids, periods = planned.solids, domain.periods
-        self._h = planned.smoothing_length
+        solids, periods, self._h = planned.solids, domain.periods, planned.smoothing_length
         own, damped = kernel(KERNEL, self._h, d), is_damped(solids)
         self.support = support_of(self._h)
         sums = (Gradient(periods), *([GradientRate()] if damped else []))
@@ -84,7 +84,7 @@ class Solids(Work):
         self.clamps, self.loads, self._faces, self._cracks = parts_of(scene, plan, store, self.comm)
         if self._cracks:
             self._widths[1].update({LOOSENED: 1, STRENGTH: 1})
-        self._solid_of = plan.materials.solid_of
+        self._solid_of = plan.materials.bonded_to
         self._rows = self.halo = None
         loops = (sum_moments, sum_gradients, sum_inner_forces, measure, push_solids, fill_places)
         self._moments, self._gradients, self._forces, self._measure, self._push, self._fill = map(
@@ -128,7 +128,7 @@ class Solids(Work):
         if unknown:
             self._rows = self._listed()
         group = self._solid_of[store.group[store.inner]]
-        columns = store.low + np.flatnonzero(group != NO_SOLID)
+        columns = store.low + np.flatnonzero(group != NOT_BONDED)
         self._rows = follow(self.comm, self._rows, store.id[columns])
         counts, partners = self._rows.chosen(store.id[columns])
         owned = np.sort(store.id[columns])
@@ -340,7 +340,7 @@ class Solids(Work):
         """The rows of reference lists, from X, of the particles that this rank owns now."""
         store, scene = self.store, self.scene
         body = self._solid_of[store.group[store.inner]]
-        own = body != NO_SOLID
+        own = body != NOT_BONDED
         extent = Extent(scene.layout.axis, scene.layout.lower, scene.layout.upper, scene.layout.periods)
         reference = store.shown("reference")[own]
         ids = store.id[store.inner][own]

@@ -30,7 +30,7 @@ class WetContact:
         self._plan, self._store, self._domain, self._ledger = plan, store, domain, ledger
         self._records = Records(store, plan.met.neighbour_fields, plan.space, TRUE_MASS)
         self._due = np.array([kind != FLUID for kind in plan.materials.kinds], bool)
-        self._others = Others(one.solid for one in scene.species if one.elastic is not None)
+        self._others = Others(one.solid for one in scene.species if one.bonded is not None)
         self._sum, self._begin = settled(sum_over_neighbours), settled(begin)
         self._sent = tuple(name for name in plan.met.neighbour_fields if name not in plan.ghost_fields)
         self.lists: Neighbours = domain.lists

@@ -32,7 +32,7 @@ def test_the_parts_of_such_a_solid(tmp_path):
     assert moving.mobile and not held.mobile and moving.shear_modulus == held.shear_modulus == 4e5
     assert scene.census.counts.sum() == 100 and scene.speeds.velocities[1] == (0.0, 0.0)
     assert scene.sound_speed == pytest.approx((1.2e6 / 1000.0) ** 0.5)
-    assert not scene.starts.materials and moving.elastic is held.elastic is None
+    assert not scene.starts.materials and moving.bonded is held.bonded is None
 
 
 @pytest.mark.parametrize(

@@ -43,11 +43,12 @@ def answers(ladders, scene: Scene, error: float | None, seconds: float | None) -
 
 
 def _lengths(scene: Scene) -> tuple[list[float], ...]:
-    """What a spacing should divide: all widths, those of fluids and periods, the periods alone."""
+    """What a spacing should divide: all widths, those of what flows and periods, the periods alone."""
     every = widths(scene)
     periods = [period for period in scene.layout.periods if period is not None]
-    fluids = [width.length for width in every if width.key.startswith("fluids.")]
-    return [width.length for width in every], [*fluids, *periods], periods
+    flowing = tuple(f"{part.key}." for part in scene.layout.parts if part.flows)
+    flows = [width.length for width in every if width.key.startswith(flowing)]
+    return [width.length for width in every], [*flows, *periods], periods
 
 
 def fitting(spacing: float, *wanted: list[float], coarser: bool = False) -> float:

@@ -14,7 +14,7 @@ class Continuity(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """Where elastic solids stand in a fluid, the form that knows them."""
-        immersed = any(one.elastic is not None for one in scene.species)
+        immersed = any(one.bonded is not None for one in scene.species)
         return ContinuityBesideSolids() if immersed and any(one.is_fluid for one in scene.species) else self
 
     def density_rate(self, i, j, pair):

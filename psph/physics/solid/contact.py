@@ -129,7 +129,7 @@ class SolidContact(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """With the spacing of the scene; nothing where there is but one solid, and no wall."""
-        elastic = [one for one in scene.species if one.elastic is not None]
+        elastic = [one for one in scene.species if one.bonded is not None]
         pairs = [(i, j) for i, j in product(elastic, scene.species) if i.solid != j.solid]
         if not pairs:
             return None
@@ -145,7 +145,7 @@ class SolidContact(NamedTuple):
 
     def why_absent(self, scene: Facts):
         """That nothing can meet, or nothing elastic."""
-        if any(one.solid > WALL and one.elastic is None for one in scene.species):
+        if any(one.solid > WALL and one.bonded is None for one in scene.species):
             return "rigid bodies meet by impulses, with its friction and its restitution"
         return "the scene has one solid and no wall, so nothing meets"
 

@@ -20,11 +20,10 @@ Comput. Methods Appl. Mech. Eng. 322, 42 (its form as an energy).
 
 from typing import Any, NamedTuple
 
-from psph.fields import SYMMETRIC, VECTOR, Field
+from psph.fields import REFERENCE, SYMMETRIC, VECTOR, Field
 from psph.smoothing import WendlandC2
 from psph.vectors import add, dyad, nearest_image, scale, subtract, zero_like
 
-REFERENCE = Field("reference", "m", "place in the undeformed solid", VECTOR)
 MOMENT = Field("moment", "1", "(Σ_j V_j g_ij X_ij X_ijᵀ)⁻¹ over the neighbours in the reference", SYMMETRIC)
 STRESS = Field("stress", "Pa", "Cauchy stress of a solid, tension positive", SYMMETRIC, saved=True)
 STRESS_ZZ = Field("stress_zz", "Pa", "Cauchy stress of a solid across the plane of 2D", saved=True)

@@ -19,7 +19,7 @@ class MassProperties(NamedTuple):
     inertia: np.ndarray
 
 
-def solid_of(mesh: Mesh) -> MassProperties:
+def enclosed_by(mesh: Mesh) -> MassProperties:
     """The closed body that a mesh encloses, whether it is filled or a shell (Mirtich 1996, by trimesh).
 
     Raises MeshError.

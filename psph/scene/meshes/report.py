@@ -33,8 +33,9 @@ def size_faults(scene: Scene) -> Iterator[str]:
     """Meshes in another unit than that of the scene, before its sites are visited."""
     rest = _rest(scene)
     many = math.prod(scene.layout.lattice.counts) > MANY_SITES
+    moved = tuple(f"{part.key}." for part in scene.layout.parts if part.moves_whole)
     for one in scene.layout.meshes:
-        floats = any(key.startswith("bodies.") for key in one.keys)  # what is around it is no smaller
+        floats = _stands_in(one, moved)  # what is around it is no smaller
         most = LARGER if many or floats else FAR_LARGER
         times = max(one.surface.size) / rest if rest else 0.0
         if times > most:

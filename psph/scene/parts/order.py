@@ -9,7 +9,8 @@ from psph.case import Case
 from psph.case.motion import motion_of
 from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
-from psph.physics.motion import Clamped, Elastic, Fixed, Free, Immersed, MovingClamp
+from psph.physics.motion import Fixed, Free
+from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.parts.fluid import FluidPart
 from psph.scene.parts.part import Part
@@ -111,8 +112,8 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
             whole=whole.number,
             source=whole.source,
             solid=whole.solid or WALL,
-            elastic=whole.elastic,
-            loaded=whole.elastic is not None and bool(flowing),
+            bonded=whole.bonded,
+            loaded=whole.bonded is not None and bool(flowing),
         )
     for name, wall in case.walls.items():
         if wall.condition != MIRROR:

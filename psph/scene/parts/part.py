@@ -42,7 +42,7 @@ class Part:
     says; ``motion`` how its particles move (psph.physics.motion), None of a body, whose mass the sites tell;
     ``number`` is its place among the parts, ``whole`` that of the part of which it is a clamp, else its own;
     ``source`` that of the part whose density and state at the start it has.  ``solid`` is 0 for what flows,
-    1 for a wall, and the number of an elastic solid or a rigid body from 2 on; ``elastic`` the number of the
+    1 for a wall, and the number of an elastic solid or a rigid body from 2 on; ``bonded`` the number of the
     total Lagrangian solid that it is of, or None; ``loaded`` whether the fluid's push on it is asked for.
     """
 
@@ -54,7 +54,7 @@ class Part:
     whole: int
     source: int
     solid: int = WALL
-    elastic: int | None = None
+    bonded: int | None = None
     loaded: bool = False
 
     flows: ClassVar[bool] = False

@@ -8,10 +8,10 @@ from typing import Any
 from psph.case import Case
 from psph.case.updated import referred_in, updated_in
 from psph.particles.reach import Reach
-from psph.physics.motion import Immersed
 from psph.physics.solid.contact import REACH as CONTACT
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS, SMOOTHING
 from psph.physics.solid.material import MADE_OF, ElasticSolid, solid_of
+from psph.physics.solid.motion import Immersed
 from psph.scene.parts.hookean import HookeanPart, StressedPart
 from psph.scene.parts.part import Known
 
@@ -79,13 +79,13 @@ class ClampPart(HookeanPart):
     def own(self, known: Known) -> dict[str, Any]:
         """The same as its solid, whose deviatoric stress does not evolve here."""
         own = super().own(known)
-        return own if self.elastic is None else own | _met(self, known)
+        return own if self.bonded is None else own | _met(self, known)
 
 
 def _met(part: HookeanPart, known: Known) -> dict[str, Any]:
     """The P-wave modulus by which a contact with a solid is stiff, and the true mass of its particles."""
     volume = known.spacing ** len(known.gravity)
-    return {"wave_modulus": known.wave_moduli[part.elastic], "own_mass": part.table.density * volume}
+    return {"wave_modulus": known.wave_moduli[part.bonded], "own_mass": part.table.density * volume}
 
 
 def clamps_in(case: Case) -> Iterator[tuple[str, str, Any]]:
