@@ -175,6 +175,8 @@ class Kind:
     """Beside what it does not work, each word of psph.acts with a sentence and its cure."""
     columns: ClassVar[tuple[str, ...]] = ()
     """What it adds to log.csv: energies in J."""
+    may_save: ClassVar[tuple] = ()
+    """Fields of frames that only such matter has (psph.fields.Field), whatever of it a scene has."""
     keeps_energy: ClassVar[bool] = True
     """Whether the energy of a scene with it is all in the books, so that a guard can watch it."""
 
@@ -338,11 +340,16 @@ class Kind:
         return ()
 
 
-def known(case: Any) -> Iterator[type[Kind]]:
-    """The kinds that a case can have: psph's own, and those of files that it uses."""
+def own() -> Iterator[type[Kind]]:
+    """The kinds that psph has."""
     for entry in CATALOGUE:
         module, _, name = entry.partition(":")
         yield getattr(import_module(module), name)
+
+
+def known(case: Any) -> Iterator[type[Kind]]:
+    """The kinds that a case can have: psph's own, and those of files that it uses."""
+    yield from own()
     yield from (entry.effect for entry in case.catalogue.kinds)
 
 

@@ -13,9 +13,20 @@ from psph.composition.space import Metres
 from psph.fields import FLUID, Field
 from psph.kinds import Kind, Rank, Work
 from psph.particles.records import record_width
+from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import COVER, FACE, OF_FRICTION, REACH
-from psph.physics.solid.deformation import DRAWN, KERNEL, SMOOTHING, places_of, support_of
+from psph.physics.solid.cracks import OF_CRACKS
+from psph.physics.solid.deformation import (
+    DRAWN,
+    KERNEL,
+    OF_SOLIDS,
+    SMOOTHING,
+    STRESS_ZZ,
+    places_of,
+    support_of,
+)
 from psph.physics.solid.material import STEP, is_damped
+from psph.physics.solid.plastic import OF_PLASTIC
 from psph.scene.calming import damped_solids, solids_of
 from psph.scene.faces import drawn_faces
 from psph.scene.sites import sites_within
@@ -61,6 +72,7 @@ class ElasticSolids(SolidMatter):
     name = SOLIDS
     columns = ("stored_energy",)
     pushes_within = True
+    may_save = (*OF_SOLIDS, STRESS_ZZ, *OF_PLASTIC, *OF_HEAT, *OF_CRACKS)
 
     @cached_property
     def immersed(self) -> bool:

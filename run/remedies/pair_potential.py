@@ -13,7 +13,7 @@ from psph.composition.pair import Pair
 from psph.fields import view_of
 from psph.physics.catalogue import Catalogue, Entry
 from psph.physics.facts import Facts
-from psph.physics.order.potential import NeutralPotential, Strength, _repulsion, neutral_potential
+from psph.physics.order.potential import NeutralPotential, Strength, neutral_potential, repulsion
 from psph.theory.stability import parts
 
 
@@ -64,7 +64,7 @@ class UnequalMasses(NeutralPotential):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        return min(1.0, j.mass * (1.0 / i.mass)) * _repulsion(self, pair)
+        return min(1.0, j.mass * (1.0 / i.mass)) * repulsion(self, pair)
 
 
 CATALOGUE = Catalogue(effects=(Entry("physics.pair_potential", PairPotential),))

@@ -1,15 +1,13 @@
 """Names of what ``plot``, ``export`` and ``report`` make in the folder of a run."""
 
 import re
+from functools import cache
 from pathlib import Path
 from shutil import rmtree
 
 from psph.fields import SAVED
+from psph.kinds import own
 from psph.physics.catalogue import BUILT_IN
-from psph.physics.solid.compression import OF_HEAT
-from psph.physics.solid.cracks import OF_CRACKS
-from psph.physics.solid.deformation import OF_SOLIDS, STRESS_ZZ
-from psph.physics.solid.plastic import OF_PLASTIC
 
 OVERVIEW, PROBES, LOG = "overview.png", "probes.png", "log.png"
 GAUGE = "gauge-{}.png"
@@ -25,11 +23,6 @@ DERIVED = ("vorticity",)
 """Fields that frames do not hold, and pictures show."""
 VARIANTS = ("surface", "slice")
 """Other ways to show a field than the usual one."""
-
-_FIELDS_OF_SOME = (*OF_SOLIDS, STRESS_ZZ, *OF_PLASTIC, *OF_HEAT, *OF_CRACKS, *BUILT_IN.fields.values())
-_WRITTEN = (field.name for field in _FIELDS_OF_SOME if field.saved and field not in SAVED)
-_FIELDS = "|".join([*(field.name for field in SAVED), *_WRITTEN, *DERIVED])
-_DRAWN = re.compile(rf"(?:{_FIELDS})(?:_(?:{'|'.join(VARIANTS)}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")
 
 _GAUGED = re.compile(r"gauge-[A-Za-z0-9_-]+\.png")
 
@@ -49,9 +42,18 @@ def remove_pictures(folder: Path) -> None:
     for path in folder.iterdir():
         if (
             path.name in (OVERVIEW, PROBES, LOG, PARAVIEW, REPORT)
-            or _DRAWN.fullmatch(path.name)
+            or _drawn().fullmatch(path.name)
             or _GAUGED.fullmatch(path.name)
         ):
             path.unlink()
         elif path.name in (TRIANGLES, *EXPORTS.values()) and path.is_dir():
             rmtree(path)
+
+
+@cache
+def _drawn() -> re.Pattern[str]:
+    """Names of pictures and films of all fields that a frame may hold."""
+    some = [*BUILT_IN.fields.values(), *(field for kind in own() for field in kind.may_save)]
+    names = [field.name for field in (*SAVED, *(field for field in some if field.saved))]
+    ways = "|".join(VARIANTS)
+    return re.compile(rf"(?:{'|'.join([*names, *DERIVED])})(?:_(?:{ways}))?(?:_\d{{5,}}\.png|\.gif|\.mp4)")

@@ -24,7 +24,7 @@ class Quantity(NamedTuple):
 
     ``name`` stands in the names of files.  ``signed``: its sign matters as much as its size: zero is in the
     middle of its colours.  ``names`` has those of the fluids where it counts them, ``whole`` the
-    word for what is moved as a whole, which shares a colour.  ``of_fluids``: where there are any, the limits
+    word for what is moved as a whole, which shares a colour.  ``of_flow``: where there are any, the limits
     of the colours are theirs, since stresses of solids beside them are of another size.
     """
 
@@ -37,7 +37,7 @@ class Quantity(NamedTuple):
     names: tuple[str, ...] = ()
     whole: str = ""
     samples: int = SAMPLES
-    of_fluids: bool = False
+    of_flow: bool = False
 
 
 def quantity(run: Run, case: dict, field: str) -> Quantity:
@@ -65,7 +65,7 @@ def quantity(run: Run, case: dict, field: str) -> Quantity:
         raise NotThere(f"{run.path}: field: {field} is not saved; choose one of {known}")
     fluid = field == PRESSURE.name
     title, unit = field.replace("_", " "), run.unit(field)
-    return Quantity(field, title, unit, (field,), _size_of(field), of_fluids=fluid)
+    return Quantity(field, title, unit, (field,), _size_of(field), of_flow=fluid)
 
 
 def usual(run: Run, case: dict) -> str:

@@ -116,7 +116,7 @@ class Show:
     def _counts(self, kind: np.ndarray) -> np.ndarray:
         """Which particles of a ``kind`` (n,) each the limits of the colours are taken from: (n,)."""
         fluid = kind == FLUID
-        return fluid if self.quantity.of_fluids and fluid.any() else kind != WALL
+        return fluid if self.quantity.of_flow and fluid.any() else kind != WALL
 
     def _chosen(self, times: Sequence[float] | None) -> list[int]:
         """The frames nearest to ``times`` s, or to four over the run."""

@@ -123,6 +123,10 @@ def _repulsion(potential, pair):
     return plus_less_last(near * near * pair.inverse_r, multiply(parts, parts))
 
 
+repulsion = _repulsion
+"""The same for files of users.  psph's own loops name the other, and so stay as they are compiled."""
+
+
 def neutral_potential(strength: float, sound_speed: float, dx: float, dimensions: int) -> NeutralPotential:
     """The potential whose virial vanishes on the row, square or cube lattice of spacing dx, m;
     ``strength`` f, ``sound_speed`` m/s."""

@@ -35,8 +35,8 @@ def size_faults(scene: Scene) -> Iterator[str]:
     many = math.prod(scene.layout.lattice.counts) > MANY_SITES
     moved = tuple(f"{part.key}." for part in scene.layout.parts if part.moves_whole)
     for one in scene.layout.meshes:
-        floats = _stands_in(one, moved)  # what is around it is no smaller
-        most = LARGER if many or floats else FAR_LARGER
+        moves = _stands_in(one, moved)  # what is around it is no smaller
+        most = LARGER if many or moves else FAR_LARGER
         times = max(one.surface.size) / rest if rest else 0.0
         if times > most:
             yield (

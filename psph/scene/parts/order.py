@@ -98,7 +98,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         add(UpdatedPart, name, f"solids.{name}", solid, Free(), solid=0)
     for number, ((name, solid), made) in enumerate(zip(referred_in(case).items(), solids_in(case))):
         more: dict[str, Any] = {"source": continued(solid)} if flowing else {}
-        more |= {"solid": FIRST_BODY + number, "elastic": number, "made": made, "loaded": bool(flowing)}
+        more |= {"solid": FIRST_BODY + number, "bonded": number, "made": made, "loaded": bool(flowing)}
         add(ElasticPart, name, f"solids.{name}", solid, Immersed() if flowing else Elastic(), **more)
     for name, key, clamp in clamps_in(case):
         whole = found[[*flowing, *referred].index(name)]
