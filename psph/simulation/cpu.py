@@ -12,7 +12,7 @@ from psph.composition.loads import Couple, Loads, Unloaded
 from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
-from psph.fields import companions, seen_at
+from psph.fields import companions, seen_at, view_of
 from psph.kinds import Rank
 from psph.output.ledger import Ledger
 from psph.particles.records import Records
@@ -328,7 +328,8 @@ class Engine:
         """The particles as the plan's carriers see them; a displacement also sees the largest speed."""
         view = self.store.view()
         if view is not self._viewed:
-            self._viewed, self._carried = view, view._replace(**self.plan.uncarried)
+            names = self.plan.carried
+            self._viewed, self._carried = view, view_of(names)(*(getattr(view, name) for name in names))
         return seen_at(self._carried, largest_speed)
 
     def _rows_that_evolve(self) -> np.ndarray:

@@ -186,12 +186,13 @@ class Plan:
         return WORK.name in self.arrays
 
     @cached_property
-    def uncarried(self) -> dict[str, None]:
-        """What neither the equation of state nor the carriers read of a particle."""
+    def carried(self) -> tuple[str, ...]:
+        """What the equation of state and the carriers read of a particle: scenes that differ in no more
+        than this share the loops of kick and drift."""
         asked = (call for call in self.called if _carries(call) or self.pulls.ask(call.effect))
         read = set(OF_STATE).union(*(call.reads.own for call in asked))
         read |= {"mass"} if self.books_work else set()
-        return dict.fromkeys(field.name for field in self.seen if field.name not in read)
+        return tuple(field.name for field in self.seen if field.name in read)
 
     def flops_per_pair(self, periods: tuple, effects: tuple | None = None) -> int:
         """Operations of a pair in the pass that gives the rates, of all or just some ``effects``; 0 where
