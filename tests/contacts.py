@@ -7,13 +7,9 @@ from drafts import draft
 from gauging import start
 
 BLOCKS = """
-[space]
-dimensions = 2
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-contact = {}
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 1.0
+physics.contact = {}
 [solids.left]
 shape.box = { lower = [0.0, 0.0], upper = [0.8, 1.0] }
 density = 1200.0
@@ -33,13 +29,9 @@ jitter = 0.1
 """Two blocks of two densities and laws that meet askew."""
 
 BARS = """
-[space]
-dimensions = 2
-spacing = 0.005
-[time]
-end = 1.0
-[physics]
-contact = {}
+space = { dimensions = 2, spacing = 0.005 }
+time.end = 1.0
+physics.contact = {}
 [solids.short]
 shape.box = { lower = [-0.101, 0.0], upper = [-0.001, 0.02] }
 velocity = [0.5, 0.0]
@@ -55,13 +47,9 @@ poisson = 0.0
 """A short bar hits one twice as long at rest (Saint-Venant 1867)."""
 
 HAMMER = """
-[space]
-dimensions = 2
-spacing = 0.005
-[time]
-end = 1.0
-[physics]
-contact = {}
+space = { dimensions = 2, spacing = 0.005 }
+time.end = 1.0
+physics.contact = {}
 [bodies.hammer]
 shape.box = { lower = [-0.051, 0.0], upper = [-0.001, 0.02] }
 density = 2000.0

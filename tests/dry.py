@@ -56,15 +56,11 @@ def turned(degrees, points, about=(0.0, 0.0)):
 
 
 SOLID = """
-[space]
-dimensions = 3
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-sound_speed = 100.0
-gravity = [0.0, 0.0, -9.81]
-contact = { friction = 0.7, restitution = 0.0 }
+space = { dimensions = 3, spacing = 0.1 }
+time.end = 1.0
+physics.sound_speed = 100.0
+physics.gravity = [0.0, 0.0, -9.81]
+physics.contact = { friction = 0.7, restitution = 0.0 }
 [fluids.drop]
 shape.box = { lower = [-3.0, 0.0, 3.0], upper = [-2.8, 0.2, 3.2] }
 [walls.floor]

@@ -11,25 +11,16 @@ import traceback
 import warnings
 
 import numpy as np
-from mpi4py import MPI
+from gauging import started
 
 from psph.case import load
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 STEPS = 3
 
 
 def walked(path: str, sets: list[str]) -> dict[str, str]:
     """A digest for each group of a case, by its name, after ``STEPS`` steps."""
-    scene = Scene(load(path, sets))
-    plan = make_plan(scene)
-    simulation = Simulation(
-        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
-    )
+    simulation, scene = started(load(path, sets))
     for _ in range(STEPS):
         simulation.step()
     store = simulation.store

@@ -35,11 +35,8 @@ def test_alone_a_solid_is_pushed_by_nothing(tmp_path):
     alone = draft(
         tmp_path,
         """
-[space]
-dimensions = 2
-spacing = 0.1
-[time]
-end = 1.0
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 1.0
 [solids.plate]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
 density = 1000.0

@@ -8,9 +8,7 @@ from psph.scene import Scene
 BLOCK = """
 scheme = "solid"
 time.end = 1.0
-[space]
-dimensions = 2
-spacing = 0.1
+space = { dimensions = 2, spacing = 0.1 }
 [solids.block]
 description = "updated"
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }

@@ -15,11 +15,8 @@ DX, DEPTH = 0.02, 0.3
 
 DAM = """
 title = "Water beside a wall with nothing on the other side"
-[space]
-dimensions = 2
-spacing = 0.02
-[time]
-end = 0.12
+space = { dimensions = 2, spacing = 0.02 }
+time.end = 0.12
 [output]
 frames = 0.06
 probes = 0.01

@@ -4,16 +4,11 @@ import math
 
 import pytest
 from drafts import draft
+from gauging import start
 from long import LONG
-from mpi4py import MPI
 
-from psph.output.ledger import Ledger
 from psph.physics.fluid import correction, pressure
 from psph.physics.fluid.parting import Holding
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 SLOT = """
 space = {{ dimensions = 2, spacing = {dx} }}
@@ -37,10 +32,7 @@ G, WIDE, LIP = 9.81, 0.16, 0.06
 
 def discharge(folder, dx, c, begin, end):
     """Q/(w √(2gh)) between two times; h is the mean head over the outer edge of the slot."""
-    scene = Scene(draft(folder, SLOT.format(dx=dx, c=c)))
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
-    simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    simulation = start(draft(folder, SLOT.format(dx=dx, c=c)))
     left = []
     for until in (begin, end):
         while simulation.time < until:

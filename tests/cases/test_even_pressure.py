@@ -1,14 +1,9 @@
 """A fluid under the same pressure as its walls stays at rest with corrected gradients."""
 
-from mpi4py import MPI
+from gauging import started
 
 from psph.case import load
-from psph.output.ledger import Ledger
 from psph.physics.fluid.correction import GradientCorrection
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 KEYS = (
     "perturbations=off",
@@ -25,10 +20,7 @@ STEPS = 60
 
 def fastest():
     """The largest speed in the box after some steps, over that of sound."""
-    scene = Scene(load("run/cases/hard/box.toml", KEYS))
-    plan = make_plan(scene)
-    particles = create_particles(scene, plan, MPI.COMM_SELF)
-    simulation = Simulation(scene, plan, particles, MPI.COMM_SELF, Ledger())
+    simulation, scene = started(load("run/cases/hard/box.toml", KEYS))
     for _ in range(STEPS):
         simulation.step()
     return simulation.speed / scene.sound_speed

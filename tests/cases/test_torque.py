@@ -9,24 +9,19 @@ import math
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from long import LONG
-from mpi4py import MPI
 from scipy.optimize import curve_fit, root
 from scipy.special import iv, ivp
 
 from psph.output.gauges import gauges_of
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
 from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 DROP = """
 time.end = 10.0
 space = { dimensions = 2, spacing = 0.0625 }
-[physics]
-sound_speed = 5.0
-central_force = { frequency = 1.0, center = [0.0, 0.0] }
+physics.sound_speed = 5.0
+physics.central_force = { frequency = 1.0, center = [0.0, 0.0] }
 [fluids.oil]
 shape.disc = { center = [0.0, 0.0], radius = 0.5 }
 viscosity = 0.05
@@ -106,9 +101,8 @@ force = { on = ["outer"], about = [0.0, 0.0, 0.0] }
 ELLIPSE = """
 time.end = 100.0
 space = { dimensions = 2, spacing = 0.1 }
-[physics]
-sound_speed = 15.0
-central_force = { frequency = 1.0, center = [0.0, 0.0] }
+physics.sound_speed = 15.0
+physics.central_force = { frequency = 1.0, center = [0.0, 0.0] }
 [fluids.oil]
 shape.disc = { center = [0.0, 0.0], radius = 1.0 }
 viscosity = 0.03
@@ -118,9 +112,7 @@ velocity_gradient = [[0.1, 0.0], [0.0, -0.1]]
 
 def started(folder, text, *keys):
     """A simulation of a text."""
-    scene = Scene(draft(folder, text, *keys))
-    plan = make_plan(scene)
-    return Simulation(scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger())
+    return start(draft(folder, text, *keys))
 
 
 def until(simulation, end):

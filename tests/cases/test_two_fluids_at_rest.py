@@ -2,13 +2,7 @@
 
 import pytest
 from drafts import draft
-from mpi4py import MPI
-
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
+from gauging import start
 
 TWO = """
 space = { dimensions = 2, spacing = 0.05, periodic = ["x", "y"], lower = [0.0, 0.0], upper = [1.0, 1.0] }
@@ -29,10 +23,7 @@ STEPS = 30
 
 def fastest(tmp_path, *keys):
     """The largest speed and |ρ/ρ₀ − 1| after some steps."""
-    scene = Scene(draft(tmp_path, TWO, *keys))
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
-    simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    simulation = start(draft(tmp_path, TWO, *keys))
     for _ in range(STEPS):
         simulation.step()
     return simulation.speed, simulation.strain

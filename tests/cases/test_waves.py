@@ -103,10 +103,9 @@ def test_a_paddle_that_absorbs_keeps_waves_before_a_wall_from_growing(tmp_path):
 FLUME = """
 space = { dimensions = 2, spacing = 0.015 }
 time.end = 9.6
-[physics]
-gravity = [0.0, -9.81]
-position_shift = "off"
-damping_zone = { begin = 3.0, end = 5.4 }
+physics.gravity = [0.0, -9.81]
+physics.position_shift = "off"
+physics.damping_zone = { begin = 3.0, end = 5.4 }
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [5.4, 0.3] }
 pressure = "hydrostatic"
@@ -169,9 +168,8 @@ def test_to_second_order_a_piston_makes_no_free_wave_of_half_the_period(tmp_path
 SEA = """
 space = { dimensions = 2, spacing = 0.015 }
 time.end = 24.0
-[physics]
-gravity = [0.0, -9.81]
-damping_zone = { begin = 2.4, end = 4.5 }
+physics.gravity = [0.0, -9.81]
+physics.damping_zone = { begin = 2.4, end = 4.5 }
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [4.5, 0.3] }
 pressure = "hydrostatic"

@@ -3,16 +3,11 @@
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from long import long_but_for
-from mpi4py import MPI
 
-from psph.output.ledger import Ledger
 from psph.physics.damping import diffusion
 from psph.physics.fluid.weight import Steady
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 TANK = """
 space = { dimensions = 2, spacing = 0.05 }
@@ -35,10 +30,7 @@ FORMS = {
 
 def after(folder, text, gravity, keys, steps=40):
     """Densities after some steps, kg/m³."""
-    scene = Scene(draft(folder, text, f"physics.gravity=[0.0, {gravity}]", *keys))
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
-    simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    simulation = start(draft(folder, text, f"physics.gravity=[0.0, {gravity}]", *keys))
     for _ in range(steps):
         simulation.step()
     order = np.argsort(simulation.store.shown("id"))

@@ -16,13 +16,9 @@ from long import LONG
 CLASH = "physics.contact.friction=0.5", "physics.contact.damping=0.2", "solids.left.damping=10.0"
 
 SAND = """
-[space]
-dimensions = 2
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-gravity = [0.0, -9.8]
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 1.0
+physics.gravity = [0.0, -9.8]
 [soils.sand]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
 density = 1800.0
@@ -43,8 +39,8 @@ def drawn_out(text: str, depth: float) -> str:
         r"(lower|upper) = \[([^\]]*)\]", lambda m: f"{m[1]} = [{m[2]}, {depth * (m[1] == 'upper')}]", text
     )
     text = re.sub(r"(velocity|gravity) = \[([^\]]*)\]", r"\1 = [\2, 0.0]", text)
-    ends = f"periodic = ['z']\nlower = [-0.5, -0.5, 0.0]\nupper = [2.5, 1.5, {depth}]"
-    return text.replace("dimensions = 2", f"dimensions = 3\n{ends}")
+    ends = f"periodic = ['z'], lower = [-0.5, -0.5, 0.0], upper = [2.5, 1.5, {depth}]"
+    return text.replace("dimensions = 2", f"dimensions = 3, {ends}")
 
 
 BESIDE = re.compile(r'call [^@\n]*@"?_ZN((?!\d+numba)[^"(]*)')

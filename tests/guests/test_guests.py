@@ -8,18 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gauging import start
 from jobs import mpirun
 from long import long_but_for
 
 from psph.case import CaseError, load
 from psph.case.extensions import versions
-from psph.output.ledger import Ledger
-from psph.parallel.reductions import alone
 from psph.runs.resume import case_digest
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 HERE = Path(__file__).parent
 
@@ -66,9 +61,7 @@ def case(tmp_path):
 
 
 def begin(path):
-    scene = Scene(load(path))
-    plan = make_plan(scene)
-    return Simulation(scene, plan, create_particles(scene, plan, alone()), alone(), Ledger())
+    return start(load(path))
 
 
 STEPS = 24

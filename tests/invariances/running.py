@@ -5,12 +5,8 @@ from typing import NamedTuple
 import numpy as np
 import tomli_w
 from drafts import draft
-from mpi4py import MPI
+from gauging import start
 
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 
 
@@ -28,10 +24,7 @@ class State(NamedTuple):
 
 def begun(tables, folder) -> Simulation:
     """The simulation of a scene, at its start."""
-    scene = Scene(draft(folder, tomli_w.dumps(tables)))
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
-    return Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    return start(draft(folder, tomli_w.dumps(tables)))
 
 
 def by_id(simulation, name) -> np.ndarray:

@@ -14,12 +14,8 @@ ALONE = SimpleNamespace(rank=0, size=1, allgather=lambda value: [value], bcast=l
 TANK = """
 scheme = "sph"
 title = "Two fluids in a tank"
-[space]
-dimensions = 3
-spacing = 0.1
-smoothing = 1.4
-[time]
-end = 1.0
+space = { dimensions = 3, spacing = 0.1, smoothing = 1.4 }
+time.end = 1.0
 [physics.gravity]
 acceleration = [0.0, 0.0, -9.8]
 [fluids.water]

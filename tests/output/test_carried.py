@@ -111,16 +111,9 @@ def test_a_gauge_within_what_carries_it_is_warned_of(tmp_path):
 
 ROUND = """
 scheme = "sph"
-[space]
-dimensions = 2
-spacing = 0.1
-periodic = ["x"]
-lower = [0.0, 0.0]
-upper = [2.0, 2.0]
-[time]
-end = 1.0
-[physics]
-sound_speed = 30.0
+space = { dimensions = 2, spacing = 0.1, periodic = ["x"], lower = [0.0, 0.0], upper = [2.0, 2.0] }
+time.end = 1.0
+physics.sound_speed = 30.0
 [fluids.part]
 shape.box = { lower = [0.0, 0.4], upper = [1.5, 1.2] }
 [gauges.long.level]

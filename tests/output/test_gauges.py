@@ -278,16 +278,9 @@ def test_level_beside_a_plane_of_symmetry_is_that_of_the_whole(tmp_path):
 
 
 STREAM = """
-[space]
-dimensions = 2
-spacing = 0.1
-periodic = ["x"]
-lower = [0.0, 0.0]
-upper = [3.0, 1.0]
-[time]
-end = 1.0
-[physics]
-sound_speed = 30.0
+space = { dimensions = 2, spacing = 0.1, periodic = ["x"], lower = [0.0, 0.0], upper = [3.0, 1.0] }
+time.end = 1.0
+physics.sound_speed = 30.0
 [fluids.upper]
 shape.box = { lower = [0.0, 0.5], upper = [3.0, 1.0] }
 velocity = [2.0, 0.0]

@@ -6,11 +6,8 @@ from gauging import readings, started
 
 BAR = """
 time.end = 1.0
-[physics]
-gravity = [0.0, -10.0]
-[space]
-dimensions = 2
-spacing = 0.05
+space = { dimensions = 2, spacing = 0.05 }
+physics.gravity = [0.0, -10.0]
 [solids.bar]
 shape.box = { lower = [-0.2, 0.0], upper = [0.6, 0.2] }
 density = 1200.0
@@ -36,9 +33,7 @@ about = [0.2, 0.3]
 
 BLOCK = """
 time.end = 1.0
-[space]
-dimensions = 2
-spacing = 0.05
+space = { dimensions = 2, spacing = 0.05 }
 [solids.block]
 shape.box = { lower = [0.0, 0.0], upper = [0.4, 0.2] }
 density = 1000.0

@@ -3,15 +3,10 @@
 import numpy as np
 import pytest
 from drafts import TANK, draft, refusal
-from mpi4py import MPI
+from gauging import started
 
-from psph.output.ledger import Ledger
 from psph.output.probes import FieldProbe, sensor
 from psph.runs.record import probes_of
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 ON_THE_WALL = """
 [probes.wide]
@@ -37,11 +32,7 @@ def test_a_sensor_has_points_a_spacing_apart_at_most_and_even_around_its_middle(
 
 
 def test_a_sensor_tells_the_mean_over_its_area(tmp_path):
-    scene = Scene(draft(tmp_path, TANK + ON_THE_WALL))
-    plan = make_plan(scene)
-    simulation = Simulation(
-        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
-    )
+    simulation, scene = started(draft(tmp_path, TANK + ON_THE_WALL))
     simulation.settle_pressure()
     probes = probes_of(scene.case)
     wide, over, dry = (probe.sample(simulation.domain, scene.kernel) for probe in probes)

@@ -18,12 +18,9 @@ time.end = 1.0
 neighbours.skin = 0.1
 parallel.axis = "x"
 output = { frames = 0.02, probes = 0.01, log = 0.01 }
-[space]
-dimensions = 2
-spacing = 0.1
-[physics]
-gravity = [0.3, -9.8]
-contact = { damping = 0.1, friction = 0.3 }
+space = { dimensions = 2, spacing = 0.1 }
+physics.gravity = [0.3, -9.8]
+physics.contact = { damping = 0.1, friction = 0.3 }
 [solids.mattress]
 shape.box = { lower = [0.0, 0.0], upper = [4.0, 0.5] }
 clamped.box = { lower = [0.0, 0.0], upper = [4.0, 0.1] }
@@ -53,13 +50,10 @@ time.end = 1.0
 neighbours.skin = 0.1
 parallel.axis = "x"
 output = { frames = 0.02, probes = 0.01, log = 0.01 }
-[space]
-dimensions = 2
-spacing = 0.1
-[physics]
-sound_speed = 25.0
-gravity = [0.3, -9.8]
-contact = { damping = 0.1, friction = 0.3 }
+space = { dimensions = 2, spacing = 0.1 }
+physics.sound_speed = 25.0
+physics.gravity = [0.3, -9.8]
+physics.contact = { damping = 0.1, friction = 0.3 }
 [fluids.water]
 shape.difference.from.box = { lower = [0.0, 0.0], upper = [4.0, 1.6] }
 shape.difference.minus = [

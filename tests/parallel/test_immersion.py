@@ -16,9 +16,7 @@ time.end = 1.0
 physics.gravity = [0.5, -9.8]
 parallel.axis = "x"
 output = { frames = 0.02, probes = 0.01, log = 0.01 }
-[space]
-dimensions = 2
-spacing = 0.05
+space = { dimensions = 2, spacing = 0.05 }
 [fluids.water]
 shape.difference.from.box = { lower = [0.0, 0.0], upper = [2.0, 0.4] }
 shape.difference.minus = [{ box = { lower = [0.9, 0.0], upper = [1.1, 0.3] } }]

@@ -22,9 +22,7 @@ physics.gravity = [0.3, -9.8]
 parallel.axis = "x"
 physics.contact = { damping = 0.1, friction = 0.3 }
 output = { frames = 0.02, probes = 0.01, log = 0.01 }
-[space]
-dimensions = 2
-spacing = 0.1
+space = { dimensions = 2, spacing = 0.1 }
 [solids.beam]
 shape.box = { lower = [-0.8, 0.0], upper = [3.0, 0.4] }
 clamped.box = { lower = [-0.8, 0.0], upper = [-0.4, 0.4] }
@@ -71,9 +69,7 @@ CHIPS = """
 time.end = 1.0
 parallel.axis = "x"
 output = { frames = 0.02, probes = 0.01, log = 0.01 }
-[space]
-dimensions = 3
-spacing = 0.1
+space = { dimensions = 3, spacing = 0.1 }
 [solids.block]
 shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.6, 0.4, 0.5] }
 clamped.box = { lower = [0.0, 0.0, 0.0], upper = [0.3, 0.4, 0.5] }

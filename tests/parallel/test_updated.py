@@ -17,9 +17,7 @@ time.end = 1.0
 physics.gravity = [0.3, -9.8]
 parallel.axis = "x"
 output = { frames = 0.02, probes = 0.01, log = 0.01 }
-[space]
-dimensions = 2
-spacing = 0.1
+space = { dimensions = 2, spacing = 0.1 }
 [solids.beam]
 description = "updated"
 shape.box = { lower = [-0.8, 0.0], upper = [3.0, 0.4] }

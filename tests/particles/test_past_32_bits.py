@@ -5,18 +5,14 @@ from functools import partial
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import start
 from mpi4py import MPI
 from stores import store_of
 
-from psph.output.ledger import Ledger
 from psph.parallel.halo import _slice_type
 from psph.particles import neighbours
 from psph.particles.cells import make_grid, number_cells, planes_of, sort_by_cell
 from psph.particles.store import MOST, TooManyParticles, check_room, permute
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 COLUMNS = 3 * 2**30
 """So far the particles of a small rank are shifted: past 2^31, short of 2^32."""
@@ -42,22 +38,14 @@ def shifted(folder, array, by):
 
 def small(folder):
     """A simulation of 50 particles, open on all sides."""
-    scene = Scene(draft(folder, TEXT))
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
-    return Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    return start(draft(folder, TEXT))
 
 
 TEXT = """
-[space]
-dimensions = 2
-spacing = 0.1
-smoothing = 1.3
-[time]
-end = 2.0
-[physics]
-sound_speed = 10.0
-artificial_viscosity = 0.1
+space = { dimensions = 2, spacing = 0.1, smoothing = 1.3 }
+time.end = 2.0
+physics.sound_speed = 10.0
+physics.artificial_viscosity = 0.1
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
 jitter = 0.2

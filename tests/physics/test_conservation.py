@@ -153,14 +153,8 @@ for line in sys.stdin:
 
 BOX = """
 time.end = 1.0
-[space]
-dimensions = 2
-spacing = 0.1
-periodic = ["x", "y"]
-lower = [0.0, 0.0]
-upper = [1.2, 0.8]
-[physics]
-sound_speed = 10.0
+space = { dimensions = 2, spacing = 0.1, periodic = ["x", "y"], lower = [0.0, 0.0], upper = [1.2, 0.8] }
+physics.sound_speed = 10.0
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [0.6, 0.8] }
 jitter = 0.2

@@ -13,12 +13,9 @@ title = "A box"
 time.end = 0.3
 output = { frames = 0.1, probes = 0.1, log = 0.05 }
 parallel.axis = "x"
-[space]
-dimensions = 2
-spacing = 0.1
-[physics]
-sound_speed = 10.0
-artificial_viscosity = 0.1
+space = { dimensions = 2, spacing = 0.1 }
+physics.sound_speed = 10.0
+physics.artificial_viscosity = 0.1
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.2, 0.8] }
 [walls.frame]

@@ -256,14 +256,10 @@ def test_the_term_that_pushed_hardest_is_the_one_that_was_made_strong(tmp_path):
 
 LEAKING = """
 scheme = "sph"
-[space]
-dimensions = 2
-spacing = 0.05
-[time]
-end = 0.6
-[physics]
-gravity = [0.0, -9.8]
-artificial_viscosity = 0.1
+space = { dimensions = 2, spacing = 0.05 }
+time.end = 0.6
+physics.gravity = [0.0, -9.8]
+physics.artificial_viscosity = 0.1
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [0.3, 0.3] }
 [walls.floor]

@@ -16,12 +16,9 @@ SIDE = 1000
 CASE = """
 scheme = "sph"
 time = { end = 1e-5, step = 1e-5 }
-[space]
-dimensions = 2
-spacing = SPACING
-[physics]
-sound_speed = 10.0
-artificial_viscosity = 0.1
+space = { dimensions = 2, spacing = SPACING }
+physics.sound_speed = 10.0
+physics.artificial_viscosity = 0.1
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
 pressure = 1000.0

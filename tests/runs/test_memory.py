@@ -25,14 +25,9 @@ print(json.dumps({
 
 CUBE = """
 scheme = "sph"
-[space]
-dimensions = 3
-spacing = 0.0125
-smoothing = 1.2
-[time]
-end = 1.0
-[physics]
-sound_speed = 10.0
+space = { dimensions = 3, spacing = 0.0125, smoothing = 1.2 }
+time.end = 1.0
+physics.sound_speed = 10.0
 [fluids.water]
 shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.0, 1.0, 1.0] }
 jitter = 0.2

@@ -15,9 +15,8 @@ time.end = 2.4
 checkpoint = { every = 2000, minutes = 60.0 }
 output = { frames = 0.4, log = 0.5, probes = 0.02 }
 space = { dimensions = 2, spacing = 0.02 }
-[physics]
-gravity = [0.0, -9.81]
-damping_zone = { begin = 2.2, end = 3.2 }
+physics.gravity = [0.0, -9.81]
+physics.damping_zone = { begin = 2.2, end = 3.2 }
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [3.2, 0.4] }
 pressure = "hydrostatic"

@@ -4,27 +4,19 @@ import h5py
 import numpy as np
 import pytest
 from drafts import draft
+from gauging import started
 from mpi4py import MPI
 from simulation.test_precision import SPACING, box
 
-from psph.output.ledger import Ledger
 from psph.runs.record import Record, Schedule
-from psph.runs.setup import create_particles
 from psph.runs.start import run
 from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 FALLING = """
 scheme = "sph"
 time.end = 0.3
 physics = { sound_speed = 20.0, gravity = [5.0, 0.0] }
-[space]
-dimensions = 2
-spacing = 0.1
-periodic = ["x", "y"]
-lower = [0.0, 0.0]
-upper = [0.8, 0.8]
+space = { dimensions = 2, spacing = 0.1, periodic = ["x", "y"], lower = [0.0, 0.0], upper = [0.8, 0.8] }
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [0.8, 0.8] }
 velocity = [3.0, 0.0]
@@ -64,10 +56,8 @@ def test_no_height_across_a_period(tmp_path):
 def test_a_frame_holds_positions_inside_the_periods(tmp_path):
     """All move as one: lists last, and particles leave the domain between two of them."""
     case = box(2, "double", periodic=True, sides=20)
-    scene = Scene(case)
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
-    simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    simulation, scene = started(case)
+    store = simulation.store
     record = Record(scene, simulation, tmp_path)
     length = 20 * SPACING
     while max(x[store.inner].max() for x in store["position"]) < length:

@@ -13,13 +13,9 @@ from psph.simulation.plan import make_plan
 
 LINE = """
 scheme = "sph"
-[space]
-dimensions = 1
-spacing = 0.1
-[time]
-end = 1e-3
-[physics]
-sound_speed = 10.0
+space = { dimensions = 1, spacing = 0.1 }
+time.end = 1e-3
+physics.sound_speed = 10.0
 [fluids.water]
 shape.box = { lower = [0.0], upper = [4.0] }
 """

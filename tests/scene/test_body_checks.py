@@ -79,13 +79,9 @@ def test_a_thin_body_is_told_both_cures(tmp_path):
 )
 def test_check_tells_of_bodies_that_the_lattice_makes_larger_or_smaller(tmp_path, shape, says):
     text = """
-[space]
-dimensions = 2
-spacing = 0.05
-[time]
-end = 1.0
-[physics]
-sound_speed = 20.0
+space = { dimensions = 2, spacing = 0.05 }
+time.end = 1.0
+physics.sound_speed = 20.0
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.4] }
 """

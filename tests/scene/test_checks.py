@@ -369,16 +369,9 @@ def test_a_large_jitter_is_warned_of(tmp_path):
 
 CLOSED = """
 scheme = "sph"
-[space]
-dimensions = 2
-spacing = 0.1
-periodic = ["x", "y"]
-lower = [0.0, 0.0]
-upper = [2.0, 2.0]
-[time]
-end = 1.0
-[physics]
-sound_speed = 10.0
+space = { dimensions = 2, spacing = 0.1, periodic = ["x", "y"], lower = [0.0, 0.0], upper = [2.0, 2.0] }
+time.end = 1.0
+physics.sound_speed = 10.0
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [2.0, 2.0] }
 """

@@ -7,14 +7,10 @@ from drafts import draft
 from psph.scene import Scene, check
 
 LAYERS = """
-[space]
-dimensions = 2
-spacing = 0.02
-[time]
-end = 0.01
-[physics]
-gravity = [0.0, -9.8]
-sound_speed = 50.0
+space = { dimensions = 2, spacing = 0.02 }
+time.end = 0.01
+physics.gravity = [0.0, -9.8]
+physics.sound_speed = 50.0
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [0.5, 0.3] }
 pressure = "hydrostatic"

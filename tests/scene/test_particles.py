@@ -10,13 +10,9 @@ from psph.scene import lattice as lattices
 
 BLOCK = """
 scheme = "sph"
-[space]
-dimensions = 3
-spacing = 0.1
-[time]
-end = 1.0
-[physics]
-gravity = [0.0, -9.8, 0.0]
+space = { dimensions = 3, spacing = 0.1 }
+time.end = 1.0
+physics.gravity = [0.0, -9.8, 0.0]
 [fluids.ball]
 shape.ball = { center = [0.0, 0.0, 0.0], radius = 0.5 }
 jitter = 0.2
@@ -190,13 +186,9 @@ def test_two_kicks_to_one_particle_add_up(tmp_path):
 def test_lines_of_particles_in_one_dimension(tmp_path):
     text = """
 scheme = "sph"
-[space]
-dimensions = 1
-spacing = 0.5
-[time]
-end = 1.0
-[physics]
-sound_speed = 10.0
+space = { dimensions = 1, spacing = 0.5 }
+time.end = 1.0
+physics.sound_speed = 10.0
 [fluids.gas]
 shape.box = { lower = [0.0], upper = [2.0] }
 density = 2.0

@@ -9,13 +9,9 @@ from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 
 BEAM = """
-[space]
-dimensions = 2
-spacing = 0.01
-[time]
-end = 0.1
-[physics]
-gravity = [0.0, -2.0]
+space = { dimensions = 2, spacing = 0.01 }
+time.end = 0.1
+physics.gravity = [0.0, -2.0]
 [solids.beam]
 shape.box = { lower = [-0.1, 0.0], upper = [0.4, 0.05] }
 clamped.box = { lower = [-0.1, 0.0], upper = [0.0, 0.05] }

@@ -13,9 +13,7 @@ from psph.theory.solutions.vortices import TaylorGreen
 LAYERS = """
 time.end = 0.1
 physics.gravity = [0.0, -9.81]
-[space]
-dimensions = 2
-spacing = 0.1
+space = { dimensions = 2, spacing = 0.1 }
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
 pressure = "hydrostatic"

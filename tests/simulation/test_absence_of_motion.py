@@ -7,16 +7,11 @@ from collections import Counter
 import numba
 import pytest
 from drafts import TANK, draft
-from mpi4py import MPI
+from gauging import start
 
 from psph.matter.body import push_bodies
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
-from psph.scene import Scene
 from psph.simulation import integrator
 from psph.simulation.integrator import kick, kick_drift_predict
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 LOG = "bodies.log={shape={box={lower=[0.4,0.9],upper=[0.7,1.1]}},mass=20.0}"
 PADDLE = "walls.paddle={shape={box={lower=[0.4,0.9],upper=[0.7,1.1]}},motion={translation=[0.1,0.0]}}"
@@ -41,10 +36,7 @@ def begun(tmp_path):
     """A function: overrides → the simulation of a tank with them."""
 
     def make(*overrides):
-        scene = Scene(draft(tmp_path, TANK, *overrides))
-        plan = make_plan(scene)
-        store = create_particles(scene, plan, MPI.COMM_SELF)
-        return Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+        return start(draft(tmp_path, TANK, *overrides))
 
     return make
 

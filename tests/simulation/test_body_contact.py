@@ -144,13 +144,9 @@ def test_without_bodies_nothing_is_stored_summed_or_asked_of_the_step_for_them(t
 
 
 TUMBLING = """
-[space]
-dimensions = 3
-spacing = 0.01
-[time]
-end = 1.0
-[physics]
-contact = {}
+space = { dimensions = 3, spacing = 0.01 }
+time.end = 1.0
+physics.contact = {}
 [bodies.brick]
 shape.box = { lower = [0.02, 0.03, 0.061], upper = [0.07, 0.07, 0.101] }
 density = 700.0

@@ -17,9 +17,7 @@ from psph.simulation.step import Simulation
 
 BAR = """
 time.end = 10.0
-[space]
-dimensions = 2
-spacing = 0.01
+space = { dimensions = 2, spacing = 0.01 }
 [solids.bar]
 shape.box = { lower = [-0.09, 0.0], upper = [0.6, 0.06] }
 density = 1000.0

@@ -6,15 +6,10 @@ import time
 import numba
 import pytest
 from drafts import TANK, draft
-from mpi4py import MPI
+from gauging import start
 
-from psph.output.ledger import Ledger
 from psph.particles import records
-from psph.runs.setup import create_particles
-from psph.scene import Scene
 from psph.simulation import cpu as engine
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 COLUMNS = 100
 
@@ -22,10 +17,8 @@ COLUMNS = 100
 @pytest.fixture(params=("double", "mixed"))
 def calls(request, tmp_path, monkeypatch):
     """The simulation of a tank after some steps, and the calls of its loops in the next."""
-    scene = Scene(draft(tmp_path, TANK, f"precision={request.param}"))
-    plan = make_plan(scene)
-    store = create_particles(scene, plan, MPI.COMM_SELF)
-    simulation = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+    simulation = start(draft(tmp_path, TANK, f"precision={request.param}"))
+    store = simulation.store
     for _ in range(3):
         simulation.step()
     found = {}
@@ -74,10 +67,8 @@ def test_a_body_does_not_slow_down_the_loops_over_columns(tmp_path):
     """A call inside them that hands all arrays on would take a hundred times as long as all the rest."""
 
     def seconds(*overrides):
-        scene = Scene(draft(tmp_path, TANK, *overrides))
-        plan = make_plan(scene)
-        store = create_particles(scene, plan, MPI.COMM_SELF)
-        one = Simulation(scene, plan, store, MPI.COMM_SELF, Ledger())
+        one = start(draft(tmp_path, TANK, *overrides))
+        store = one.store
         one.step()
         parts = []
         for _ in range(20):

@@ -2,22 +2,19 @@
 
 import math
 
+import gauging
 import numpy as np
 import pytest
 from drafts import draft, refusal
-from mpi4py import MPI
 
 from psph.case import CaseError
 from psph.fields import FLUID
 from psph.output.gauges import gauges_of
-from psph.output.ledger import Ledger
 from psph.physics.motion import COUPLE
 from psph.physics.rigid.pose import rotation
-from psph.runs.setup import create_particles
 from psph.scene import Scene, check
 from psph.scene.body_parts import bodies_of
 from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 POOL = """
 [space]
@@ -75,12 +72,13 @@ continues = "light"
 
 def started(case):
     """A simulation of a case, its bodies and its scene."""
-    scene = Scene(case)
-    plan = make_plan(scene)
-    simulation = Simulation(
-        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
-    )
+    simulation, scene = gauging.started(case)
     return simulation, simulation.engine.of("bodies").bodies, scene
+
+
+def in_pool(folder, body, dx=0.05):
+    """The same of the text of a body in the pool."""
+    return started(draft(folder, POOL.format(dx=dx) + body))
 
 
 def momentum(simulation, bodies) -> np.ndarray:
@@ -116,17 +114,16 @@ def test_particles_stay_where_their_body_has_them(tmp_path):
 
 
 def test_a_body_far_from_all_falls_and_spins_exactly(tmp_path):
-    text = (
-        POOL.format(dx=0.05)
-        + """
+    simulation, bodies, _ = in_pool(
+        tmp_path,
+        """
 [bodies.brick]
 shape.box = { lower = [0.2, 2.0], upper = [0.4, 2.3] }
 density = 400.0
 velocity = [0.3, 1.0]
 spin = -3.0
-"""
+""",
     )
-    simulation, bodies, _ = started(draft(tmp_path, text))
     while simulation.time < 0.3:
         simulation.step(0.3)
     assert bodies.place[0, :2] == pytest.approx([0.3 + 0.09, 2.15 + 0.3 - 0.5 * 9.81 * 0.09], rel=1e-12)
@@ -201,9 +198,9 @@ of = "block"
 
 
 def test_bodies_rest_on_each_other_and_on_the_floor(tmp_path):
-    text = (
-        POOL.format(dx=0.05)
-        + """
+    simulation, bodies, scene = in_pool(
+        tmp_path,
+        """
 [walls.table]
 shape.box = { lower = [1.15, -0.15], upper = [2.5, 0.0] }
 [bodies.low]
@@ -216,9 +213,8 @@ density = 800.0
 on = ["table"]
 [gauges.low.force]
 on = ["low"]
-"""
+""",
     )
-    simulation, bodies, scene = started(draft(tmp_path, text))
     while simulation.time < 1.2:
         simulation.step()
     low, high = ([one.name for one in bodies.bodies].index(name) for name in ("low", "high"))
@@ -254,17 +250,16 @@ density = 2000.0
 
 
 def test_a_gate_on_a_hinge_turns_about_its_hinge(tmp_path):
-    text = (
-        POOL.format(dx=0.05)
-        + """
+    simulation, bodies, _ = in_pool(
+        tmp_path,
+        """
 [bodies.gate]
 shape.box = { lower = [0.6, 0.15], upper = [0.7, 0.75] }
 density = 1500.0
 pivot = [0.65, 0.7]
 spin = 1.5
-"""
+""",
     )
-    simulation, bodies, _ = started(draft(tmp_path, text))
     for _ in range(150):
         simulation.step()
     assert np.array_equal(bodies.place[0], [0.65, 0.7, 0.0]) and abs(bodies.angle[0]) > 0.02
@@ -450,15 +445,14 @@ def test_a_byte_counts_all_parts(tmp_path):
 
 
 def test_a_turn_is_told_as_axis_times_angle(tmp_path):
-    text = (
-        POOL.format(dx=0.05)
-        + """
+    _, bodies, _ = in_pool(
+        tmp_path,
+        """
 [bodies.brick]
 shape.box = { lower = [0.2, 2.0], upper = [0.4, 2.3] }
 mass = 1.0
-"""
+""",
     )
-    _, bodies, _ = started(draft(tmp_path, text))
     for axis, angle in (((0.6, 0.0, 0.8), 2.5), ((0.0, -1.0, 0.0), math.pi), ((0.0, 0.0, 1.0), 1e-9)):
         bodies.hinged = np.array([], int)
         bodies.turn[0] = np.reshape(rotation(axis, angle), (3, 3))

@@ -102,12 +102,7 @@ LAYERS = """
 time.end = 1.0
 physics.gravity = [0.0, -9.81]
 physics.sound_speed = 40.0
-[space]
-dimensions = 2
-spacing = 0.025
-periodic = ["x"]
-lower = [0.0, -0.2]
-upper = [1.0, 1.0]
+space = { dimensions = 2, spacing = 0.025, periodic = ["x"], lower = [0.0, -0.2], upper = [1.0, 1.0] }
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.3] }
 density = 1000.0
@@ -151,9 +146,7 @@ PLATE = """
 time.end = 1.0
 physics.gravity = [0.0, -9.81]
 physics.sound_speed = 64.0
-[space]
-dimensions = 2
-spacing = 0.0125
+space = { dimensions = 2, spacing = 0.0125 }
 [fluids.water]
 shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.1] }
 density = 1000.0
@@ -205,9 +198,7 @@ def test_what_lets_waves_of_a_solid_grow_is_said(tmp_path):
 SOFT = """
 time.end = 1.0
 physics.gravity = [0.0, -9.81]
-[space]
-dimensions = 2
-spacing = 0.05
+space = { dimensions = 2, spacing = 0.05 }
 [fluids.water]
 shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.5, 0.8] }
 shape.difference.minus = [{ box = { lower = [0.6, 0.3], upper = [0.9, 0.6] } }]
@@ -226,13 +217,9 @@ poisson = 0.3
 
 
 DISC = """
-[space]
-dimensions = 2
-spacing = 0.025
-[time]
-end = 1.5
-[physics]
-sound_speed = 6.0
+space = { dimensions = 2, spacing = 0.025 }
+time.end = 1.5
+physics.sound_speed = 6.0
 [fluids.oil]
 viscosity = 0.02
 velocity_gradient = [[0.0, -1.0], [1.0, 0.0]]

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from drafts import draft, refusal
-from mpi4py import MPI
+from gauging import start
 from numba import njit
 
 from psph.case import CaseError
@@ -25,14 +25,10 @@ from psph.fields import (
     VelocityGradient,
     view_of,
 )
-from psph.output.ledger import Ledger
 from psph.output.probes import FieldProbe
-from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.scene.checks import faults
 from psph.scene.walls import touches_air
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 FIELDS = (
     *OF_EVERY_SCENE,
@@ -76,11 +72,7 @@ shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.0, 0.6] } }]
 
 def simulated(case, steps):
     """The simulation of a case after so many steps."""
-    scene = Scene(case)
-    plan = make_plan(scene)
-    simulation = Simulation(
-        scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger()
-    )
+    simulation = start(case)
     for _ in range(steps):
         simulation.step()
     return simulation

@@ -3,16 +3,11 @@
 import numpy as np
 import pytest
 from drafts import draft
-from mpi4py import MPI
+from gauging import start
 
 from psph.fields import FLUID
 from psph.matter.wall import measure_levels
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
 from psph.simulation.stages import stages_of
-from psph.simulation.step import Simulation
 
 FLUME = """
 space = { dimensions = 2, spacing = 0.02 }
@@ -36,9 +31,7 @@ motion = { piston = { height = 0.02, period = 1.5, depth = 0.2 ABSORB }, start =
 
 def begun(folder, absorb):
     """A simulation of the flume."""
-    scene = Scene(draft(folder, FLUME.replace("ABSORB", absorb)))
-    plan = make_plan(scene)
-    return Simulation(scene, plan, create_particles(scene, plan, MPI.COMM_SELF), MPI.COMM_SELF, Ledger())
+    return start(draft(folder, FLUME.replace("ABSORB", absorb)))
 
 
 def energy(simulation):

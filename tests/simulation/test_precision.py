@@ -7,16 +7,12 @@ import sys
 import numpy as np
 import pytest
 from drafts import WATER, draft
+from gauging import start
 from jobs import clean_environment
 from long import long_but_for
-from mpi4py import MPI
 
 from psph.case import Case
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
 from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 SPACING, SIDES = 0.01, {1: 40, 2: 24, 3: 12}
 WORST = 5e-6
@@ -57,10 +53,7 @@ def box(dim, precision, periodic=False, offset=0.0, sides=None, **physics):
 
 
 def simulation(case):
-    scene = Scene(case)
-    plan = make_plan(scene)
-    particles = create_particles(scene, plan, MPI.COMM_SELF)
-    return Simulation(scene, plan, particles, MPI.COMM_SELF, Ledger())
+    return start(case)
 
 
 def run(case, steps=3):

@@ -5,16 +5,11 @@ from typing import NamedTuple
 
 import numba
 import pytest
-from mpi4py import MPI
+from gauging import start
 from numba.core.dispatcher import Dispatcher
 
 from psph.case import load
 from psph.engine import settled
-from psph.output.ledger import Ledger
-from psph.runs.setup import create_particles
-from psph.scene import Scene
-from psph.simulation.plan import make_plan
-from psph.simulation.step import Simulation
 
 CASES = Path(__file__).parents[2] / "run" / "cases"
 SCENES = {"taylor_green": ("hard/taylor_green.toml", 0.1), "dam_break": ("dam_break.toml", 0.05)}
@@ -29,10 +24,7 @@ class Span(NamedTuple):
 
 def simulation_of(scene, *changes):
     name, spacing = SCENES[scene]
-    scene = Scene(load(CASES / name, [f"space.spacing={spacing}", *changes]))
-    plan = make_plan(scene)
-    particles = create_particles(scene, plan, MPI.COMM_SELF)
-    return Simulation(scene, plan, particles, MPI.COMM_SELF, Ledger())
+    return start(load(CASES / name, [f"space.spacing={spacing}", *changes]))
 
 
 @pytest.mark.parametrize("scene", SCENES)

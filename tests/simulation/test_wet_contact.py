@@ -107,13 +107,10 @@ def test_without_contact_they_run_into_each_other(tmp_path):
 
 TANK = """
 time.end = 1.0
-[space]
-dimensions = 2
-spacing = 0.02
-[physics]
-sound_speed = 25.0
-gravity = [0.0, -9.81]
-contact = {}
+space = { dimensions = 2, spacing = 0.02 }
+physics.sound_speed = 25.0
+physics.gravity = [0.0, -9.81]
+physics.contact = {}
 [fluids.water]
 shape.difference.from.box = { lower = [0.0, 0.0], upper = [1.0, 0.6] }
 shape.difference.minus = [

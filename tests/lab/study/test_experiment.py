@@ -31,16 +31,9 @@ from psph.parallel.reductions import alone
 CASES = Path(__file__).parents[3] / "run" / "cases"
 
 CASE = """
-[space]
-dimensions = 1
-spacing = 0.1
-periodic = ["x"]
-lower = [0.0]
-upper = [2.0]
-[time]
-end = 0.1
-[physics]
-sound_speed = 10.0
+space = { dimensions = 1, spacing = 0.1, periodic = ["x"], lower = [0.0], upper = [2.0] }
+time.end = 0.1
+physics.sound_speed = 10.0
 [fluids.air]
 shape.box = { lower = [0.0], upper = [2.0] }
 [probes.P]

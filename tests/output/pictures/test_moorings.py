@@ -64,14 +64,8 @@ def test_lines_are_seen_in_3d(tank3d):
 FLAT = """
 scheme = "sph"
 title = "A raft"
-[space]
-dimensions = 2
-spacing = 0.1
-periodic = ["x"]
-lower = [0.0, 0.0]
-upper = [2.0, 1.0]
-[time]
-end = 1.0
+space = { dimensions = 2, spacing = 0.1, periodic = ["x"], lower = [0.0, 0.0], upper = [2.0, 1.0] }
+time.end = 1.0
 [fluids.water]
 density = 1000.0
 [bodies.raft.lines.left]
