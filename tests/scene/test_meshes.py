@@ -8,7 +8,7 @@ import trimesh
 from scene.solids import cube, held, lattice, mesh_of, points_of, shape_at, shape_of, winding
 
 from psph.case.shapes import Shape
-from psph.scene.meshes.mass import solid_of
+from psph.scene.meshes.mass import enclosed_by
 from psph.scene.meshes.surface import MeshError, surface_of
 from psph.scene.shapes import bounds, inside
 
@@ -319,7 +319,7 @@ def test_volume_centre_and_inertia_of_a_box(tmp_path):
     body = trimesh.creation.box(extents=1000.0 * sides)
     quarter = [{"axis": [0.0, 0.0, 1.0], "degrees": 90.0}]
     for keys in ({}, {"shell": 0.1}):
-        found = solid_of(mesh_of(tmp_path, body, scale=0.001, rotate=quarter, move=move, **keys))
+        found = enclosed_by(mesh_of(tmp_path, body, scale=0.001, rotate=quarter, move=move, **keys))
         a, b, c = 2.0, 1.0, 3.0
         assert found.volume == pytest.approx(6.0, rel=1e-6)
         assert found.center == pytest.approx(move, abs=1e-6)
