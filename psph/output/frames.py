@@ -9,7 +9,7 @@ millisecond, may leave a file that does not open; a checkpoint brings it back.
 import math
 import os
 from collections.abc import Iterable
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -77,24 +77,37 @@ class FrameFile:
         first, total = sum(counts[: self.comm.rank]), sum(counts)
         rows = self._rows(frame, arrays, first, total)
         shapes = {name: (total, *part.shape[1:]) for name, part in rows.items()}
-        file, stays_open = None, hdf5.by_rank_0(self.comm, rows, counts)
-        with ExitStack() as held:
+        kinds = {name: (shapes[name], part.dtype) for name, part in rows.items()}
+        if hdf5.by_rank_0(self.comm, rows, counts):
             with together(self.comm, self.path):
+                self._write_alone(frame, time, step, shapes, rows, counts)
                 if self.comm.rank == 0:
-                    file = held.enter_context(hdf5.opened(self.path))
-                    self._lay_out(file, frame, step, shapes, rows)
-                    if not stays_open:
-                        held.close()
-            with together(self.comm, self.path):
-                hdf5.fill(self.path, self.comm, rows, counts, file if stays_open else None)
-            with together(self.comm, self.path):
-                if self.comm.rank == 0:
-                    if not stays_open:
-                        file = held.enter_context(hdf5.opened(self.path))
-                    hdf5.complete(file, frame, "time", float(time))
-                    held.close()
-                    kinds = {name: (shapes[name], part.dtype) for name, part in rows.items()}
                     self._index.add(frame, time, kinds)
+        else:
+            with together(self.comm, self.path):
+                if self.comm.rank == 0:
+                    with hdf5.opened(self.path) as file:
+                        self._lay_out(file, frame, step, shapes, rows)
+            with together(self.comm, self.path):
+                hdf5.fill(self.path, self.comm, rows, counts)
+            with together(self.comm, self.path):
+                if self.comm.rank == 0:
+                    with hdf5.opened(self.path) as file:
+                        hdf5.complete(file, frame, "time", float(time))
+                    self._index.add(frame, time, kinds)
+
+    def _write_alone(self, frame, time, step, shapes, rows, counts) -> None:
+        """Rank 0 lays the frame out, fills it with what the others send and completes it."""
+        if self.comm.rank != 0:
+            return hdf5.fill(self.path, self.comm, rows, counts)
+        with hdf5.opened(self.path) as file:
+            try:
+                self._lay_out(file, frame, step, shapes, rows)
+            except (OSError, RuntimeError):
+                hdf5.drop(self.comm, rows, counts)
+                raise
+            hdf5.fill(self.path, self.comm, rows, counts, file)
+            hdf5.complete(file, frame, "time", float(time))
 
     def complete_index(self) -> None:
         """List all frames so far for viewers."""

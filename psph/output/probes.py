@@ -11,7 +11,7 @@ from psph.engine.jit import elementwise
 from psph.fields import FLUID, PRESSURE, SAVED, by_name, view_of
 from psph.output.flowing import ALL, counted
 from psph.parallel.domain import Domain
-from psph.parallel.reductions import exact_sums, largest
+from psph.parallel.reductions import alone, exact_sums, largest
 from psph.particles.store import Store
 from psph.physics.walls.dry import DryWall
 from psph.smoothing import weight
@@ -77,6 +77,10 @@ class FieldProbe:
             terms[first:last, place : place + 2 + len(rows)] = near
         return terms
 
+    def of_all(self, store: Store, terms: list[np.ndarray]) -> np.ndarray:
+        """What :meth:`sample` returns, of the :meth:`terms` of each rank."""
+        return self.values(store, exact_sums(alone(), np.concatenate(terms)))
+
     def values(self, store: Store, sums: np.ndarray) -> np.ndarray:
         """What :meth:`sample` returns, of the sums of the :meth:`terms` of all ranks."""
         sums = sums.reshape(len(self.points), -1)
@@ -133,10 +137,18 @@ class Front:
 
     def sample(self, domain: Domain, kernel) -> np.ndarray:
         """The value on every rank; collective."""
+        return np.array(largest(domain.comm, self.terms(domain, kernel)))
+
+    def terms(self, domain: Domain, kernel) -> np.ndarray:
+        """How far those of this rank reach (1,)."""
         store = domain.store
         fluid = counted(store.kinds, self.of)[store.shown("group")]
         reach = store["position"][self.axis][store.inner].max(where=fluid, initial=-np.inf)
-        return np.array(largest(domain.comm, [float(reach)]))
+        return np.array([float(reach)])
+
+    def of_all(self, store: Store, terms: list[np.ndarray]) -> np.ndarray:
+        """What :meth:`sample` returns, of the :meth:`terms` of each rank."""
+        return np.max(terms, axis=0)
 
 
 def values_behind(reflection, store, near: np.ndarray, fields: tuple[str, ...]) -> Iterator[np.ndarray]:

@@ -235,10 +235,7 @@ def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int], file=
         with open_file(path, "r+", driver="mpio", comm=comm) as shared:
             fill_collectively(shared, rows, sum(counts[: comm.rank]))
         return
-    if sum(counts) * _bytes_per_row(rows) <= AT_ONCE:
-        pieces = _at_once(comm, rows, counts)
-    else:
-        pieces = _pieces(comm, rows, counts)
+    pieces = _of_all(comm, rows, counts)
     try:
         if comm.rank == 0:
             with nullcontext(file) if file else opened(path) as own:
@@ -247,6 +244,18 @@ def fill(path: Path, comm, rows: dict[str, np.ndarray], counts: list[int], file=
         # After a failure too: the other ranks must get rid of what they send.
         for _ in pieces:
             pass
+
+
+def drop(comm, rows: dict[str, np.ndarray], counts: list[int]) -> None:
+    """On rank 0, where it writes alone but cannot: what the other ranks send in :func:`fill` goes nowhere."""
+    for _ in _of_all(comm, rows, counts):
+        pass
+
+
+def _of_all(comm, rows: dict[str, np.ndarray], counts: list[int]):
+    """On rank 0 (name, first row, rows) of all ranks; the others send theirs."""
+    whole = sum(counts) * _bytes_per_row(rows) <= AT_ONCE
+    return (_at_once if whole else _pieces)(comm, rows, counts)
 
 
 def _write(file, pieces) -> None:

@@ -1,7 +1,6 @@
 """Numbers over all ranks that do not depend on how particles are spread over them."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from mpi4py import MPI
@@ -37,41 +36,27 @@ def exact_sums(comm: MPI.Comm, terms: np.ndarray) -> np.ndarray:
     number of terms, and integers are added.  The error is at most n/2 units; NaN or infinity in a
     column makes its sum NaN.  Collective.
     """
-    return exact_sums_of(comm, [terms])[0]
-
-
-def exact_sums_of(comm: MPI.Comm, parts: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """:func:`exact_sums` of each of several ``parts`` (n, k), in the messages of one; collective."""
-    columns = [np.ascontiguousarray(np.atleast_2d(terms).T) for terms in parts]
-    ends = np.cumsum([len(part) for part in columns]).tolist()
-    places = [slice(end - len(part), end) for part, end in zip(columns, ends)]
-    extremes = np.zeros(ends[-1])
-    with np.errstate(invalid="ignore"):
-        for part, place in zip(columns, places):
-            if part.size:
-                np.maximum(part.max(axis=1), -part.min(axis=1), out=extremes[place])
+    columns = np.ascontiguousarray(np.atleast_2d(terms).T)
+    extremes = np.zeros(len(columns))
+    if columns.size:
+        with np.errstate(invalid="ignore"):
+            np.maximum(columns.max(axis=1), -columns.min(axis=1), out=extremes)
     extremes[np.isnan(extremes)] = np.inf  # a maximum over ranks may lose a NaN, but no infinity
-    counts = np.array([part.shape[1] for part in columns], dtype=np.int64)
+    count = np.array(columns.shape[1], dtype=np.int64)
     peaks = largest(comm, extremes).tolist()
-    comm.Allreduce(MPI.IN_PLACE, counts, MPI.SUM)
+    comm.Allreduce(MPI.IN_PLACE, count, MPI.SUM)
     # Whole numbers add up to the same bits in any order where the sum fits: a bit for each doubling of terms.
-    rooms = [BITS - max(count, 1).bit_length() for count in counts.tolist()]
-    scales = [
-        room - math.frexp(peak)[1] if math.isfinite(peak) else 0
-        for room, place in zip(rooms, places)
-        for peak in peaks[place]
-    ]
-    total = np.zeros(ends[-1], np.int64)
-    for part, place in zip(columns, places):
-        _add_whole(part, peaks[place], scales[place], total[place])
+    room = BITS - max(int(count), 1).bit_length()
+    scales = [room - math.frexp(peak)[1] if math.isfinite(peak) else 0 for peak in peaks]
+    total = np.zeros(len(columns), np.int64)
+    _add_whole(columns, peaks, scales, total)
     comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
-    sums = np.array(
+    return np.array(
         [
             math.ldexp(whole, -scale) if math.isfinite(peak) else math.nan
             for whole, scale, peak in zip(total.tolist(), scales, peaks)
         ]
     )
-    return [sums[place] for place in places]
 
 
 def _add_whole(columns: np.ndarray, peaks: list[float], scales: list[int], total: np.ndarray) -> None:

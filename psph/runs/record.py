@@ -17,7 +17,6 @@ from psph.output.frames import FrameFile
 from psph.output.gauges import gauges_of
 from psph.output.probes import FieldProbe, Front, sensor
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
-from psph.parallel.reductions import exact_sums_of
 from psph.simulation.step import Simulation
 from psph.version import __version__
 
@@ -179,16 +178,11 @@ class Record:
         if not self.probes:
             return
         sim = self.simulation
-        at_points = list(self._points())
-        terms = [probe.terms(sim.domain, self.kernel) for probe in at_points]
-        sums = dict(zip(map(id, at_points), exact_sums_of(sim.comm, terms) if terms else []))
-        values = [
-            probe.values(sim.store, sums[id(probe)])
-            if isinstance(probe, FieldProbe)
-            else probe.sample(sim.domain, self.kernel)
-            for probe in self.probes
-        ]
-        self.probe_table.write([sim.time, *np.concatenate(values).tolist()])
+        mine = [probe.terms(sim.domain, self.kernel) for probe in self.probes]
+        # Rank 0 alone needs the values: the others send what they have, and wait for nobody.
+        if (terms := sim.comm.gather(mine)) is not None:
+            values = map(lambda probe, of: probe.of_all(sim.store, of), self.probes, zip(*terms))
+            self.probe_table.write([sim.time, *np.concatenate(list(values)).tolist()])
 
     def dry_probes(self) -> Iterator[str]:
         """A line for each probe that had no fluid in reach at some time."""

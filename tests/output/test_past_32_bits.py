@@ -44,7 +44,7 @@ def test_a_rank_knows_its_rows_past_2_31(tmp_path, monkeypatch):
     monkeypatch.setattr(hdf5, "fill", lambda *call: filled.append(call))
     frames = FrameFile(tmp_path / "tank.h5", SecondRank(), {})
     frames.write(0, 0.0, 0, {"position": np.ones((3, 2))})
-    [(_, _, rows, counts, _)] = filled
+    [(_, _, rows, counts)] = filled
     assert counts == [FIRST, 3]
     connectivity = rows[f"connectivity/{FIRST + 3}"]
     assert connectivity.dtype == np.int64

@@ -119,6 +119,26 @@ def test_little_is_written_by_rank_0_alone(comm, mpi_tmp_path, monkeypatch):
     assert together
 
 
+class Counted:
+    """A communicator that notes what is called of it."""
+
+    def __init__(self, comm):
+        self.comm, self.rank, self.size, self.calls = comm, comm.rank, comm.size, []
+
+    def __getattr__(self, name):
+        self.calls.append(name)
+        return getattr(self.comm, name)
+
+
+def test_a_small_frame_waits_for_the_other_ranks_twice(comm, mpi_tmp_path):
+    """For how many rows each has, and for whether all went well; in between they send."""
+    counted = Counted(comm)
+    frames = FrameFile(mpi_tmp_path / "tank.h5", counted, {})
+    counted.calls.clear()
+    frames.write(0, 0.0, 0, share(cloud(20, 2), comm, (7, 13)))
+    assert counted.calls == ["allgather", "Gatherv", "allgather"]
+
+
 def test_viewer_with_the_file_open_stops_nothing(comm, mpi_tmp_path, way):
     frames = FrameFile(mpi_tmp_path / "tank.h5", comm, {})
     if comm.rank == 0:

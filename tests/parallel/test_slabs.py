@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from psph.parallel.reductions import exact_sums, exact_sums_of
+from psph.parallel.reductions import exact_sums
 from psph.parallel.slabs import PAR, TOLERATED, Prices, TooManyRanks, dearest, partition, rebalanced
 
 
@@ -139,25 +139,13 @@ def test_opposite_momenta_cancel_exactly():
     assert exact_sums(MPI.COMM_SELF, np.concatenate([v, -v]))[0] == 0.0
 
 
-def test_sums_of_several_parts_are_those_of_each_in_three_messages():
-    """Small and large ones, one of nothing: in a unit of all together their last bits would differ."""
-    rng = np.random.default_rng(5)
-    parts = [rng.normal(size=(n, 2)) * scale for n, scale in ((700, 1e-300), (3, 1e290), (0, 1.0), (40, 1.0))]
-    messages = []
-
-    class Counted:
-        def Allreduce(self, _, values, operation):
-            messages.append(operation)
-
-    together = exact_sums_of(Counted(), parts)
-    assert len(messages) == 3
-    for part, sums in zip(parts, together, strict=True):
-        assert (sums == exact_sums(MPI.COMM_SELF, part)).all()
-        # The control: the definition, in whole numbers of Python.
-        for column, total in zip(part.T, sums):
-            bits = 62 - max(len(part), 1).bit_length()
-            unit = Fraction(2) ** (math.frexp(np.abs(column).max(initial=0.0))[1] - bits)
-            assert total == float(sum(round(Fraction(x) / unit) for x in column) * unit)
+@pytest.mark.parametrize(("count", "scale"), [(700, 1e-300), (3, 1e290), (40, 1.0)])
+def test_a_sum_is_that_of_whole_multiples_of_a_unit(count, scale):
+    """The control: the definition, in whole numbers of Python."""
+    terms = np.random.default_rng(5).normal(size=(count, 2)) * scale
+    for column, total in zip(terms.T, exact_sums(MPI.COMM_SELF, terms)):
+        unit = Fraction(2) ** (math.frexp(np.abs(column).max())[1] - (62 - count.bit_length()))
+        assert total == float(sum(round(Fraction(x) / unit) for x in column) * unit)
 
 
 def test_a_sum_of_nothing_and_of_nonsense():
