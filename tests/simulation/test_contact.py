@@ -133,18 +133,25 @@ velocity = [-585.0, 0.0, 0.0]
 
 @LONG
 def test_cubes_of_steel_bounce_alike_at_every_spacing(tmp_path):
+    """With 10 and 16 particles an edge they part at 0.757 and 0.743 of their speed, the rest in swings.
+
+    At half the longest step, since at that itself the energy swings by 0.9 %, and by a quarter at its half.
+    """
     speeds = []
     for count in (4, 6):
-        simulation = start(draft(tmp_path, CUBES.format(spacing=0.1 / count)))
+        case = CUBES.format(spacing=0.1 / count)
+        longest, _ = start(draft(tmp_path, case)).plan.longest_step(0.0, 0.0)
+        simulation = start(draft(tmp_path, case, f"time.step={0.5 * longest}"))
         whole = energy(simulation)
         while simulation.time < 8e-5:
             simulation.step()
         v, group = simulation.store.shown("velocity")[:, 0], simulation.store.shown("group")
         assert simulation.store.shown("contact_energy").max() == 0.0  # they have parted
         assert v[group == 0].mean() == pytest.approx(-v[group == 1].mean(), rel=1e-9)
-        assert energy(simulation) == pytest.approx(whole, rel=6e-3)
+        assert energy(simulation) == pytest.approx(whole, rel=3e-3)
         speeds.append(v[group == 1].mean() / 585.0)
-    assert speeds[0] == pytest.approx(speeds[1], rel=0.03) and 0.75 < speeds[0] < 0.85
+    assert speeds[0] == pytest.approx(speeds[1], rel=0.03)
+    assert speeds == pytest.approx([0.75, 0.75], rel=0.06)
 
 
 ON_WALL = """
