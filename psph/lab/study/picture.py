@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from matplotlib.ticker import LogLocator, NullLocator
+from matplotlib.ticker import Locator, LogLocator, MaxNLocator, NullLocator
 
 from psph.lab.study.ladder import SPACING, toml
 from psph.output.pictures import style
@@ -61,13 +61,20 @@ def draw(
                 label=f"cheapest within {100.0 * error:g} %",
                 zorder=4,
             )
+        axes.margins(0.12)
         for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_locator(_numbers(*axis.get_view_interval()))
             axis.set_major_formatter(lambda number, _: f"{number:g}")
             axis.set_minor_locator(NullLocator())
-        axes.margins(0.12)
         axes.grid(color=style.WALLS, lw=0.4)
         axes.set_xlabel("seconds")
         axes.set_title("error, L2 (%)", loc="left", size=9, weight="bold")
         axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0))
     return style.save(figure, path)
+
+
+def _numbers(low: float, high: float) -> Locator:
+    """Numbers along a logarithmic axis from ``low`` to ``high``: some even where it is far from a decade."""
+    if high < 2.0 * low:
+        return MaxNLocator(4, steps=[1, 2, 5, 10])
+    return LogLocator(subs=(1.0, 2.0, 5.0) if high > 10.0 * low else (1.0, 1.5, 2.0, 3.0, 5.0, 7.0))
