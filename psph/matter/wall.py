@@ -9,7 +9,7 @@ from psph.case.keys import AXES
 from psph.kinds import Kind, Rank, Stage, Work
 from psph.physics.motion import deforms
 from psph.physics.rigid.absorption import Absorbing
-from psph.physics.stress.faces import OF_FACES
+from psph.physics.stress.faces import DRAWN, DRAWN_SIDE, EDGE, NORMAL, SIDE
 from psph.scene.motion_checks import motion_faults, motion_lines
 from psph.scene.smooth import smooth_faces
 from psph.scene.waving import wave_lines
@@ -38,9 +38,10 @@ class Walls(Kind):
         self, fields: Container[str], species: np.ndarray, position: np.ndarray
     ) -> Iterator[tuple[str, np.ndarray]]:
         """The faces of smooth ones, along which soils and solids slide."""
-        if own := [field.name for field in OF_FACES if field.name in fields]:
-            normal = smooth_faces(self.scene, species, position)
-            yield from ((name, normal) for name in own)
+        if NORMAL.name in fields:
+            normal, side, edge = smooth_faces(self.scene, species, position)
+            of = {NORMAL: normal, SIDE: side, EDGE: edge, DRAWN: normal, DRAWN_SIDE: side}
+            yield from ((field.name, value) for field, value in of.items() if field.name in fields)
 
     def stages(self) -> Mapping[str, Stage]:
         """Paddles answer to the level at the end of the step, after the kick."""

@@ -79,6 +79,7 @@ def _carry_pose(poses, pose_of, number, group, k, periods, columns):
         settle(columns, k, x, v, periods)
         _whirl(columns.whirl, poses[row], x, k)
         _face(columns.drawn_normal, columns.face_normal, poses[row], k)
+        _face(columns.drawn_side, columns.face_side, poses[row], k)
 
 
 @overload_inside(_carry_by_pose)
@@ -111,7 +112,7 @@ def _face(drawn, normal, maps, k):
 
 
 def _face_it(drawn, normal, maps, k):
-    """R N of the normal N of what moves as a whole."""
+    """R N of a normal N of what moves as a whole."""
     put(normal, k, linear(maps, PLACE, at(drawn, k)))
 
 

@@ -59,6 +59,8 @@ class Columns(NamedTuple):
     whirl: Any = None
     face_normal: Any = None
     drawn_normal: Any = None
+    face_side: Any = None
+    drawn_side: Any = None
 
 
 @register_jitable

@@ -255,6 +255,26 @@ SCENES = {
         },
         physics={"gravity": PULL},
     ),
+    "smooth body on soil": scene(
+        soils={
+            "sand": {
+                "shape": BLOCK,
+                "geostatic": False,
+                "velocity_gradient": STIR,
+                "velocity_center": [0.7, 0.4],
+                **SAND,
+            }
+        },
+        walls={"tank": tank()},
+        bodies={
+            "block": {
+                "shape": box((0.25, 1.0), (0.75, 1.5)),
+                "density": 1200.0,
+                "velocity": [0.4, -0.5],
+                "spin": 0.5,
+            }
+        },
+    ),
     "falling sand": scene(
         soils={
             "sand": {

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from physics.pairs import pair_of, sums_of, view
 
+from psph.composition.pair import Pair
 from psph.physics.stress.deviator import CorrectedDeviatoricForce, DeviatoricForce, DeviatorRate, jaumann_rate
-from psph.physics.stress.faces import CorrectedSmoothFace, SmoothFace
+from psph.physics.stress.faces import CorrectedSmoothFace, SmoothFace, facing
 
 UPPER = {2: ((0, 0), (0, 1), (1, 1)), 3: ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))}
 
@@ -97,12 +98,35 @@ def test_a_smooth_wall_bears_the_stress_across_its_face_and_no_shear_along_it(ef
     s = tuple(np.array([v[0], 0.0]) for v in p.deviator)
     none = tuple(np.zeros(2) for _ in p.deviator)
     p = p._replace(deviator=s, pressure=np.array([2e3, 3e3]), cone_tip=np.array([500.0, 0.0]))
-    p = p._replace(face_normal=tuple(np.array([0.0, one]) for one in n), gradient_correction=none)
+    zero = tuple(np.zeros(2) for _ in n)
+    p = p._replace(
+        face_normal=tuple(np.array([0.0, one]) for one in n), face_side=zero, gradient_correction=none
+    )
     i, j, pair = pair_of(p, 0, 1)
     stress, turn = full([v[0] for v in s], dim), np.eye(dim) - 2.0 * np.outer(n, n)
     shown = turn @ stress @ turn * i.specific_volume**2 * 3.5 / 2.5  # (p + tip) of the wall over that of soil
     assert effect.push(i, j, pair) == pytest.approx(shown @ np.array(pair.x_ij) * pair.m_dw_r, rel=1e-12)
     back = np.array(effect.push(*pair_of(p, 1, 0)))
     assert p.mass[1] * back == pytest.approx(-p.mass[0] * np.array(effect.push(i, j, pair)), rel=1e-12)
-    free = p._replace(face_normal=tuple(np.zeros(2) for _ in n))
+    free = p._replace(face_normal=zero)
     assert not np.any(effect.push(*pair_of(free, 0, 1)))
+    hollow = p._replace(face_normal=zero if dim == 2 else p.face_normal, face_edge=np.array([0.0, 1.0]))
+    turn = np.eye(2) if dim == 2 else turn  # along the edge nothing rubs
+    shown = turn @ stress @ turn * i.specific_volume**2 * 3.5 / 2.5
+    assert effect.push(*pair_of(hollow, 0, 1)) == pytest.approx(shown @ np.array(pair.x_ij) * pair.m_dw_r)
+
+
+@pytest.mark.parametrize(
+    "towards, face", (((1.0, 0.2), 0), ((0.1, -1.0), 1), ((-0.3, -1.0), 1), ((1.0, -1.0), None))
+)
+def test_of_two_faces_as_near_the_one_before_a_particle_counts(towards, face):
+    """Of the lower right corner of a block; as far before both, none."""
+    faces = np.array([[1.0, 0.0], [0.0, -1.0]])
+    normal, side = faces.mean(axis=0), 0.5 * (faces[0] - faces[1])
+    pair = Pair(x_ij=towards, u_ij=(0.3, 0.7), inverse_r=1.0 / np.hypot(*towards))
+    found = np.array(facing(tuple(normal), tuple(side), 0.0, pair))
+    back = facing(tuple(-normal), tuple(-side), 0.0, pair._replace(x_ij=(-towards[0], -towards[1])))
+    assert back == pytest.approx(-found)
+    whole = found @ found
+    assert whole == pytest.approx(0.0) if face is None else whole > 0.8
+    assert face is None or found == pytest.approx(np.sqrt(whole) * faces[face])

@@ -1,8 +1,12 @@
 """Which drawn face a particle of a smooth wall has before it."""
 
+import tomllib
+
 import numpy as np
 import pytest
+import tomli_w
 from drafts import draft
+from invariances.transforms import TURNS_OF_A_SCENE
 
 from psph.scene import Scene
 from psph.scene.layout import Layout
@@ -28,7 +32,7 @@ ramp.shape.polygon.points = [[1.0, 0.0], [1.7, 0.7], [1.7, -0.2], [1.0, -0.2]]
 def normals(scene, name, *places):
     """Of particles of a wall at these places."""
     species = np.full(len(places), scene.layout.names.index(name))
-    return np.abs(smooth_faces(scene, species, np.array(places)))
+    return np.abs(smooth_faces(scene, species, np.array(places)).normal)
 
 
 def test_it_is_that_which_the_way_out_of_all_walls_goes_through(tmp_path):
@@ -40,7 +44,6 @@ def test_it_is_that_which_the_way_out_of_all_walls_goes_through(tmp_path):
     assert left[:2] == pytest.approx(np.tile([1.0, 0.0], (2, 1)), abs=1e-12)
     ramp = normals(scene, "ramp", [1.125, 0.025], [1.325, 0.175])
     assert ramp == pytest.approx(np.full((2, 2), 0.5**0.5), abs=1e-12)
-    assert np.all((normals(scene, "left", [-0.075, -0.075]) ** 2).sum(axis=1) == 1.0)  # behind the corner
     assert not normals(Scene(draft(tmp_path, BED, "walls.floor.no_slip=true")), "floor", [0.5, -0.025]).any()
 
 
@@ -60,15 +63,42 @@ shape.difference.minus = [{ box = { lower = [0.0, 0.0], upper = [1.5, 1.25] } }]
 """
 
 
-def test_a_corner_shows_the_lower_of_its_faces_and_a_rim_the_inner_one(tmp_path):
-    """As often as a place is as near to both: the first in the order of the axes had decided."""
+def test_of_faces_as_near_none_is_chosen(tmp_path):
+    """The lower one had been, and without gravity the first in the order of the axes."""
     scene = Scene(draft(tmp_path, TANK))
-    corners = [[-0.0625, -0.0625], [-0.1875, -0.1875], [1.5625, -0.0625]]
-    assert normals(scene, "tank", *corners) == pytest.approx(np.tile([0.0, 1.0], (3, 1)), abs=1e-12)
-    rims = normals(scene, "tank", [-0.0625, 1.1875], [1.5625, 1.1875])
-    assert rims == pytest.approx(np.tile([1.0, 0.0], (2, 1)), abs=1e-12)
-    across = Scene(draft(tmp_path, TANK, "physics.gravity=[-9.0,1.0]"))
-    assert normals(across, "tank", *corners[:2]) == pytest.approx(np.tile([1.0, 0.0], (2, 1)), abs=1e-12)
+    places = np.array(
+        [[-0.0625, -0.0625], [-0.1875, -0.1875], [1.5625, 1.1875], [1.5625, 1.0625], [1.6875, 1.1875]]
+    )
+    found = smooth_faces(scene, np.full(5, scene.layout.names.index("tank")), places)
+    assert found.normal[:2] == pytest.approx(0.0) and found.edge.tolist() == [1.0, 1.0, 0.0, 0.0, 0.0]
+    rim, side = found.normal[2], found.side[2]
+    assert {tuple((rim + k * side).tolist()) for k in (-1.0, 1.0)} == {(-1.0, 0.0), (0.0, 1.0)}
+    assert np.abs(found.normal[3:]).tolist() == [[1.0, 0.0], [0.0, 1.0]] and not found.side[3:].any()
+
+
+@pytest.mark.parametrize("pull", ([0.0, 0.0], [1.0, -9.0]))
+@pytest.mark.parametrize("name", TURNS_OF_A_SCENE)
+def test_faces_turn_as_the_scene_does(name, pull, tmp_path):
+    turn = TURNS_OF_A_SCENE[name]
+    tables = tomllib.loads(TANK) | {"physics": {"gravity": pull}}
+    places = np.array(
+        [(x, y) for x in np.arange(-0.4375, 2.0, 0.125) for y in (-0.1875, -0.0625, 1.0625, 1.1875)]
+    )
+    places = places[(places[:, 0] < 0.0) | (places[:, 0] > 1.5) | (places[:, 1] < 0.0)]
+    one, other = (
+        smooth_faces(scene, np.full(len(places), scene.layout.names.index("tank")), at)
+        for scene, at in (
+            (Scene(draft(tmp_path, tomli_w.dumps(tables))), places),
+            (Scene(draft(tmp_path, tomli_w.dumps(turn.of(tables)))), turn.points(places)),
+        )
+    )
+    assert other.edge.tolist() == one.edge.tolist() and one.side.any() and one.edge.any()
+    for k in (-1.0, 1.0):  # which of two is the first does not matter
+        turned, found = (
+            turn.points(one.normal + k * one.side),
+            np.array([other.normal + m * other.side for m in (1, -1)]),
+        )
+        assert np.minimum(*np.abs(np.abs(found) - np.abs(turned)).max(axis=2)).max() < 1e-12
 
 
 def test_the_reach_of_a_wall_is_the_same_at_any_spacing(tmp_path, monkeypatch):

@@ -109,10 +109,10 @@ def test_normals_that_point_at_the_soil_kick_it_out_of_corners(tmp_path, monkeyp
     """The control: behind the corner they are aslant to both faces."""
 
     def aslant(scene, species, position):
-        normal = smooth_faces(scene, species, position)
+        found = smooth_faces(scene, species, position)
         corner = (position[:, 0] > 1.0) & (position[:, 1] < 0.0)
-        normal[corner] = np.sqrt(0.5)
-        return normal
+        found.normal[corner], found.edge[corner] = np.sqrt(0.5), 0.0
+        return found
 
     monkeypatch.setattr(wall, "smooth_faces", aslant)
     bed, _ = begun(draft(tmp_path, BED))

@@ -62,7 +62,7 @@ def jaumann_rate(gradient, s, shear_modulus, like):
 def take_neighbour(faces, total, j, pair):
     """Take what counts of a neighbour into the sums of a velocity gradient."""
     weight = rate_weight(j, pair)
-    return take_rate(total, pair, across(faces, j, pair.u_ij), weight, weight * counts(faces, j))
+    return take_rate(total, pair, across(faces, j, pair), weight, weight * counts(faces, j, pair))
 
 
 class DeviatorRate(NamedTuple):

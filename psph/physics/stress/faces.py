@@ -4,22 +4,31 @@ from typing import NamedTuple
 
 from psph.acts import SOILS, UPDATED
 from psph.engine.jit import call_by_type
-from psph.fields import VECTOR, Field, Turned
+from psph.fields import VECTOR, Field, Same, Turned
 from psph.formula import helper, where
 from psph.physics.facts import Facts
 from psph.physics.motion import is_rigid
-from psph.vectors import add, dot, scale, times
+from psph.vectors import add, dot, scale, subtract, times
 
 NORMAL = Field(
     "face_normal",
     "1",
-    "unit vector across the nearest face of a wall without friction, beside what resists shear; else 0",
+    "unit vector across the nearest face of a wall without friction, beside what resists shear, or the mean "
+    "of two as near; along an edge of others; else 0",
     VECTOR,
     image=Turned,
 )
-DRAWN = Field("drawn_normal", "1", "the same at time zero, of a wall that moves as a whole", VECTOR)
+SIDE = Field(
+    "face_side", "1", "half the difference of the unit vectors of two faces as near", VECTOR, image=Turned
+)
+EDGE = Field(
+    "face_edge", "1", "1 behind a hollow edge or corner of faces, −1 behind a round one; else 0", image=Same
+)
+DRAWN = Field("drawn_normal", "1", "face_normal at time zero, of a wall that moves as a whole", VECTOR)
+DRAWN_SIDE = Field("drawn_side", "1", "face_side at time zero, of a wall that moves as a whole", VECTOR)
 
-OF_FACES = (NORMAL, DRAWN)
+STILL_FACES, TURNING_FACES = (NORMAL, SIDE, EDGE), (DRAWN, DRAWN_SIDE)
+"""What all such walls carry, and what those that move do besides."""
 
 STEEPEST = 3.0
 """Most by which the stress of a wall without slip may exceed that of the soil before it: of a layer one row
@@ -41,6 +50,9 @@ def steepness(i, j):
 NO_PRESSURE = 1e-30
 """Keeps no pressure from dividing by zero, Pa."""
 
+NO_LENGTH = 1e-30
+"""The same for a normal without length."""
+
 
 @helper
 def holds(j):
@@ -48,32 +60,54 @@ def holds(j):
     return max(where(j.shear_modulus > 0.0, 1.0, 0.0), j.no_slip)
 
 
+@helper
+def facing(normal, side, edge, pair):
+    """The unit normal of the face between two particles; 0 without one.
+
+    Of two faces as near it is that on whose side the particle before them is, and fades to 0 where that is as
+    far to either side.  A round edge has the normal towards that particle.
+    """
+    x, turned = pair.x_ij, max(min(2.0 * dot(side, pair.x_ij) * pair.inverse_r, 1.0), -1.0)
+    two, off = dot(side, side) > 0.0, where(edge < 0.0, -dot(normal, x) * pair.inverse_r, 1.0)
+    first = scale(normal, where(two, max(turned, -turned), off))
+    return add(add(first, scale(side, turned)), scale(x, max(-edge, 0.0) * pair.inverse_r))
+
+
+@helper
+def behind(n, edge):
+    """How far what bears ``n`` counts, 0 to 1: all of a face or a hollow."""
+    return max(dot(n, n), edge)
+
+
 class Sticking(NamedTuple):
     """All walls beside what resists shear stick to it."""
 
-    def across(self, j, u):
-        """What counts of a velocity relative to a neighbour, m/s."""
-        return scale(u, holds(j))
+    def across(self, j, pair):
+        """What counts of the velocity relative to a neighbour, m/s."""
+        return scale(pair.u_ij, holds(j))
 
-    def counts(self, j):
-        """Whether a neighbour counts in a velocity gradient, 1 or 0."""
+    def counts(self, j, pair):
+        """How far a neighbour counts in a velocity gradient, 0 to 1."""
         return holds(j)
 
 
 class Sliding(NamedTuple):
-    """What resists shear slides along some walls: there its velocity across the face counts alone."""
+    """What resists shear slides along some walls: there its velocity across the face counts alone, and in a
+    hollow all but that along the edge."""
 
-    def across(self, j, u):
-        """What counts of a velocity relative to a neighbour, m/s."""
-        return add(scale(u, holds(j)), scale(j.face_normal, dot(j.face_normal, u)))
+    def across(self, j, pair):
+        """What counts of the velocity relative to a neighbour, m/s."""
+        hollow, n = max(j.face_edge, 0.0), facing(j.face_normal, j.face_side, j.face_edge, pair)
+        along = dot(n, pair.u_ij) * (1.0 - 2.0 * hollow)
+        return add(scale(pair.u_ij, holds(j) + hollow), scale(n, along))
 
-    def counts(self, j):
-        """Whether a neighbour counts in a velocity gradient, 1 or 0."""
-        return holds(j) + dot(j.face_normal, j.face_normal)
+    def counts(self, j, pair):
+        """How far a neighbour counts in a velocity gradient, 0 to 1."""
+        return holds(j) + behind(facing(j.face_normal, j.face_side, j.face_edge, pair), j.face_edge)
 
 
 across, counts = call_by_type("across"), call_by_type("counts")
-"""(faces, j, u) → m/s; (faces, j) → 1 or 0: see :class:`Sliding`."""
+"""(faces, j, pair) → m/s, and 0 to 1: see :class:`Sliding`."""
 
 
 def is_smooth(one) -> bool:
@@ -87,10 +121,11 @@ def faces_of(scene: Facts):
 
 
 @helper
-def mirrored(normal, s, x):
-    """R s R x with R = 1 − 2nnᵀ: a stress without its shear along the face, in the mean with itself."""
-    turned = times(s, add(x, scale(normal, -2.0 * dot(normal, x))))
-    return add(turned, scale(normal, -2.0 * dot(normal, turned)))
+def mirrored(normal, twice, s, x):
+    """R s R x with R = 1 − 2nnᵀ/n²: a stress without its shear along the face, in the mean with itself.
+    ``twice`` is 2/n²."""
+    turned = times(s, add(x, scale(normal, -twice * dot(normal, x))))
+    return add(turned, scale(normal, -twice * dot(normal, turned)))
 
 
 class SmoothFace(NamedTuple):
@@ -100,8 +135,8 @@ class SmoothFace(NamedTuple):
     walls that do not stick, in proportion to the pressure (:func:`steepness`), and the reaction on them.
     R_w = 1 − 2nnᵀ with the normal n of the drawn face before w, as it has turned: the image of a stress in a
     plane along which nothing rubs, as Libersky et al. (1993), J. Comput. Phys. 109, 67, have it in mirrors.
-    Behind a corner any of its faces serves where they are at right angles: the shear in the frame of both is
-    what is left out.  ``turns`` where such a wall moves.
+    Of several faces as near none is chosen (:func:`facing`); in a hollow s_i counts whole, but for its shear
+    along the edge: across the faces it has none.  All turns as the scene does.  ``turns``: such a wall moves.
     """
 
     acts = (SOILS, UPDATED)
@@ -118,7 +153,7 @@ class SmoothFace(NamedTuple):
     @property
     def drawn(self) -> tuple[Field, ...]:
         """The fields that come from the shapes of the case."""
-        return OF_FACES if self.turns else OF_FACES[:1]
+        return STILL_FACES + TURNING_FACES if self.turns else STILL_FACES
 
     def why_absent(self, scene: Facts):
         """What it lacks."""
@@ -126,9 +161,9 @@ class SmoothFace(NamedTuple):
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        n, at_i, at_j = faced(i, j)
+        n, twice, at_i, at_j = faced(i, j, pair)
         both = add(scale(i.deviator, at_i), scale(j.deviator, at_j))
-        return scale(mirrored(n, both, pair.x_ij), pair.m_dw_r)
+        return scale(mirrored(n, twice, both, pair.x_ij), pair.m_dw_r)
 
 
 class CorrectedSmoothFace(NamedTuple):
@@ -144,18 +179,18 @@ class CorrectedSmoothFace(NamedTuple):
 
     def push(self, i, j, pair):
         """Acceleration, m/s²."""
-        n, at_i, at_j = faced(i, j)
+        n, twice, at_i, at_j = faced(i, j, pair)
         x = pair.x_ij
-        own = mirrored(n, i.deviator, add(x, times(i.gradient_correction, x)))
-        other = mirrored(n, j.deviator, add(x, times(j.gradient_correction, x)))
+        own = mirrored(n, twice, i.deviator, add(x, times(i.gradient_correction, x)))
+        other = mirrored(n, twice, j.deviator, add(x, times(j.gradient_correction, x)))
         return scale(add(scale(own, at_i), scale(other, at_j)), pair.m_dw_r)
 
 
 @helper
-def faced(i, j):
-    """The normal of the face between i and j, and the factors of s_i and s_j, m⁶/kg²; 0 without a face."""
-    n = add(i.face_normal, j.face_normal)
-    face = dot(n, n)
-    steep_i, steep_j = steepness(i, j)
+def faced(i, j, pair):
+    """The normal n of the face between i and j, 2/n², the factors of s_i and s_j, m⁶/kg²; 0 without one."""
+    edge, normal = i.face_edge + j.face_edge, subtract(j.face_normal, i.face_normal)
+    n = facing(normal, subtract(j.face_side, i.face_side), edge, pair)
+    face, (steep_i, steep_j) = behind(n, edge), steepness(i, j)
     own, other = i.specific_volume * i.specific_volume, j.specific_volume * j.specific_volume
-    return n, own * (face * steep_j), other * (face * steep_i)
+    return n, 2.0 / max(dot(n, n), NO_LENGTH), own * (face * steep_j), other * (face * steep_i)
