@@ -201,7 +201,7 @@ def test_clamped_and_free_particles_share_the_solid(tmp_path):
         s.is_fluid for s in scene.species
     )
     plan = make_plan(scene)
-    assert not plan.passes and plan.materials.solid_of.tolist() == [0, 0] and plan.materials.free == 1
+    assert not plan.passes and plan.materials.bonded_to.tolist() == [0, 0] and plan.materials.free == 1
     assert "drawn" not in plan.arrays
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from psph.lab.battery.command import compare
+from psph.lab.battery import command
 from psph.lab.battery.comparison import Comparison, judging
 from psph.lab.battery.trials import QUICK, Trial
 
@@ -103,4 +103,4 @@ def _judging(
 
 def remedies(comm, out: Path | None) -> None:
     """Run each of psph's own into the folder ``out``; collective."""
-    compare(comm, comparison(), out)
+    command.compare(comm, comparison(), out)

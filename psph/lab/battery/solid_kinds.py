@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from psph.case.updated import UPDATED
-from psph.lab.battery.command import compare
+from psph.lab.battery import command
 from psph.lab.battery.comparison import Comparison
 from psph.lab.battery.trials import Bound, Trial
 
@@ -95,4 +95,4 @@ SOLIDS = Comparison("solids", "description", TRIALS, SHOWN)
 
 def solids(comm, out: Path | None) -> None:
     """Run them into the folder ``out``; collective."""
-    compare(comm, SOLIDS, out)
+    command.compare(comm, SOLIDS, out)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from psph.lab.battery.command import compare
+from psph.lab.battery import command
 from psph.lab.battery.comparison import Comparison, judging
 from psph.lab.battery.tables import SECONDS
 from psph.lab.battery.trials import BATTERY, Bound, Trial
@@ -47,4 +47,4 @@ WALLS = Comparison("walls", "condition", TRIALS, SHOWN, measures_down=True)
 
 def walls(comm, out: Path | None) -> None:
     """Run them into the folder ``out``; collective."""
-    compare(comm, WALLS, out)
+    command.compare(comm, WALLS, out)
