@@ -36,10 +36,6 @@ MADE_OF = (
 """The keys of a case that say what a solid is made of, as they stand."""
 
 
-NO_SOLID = 255
-"""In place of the number of a solid, of what is of none."""
-
-
 class ElasticSolid(NamedTuple):
     """An elastic solid: its ``law`` (psph.physics.solid.laws), ``density`` in the reference in kg/m³, and
     ``wave_speed`` c_l = √((λ + 2μ)/ρ₀) of its fastest wave in m/s; the ``viscosity`` of Kelvin and Voigt in
