@@ -32,8 +32,8 @@ def called_for(case, entry: Entry) -> tuple[Any, str] | None:
     """The effect with its parameters and why it is there, or None."""
     if not entry.key:
         return entry.effect(), "every scene"
-    found = (_called_by(case, entry, key) for key in entry.key.split("|"))
-    return next((call for call in found if call), None)
+    calls = (_called_by(case, entry, key) for key in entry.key.split("|"))
+    return next((call for call in calls if call), None)
 
 
 def _called_by(case, entry: Entry, key: str) -> tuple[Any, str] | None:

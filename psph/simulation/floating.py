@@ -74,16 +74,16 @@ class FloatingBodies(Work):
     def overlapping(self, store, depth: float) -> np.ndarray | None:
         """The particles of the body that is deepest inside another or a wall, where that is more than
         ``depth`` spacings; the same on every rank."""
-        found = self.contacts.deepest(self.bodies)
-        if not found.depth > depth * self._scene.spacing:
+        deepest = self.contacts.deepest(self.bodies)
+        if not deepest.depth > depth * self._scene.spacing:
             return None
-        return (self.body_of[store.shown("group")] == found.body).astype(float)
+        return (self.body_of[store.shown("group")] == deepest.body).astype(float)
 
     def overlap_words(self, number: int, key: str) -> str:
         """Which body is how deep inside what."""
-        found = self.contacts.deepest(self.bodies)
-        inner = self.bodies.bodies[found.body].name
-        return f"bodies.{inner} is {found.depth:.3g} m inside {found.other}"
+        deepest = self.contacts.deepest(self.bodies)
+        inner = self.bodies.bodies[deepest.body].name
+        return f"bodies.{inner} is {deepest.depth:.3g} m inside {deepest.other}"
 
     def pushing(self, groups: Sequence[int], about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and moment of the contacts of bodies among the groups."""
@@ -119,10 +119,10 @@ class FloatingBodies(Work):
         whirl, bend = crossing(b.spin_ahead), crossing(b.angular_acceleration)
         linear = np.stack([b.turn, whirl @ b.turn, (bend + whirl @ whirl) @ b.turn], axis=1)
         starts = np.stack([b.place, b.ahead, b.acceleration], axis=1)
-        found = np.empty((len(b.place), 3, d, 1 + d))
-        found[..., 0] = (starts - np.einsum("nwde,ne->nwd", linear, b.reference))[:, :, :d]
-        found[..., 1:] = linear[:, :, :d, :d]
-        return found
+        maps = np.empty((len(b.place), 3, d, 1 + d))
+        maps[..., 0] = (starts - np.einsum("nwde,ne->nwd", linear, b.reference))[:, :, :d]
+        maps[..., 1:] = linear[:, :, :d, :d]
+        return maps
 
     def load(self, pushes: np.ndarray, comm) -> None:
         """The forces at the end of the step: those on the particles of this rank, ``pushes`` in whole

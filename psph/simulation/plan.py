@@ -216,7 +216,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     """The plan of a scene (psph.scene.Scene), with what its case or another catalogue offers."""
     case, catalogue = scene.case, catalogue or scene.case.catalogue
     entries = [one for one in catalogue.effects if acts_in(case, one.effect)]
-    calls = [(entry, *found) for entry in entries if (found := called_for(case, entry))]
+    calls = [(entry, *asked) for entry in entries if (asked := called_for(case, entry))]
     fits = [(entry, in_scene(effect, scene), reason) for entry, effect, reason in calls]
     fitted = [fit for fit in fits if fit[1] is not None]
     marking = [effect for _, effect, _ in fitted if hasattr(effect, "marks")]

@@ -108,8 +108,8 @@ class Solids(Work):
         """L of all rows."""
         self._moment = tuple(np.zeros(self._owned) for _ in self.store.rows[MOMENT.name])
         self._each(self._moments, 0, self._owned, self._weights, self._around[0], self._moment)
-        for of, found in zip(self.store[MOMENT.name], self._moment):
-            of[self._columns] = found
+        for row, component in zip(self.store[MOMENT.name], self._moment):
+            row[self._columns] = component
 
     @property
     def columns(self) -> np.ndarray:
@@ -187,9 +187,9 @@ class Solids(Work):
         if unknown and SHARE.name in self.store:
             every = padded_lists(*whole, Metres.lanes)
             held = ~among(self.store.group[self._columns], self.scene.layout.parts.movers)
-            found = shares_of(self._weights, tables[0], every, held, self._bring_of)
+            shares = shares_of(self._weights, tables[0], every, held, self._bring_of)
             shared = np.array([one.shared for one in self._planned.solids])[self._matter.number]
-            self.store[SHARE.name][self._columns] = np.where(shared, found, 1.0)
+            self.store[SHARE.name][self._columns] = np.where(shared, shares, 1.0)
         if self._cracks:
             strength = self._cracks.strengths(ids, self._matter.number)
             tables[1].records[: self._owned, tables[1].places[STRENGTH][0]] = strength
@@ -287,16 +287,16 @@ class Solids(Work):
         self._put(self._tables[1], PLACES, 0, n)
         self._bring(self._places)
         stress = tuple(np.zeros(n) for _ in store.rows[STRESS.name])
-        found = (np.zeros(n), stress, np.zeros(n), np.zeros(n))
+        measured = (np.zeros(n), stress, np.zeros(n), np.zeros(n))
         matter = self._matter._replace(sums=self._matter.sums[:1])
         seen = (matter, self._weights, self._around[1], self._moment, self._memory(0.0))
-        self._each(self._measure, 0, n, *seen, found)
+        self._each(self._measure, 0, n, *seen, measured)
         if self._cracks:
             self._cracks.measure(self._columns)
-        store[STORED.name][self._columns] = found[0]
-        store[VON_MISES.name][self._columns] = found[2]
+        store[STORED.name][self._columns] = measured[0]
+        store[VON_MISES.name][self._columns] = measured[2]
         if STRESS_ZZ.name in store:
-            store[STRESS_ZZ.name][self._columns] = found[3]
+            store[STRESS_ZZ.name][self._columns] = measured[3]
         for of, values in zip(store[STRESS.name], stress):
             of[self._columns] = values
 
@@ -305,17 +305,17 @@ class Solids(Work):
         :meth:`measure` for those of solids: what these carry themselves is what they show a fluid."""
         store, rows = self.store, self._columns.astype(np.int64) - self.store.low
         across = store.shown(STRESS_ZZ.name)[rows] if STRESS_ZZ.name in store else None
-        found = pressure.copy()
-        found[rows] = pressure_of(store.shown(STRESS.name)[rows], across, store.dimensions)
-        return found
+        shown = pressure.copy()
+        shown[rows] = pressure_of(store.shown(STRESS.name)[rows], across, store.dimensions)
+        return shown
 
     def energy(self) -> float:
         """Stored energy of all solids and their contacts, J; the same bits on any number of ranks,
         collective."""
         self.measure()
         names = [name for name in (STORED.name, CONTACT_ENERGY.name) if name in self.store]
-        found = exact_sums(self.comm, np.column_stack([self.store.shown(name) for name in names]))
-        return float(found.sum())
+        energies = exact_sums(self.comm, np.column_stack([self.store.shown(name) for name in names]))
+        return float(energies.sum())
 
     @property
     def neighbours(self) -> float:

@@ -87,11 +87,11 @@ def find_limits(simulation) -> None:
     displaces, moves = simulation.plan.displaces, simulation.plan.moves_walls
     with simulation.ledger("limits"):
         sent = [*extremes, simulation.request(), *([shift2] * displaces), *([wall2] * moves)]
-        found = largest(simulation.comm, sent)
-    simulation.fluid_speed, simulation.acceleration = np.sqrt(found[:2]).tolist()
-    simulation.strain, simulation.requested = found[2:4].tolist()
-    simulation.shift = float(np.sqrt(found[4]) if displaces else 0.0)
-    walls = float(np.sqrt(found[-1]) if moves else 0.0)
+        maxima = largest(simulation.comm, sent)
+    simulation.fluid_speed, simulation.acceleration = np.sqrt(maxima[:2]).tolist()
+    simulation.strain, simulation.requested = maxima[2:4].tolist()
+    simulation.shift = float(np.sqrt(maxima[4]) if displaces else 0.0)
+    walls = float(np.sqrt(maxima[-1]) if moves else 0.0)
     simulation.speed = max(simulation.fluid_speed, walls)
     simulation.impacts.see(simulation.acceleration)
 
