@@ -176,6 +176,17 @@ SPECIFIC_VOLUME = Field("specific_volume", "m3/kg", "1/density, as the forces re
 REFERENCE = Field("reference", "m", "place in the undeformed solid", VECTOR)
 """Where particles were at the start, of what keeps its neighbours or is followed by a gauge."""
 
+HELD_ACCELERATION = Field(
+    "held_acceleration",
+    "m/s2",
+    "part of the acceleration, or of the load, that serves for several steps",
+    VECTOR,
+    image=Drifting,
+)
+HELD_DENSITY_RATE = Field(
+    "held_density_rate", "kg/(m3 s)", "part of the rate of density that serves for several steps", image=Same
+)
+
 CROSSED = Field("crossed", "1", "periods by which a particle has been taken back into the domain", VECTOR)
 
 OF_EVERY_SCENE = (

@@ -277,6 +277,11 @@ class Kind:
         """Whether its work moves particles itself, beside the kick of what is free."""
         return False
 
+    @property
+    def bears_held(self) -> bool:
+        """Whether rates of friction may serve for several steps beside it."""
+        return True
+
     def renews(self, passes: Sequence) -> tuple[str, ...]:
         """Fields that its work fills anew just before the ``passes`` over neighbours are summed."""
         return ()

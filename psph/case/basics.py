@@ -65,6 +65,9 @@ class Time(Table):
     gather_every: int = key(
         "corrected gradients and other slow sums are renewed every so many steps", 1, ge=1
     )
+    damping_every: int = key(
+        "rates of friction, density diffusion and other damping serve for so many steps", 1, ge=1
+    )
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 
 

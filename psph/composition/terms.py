@@ -13,7 +13,7 @@ from numba.core import types
 
 from psph.engine.jit import method_of, overload, overload_walker, register_jitable, tuple_of, unrolled
 from psph.engine.simd import fold, total
-from psph.vectors import add, put, scale, zero_like
+from psph.vectors import add, at, put, scale, zero_like
 
 
 def _methods(effects, name: str) -> dict[int, Any]:
@@ -237,6 +237,22 @@ def _typed_finish_value(reductions, totals, i, kernel, k, written):
         store=store,
         **_named(methods),
     )
+
+
+def plus_held(arrays, k, value):
+    """A number, or a vector, and what an array, or the component arrays, hold besides; None holds nothing."""
+    if arrays is None:
+        return value
+    return add(value, at(arrays, k)) if isinstance(arrays, tuple) else value + arrays[k]
+
+
+@overload(plus_held)
+def _typed_plus_held(arrays, k, value):
+    if isinstance(arrays, types.NoneType):
+        return lambda arrays, k, value: value
+    if isinstance(arrays, types.BaseTuple):
+        return lambda arrays, k, value: add(value, at(arrays, k))
+    return lambda arrays, k, value: value + arrays[k]
 
 
 def store(arrays, k, value):

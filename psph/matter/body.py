@@ -56,6 +56,11 @@ class RigidBodies(Kind):
         """Contacts with elastic solids turn the normals of their faces, and so have a moment."""
         return (COUPLE,) if meets(self.scene) else ()
 
+    @property
+    def bears_held(self) -> bool:
+        """Not light ones: friction stops them within a step or a few."""
+        return self.share >= BRAKED
+
     def stages(self) -> Mapping[str, Stage]:
         """Their kick comes before that of the particles, with the new forces."""
         return {"kick": Stage(push_bodies, push_bodies)}

@@ -38,6 +38,8 @@ COUPLE = Field(
     AXIAL,
 )
 
+HELD_COUPLE = Field("held_couple", "m2/s2", "part of the couple that serves for several steps", AXIAL)
+
 WHIRL = Field(
     "whirl",
     "1/s",

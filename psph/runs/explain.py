@@ -239,10 +239,11 @@ NARROWEST = 22
 def _early_passes(plan: Plan) -> Iterator[str]:
     """The passes that gather sums for the one that gives the rates."""
     for early, later in zip(plan.passes, plan.passes[1:]):
-        names = ", ".join(type(effect).__name__ for effect in early.reductions)
+        own, what = (early.effects, "rates") if early.holds else (early.reductions, "sums")
+        names = ", ".join(type(effect).__name__ for effect in own)
         often = "one a step" if early.every == 1 else f"one in {early.every} steps"
         sent = f"; ghosts then get {', '.join(later.brought)}" if later.brought else ""
-        yield f"Pass over the neighbours, {often}, before the next: sums of {names}{sent}"
+        yield f"Pass over the neighbours, {often}, before the next: {what} of {names}{sent}"
 
 
 def _first_line(effect) -> str:

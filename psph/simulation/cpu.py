@@ -12,12 +12,12 @@ from psph.composition.loads import Couple, Loads, Unloaded
 from psph.composition.space import softening
 from psph.engine.settled import Settled, settled
 from psph.engine.threads import in_threads
-from psph.fields import companions, seen_at, view_of
+from psph.fields import HELD_ACCELERATION, companions, seen_at, view_of
 from psph.kinds import Rank
 from psph.output.ledger import Ledger
 from psph.particles.records import Records
 from psph.particles.store import Store
-from psph.physics.motion import COUPLE, LOAD
+from psph.physics.motion import COUPLE, HELD_COUPLE, LOAD
 from psph.simulation.bounded import admit_kicked, admit_predicted
 from psph.simulation.integrator import (
     kick,
@@ -29,7 +29,7 @@ from psph.simulation.integrator import (
 )
 from psph.simulation.neighbourhood import Neighbourhood
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
-from psph.simulation.passes import Pass
+from psph.simulation.passes import HELD, Pass
 from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
@@ -73,7 +73,7 @@ class Engine:
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
-        self._load = settled(sum_over_neighbours)
+        self._loads = [settled(sum_over_neighbours) for _ in plan.passes]
         self._potential = settled(potentials)
         self._paid = 0.0
         self._bundles: dict[tuple, Columns] = {}
@@ -138,13 +138,16 @@ class Engine:
         for one in self.plan.passes:
             if not (one.due(steps) or at_once and one.slow):
                 continue
-            if fields := stale + tuple(name for name in one.brought if name in written):
+            fields = stale + tuple(name for name in one.brought if name in written)
+            if fields:
                 self._sum_while_refreshing(one, fields)
             else:
                 self._sum_all(one)
+            if one.gives_rates and not one.holds:
+                self._add_held_couples()
             if one.settles:
                 self.each(settle_given_pressure, self._rules, self.view(0.0), self.columns())
-            stale, written = (), written | one.written
+            stale, written = (), written.difference(fields) | one.written
         self.neighbourhood.mark()
         for kind in self.kinds:
             kind.after_sums(time, dt)
@@ -275,6 +278,13 @@ class Engine:
             for columns, lists in self.neighbourhood.dry_beside_fluid(first, last):
                 self._load_dry(one, *loops[0], columns, lists)
 
+    def _add_held_couples(self) -> None:
+        """To the couples of the last pass those that serve for several steps."""
+        s = self.store
+        if HELD_COUPLE.name in s:
+            for row, held in zip(s.rows[COUPLE.name], s.rows[HELD_COUPLE.name]):
+                s.data[row, s.inner] += s.data[held, s.inner]
+
     def _load_dry(self, one: Pass, loop, args: tuple, columns: np.ndarray, lists) -> None:
         """The load alone of some ``columns``, walls that are dry, by the ``loop`` of loads: all else
         of them stays as without fluid."""
@@ -282,7 +292,8 @@ class Engine:
         due = np.zeros(self.store.total, np.uint8)
         due[columns] = 1
         asked = summed._replace(loads=summed.loads._replace(loaded=ON_DUE, group=due))
-        rows = [row for name in ("density_rate", *one.filled) for row in self.store.rows[name]]
+        filled = (name for name in (*one.gives[1:], *one.filled) if name in self.store)
+        rows = [row for name in filled for row in self.store.rows[name]]
         kept, data = np.ix_(rows, columns), self.store.data
         before = data[kept]
         in_threads(loop, columns[0], columns[-1] + 1, asked, metric, view, around._replace(lists=lists), sums)
@@ -300,17 +311,21 @@ class Engine:
         s, plan, records = self.store, self.plan, self.records[one.place]
         around = Around(records.view(), records.table, s.low, *self.neighbourhood.of(one))
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
-        rates = (s["acceleration"], s["density_rate"]) if one.gives_rates else (None, None)
-        sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)))
+        rates = [s[name] if name in s else None for name in one.gives] or [None, None]
+        last = one.gives_rates and not one.holds
+        held = [s[name] if last and name in s else None for name in HELD]
+        sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)), *held)
         rest = None
         if one.gives_rates and plan.materials.loaded is not None:
             rest = Unloaded(plan.materials.loaded, s.group)
             reductions, written = one.reductions, sums.written
-            if COUPLE.name in s and plan.loads is Loads:
-                reductions, written = (*reductions, Couple(one.effects)), (*written, s[COUPLE.name])
+            couple = HELD_COUPLE.name if one.holds else COUPLE.name
+            if couple in s and plan.loads is Loads:
+                reductions, written = (*reductions, Couple(one.effects)), (*written, s[couple])
             summed = Summed(one.effects, reductions, plan.loads(plan.materials.loaded, s.group))
-            told = sums._replace(acceleration=s[LOAD.name], written=written)
-            yield self._load, (summed, *seen, told)
+            pushed = s[HELD_ACCELERATION.name if one.holds else LOAD.name]
+            told = sums._replace(acceleration=pushed, written=written)
+            yield self._loads[one.place], (summed, *seen, told)
         summed = Summed(one.effects, one.reductions, rest)
         yield self._sums[one.place], (summed, *seen, sums)
 

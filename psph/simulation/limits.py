@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from psph.simulation.paces import share_of_limit
+
 
 def step_limits(plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
     """Every limit of the time step with its name, s, for the largest |v| and |a|."""
@@ -13,4 +15,5 @@ def step_limits(plan, speed: float, acceleration: float) -> Iterator[tuple[float
     heeded = [effect for kind in plan.matter for effect in kind.heeds(plan)]
     for call in plan.called:
         if hasattr(call.effect, "longest_step") and not any(call.effect is one for one in heeded):
-            yield call.effect.longest_step(plan.extremes), call.title
+            share = share_of_limit(call.effect, plan.pace(call.effect))
+            yield share * call.effect.longest_step(plan.extremes), call.title

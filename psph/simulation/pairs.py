@@ -9,7 +9,7 @@ from psph.composition.loads import by_fluid, completed, is_due
 from psph.composition.mirrors import at_look, ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
-from psph.composition.terms import added, pushed, store
+from psph.composition.terms import added, plus_held, pushed, store
 from psph.engine.jit import compiled
 from psph.engine.simd import spread, total, width_of
 from psph.vectors import zero_like
@@ -47,11 +47,14 @@ class Around(NamedTuple):
 
 class Sums(NamedTuple):
     """Where sums go: the array, or None, that each reduction fills; ``acceleration`` and
-    ``density_rate`` are None in a pass that gathers sums alone."""
+    ``density_rate`` are None in a pass that gathers sums alone.  What an earlier pass summed of both, for
+    this step and others, is ``held`` and ``held_rate``: they come besides, where they are not None."""
 
     acceleration: Any
     density_rate: Any
     written: tuple
+    held: Any = None
+    held_rate: Any = None
 
 
 @compiled
@@ -88,6 +91,7 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
                 a = added(a, by_fluid(loads, j, terms.push(effects, i, j, pair)))
                 totals = terms.gather_each(reductions, totals, i, j, pair)
         folded = terms.fold_each(reductions, totals)
-        store(sums.acceleration, k, completed(loads, effects, reductions, folded, i, total(a)))
-        store(sums.density_rate, k, total(rate))
+        whole = completed(loads, effects, reductions, folded, i, total(a))
+        store(sums.acceleration, k, plus_held(sums.held, k, whole))
+        store(sums.density_rate, k, plus_held(sums.held_rate, k, total(rate)))
         terms.finish_value(reductions, folded, i, metric.kernel, k, sums.written)

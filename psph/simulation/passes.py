@@ -2,7 +2,15 @@
 
 from typing import Any, NamedTuple
 
-from psph.fields import PRESSURE, SPECIFIC_VOLUME, filled
+from psph.fields import (
+    ACCELERATION,
+    DENSITY_RATE,
+    HELD_ACCELERATION,
+    HELD_DENSITY_RATE,
+    PRESSURE,
+    SPECIFIC_VOLUME,
+    filled,
+)
 
 
 class SumsInACircle(TypeError):
@@ -17,8 +25,9 @@ class Pass(NamedTuple):
     several fields, that each of these fills, or None.  ``neighbour_fields`` are what it reads of a
     neighbour, ``brought`` those among them that an earlier pass writes: ghosts need them again whenever that
     one has run.  It runs in every ``every``-th step, and more often after an impact
-    (psph.simulation.impacts) where its sums are ``slow``.  One is ``across`` that sums over pairs with
-    particles that are apart (psph.particles.apart), and no other does.  A pass that fills the pressure of
+    (psph.simulation.impacts) where its sums are ``slow``.  The rates of one that ``holds`` serve until it
+    runs again.  One is ``across`` that sums over pairs with particles that are apart
+    (psph.particles.apart), and no other does.  A pass that fills the pressure of
     some particles ``settles`` their density too.
     """
 
@@ -31,6 +40,7 @@ class Pass(NamedTuple):
     every: int
     slow: bool = False
     across: bool = False
+    holds: bool = False
 
     @property
     def settles(self) -> bool:
@@ -49,25 +59,43 @@ class Pass(NamedTuple):
 
     @property
     def gives_rates(self) -> bool:
-        """Whether it is the pass that sums acceleration and rate of density."""
+        """Whether it sums acceleration and rate of density, or what of them serves for several steps."""
         return bool(self.effects)
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """The arrays of the acceleration and the rate of density that it sums."""
+        if not self.gives_rates:
+            return ()
+        return HELD if self.holds else RATES
 
     def due(self, steps: int) -> bool:
         """Whether it runs in the step after so many."""
         return steps % self.every == 0
 
 
+RATES = (ACCELERATION.name, DENSITY_RATE.name)
+HELD = (HELD_ACCELERATION.name, HELD_DENSITY_RATE.name)
+"""What passes sum that give rates, and those whose rates serve for several steps."""
+
+
 def make_passes(
-    called, stored: tuple[str, ...], seen_as, gather_every: int = 1, also: tuple[str, ...] = ()
+    called,
+    stored: tuple[str, ...],
+    seen_as,
+    gather_every: int = 1,
+    also: tuple[str, ...] = (),
+    hold_for: int = 1,
 ) -> tuple[Pass, ...]:
     """The passes of the effects that were called for, in order; the last gives the rates.
 
     An effect whose sum others read in the same step comes in a pass before theirs; one that is
     ``lagged`` is content with the sum of the step before, and needs none of its own.  What is ``slow``
     also serves for some steps more: if ``gather_every`` is above 1, it comes in a pass that runs as
-    seldom.  ``stored`` are
-    the names of all arrays, ``seen_as`` tells the array that formulas see under a name; ``also`` is what
-    the last is to have of a neighbour whatever the effects.  Without effects there are no passes.
+    seldom.  The rates of effects that are ``held`` serve for ``hold_for`` steps: if that is above 1, they
+    come in a pass of their own before the last.  ``stored`` are the names of all arrays, ``seen_as`` tells
+    the array that formulas see under a name; ``also`` is what passes that give rates are to have of a
+    neighbour whatever the effects.  Without effects there are no passes.
     """
     if not called:
         return ()
@@ -96,8 +124,15 @@ def make_passes(
         if hasattr(call.effect, "start")
         and (id(call) not in done or hasattr(call.effect, "finish_acceleration"))
     ]
-    effects = tuple(call.effect for call in called)
-    return (*passes, _pass(len(passes), effects, reductions, called, before, stored, seen_as, 1, also))
+    held = [call for call in called if hold_for > 1 and getattr(call.effect, "held", False)]
+    if held:
+        own = tuple(call.effect for call in held)
+        made = _pass(len(passes), own, (), held, before, stored, seen_as, hold_for, also)
+        passes.append(made._replace(slow=True, holds=True))
+    free = [call for call in called if not any(call is one for one in held)]
+    effects = tuple(call.effect for call in free)
+    read = free + [call for call in held if any(call.effect is one for one in reductions)]
+    return (*passes, _pass(len(passes), effects, reductions, read, before, stored, seen_as, 1, also))
 
 
 def array_of(name: str, stored: tuple[str, ...]) -> str:

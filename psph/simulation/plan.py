@@ -32,6 +32,7 @@ from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
 from psph.simulation.movement import carried_fields
+from psph.simulation.paces import held_fields, is_held, steps_held
 from psph.simulation.passes import Pass, array_of, make_passes
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
 from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
@@ -109,6 +110,8 @@ class Plan:
     fixed_step: float | None
     extremes: Any
     """The scene's shared values, and the largest of those that differ by material."""
+    steps_held: int
+    """For how many steps the rates of friction serve (psph.simulation.paces)."""
 
     def of(self, name: str) -> Any:
         """The kind of matter of that name, or None."""
@@ -175,6 +178,10 @@ class Plan:
         """The effect that keeps an evolved field within bounds, or None."""
         return next((e for e in self.effects if hasattr(e, "admit")), None)
 
+    def pace(self, effect) -> int:
+        """For how many steps the rates of an effect serve."""
+        return self.steps_held if is_held(effect) else 1
+
     @cached_property
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
@@ -195,13 +202,18 @@ class Plan:
         return tuple(field.name for field in self.seen if field.name in read)
 
     def flops_per_pair(self, periods: tuple, effects: tuple | None = None) -> int:
-        """Operations of a pair in the pass that gives the rates, of all or just some ``effects``; 0 where
-        there is no such pass."""
-        if not self.passes:
-            return 0
+        """Operations of a pair in a step, of all or just some ``effects``: those of the passes that give
+        rates, one that runs in every n-th step at an n-th; 0 where there is no such pass."""
         effects = self.effects if effects is None else effects
-        sums = tuple(e for e in effects if any(e is one for one in self.passes[-1].reductions))
-        return flops_per_pair(effects, sums, self.kernel, self.seen, self.constants, periods)
+        operations = 0.0
+        for one in self.passes:
+            own, sums = (
+                tuple(e for e in es if any(e is f for f in effects)) for es in (one.effects, one.reductions)
+            )
+            if one.gives_rates:
+                counted = flops_per_pair(own, sums, self.kernel, self.seen, self.constants, periods)
+                operations += counted / one.every
+        return round(operations)
 
     def longest_step(self, speed: float, acceleration: float) -> tuple[float, str]:
         """Δt in s and the name of the limit that sets it, for the largest |v| and |a|."""
@@ -231,7 +243,14 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     species, flows = materials.species, materials.flows
     of_kinds = tuple(field for kind in matter for field in kind.fields) + followed_fields(scene)
     of_kinds += (APART,) if materials.apart.any() else ()
-    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_kinds)
+    extremes = Extremes(
+        *(getattr(scene, name) for name in OF_SCENE),
+        *(max(material_value(m, f.name) for m in species) for f in OF_MATERIAL),
+    )
+    hold_for = steps_held(scene, (effect for _, effect, _ in fitted), extremes, matter)
+    slow = [effect for _, effect, _ in fitted if is_held(effect)] if hold_for > 1 else []
+    held = held_fields(slow, has_couples(scene))
+    fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_kinds, held)
     called = tuple(called_with(entry, effect, reason, scene, fields) for entry, effect, reason in fitted)
     present, pulls = {entry for entry, *_ in fitted}, pulls_of(called, scene.dimensions, flows)
     loaded = materials.loaded is not None
@@ -242,7 +261,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     shared, varying = split(species, own | told_by)
     at_start = tuple(field.name for _, effect, _ in fitted for field in fixed(effect))
     varying += tuple(name for name in at_start if name in own)
-    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_kinds))
+    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_kinds, *held))
     refuse_unwritten(scene, called, (*computed, *told, *at_start))
     seen = tuple(field for name, field in fields.items() if name in own)
     imaged = by_name(OF_EVERY_SCENE, seen).values()
@@ -260,6 +279,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         lambda name: array_of(name, stored),
         case.time.gather_every,
         for_loads,
+        hold_for,
     )
     met = next(filter(None, (kind.own_pass(called, stored) for kind in matter)), None)
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
@@ -303,10 +323,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         renewed=tuple(name for name in refreshed if name in renewed),
         cfl=case.time.cfl,
         fixed_step=case.time.step,
-        extremes=Extremes(
-            *(getattr(scene, name) for name in OF_SCENE),
-            *(max(material_value(m, f.name) for m in species) for f in OF_MATERIAL),
-        ),
+        extremes=extremes,
+        steps_held=hold_for,
     )
 
 

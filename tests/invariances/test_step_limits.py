@@ -24,6 +24,7 @@ def lattice(
     smoothing=1.4,
     support=2.0,
     gather_every=1,
+    damping_every=1,
     dimensions=2,
     **fluid,
 ):
@@ -34,7 +35,7 @@ def lattice(
     return {
         "scheme": scheme,
         "space": {"dimensions": dimensions, "spacing": DX, **space},
-        "time": {"end": 10.0, "gather_every": gather_every},
+        "time": {"end": 10.0, "gather_every": gather_every, "damping_every": damping_every},
         "use": uses(physics or {}),
         "physics": {"sound_speed": 20.0, **(physics or {})},
         "fluids": {"water": {"shape": {"box": ends}, **fluid}},
@@ -122,6 +123,31 @@ def test_no_wave_grows_at_the_limit_and_one_does_beyond(tmp_path, name):
     step = limit_of(tables, tmp_path)
     assert amplification(tables, tmp_path, step) < 1.0 + GROWS
     assert amplification(tables, tmp_path, beyond * step) > 1.0 + GROWS
+
+
+HELD_FOR = 4
+HELD = {
+    "pair damping": (lattice({"pair_damping": 20.0}, damping_every=HELD_FOR), 1.6),
+    "laminar viscosity": (lattice(viscosity=5.0, damping_every=HELD_FOR), 1.6),
+    "reconstructed damping": (
+        lattice({"reconstructed_damping": 20.0}, scheme="stable", damping_every=HELD_FOR),
+        1.6,
+    ),
+    "fourth order diffusion": (
+        lattice({"fourth_order_diffusion": 0.2}, scheme="stable", damping_every=HELD_FOR),
+        1.4,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", long_but_for(("pair damping", "fourth order diffusion"), HELD))
+def test_rates_that_serve_for_four_steps_are_stable_at_their_limit(tmp_path, monkeypatch, name):
+    """And not beyond, where the scene is not let to renew them in time, as it would."""
+    tables, beyond = HELD[name]
+    monkeypatch.setattr("psph.simulation.plan.steps_held", lambda *of: HELD_FOR)
+    step = limit_of(tables, tmp_path)
+    assert amplification(tables, tmp_path, step, HELD_FOR) < 1.0 + GROWS
+    assert amplification(tables, tmp_path, beyond * step, HELD_FOR) > 1.0 + GROWS
 
 
 NOISE = {

@@ -164,6 +164,11 @@ FAMILIES = {
 }
 
 
+def _seldom(family: Family) -> dict:
+    """Slow sums, and rates that serve for several steps, are renewed equally seldom."""
+    return {"gather_every": family.gather_every, "damping_every": family.gather_every}
+
+
 def scene(family: Family, seed: int) -> str:
     """The TOML of a scene; the same for the same seed.  It may use files of run/remedies beside it."""
     rng = np.random.default_rng(seed)
@@ -173,7 +178,7 @@ def scene(family: Family, seed: int) -> str:
         "scheme": family.scheme,
         "precision": family.precision,
         "space": _space(family, rng, sizes),
-        "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5), "gather_every": family.gather_every},
+        "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5), **_seldom(family)},
         "neighbours": {"skin": _drawn(rng, 0.02, 0.3)},
         "parallel": {"axis": family.along},
         "physics": {"sound_speed": 10.0, **_physics(family, rng)},

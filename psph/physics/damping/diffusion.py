@@ -128,6 +128,7 @@ class BesideSmoothDensity(NamedTuple):
     )
     lagged = True
     slow = True
+    held = 6.0
 
     def start(self, i):
         """No neighbour yet."""

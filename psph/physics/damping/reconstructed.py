@@ -89,6 +89,7 @@ class BesideLinearFlow(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
+    held = 2.0
 
     alpha: float
     near2: float

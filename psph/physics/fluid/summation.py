@@ -79,6 +79,7 @@ class SummedOnLattice(NamedTuple):
     writes = FULLNESS
     lagged = True
     slow = True
+    held = 2.0
 
     def start(self, i):
         """No neighbour yet."""

@@ -92,6 +92,7 @@ class NewtonianFriction(NamedTuple):
     """
 
     conserves = ("momentum",)
+    held = 2.0
 
     friction: Any = Rub()
 
@@ -152,6 +153,7 @@ class CentralNewtonianFriction(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
+    held = 2.0
 
     friction: Any = Rub()
 
@@ -176,6 +178,7 @@ class LaplacianFriction(NamedTuple):
     acts = (FLUIDS,)
     roles = (FRICTION,)
     conserves = ("momentum",)
+    held = 2.0
 
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
@@ -216,6 +219,7 @@ class ArtificialViscosity(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
+    held = 2.0
 
     alpha: Annotated[
         float, Field(ge=0, description="linear coefficient α", json_schema_extra={"unit": "1"})
@@ -259,6 +263,7 @@ class PairDamping(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
+    held = 2.0
     brakes = True
     """A light body too, faster than the fluid: see psph.scene.bodies.braked."""
 

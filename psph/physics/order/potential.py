@@ -102,6 +102,7 @@ class InDisorder(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
+    held = 2.0
 
     core: float
     steepness: float

@@ -1,0 +1,61 @@
+"""For how many steps the rates of slow effects serve: two clocks, that of sound and that of friction."""
+
+from collections.abc import Iterable
+
+from psph.fields import HELD_ACCELERATION, HELD_DENSITY_RATE, Field
+from psph.physics.motion import HELD_COUPLE
+
+PACES = (8, 4, 2)
+"""Steps for which they serve where their limits do not bear what is asked for."""
+
+WORTH = 0.97
+"""A step shorter by this factor is made up for by what held rates save."""
+
+
+def is_held(effect) -> bool:
+    """Whether the rates of an effect may serve for several steps: those of friction, and other slow ones."""
+    return bool(getattr(effect, "held", False))
+
+
+def steps_held(scene, effects: Iterable, extremes, kinds) -> int:
+    """For how many steps the rates of the held ones among the ``effects`` serve.
+
+    As many as ``time.damping_every`` asks for, or fewer where their limits of the time step would make it
+    shorter than the rest of the scene takes it; 1 where a kind of matter does not bear it.
+    """
+    effects = tuple(effects)
+    asked = scene.case.time.damping_every if any(map(is_held, effects)) else 1
+    if asked == 1 or not all(kind.bears_held for kind in kinds):
+        return 1
+    limited = [one for one in effects if hasattr(one, "longest_step")]
+    sound = scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
+    rest = [sound, *(one.longest_step(extremes) for one in limited if not is_held(one))]
+    longest = scene.case.time.step or WORTH * min(rest)
+    own = [(one.longest_step(extremes), one) for one in limited if is_held(one)]
+    paces = sorted({asked, *(n for n in PACES if n < asked)}, reverse=True)
+    fits = (n for n in paces if all(step * share_of_limit(one, n) >= longest for step, one in own))
+    return next(fits, 1)
+
+
+def share_of_limit(effect, steps: int) -> float:
+    """a/(N + 1), a the effect's ``held``: which part of its limit of the step it stands where its rates serve
+    for N ``steps``.
+
+    What decays at the rate λ by a force of every N-th step and is predicted with the one before it follows
+    v̂ₘ₊₁ = v̂ₘ − NλΔt v̂ₘ − ½λΔt (v̂ₘ − v̂ₘ₋₁): stable for (N + 1) λΔt < 2.  In every step a velocity, predicted
+    to first order, is stable for λΔt < 1 and a density for λΔt < 1/3 (psph.simulation.integrator): a is 2 for
+    friction and 6 for diffusion.
+    """
+    return effect.held / (steps + 1) if steps > 1 else 1.0
+
+
+def held_fields(effects: Iterable, coupled: bool) -> tuple[Field, ...]:
+    """What particles carry of the rates of these held effects; ``coupled``: of their moments too."""
+    effects = tuple(effects)
+    found = [HELD_ACCELERATION] if _any_has(effects, "radial", "shear", "push") else []
+    found += [HELD_DENSITY_RATE] if _any_has(effects, "density_rate") else []
+    return (*found, *([HELD_COUPLE] if coupled and _any_has(effects, "shear", "push") else []))
+
+
+def _any_has(effects: tuple, *methods: str) -> bool:
+    return any(hasattr(effect, name) for effect in effects for name in methods)
