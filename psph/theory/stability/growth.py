@@ -155,7 +155,7 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
     n, every = int(inner.sum()), len(sites)
     stiffness, damping = np.zeros((n, d, n, d)), np.zeros((n, d, n, d))
     push, pull = np.zeros((n, d, every)), np.zeros((every, n, d))
-    diffusion = np.zeros((every, every))
+    diffusion, wet = np.zeros((every, every)), inner.copy()
     for k, step in enumerate(pairs.whole):
         a = np.flatnonzero(((sites + step >= 0) & (sites + step < shape)).all(axis=1))
         b = np.ravel_multi_index((sites[a] + step).T, shape)
@@ -164,6 +164,7 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
         diffusion[a, a] += taken
         diffusion[a, b] -= taken
         towards = inner[b]
+        wet[a[towards]] = True
         pull[a[towards], own[b[towards]]] += pairs.pull[k]
         a, b = a[inner[a]], b[inner[a]]
         towards = inner[b]
@@ -172,6 +173,7 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
         for matrix, part in ((stiffness, pairs.stiffness[k]), (damping, pairs.damping[k])):
             matrix[own[a], :, own[a], :] += part
             matrix[own[a[towards]], :, own[b[towards]], :] -= part
+    diffusion[~wet] = 0.0  # walls that no fluid reaches rest: psph.particles.wetting
     q = n * d
     return System(
         stiffness.reshape(q, q),
