@@ -145,7 +145,8 @@ def box_of(pairs: Couplings, cells: int, layers: int) -> tuple[System, np.ndarra
     """The motion of ``cells``^d particles inside ``layers`` of fixed ones, and their n (n, d).
 
     Row d·i + x of the matrices is coordinate x of the particle i that moves; densities are those
-    of all sites, fixed ones included.  Layers beyond the couplings' reach change nothing.
+    of all sites, fixed ones included.  Fixed sites that no particle reaches rest, as dry walls do in a
+    run, and layers beyond them change nothing.
     """
     d = pairs.whole.shape[1]
     shape = np.full(d, cells + 2 * layers)
