@@ -66,7 +66,7 @@ class Time(Table):
         "corrected gradients and other slow sums are renewed every so many steps", 1, ge=1
     )
     damping_every: int = key(
-        "rates of friction, density diffusion and other damping serve for so many steps", 1, ge=1
+        "rates of friction, of the pair potential and of summed density serve for so many steps", 1, ge=1
     )
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 

@@ -15,5 +15,5 @@ def step_limits(plan, speed: float, acceleration: float) -> Iterator[tuple[float
     heeded = [effect for kind in plan.matter for effect in kind.heeds(plan)]
     for call in plan.called:
         if hasattr(call.effect, "longest_step") and not any(call.effect is one for one in heeded):
-            share = share_of_limit(call.effect, plan.pace(call.effect))
+            share = share_of_limit(call.effect, plan.steps_held)
             yield share * call.effect.longest_step(plan.extremes), call.title

@@ -37,16 +37,21 @@ def steps_held(scene, effects: Iterable, extremes, kinds) -> int:
     return next(fits, 1)
 
 
+def held_parts(effect, scene) -> tuple:
+    """The parts of an effect where rates serve for several steps: the one that is held, and one that acts in
+    each where the effect says so (``held_apart``)."""
+    return effect.held_apart(scene) if hasattr(effect, "held_apart") else (effect,)
+
+
 def share_of_limit(effect, steps: int) -> float:
-    """a/(N + 1), a the effect's ``held``: which part of its limit of the step it stands where its rates serve
-    for N ``steps``.
+    """2/(N + 1) of a held one, else 1: which part of its limit of the step an effect stands where held rates
+    serve for N ``steps``.
 
     What decays at the rate λ by a force of every N-th step and is predicted with the one before it follows
-    v̂ₘ₊₁ = v̂ₘ − NλΔt v̂ₘ − ½λΔt (v̂ₘ − v̂ₘ₋₁): stable for (N + 1) λΔt < 2.  In every step a velocity, predicted
-    to first order, is stable for λΔt < 1 and a density for λΔt < 1/3 (psph.simulation.integrator): a is 2 for
-    friction and 6 for diffusion.
+    v̂ₘ₊₁ = v̂ₘ − NλΔt v̂ₘ − ½λΔt (v̂ₘ − v̂ₘ₋₁): stable for (N + 1) λΔt < 2.  In every step it is for λΔt < 1
+    (psph.simulation.integrator).
     """
-    return effect.held / (steps + 1) if steps > 1 else 1.0
+    return 2.0 / (steps + 1) if is_held(effect) else 1.0
 
 
 def held_fields(effects: Iterable, coupled: bool) -> tuple[Field, ...]:

@@ -32,7 +32,7 @@ from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
 from psph.simulation.movement import carried_fields
-from psph.simulation.paces import held_fields, is_held, steps_held
+from psph.simulation.paces import held_fields, held_parts, is_held, steps_held
 from psph.simulation.passes import Pass, array_of, make_passes
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
 from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
@@ -178,10 +178,6 @@ class Plan:
         """The effect that keeps an evolved field within bounds, or None."""
         return next((e for e in self.effects if hasattr(e, "admit")), None)
 
-    def pace(self, effect) -> int:
-        """For how many steps the rates of an effect serve."""
-        return self.steps_held if is_held(effect) else 1
-
     @cached_property
     def carriers(self) -> tuple:
         """The effects that have a part in kick and drift: scenes without share those loops."""
@@ -248,6 +244,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         *(max(material_value(m, f.name) for m in species) for f in OF_MATERIAL),
     )
     hold_for = steps_held(scene, (effect for _, effect, _ in fitted), extremes, matter)
+    if hold_for > 1:
+        fitted = [(one, part, why) for one, effect, why in fitted for part in held_parts(effect, scene)]
     slow = [effect for _, effect, _ in fitted if is_held(effect)] if hold_for > 1 else []
     held = held_fields(slow, has_couples(scene))
     fields = by_name(catalogue.fields.values(), written, further, OF_MOTION, of_kinds, held)

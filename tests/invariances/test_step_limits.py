@@ -133,14 +133,10 @@ HELD = {
         lattice({"reconstructed_damping": 20.0}, scheme="stable", damping_every=HELD_FOR),
         1.6,
     ),
-    "fourth order diffusion": (
-        lattice({"fourth_order_diffusion": 0.2}, scheme="stable", damping_every=HELD_FOR),
-        1.4,
-    ),
 }
 
 
-@pytest.mark.parametrize("name", long_but_for(("pair damping", "fourth order diffusion"), HELD))
+@pytest.mark.parametrize("name", long_but_for(("pair damping",), HELD))
 def test_rates_that_serve_for_four_steps_are_stable_at_their_limit(tmp_path, monkeypatch, name):
     """And not beyond, where the scene is not let to renew them in time, as it would."""
     tables, beyond = HELD[name]

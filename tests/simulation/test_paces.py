@@ -91,6 +91,5 @@ def test_momentum_is_kept_to_rounding_and_the_flow_differs_little(tmp_path):
     ],
 )
 def test_as_many_steps_as_the_scene_bears(tmp_path, steps, tables, held):
-    """The fourth-order diffusion does not bear 8; in honey the step would be shorter, and friction stops light
-    bodies within a step or a few."""
+    """Damping in disorder does not bear 8 in 2D; in honey the step would be shorter, and friction stops light bodies within a step or a few."""
     assert make_plan(Scene(draft(tmp_path, tomli_w.dumps(every(steps, tables))))).steps_held == held

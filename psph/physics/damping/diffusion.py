@@ -128,7 +128,6 @@ class BesideSmoothDensity(NamedTuple):
     )
     lagged = True
     slow = True
-    held = 6.0
 
     def start(self, i):
         """No neighbour yet."""

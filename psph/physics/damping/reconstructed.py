@@ -7,7 +7,7 @@ from pydantic import Field
 from psph.engine.jit import call_by_type
 from psph.fields import SYMMETRIC, StrainRate
 from psph.fields import Field as Declared
-from psph.formula import where
+from psph.formula import helper, where
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
@@ -129,3 +129,61 @@ class BesideLinearFlow(NamedTuple):
     def longest_step(self, scene):
         """That of :class:`psph.physics.fluid.viscosity.PairDamping`, of the largest α, s."""
         return braking_step(self.alpha + self.more, scene)
+
+    def held_apart(self, scene: Facts):
+        """Rates of fluid neighbours may serve for several steps.  Those of walls act in each: held, they push
+        on what has bounced off, and a dam break loses particles through its walls."""
+        if all(one.is_fluid for one in scene.species):
+            return (self,)
+        return InFluid(*self), AtWalls(self.alpha, self.more, self.images)
+
+
+along_pair = helper(BesideLinearFlow.radial)
+"""(effect, i, j, pair) → 1/s², of any pair."""
+
+
+class InFluid(NamedTuple):
+    """Numerical friction along a pair of fluid neighbours, on its motion relative to the linear flow around.
+
+    The part of :class:`BesideLinearFlow` whose rates may serve for several steps.
+    """
+
+    conserves = ("momentum", "angular momentum")
+    held = True
+
+    alpha: float
+    near2: float
+    more: float
+    images: Any
+
+    writes, lagged, slow = BesideLinearFlow.writes, True, True
+    start, gather = BesideLinearFlow.start, BesideLinearFlow.gather
+    finish_value, longest_step = BesideLinearFlow.finish_value, BesideLinearFlow.longest_step
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        return where(i.is_fluid * flows(self.images, i, j) > 0.0, along_pair(self, i, j, pair), 0.0)
+
+
+class AtWalls(NamedTuple):
+    """Numerical friction along a pair of a fluid and a wall, where they approach at more than 0.02 c.
+
+    The part of :class:`BesideLinearFlow` that acts in every step.
+    """
+
+    conserves = ("momentum", "angular momentum")
+
+    alpha: float
+    more: float
+    images: Any
+
+    longest_step = BesideLinearFlow.longest_step
+
+    def radial(self, i, j, pair):
+        """Coefficient of x_ij in the acceleration, 1/s²."""
+        h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
+        approach = min(pair.u_dot_x + (AT_WALLS * i.sound_speed) * pair.r, 0.0)
+        felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, 0.0, approach)
+        alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
+        strength = alpha * h * i.sound_speed * (v_i * lighter(i, j))
+        return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r

@@ -79,7 +79,7 @@ class SummedOnLattice(NamedTuple):
     writes = FULLNESS
     lagged = True
     slow = True
-    held = 2.0
+    held = True
 
     def start(self, i):
         """No neighbour yet."""

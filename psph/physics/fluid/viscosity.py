@@ -92,7 +92,7 @@ class NewtonianFriction(NamedTuple):
     """
 
     conserves = ("momentum",)
-    held = 2.0
+    held = True
 
     friction: Any = Rub()
 
@@ -153,7 +153,7 @@ class CentralNewtonianFriction(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
-    held = 2.0
+    held = True
 
     friction: Any = Rub()
 
@@ -178,7 +178,7 @@ class LaplacianFriction(NamedTuple):
     acts = (FLUIDS,)
     roles = (FRICTION,)
     conserves = ("momentum",)
-    held = 2.0
+    held = True
 
     def shear(self, i, j, pair):
         """Coefficient of u_ij in the acceleration, 1/s."""
@@ -219,7 +219,7 @@ class ArtificialViscosity(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
-    held = 2.0
+    held = True
 
     alpha: Annotated[
         float, Field(ge=0, description="linear coefficient α", json_schema_extra={"unit": "1"})
@@ -263,7 +263,7 @@ class PairDamping(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
-    held = 2.0
+    held = True
     brakes = True
     """A light body too, faster than the fluid: see psph.scene.bodies.braked."""
 

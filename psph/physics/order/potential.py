@@ -102,7 +102,7 @@ class InDisorder(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
-    held = 2.0
+    held = True
 
     core: float
     steepness: float
