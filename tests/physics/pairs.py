@@ -66,7 +66,7 @@ def view(n=2, dim=2, seed=3):
         deviator=tuple(rng.normal(size=n) * 500 for _ in range(dim * (dim + 1) // 2)),
         face_normal=tuple(np.resize((0.0, 0.6 if d else 0.8, 0.0), n) for d in range(dim)),
         face_side=tuple(np.resize((0.0, 0.2 if d else -0.3, 0.0), n) for d in range(dim)),
-        face_edge=np.zeros(n),
+        face_edge=np.resize((0.0, 1.0, 0.0), n),
     )
 
 

@@ -99,9 +99,8 @@ def test_a_smooth_wall_bears_the_stress_across_its_face_and_no_shear_along_it(ef
     none = tuple(np.zeros(2) for _ in p.deviator)
     p = p._replace(deviator=s, pressure=np.array([2e3, 3e3]), cone_tip=np.array([500.0, 0.0]))
     zero = tuple(np.zeros(2) for _ in n)
-    p = p._replace(
-        face_normal=tuple(np.array([0.0, one]) for one in n), face_side=zero, gradient_correction=none
-    )
+    p = p._replace(face_normal=tuple(np.array([0.0, one]) for one in n), gradient_correction=none)
+    p = p._replace(face_side=zero, face_edge=np.zeros(2))
     i, j, pair = pair_of(p, 0, 1)
     stress, turn = full([v[0] for v in s], dim), np.eye(dim) - 2.0 * np.outer(n, n)
     shown = turn @ stress @ turn * i.specific_volume**2 * 3.5 / 2.5  # (p + tip) of the wall over that of soil

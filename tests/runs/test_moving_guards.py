@@ -134,7 +134,7 @@ def test_what_is_behind_a_wall_that_has_moved_is_seen(tmp_path):
         store["position"][0][store.low + fluid], store["position"][1][store.low + fluid] = x, 0.7
         assert guards._hidden()[fluid] == deep
     # The control: where the wall stood at the start this would be in front of it.
-    assert not guards.solids[0][0].deep(np.array([[-0.1 + way, 0.7]]), 1.0).any()
+    assert not guards._walls[0][0].deep(np.array([[-0.1 + way, 0.7]]), 1.0).any()
 
 
 def test_walls_that_bear_nothing_have_no_books(tmp_path):

@@ -88,7 +88,7 @@ def test_the_limit_of_the_step_keeps_energy_and_half_more_does_not(tmp_path):
 
 
 SEAM = BARS.replace(
-    "spacing = 0.005", 'spacing = 0.005\nperiodic = ["y"]\nlower = [-0.2, 0.0]\nupper = [0.3, 0.02]'
+    "spacing = 0.005", 'spacing = 0.005, periodic = ["y"], lower = [-0.2, 0.0], upper = [0.3, 0.02]'
 ).replace(
     "shape.box = { lower = [-0.101, 0.0], upper = [-0.001, 0.02] }",
     "shape.difference.from.box = { lower = [-0.101, 0.0], upper = [-0.001, 0.02] }\n"
