@@ -11,6 +11,7 @@ from psph.fields import (
     SPECIFIC_VOLUME,
     filled,
 )
+from psph.simulation.paces import is_held
 
 
 class SumsInACircle(TypeError):
@@ -124,7 +125,7 @@ def make_passes(
         if hasattr(call.effect, "start")
         and (id(call) not in done or hasattr(call.effect, "finish_acceleration"))
     ]
-    held = [call for call in called if hold_for > 1 and getattr(call.effect, "held", False)]
+    held = [call for call in called if hold_for > 1 and is_held(call.effect)]
     if held:
         own = tuple(call.effect for call in held)
         made = _pass(len(passes), own, (), held, before, stored, seen_as, hold_for, also)

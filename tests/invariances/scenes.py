@@ -115,6 +115,11 @@ def stirred_solid(**keys):
     return {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **RUBBER, **keys}
 
 
+def sand(**keys):
+    """Soil in a block, which stirs."""
+    return {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND, **keys}
+
+
 TWO = {
     "water": water(shape=box((0.0, 0.0), (1.5, 0.5)), viscosity=0.02),
     "oil": water(shape=box((0.0, 0.5), (1.5, 1.0)), density=600.0, viscosity=0.1),
@@ -227,22 +232,22 @@ SCENES = {
         physics={"contact": {"friction": 0.3}},
     ),
     "soil": scene(
-        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
+        soils={"sand": sand()},
         walls={"floor": {"shape": box((-0.5, -0.5), (2.0, 0.0)), "no_slip": True}},
         physics={"gravity": PULL},
     ),
     "smooth soil": scene(
-        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
+        soils={"sand": sand()},
         walls={"tank": tank()},
         physics={"gravity": PULL},
     ),
     "rocked soil": scene(
-        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
+        soils={"sand": sand()},
         walls={"tank": tank(motion=[SWING, SWAY])},
         physics={"gravity": PULL},
     ),
     "body on soil": scene(
-        soils={"sand": {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND}},
+        soils={"sand": sand()},
         walls={"floor": {"shape": box((-0.5, -0.5), (2.0, 0.0)), "no_slip": True}},
         bodies={
             "block": {
@@ -256,15 +261,7 @@ SCENES = {
         physics={"gravity": PULL},
     ),
     "smooth body on soil": scene(
-        soils={
-            "sand": {
-                "shape": BLOCK,
-                "geostatic": False,
-                "velocity_gradient": STIR,
-                "velocity_center": [0.7, 0.4],
-                **SAND,
-            }
-        },
+        soils={"sand": sand(geostatic=False)},
         walls={"tank": tank()},
         bodies={
             "block": {
@@ -276,15 +273,7 @@ SCENES = {
         },
     ),
     "falling sand": scene(
-        soils={
-            "sand": {
-                "shape": BLOCK,
-                "geostatic": False,
-                "velocity_gradient": STIR,
-                "velocity_center": [0.7, 0.4],
-                **SAND,
-            }
-        },
+        soils={"sand": sand(geostatic=False)},
         physics={"gravity": PULL},
     ),
 }

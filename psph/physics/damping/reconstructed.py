@@ -89,7 +89,7 @@ class BesideLinearFlow(NamedTuple):
     """
 
     conserves = ("momentum", "angular momentum")
-    held = 2.0
+    held = True
 
     alpha: float
     near2: float
@@ -131,8 +131,8 @@ class BesideLinearFlow(NamedTuple):
         return braking_step(self.alpha + self.more, scene)
 
     def held_apart(self, scene: Facts):
-        """Rates of fluid neighbours may serve for several steps.  Those of walls act in each: held, they push
-        on what has bounced off, and a dam break loses particles through its walls."""
+        """Rates of fluid neighbours may serve for several steps.  Those of walls act in each: held, they
+        would push on what has bounced off."""
         if all(one.is_fluid for one in scene.species):
             return (self,)
         return InFluid(*self), AtWalls(self.alpha, self.more, self.images)
