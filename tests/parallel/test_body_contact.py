@@ -97,7 +97,7 @@ motion = { translation = [1.0, -0.5] }
 SCENES = {"mattress": MATTRESS, "seat": SEAT, "seat under a ball": SEAT + BALL}
 
 
-@pytest.fixture(params=SCENES)
+@pytest.fixture(params=["mattress", pytest.param("seat", marks=pytest.mark.core), "seat under a ball"])
 def case(request, mpi_tmp_path):
     if COMM.rank == 0:
         (mpi_tmp_path / "meeting.toml").write_text(SCENES[request.param], encoding="utf-8")
