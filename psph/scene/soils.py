@@ -43,7 +43,11 @@ def soil_faults(scene: Scene) -> Iterator[str]:
     """
     for number, layer in started(scene.starts.layers).items():
         soil, foot = scene.layout.parts[number].table, float(scene.census.bottom[number])
-        water, borne, most = layer.water(foot), layer.largest_weight(foot), MOST_PRESSED * soil.bulk_modulus
+        water, borne, most = (
+            layer.water(layer.foot),
+            layer.largest_weight(foot),
+            MOST_PRESSED * soil.bulk_modulus,
+        )
         pressure = water + borne * (1.0 + 2.0 * soil.at_rest) / 3.0
         if pressure <= most:
             continue

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from psph.scene.census import Census
-from psph.scene.columns import columns
+from psph.scene.columns import columns, order_of
+from psph.scene.layout import Layout
 from psph.scene.parts.soil import SoilPart
 
 
@@ -17,8 +18,10 @@ class Layer(NamedTuple):
     ``axis`` of gravity and the ``sign`` of what is up along it; ``first`` site of the lattice and
     ``spacing``, m; ``top`` of the soil over each place of the level lattice, m along ``sign`` · axis;
     ``burden`` in Pa at each place and height of the lattice: what other soils above weigh, less what this
-    one would where they lie in it; ``weight`` of the soil and ``pores`` of the water in it, Pa/m, 0 where it
-    is dry, up to ``level`` m; ``at_rest`` is K₀; ``highest`` Pa the weight of the whole soil.
+    one would where they lie in it; ``weight`` of the soil along the axis, Pa/m; ``pores`` = ρ_w|g| of the
+    water in it, Pa/m, 0 where it is dry, up to ``level`` m along ``up``, against gravity, as in its law
+    (psph.physics.stress.strength), and ``foot`` of the soil along that, m; ``at_rest`` is K₀; ``highest`` Pa
+    the weight of the whole soil.
     """
 
     axis: int
@@ -30,6 +33,8 @@ class Layer(NamedTuple):
     weight: float
     pores: float
     level: float
+    up: tuple[float, ...]
+    foot: float
     at_rest: float
     highest: float
 
@@ -40,15 +45,15 @@ class Layer(NamedTuple):
         sites = np.rint((position[:, order] - self.first[order]) / self.spacing).astype(int)
         sites = tuple(np.clip(sites, 0, np.array(self.burden.shape) - 1).T)
         top, height = self.top[sites[:-1]], self.sign * position[:, self.axis]
-        water = self.water(height)
-        whole = (
-            self.burden[sites] + self.weight * (top - height) + self.pores * np.maximum(self.level - top, 0.0)
-        )
+        steep, level_axes = abs(self.up[self.axis]), order[:-1]
+        aside = position[:, level_axes] @ np.array(self.up)[level_axes]
+        water, over = self.water(steep * height + aside), self.water(steep * top + aside)
+        whole = self.burden[sites] + self.weight * (top - height) + over
         inside = height < top
         return np.where(inside, water, 0.0), np.where(inside, np.maximum(whole - water, 0.0), 0.0)
 
     def water(self, height):
-        """Pressure of the water in the pores at a ``height`` in m, Pa."""
+        """Pressure of the water in the pores at a ``height`` along ``up`` in m, Pa."""
         return self.pores * np.maximum(self.level - height, 0.0)
 
     def largest_weight(self, foot: float) -> float:
@@ -107,19 +112,31 @@ def layer_of(census: Census, part: SoilPart, held) -> Layer:
     sign = -math.copysign(1.0, layout.gravity[axis])
     pull = abs(layout.gravity[axis])
     wet = soil.water_level is not None
-    pores, level = (soil.water_density * pull, soil.water_level) if wet else (0.0, 0.0)
+    whole_pull = math.hypot(*layout.gravity)
+    pores, level = (soil.water_density * whole_pull, soil.water_level) if wet else (0.0, 0.0)
+    up = tuple(-g / whole_pull for g in layout.gravity)
     height = sign * layout.lattice.coordinates(axis)
+    rise = _rise(layout, axis, up)
     top, nearest = ground(held == number, height, layout.spacing)
     above = {other.number: other.table.density * pull for other in soils_of(census) if other.number != number}
-    weight = soil.density * pull
+    weight, soaked = soil.density * pull, pores * sign * up[axis]
     loads = np.broadcast_to(0.0, held.shape)  # one soil needs no array for it
     if above:
-        replaced = np.where(height < top[..., None], weight, np.where(height < level, pores, 0.0))
+        replaced = np.where(height < top[..., None], weight, np.where(rise < level, soaked, 0.0))
         loads = layout.spacing * burden(held, above, replaced, upwards=sign > 0.0)[nearest]
     first = np.array([layout.lattice.coordinates(d)[0] for d in range(layout.dimensions)])
     depth = max(census.surface_of(number) - float(census.bottom[number]), 0.0)
     highest = soil.density * math.hypot(*layout.height_gravity) * depth
-    return Layer(axis, sign, first, layout.spacing, top, loads, weight, pores, level, soil.at_rest, highest)
+    foot = float(np.broadcast_to(rise, held.shape)[held == number].min(initial=np.inf))
+    water = (pores, level, up, foot)
+    return Layer(axis, sign, first, layout.spacing, top, loads, weight, *water, soil.at_rest, highest)
+
+
+def _rise(layout: Layout, axis: int, up: tuple[float, ...]) -> np.ndarray:
+    """Height of each site along ``up``, m, in the order of :func:`psph.scene.columns.columns`."""
+    order = order_of(layout.dimensions, axis)
+    grid = np.ix_(*(layout.lattice.coordinates(d) for d in order))
+    return sum(up[d] * x for d, x in zip(order, grid))
 
 
 def ground(held: np.ndarray, height: np.ndarray, spacing: float) -> tuple[np.ndarray, tuple]:

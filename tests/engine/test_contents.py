@@ -264,7 +264,7 @@ def identified(cls, function):
 _FunctionCompiler.compile = watched
 bytecode.FunctionIdentity.from_function = classmethod(identified)
 main(sys.argv[1:])
-known = [one for one, _ in contents._seen.values() if isinstance(one, types.FunctionType)]
+known = [one.value for one in contents._seen.values() if isinstance(one.value, types.FunctionType)]
 seen = {code for one in known for code in contents._codes(one.__code__)}
 print(f"{len(ran)} parts;", *(f"{code.co_filename}:{code.co_firstlineno}" for code in ran - seen))
 """

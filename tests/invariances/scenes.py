@@ -120,6 +120,16 @@ def sand(**keys):
     return {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND, **keys}
 
 
+def moored(here, there):
+    """Two bodies: one on a spring with a damper, one on a hinge, and a rope between them."""
+    spring = {"at": list(here), "anchor": [-1.0, 1.5], "stiffness": 2e5, "length": 1.4, "damping": 300.0}
+    rope = {"at": list(here), "anchor": list(there), "to": "gate", "stiffness": 1e6, "pulls_only": True}
+    around = np.array([[-0.1875, -0.1875], [0.1875, 0.1875]])
+    buoy = {"shape": box(*(around + here).tolist()), "density": 700.0, "velocity": [-1.0, 0.3]}
+    gate = {"shape": box(*(around + there).tolist()), "density": 1200.0, "pivot": list(there), "spin": 2.0}
+    return {"buoy": {**buoy, "lines": {"spring": spring, "rope": rope}}, "gate": gate}
+
+
 TWO = {
     "water": water(shape=box((0.0, 0.0), (1.5, 0.5)), viscosity=0.02),
     "oil": water(shape=box((0.0, 0.5), (1.5, 1.0)), density=600.0, viscosity=0.1),
@@ -271,6 +281,21 @@ SCENES = {
                 "spin": 0.5,
             }
         },
+    ),
+    "wet soil": scene(
+        soils={"sand": sand(water_level=0.5, water_density=1024.0)},
+        walls={"tank": tank()},
+        physics={"gravity": PULL},
+    ),
+    "moored bodies": poured({"tank": tank()}, bodies=moored((0.4375, 0.5625), (1.0625, 0.5625))),
+    "moored bodies on wet soils": scene(
+        soils={
+            "sand": sand(shape=box((0.0, 0.0), (1.5, 0.5)), water_level=0.25, water_density=1024.0),
+            "clay": sand(shape=box((0.0, 0.5), (1.5, 0.75)), density=1800.0, cohesion=2000.0),
+        },
+        walls={"tank": tank(condition="mirror", no_slip=True)},
+        bodies=moored((0.4375, 0.9375), (1.0625, 0.9375)),
+        physics={"gravity": PULL},
     ),
     "falling sand": scene(
         soils={"sand": sand(geostatic=False)},

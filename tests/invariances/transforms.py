@@ -3,6 +3,7 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+from invariances.scenes import PULL
 from invariances.units import exponents
 
 POINTS = ("center", "position", "pivot", "at", "anchor", "velocity_center", "about", "centre", "foot", "top")
@@ -95,6 +96,10 @@ class Extruded(NamedTuple):
         if isinstance(table, dict):
             found = {name: self.of(value, name) for name, value in table.items()}
             turns = key == "rotation" or (key == "sinusoid" and "angle" in table)
+            if "stiffness" in table:  # forces and masses are those of a metre of depth in 2D
+                found |= {
+                    what: table[what] * self.depth for what in ("stiffness", "damping") if what in table
+                }
             return found | ({"axis": [0.0, 0.0, 1.0]} if turns else {})
         if key in ("lower", "upper"):
             return [*table, self.depth if key == "upper" else 0.0]
@@ -126,6 +131,8 @@ class Shift(NamedTuple):
             return _clean(np.add(table, self.way))
         if key == "points":
             return [_clean(np.add(point, self.way)) for point in table]
+        if key == "water_level":
+            return table - float(np.dot(self.way, PULL) / np.linalg.norm(PULL))  # a height against gravity
         if isinstance(table, list):
             return [self.of(one, key) for one in table]
         return table
@@ -153,14 +160,20 @@ NO_UNIT = (
 )  # fmt: skip
 UNIT_OF = {
     **dict.fromkeys(
-        ("spacing", "radius", "shift", "diameter", "amplitude", "lower", "upper", "points", *POINTS), "m"
+        (
+            *("spacing", "radius", "shift", "diameter", "amplitude", "lower", "upper", "points", *POINTS),
+            *("length", "water_level"),
+        ),
+        "m",
     ),
     **dict.fromkeys(("velocity", "sound_speed", "translation"), "m/s"),
     **dict.fromkeys(("end", "step", "ramp", "start", "time", "regularisation"), "s"),
     **dict.fromkeys(("frequency", "spin", "velocity_gradient", "speed", "least_rate", "strength"), "1/s"),
     **dict.fromkeys(("gravity", "acceleration"), "m/s2"),
-    **dict.fromkeys(("density", "grain_density"), "kg/m3"),
-    **dict.fromkeys(("young", "cohesion", "yield_stress", "hardening", "pressure", "tension"), "Pa"),
+    **dict.fromkeys(("density", "grain_density", "water_density"), "kg/m3"),
+    **dict.fromkeys(
+        ("young", "cohesion", "yield_stress", "hardening", "pressure", "tension", "stiffness"), "Pa"
+    ),
     **dict.fromkeys(
         ("largest_viscosity", "plastic_viscosity", "viscosity_at_rest", "viscosity_in_shear", "damping"),
         "Pa s",

@@ -80,3 +80,18 @@ def test_a_layer_under_another_and_under_water_in_space(tmp_path):
     under, free = borne(scene, "sand", [[0.025, 0.055, 0.005], [0.085, 0.055, 0.005]])
     assert under == pytest.approx((0.075 * 1600.0 + 0.04 * 2400.0 + 0.08 * 1000.0) * G, rel=1e-12)
     assert free == pytest.approx((0.075 * 1600.0 + 0.12 * 1000.0) * G, rel=1e-12)
+
+
+def test_under_tilted_gravity_the_water_in_the_pores_is_that_of_the_law(tmp_path):
+    """Its level is level: height is along gravity, not along the axis of which gravity has most (0.3 of ρ_w g H)."""
+    sand = ("sand", "box = { lower = [0.0, 0.0], upper = [0.2, 0.1] }", SAND + "water_level = 0.08\n")
+    gravity = (3.0, -9.0)
+    scene = Scene(draft(tmp_path, ground(gravity, [-0.05, -0.05], (sand,))))
+    [layer], [part] = scene.starts.layers.values(), scene.layout.parts
+    x = np.array([[0.005, 0.005], [0.195, 0.005], [0.105, 0.055], [0.005, 0.095]])
+    law = part.strength(gravity)
+    water = law.pores * np.maximum(law.level - x @ np.array(law.up), 0.0)
+    assert layer.stress(x)[0] == pytest.approx(water, rel=1e-12) and water.min() == 0.0 < water.max()
+    grains = (0.1 - x[:, 1]) * 1600.0 * 9.0  # less the water, which presses from the ground on
+    over = law.pores * np.maximum(law.level - np.c_[x[:, 0], np.full(4, 0.1)] @ np.array(law.up), 0.0)
+    assert borne(scene, "sand", x) == pytest.approx(grains + over, rel=1e-12)

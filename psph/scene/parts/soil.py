@@ -41,9 +41,12 @@ class SoilPart(StressedPart):
         """K₀ of the whole stress, that of the water in the pores with it."""
         soil, water = self.table, 0.0
         if soil.water_level is not None:
-            up = int(np.abs(known.gravity).argmax())
-            ends = np.array([known.lowest[self.number, up], known.highest[self.number, up]])
-            low, high = np.sort(-np.sign(known.gravity[up]) * ends)
-            wet = np.clip((soil.water_level - low) / max(high - low, known.spacing), 0.0, 1.0)
+            axis, up = int(np.abs(known.gravity).argmax()), -np.array(known.gravity)
+            up /= np.linalg.norm(up)
+            ends = known.lowest[self.number], known.highest[self.number]
+            low, high = np.sort([np.copysign(1.0, up[axis]) * end[axis] for end in ends])
+            aside = np.delete(0.5 * (ends[0] + ends[1]) * up, axis).sum()  # of the level in mid-width
+            level = (soil.water_level - aside) / abs(up[axis])
+            wet = np.clip((level - low) / max(high - low, known.spacing), 0.0, 1.0)
             water = float(wet) * soil.water_density / soil.density
         return soil.at_rest + (1.0 - soil.at_rest) * water
