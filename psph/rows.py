@@ -11,4 +11,7 @@ def projected(rows: np.ndarray, direction: Sequence[float]) -> np.ndarray:
     In the order of the axes: a product of matrices is rounded by how many rows there are, which differs
     with the number of ranks.
     """
-    return np.add.reduce([rows[:, axis] * component for axis, component in enumerate(direction)], axis=0)
+    total = rows[:, 0] * direction[0]
+    for axis in range(1, len(direction)):
+        total += rows[:, axis] * direction[axis]
+    return total

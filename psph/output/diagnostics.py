@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from psph.fields import FLUID, WALL
-from psph.parallel.reductions import exact_sums, largest
+from psph.parallel.reductions import Contribution, exact_sums
 from psph.particles.store import Store
 from psph.rows import projected
 
@@ -27,24 +27,38 @@ def columns(dimensions: int, of_kinds: Sequence[str] = ()) -> list[str]:
     ]
 
 
-def energies_and_momentum(
-    comm: MPI.Comm, store: Store, gravity: Sequence[float], potential: np.ndarray | float = 0.0
-) -> np.ndarray:
-    """Σ m v²/2 (J), Σ m (φ − g·x) (J) and Σ m v (kg m/s) of fluids and solids, per metre of depth in 2D.
+def logged(store: Store, gravity: Sequence[float], potential: np.ndarray | float = 0.0) -> Contribution:
+    """What this rank adds to the numbers of log.csv: terms of Σ m v²/2 (J), Σ m (φ − g·x) (J) and Σ m v
+    (kg m/s) of fluids and solids, per metre of depth in 2D, and the largest |ρ/ρ₀ − 1| of the fluid.
 
-    ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.  Order-independent sums, the same
-    bits on any number of ranks; collective.
+    ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.
     """
-    moved = np.flatnonzero((store.kinds != WALL)[store.shown("group")])
+    moved, fluid = (_members(store, which) for which in (store.kinds != WALL, store.kinds == FLUID))
     mass, speeds, places = (_of(store, name, moved) for name in (_inert(store), "velocity", "position"))
-    kinetic = 0.5 * mass * np.add.reduce(speeds**2, axis=0)
-    height = mass * (np.broadcast_to(potential, store.owned)[moved] - projected(places.T, gravity))
-    return exact_sums(comm, np.stack([kinetic, height, *(mass * speeds)]).T)
+    terms = np.empty((2 + len(speeds), len(moved)))
+    np.multiply(0.5 * mass, np.add.reduce(np.square(speeds), axis=0), out=terms[0])
+    level = projected(np.transpose(places), gravity)
+    np.multiply(mass, (potential if np.ndim(potential) == 0 else potential[moved]) - level, out=terms[1])
+    np.multiply(mass, speeds, out=terms[2:])
+    ratio = _of(store, "density", fluid) / _of(store, "rest_density", fluid)
+    return Contribution(terms.T, [float(np.abs(ratio - 1.0).max(initial=0.0))])
+
+
+def _members(store: Store, which: np.ndarray) -> np.ndarray:
+    """The owned particles (m,) of the groups where ``which`` (groups,) is true."""
+    group = store.shown("group")
+    return np.flatnonzero(
+        np.logical_or.reduce([group == one for one in np.flatnonzero(which)], initial=False)
+    )
 
 
 def _of(store: Store, name: str, which: np.ndarray) -> np.ndarray:
-    """Values of the owned particles ``which`` (m,), a row for each component of a field with several."""
-    return np.take(store.shown(name).T, which, axis=-1)
+    """Values of the owned particles ``which`` (m,), a row for each component of a field with several; the
+    number that all share."""
+    if name not in store.rows:
+        return store.constants[name]
+    shown = store.shown(name)
+    return np.array([row[which] for row in shown.T]) if shown.ndim > 1 else shown[which]
 
 
 def total_energy(
@@ -90,10 +104,3 @@ def moving_mass(comm: MPI.Comm, store: Store) -> float:
 def _inert(store: Store) -> str:
     """The name of the mass that forces move: in a fluid solids show another one."""
     return "inertia" if "inertia" in store else "mass"
-
-
-def density_error(comm: MPI.Comm, store: Store) -> float:
-    """Largest |ρ/ρ₀ − 1| of the fluid; collective."""
-    fluid = np.flatnonzero((store.kinds == FLUID)[store.shown("group")])
-    ratio = _of(store, "density", fluid) / _of(store, "rest_density", fluid)
-    return float(largest(comm, [np.abs(ratio - 1.0).max(initial=0.0)])[0])

@@ -1,17 +1,18 @@
 """Probes: fields interpolated at fixed points, and how far the fluid reaches."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from psph.composition.mirrors import image, images
 from psph.composition.pair import take
 from psph.engine.jit import elementwise
+from psph.engine.settled import settled
 from psph.fields import FLUID, PRESSURE, SAVED, by_name, view_of
 from psph.output.flowing import ALL, counted
-from psph.parallel.domain import Domain
-from psph.parallel.reductions import alone, exact_sums, largest
+from psph.parallel.reductions import Contribution, Total, totals
 from psph.particles.store import Store
 from psph.physics.walls.dry import DryWall
 from psph.smoothing import weight
@@ -21,6 +22,9 @@ MEASURED = by_name(SAVED)
 
 ROUNDING = 1e-9
 """In spacings: a length that is a whole number of them but for rounding has that many points."""
+
+NONE = -1
+"""In the place of the number of a row: there is none."""
 
 FRONT = "front"
 """The quantity of a probe that follows the fluid."""
@@ -40,6 +44,7 @@ class FieldProbe:
         self.name, self.points, self.fields = name, np.atleast_2d(points), fields
         self.mirrors = mirrors
         self.rows = self.dry = 0
+        self._weigh = settled(weigh_near)
 
     def columns(self, dimensions: int) -> list[str]:
         """Names of the values: ``P1.pressure``, ``P1.velocity_x``."""
@@ -49,41 +54,39 @@ class FieldProbe:
             for suffix in ([f"_{axis}" for axis in "xyz"[:dimensions]] if MEASURED[field].composed else [""])
         ]
 
-    def sample(self, domain: Domain, kernel) -> np.ndarray:
+    def sample(self, simulation) -> np.ndarray:
         """Values in the order of :meth:`columns` on every rank; where no fluid is near, 0 for a pressure and
         NaN for all else.  Collective."""
-        return self.values(domain.store, exact_sums(domain.comm, self.terms(domain, kernel)))
+        return self.values(simulation.store, *totals(simulation.comm, [self.share(simulation)]))
 
-    def terms(self, domain: Domain, kernel) -> np.ndarray:
-        """What this rank adds to the sums that :meth:`values` take: for each point W V_j in the fluid, W V_j,
-        W V_j f_j, a row for each particle and image near.
+    def ranges(self, simulation) -> Iterator[tuple[int, int]]:
+        """For each point and image of it the first column, and that after the last, among which all stand
+        that it sees."""
+        radius = _radius(simulation.plan.kernel)
+        return (simulation.neighbourhood.columns_near(place, radius) for _, place in self._places())
+
+    def share(self, simulation) -> Contribution:
+        """What this rank adds to the sums that :meth:`values` takes: for each point W V_j in the fluid,
+        W V_j, W V_j f_j, a row for each particle and image near.
 
         Every rank finds the near ones among its own particles, wherever these have drifted since
         the lists were made; the sums do not depend on how particles are spread.
         """
-        rows = np.array([row for field in self.fields for row in domain.store.rows[field]], np.int64)
-        seen = [
-            self._seen(domain, kernel, point, m, rows)
-            for point in self.points
-            for m in range(images(self.mirrors))
-        ]
+        rows = np.array([row for field in self.fields for row in simulation.store.rows[field]], np.int64)
+        seen = [self._seen(simulation, place, m, rows) for m, place in self._places()]
         if len(seen) == 1:
-            return seen[0]
+            return Contribution(seen[0])
         terms = np.zeros((sum(map(len, seen)), len(self.points) * (2 + len(rows))))
         last = 0
         for k, near in enumerate(seen):
             first, last = last, last + len(near)
             place = k // images(self.mirrors) * (2 + len(rows))
             terms[first:last, place : place + 2 + len(rows)] = near
-        return terms
+        return Contribution(terms)
 
-    def of_all(self, store: Store, terms: list[np.ndarray]) -> np.ndarray:
-        """What :meth:`sample` returns, of the :meth:`terms` of each rank."""
-        return self.values(store, exact_sums(alone(), np.concatenate(terms)))
-
-    def values(self, store: Store, sums: np.ndarray) -> np.ndarray:
-        """What :meth:`sample` returns, of the sums of the :meth:`terms` of all ranks."""
-        sums = sums.reshape(len(self.points), -1)
+    def values(self, store: Store, total: Total) -> np.ndarray:
+        """What :meth:`sample` returns, of what the :meth:`share` of all ranks come to."""
+        sums = total.sums.reshape(len(self.points), -1)
         wet = sums[:, 0] > 0.0
         reached = int(np.count_nonzero(wet))
         self.rows += 1
@@ -93,25 +96,28 @@ class FieldProbe:
         with np.errstate(invalid="ignore"):
             return (sums[wet, 2:] / sums[wet, 1:2]).sum(axis=0) / counted  # 0/0 where all is dry
 
-    def _seen(self, domain: Domain, kernel, point, m: int, rows: np.ndarray) -> np.ndarray:
-        """The :meth:`terms` of one point, of this rank's particles in reach or of their images m in
-        mirrors."""
-        store = domain.store
+    def _places(self) -> Iterator[tuple[int, tuple[float, ...]]]:
+        """Of each point the place of every image m, and of itself as m = 0, m."""
         # An image is as far from the point as the particle from the image of the point.
-        point = self.mirrors.reflections[m].seen(point) if m else tuple(map(float, point))
-        radius = kernel.support / kernel.inverse_h
-        near = np.empty(store.owned, np.int64)
-        first, last = store.low, store.low + store.owned
-        count = find_near(point, domain.periods, store["position"], first, last, radius * radius, near)
-        near = near[:count]
-        if DryWall.marks in store:
-            near = near[store[DryWall.marks][near] > 0.0]
-        terms = np.empty((len(near), 2 + len(rows)))
-        weigh(point, kernel, domain.periods, _weighed(store), near, store.data, rows, terms)
+        for point in self.points:
+            yield 0, tuple(map(float, point))
+            for m in range(1, images(self.mirrors)):
+                yield m, self.mirrors.reflections[m].seen(point)
+
+    def _seen(self, simulation, place: tuple[float, ...], m: int, rows: np.ndarray) -> np.ndarray:
+        """The :meth:`terms` of one point, of this rank's particles in reach of it or of its image m at
+        ``place``."""
+        store, periods, kernel = simulation.store, simulation.domain.periods, simulation.plan.kernel
+        first, last = simulation.neighbourhood.columns_near(place, _radius(kernel))
+        around = Nearby(place, _radius(kernel) ** 2, kernel, periods)
+        near, terms = np.empty(last - first, np.int64), np.empty((last - first, 2 + len(rows)))
+        [wet] = store.rows[DryWall.marks] if DryWall.marks in store else [NONE]
+        groups = store.group, store.kinds == FLUID
+        count = self._weigh(first, last, around, _weighed(store), *groups, store.data, wet, rows, near, terms)
+        near, terms = near[:count], terms[:count]
         if m:
             values = values_behind(self.mirrors.reflections[m], store, near, self.fields)
             terms[:, 2:] = terms[:, 1:2] * np.column_stack(list(values))
-        np.multiply(terms[:, 1], (store.kinds == FLUID)[store.group[near]], out=terms[:, 0])
         return terms
 
 
@@ -135,20 +141,29 @@ class Front:
         """The name of the value: ``tip.front``."""
         return [f"{self.name}.{FRONT}"]
 
-    def sample(self, domain: Domain, kernel) -> np.ndarray:
+    def sample(self, simulation) -> np.ndarray:
         """The value on every rank; collective."""
-        return np.array(largest(domain.comm, self.terms(domain, kernel)))
+        return self.values(simulation.store, *totals(simulation.comm, [self.share(simulation)]))
 
-    def terms(self, domain: Domain, kernel) -> np.ndarray:
-        """How far those of this rank reach (1,)."""
-        store = domain.store
+    def ranges(self, simulation) -> Iterable[tuple[int, int]]:
+        """It reads nothing that would have to be settled."""
+        return ()
+
+    def share(self, simulation) -> Contribution:
+        """How far those of this rank reach."""
+        store = simulation.store
         fluid = counted(store.kinds, self.of)[store.shown("group")]
         reach = store["position"][self.axis][store.inner].max(where=fluid, initial=-np.inf)
-        return np.array([float(reach)])
+        return Contribution(tops=[float(reach)])
 
-    def of_all(self, store: Store, terms: list[np.ndarray]) -> np.ndarray:
-        """What :meth:`sample` returns, of the :meth:`terms` of each rank."""
-        return np.max(terms, axis=0)
+    def values(self, store: Store, total: Total) -> np.ndarray:
+        """What :meth:`sample` returns, of what the :meth:`share` of all ranks come to."""
+        return total.tops
+
+
+def _radius(kernel) -> float:
+    """How far a point sees, m."""
+    return kernel.support / kernel.inverse_h
 
 
 def values_behind(reflection, store, near: np.ndarray, fields: tuple[str, ...]) -> Iterator[np.ndarray]:
@@ -175,24 +190,33 @@ def _weighed(store: Store):
     return view_of(WEIGHED)(*map(store.value, WEIGHED))
 
 
+class Nearby(NamedTuple):
+    """The particles within the square of a radius, m², of a ``place`` (dim,), m, and their weights there."""
+
+    place: tuple[float, ...]
+    radius2: float
+    kernel: Any
+    periods: tuple
+
+
 @elementwise
-def find_near(point, periods, position, first, last, radius2, near):
-    """Columns from ``first`` to ``last`` within the radius of ``point``; returns how many."""
-    found = 0
+def weigh_near(first, last, around, view, group, fluid, data, wet, rows, near, terms):
+    """Fill ``near`` with the columns from ``first`` to ``last`` that are ``around`` a place, and the rows of
+    ``terms`` with W V_j in the groups of ``fluid``, W V_j and W V_j f_j of each, f the ``rows`` of ``data``.
+
+    Returns how many they are.  Where ``wet`` is the number of a row, walls count where that is above 0.
+    """
+    count = 0
     for k in range(np.uint64(first), np.uint64(last)):
-        x = nearest_image(subtract(point, at(position, k)), periods)
-        near[found] = k
-        found += dot(x, x) < radius2
-    return found
-
-
-@elementwise
-def weigh(point, kernel, periods, view, near, data, rows, terms):
-    """Fill ``terms`` but the first: W V_j and W V_j f_j of each near column, f the ``rows`` of ``data``."""
-    for n in range(len(near)):
-        j = take(view, near[n])
-        x = nearest_image(subtract(point, j.position), periods)
-        share = weight(kernel, math.sqrt(dot(x, x))) * j.mass * j.specific_volume
-        terms[n, 1] = share
-        for m in range(len(rows)):
-            terms[n, m + 2] = share * data[rows[m], near[n]]
+        j = take(view, k)
+        x = nearest_image(subtract(around.place, j.position), around.periods)
+        r2 = dot(x, x)
+        if r2 < around.radius2 and (wet < 0 or data[wet, k] > 0.0):
+            share = weight(around.kernel, math.sqrt(r2)) * j.mass * j.specific_volume
+            terms[count, 0] = share if fluid[group[k]] else 0.0
+            terms[count, 1] = share
+            for m in range(len(rows)):
+                terms[count, m + 2] = share * data[rows[m], k]
+            near[count] = k
+            count += 1
+    return count

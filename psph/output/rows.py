@@ -282,19 +282,31 @@ def _at_once(comm, rows: dict[str, np.ndarray], counts: list[int]):
         yield from ((name, 0, part) for name, part in rows.items() if len(part))
         return
     width, total = _bytes_per_row(rows), sum(counts)
-    mine = [np.ascontiguousarray(part).reshape(-1).view(np.uint8) for part in rows.values()]
-    all_rows = np.empty(total * width if comm.rank == 0 else 0, np.uint8)
-    comm.Gatherv(np.concatenate(mine), (all_rows, [count * width for count in counts]))
+    sizes = [0, *(count * width for count in counts[1:])]  # rank 0 sends itself nothing
+    sent = np.empty(sum(sizes) if comm.rank == 0 else 0, np.uint8)
+    comm.Gatherv(_packed(rows, sizes[comm.rank]), (sent, sizes))
     if comm.rank != 0:
         return
-    shares = np.split(all_rows, np.cumsum(counts)[:-1] * width)
+    shares = np.split(sent, np.cumsum(sizes)[:-1])
     for name, part in rows.items():
-        row = math.prod(part.shape[1:]) * part.itemsize
-        ends = [count * row for count in counts]
-        whole = np.concatenate([share[:end] for share, end in zip(shares, ends)])
-        shares = [share[end:] for share, end in zip(shares, ends)]
+        whole = np.empty((total, *part.shape[1:]), part.dtype)
+        whole[: counts[0]] = part
+        first, row = counts[0], math.prod(part.shape[1:]) * part.itemsize
+        for rank, count in enumerate(counts[1:], 1):
+            theirs, shares[rank] = np.split(shares[rank], [count * row])
+            whole[first : first + count] = theirs.view(part.dtype).reshape(count, *part.shape[1:])
+            first += count
         if total:
-            yield name, 0, whole.view(part.dtype).reshape(total, *part.shape[1:])
+            yield name, 0, whole
+
+
+def _packed(rows: dict[str, np.ndarray], size: int) -> np.ndarray:
+    """The rows of all datasets one after another, as ``size`` bytes; 0: none of them."""
+    packed, last = np.empty(size, np.uint8), 0
+    for part in rows.values() if size else ():
+        first, last = last, last + part.nbytes
+        packed[first:last].view(part.dtype).reshape(part.shape)[...] = part
+    return packed
 
 
 def _pieces(comm, rows: dict[str, np.ndarray], counts: list[int]):

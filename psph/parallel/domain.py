@@ -139,6 +139,22 @@ class Domain:
             last = self.starts[self.planes * per_plane]
         return int(first), int(max(first, last))
 
+    def columns_near(self, place: float, reach: float) -> tuple[int, int]:
+        """The first owned column, and that after the last, of the planes of all that were listed within
+        ``reach`` m of ``place`` m along the slab axis."""
+        grid, top = self.grid, float(self.grid.counts[0] - 1)
+        reach = reach * (1.0 + 1e-9) + 1e-9 / grid.inverse[0]  # rounding may move an edge
+        least, most = ((place + away - grid.lower[0]) * grid.inverse[0] for away in (-reach, reach))
+        if self.periods[self.axis] is not None and not 0.0 <= least <= most < top + 1.0:
+            least, most = 0.0, top  # images may be near
+        # As cells are numbered: what stood outside counts to the outermost planes.
+        first, last = (int(min(top, max(0.0, plane))) for plane in (least, most))
+        begin, end = self.bounds[self.comm.rank : self.comm.rank + 2].tolist()
+        first = min(max(first, begin), end)
+        last = max(first, min(last + 1, end))
+        # The first plane of ``starts`` has ghosts.
+        return tuple(int(self.starts[(plane - begin + 1) * grid.plane_cells]) for plane in (first, last))
+
     def _used_lists(self) -> neighbours.Neighbours:
         """The old lists, to be filled again, and given back where they are too short."""
         # The domain lets go of them, or both would be held while longer ones are made.

@@ -41,6 +41,9 @@ REMEMBERED = (
 class Unlisted:
     """In the place of a skin where no particle looks for neighbours in space: nothing to list."""
 
+    farthest = math.inf
+    """Nothing bounds how far particles are from where they were listed."""
+
     def renew(self) -> None:
         """Nothing changes."""
 
@@ -66,13 +69,14 @@ class Skin:
     that is measured still contains half a step of the acceleration before, and lacks half a step of
     the present one: a is the largest of both and of all since, Δt the longest of these steps.
     Beside a mirror one neighbour may be an image: what both do across the plane counts too, twice the most
-    that any particle there does.  The same on every rank.
+    that any particle there does.  No particle is more than ``farthest`` m from where it was listed.  The same
+    on every rank.
     """
 
     def __init__(self, domain: Domain, width: float, planes: Sequence[Plane] = ()):
         self.domain, self.width, self._planes = domain, width, planes
         lengths = [p for p in domain.periods if p is not None]
-        self._farthest = min(PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf))
+        self.farthest = min(PART_OF_CUTOFF * domain.cutoff, PART_OF_PERIOD * min(lengths, default=math.inf))
         self._before = [0.0, 0.0]
         self.renew()
 
@@ -130,7 +134,7 @@ class Skin:
         t = self._since + dt
         closing = self._closing + 2.0 * self._shift
         apart = self._apart + t * (closing + 2.0 * self._acceleration * (t + self._longest_step))
-        return apart < self.width and self.drifted + self._way(dt, speed) < self._farthest
+        return apart < self.width and self.drifted + self._way(dt, speed) < self.farthest
 
     def _way(self, dt: float, speed: float) -> float:
         return dt * (speed + self._shift + 0.5 * dt * self._acceleration)

@@ -1,8 +1,9 @@
 """What a run writes and when: frames, probes, log.  Cadence never changes the steps."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import chain, islice
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from psph.output.frames import FrameFile
 from psph.output.gauges import gauges_of
 from psph.output.probes import FieldProbe, Front, sensor
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
+from psph.parallel.reductions import Contribution, Total, totals
 from psph.simulation.step import Simulation
 from psph.version import __version__
 
@@ -65,7 +67,7 @@ class Record:
 
     def __init__(self, scene, simulation: Simulation, folder: Path, saved: Saved | None = None):
         case, comm = scene.case, simulation.comm
-        self.simulation, self.kernel = simulation, scene.kernel
+        self.simulation = simulation
         self.heights = simulation.plan.pulls.heights(scene.layout.periods)
         self.frames = FrameFile(
             folder / f"{case.name}.h5",
@@ -109,6 +111,10 @@ class Record:
             self.write_frame: Schedule(out.frames),
             self.write_probes: Schedule(out.probes),
             self.write_log: Schedule(out.log),
+        }
+        self.shares: dict[Callable, Callable[[Simulation], list[Contribution]]] = {
+            self.write_probes: lambda sim: [probe.share(sim) for probe in self.probes],
+            self.write_log: lambda sim: [diagnostics.logged(sim.store, self.heights, sim.engine.potential())],
         }
         further = {f"{name}.csv": table for name, table in scene.tables.items()}
         further |= gauges_of(scene, simulation.plan.mirrors)
@@ -159,10 +165,14 @@ class Record:
         if not due:
             return
         with self.simulation.ledger("output"):
-            self.simulation.settle_pressure()
+            sim = self.simulation
+            sim.settle_pressure(self._ranges() if due == [self.write_probes] else None)
+            shares = {write: self.shares[write](sim) for write in due if write in self.shares}
+            asked = [*chain(*shares.values())]
+            found = iter(totals(sim.comm, asked) if asked else ())
             for write in due:
-                write()
-                self.last_written[write] = self.simulation.steps
+                write(*islice(found, len(shares.get(write, ()))))
+                self.last_written[write] = sim.steps
 
     def write_frame(self) -> None:
         """All saved fields of all particles."""
@@ -173,16 +183,19 @@ class Record:
         self.frames.write(self.written, sim.time, sim.steps, arrays)
         self.written += 1
 
-    def write_probes(self) -> None:
-        """A line of probe values."""
-        if not self.probes:
-            return
-        sim = self.simulation
-        mine = [probe.terms(sim.domain, self.kernel) for probe in self.probes]
-        # Rank 0 alone needs the values: the others send what they have, and wait for nobody.
-        if (terms := sim.comm.gather(mine)) is not None:
-            values = map(lambda probe, of: probe.of_all(sim.store, of), self.probes, zip(*terms))
-            self.probe_table.write([sim.time, *np.concatenate(list(values)).tolist()])
+    def write_probes(self, *found: Total) -> None:
+        """A line of probe values, of what was ``found`` for each of the probes."""
+        if self.probe_table:
+            values = [p.values(self.simulation.store, one) for p, one in zip(self.probes, found, strict=True)]
+            self.probe_table.write([self.simulation.time, *np.concatenate(values).tolist()])
+
+    def _ranges(self) -> list[tuple[int, int]]:
+        """The columns that probes look at, each range from one to before another, none in two."""
+        apart: list[tuple[int, int]] = []
+        for first, last in sorted(chain(*(probe.ranges(self.simulation) for probe in self.probes))):
+            begun, end = apart.pop() if apart and first <= apart[-1][1] else (first, last)
+            apart.append((begun, max(end, last)))
+        return apart
 
     def dry_probes(self) -> Iterator[str]:
         """A line for each probe that had no fluid in reach at some time."""
@@ -196,14 +209,11 @@ class Record:
     def _points(self) -> Iterator[FieldProbe]:
         return (probe for probe in self.probes if isinstance(probe, FieldProbe))
 
-    def write_log(self) -> None:
+    def write_log(self, found: Total) -> None:
         """A line of energies, momentum and limits, and one of errors where these are known."""
         sim = self.simulation
-        potential = sim.engine.potential()
-        sums = diagnostics.energies_and_momentum(sim.comm, sim.store, self.heights, potential)
-        error = diagnostics.density_error(sim.comm, sim.store)
-        energies, momentum = sums[:2].tolist(), sums[2:].tolist()
-        own = sim.engine.booked()
+        energies, momentum, own = found.sums[:2].tolist(), found.sums[2:].tolist(), sim.engine.booked()
+        [error] = found.tops.tolist()
         self.log.write([sim.time, sim.steps, sim.dt, *energies, *own, *momentum, sim.fluid_speed, error])
         if self.accuracy:
             self.latest_errors = self.accuracy.errors(sim.time)

@@ -3,7 +3,7 @@
 All that depends on how sums are computed on a processor lies behind these few methods.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -72,6 +72,7 @@ class Engine:
             plan.pulls.booked,
         )
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
+        self._state = settled(state_of)
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._loads = [settled(sum_over_neighbours) for _ in plan.passes]
         self._potential = settled(potentials)
@@ -152,10 +153,12 @@ class Engine:
         for kind in self.kinds:
             kind.after_sums(time, dt)
 
-    def settle_pressure(self, largest_speed: float) -> None:
-        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
-        s = self.store
-        state_of(s.low, s.low + s.owned, self._rules, self.view(largest_speed), self.columns())
+    def settle_pressure(self, largest_speed: float, ranges: Iterable[tuple[int, int]] | None = None) -> None:
+        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them, of some
+        ``ranges`` of columns or of all."""
+        every = [(self.store.low, self.store.low + self.store.owned)]
+        for first, last in every if ranges is None else ranges:
+            self._state(first, last, self._rules, self.view(largest_speed), self.columns())
         for kind in self.kinds:
             kind.measure()
 

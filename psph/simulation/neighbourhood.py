@@ -41,6 +41,7 @@ class Neighbourhood:
         self.skin = Skin(self.domain, layout.reach.skin, plan.planes) if plan.passes else Unlisted()
         self.wetting = [Wetting(one, plan, store, self.domain, layout.reach) for one in plan.marking]
         self._apart = empty(0, 0)
+        self._columns: dict[tuple[float, ...], tuple[int, int]] = {}
         self.fit()
 
     def valid(self, dt: float, speed: float, acceleration: float, shift: float) -> bool:
@@ -65,6 +66,7 @@ class Neighbourhood:
 
     def sort_out(self, kinds: Iterable[Work]) -> None:
         """New lists name everyone: part what is apart, take out what rests and what is not to be met."""
+        self._columns.clear()
         if APART.name in self.store and self.plan.passes:
             apart = self.store[APART.name] > 0.0
             self._apart = part(self.domain.lists, self.store, apart, self.plan.space.lanes)
@@ -91,6 +93,15 @@ class Neighbourhood:
     def of(self, one: Pass) -> tuple[Neighbours, object]:
         """The lists that a pass goes through, and the mirrors in which it looks at them once more."""
         return (self._apart, None) if one.across else (self._lists, self._mirrors)
+
+    def columns_near(self, point, radius: float) -> tuple[int, int]:
+        """The first owned column, and that after the last, between which all stand that are now within
+        ``radius`` m of a ``point`` (dim,) m, among others."""
+        seen = (*point, radius)
+        if seen not in self._columns:
+            place = point[self.domain.axis]
+            self._columns[seen] = self.domain.columns_near(place, radius + self.skin.farthest)
+        return self._columns[seen]
 
     def dry_beside_fluid(self, first: int, last: int) -> Iterator[tuple[np.ndarray, Neighbours]]:
         """The columns from ``first`` to ``last`` of dry walls whose load is asked for, and lists with their

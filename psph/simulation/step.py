@@ -1,6 +1,6 @@
 """The simulation of one rank, and its step."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -116,9 +116,10 @@ class Simulation:
         """Bytes of this rank's particles, records and lists."""
         return self.engine.bytes_held()
 
-    def settle_pressure(self) -> None:
-        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them."""
-        self.engine.settle_pressure(self.previous_speed)
+    def settle_pressure(self, ranges: Iterable[tuple[int, int]] | None = None) -> None:
+        """Pressure and 1/ρ from the density at the end of the step, for whoever reads them, of some
+        ``ranges`` of columns, from one to before another, or of all."""
+        self.engine.settle_pressure(self.previous_speed, ranges)
 
     def _start(self) -> None:
         """First forces, from particles at rest in time: predicted is initial."""

@@ -35,18 +35,15 @@ def test_a_sensor_tells_the_mean_over_its_area(tmp_path):
     simulation, scene = started(draft(tmp_path, TANK + ON_THE_WALL))
     simulation.settle_pressure()
     probes = probes_of(scene.case)
-    wide, over, dry = (probe.sample(simulation.domain, scene.kernel) for probe in probes)
+    wide, over, dry = (probe.sample(simulation) for probe in probes)
     points = [FieldProbe("", np.array([1.0, y]), ("pressure",)) for y in (0.15, 0.25, 0.35)]
-    each = [point.sample(simulation.domain, scene.kernel)[0] for point in points]
+    each = [point.sample(simulation)[0] for point in points]
     assert np.ptp(each) > 1000.0
     assert wide == pytest.approx(np.mean(each), rel=1e-12)
     assert wide == pytest.approx(1000.0 * 9.8 * 0.25, rel=0.02)
     # Half of it is above the water: it bears nothing there, and the density is that of the wet part.
     heights = 0.3 + 0.6 * (np.arange(6) + 0.5) / 6
-    told = [
-        FieldProbe("", np.array([1.0, y]), ("pressure", "density")).sample(simulation.domain, scene.kernel)
-        for y in heights
-    ]
+    told = [FieldProbe("", np.array([1.0, y]), ("pressure", "density")).sample(simulation) for y in heights]
     told = np.array(told)
     assert np.isnan(told[-1, 1]) and told[-1, 0] == 0.0 and np.isfinite(told[0]).all()
     assert over[0] == pytest.approx(told[:, 0].mean(), rel=1e-12)

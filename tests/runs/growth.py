@@ -94,8 +94,8 @@ def main(folder, steps, leak):
     samples, lost = [], []
     write_log, step = Record.write_log, Simulation.step
 
-    def watched(self):
-        write_log(self)
+    def watched(self, found):
+        write_log(self, found)
         samples.append(sample(self.simulation))
 
     def leaking(self, *end):

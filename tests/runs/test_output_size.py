@@ -97,11 +97,10 @@ def test_amounts_are_readable():
 
 def test_hundreds_of_probes_read_what_one_alone_would_in_a_time_that_grows_with_them(finished):
     case, folder, simulation = finished
-    kernel = Scene(case).kernel
     probes = [FieldProbe(name, np.array(p.position), tuple(p.fields)) for name, p in case.probes.items()]
     last = Run(folder).probes()
     for probe in (probes[0], probes[150], probes[299]):
-        values = probe.sample(simulation.domain, kernel)
+        values = probe.sample(simulation)
         for column, value in zip(probe.columns(2), values):
             assert last[column][-1] == value
     assert last["P150.pressure"][-1] != last["P10.pressure"][-1]
@@ -109,7 +108,7 @@ def test_hundreds_of_probes_read_what_one_alone_would_in_a_time_that_grows_with_
     def seconds(some):
         begun = time.process_time()
         for probe in some:
-            probe.sample(simulation.domain, kernel)
+            probe.sample(simulation)
         return time.process_time() - begun
 
     few, many = (min(seconds(probes[:n]) for _ in range(5)) for n in (30, 300))

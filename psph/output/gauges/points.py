@@ -21,7 +21,7 @@ class PointGauge(NamedTuple):
 
     def row(self, simulation) -> np.ndarray:
         """The values, the same on every rank."""
-        return self.probe.sample(simulation.domain, simulation.plan.kernel)
+        return self.probe.sample(simulation)
 
 
 class CarriedPoints(NamedTuple):
@@ -39,7 +39,7 @@ class CarriedPoints(NamedTuple):
     def row(self, simulation) -> np.ndarray:
         """The values, the same on every rank."""
         self.probe.points = self.carrier.places(simulation, self.start)
-        return self.probe.sample(simulation.domain, simulation.plan.kernel)
+        return self.probe.sample(simulation)
 
 
 def disc(center, axis: int, diameter: float, spacing: float) -> np.ndarray:
