@@ -15,23 +15,34 @@ class Word(str):
 
     ``single`` is one of it.  It ``flows`` where its particles move freely and find their neighbours in space;
     else it is ``bonded`` where they do and keep those of the start, and ``whole`` where forces move it as a
-    whole.
+    whole.  It is ``stressed`` where it flows and bears a stress that evolves.
     """
 
     single: str
     flows: bool
     bonded: bool
     whole: bool
+    stressed: bool
 
-    def __new__(cls, word: str, single: str, flows: bool = False, bonded: bool = False, whole: bool = False):
+    def __new__(
+        cls,
+        word: str,
+        single: str,
+        *,
+        flows: bool = False,
+        bonded: bool = False,
+        whole: bool = False,
+        stressed: bool = False,
+    ):
         made = super().__new__(cls, word)
         made.single, made.flows, made.bonded, made.whole = single, flows, bonded, whole
+        made.stressed = stressed
         return made
 
 
 FLUIDS = Word("fluids", "fluid", flows=True)
-SOILS = Word("soils", "soil", flows=True)
-UPDATED = Word("updated Lagrangian solids", "updated", flows=True)
+SOILS = Word("soils", "soil", flows=True, stressed=True)
+UPDATED = Word("updated Lagrangian solids", "updated", flows=True, stressed=True)
 SOLIDS = Word("solids", "solid", bonded=True)
 BODIES = Word("rigid bodies", "body", whole=True)
 

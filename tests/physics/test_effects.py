@@ -21,7 +21,7 @@ from psph.physics.fluid.absorbing import AbsorbingZone, DampingZone
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import CorrectionBesideWalls, DifferenceCorrection, GradientCorrection
 from psph.physics.fluid.gravity import CentralForce, Gravity
-from psph.physics.fluid.parting import Parting, PartingBesideSoils
+from psph.physics.fluid.parting import Parting, PartingBesideStrength
 from psph.physics.fluid.pressure import (
     BackgroundPressure,
     DifferencePressure,
@@ -591,7 +591,7 @@ def beside_others(delta, gravity):
         DifferenceCorrection(0.5),
         CorrectionBesideWalls(0.5, 1e-4),
         SymmetricPressure(Parting()),
-        SymmetricPressure(PartingBesideSoils()),
+        SymmetricPressure(PartingBesideStrength()),
         CorrectionBesideWalls(0.5, 1e-4, Parting()),
         pulled,
         pulled_down,

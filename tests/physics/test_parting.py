@@ -7,7 +7,7 @@ import pytest
 from physics.pairs import pair_of, view
 
 from psph.physics.fluid.correction import CorrectionBesideWalls
-from psph.physics.fluid.parting import Holding, Parting, PartingBesideSoils, hold_of
+from psph.physics.fluid.parting import Holding, Parting, PartingBesideStrength, hold_of
 from psph.physics.fluid.pressure import SymmetricPressure
 from psph.vectors import times
 
@@ -28,7 +28,7 @@ def facts(floor, surface, species, laws=()):
     ("floor", "surface", "species", "laws", "kind"),
     [
         (object(), True, (FLUID, WALL), (), Parting),
-        (object(), True, (FLUID, WALL), ("sand",), PartingBesideSoils),
+        (object(), True, (FLUID, WALL), ("sand",), PartingBesideStrength),
         (object(), True, (FLUID,), (), Holding),
         (object(), False, (FLUID, WALL), (), Holding),  # a closed flow may be under tension
         (None, True, (FLUID, WALL), (), Holding),
@@ -47,7 +47,7 @@ def written_out(i, j, pair, pressures):
     return total
 
 
-@pytest.mark.parametrize("hold", [Holding(), Parting(), PartingBesideSoils()])
+@pytest.mark.parametrize("hold", [Holding(), Parting(), PartingBesideStrength()])
 @pytest.mark.parametrize("kinds", [(1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])
 @pytest.mark.parametrize("strengths", [(0.0, 0.0), (1.0, 0.0)])
 @pytest.mark.parametrize("signs", [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)])

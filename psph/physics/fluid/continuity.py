@@ -14,8 +14,8 @@ class Continuity(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """Where elastic solids stand in a fluid, the form that knows them."""
-        immersed = any(one.bonded is not None for one in scene.species)
-        return ContinuityBesideSolids() if immersed and any(one.is_fluid for one in scene.species) else self
+        bonded = any(one.bonded is not None for one in scene.species)
+        return ContinuityBesideBonded() if bonded and any(one.is_fluid for one in scene.species) else self
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
@@ -26,7 +26,7 @@ class Continuity(NamedTuple):
         return None
 
 
-class ContinuityBesideSolids(NamedTuple):
+class ContinuityBesideBonded(NamedTuple):
     """Density changes by the divergence of the velocity, and that of a solid by what the fluid does alone.
 
     As :class:`Continuity`, without pairs of an elastic solid with itself, another solid or a wall.  The

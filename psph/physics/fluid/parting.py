@@ -38,7 +38,7 @@ class Parting(NamedTuple):
         return max(own, 0.0) + (min(own, 0.0) * i.is_fluid) * j.is_fluid, max(over_square(j), lowest)
 
 
-class PartingBesideSoils(NamedTuple):
+class PartingBesideStrength(NamedTuple):
     """As :class:`Parting`, while soil clings to walls as far as its own strength lets it.
 
     The tension of a soil is bounded by its cohesion (:class:`psph.physics.stress.strength.Strength`).
@@ -51,7 +51,7 @@ class PartingBesideSoils(NamedTuple):
         return max(own, 0.0) + min(own, 0.0) * clings, max(over_square(j), -WHATEVER * clings)
 
 
-Hold = Holding | Parting | PartingBesideSoils
+Hold = Holding | Parting | PartingBesideStrength
 
 felt = call_by_type("felt")
 """(hold, i, j) → p_i/ρ_i² and p_j/ρ_j² as the pair feels them, m⁵/(kg s²) in 3D (:class:`Parting`)."""
@@ -62,4 +62,4 @@ def hold_of(scene: Facts) -> Hold:
     floor = scene.physics.tension_floor is not None and scene.has_free_surface
     if not floor or all(one.is_fluid for one in scene.species):
         return Holding()
-    return PartingBesideSoils() if scene.strengths else Parting()
+    return PartingBesideStrength() if scene.strengths else Parting()

@@ -4,7 +4,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 
-from psph.acts import SOILS, UPDATED
+from psph.acts import MATTER
 from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.formula import where
@@ -56,8 +56,7 @@ class SymmetricPressure(NamedTuple):
 
 
 UNEQUAL = {
-    SOILS: 'the stress of soils is symmetric in a pair; use "symmetric"',
-    UPDATED: 'the stress of solids is symmetric in a pair; use "symmetric"',
+    one: f'the stress of {one} is symmetric in a pair; use "symmetric"' for one in MATTER if one.stressed
 }
 """Beside what forms that are not symmetric in a pair do not work."""
 

@@ -86,11 +86,11 @@ class TensionFloor(NamedTuple):
     ] = 0.98
 
     def in_scene(self, scene: Facts):
-        """None in a closed domain, where a fluid may be under tension; beside soils the form that lets them
-        open."""
+        """None in a closed domain, where a fluid may be under tension; beside matter with a strength the form
+        that lets that open."""
         if not scene.has_free_surface:
             return None
-        return FloorBesideSoils(self.least) if scene.strengths else self
+        return FloorBesideStrength(self.least) if scene.strengths else self
 
     def why_absent(self, scene: Facts):
         """What the fluid lacks."""
@@ -116,7 +116,7 @@ LOOSEST = 0.99
 that has been stretched would slide on walls without any pressure, and so without friction."""
 
 
-class FloorBesideSoils(NamedTuple):
+class FloorBesideStrength(NamedTuple):
     """Water that is torn apart holds no more tension than this, and walls hold none; soil may open.
 
     The form of :class:`TensionFloor` in a scene with soils, which have their own limit of tension
