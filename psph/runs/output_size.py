@@ -5,8 +5,13 @@ from collections.abc import Iterator
 
 from psph.fields import Field
 from psph.kinds import count_of
+from psph.output.probes import FieldProbe
 from psph.runs.record import probes_of
 from psph.simulation.plan import Plan
+
+PLANES = 4
+"""Planes of cells, at least as wide as the cutoff, at which a point looks at most: its own, and on
+either side those within the support and the half of a cutoff that a particle strays from its listed place."""
 
 STRUCTURE = 8192
 """Bytes of a frame beside its rows: names, shapes, units, meanings."""
@@ -32,9 +37,18 @@ def output_lines(scene, plan: Plan, neighbours: float, steps: int) -> Iterator[s
     )
     plural = "s look" if len(probes) > 1 else " looks"
     yield (
-        f"                      {len(probes):,} probe{plural} at {len(probes) * particles:,} "
-        f"particles for a row, a step at {particles * neighbours:,.0f} pairs"
+        f"                      {len(probes):,} probe{plural} at {_looked_at(scene, probes, particles):,} "
+        f"particles for a row at most, a step at {particles * neighbours:,.0f} pairs"
     )
+
+
+def _looked_at(scene, probes, particles: int) -> int:
+    """Particles at which probes look for a row, as if they were spread evenly along the slab axis."""
+    layout = scene.layout
+    extent = layout.upper[layout.axis] - layout.lower[layout.axis]
+    part = min(1.0, PLANES / max(1, int(extent / layout.reach.cutoff)))
+    points = [len(probe.points) * part if isinstance(probe, FieldProbe) else 1.0 for probe in probes]
+    return round(particles * sum(points))
 
 
 def bytes_per_frame(scene, plan: Plan) -> int:
