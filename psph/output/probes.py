@@ -91,6 +91,8 @@ class FieldProbe:
         reached = int(np.count_nonzero(wet))
         self.rows += 1
         self.dry += not reached
+        if reached == len(wet):
+            return (sums[:, 2:] / sums[:, 1:2]).sum(axis=0) / reached
         # What no fluid reaches bears no pressure.
         counted = [len(wet) if f == PRESSURE.name else reached for f in self.fields for _ in store.rows[f]]
         with np.errstate(invalid="ignore"):

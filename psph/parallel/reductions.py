@@ -27,9 +27,14 @@ def world() -> MPI.Comm:
 
 def largest(comm: MPI.Comm, values) -> np.ndarray:
     """The largest of each value over all ranks; collective."""
-    maxima = np.array(values, dtype=np.float64)
-    comm.Allreduce(MPI.IN_PLACE, maxima, MPI.MAX)
-    return maxima
+    return _over_ranks(comm, np.array(values, dtype=np.float64), MPI.MAX)
+
+
+def _over_ranks(comm: MPI.Comm, values: np.ndarray, operation: MPI.Op) -> np.ndarray:
+    """The ``values`` of all ranks put together, in their place; one rank has them already."""
+    if comm.size > 1:
+        comm.Allreduce(MPI.IN_PLACE, values, operation)
+    return values
 
 
 class Contribution(NamedTuple):
@@ -60,8 +65,7 @@ def totals(comm: MPI.Comm, shares: Sequence[Contribution]) -> list[Total]:
     extremes = [most for part in columns for most in _extremes(part)]
     tops = [top for _, each in shares for top in each]
     maxima = largest(comm, [*extremes, *tops])
-    counts = np.array([part.shape[1] for part in columns], np.int64)
-    comm.Allreduce(MPI.IN_PLACE, counts, MPI.SUM)
+    counts = _over_ranks(comm, np.array([part.shape[1] for part in columns], np.int64), MPI.SUM)
     peaks, scales = maxima[: ends[-1]].tolist(), []
     for place, count in zip(places, counts.tolist()):
         # Whole numbers add up to the same bits in any order where the sum fits: a bit for each doubling.
@@ -71,8 +75,7 @@ def totals(comm: MPI.Comm, shares: Sequence[Contribution]) -> list[Total]:
     for part, place in zip(columns, places):
         if part.size:
             _add_whole(part, peaks[place], scales[place], whole[place])
-    comm.Allreduce(MPI.IN_PLACE, whole, MPI.SUM)
-    numbers = zip(whole.tolist(), scales, peaks)
+    numbers = zip(_over_ranks(comm, whole, MPI.SUM).tolist(), scales, peaks)
     sums = np.array(
         [math.ldexp(n, -scale) if math.isfinite(peak) else math.nan for n, scale, peak in numbers]
     )
@@ -120,13 +123,9 @@ def _powers(scales: list[int]) -> list[list[int]]:
 
 def whole_sums(comm: MPI.Comm, values: np.ndarray) -> np.ndarray:
     """Sums of arrays of whole numbers, int64, over all ranks; collective."""
-    total = np.array(values, dtype=np.int64)
-    comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
-    return total
+    return _over_ranks(comm, np.array(values, dtype=np.int64), MPI.SUM)
 
 
 def wrapped_sums(comm: MPI.Comm, values) -> list[int]:
     """Sums of whole numbers below 2⁶⁴ over all ranks, modulo 2⁶⁴; collective."""
-    total = np.array(values, dtype=np.uint64)
-    comm.Allreduce(MPI.IN_PLACE, total, MPI.SUM)
-    return total.tolist()
+    return _over_ranks(comm, np.array(values, dtype=np.uint64), MPI.SUM).tolist()

@@ -88,6 +88,7 @@ class Record:
         self.written = 0
         self.probes = probes_of(case, simulation.plan.mirrors)
         names = [c for probe in self.probes for c in probe.columns(scene.dimensions)]
+        self._looked_at: tuple[int, list[tuple[int, int]]] | None = None
         self.probe_table = None
         if names:
             self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
@@ -190,11 +191,15 @@ class Record:
             self.probe_table.write([self.simulation.time, *np.concatenate(values).tolist()])
 
     def _ranges(self) -> list[tuple[int, int]]:
-        """The columns that probes look at, each range from one to before another, none in two."""
+        """The columns that probes look at, each range from one to before another, none in two; the same
+        while lists last."""
+        if self._looked_at and self._looked_at[0] == self.simulation.domain.rebuilds:
+            return self._looked_at[1]
         apart: list[tuple[int, int]] = []
         for first, last in sorted(chain(*(probe.ranges(self.simulation) for probe in self.probes))):
             begun, end = apart.pop() if apart and first <= apart[-1][1] else (first, last)
             apart.append((begun, max(end, last)))
+        self._looked_at = self.simulation.domain.rebuilds, apart
         return apart
 
     def dry_probes(self) -> Iterator[str]:

@@ -6,10 +6,8 @@ from drafts import draft
 from gauging import start
 from mpi4py import MPI
 
-from psph.output.ledger import Ledger
 from psph.runs.record import Record
 from psph.runs.start import run
-from psph.scene import Scene
 
 STREAM = """
 scheme = "sph"
@@ -67,27 +65,3 @@ def test_a_row_of_probes_alone_is_that_beside_a_row_of_the_log(tmp_path, monkeyp
     assert probes(tmp_path, "alone", rows, "output.log=0.2") == beside
     monkeypatch.setattr(Record, "_ranges", lambda self: [])
     assert probes(tmp_path, "unsettled", rows, "output.log=0.2") != beside
-
-
-class Counting:
-    """A communicator that counts its reductions."""
-
-    def __init__(self):
-        self.reductions = 0
-
-    def __getattr__(self, name):
-        self.reductions += name == "Allreduce"
-        return getattr(MPI.COMM_SELF, name)
-
-
-def test_rows_that_are_due_together_are_three_messages(tmp_path):
-    probes = "".join(f"[probes.Q{k}]\nposition = [{k}.0, 0.4]\n" for k in range(3))
-    scene = Scene(draft(tmp_path, STREAM + probes + '[probes.tip]\nfront = "x"\n'))
-    comm = Counting()
-    simulation = start(scene.case, comm, Ledger())
-    record = Record(scene, simulation, tmp_path)
-    before = comm.reductions
-    record.write_due()
-    record.close()
-    assert comm.reductions - before == 3
-    assert len((tmp_path / "probes.csv").read_text(encoding="utf-8").splitlines()) == 2

@@ -10,6 +10,8 @@ from parallel.test_simulation import box
 
 from psph.output.ledger import Ledger
 from psph.parallel import halo as halo_module
+from psph.runs.record import Record
+from psph.scene import Scene
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -217,3 +219,17 @@ def test_bodies_are_one_reduction_more_and_one_number_of_another(watched):
     assert sorted(sends) == sorted(expected_sends(simulation, fields))
     rest = [e for e in found if e[0] not in ("Send_init", "Recv_init", "wait", "pairs")]
     assert rest == [("Allreduce", 6 * 8), ("Allreduce", (5 + simulation.plan.displaces) * 8)]
+
+
+def test_rows_that_are_due_together_are_three_reductions(watched, mpi_tmp_path):
+    """The largest terms and how many there are, then whole numbers: of three probes, a front and the log."""
+    case, _ = CASES["plain"]
+    probes = {f"P{k}": {"position": [0.5 * k, 0.5]} for k in range(3)} | {"tip": {"front": "x"}}
+    case = type(case).model_validate(case.model_dump(exclude_unset=True) | {"probes": probes})
+    simulation, events = watched(case)
+    record = Record(Scene(case), simulation, mpi_tmp_path)
+    events.clear()
+    record.write_due()
+    record.close()
+    columns = 3 * 3 + 4
+    assert [size for name, size in events if name == "Allreduce"] == [8 * (columns + 2), 8 * 5, 8 * columns]
