@@ -33,11 +33,15 @@ def logged(store: Store, gravity: Sequence[float], potential: np.ndarray | float
 
     ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.
     """
-    moved, fluid = (_members(store, which) for which in (store.kinds != WALL, store.kinds == FLUID))
-    mass, speeds, places = (_of(store, name, moved) for name in (_inert(store), "velocity", "position"))
+    flows, moves = store.kinds == FLUID, store.kinds != WALL
+    moved = _members(store, moves)
+    fluid = moved if (flows == moves).all() else _members(store, flows)
+    mass, speeds = (_of(store, name, moved) for name in (_inert(store), "velocity"))
     terms = np.empty((2 + len(speeds), len(moved)))
     np.multiply(0.5 * mass, np.add.reduce(np.square(speeds), axis=0), out=terms[0])
-    level = projected(np.transpose(places), gravity)
+    pulls = {axis: pull for axis, pull in enumerate(gravity) if pull}
+    places = np.array([store.shown("position").T[axis][moved] for axis in pulls])
+    level = projected(places.T, list(pulls.values())) if pulls else 0.0
     np.multiply(mass, (potential if np.ndim(potential) == 0 else potential[moved]) - level, out=terms[1])
     np.multiply(mass, speeds, out=terms[2:])
     ratio = _of(store, "density", fluid) / _of(store, "rest_density", fluid)
