@@ -69,7 +69,7 @@ def left(path, *sets) -> dict[str, list[str]]:
 @pytest.mark.parametrize(("text", "sets"), ((BLOCKS, CLASH), (SAND, ())), ids=("clash", "sand"))
 def test_no_formula_is_left_as_a_call(text, sets, dimensions, tmp_path):
     """Solids that met with friction had other bits in a run that compiled their loop than in one after it."""
-    case = draft(tmp_path, text if dimensions == 2 else drawn_out(text, 0.6), *sets)
+    case = draft(tmp_path, text if dimensions == 2 else drawn_out(text, 1.0), *sets)
     folders = os.pathsep.join([os.path.dirname(os.path.dirname(__file__)), *sys.path])
     environment = clean_environment() | {"PSPH_CACHE": str(tmp_path / "cache"), "PYTHONPATH": folders}
     code = "import json, sys; from engine.test_left_calls import left; print(json.dumps(left(*sys.argv[1:])))"
