@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from cases.measures import finished
+from cases.measures import by_id, finished
 from long import LONG
+from scipy.integrate import solve_ivp
 
 pytestmark = pytest.mark.timeout(900)
 
@@ -121,14 +122,18 @@ def bagnold(z, degrees, depth=0.0106, d=5.3e-4, packing=0.6):
     [(24, COARSE_SLOPE, 0.09), (24, (), 0.04), (26, COARSE_SLOPE, 0.06), (26, (), 0.03)],
 )
 def test_grains_on_a_slope_have_the_profile_of_bagnold(degrees, spacing, most, tmp_path):
-    """On 24°, 1 % of stress are 9 % of speed: there 20 layers miss the 3 % that they keep on 26°."""
+    """On 24°, 1 % of stress are 9 % of speed: there 20 layers miss the 3 % that they keep on 26°.  Means from 2.5 s on:
+    by sound the error of a moment, 3.8 to 4.0 %, swings."""
     angle = math.radians(degrees)
     gravity = f"physics.gravity=[{9.81 * math.sin(angle)!r},{-9.81 * math.cos(angle)!r}]"
     top = float(bagnold(0.0106, degrees))
     begin = f"fluids.grains.velocity_gradient=[[0.0,{top / 0.0106!r}],[0.0,0.0]]"
-    grains = fluid(finished("mud/grains_on_slope", tmp_path, gravity, begin, *spacing))
-    z, u = grains["position"][:, 1], grains["velocity"][:, 0]
-    assert np.abs(u - bagnold(z, degrees)).max() / top < most
+    run = finished("mud/grains_on_slope", tmp_path, gravity, begin, *spacing)
+    off = []
+    for frame in np.flatnonzero(np.array(run.times) > 2.5):
+        grains = by_id(fluid(run, frame))
+        off.append(grains["velocity"][:, 0] - bagnold(grains["position"][:, 1], degrees))
+    assert len(off) > 5 and np.abs(np.mean(off, axis=0)).max() / top < most
 
 
 def test_grains_stand_on_a_slope_below_their_friction(tmp_path):
@@ -162,20 +167,50 @@ def heap(run, frame, spacing=0.005):
     return middle, height, -square / slope
 
 
+def thin_layer(times, tau, n=120, length=1.2):
+    """Middles of columns, m, and the height of the heap in them at ``times``, s, by the equation of a thin layer of
+    a Bingham fluid that starts as the case does: ∂h/∂t = −∂q/∂x, q = ρg s y²(3h − y)/(6K) with the slope s = −∂h/∂x
+    and the part y = h − τ_y/(ρg|s|) that shears (Matson & Hogg 2007).  It comes to rest as 1/t."""
+    dx, weight = length / n, 1000.0 * 9.81
+    x = (np.arange(n) + 0.5) * dx
+
+    def rates(_, h):
+        slope, between = -np.diff(h) / dx, 0.5 * (h[:-1] + h[1:])
+        sheared = np.maximum(between - tau / (weight * np.maximum(np.abs(slope), 1e-12)), 0.0)
+        flux = weight * slope * sheared**2 * (3.0 * between - sheared) / 6.0
+        return -np.diff(np.r_[0.0, flux, 0.0]) / dx
+
+    start = np.where(x < 0.4, 0.05, 0.0)
+    found = solve_ivp(rates, (0.0, times[-1]), start, "LSODA", times, lband=1, uband=1, rtol=1e-6, atol=1e-8)
+    return x, found.y.T
+
+
 @pytest.mark.long
 def test_a_heap_of_mud_stops_where_its_yield_stress_bears_it_and_a_newtonian_one_runs_on(tmp_path):
+    """Measured, rms over the height in the middle: 5.3 and 5.2 % off the thin layer at 6 and 10 s, 10.4 and 8.6 % off
+    the shape at rest, which the thin layer misses itself by 6.8 and 4.8 %."""
     run = finished("mud/bingham_slump", tmp_path / "mud", "output.frames=2.0")
     fall = 2 * 10.0 / (1000.0 * 9.81)
     reach = (1.5 * VOLUME / math.sqrt(fall)) ** (2 / 3)
     x, height, front = heap(run, -1)
     assert front == pytest.approx(reach, rel=0.1)
     exact = np.sqrt(fall * np.maximum(reach - x, 0.0))
-    assert np.sqrt(np.mean((height - exact)[x < reach] ** 2)) < 0.1 * exact.max()
+
+    def apart(one, other):
+        return np.sqrt(np.mean((one - other)[x < reach] ** 2)) / exact.max()
+
+    assert apart(height, exact) < 0.1
+    (thin, runny), times = (thin_layer((6.0, 10.0), tau)[1] for tau in (10.0, 0.0)), (3, 5)
+    for frame, layer, oil in zip(times, thin, runny):
+        found = heap(run, frame)[1]
+        layer, oil = (h.reshape(len(x), -1).mean(axis=1) for h in (layer, oil))
+        assert apart(found, layer) < 0.06 < 0.2 < apart(found, oil)
     before, after = (fluid(run, k)["position"][:, 0].max() for k in (-2, -1))
     assert 0.0 <= after - before < 0.03 * reach
     thin = (
         "fluids.mud.rheology.bingham.yield_stress=1e-6",
         "fluids.mud.rheology.bingham.largest_viscosity=1.01",
+        "time.end=6.0",
     )
     newton = finished("mud/bingham_slump", tmp_path / "newton", *thin, "output.frames=2.0")
     assert fluid(newton)["position"][:, 0].max() > 1.15 * reach
