@@ -142,7 +142,14 @@ def resumed(case, comm, steps, folder):
 
 
 def nudged(case, comm, steps, folder):
-    """The control: the speed of sound differs in its last bit."""
+    """The control: the speed of sound differs in its last bit; of soils, which have their own, Young's modulus in
+    its twelfth digit."""
+    if case.soils:
+        soils = {
+            name: one.model_copy(update={"young": one.young * (1.0 + 1e-12)})
+            for name, one in case.soils.items()
+        }
+        return go(begun(case.model_copy(update={"soils": soils}), comm), steps)
     physics = case.physics
     faster = physics.model_copy(update={"sound_speed": float(np.nextafter(physics.sound_speed, 99.0))})
     return go(begun(case.model_copy(update={"physics": faster}), comm), steps)
