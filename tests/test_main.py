@@ -276,3 +276,22 @@ def test_an_empty_name_is_no_folder(tmp_path, words, what):
     assert job.returncode == 2
     assert job.stderr.strip() == f"{what}: an empty name; give a folder, . for the current one"
     assert list(tmp_path.iterdir()) == []
+
+
+STAYING = """
+import gc
+from psph.__main__ import _modules_stay
+with _modules_stay():
+    assert not gc.isenabled()
+    import psph.api
+first = gc.get_freeze_count()
+assert gc.isenabled() and first > 50_000
+with _modules_stay():
+    assert gc.isenabled()
+assert gc.get_freeze_count() == first
+"""
+
+
+def test_what_comes_with_modules_is_not_searched_for_rings_and_what_a_process_makes_is():
+    done = subprocess.run([sys.executable, "-c", STAYING], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
