@@ -5,6 +5,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from psph.engine.beside import beside
 from psph.engine.jit import CACHE, many_loops, marker
 from psph.kinds import Created
 from psph.output.checkpoint import checksum
@@ -78,8 +79,8 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     """Every loop of the plan, ready to run: compiled, or loaded from the cache.
 
     Where the cache holds them all, the ranks load together.  Else the others compile the loops over pairs,
-    which take longest, while rank 0 compiles the rest; then all load what they need.  Without a cache all
-    compile.  Returns the seconds it took.  Collective.
+    which take longest, while rank 0 compiles the rest; then all load what they need.  One rank has a process
+    beside it do so.  Without a cache all compile.  Returns the seconds it took.  Collective.
     """
     begun = time.perf_counter()
     store = _empty(scene, plan)
@@ -103,8 +104,8 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     ready = marker(measured, *examples)
     together = comm.bcast(ready is None or ready.exists())
     with many_loops():
-        if not together and comm.size > 1:
-            _share(scene, plan, comm)
+        if not together:
+            (_share if comm.size > 1 else _share_with_copy)(scene, plan, comm)
         if together or comm.rank == 0:
             _rehearse(scene, plan, store)
     if comm.rank == 0 and not together:
@@ -130,13 +131,31 @@ class _AllButSums(Simulation):
 
 def _share(scene, plan: Plan, comm) -> None:
     """Compile this rank's share of the loops; collective."""
-    store = _empty(scene, plan)
     if comm.rank == 0:
-        _few_particles(scene, plan, store)
-        _AllButSums(scene, plan, store, alone(), Ledger()).step()
+        _compile_all_but_sums(scene, plan)
     else:
-        Engine(scene, plan, store, alone(), Ledger()).prepare_sums(comm.rank - 1, comm.size - 1)
+        _engine(scene, plan).prepare_sums(comm.rank - 1, comm.size - 1)
     comm.Barrier()
+
+
+def _share_with_copy(scene, plan: Plan, comm) -> None:
+    """The same of one rank, where a core is free: a copy of this process compiles the loops over pairs."""
+    engine = _engine(scene, plan)
+    with beside(lambda: engine.prepare_sums(0, 1)) as shared:
+        if shared:
+            _compile_all_but_sums(scene, plan)
+
+
+def _engine(scene, plan: Plan) -> Engine:
+    """The engine of a rank without particles."""
+    return Engine(scene, plan, _empty(scene, plan), alone(), Ledger())
+
+
+def _compile_all_but_sums(scene, plan: Plan) -> None:
+    """A step without sums over pairs."""
+    store = _empty(scene, plan)
+    _few_particles(scene, plan, store)
+    _AllButSums(scene, plan, store, alone(), Ledger()).step()
 
 
 def _rehearse(scene, plan: Plan, store: Store) -> None:
