@@ -17,15 +17,15 @@ def rows_of(path: Path, most: int) -> list[tuple[int, list[str]]]:
 
     Raises Unfit where it cannot be read, is no text, or no CSV.
     """
-    found: list[tuple[int, list[str]]] = []
+    rows: list[tuple[int, list[str]]] = []
     try:
         with open(path, encoding="utf-8-sig", newline="") as file:
             for n, line in enumerate(file, 1):
                 if UNPRINTABLE.search(line.replace("\t", " ").rstrip("\r\n")):
                     raise Unfit(f"{path}: line {n} is no text; {GIVE}")
                 if line.strip() and line[0] != "#":
-                    found.append((n, next(csv.reader([line], strict=True))))
-                if len(found) == most:
+                    rows.append((n, next(csv.reader([line], strict=True))))
+                if len(rows) == most:
                     break
     except UnicodeDecodeError:
         raise Unfit(f"{path} is no text in UTF-8; {GIVE}") from None
@@ -33,7 +33,7 @@ def rows_of(path: Path, most: int) -> list[tuple[int, list[str]]]:
         raise Unfit(f"{path}: {error.strerror or error}; give a CSV file in the case's folder") from None
     except csv.Error as error:
         raise Unfit(f"{path}: line {n}: {error}; give numbers with commas between them") from None
-    return found
+    return rows
 
 
 GIVE = "give a CSV file: a line of names, and rows of numbers"
@@ -53,17 +53,17 @@ def read_columns(path: Path, names: list[str]) -> np.ndarray:
     if not lines:
         raise Unfit(f"{path} is empty; {GIVE}")
     (_, head), *cells = lines
-    found = [part.strip() for part in head]
+    columns = [part.strip() for part in head]
     for name in names:
-        if found.count(name) != 1:
-            how = "no column" if name not in found else "more than one column"
-            raise Unfit(f"{path} has {how} '{name}', only {named(found)}; name one of its columns")
+        if columns.count(name) != 1:
+            how = "no column" if name not in columns else "more than one column"
+            raise Unfit(f"{path} has {how} '{name}', only {named(columns)}; name one of its columns")
     if len(cells) < 2:
         raise Unfit(f"{path} has {len(cells)} row{'s' * (len(cells) != 1)}; give two at least")
     if len(cells) > MOST_ROWS:
         raise Unfit(f"{path} has more than {MOST_ROWS:,} rows; give fewer: they are interpolated")
-    places = [found.index(name) for name in names]
-    rows = np.array([_numbers(path, n, row, found, places) for n, row in cells])
+    places = [columns.index(name) for name in names]
+    rows = np.array([_numbers(path, n, row, columns, places) for n, row in cells])
     for (n, _), before, now in zip(cells[1:], rows[:-1, 0], rows[1:, 0]):
         if not now > before:
             raise Unfit(f"{path}: line {n}: the time {now:g} s follows {before:g} s; let times rise")

@@ -44,11 +44,11 @@ def contradictions(case) -> list[InitErrorDetails]:
         return [_without_matter(case)]
     wrong = list(_dimensions(case))
     more = (finding for rule in rules for finding in rule(case))
-    found = list(_sizes(case)) or [*wrong, *not_of(wrong, more)]
+    findings = list(_sizes(case)) or [*wrong, *not_of(wrong, more)]
     return [
         # The message goes in as a value: braces in it are not placeholders.
         {"type": PydanticCustomError("psph", "{says}", {"says": says}), "loc": loc, "input": value}
-        for loc, value, says in found
+        for loc, value, says in findings
     ]
 
 

@@ -74,8 +74,8 @@ def rows_of_effects(catalogue) -> Iterator[CornerRow]:
     """A row for each effect of a catalogue."""
     for entry in catalogue.effects:
         own = refusals_of_effect if entry.key.startswith("physics.") else refusals
-        found = (answer(entry.effect, corner, own(entry.effect)) for corner in CORNERS)
-        yield CornerRow(entry.key, entry.effect.__name__, tuple(found))
+        answers = (answer(entry.effect, corner, own(entry.effect)) for corner in CORNERS)
+        yield CornerRow(entry.key, entry.effect.__name__, tuple(answers))
 
 
 def rows_of_gauges(kinds: Mapping[str, Any]) -> Iterator[CornerRow]:
@@ -94,19 +94,19 @@ def rows_of_kinds() -> Iterator[CornerRow]:
 def present(case) -> dict[str, list[tuple[Location, Any]]]:
     """The corners that a case has, each with the keys that say so and their values; none of its dimension,
     which no key can take out."""
-    found: dict[str, list[tuple[Location, Any]]] = {
+    corners: dict[str, list[tuple[Location, Any]]] = {
         FRAME: [(("frame", "motion"), ...)] if case.frame.motion else [],
         SEAM: [(("space", "periodic"), case.space.periodic)] if case.space.periodic else [],
         SYMMETRY: [(("space", "symmetry"), ...)] if case.space.symmetry else [],
         MIXED: [(("precision",), case.precision)] if case.precision == "mixed" else [],
     }
     for entry in case.catalogue.kinds:
-        found[entry.effect.name] = [((entry.effect.name,), ...)] if entry.effect.is_in(case) else []
+        corners[entry.effect.name] = [((entry.effect.name,), ...)] if entry.effect.is_in(case) else []
     for table, name, one in case.entries:
-        keys = found.setdefault(one.word, [])
+        keys = corners.setdefault(one.word, [])
         if (said := one.said(table, name)) not in keys:
             keys.append(said)
-    return {corner: keys for corner, keys in found.items() if keys}
+    return {corner: keys for corner, keys in corners.items() if keys}
 
 
 def matter_in(case) -> frozenset[str]:
@@ -140,15 +140,15 @@ def cornered(case) -> Iterator[Finding]:
         refused = refusals(effect) if idle else refusals_of_effect(effect)
         told = apart if case.preset(f"physics.{name}") else ()
         met = {*here, dimension}.difference(told)
-        found = [says for corner, says in refused.items() if corner in met]
-        if idle and not found and not case.preset(f"physics.{name}"):  # what a scheme sets asks for nothing
-            found = [f"acts on {listed(acts)} alone, and the case has none; remove this key"]
+        against = [says for corner, says in refused.items() if corner in met]
+        if idle and not against and not case.preset(f"physics.{name}"):  # what a scheme sets asks for nothing
+            against = [f"acts on {listed(acts)} alone, and the case has none; remove this key"]
         if by := case.preset(f"physics.{name}"):
-            for says in found:
+            for says in against:
                 brought.setdefault((by, says), []).append(f"physics.{name}")
         else:
-            yield from ((("physics", name), value, says) for says in found)
-        if not found:
+            yield from ((("physics", name), value, says) for says in against)
+        if not against:
             yield from _of_other_matter(case, name, effect, here)
     for (by, says), keys in brought.items():
         table, name = by.split(" ", 1)

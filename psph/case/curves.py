@@ -38,8 +38,8 @@ def read_curve(experiment, path: Path, where: str) -> tuple[np.ndarray, np.ndarr
 
 def _column(names: list[str], wanted: str, where: str) -> int:
     if names.count(wanted) != 1:
-        found = "no column" if wanted not in names else "more than one column"
-        raise Unfit(f"{where} has {found} '{wanted}'; give one of {named(names)}")
+        how_many = "no column" if wanted not in names else "more than one column"
+        raise Unfit(f"{where} has {how_many} '{wanted}'; give one of {named(names)}")
     return names.index(wanted)
 
 

@@ -33,7 +33,7 @@ def catalogue_of(file: str, names: Sequence[str], given: "Catalogue | None" = No
     """
     from psph.physics.catalogue import BUILT_IN, Catalogue
 
-    found, modules = BUILT_IN, {}
+    catalogue, modules = BUILT_IN, {}
     for name in names:
         if not name.startswith(PYTHON):
             modules.setdefault(_module(file, name), name)  # a file named twice is one file
@@ -46,15 +46,15 @@ def catalogue_of(file: str, names: Sequence[str], given: "Catalogue | None" = No
                     "psph.physics.catalogue with what it brings"
                 ]
             )
-        for faults in map(_clash, Catalogue._fields, found, more):
+        for faults in map(_clash, Catalogue._fields, catalogue, more):
             for says in faults:
                 raise CaseError([f"{file}: use: {name} brings {says}; rename it"])
         for says in _uncalled(more.effects):
             raise CaseError([f"{file}: use: {name}: {says}"])
         for entry in more.kernels:
             _register(file, name, last_part(entry), entry.effect)
-        found = found.with_more(more)
-    return found
+        catalogue = catalogue.with_more(more)
+    return catalogue
 
 
 def origin(kind: type) -> Path | None:

@@ -70,13 +70,13 @@ def _class(name: str) -> str:
 
 def _digest(kind) -> str:
     """Of the compiled methods of a class, its constants and parameters; the same in every process."""
-    found = hashlib.sha256(repr((kind._fields, kind._field_defaults)).encode())
+    digest = hashlib.sha256(repr((kind._fields, kind._field_defaults)).encode())
     for name, value in sorted(vars(kind).items()):
         code = getattr(getattr(value, "__func__", value), "__code__", None)
         if not name.startswith("_"):
             said = _code(code) if code else repr(value) if isinstance(value, PLAIN) else ""
-            found.update(f"{name} {said}\n".encode())
-    return found.hexdigest()[:12]
+            digest.update(f"{name} {said}\n".encode())
+    return digest.hexdigest()[:12]
 
 
 PLAIN = (int, float, str, bool)

@@ -268,5 +268,5 @@ def _value(where: str, text: str) -> Any:
 
 def _with_a_point(text: str) -> str:
     """What to do about a number with a decimal comma in a text; empty where none is seen."""
-    found = COMMA.search(text) or COMMA_IN_LIST.search(text)
-    return f"a decimal point, not a comma: {found[1]}.{found[2]}" if found else ""
+    decimal = COMMA.search(text) or COMMA_IN_LIST.search(text)
+    return f"a decimal point, not a comma: {decimal[1]}.{decimal[2]}" if decimal else ""

@@ -44,9 +44,9 @@ def messages(
 ) -> Iterator[str]:
     """One line for each finding; ``source`` names what set the key at a location, and ``filled`` the profile
     or the scheme by which another key has the value that a finding speaks of."""
-    found = error.errors(include_url=False)[:MOST_FINDINGS]
-    for details in found:
-        if not _follows_from_another(details, found):
+    findings = error.errors(include_url=False)[:MOST_FINDINGS]
+    for details in findings:
+        if not _follows_from_another(details, findings):
             loc = _as_written(details, data)
             says = _sentence(details, loc, schema)
             yield f"{source(loc)}: {dotted(loc)}: {says}{_set_elsewhere(says, loc, filled)}"
@@ -75,7 +75,7 @@ def plain(value: Any) -> str:
     return shortened(text, LONGEST_VALUE)
 
 
-def _follows_from_another(details: Details, found: list[Details]) -> bool:
+def _follows_from_another(details: Details, findings: list[Details]) -> bool:
     """A misspelt key is missing too, and a list of wrong entries too short: one line is enough."""
     loc, kind = details["loc"], details["type"]
     if kind == "missing":
@@ -83,10 +83,10 @@ def _follows_from_another(details: Details, found: list[Details]) -> bool:
             other["type"] == "extra_forbidden"
             and other["loc"][:-1] == loc[:-1]
             and nearest(str(other["loc"][-1]), [str(loc[-1])])
-            for other in found
+            for other in findings
         )
     return kind == "too_short" and any(
-        other["loc"][: len(loc)] == loc and len(other["loc"]) > len(loc) for other in found
+        other["loc"][: len(loc)] == loc and len(other["loc"]) > len(loc) for other in findings
     )
 
 

@@ -113,10 +113,10 @@ class Case(WithMatter):
     @property
     def entries(self) -> tuple[Named, ...]:
         """All that holds particles: what flows, what else moves freely, then what is rigid."""
-        found = [
+        entries = [
             Named(table, *one) for table in self.tables_of(Placed) for one in getattr(self, table).items()
         ]
-        return tuple(sorted(found, key=lambda entry: (not entry.of.moves_freely, not entry.of.flows)))
+        return tuple(sorted(entries, key=lambda entry: (not entry.of.moves_freely, not entry.of.flows)))
 
     @property
     def flowing(self) -> dict[str, Any]:
@@ -141,13 +141,13 @@ class Case(WithMatter):
     @property
     def motions(self) -> dict[tuple[str, ...], tuple]:
         """The parts of each motion of the case, by the location of its key."""
-        found = {
+        motions = {
             (*entry.loc, *within): parts
             for entry in sorted(self.entries, key=lambda entry: not entry.of.rigid)
             for within, parts in entry.of.motions().items()
         }
-        found[("frame",)] = self.frame.motion
-        return {(*loc, "motion"): parts for loc, parts in found.items() if parts}
+        motions[("frame",)] = self.frame.motion
+        return {(*loc, "motion"): parts for loc, parts in motions.items() if parts}
 
     @cached_property
     def meshes(self) -> dict[str, Mesh]:
@@ -189,7 +189,7 @@ class Case(WithMatter):
     def to_toml(self) -> str:
         """This case as TOML that :func:`psph.case.load` reads back to an equal case."""
         text = tomli_w.dumps(self.as_tables())
-        return LIST_OVER_LINES.sub(lambda found: f"[{' '.join(found[1].split())[:-1]}]", text)
+        return LIST_OVER_LINES.sub(lambda listed: f"[{' '.join(listed[1].split())[:-1]}]", text)
 
     def as_tables(self) -> dict[str, Any]:
         """What :meth:`to_toml` writes: all keys that have a value."""
@@ -202,8 +202,8 @@ class Case(WithMatter):
 
     @model_validator(mode="after")
     def _agree(self) -> Self:
-        if found := contradictions(self):
-            raise ValidationError.from_exception_data("case", found)
+        if contradicting := contradictions(self):
+            raise ValidationError.from_exception_data("case", contradicting)
         return self
 
     @model_validator(mode="after")

@@ -185,12 +185,12 @@ class OnHinge(Wavemaker):
     def swings(self, waves: tuple[Component, ...], gravity: float) -> Swings:
         """How it swings to make these waves: a stroke of 2A/(H/S) at the surface for an amplitude A."""
         lever = 1.0 if self.center is None else self.depth - self.hinge
-        found = []
+        components = []
         for a, omega, phase in waves:
             k = wave_number(omega, self.depth, gravity)
-            found.append(Component(a / (lever * self.gain(k * self.depth)), omega, phase))
+            components.append(Component(a / (lever * self.gain(k * self.depth)), omega, phase))
         way = self.forwards if self.center is None else (*ZERO, 1.0)
-        return Swings(way, tuple(found))
+        return Swings(way, tuple(components))
 
 
 class Piston(Absorber):

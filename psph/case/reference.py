@@ -188,8 +188,8 @@ def _plural(kind: str) -> str:
 
 def _bounds(node: Node) -> str:
     signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
-    found = [f"{sign} {node[bound]:g}" for bound, sign in signs.items() if bound in node]
-    return f" {', '.join(found)}" if found else ""
+    limits = [f"{sign} {node[bound]:g}" for bound, sign in signs.items() if bound in node]
+    return f" {', '.join(limits)}" if limits else ""
 
 
 def _default(key: str, node: Node, required: bool) -> str:

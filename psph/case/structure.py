@@ -38,14 +38,14 @@ def keys_of(schema: Node, keys: tuple[str | int, ...]) -> list[str]:
 
 def places_of(schema: Node, name: str) -> list[str]:
     """Where a case has a key of this name, with the names of its tables."""
-    found = [name] if name in schema["properties"] else []
+    places = [name] if name in schema["properties"] else []
     for table, node in schema["properties"].items():
         for branch in alternatives(schema, node):
             named = [*branch.get("patternProperties", {}).values()]
             for one in (branch, *(way for below in named for way in alternatives(schema, below))):
                 if name in one.get("properties", ()):
-                    found.append(f"{table}.{name}" if one is branch else f"{table}.NAME.{name}")
-    return found
+                    places.append(f"{table}.{name}" if one is branch else f"{table}.NAME.{name}")
+    return places
 
 
 def _below(node: Node, key: str | int) -> Node | None:

@@ -12,8 +12,8 @@ from psph.runs.record import columns_of
 
 def refuse_unfit_experiments(scene) -> None:
     """Raise CaseError, a line each, where a file, a column of it, or the column to compare is not there."""
-    if found := list(_faults(scene)):
-        raise CaseError(found)
+    if faults := list(_faults(scene)):
+        raise CaseError(faults)
 
 
 def _faults(scene) -> Iterator[str]:

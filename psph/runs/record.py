@@ -170,9 +170,9 @@ class Record:
             sim.settle_pressure(self._ranges() if due == [self.write_probes] else None)
             shares = {write: self.shares[write](sim) for write in due if write in self.shares}
             asked = [*chain(*shares.values())]
-            found = iter(totals(sim.comm, asked) if asked else ())
+            numbers = iter(totals(sim.comm, asked) if asked else ())
             for write in due:
-                write(*islice(found, len(shares.get(write, ()))))
+                write(*islice(numbers, len(shares.get(write, ()))))
                 self.last_written[write] = sim.steps
 
     def write_frame(self) -> None:
@@ -184,10 +184,12 @@ class Record:
         self.frames.write(self.written, sim.time, sim.steps, arrays)
         self.written += 1
 
-    def write_probes(self, *found: Total) -> None:
-        """A line of probe values, of what was ``found`` for each of the probes."""
+    def write_probes(self, *numbers: Total) -> None:
+        """A line of probe values, of the ``numbers`` of each of the probes."""
         if self.probe_table:
-            values = [p.values(self.simulation.store, one) for p, one in zip(self.probes, found, strict=True)]
+            values = [
+                p.values(self.simulation.store, one) for p, one in zip(self.probes, numbers, strict=True)
+            ]
             self.probe_table.write([self.simulation.time, *np.concatenate(values).tolist()])
 
     def _ranges(self) -> list[tuple[int, int]]:
@@ -214,11 +216,11 @@ class Record:
     def _points(self) -> Iterator[FieldProbe]:
         return (probe for probe in self.probes if isinstance(probe, FieldProbe))
 
-    def write_log(self, found: Total) -> None:
+    def write_log(self, numbers: Total) -> None:
         """A line of energies, momentum and limits, and one of errors where these are known."""
         sim = self.simulation
-        energies, momentum, own = found.sums[:2].tolist(), found.sums[2:].tolist(), sim.engine.booked()
-        [error] = found.tops.tolist()
+        energies, momentum, own = numbers.sums[:2].tolist(), numbers.sums[2:].tolist(), sim.engine.booked()
+        [error] = numbers.tops.tolist()
         self.log.write([sim.time, sim.steps, sim.dt, *energies, *own, *momentum, sim.fluid_speed, error])
         if self.accuracy:
             self.latest_errors = self.accuracy.errors(sim.time)

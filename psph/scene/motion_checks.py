@@ -29,8 +29,8 @@ FAR_OFF = 0.25
 
 def motion_faults(scene: Scene) -> Iterator[str]:
     """Motions that leave what numbers can tell."""
-    for _, key, found in moving_parts(scene.census):
-        far = max(np.abs(found.lower).max(), np.abs(found.upper).max())
+    for _, key, sweep in moving_parts(scene.census):
+        far = max(np.abs(sweep.lower).max(), np.abs(sweep.upper).max())
         if not far <= FARTHEST * scene.spacing:
             yield (
                 f"{key}.motion: goes {far:.3g} m from 0, {far / scene.spacing:.2g} spacings, too far "
@@ -41,22 +41,22 @@ def motion_faults(scene: Scene) -> Iterator[str]:
 def motion_lines(scene: Scene) -> Iterator[str]:
     """What moves, in words, for `explain`."""
     tables: dict[str, Any] = {
-        key: (found, scene.census.motions[n]) for n, key, found in moving_parts(scene.census)
+        key: (sweep, scene.census.motions[n]) for n, key, sweep in moving_parts(scene.census)
     }
     if framed := frame_sweep(scene.layout):
         tables["frame"] = (framed, scene.frame)
     told = {".".join(loc): parts for loc, parts in scene.case.motions.items()}
-    for key, (found, moved) in tables.items():
+    for key, (sweep, moved) in tables.items():
         parts = [_part_in_words(part) for part in told[f"{key}.motion"]]
         yield f"  motion      {key}: {'; then '.join(parts)}"
         yield (
-            f"              at most {found.way:.3g} m from its start, {found.speed:.3g} m/s "
-            f"({found.speed / scene.sound_speed:.2g} c), {found.acceleration:.3g} m/s2"
+            f"              at most {sweep.way:.3g} m from its start, {sweep.speed:.3g} m/s "
+            f"({sweep.speed / scene.sound_speed:.2g} c), {sweep.acceleration:.3g} m/s2"
         )
         motion = getattr(moved, "motion", moved)  # of a body or clamp that one
         yield from (f"              {line}" for line in _turns_in_words(motion, scene.case.time.end))
-        if found.jump > 0.0:
-            yield f"              it begins at once with {found.jump:.3g} m/s"
+        if sweep.jump > 0.0:
+            yield f"              it begins at once with {sweep.jump:.3g} m/s"
 
 
 def _turns_in_words(motion, end: float) -> Iterator[str]:
@@ -96,15 +96,15 @@ def _plain(value) -> str:
 def motion_warnings(scene: Scene) -> Iterator[str]:
     """What of the motions of walls and bodies may not be meant so."""
     compresses = any(part.flows and not part.keeps_form for part in scene.layout.parts)
-    for number, part, found in moving_parts(scene.census):
+    for number, part, sweep in moving_parts(scene.census):
         key = f"{part}.motion"
-        share = found.speed / scene.sound_speed
+        share = sweep.speed / scene.sound_speed
         if share > QUICK and compresses:
             yield (
-                f"{key}: {found.speed:.3g} m/s is {share:.2g} of the speed of sound, which compresses the "
-                f"fluid before it; give physics.sound_speed = {10.0 * found.speed:.3g} or more"
+                f"{key}: {sweep.speed:.3g} m/s is {share:.2g} of the speed of sound, which compresses the "
+                f"fluid before it; give physics.sound_speed = {10.0 * sweep.speed:.3g} or more"
             )
-        yield from _leaving(scene, key, found)
+        yield from _leaving(scene, key, sweep)
         if met := None if goes_free(scene.census.motions[number]) else _first_met(scene, number):
             time, other, place = met
             yield (
@@ -126,11 +126,11 @@ def overshoots(scene: Scene) -> Iterator[str]:
                 )
 
 
-def _leaving(scene: Scene, key: str, found: Sweep) -> Iterator[str]:
+def _leaving(scene: Scene, key: str, sweep: Sweep) -> Iterator[str]:
     """Where a wall leaves the domain that the case gives, along an axis that does not repeat."""
     for end, given, reached in (
-        ("lower", scene.case.space.lower, found.lower),
-        ("upper", scene.case.space.upper, found.upper),
+        ("lower", scene.case.space.lower, sweep.lower),
+        ("upper", scene.case.space.upper, sweep.upper),
     ):
         for d in (d for d, period in enumerate(scene.layout.periods) if given and period is None):
             beyond = reached[d] - given[d] if end == "upper" else given[d] - reached[d]
@@ -164,10 +164,10 @@ def _first_met(scene: Scene, number: int) -> tuple[float, str, np.ndarray] | Non
 
 def _sites(scene: Scene, number: int) -> np.ndarray:
     """Places of some of a wall's particles at the start (n, dim)."""
-    found = []
+    places = []
     for first, last in scene.layout.lattice.chunks():
         held = scene.layout.materials(first, last) == number
         grid = scene.layout.lattice.grid(first, last)
-        found.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
-    sites = np.concatenate(found)
+        places.append(np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1))
+    sites = np.concatenate(places)
     return sites[:: max(1, len(sites) // LOOKED_AT)]

@@ -39,13 +39,13 @@ class WallRegion:
         A point that is inside, and so are the points so far away along each axis, both ways.  Along the
         axes ``once`` periods do not count: points there are taken where they are.
         """
-        found = np.zeros(len(position), bool)
+        outside = np.zeros(len(position), bool)
         if not self._still.any():
-            return found
+            return outside
         for first in range(0, len(position), AT_ONCE):
             part = position[first : first + AT_ONCE]
-            found[first : first + AT_ONCE] = self._deep(part, depth * self.scene.spacing, once)
-        return found
+            outside[first : first + AT_ONCE] = self._deep(part, depth * self.scene.spacing, once)
+        return outside
 
     @cached_property
     def closed(self) -> tuple[tuple[bool, bool], ...]:
@@ -56,22 +56,22 @@ class WallRegion:
         )
 
     def _deep(self, position: np.ndarray, depth: float, once: Container[int]) -> np.ndarray:
-        found = self._inside(position, once)
-        near = position[found]  # few: the rest is far from any wall's inside
+        outside = self._inside(position, once)
+        near = position[outside]  # few: the rest is far from any wall's inside
         held = np.ones(len(near), bool)
         for d in range(self.scene.dimensions):
             for away in (-depth, depth):
                 beside = near.copy()
                 beside[:, d] += away
                 held &= self._inside(beside, once)
-        found[found] = held
-        return found
+        outside[outside] = held
+        return outside
 
     def _inside(self, position: np.ndarray, once: Container[int]) -> np.ndarray:
         """True at points (n, dim) in a wall, or beyond a side that walls close."""
         grid = [x.copy() for x in position.T]  # unit stride
         grid = [x if d in once else self.scene.layout.folded(d, x) for d, x in enumerate(grid)]
-        found = self._still[self.layout.held(grid, grid[0].shape)]
+        outside = self._still[self.layout.held(grid, grid[0].shape)]
         low = [x < least for x, least in zip(grid, self.lattice.lower)]
         high = [x > most for x, most in zip(grid, self.lattice.upper)]
         # What is above an open top has jumped over a wall: it is not behind it.
@@ -79,8 +79,8 @@ class WallRegion:
         for d, (lower, upper) in enumerate(self.closed):
             within &= (lower | ~low[d]) & (upper | ~high[d])
         for d, (lower, upper) in enumerate(self.closed):
-            found |= within & (lower & low[d] | upper & high[d])
-        return found
+            outside |= within & (lower & low[d] | upper & high[d])
+        return outside
 
     def _all_wall(self, d: int, side: int) -> bool:
         """Whether the outermost sites at this end of axis ``d`` are all wall."""

@@ -66,9 +66,9 @@ def conditions(case: Case | None) -> dict[str, object]:
     if case is None:
         return {}
     tables = case.model_dump(mode="json", by_alias=True, exclude_none=True)
-    found = dict(_dotted({name: table for name, table in tables.items() if name not in ASIDE}))
-    del found[SPACING]
-    return found
+    keys = dict(_dotted({name: table for name, table in tables.items() if name not in ASIDE}))
+    del keys[SPACING]
+    return keys
 
 
 def _dotted(table: dict, path: str = "") -> Iterator[tuple[str, object]]:
@@ -91,10 +91,10 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
     if kept:
         say("done before")
         return kept
-    found: list[Finished] = []
+    runs: list[Finished] = []
     try:
-        while len(found) < repeats and sum(map(_seconds, found)) < ENOUGH:
-            found.append(run(case, folder, comm, overwrite=True, say=_silent))
+        while len(runs) < repeats and sum(map(_seconds, runs)) < ENOUGH:
+            runs.append(run(case, folder, comm, overwrite=True, say=_silent))
     except BlowUp as trouble:
         result = {"status": str(trouble), LOST: isinstance(trouble, ParticleLost)}
     except TooLittleMemory as trouble:
@@ -104,17 +104,17 @@ def perform(case, folder: Path, comm, repeats: int, say: Callable[[str], None]) 
     except (CaseError, TooManyRanks) as trouble:
         result = {"status": f"refused: {trouble}"}
     else:
-        result = _measured(found, comm)
+        result = _measured(runs, comm)
     if comm.rank == 0:
         _keep(folder, key, result)
     return result
 
 
-def _measured(found: list[Finished], comm) -> dict:
+def _measured(runs: list[Finished], comm) -> dict:
     """The figures of finished runs."""
-    every = [_seconds(one) for one in found]
+    every = [_seconds(one) for one in runs]
     seconds = statistics.median_low(every)
-    middle = found[every.index(seconds)]
+    middle = runs[every.index(seconds)]
     steps = middle.simulation.steps
     return {
         "status": DONE,
@@ -124,7 +124,7 @@ def _measured(found: list[Finished], comm) -> dict:
         "seconds": seconds,
         "seconds_spread": (max(every) - min(every)) / seconds if len(every) > 1 else None,
         "timed": len(every),
-        "compiling_seconds": found[0].compiling,
+        "compiling_seconds": runs[0].compiling,
         **{f"{part}_seconds": getattr(middle, part) for part in TIMED},
         "bytes": comm.allreduce(middle.simulation.bytes_held()),
         "phases": comm.bcast(dict(middle.simulation.ledger.seconds)),

@@ -52,11 +52,11 @@ class StudyRuns:
 
     def _merge(self) -> None:
         """Two ways to say the same run are one run: that which was said first."""
-        found: dict[str, int] = {}
+        first: dict[str, int] = {}
         for k, case in enumerate(self.cases):
-            found.setdefault(repr(case) if isinstance(case, CaseError) else case.to_toml(), k)
-        self.every = [self.every[k] for k in found.values()]
-        self.cases = [self.cases[k] for k in found.values()]
+            first.setdefault(repr(case) if isinstance(case, CaseError) else case.to_toml(), k)
+        self.every = [self.every[k] for k in first.values()]
+        self.cases = [self.cases[k] for k in first.values()]
 
     def refuse_nonsense(self) -> None:
         """CaseError where no value of a key is one; StudyError where runs have no reference."""
@@ -107,7 +107,7 @@ class StudyRuns:
         """Settings, errors and figures of each run, flat; rank 0 alone."""
         finest = self._finest(results)
         reference = self.folder / f"run-{finest + 1:02d}" if finest is not None else None
-        found = []
+        rows = []
         for k, (settings, result) in enumerate(zip(self.every, results)):
             own = settings | ({SPACING: self.cases[k].space.spacing} if result["status"] == DONE else {})
             folder = self.folder / f"run-{k + 1:02d}"
@@ -118,25 +118,25 @@ class StudyRuns:
                 errors, more = Judgement(math.nan, math.nan, math.nan), {}
             figures = {name: x for name, x in result.items() if not isinstance(x, dict)}
             norms = {f"error_{norm}": x for norm, x in errors._asdict().items()}
-            found.append({**own, **norms, **figures, **more})
+            rows.append({**own, **norms, **figures, **more})
         if self.judge.against == FINEST and finest is not None:
-            self._add_own_errors(found, finest)
-        return found
+            self._add_own_errors(rows, finest)
+        return rows
 
-    def _add_own_errors(self, found: list[dict], finest: int) -> None:
+    def _add_own_errors(self, rows: list[dict], finest: int) -> None:
         """Errors against the finest run become differences from it, and errors hold its own too."""
         shared = {k: v for k, v in self.every[finest].items() if k != SPACING}
         ladder = [
             row
-            for row, settings in zip(found, self.every)
+            for row, settings in zip(rows, self.every)
             if row["status"] == DONE and {k: v for k, v in settings.items() if k != SPACING} == shared
         ]
         for norm in Judgement._fields:
             error, difference = f"error_{norm}", f"{DIFFERENCE}{norm}"
             spacings, errors = zip(*((row[SPACING], row[error]) for row in ladder))
             self.own_errors[norm] = own = fit.own_error(list(spacings), list(errors))
-            for row in found if own else ():
-                row[difference] = 0.0 if row is found[finest] else row[error]
+            for row in rows if own else ():
+                row[difference] = 0.0 if row is rows[finest] else row[error]
                 row[error] = row[difference] + own.error
 
     def _finest(self, results: list[dict]) -> int | None:
@@ -149,11 +149,11 @@ class StudyRuns:
         return min(done)[2] if done else None
 
     def conclude(
-        self, found: list[dict], sentences: list[str], error: float | None, seconds: float | None
+        self, rows: list[dict], sentences: list[str], error: float | None, seconds: float | None
     ) -> Iterator[str]:
         """Write the files and yield the lines to print, ``sentences`` among them; rank 0 alone."""
         keys = self.keys
-        ladders = list(self.ladders(found))
+        ladders = list(self.ladders(rows))
         pasted = [(self._written_out(shared), *rest) for shared, *rest in ladders]
         scene = Scene(self.case)
         answer = list(answers(pasted, scene, error, seconds)) if error or seconds else []
@@ -163,30 +163,30 @@ class StudyRuns:
             "",
             f"Error: {self.judge.in_words}.",
             "",
-            *report.markdown(found, keys),
+            *report.markdown(rows, keys),
             "",
             *(f"- {line}" for line in sentences),
             "",
         ]
-        report.write_csv(self.folder / CSV, found)
+        report.write_csv(self.folder / CSV, rows)
         report.write(self.folder / PAGE, "\n".join(page))
         report.write_json(
             self.folder / KEPT,
             {
                 "case": self.case.file,
                 "error": self.judge.in_words,
-                "rows": found,
+                "rows": rows,
                 "vary": keys,
                 "dimensions": self.case.space.dimensions,
                 "ranks": self.comm.size,
                 "conditions": [conditions(case) for case in self._first_of_each_ladder()],
             },
         )
-        good = [row for row in found if row["error_l2"] > 0.0]
+        good = [row for row in rows if row["error_l2"] > 0.0]
         if good:
-            self._draw(title, found, good, error)
+            self._draw(title, rows, good, error)
         yield f"error: {self.judge.in_words}"
-        yield from report.plain(found, keys)
+        yield from report.plain(rows, keys)
         yield from sentences
         yield from answer
 
@@ -199,19 +199,19 @@ class StudyRuns:
     def _written_out(self, shared: Settings) -> Settings:
         """Settings with the keys of a profile in its place: what the case gives would win over it."""
         space = self.case.space
-        found: Settings = {}
+        settings: Settings = {}
         for key, value in shared.items():
             if key == PROFILE and value != OFF:
-                found |= choices(str(value), space.dimensions, space.periodic)
-        return found | {k: v for k, v in shared.items() if k != PROFILE}
+                settings |= choices(str(value), space.dimensions, space.periodic)
+        return settings | {k: v for k, v in shared.items() if k != PROFILE}
 
-    def ladders(self, found: list[dict]) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
+    def ladders(self, rows: list[dict]) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
         """Runs that share all but the spacing: what they share, their rows, their fit."""
-        yield from ladders_of(found, self.keys, self.case.space.dimensions)
+        yield from ladders_of(rows, self.keys, self.case.space.dimensions)
 
-    def sentences(self, found: list[dict]) -> Iterator[str]:
+    def sentences(self, rows: list[dict]) -> Iterator[str]:
         """The conclusions from the rows, in sentences."""
-        ladders = list(self.ladders(found))
+        ladders = list(self.ladders(rows))
         several = sum(ladder is not None for *_, ladder in ladders) > 1
         if own := self.own_errors.get("l2"):
             yield words.own_error_words(own)
@@ -219,23 +219,23 @@ class StudyRuns:
             if ladder:
                 yield from words.ladder_words(ladder, name_of(shared) if several else "")
         base = next((ladder for shared, _, ladder in ladders if ladder and not shared), None)
-        yield from self._choices(found, base)
-        yield from self._limits(found)
-        front = [name_of({k: row[k] for k in self.keys if k in row}) for row in pareto(found)]
-        if 0 < len(front) < len(found) and len(found) > 2:
+        yield from self._choices(rows, base)
+        yield from self._limits(rows)
+        front = [name_of({k: row[k] for k in self.keys if k in row}) for row in pareto(rows)]
+        if 0 < len(front) < len(rows) and len(rows) > 2:
             yield words.front_words(front)
-        yield from words.failed_words(found)
+        yield from words.failed_words(rows)
 
-    def _choices(self, found: list[dict], ladder: fit.Ladder | None) -> Iterator[str]:
+    def _choices(self, rows: list[dict], ladder: fit.Ladder | None) -> Iterator[str]:
         """Each choice against the run that differs from it in that alone."""
-        for row in found:
+        for row in rows:
             own = [key for key in self.keys if key in row and key != SPACING]
             if len(own) != 1:
                 continue
             others = {k: v for k, v in row.items() if k in self.keys and k not in own}
             plain = [
                 other
-                for other in found
+                for other in rows
                 if other["status"] == DONE
                 and other["error_l2"] > 0.0
                 and {k: v for k, v in other.items() if k in self.keys} == others
@@ -243,11 +243,11 @@ class StudyRuns:
             if plain:
                 yield words.against_base(row, plain[0], own[0], ladder)
 
-    def _limits(self, found: list[dict]) -> Iterator[str]:
+    def _limits(self, rows: list[dict]) -> Iterator[str]:
         """Means of the probes at zero spacing, from three runs or more."""
         alone = [
             row
-            for row in found
+            for row in rows
             if row["status"] == DONE and not any(k in row for k in self.keys if k != SPACING)
         ]
         for name in alone[0] if alone else ():
@@ -258,10 +258,10 @@ class StudyRuns:
                 if limit:
                     yield words.limit_words(name, limit, finest, len(values))
 
-    def _draw(self, title: str, found: list[dict], good: list[dict], error: float | None) -> None:
+    def _draw(self, title: str, rows: list[dict], good: list[dict], error: float | None) -> None:
         curves = [
             (name_of(shared) if shared else "as it is", [row for row in part if row in good])
-            for shared, part, _ in self.ladders(found)
+            for shared, part, _ in self.ladders(rows)
         ]
         enough = [row for row in good if error and row["error_l2"] <= error]
         goal = (error, min(enough, key=lambda row: row["seconds"])) if enough else None
@@ -270,7 +270,7 @@ class StudyRuns:
             title,
             self.judge.in_words,
             [curve for curve in curves if curve[1]],
-            pareto(found),
+            pareto(rows),
             goal,
         )
 
@@ -295,18 +295,18 @@ MEAN, SPREAD = "mean ", "spread "
 
 def vitals(run: Folder, study) -> dict[str, float]:
     """Means and spreads of the probes, drift of energy and momentum, largest density error."""
-    found: dict[str, float] = {}
+    measures: dict[str, float] = {}
     table = run.probes()
     for name in table:
         if name != "time":
             time, known = known_values(table, name)
             compared = known[window(study, time)]
-            found[MEAN + name] = float(compared.mean()) if len(compared) else math.nan
-            found[SPREAD + name] = float(compared.std()) if len(compared) else math.nan
+            measures[MEAN + name] = float(compared.mean()) if len(compared) else math.nan
+            measures[SPREAD + name] = float(compared.std()) if len(compared) else math.nan
     log = run.log()
     energy = log["kinetic_energy"] + log["potential_energy"]
     momentum = [values for name, values in log.items() if name.startswith("momentum")]
-    return found | {
+    return measures | {
         "kinetic_energy": float(log["kinetic_energy"][-1]),
         "energy_drift": float(energy[-1] - energy[0]),
         "momentum_drift": math.hypot(*(float(p[-1] - p[0]) for p in momentum)),
@@ -315,24 +315,24 @@ def vitals(run: Folder, study) -> dict[str, float]:
 
 
 def ladders_of(
-    found: list[dict], keys: list[str], dimensions: int
+    rows: list[dict], keys: list[str], dimensions: int
 ) -> Iterator[tuple[Settings, list[dict], fit.Ladder | None]]:
     """Runs that share all but the spacing: what they share, their rows, their fit."""
-    every = [{k: row[k] for k in keys if k in row} for row in found]
+    every = [{k: row[k] for k in keys if k in row} for row in rows]
     for shared, places in groups(every):
-        part = [found[k] for k in places if found[k]["status"] == DONE]
+        part = [rows[k] for k in places if rows[k]["status"] == DONE]
         runs = [
             fit.RunPoint(r[SPACING], r["error_l2"], r["seconds"], r["particles"], r["steps"]) for r in part
         ]
         enough = len({run.spacing for run in runs if run.error > 0.0}) > 1
         estimated = any(f"{DIFFERENCE}l2" in row for row in part)
         ladder = fit.Ladder(runs, dimensions, estimated) if enough else None
-        yield shared, [found[k] for k in places], ladder
+        yield shared, [rows[k] for k in places], ladder
 
 
-def pareto(found: list[dict]) -> list[dict]:
+def pareto(rows: list[dict]) -> list[dict]:
     """Rows that no other beats in both error and time, the fastest first."""
-    good = sorted((r for r in found if r["error_l2"] > 0.0), key=lambda r: r["seconds"])
+    good = sorted((r for r in rows if r["error_l2"] > 0.0), key=lambda r: r["seconds"])
     front: list[dict] = []
     for row in good:
         if not front or row["error_l2"] < front[-1]["error_l2"]:
