@@ -13,6 +13,13 @@ def _only_2d(setting: Surroundings) -> str | None:
     return None if setting.dimensions == 2 else "is a flow in 2D; give space.dimensions = 2"
 
 
+TopSpeed = Annotated[
+    float, Field(gt=0, description="largest speed U at the start", json_schema_extra={"unit": "m/s"})
+]
+Period = Annotated[float, Field(gt=0, description="length L of a period", json_schema_extra={"unit": "m"})]
+"""Keys of vortices that fill space: their largest speed, m/s, and length, m."""
+
+
 class TaylorGreen(NamedTuple):
     """Vortices side by side that decay by viscosity alone.
 
@@ -20,11 +27,8 @@ class TaylorGreen(NamedTuple):
     k = 2π/L.  Taylor & Green (1937), Proc. R. Soc. Lond. A 158, 499.
     """
 
-    speed: Annotated[
-        float,
-        Field(gt=0, description="largest speed U at the start", json_schema_extra={"unit": "m/s"}),
-    ]
-    length: Annotated[float, Field(gt=0, description="length L of a period", json_schema_extra={"unit": "m"})]
+    speed: TopSpeed
+    length: Period
 
     up_to_a_constant = ("pressure",)
 
@@ -59,11 +63,8 @@ class Beltrami(NamedTuple):
     others (1986), J. Fluid Mech. 167, 353.
     """
 
-    speed: Annotated[
-        float,
-        Field(gt=0, description="largest speed U at the start", json_schema_extra={"unit": "m/s"}),
-    ]
-    length: Annotated[float, Field(gt=0, description="length L of a period", json_schema_extra={"unit": "m"})]
+    speed: TopSpeed
+    length: Period
 
     up_to_a_constant = ("pressure",)
 
