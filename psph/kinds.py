@@ -282,6 +282,12 @@ class Kind:
         """Whether rates of friction may serve for several steps beside it."""
         return True
 
+    @property
+    def bears_midway(self) -> bool:
+        """Whether the rate of density may be summed at the middle of a step (psph.simulation.midway): its
+        particles stand there too, since they move by rates of the engine or by poses."""
+        return False
+
     def renews(self, passes: Sequence) -> tuple[str, ...]:
         """Fields that its work fills anew just before the ``passes`` over neighbours are summed."""
         return ()

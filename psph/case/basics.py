@@ -61,12 +61,19 @@ class Time(Table):
     """Simulated time and time steps."""
 
     end: float = key("simulated time at which the run ends", unit="s", gt=0)
-    cfl: float = key("time step in units of h/(c + largest speed)", 0.2, unit="1", gt=0, le=0.5)
+    cfl: float = key(
+        "time step in units of h/(c + largest speed), for each of its passes", 0.2, unit="1", gt=0, le=0.5
+    )
+    passes: Literal[1, 2] = key(
+        "passes over the neighbours that a step takes: one for all rates, or one for the rate of density at "
+        "half of the step and one for forces at its end, where all that is in the scene bears it",
+        1,
+    )
     gather_every: int = key(
-        "corrected gradients and other slow sums are renewed every so many steps", 1, ge=1
+        "corrected gradients and other slow sums are renewed every so many passes", 1, ge=1
     )
     damping_every: int = key(
-        "rates of friction, of the pair potential and of summed density serve for so many steps", 1, ge=1
+        "rates of friction, of the pair potential and of summed density serve for so many passes", 1, ge=1
     )
     step: float | None = key("a fixed time step", None, unit="s", otherwise="chosen in each step", gt=0)
 

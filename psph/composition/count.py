@@ -28,13 +28,14 @@ def flops_per_pair(
     seen: Iterable[Field],
     shared: Iterable[str],
     periods: tuple,
+    gives: tuple = ("acceleration", "density_rate"),
 ) -> int:
     """Additions, multiplications, divisions, roots and exponentials of an ordered pair.
 
     ``effects`` and ``reductions`` as the pair loop has them; ``seen`` are the fields that formulas
     read, ``shared`` names those that all particles have in common; ``periods`` has one entry for each
-    dimension.  Comparisons,
-    minima and a change of sign count nothing, nor does the search for the nearest image.
+    dimension; a pass ``gives`` an acceleration and a rate of density, or None in the place of one.
+    Comparisons, minima and a change of sign count nothing, nor does the search for the nearest image.
     """
     trace = _Trace()
     known = {name: trace.leaf(1.0, False) for name in shared}
@@ -51,7 +52,7 @@ def flops_per_pair(
     a = pushed(a, pair.u_ij, terms.shear(effects, i, j, pair))
     a = added(a, terms.push(effects, i, j, pair))
     totals = terms.gather_each(reductions, totals, i, j, pair)
-    return trace.operations((rate, a, totals))
+    return trace.operations((*(one for one, told in zip((a, rate), gives) if told), totals))
 
 
 def flops_of(formula, kernel, fields: Mapping[str, tuple[float, ...]], shared: Mapping[str, float]) -> int:

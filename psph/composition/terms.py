@@ -132,6 +132,18 @@ OF_A_PARTICLE = ("displacement", "limit_density", "limit_wall_density", "bearing
 """Methods that are called for a particle by itself, in kick, drift and the equation of state."""
 
 
+def asked(arrays, effects):
+    """The ``effects`` where there are ``arrays`` for what they give; none where these are None."""
+    return () if arrays is None else effects
+
+
+@overload(asked)
+def _typed_asked(arrays, effects):
+    if isinstance(arrays, types.NoneType):
+        return lambda arrays, effects: ()
+    return lambda arrays, effects: effects
+
+
 # A reduction is an effect with a sum of its own: start -> gather, gather, ... -> finish.
 
 

@@ -19,6 +19,12 @@ class Reads(NamedTuple):
     """Of either particle, in the effect's own sum."""
     of_pairs: frozenset[str] = frozenset()
     """Of either particle, in all that is summed over pairs."""
+    gathered: frozenset[str] = frozenset()
+    """Of a neighbour, in the effect's own sum."""
+    in_density_rate: frozenset[str] = frozenset()
+    """Of a neighbour, in its share of the rate of density."""
+    beside: frozenset[str] = frozenset()
+    """Of a neighbour, in all else that is summed over pairs."""
 
 
 class UnknownField(Refused):
@@ -68,10 +74,15 @@ def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads
     for value in VALUES:
         i.value = j.value = pair.value = value
         _sum(effect, i, j, pair, kernel)
-    in_sum = frozenset(i.read | j.read)
+    in_sum, gathered = frozenset(i.read | j.read), frozenset(j.read)
+    rated = _Recorder(owner, "particle", particle)
     for value in VALUES:
-        i.value = j.value = pair.value = value
-        _rates(effect, i, j, pair, dimensions)
+        i.value = j.value = pair.value = rated.value = value
+        if hasattr(effect, "density_rate"):
+            _check(effect, "density_rate", effect.density_rate(i, rated, pair), None)
+        _forces(effect, i, j, pair, dimensions)
+    beside = frozenset(j.read)
+    j.read |= rated.read
     of_pairs = frozenset(i.read | j.read)
     for value in VALUES:
         i.value = value
@@ -82,7 +93,8 @@ def reads(effect, dimensions: int, kernel, fields: Mapping[str, Field]) -> Reads
             effect.admit(i, (value,) * effect.bounds.width(dimensions), 1.0)
     if "m_dw_r" in pair.read:
         j.read.add("mass")
-    return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read), in_sum, of_pairs)
+    of_sums = (in_sum, of_pairs, gathered, frozenset(rated.read), beside)
+    return Reads(frozenset(i.read), frozenset(j.read), frozenset(pair.read), *of_sums)
 
 
 def _sum(effect, i, j, pair, kernel) -> None:
@@ -95,8 +107,8 @@ def _sum(effect, i, j, pair, kernel) -> None:
         effect.finish_value(total, i, kernel)
 
 
-def _rates(effect, i, j, pair, dimensions: int) -> None:
-    for name in ("density_rate", "radial", "shear"):
+def _forces(effect, i, j, pair, dimensions: int) -> None:
+    for name in ("radial", "shear"):
         if hasattr(effect, name):
             _check(effect, name, getattr(effect, name)(i, j, pair), None)
     if hasattr(effect, "push"):

@@ -61,6 +61,11 @@ class RigidBodies(Kind):
         """Not light ones: friction stops them within a step or a few."""
         return self.share >= BRAKED
 
+    @property
+    def bears_midway(self) -> bool:
+        """Yes."""
+        return True
+
     def stages(self) -> Mapping[str, Stage]:
         """Their kick comes before that of the particles, with the new forces."""
         return {"kick": Stage(push_bodies, push_bodies)}

@@ -46,6 +46,11 @@ class Fluids(Kind):
         parts = (part for part in census.layout.parts if part.flows)
         return stills_of(census, [part.number for part in parts if part.table.pressure == HYDROSTATIC])
 
+    @property
+    def bears_midway(self) -> bool:
+        """Yes."""
+        return True
+
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """That of sound, and that of the largest acceleration."""
         h = plan.smoothing_length

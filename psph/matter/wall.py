@@ -43,6 +43,11 @@ class Walls(Kind):
             of = {NORMAL: normal, SIDE: side, EDGE: edge, DRAWN: normal, DRAWN_SIDE: side}
             yield from ((field.name, value) for field, value in of.items() if field.name in fields)
 
+    @property
+    def bears_midway(self) -> bool:
+        """Yes."""
+        return True
+
     def stages(self) -> Mapping[str, Stage]:
         """Paddles answer to the level at the end of the step, after the kick."""
         return {"find_limits": Stage(measure_levels, measure_levels)} if self.absorbs else {}

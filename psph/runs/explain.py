@@ -175,7 +175,10 @@ def _rank_lines(scene, plan: Plan, ranks: int, said: dict[str, list[str]]) -> It
     shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
     yield f"  shared      {shared}"
     if plan.passes:
-        yield f"  halo        once a step: {', '.join(plan.refreshed)}"
+        if plan.midway:
+            yield f"  halo        at the middle of a step: {', '.join(plan.midway.moved)}"
+        at_its_end = "at its end" if plan.midway else "once a step"
+        yield f"  {'' if plan.midway else 'halo':<11} {at_its_end}: {', '.join(plan.refreshed)}"
         yield (
             f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
             f"{sent:,.0f} bytes from a rank"
@@ -189,7 +192,8 @@ def _pass_lines(scene, plan: Plan, said: dict[str, list[str]]) -> Iterator[str]:
     yield from _early_passes(plan)
     if plan.passes:
         flops = plan.flops_per_pair(scene.layout.periods)
-        yield f"Pass over the neighbours, one a step, {flops} flops a pair"
+        often = "one at the middle of a step for the density, one at its end" if plan.midway else "one a step"
+        yield f"Pass over the neighbours, {often}, {flops} flops a pair"
     yield from said["passes"]
     effects, laws = acting(plan), laws_of(plan)
     width = _column([one.name for one in (*effects, *laws)] + [e.effect.__name__ for e in plan.absent])
@@ -238,7 +242,8 @@ NARROWEST = 22
 
 def _early_passes(plan: Plan) -> Iterator[str]:
     """The passes that gather sums for the one that gives the rates."""
-    for early, later in zip(plan.passes, plan.passes[1:]):
+    passes = [one for one in plan.passes if not one.midway]
+    for early, later in zip(passes, passes[1:]):
         own, what = (early.effects, "rates") if early.holds else (early.reductions, "sums")
         names = ", ".join(type(effect).__name__ for effect in own)
         often = "one a step" if early.every == 1 else f"one in {early.every} steps"

@@ -27,6 +27,7 @@ from psph.simulation.integrator import (
     settle_given_pressure,
     state_of,
 )
+from psph.simulation.midway import drift_to_end, kick_to_middle
 from psph.simulation.neighbourhood import Neighbourhood
 from psph.simulation.pairs import Around, Metric, Summed, Sums, sum_over_neighbours
 from psph.simulation.passes import HELD, Pass
@@ -34,6 +35,9 @@ from psph.simulation.plan import Plan
 from psph.simulation.poses import Poses, corners_of
 from psph.simulation.pulls import potentials
 from psph.simulation.rules import Columns, Rules
+
+NONE = (None, None)
+"""The arrays of a pass without rates."""
 
 ON_DUE = np.array([False, True])
 """In the place of the groups that are loaded, where columns are numbered 1 if they are due, else 0."""
@@ -71,8 +75,11 @@ class Engine:
             scene.layout.periods,
             plan.pulls.booked,
         )
+        self._midway_rules = self._rules._replace(poses=self.poses.middle)
         self._predict, self._kick = settled(kick_drift_predict), settled(kick)
         self._state = settled(state_of)
+        self._to_middle, self._to_end = settled(kick_to_middle), settled(drift_to_end)
+        self._unsent: set[str] = set()
         self._sums = [settled(sum_over_neighbours) for _ in plan.passes]
         self._loads = [settled(sum_over_neighbours) for _ in plan.passes]
         self._potential = settled(potentials)
@@ -99,11 +106,31 @@ class Engine:
             self.store.rotate(*(rate.name for rate in rates))
         self.store.rotate("density_rate", "density_rate_1", "density_rate_2")
 
+    def go_midway(self, time: float, dt: float, largest_speed: float) -> None:
+        """Kick, and drift to the middle of a step of ``dt`` s that ends at ``time``."""
+        view = self.view(largest_speed)
+        self.each(self._to_middle, time - 0.5 * dt, dt, self._midway_rules, view, self.columns())
+
+    def sum_midway(self, ghosts_are_fresh: bool) -> None:
+        """The pass at the middle of a step; ghosts are brought there unless they are."""
+        one = self.plan.midway
+        fields = (*one.moved, *(name for name in one.brought if name in self._unsent))
+        if ghosts_are_fresh:
+            self._sum_all(one)
+        else:
+            self._sum_while_refreshing(one, fields)
+        self._unsent.clear()
+
+    def drift(self, time: float, dt: float, largest_speed: float) -> None:
+        """Drift from the middle of a step to ``time``, its end."""
+        self.each(self._to_end, time, dt, self._rules, self.view(largest_speed), self.columns())
+
     def kick(self, time: float, dt: float, largest_speed: float) -> list[float]:
         """The second kick.  Returns the largest |v|², |a|², strain, squared shift and |v|² of walls here."""
         if self.plan.evolving:
             self.each(kick_rows, dt, self.store.data, self._rows_that_evolve())
-        parts = self.each(self._kick, time, dt, self._rules, self.view(largest_speed), self.columns())
+        lag = 0.0 if self.plan.midway else 0.5 * dt
+        parts = self.each(self._kick, time, dt, lag, self._rules, self.view(largest_speed), self.columns())
         if bounds := self.plan.bounds:
             rest = (self.store[name] for name in (bounds.bounds.name, "density", bounds.remembers.name))
             self.each(admit_kicked, bounds, self.view(largest_speed), *rest)
@@ -114,6 +141,7 @@ class Engine:
         """Put every particle where it belongs and list its neighbours."""
         with self.ledger("rebuild"):
             self.neighbourhood.update(self.spent_on_pairs(), self.kinds)
+        self._unsent.clear()
         with self.ledger("records"):
             self._fit_records()
         for kind in self.kinds:
@@ -137,7 +165,7 @@ class Engine:
         stale = self.plan.renewed if ghosts_are_fresh else self.plan.refreshed
         written: set[str] = set()
         for one in self.plan.passes:
-            if not (one.due(steps) or at_once and one.slow):
+            if one.midway or not (one.due(steps) or at_once and one.slow):
                 continue
             fields = stale + tuple(name for name in one.brought if name in written)
             if fields:
@@ -149,6 +177,7 @@ class Engine:
             if one.settles:
                 self.each(settle_given_pressure, self._rules, self.view(0.0), self.columns())
             stale, written = (), written.difference(fields) | one.written
+        self._unsent |= written
         self.neighbourhood.mark()
         for kind in self.kinds:
             kind.after_sums(time, dt)
@@ -191,8 +220,8 @@ class Engine:
 
     def begin_rates(self) -> None:
         """The rates of earlier steps, before there were any, are the first ones."""
-        names = ["density", *(field.name for field in self.plan.evolving)]
-        for name in names:
+        names = [] if self.plan.midway else ["density"]
+        for name in (*names, *(field.name for field in self.plan.evolving)):
             now = self.store.rows[f"{name}_rate"]
             for older in ("_rate_1", "_rate_2"):
                 self.store.data[list(self.store.rows[f"{name}{older}"])] = self.store.data[list(now)]
@@ -277,7 +306,7 @@ class Engine:
         loops = [*self._loops_of(one)]
         for loop, args in loops:
             in_threads(loop, first, last, *args)
-        if one.gives_rates and self.plan.materials.loaded is not None:
+        if one.gives_rates and not one.midway and self.plan.materials.loaded is not None:
             for columns, lists in self.neighbourhood.dry_beside_fluid(first, last):
                 self._load_dry(one, *loops[0], columns, lists)
 
@@ -314,12 +343,12 @@ class Engine:
         s, plan, records = self.store, self.plan, self.records[one.place]
         around = Around(records.view(), records.table, s.low, *self.neighbourhood.of(one))
         seen = (Metric(plan.kernel, plan.space, self.softening), s.view(), around)
-        rates = [s[name] if name in s else None for name in one.gives] or [None, None]
+        rates = [s[name] if name in s else None for name in one.gives] or NONE
         last = one.gives_rates and not one.holds
-        held = [s[name] if last and name in s else None for name in HELD]
+        held = [s[name] if last and own and name in s else None for name, own in zip(HELD, one.gives)] or NONE
         sums = Sums(*rates, tuple(map(s.arrays_of, one.stores)), *held)
         rest = None
-        if one.gives_rates and plan.materials.loaded is not None:
+        if one.gives_rates and not one.midway and plan.materials.loaded is not None:
             rest = Unloaded(plan.materials.loaded, s.group)
             reductions, written = one.reductions, sums.written
             couple = HELD_COUPLE.name if one.holds else COUPLE.name

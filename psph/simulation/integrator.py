@@ -77,8 +77,8 @@ def settle_given_pressure(first, last, rules, view, columns):
 
 
 @elementwise
-def kick(first, last, time, dt, rules, view, columns):
-    """Kick by the second half of the step, with the new rates.
+def kick(first, last, time, dt, lag, rules, view, columns):
+    """Kick by the second half of the step, with the new rates; the density by ``lag`` s.
 
     Over the columns ``first`` to ``last``, returns the largest |v|² of the fluid, |a|² of all that
     moves, |ρ/ρ₀ − 1| and square of a displacement over its time step, m²/s², of the fluid, and |v|² of
@@ -93,7 +93,7 @@ def kick(first, last, time, dt, rules, view, columns):
     wall_v2_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
-        rho = c.density[k] + 0.5 * dt * c.density_rate[k]
+        rho = c.density[k] + lag * c.density_rate[k]
         if group < rules.free:
             a = at(c.acceleration, k)
             v = add(at(c.velocity, k), scale(a, 0.5 * dt))

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from psph.simulation.midway import room
 from psph.simulation.paces import share_of_limit
 
 
@@ -15,5 +16,5 @@ def step_limits(plan, speed: float, acceleration: float) -> Iterator[tuple[float
     heeded = [effect for kind in plan.matter for effect in kind.heeds(plan)]
     for call in plan.called:
         if hasattr(call.effect, "longest_step") and not any(call.effect is one for one in heeded):
-            share = share_of_limit(call.effect, plan.steps_held)
+            share = share_of_limit(call.effect, plan.steps_held) * room(call.effect, plan.rate_passes)
             yield share * call.effect.longest_step(plan.extremes), call.title

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from psph.fields import HELD_ACCELERATION, HELD_DENSITY_RATE, Field
 from psph.physics.motion import HELD_COUPLE
+from psph.simulation.midway import room
 
 PACES = (8, 4, 2)
 """Steps for which they serve where their limits do not bear what is asked for."""
@@ -17,19 +18,20 @@ def is_held(effect) -> bool:
     return bool(getattr(effect, "held", False))
 
 
-def steps_held(scene, effects: Iterable, extremes, kinds) -> int:
-    """For how many steps the rates of the held ones among the ``effects`` serve.
+def steps_held(scene, effects: Iterable, extremes, kinds, rate_passes: int = 1) -> int:
+    """For how many steps of so many ``rate_passes`` the rates of the held ones among the ``effects`` serve.
 
-    As many as ``time.damping_every`` asks for, or fewer where their limits of the time step would make it
-    shorter than the rest of the scene takes it; 1 where a kind of matter does not bear it.
+    As many as ``time.damping_every`` asks for, in passes, or fewer where their limits of the time step would
+    make it shorter than the rest of the scene takes it; 1 where a kind of matter does not bear it.
     """
     effects = tuple(effects)
-    asked = scene.case.time.damping_every if any(map(is_held, effects)) else 1
-    if asked == 1 or not all(kind.bears_held for kind in kinds):
+    asked = scene.case.time.damping_every // rate_passes if any(map(is_held, effects)) else 1
+    if asked <= 1 or not all(kind.bears_held for kind in kinds):
         return 1
     limited = [one for one in effects if hasattr(one, "longest_step")]
-    sound = scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
-    rest = [sound, *(one.longest_step(extremes) for one in limited if not is_held(one))]
+    sound = rate_passes * scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
+    free = [one for one in limited if not is_held(one)]
+    rest = [sound, *(room(one, rate_passes) * one.longest_step(extremes) for one in free)]
     longest = scene.case.time.step or WORTH * min(rest)
     own = [(one.longest_step(extremes), one) for one in limited if is_held(one)]
     paces = sorted({asked, *(n for n in PACES if n < asked)}, reverse=True)

@@ -9,7 +9,7 @@ from psph.composition.loads import by_fluid, completed, is_due
 from psph.composition.mirrors import at_look, ends, image, looks
 from psph.composition.pair import fetch, geometry, take
 from psph.composition.space import difference, softened
-from psph.composition.terms import added, plus_held, pushed, store
+from psph.composition.terms import added, asked, plus_held, pushed, store
 from psph.engine.jit import compiled
 from psph.engine.simd import spread, total, width_of
 from psph.vectors import zero_like
@@ -47,8 +47,9 @@ class Around(NamedTuple):
 
 class Sums(NamedTuple):
     """Where sums go: the array, or None, that each reduction fills; ``acceleration`` and
-    ``density_rate`` are None in a pass that gathers sums alone.  What an earlier pass summed of both, for
-    this step and others, is ``held`` and ``held_rate``: they come besides, where they are not None."""
+    ``density_rate`` are None in a pass that gathers sums alone, or one of them where another pass sums it:
+    then the loop has no term of it.  What an earlier pass summed of both, for this step and others, is
+    ``held`` and ``held_rate``: they come besides, where they are not None."""
 
     acceleration: Any
     density_rate: Any
@@ -65,6 +66,7 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
     ranks.
     """
     effects, reductions, loads = summed.effects, summed.reductions, summed.loads
+    forces, rates = asked(sums.acceleration, effects), asked(sums.density_rate, effects)
     records, lists, mirrors = around.records, around.lists, around.mirrors
     for k in range(np.uint64(first), np.uint64(last)):
         if not is_due(loads, k):
@@ -85,13 +87,13 @@ def sum_over_neighbours(first, last, summed, metric, view, around, sums):
                 j = image(reflection, i, fetch(around.shown, records, lists.lists, n))
                 x_ij = difference(metric.space, i, j, records, k)
                 pair = geometry(metric.kernel, x_ij, softened(metric.softening, end - n), i, j)
-                rate = rate + terms.density_rate(effects, i, j, pair)
-                a = pushed(a, pair.x_ij, by_fluid(loads, j, terms.radial(effects, i, j, pair)))
-                a = pushed(a, pair.u_ij, by_fluid(loads, j, terms.shear(effects, i, j, pair)))
-                a = added(a, by_fluid(loads, j, terms.push(effects, i, j, pair)))
+                rate = rate + terms.density_rate(rates, i, j, pair)
+                a = pushed(a, pair.x_ij, by_fluid(loads, j, terms.radial(forces, i, j, pair)))
+                a = pushed(a, pair.u_ij, by_fluid(loads, j, terms.shear(forces, i, j, pair)))
+                a = added(a, by_fluid(loads, j, terms.push(forces, i, j, pair)))
                 totals = terms.gather_each(reductions, totals, i, j, pair)
         folded = terms.fold_each(reductions, totals)
-        whole = completed(loads, effects, reductions, folded, i, total(a))
+        whole = completed(loads, forces, reductions, folded, i, total(a))
         store(sums.acceleration, k, plus_held(sums.held, k, whole))
         store(sums.density_rate, k, plus_held(sums.held_rate, k, total(rate)))
         terms.finish_value(reductions, folded, i, metric.kernel, k, sums.written)

@@ -7,6 +7,8 @@ from psph.fields import (
     DENSITY_RATE,
     HELD_ACCELERATION,
     HELD_DENSITY_RATE,
+    POSITION,
+    PREDICTED_VELOCITY,
     PRESSURE,
     SPECIFIC_VOLUME,
     filled,
@@ -29,7 +31,9 @@ class Pass(NamedTuple):
     (psph.simulation.impacts) where its sums are ``slow``.  The rates of one that ``holds`` serve until it
     runs again.  One is ``across`` that sums over pairs with particles that are apart
     (psph.particles.apart), and no other does.  A pass that fills the pressure of
-    some particles ``settles`` their density too.
+    some particles ``settles`` their density too.  One that gives rates ``gives`` them to these two arrays, of
+    the acceleration and of the rate of density, or None in the place of one.  One that is ``midway`` sums the
+    rate of density alone, at half of the step and before all others (psph.simulation.midway).
     """
 
     place: int
@@ -42,11 +46,18 @@ class Pass(NamedTuple):
     slow: bool = False
     across: bool = False
     holds: bool = False
+    gives: tuple[str | None, ...] = ()
+    midway: bool = False
 
     @property
     def settles(self) -> bool:
         """Whether it gives particles a pressure, and so a density."""
         return PRESSURE.name in self.stores
+
+    @property
+    def moved(self) -> tuple[str, ...]:
+        """What it reads of a neighbour that has changed by the middle of a step."""
+        return tuple(name for name in self.neighbour_fields if name in MOVED)
 
     @property
     def written(self) -> set[str]:
@@ -63,17 +74,13 @@ class Pass(NamedTuple):
         """Whether it sums acceleration and rate of density, or what of them serves for several steps."""
         return bool(self.effects)
 
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """The arrays of the acceleration and the rate of density that it sums."""
-        if not self.gives_rates:
-            return ()
-        return HELD if self.holds else RATES
-
     def due(self, steps: int) -> bool:
         """Whether it runs in the step after so many."""
         return steps % self.every == 0
 
+
+MOVED = (POSITION.name, PREDICTED_VELOCITY.name)
+"""What changes from the end of a step to the middle of the next."""
 
 RATES = (ACCELERATION.name, DENSITY_RATE.name)
 HELD = (HELD_ACCELERATION.name, HELD_DENSITY_RATE.name)
@@ -87,6 +94,7 @@ def make_passes(
     gather_every: int = 1,
     also: tuple[str, ...] = (),
     hold_for: int = 1,
+    midway: bool = False,
 ) -> tuple[Pass, ...]:
     """The passes of the effects that were called for, in order; the last gives the rates.
 
@@ -94,9 +102,10 @@ def make_passes(
     ``lagged`` is content with the sum of the step before, and needs none of its own.  What is ``slow``
     also serves for some steps more: if ``gather_every`` is above 1, it comes in a pass that runs as
     seldom.  The rates of effects that are ``held`` serve for ``hold_for`` steps: if that is above 1, they
-    come in a pass of their own before the last.  ``stored`` are the names of all arrays, ``seen_as`` tells
-    the array that formulas see under a name; ``also`` is what passes that give rates are to have of a
-    neighbour whatever the effects.  Without effects there are no passes.
+    come in a pass of their own before the last.  ``midway``: the rate of density has a pass of its own, the
+    first.  ``stored`` are the names of all arrays, ``seen_as`` tells the array that formulas see under a
+    name; ``also`` is what passes that give rates are to have of a neighbour whatever the effects.  Without
+    effects there are no passes.
     """
     if not called:
         return ()
@@ -108,14 +117,15 @@ def make_passes(
     order = sorted({(level, every) for _, level, every in early})
     passes: list[Pass] = []
     before: set[str] = set()
+    first = int(midway)
     if between:
         sums = [call.effect for call in between]
-        made = _pass(0, (), sums, between, before, stored, seen_as, 1)
+        made = _pass(first, (), sums, _gathered(between), before, stored, seen_as, 1)
         passes, before = [made._replace(across=True)], set(made.written)
     for level, every in order:
         own = [call for call, *at in early if at == [level, every]]
         sums = [call.effect for call in own]
-        made = _pass(len(passes), (), sums, own, before, stored, seen_as, every)
+        made = _pass(first + len(passes), (), sums, _gathered(own), before, stored, seen_as, every)
         passes.append(made._replace(slow=any(getattr(effect, "slow", False) for effect in sums)))
         before |= passes[-1].written
     done = {id(call) for call, *_ in early}
@@ -128,12 +138,34 @@ def make_passes(
     held = [call for call in called if hold_for > 1 and is_held(call.effect)]
     if held:
         own = tuple(call.effect for call in held)
-        made = _pass(len(passes), own, (), held, before, stored, seen_as, hold_for, also)
-        passes.append(made._replace(slow=True, holds=True))
+        read = _all_of(held).union(also)
+        made = _pass(first + len(passes), own, (), read, before, stored, seen_as, hold_for)
+        passes.append(made._replace(slow=True, holds=True, gives=HELD))
     free = [call for call in called if not any(call is one for one in held)]
+    summed = [call for call in held if any(call.effect is one for one in reductions)]
     effects = tuple(call.effect for call in free)
-    read = free + [call for call in held if any(call.effect is one for one in reductions)]
-    return (*passes, _pass(len(passes), effects, reductions, read, before, stored, seen_as, 1, also))
+    if not midway:
+        read = _all_of(free + summed).union(also)
+        last = _pass(len(passes), effects, reductions, read, before, stored, seen_as, 1)
+        return (*passes, last._replace(gives=RATES))
+    read = frozenset(also).union(*(call.reads.beside for call in free + summed))
+    last = _pass(first + len(passes), effects, reductions, read, before, stored, seen_as, 1)
+    written = before | last.written
+    dense = tuple(effect for effect in effects if hasattr(effect, "density_rate"))
+    read = frozenset(also).union(*(call.reads.in_density_rate for call in free))
+    rate = _pass(0, dense, (), read, written, stored, seen_as, 1)
+    forces = last._replace(gives=(ACCELERATION.name, None))
+    return (rate._replace(gives=(None, DENSITY_RATE.name), midway=True), *passes, forces)
+
+
+def _all_of(called) -> frozenset[str]:
+    """What effects read of a neighbour in any of their formulas."""
+    return frozenset().union(*(call.reads.neighbour for call in called))
+
+
+def _gathered(called) -> frozenset[str]:
+    """What effects read of a neighbour in their own sums."""
+    return frozenset().union(*(call.reads.gathered for call in called))
 
 
 def array_of(name: str, stored: tuple[str, ...]) -> str:
@@ -141,11 +173,10 @@ def array_of(name: str, stored: tuple[str, ...]) -> str:
     return f"predicted_{name}" if f"predicted_{name}" in stored else name
 
 
-def _pass(place, effects, reductions, called, before, stored, seen_as, every, also=()) -> Pass:
+def _pass(place, effects, reductions, read, before, stored, seen_as, every) -> Pass:
     # The geometry of a pair needs these, whatever the effects; the velocity also tells how far
     # neighbours drift apart.
-    names = {"position", "velocity", "mass", *also}.union(*(call.reads.neighbour for call in called))
-    names = {seen_as(name) for name in names}
+    names = {seen_as(name) for name in {"position", "velocity", "mass", *read}}
     neighbour = tuple(name for name in stored if name in names)
     return Pass(
         place,

@@ -31,6 +31,7 @@ from psph.scene.gauging import followed_fields
 from psph.simulation.calling import acts_in, called_for, in_scene, why_dropped
 from psph.simulation.limits import step_limits
 from psph.simulation.materials import Materials, has_couples, material_value, materials_of, split
+from psph.simulation.midway import HISTORY, is_midway
 from psph.simulation.movement import carried_fields
 from psph.simulation.paces import held_fields, held_parts, is_held, steps_held
 from psph.simulation.passes import Pass, array_of, make_passes
@@ -116,6 +117,16 @@ class Plan:
     def of(self, name: str) -> Any:
         """The kind of matter of that name, or None."""
         return next((kind for kind in self.matter if kind.name == name), None)
+
+    @property
+    def rate_passes(self) -> int:
+        """Passes of a step that give rates."""
+        return 2 if self.midway else 1
+
+    @property
+    def midway(self) -> Pass | None:
+        """The pass at the middle of a step (psph.simulation.midway), or None."""
+        return self.passes[0] if self.passes and self.passes[0].midway else None
 
     @cached_property
     def planned(self) -> dict[str, Any]:
@@ -207,7 +218,9 @@ class Plan:
                 tuple(e for e in es if any(e is f for f in effects)) for es in (one.effects, one.reductions)
             )
             if one.gives_rates:
-                counted = flops_per_pair(own, sums, self.kernel, self.seen, self.constants, periods)
+                counted = flops_per_pair(
+                    own, sums, self.kernel, self.seen, self.constants, periods, one.gives
+                )
                 operations += counted / one.every
         return round(operations)
 
@@ -243,7 +256,9 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         *(getattr(scene, name) for name in OF_SCENE),
         *(max(material_value(m, f.name) for m in species) for f in OF_MATERIAL),
     )
-    hold_for = steps_held(scene, (effect for _, effect, _ in fitted), extremes, matter)
+    midway = is_midway(scene, [effect for _, effect, _ in fitted], matter)
+    rate_passes = 2 if midway else 1
+    hold_for = steps_held(scene, [effect for _, effect, _ in fitted], extremes, matter, rate_passes)
     if hold_for > 1:
         fitted = [(one, part, why) for one, effect, why in fitted for part in held_parts(effect, scene)]
     slow = [effect for _, effect, _ in fitted if is_held(effect)] if hold_for > 1 else []
@@ -259,7 +274,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     shared, varying = split(species, own | told_by)
     at_start = tuple(field.name for _, effect, _ in fitted for field in fixed(effect))
     varying += tuple(name for name in at_start if name in own)
-    computed = tuple(field.name for field in (*OF_EVERY_SCENE, *written, *further, *of_kinds, *held))
+    of_step = (field for field in OF_EVERY_SCENE if not (midway and field in HISTORY))
+    computed = tuple(field.name for field in (*of_step, *written, *further, *of_kinds, *held))
     refuse_unwritten(scene, called, (*computed, *told, *at_start))
     seen = tuple(field for name, field in fields.items() if name in own)
     imaged = by_name(OF_EVERY_SCENE, seen).values()
@@ -275,9 +291,10 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         paired if flows or any(hasattr(c.effect, "push") for c in paired) else (),
         stored,
         lambda name: array_of(name, stored),
-        case.time.gather_every,
+        max(1, case.time.gather_every // rate_passes),
         for_loads,
         hold_for,
+        midway,
     )
     met = next(filter(None, (kind.own_pass(called, stored) for kind in matter)), None)
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
@@ -319,7 +336,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         matter=matter,
         loads=next((how for kind in matter if (how := kind.loads(passes))), Loads),
         renewed=tuple(name for name in refreshed if name in renewed),
-        cfl=case.time.cfl,
+        cfl=case.time.cfl * rate_passes,
         fixed_step=case.time.step,
         extremes=extremes,
         steps_held=hold_for,

@@ -19,7 +19,8 @@ class Poses:
     around all particles of each row as they stand at the start.  ``movers`` are the works of kinds of matter
     (psph.kinds) that move some of the rows themselves.  ``maps`` (rows, 3, dim, 1 + dim) place
     the particles (psph.physics.rigid.pose.maps); None where nothing is rigid, so that loops have no code
-    for it.  The array stays the same object: loops see each change.
+    for it.  ``middle`` are the same at the middle of the last step, along chords: half of both places, and
+    their difference by Δt.  The arrays stay the same objects: loops see each change.
     ``frame`` is what a moving frame of reference adds to ``gravity``, m/s² (psph.physics.rigid.pose.inertia),
     or None.
     """
@@ -34,6 +35,7 @@ class Poses:
         self._told = sorted(set(range(len(self.motions))) - moved)
         dimensions = self._dimensions
         self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
+        self.middle = self.maps.copy() if motions else None
         self.frame = None if frame is None else np.zeros((2, dimensions, 1 + dimensions))
         self.turn_to(0.0)
 
@@ -43,6 +45,8 @@ class Poses:
             self.maps[row] = maps(self.motions[row].pose(time), self._dimensions)
         for mover in self._movers:
             self.maps[mover.rows] = mover.maps(time)
+        if self.motions:
+            self.middle[:] = self.maps
         if self._frame is not None:
             self.frame[:] = inertia(self._frame.pose(time), self._gravity, self._dimensions)
 
@@ -55,10 +59,13 @@ class Poses:
         if not self.motions:
             self.turn_to(time)
             return 0.0
-        before = self._at_corners()
+        before, from_there = self._at_corners(), self.maps[:, PLACE].copy()
         for mover in self._movers:
             mover.drift(time, dt)
         self.turn_to(time)
+        there = self.maps[:, PLACE]
+        self.middle[:, PLACE] = 0.5 * (from_there + there)
+        self.middle[:, VELOCITY] = (there - from_there) / dt
         (x, v), (x_0, v_0) = self._at_corners(), before
         strayed, gained = x - x_0 - v_0 * dt, v - v_0
         most = max(2.0 * _longest(strayed) / dt, _longest(gained)) / dt

@@ -28,9 +28,19 @@ def nothing(simulation) -> None:
 
 
 def predict(simulation) -> None:
-    """Kick, drift, and predict what the forces read at the end of the step."""
+    """Kick, drift, and predict what the forces read at the end of the step; or drift to its middle, where the
+    plan has a pass there."""
+    engine = simulation.engine
+    go = engine.go_midway if simulation.plan.midway else engine.predict
     with simulation.ledger("kick, drift, predict"):
-        simulation.engine.predict(simulation.then, simulation.dt, simulation.previous_speed)
+        go(simulation.then, simulation.dt, simulation.previous_speed)
+
+
+def begin_prediction(simulation) -> None:
+    """What the forces read at the start is what there is."""
+    predict(simulation)
+    if simulation.plan.midway:
+        drift(simulation)
 
 
 def renew_lists(simulation) -> None:
@@ -43,6 +53,28 @@ def begin_lists(simulation) -> None:
     """The first lists, and what particles keep of the start."""
     simulation.rebuild()
     simulation.engine.begin()
+
+
+def sum_midway(simulation) -> None:
+    """The rate of density at the middle of the step, and the drift to its end, where the plan has them.
+
+    Lists that were made at the middle may hold no longer at the end.
+    """
+    if not simulation.plan.midway:
+        return
+    holds = simulation.listed or simulation.hold(0.5 * simulation.dt)
+    simulation.engine.sum_midway(ghosts_are_fresh=not simulation.listed)
+    drift(simulation)
+    if holds:
+        simulation.listed = True
+    else:
+        simulation.rebuild()
+
+
+def drift(simulation) -> None:
+    """From the middle of the step to its end."""
+    with simulation.ledger("kick, drift, predict"):
+        simulation.engine.drift(simulation.then, simulation.dt, simulation.previous_speed)
 
 
 def sum_over_pairs(simulation) -> None:
@@ -59,6 +91,7 @@ def begin_sums(simulation) -> None:
         find_limits(simulation)
         predict(simulation)
         simulation.listed = True
+        sum_midway(simulation)
         sum_over_pairs(simulation)
 
 
@@ -97,8 +130,9 @@ def find_limits(simulation) -> None:
 
 
 OF_EVERY_STEP = {
-    "predict": Stage(predict, predict),
+    "predict": Stage(predict, begin_prediction),
     "renew_lists": Stage(renew_lists, begin_lists),
+    "sum_midway": Stage(sum_midway, sum_midway),
     "sum_over_pairs": Stage(sum_over_pairs, begin_sums),
     "kick": Stage(kick, begin_rates),
     "find_limits": Stage(find_limits, find_limits),

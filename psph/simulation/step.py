@@ -70,7 +70,7 @@ class Simulation:
         self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
         self.listed = False
         self.speed, self.fluid_speed, self.previous_speed, self.strain = 0.0, 0.0, 0.0, 0.0
-        self.acceleration = self.shift = 0.0
+        self.acceleration = self.shift = self.jolt = 0.0
         self.energy_at_start: float | None = None
         self.limited_by = ""
         self.request: Callable[[], float] = float
@@ -86,15 +86,17 @@ class Simulation:
         self.dt, self.limited_by, self.then = self._next_step(end)
         self._refuse_lost(self.dt)
         with self.ledger("skin"):
-            jolt = self.engine.poses.advance(self.then, self.dt)
-            self.listed = self.neighbourhood.valid(
-                self.dt, self.speed, max(self.acceleration, jolt), self.shift
-            )
+            self.jolt = self.engine.poses.advance(self.then, self.dt)
+            self.listed = self.hold(self.dt)
         for stage in self.stages:
             stage.run(self)
         self.time = self.then
         self.steps += 1
         self._refuse_blow_up()
+
+    def hold(self, dt: float) -> bool:
+        """Whether the lists hold ``dt`` s longer; collective."""
+        return self.neighbourhood.valid(dt, self.speed, max(self.acceleration, self.jolt), self.shift)
 
     def rebuild(self) -> None:
         """Put every particle where it belongs and list its neighbours; collective."""

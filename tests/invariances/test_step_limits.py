@@ -26,6 +26,7 @@ def lattice(
     gather_every=1,
     damping_every=1,
     dimensions=2,
+    passes=1,
     **fluid,
 ):
     """A fluid at rest without ends, as small as its kernel allows."""
@@ -35,7 +36,7 @@ def lattice(
     return {
         "scheme": scheme,
         "space": {"dimensions": dimensions, "spacing": DX, **space},
-        "time": {"end": 10.0, "gather_every": gather_every, "damping_every": damping_every},
+        "time": {"end": 10.0, "gather_every": gather_every, "damping_every": damping_every, "passes": passes},
         "use": uses(physics or {}),
         "physics": {"sound_speed": 20.0, **(physics or {})},
         "fluids": {"water": {"shape": {"box": ends}, **fluid}},
@@ -144,6 +145,34 @@ def test_rates_that_serve_for_four_steps_are_stable_at_their_limit(tmp_path, mon
     step = limit_of(tables, tmp_path)
     assert amplification(tables, tmp_path, step, HELD_FOR) < 1.0 + GROWS
     assert amplification(tables, tmp_path, beyond * step, HELD_FOR) > 1.0 + GROWS
+
+
+BESIDE = 0.125 * 1.4 * DX * 20.0
+"""A viscosity, m²/s, whose limit of the step is that of sound in two passes."""
+
+TWICE = {
+    "sound": (lattice(scheme="stable", passes=2), 1.6),
+    "laminar viscosity": (lattice(viscosity=5.0, passes=2), 1.6),
+    "laminar viscosity beside sound": (lattice(scheme="stable", viscosity=BESIDE, passes=2), 1.3),
+    "reconstructed damping beside sound": (
+        lattice(scheme="stable", physics={"reconstructed_damping": 0.6}, passes=2),
+        1.6,
+    ),
+    "fourth order diffusion": (
+        lattice(scheme="stable", physics={"fourth_order_diffusion": 0.2}, passes=2),
+        2.0,
+    ),
+    "density diffusion": (lattice({"density_diffusion": 5.0}, passes=2), 2.3),
+}
+
+
+@pytest.mark.parametrize("name", long_but_for(("laminar viscosity beside sound",), TWICE))
+def test_steps_of_two_passes_are_stable_at_their_limit_and_not_beyond(tmp_path, name):
+    tables, beyond = TWICE[name]
+    cfl = {**tables, "time": {**tables["time"], "cfl": 0.5}}
+    step = limit_of(cfl, tmp_path)
+    assert amplification(cfl, tmp_path, step) < 1.0 + GROWS
+    assert amplification(cfl, tmp_path, beyond * step) > 1.0 + GROWS
 
 
 NOISE = {

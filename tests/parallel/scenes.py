@@ -20,7 +20,7 @@ class Family(NamedTuple):
     words or with bounds between which a strength is drawn; ``walls`` says whether there is a tank or
     a floor, and ``condition`` of what kind; ``muddy`` whether the first fluid has a
     rheology; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
-    are taken; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference;
+    are taken and ``passes`` of a step; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference;
     ``floats`` whether there are bodies; ``absorbs`` whether its walls are those of a flume, with a paddle that
     takes up waves.
     """
@@ -37,6 +37,7 @@ class Family(NamedTuple):
     condition: str = "dynamic"
     kernel: str = ""
     gather_every: int = 1
+    passes: int = 1
     symmetry: tuple[str, ...] = ()
     moves: bool = False
     floats: bool = False
@@ -163,6 +164,11 @@ FAMILIES = {
     ),
 }
 
+FAMILIES |= {
+    f"{name} in two passes": FAMILIES[name]._replace(passes=2)
+    for name in ("tank", "half", "mixed tank", "borne", "rolled", "afloat", "framed", "flume", "mud in 3D")
+}
+
 
 def _seldom(family: Family) -> dict:
     """Slow sums, and rates that serve for several steps, are renewed equally seldom."""
@@ -178,7 +184,7 @@ def scene(family: Family, seed: int) -> str:
         "scheme": family.scheme,
         "precision": family.precision,
         "space": _space(family, rng, sizes),
-        "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5), **_seldom(family)},
+        "time": {"end": 1.0, "cfl": _drawn(rng, 0.2, 0.5), "passes": family.passes, **_seldom(family)},
         "neighbours": {"skin": _drawn(rng, 0.02, 0.3)},
         "parallel": {"axis": family.along},
         "physics": {"sound_speed": 10.0, **_physics(family, rng)},

@@ -12,6 +12,7 @@ from gauging import start
 from psph.matter.body import push_bodies
 from psph.simulation import integrator
 from psph.simulation.integrator import kick, kick_drift_predict
+from psph.simulation.midway import drift_to_end, kick_to_middle
 
 LOG = "bodies.log={shape={box={lower=[0.4,0.9],upper=[0.7,1.1]}},mass=20.0}"
 PADDLE = "walls.paddle={shape={box={lower=[0.4,0.9],upper=[0.7,1.1]}},motion={translation=[0.1,0.0]}}"
@@ -24,6 +25,11 @@ WITHOUT = {
         ("prescribed_squares(rules, group, k, time, dt, c)", "0.0, 0.0"),
     ),
     kick_drift_predict: (
+        ("            carry(rules, group, k, time, c)\n", "            pass\n"),
+        ("        store_apparent_force(rules, group, k, time, dt, c)\n", ""),
+    ),
+    kick_to_middle: (("        else:\n            carry(rules, group, k, time, c)\n", ""),),
+    drift_to_end: (
         ("            carry(rules, group, k, time, c)\n", "            pass\n"),
         ("        store_apparent_force(rules, group, k, time, dt, c)\n", ""),
     ),
@@ -46,7 +52,8 @@ def instructions(loop, simulation) -> Counter:
     registers and jumps, which the order of names may change."""
     engine = simulation.engine
     fresh = numba.njit(error_model="numpy", nogil=True)(loop)
-    call = (0, 1, 0.0, 0.0, engine._rules, engine.view(0.0), engine.columns())
+    times = len(inspect.signature(loop).parameters) - 5
+    call = (0, 1, *[0.0] * times, engine._rules, engine.view(0.0), engine.columns())
     fresh.compile(tuple(map(numba.typeof, call)))
     [code] = fresh.inspect_asm().values()
     found = re.findall(r"^\s+([a-z][a-z0-9]+)\s", code, re.MULTILINE)

@@ -32,7 +32,7 @@ def oscillate(theta, steps):
         rates = [rates[2], rates[0], rates[1]]
         rates[0][0] = theta * predicted[0][0]
         a[0][0] = -theta * pressure[0]
-        kick(0, 1, 0.0, 1.0, RULES, view, columns._replace(density_rate=rates[0]))
+        kick(0, 1, 0.0, 1.0, 0.5, RULES, view, columns._replace(density_rate=rates[0]))
     return np.hypot(v[0][0], density[0] - 1.0)
 
 
@@ -75,11 +75,11 @@ def test_walls_stay_and_lost_numbers_are_reported():
     view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
     columns = Columns(group, None, x, v, predicted, a, density, *rates, volume, pressure)
     kick_drift_predict(0, 2, 0.0, 0.1, RULES, view, columns)
-    *_, error, _, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
+    *_, error, _, _ = kick(0, 2, 0.0, 0.1, 0.05, RULES, view, columns)
     assert x[0][0] == v[0][0] == 0.0 and error == np.inf
     a[0][1] = v[0][1] = 0.0
-    *_, error, _, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
+    *_, error, _, _ = kick(0, 2, 0.0, 0.1, 0.05, RULES, view, columns)
     assert error == np.inf  # its place is lost
     x[0][1] = 1.0
-    *_, error, _, _ = kick(0, 2, 0.0, 0.1, RULES, view, columns)
+    *_, error, _, _ = kick(0, 2, 0.0, 0.1, 0.05, RULES, view, columns)
     assert error == abs(density - 1.0).max() < np.inf

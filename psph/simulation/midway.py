@@ -1,0 +1,92 @@
+"""A step with the rate of density at its middle: a leapfrog that takes two passes over the pairs.
+
+    v½ = v + Δt/2 a,  x½ = x + Δt/2 v½                        kick, half a drift
+    ρ̇ from x½, v½, ρ                                           pass
+    ρ ← ρ + Δt ρ̇,  x ← x½ + Δt/2 v½,  v̂ = v½ + Δt/2 a       drift
+    a from x, v̂, ρ                                             pass
+    v = v½ + Δt/2 a                                            kick
+
+Density and velocity leap over each other, so sound neither grows nor decays for ωΔt < 2, where a step of one
+pass (psph.simulation.integrator) is stable to 0.78.  What moves all as one, or turns, keeps its density: x½
+is the middle of the chord from x to the new x, and v½ its length over Δt.  Walls and bodies go along chords
+too.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
+"""
+
+import numpy as np
+
+from psph.composition.pair import take
+from psph.composition.terms import displacement, limit_density, limit_wall_density
+from psph.engine.jit import elementwise
+from psph.fields import DENSITY_RATE_1, DENSITY_RATE_2, filled
+from psph.simulation.carried import carry, store_apparent_force
+from psph.simulation.rules import borne
+from psph.vectors import add, at, put, scale
+
+HISTORY = (DENSITY_RATE_1, DENSITY_RATE_2)
+"""What a step of one pass keeps of earlier ones, and this one does not."""
+
+
+def is_midway(scene, effects, kinds) -> bool:
+    """Whether the steps of a scene take their rate of density at the middle.
+
+    Where ``time.passes`` asks for two, all kinds of matter bear it, and none of the ``effects`` evolves a
+    field of its own, whose rate would have to be taken there too.
+    """
+    evolve = (field.evolves for effect in effects for field in filled(effect))
+    return scene.case.time.passes == 2 and all(kind.bears_midway for kind in kinds) and not any(evolve)
+
+
+FORCES = ("radial", "shear", "push", "body", "finish_acceleration")
+"""Methods of effects that push."""
+
+
+def room(effect, passes: int) -> float:
+    """By how much the limit of an effect is longer in a step of so many ``passes`` than in one of one.
+
+    In two passes 3 for what changes the density alone at a rate λ, as diffusion does: predicted from its
+    history it is stable for λΔt < 1/3, here for λΔt < 2 − (ωΔt)²/2 beside sound of the frequency ω, that is 1
+    at the largest ωΔt = 1.44; else 1.
+    """
+    pushes = any(hasattr(effect, name) for name in FORCES)
+    return 3.0 if passes == 2 and hasattr(effect, "density_rate") and not pushes else 1.0
+
+
+@elementwise
+def kick_to_middle(first, last, time, dt, rules, view, columns):
+    """Kick by half a step and drift to the middle of it, ``time``.
+
+    Columns ``first`` to ``last`` of ``columns``, which ``view`` shows as formulas see them; ``rules`` say
+    how the particles of each group move: what is rigid by its poses at the middle.
+    """
+    c = columns
+    for k in range(np.uint64(first), np.uint64(last)):
+        group = c.group[k]
+        if group < rules.free:
+            v = add(at(c.velocity, k), scale(at(c.acceleration, k), 0.5 * dt))
+            put(c.velocity, k, v)
+            put(c.predicted_velocity, k, v)
+            put(c.position, k, add(at(c.position, k), scale(v, 0.5 * dt)))
+        else:
+            carry(rules, group, k, time, c)
+
+
+@elementwise
+def drift_to_end(first, last, time, dt, rules, view, columns):
+    """Drift to ``time``, the end of the step, with the density there, and predict what friction reads."""
+    c = columns
+    for k in range(np.uint64(first), np.uint64(last)):
+        i, group = take(view, k), c.group[k]
+        rho = c.density[k] + dt * c.density_rate[k]
+        if group < rules.free:
+            v = at(c.velocity, k)
+            put(c.predicted_velocity, k, add(v, scale(at(c.acceleration, k), 0.5 * dt)))
+            move = add(scale(v, 0.5 * dt), displacement(rules.effects, i, dt))
+            put(c.position, k, add(at(c.position, k), move))
+            rho = limit_density(rules.effects, i, rho)
+        else:
+            rho = limit_wall_density(rules.effects, i, rho)
+            carry(rules, group, k, time, c)
+        store_apparent_force(rules, group, k, time, dt, c)
+        c.density[k] = rho
+        c.specific_volume[k] = 1.0 / rho
+        c.pressure[k] = borne(rules, i, group, rho)

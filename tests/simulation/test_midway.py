@@ -1,0 +1,110 @@
+"""Steps with the rate of density at their middle, on sound: v' = −ω r, r' = ω v; and who takes them."""
+
+import numpy as np
+import pytest
+from invariances.running import begun, by_id
+from invariances.scenes import DX, SCENES
+from simulation.test_integrator import RULES, oscillate
+from simulation.test_paces import STIRRED
+from stores import seen
+
+from psph.simulation.integrator import kick
+from psph.simulation.midway import HISTORY, drift_to_end, kick_to_middle
+from psph.simulation.rules import Columns
+
+
+def swing(theta, steps, decay=0.0):
+    """The largest amplitude in ``steps`` steps of ωΔt = ``theta``, from 1, where density also decays by
+    ``decay`` of its value a step, as by diffusion; real compiled loops."""
+    group = np.zeros(1, np.uint8)
+    x, v, predicted, a = ((np.zeros(1),) for _ in range(4))
+    density, rate, volume, pressure = np.ones(1), np.zeros(1), np.ones(1), np.zeros(1)
+    v[0][0] = 1.0
+    view = seen(position=x, velocity=predicted, rest_density=1.0, sound_speed=1.0)
+    columns = Columns(group, None, x, v, predicted, a, density, rate, None, None, volume, pressure)
+    largest = 0.0
+    for _ in range(steps):
+        kick_to_middle(0, 1, 0.0, 1.0, RULES, view, columns)
+        rate[0] = theta * predicted[0][0] - decay * pressure[0]
+        drift_to_end(0, 1, 0.0, 1.0, RULES, view, columns)
+        a[0][0] = -theta * pressure[0]
+        kick(0, 1, 0.0, 1.0, 0.0, RULES, view, columns)
+        largest = max(largest, np.hypot(v[0][0], density[0] - 1.0))
+    return largest, np.hypot(v[0][0], density[0] - 1.0)
+
+
+@pytest.mark.parametrize("theta", [0.2, 0.7, 1.44])
+def test_sound_neither_grows_nor_fades(theta):
+    """Its invariant is v² (1 − θ²/4) + r²: an ellipse."""
+    largest, _ = swing(theta, 4000)
+    assert 1.0 <= largest < 1.001 / np.sqrt(1.0 - theta**2 / 4.0)
+
+
+def test_it_is_stable_where_a_step_of_one_pass_is_not():
+    assert swing(1.9, 2000)[0] < 4.0
+    assert not swing(2.1, 200)[0] < 1e3  # the control
+    assert not oscillate(1.2, 400) < 1e3  # and that of one pass
+
+
+def test_diffusion_has_three_times_the_room_beside_the_fastest_sound():
+    assert swing(1.44, 2000, decay=0.9)[1] < 1e-3
+    assert not swing(1.44, 2000, decay=1.1)[0] < 1e3  # the control: 2 − θ²/2 = 0.96
+
+
+def test_a_particle_goes_along_the_chord_and_its_velocity_is_that_of_the_chord():
+    group = np.zeros(1, np.uint8)
+    x, v, predicted, a = (tuple(np.zeros(1) for _ in range(2)) for _ in range(4))
+    for array, value in zip((*x, *v, *a), (0.3, -0.2, 1.0, 2.0, -4.0, 6.0)):
+        array[0] = value
+    density, rate = np.full(1, 2.0), np.full(1, 3.0)
+    view = seen(position=x, velocity=predicted, rest_density=2.0, sound_speed=1.0)
+    columns = Columns(group, None, x, v, predicted, a, density, rate, None, None, np.ones(1), np.zeros(1))
+    kick_to_middle(0, 1, 0.0, 0.1, RULES, view, columns)
+    half = [c[0] for c in x]
+    chord = [c[0] for c in predicted]
+    drift_to_end(0, 1, 0.0, 0.1, RULES, view, columns)
+    end = [c[0] for c in x]
+    assert chord == pytest.approx([0.8, 2.3]) and density[0] == pytest.approx(2.3)
+    assert half == pytest.approx(0.5 * (np.array([0.3, -0.2]) + end))
+    assert [c[0] for c in predicted] == pytest.approx([0.6, 2.6])
+
+
+def in_two(tables):
+    """The scene in steps of two passes."""
+    return {**tables, "time": {**tables["time"], "passes": 2}}
+
+
+def test_a_body_is_at_the_middle_of_its_chord(tmp_path):
+    """A disc that turns and stirs water."""
+    ran = begun(in_two(STIRRED), tmp_path)
+    for _ in range(3):
+        ran.step()
+    start, told, honest = by_id(ran, "position"), {}, ran.engine.sum_midway
+
+    def noted(ghosts_are_fresh):
+        told.update(x=by_id(ran, "position"), v=by_id(ran, "predicted_velocity"))
+        honest(ghosts_are_fresh)
+
+    ran.engine.sum_midway = noted
+    ran.step()
+    way = by_id(ran, "position") - start
+    rigid = np.flatnonzero((by_id(ran, "whirl") != 0.0).any(axis=1))
+    assert len(rigid) == 16 and np.linalg.norm(way[rigid], axis=1).max() > 1e-3 * DX
+    assert told["x"][rigid] == pytest.approx(start[rigid] + 0.5 * way[rigid], abs=1e-12 * DX)
+    assert told["v"][rigid] == pytest.approx(way[rigid] / ran.dt, rel=1e-9)
+
+
+def test_it_asks_for_no_history_and_sends_no_more_than_what_has_moved(tmp_path):
+    one, two = (begun(tables, tmp_path).plan for tables in (STIRRED, in_two(STIRRED)))
+    assert one.midway is None and two.midway is two.passes[0]
+    assert {f.name for f in HISTORY} == set(one.arrays) - set(two.arrays)
+    assert two.midway.moved == ("position", "predicted_velocity")
+    assert one.refreshed == two.refreshed
+    assert two.cfl == 2.0 * one.cfl and two.midway.gives == (None, "density_rate")
+    assert two.passes[-1].gives == ("acceleration", None)
+
+
+@pytest.mark.parametrize("name", ["solid", "soil"])
+def test_what_moves_by_more_than_rates_and_poses_keeps_one_pass(tmp_path, name):
+    plan = begun(in_two(SCENES[name]), tmp_path).plan
+    assert plan.midway is None and plan.cfl == SCENES[name]["time"].get("cfl", plan.cfl)
