@@ -18,7 +18,7 @@ from psph.output.frames import FrameFile
 from psph.output.gauges import gauges_of
 from psph.output.probes import FieldProbe, Front, sensor
 from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
-from psph.parallel.reductions import Contribution, Total, totals
+from psph.parallel.reductions import Contribution, Total, alone, totals
 from psph.simulation.step import Simulation
 from psph.version import __version__
 
@@ -57,6 +57,17 @@ def _points(probe, space) -> np.ndarray:
     """Where a probe looks (n, dim), m."""
     extent = probe.extent or (0.0,) * space.dimensions
     return sensor(probe.position, extent, space.spacing)
+
+
+def _on_rank_0(comm, mine: list[Contribution]) -> list[Total]:
+    """The totals of all ranks on rank 0 alone: the others send what they contribute, and wait for nobody."""
+    if (parts := comm.gather(mine)) is None:
+        return []
+    joined = [
+        Contribution(np.concatenate([one.terms for one in each]), np.max([one.tops for one in each], axis=0))
+        for each in zip(*parts)
+    ]
+    return totals(alone(), joined) if joined else []
 
 
 class Record:
@@ -170,9 +181,13 @@ class Record:
             sim.settle_pressure(self._ranges() if due == [self.write_probes] else None)
             shares = {write: self.shares[write](sim) for write in due if write in self.shares}
             asked = [*chain(*shares.values())]
-            numbers = iter(totals(sim.comm, asked) if asked else ())
+            alone_due = due == [self.write_probes] and sim.comm.size > 1
+            numbers = iter(
+                _on_rank_0(sim.comm, asked) if alone_due else totals(sim.comm, asked) if asked else ()
+            )
             for write in due:
-                write(*islice(numbers, len(shares.get(write, ()))))
+                if not (alone_due and sim.comm.rank > 0):
+                    write(*islice(numbers, len(shares.get(write, ()))))
                 self.last_written[write] = sim.steps
 
     def write_frame(self) -> None:
