@@ -247,7 +247,9 @@ def _early_passes(plan: Plan) -> Iterator[str]:
         own, what = (early.effects, "rates") if early.holds else (early.reductions, "sums")
         names = ", ".join(type(effect).__name__ for effect in own)
         often = "one a step" if early.every == 1 else f"one in {early.every} steps"
-        sent = f"; ghosts then get {', '.join(later.brought)}" if later.brought else ""
+        midway = plan.midway.brought if plan.midway else ()
+        brought = dict.fromkeys((*later.brought, *(name for name in midway if name in early.written)))
+        sent = f"; ghosts then get {', '.join(brought)}" if brought else ""
         yield f"Pass over the neighbours, {often}, before the next: {what} of {names}{sent}"
 
 

@@ -122,6 +122,8 @@ class _NoSums(Engine):
     def sum(self, *when, **how) -> None:
         """Nothing: others are at it."""
 
+    sum_midway = sum
+
 
 class _AllButSums(Simulation):
     """A rehearsal of all other loops."""
