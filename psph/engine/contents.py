@@ -207,8 +207,10 @@ def _comes_from_outside(package: str) -> bool:
 
 
 def _name_outside(value) -> str:
-    """A function, class or module by its name, anything else by all that it holds."""
-    if isinstance(value, (types.ModuleType, np.ufunc)):
+    """A function, class or module by its name, not by its place; anything else by all that it holds."""
+    if isinstance(value, types.ModuleType):
+        return value.__name__
+    if isinstance(value, np.ufunc):
         return repr(value)
     if hasattr(value, "__qualname__"):
         return value.__qualname__

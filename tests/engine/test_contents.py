@@ -212,6 +212,13 @@ def test_the_way_of_numba_is_in_the_key(digest, monkeypatch):
     assert digest() != usual
 
 
+def test_the_key_does_not_say_where_numpy_is_installed(monkeypatch):
+    """Else each virtual environment would compile all loops anew."""
+    part, shown = contents_module._look(np), repr(np)
+    monkeypatch.setattr(np.__spec__, "origin", "/elsewhere/numpy/__init__.py")
+    assert repr(np) != shown and contents_module._look(np) == part
+
+
 def test_the_key_tells_types_apart(digest):
     from psph.particles.cells import number_cells
 
