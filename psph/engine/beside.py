@@ -36,9 +36,7 @@ def _work_and_leave(work: Callable[[], None]) -> None:
     with suppress(BaseException):
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
-        os.closerange(
-            3, os.sysconf("SC_OPEN_MAX")
-        )  # no lock and no connection of the first is held any longer
+        os.closerange(3, os.sysconf("SC_OPEN_MAX"))  # neither a lock nor a connection of the first is held
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 1)
         os.dup2(nowhere, 2)
