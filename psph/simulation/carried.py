@@ -10,7 +10,7 @@ from psph.composition import terms
 from psph.engine.jit import call_by_number, inside, overload_inside
 from psph.physics.motion import FIXED, PRESCRIBED, RIGID
 from psph.physics.rigid.mapped import affine, linear, onto
-from psph.physics.rigid.pose import ACCELERATION, PLACE, VELOCITY
+from psph.physics.rigid.pose import ACCELERATION, PLACE, PREDICTED, VELOCITY
 from psph.vectors import add, at, dot, nearest_to, put, scale, subtract, zero_like
 
 place = call_by_number("place")
@@ -59,7 +59,7 @@ def _carry_formula(motions, number, k, time, periods, columns):
         anchor = at(columns.anchor, k)
         x = place(motions, number - PRESCRIBED, anchor, time)
         v = velocity(motions, number - PRESCRIBED, anchor, time)
-        settle(columns, k, x, v, periods)
+        settle(columns, k, x, v, v, periods)
 
 
 @overload_inside(_carry_by_formula)
@@ -76,7 +76,7 @@ def _carry_pose(poses, pose_of, number, group, k, periods, columns):
     if number == RIGID:
         anchor, row = at(columns.anchor, k), pose_of[group]
         x, v = affine(poses[row], PLACE, anchor), affine(poses[row], VELOCITY, anchor)
-        settle(columns, k, x, v, periods)
+        settle(columns, k, x, v, affine(poses[row], PREDICTED, anchor), periods)
         _whirl(columns.whirl, poses[row], x, k)
         _face(columns.drawn_normal, columns.face_normal, poses[row], k)
         _face(columns.drawn_side, columns.face_side, poses[row], k)
@@ -96,7 +96,7 @@ def _whirl(whirl, maps, x, k):
 
 def _whirl_it(whirl, maps, x, k):
     """[ω] of what moves as a whole: between two points velocities differ by [ω] R x₀, places by R x₀."""
-    put(whirl, k, onto(maps, VELOCITY, PLACE, x))
+    put(whirl, k, onto(maps, PREDICTED, PLACE, x))
 
 
 @overload_inside(_whirl)
@@ -124,11 +124,12 @@ def _typed_face(drawn, normal, maps, k):
 
 
 @inside
-def settle(columns, k, x, v, periods):
-    """Put particle ``k`` at ``x``, or at the image of it that is nearest to where it is, with ``v``."""
+def settle(columns, k, x, v, predicted, periods):
+    """Put particle ``k`` at ``x``, or at the image of it that is nearest to where it is, with ``v`` and what
+    is ``predicted`` of it."""
     put(columns.position, k, nearest_to(x, at(columns.position, k), periods))
     put(columns.velocity, k, v)
-    put(columns.predicted_velocity, k, v)
+    put(columns.predicted_velocity, k, predicted)
 
 
 @inside

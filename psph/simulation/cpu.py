@@ -58,7 +58,9 @@ class Engine:
         self.kinds = tuple(work for kind in plan.matter for work in kind.work(rank))
         movers = tuple(work for work in self.kinds if work.rows)
         groups = plan.materials
-        self.poses = Poses(groups.rigid, corners_of(scene, plan), scene.frame, scene.gravity, movers)
+        self.poses = Poses(
+            groups.rigid, corners_of(scene, plan), scene.frame, scene.gravity, movers, plan.midway is not None
+        )
         for work in self.kinds:
             work.meet(self.poses.maps)
         self._rules = Rules(

@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from psph.physics.motion import is_rigid
-from psph.physics.rigid.pose import PLACE, VELOCITY, ZERO, in_space, inertia, maps
+from psph.physics.rigid.pose import ACCELERATION, PLACE, PREDICTED, VELOCITY, ZERO, in_space, inertia, maps
 
 UPRIGHT = 1e-12
 """By how much a cosine of a turn may differ from one in what is not turned: angles of 1e-6 rad."""
@@ -17,24 +17,33 @@ class Poses:
 
     ``motions`` have a pose at any time (psph.physics.motion); ``corners`` (rows, n, dim) are points, m,
     around all particles of each row as they stand at the start.  ``movers`` are the works of kinds of matter
-    (psph.kinds) that move some of the rows themselves.  ``maps`` (rows, 3, dim, 1 + dim) place
+    (psph.kinds) that move some of the rows themselves.  ``maps`` (rows, 4, dim, 1 + dim) place
     the particles (psph.physics.rigid.pose.maps); None where nothing is rigid, so that loops have no code
     for it.  ``middle`` are the same at the middle of the last step, along chords: half of both places, and
-    their difference by Δt.  The arrays stay the same objects: loops see each change.
+    their difference by Δt.  The fourth map is the velocity that friction reads; where steps are ``midway``
+    it is that of the chord and Δt/2 of the acceleration before, as a particle of the fluid has it: else
+    a drum would brake what turns with it by (ωΔt)²/2.  The arrays stay the same objects: loops see each
+    change.
     ``frame`` is what a moving frame of reference adds to ``gravity``, m/s² (psph.physics.rigid.pose.inertia),
     or None.
     """
 
     def __init__(
-        self, motions: Sequence, corners: np.ndarray, frame=None, gravity=ZERO, movers: Sequence = ()
+        self,
+        motions: Sequence,
+        corners: np.ndarray,
+        frame=None,
+        gravity=ZERO,
+        movers: Sequence = (),
+        midway: bool = False,
     ):
         self.motions, self._corners, self._dimensions = tuple(motions), corners, len(gravity)
         self._frame, self._gravity = frame, in_space(gravity)
-        self._movers = movers
+        self._movers, self._is_midway = movers, midway
         moved = {row for mover in movers for row in mover.rows}
         self._told = sorted(set(range(len(self.motions))) - moved)
         dimensions = self._dimensions
-        self.maps = np.zeros((len(motions), 3, dimensions, 1 + dimensions)) if motions else None
+        self.maps = np.zeros((len(motions), 4, dimensions, 1 + dimensions)) if motions else None
         self.middle = self.maps.copy() if motions else None
         self.frame = None if frame is None else np.zeros((2, dimensions, 1 + dimensions))
         self.turn_to(0.0)
@@ -42,10 +51,11 @@ class Poses:
     def turn_to(self, time: float) -> None:
         """Have all that is prescribed by time where it is at ``time``, s."""
         for row in self._told:
-            self.maps[row] = maps(self.motions[row].pose(time), self._dimensions)
+            self.maps[row, :PREDICTED] = maps(self.motions[row].pose(time), self._dimensions)
         for mover in self._movers:
-            self.maps[mover.rows] = mover.maps(time)
+            self.maps[mover.rows, :PREDICTED] = mover.maps(time)
         if self.motions:
+            self.maps[:, PREDICTED] = self.maps[:, VELOCITY]
             self.middle[:] = self.maps
         if self._frame is not None:
             self.frame[:] = inertia(self._frame.pose(time), self._gravity, self._dimensions)
@@ -59,17 +69,24 @@ class Poses:
         if not self.motions:
             self.turn_to(time)
             return 0.0
-        before, from_there = self._at_corners(), self.maps[:, PLACE].copy()
+        before, was = self._at_corners(), self.maps.copy()
         for mover in self._movers:
             mover.drift(time, dt)
         self.turn_to(time)
-        there = self.maps[:, PLACE]
-        self.middle[:, PLACE] = 0.5 * (from_there + there)
-        self.middle[:, VELOCITY] = (there - from_there) / dt
+        self._go_along_chords(was, dt)
         (x, v), (x_0, v_0) = self._at_corners(), before
         strayed, gained = x - x_0 - v_0 * dt, v - v_0
         most = max(2.0 * _longest(strayed) / dt, _longest(gained)) / dt
         return float(most)
+
+    def _go_along_chords(self, was: np.ndarray, dt: float) -> None:
+        """The middle of a step of ``dt`` s from where the maps ``was`` had all, and what it predicts."""
+        self.middle[:, PLACE] = 0.5 * (was[:, PLACE] + self.maps[:, PLACE])
+        chord = (self.maps[:, PLACE] - was[:, PLACE]) / dt
+        self.middle[:, VELOCITY] = self.middle[:, PREDICTED] = chord
+        if self._is_midway:
+            told = self._told
+            self.maps[told, PREDICTED] = chord[told] + 0.5 * dt * was[told, ACCELERATION]
 
     def beside(self, row: int, position: np.ndarray, periods: Sequence[float | None]) -> np.ndarray:
         """Of points at ``position`` (n, dim) the periodic images, m, nearest to the middle of all that moves

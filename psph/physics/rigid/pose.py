@@ -15,8 +15,9 @@ from psph.vectors import Vector, add, dot, scale, subtract
 ZERO = (0.0, 0.0, 0.0)
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
-PLACE, VELOCITY, ACCELERATION = 0, 1, 2
-"""Numbers of the three maps of a pose: see :func:`maps`."""
+PLACE, VELOCITY, ACCELERATION, PREDICTED = 0, 1, 2, 3
+"""Numbers of the three maps of a pose, see :func:`maps`, and of the velocity that friction reads
+(psph.simulation.poses)."""
 
 
 class Pose(NamedTuple):
