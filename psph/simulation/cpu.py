@@ -131,7 +131,7 @@ class Engine:
         """The second kick.  Returns the largest |v|², |a|², strain, squared shift and |v|² of walls here."""
         if self.plan.evolving:
             self.each(kick_rows, dt, self.store.data, self._rows_that_evolve())
-        lag = 0.0 if self.plan.midway else 0.5 * dt
+        lag = None if self.plan.midway else 0.5 * dt
         parts = self.each(self._kick, time, dt, lag, self._rules, self.view(largest_speed), self.columns())
         if bounds := self.plan.bounds:
             rest = (self.store[name] for name in (bounds.bounds.name, "density", bounds.remembers.name))

@@ -78,7 +78,8 @@ def settle_given_pressure(first, last, rules, view, columns):
 
 @elementwise
 def kick(first, last, time, dt, lag, rules, view, columns):
-    """Kick by the second half of the step, with the new rates; the density by ``lag`` s.
+    """Kick by the second half of the step, with the new rates; the density by ``lag`` s, or not at all where
+    that is None: it then stays the one that the forces have read, and the next rates of density will.
 
     Over the columns ``first`` to ``last``, returns the largest |v|² of the fluid, |a|² of all that
     moves, |ρ/ρ₀ − 1| and square of a displacement over its time step, m²/s², of the fluid, and |v|² of
@@ -93,12 +94,12 @@ def kick(first, last, time, dt, lag, rules, view, columns):
     wall_v2_max = 0.0
     for k in range(np.uint64(first), np.uint64(last)):
         i, group = take(view, k), c.group[k]
-        rho = c.density[k] + lag * c.density_rate[k]
+        rho = c.density[k] if lag is None else c.density[k] + lag * c.density_rate[k]
         if group < rules.free:
             a = at(c.acceleration, k)
             v = add(at(c.velocity, k), scale(a, 0.5 * dt))
             put(c.velocity, k, v)
-            rho = limit_density(rules.effects, i, rho)
+            rho = rho if lag is None else limit_density(rules.effects, i, rho)
             v2, a2 = dot(v, v), dot(a, a)
             x = at(c.position, k)
             strain = abs(rho / i.rest_density - 1.0)
@@ -109,7 +110,7 @@ def kick(first, last, time, dt, lag, rules, view, columns):
             shift = displacement(rules.effects, i, 1.0)
             shift2_max = max(shift2_max, dot(shift, shift))
         else:
-            rho = limit_wall_density(rules.effects, i, rho)
+            rho = rho if lag is None else limit_wall_density(rules.effects, i, rho)
             strain_max = max(strain_max, 0.0 if abs(rho) < np.inf else np.inf)
             v2, a2 = prescribed_squares(rules, group, k, time, dt, c)
             wall_v2_max, a2_max = max(wall_v2_max, v2), max(a2_max, a2)

@@ -8,15 +8,16 @@
 
 Density and velocity leap over each other, so sound neither grows nor decays for ωΔt < 2, where a step of one
 pass (psph.simulation.integrator) is stable to 0.78.  What moves all as one, or turns, keeps its density: x½
-is the middle of the chord from x to the new x, and v½ its length over Δt.  Walls and bodies go along chords
-too.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
+is the middle of the chord from x to the new x, and v½ its length over Δt.  What moves as a whole goes along
+chords too; walls that deform stand where their motion has them.  A shift beside the velocity is halved as the
+drift is.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
 """
 
 import numpy as np
 
 from psph.composition.pair import take
 from psph.composition.terms import displacement, limit_density, limit_wall_density
-from psph.engine.jit import elementwise
+from psph.engine.jit import elementwise, inside
 from psph.fields import DENSITY_RATE_1, DENSITY_RATE_2, filled
 from psph.simulation.carried import carry, store_apparent_force
 from psph.simulation.rules import borne
@@ -51,6 +52,13 @@ def room(effect, passes: int) -> float:
     return 3.0 if passes == 2 and hasattr(effect, "density_rate") and not pushes else 1.0
 
 
+@inside
+def half_a_move(rules, i, v, dt):
+    """What particle ``i`` with velocity ``v`` goes in half of a step, m, shifts included: lists that are made
+    at the middle of the step stand the other half."""
+    return add(scale(v, 0.5 * dt), displacement(rules.effects, i, 0.5 * dt))
+
+
 @elementwise
 def kick_to_middle(first, last, time, dt, rules, view, columns):
     """Kick by half a step and drift to the middle of it, ``time``.
@@ -60,12 +68,12 @@ def kick_to_middle(first, last, time, dt, rules, view, columns):
     """
     c = columns
     for k in range(np.uint64(first), np.uint64(last)):
-        group = c.group[k]
+        i, group = take(view, k), c.group[k]
         if group < rules.free:
             v = add(at(c.velocity, k), scale(at(c.acceleration, k), 0.5 * dt))
             put(c.velocity, k, v)
             put(c.predicted_velocity, k, v)
-            put(c.position, k, add(at(c.position, k), scale(v, 0.5 * dt)))
+            put(c.position, k, add(at(c.position, k), half_a_move(rules, i, v, dt)))
         else:
             carry(rules, group, k, time, c)
 
@@ -80,8 +88,7 @@ def drift_to_end(first, last, time, dt, rules, view, columns):
         if group < rules.free:
             v = at(c.velocity, k)
             put(c.predicted_velocity, k, add(v, scale(at(c.acceleration, k), 0.5 * dt)))
-            move = add(scale(v, 0.5 * dt), displacement(rules.effects, i, dt))
-            put(c.position, k, add(at(c.position, k), move))
+            put(c.position, k, add(at(c.position, k), half_a_move(rules, i, v, dt)))
             rho = limit_density(rules.effects, i, rho)
         else:
             rho = limit_wall_density(rules.effects, i, rho)

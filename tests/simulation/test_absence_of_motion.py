@@ -10,7 +10,6 @@ from drafts import TANK, draft
 from gauging import start
 
 from psph.matter.body import push_bodies
-from psph.simulation import integrator
 from psph.simulation.integrator import kick, kick_drift_predict
 from psph.simulation.midway import drift_to_end, kick_to_middle
 
@@ -66,7 +65,7 @@ def test_where_nothing_moves_the_loops_over_columns_know_nothing_of_it(loop, beg
     for now, then in WITHOUT[loop]:
         assert source.count(now) == 1
         source = source.replace(now, then)
-    names = dict(vars(integrator))
+    names = dict(loop.py_func.__globals__)
     exec(source, names)
     still = begun()
     plain = instructions(names[loop.__name__], still)
