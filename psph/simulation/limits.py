@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from psph.simulation.midway import room
+from psph.simulation.midway import pushes, room, together
 from psph.simulation.paces import share_of_limit
 
 
@@ -13,8 +13,13 @@ def step_limits(plan, speed: float, acceleration: float) -> Iterator[tuple[float
         return
     for kind in plan.matter:
         yield from kind.limits(plan, speed, acceleration)
+    frictions = []
     heeded = [effect for kind in plan.matter for effect in kind.heeds(plan)]
     for call in plan.called:
         if hasattr(call.effect, "longest_step") and not any(call.effect is one for one in heeded):
             share = share_of_limit(call.effect, plan.steps_held) * room(call.effect, plan.rate_passes)
-            yield share * call.effect.longest_step(plan.extremes), call.title
+            step = share * call.effect.longest_step(plan.extremes)
+            frictions += [step] * pushes(call.effect)
+            yield step, call.title
+    if plan.midway and len(frictions) > 1:
+        yield together(frictions), "all friction"

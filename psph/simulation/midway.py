@@ -13,6 +13,9 @@ chords too; walls that deform stand where their motion has them.  A shift beside
 drift is.  docs/theory.md derives it, tests/simulation/test_midway.py measures it.
 """
 
+import math
+from collections.abc import Iterable
+
 import numpy as np
 
 from psph.composition.pair import take
@@ -41,15 +44,29 @@ FORCES = ("radial", "shear", "push", "body", "finish_acceleration")
 """Methods of effects that push."""
 
 
+def pushes(effect) -> bool:
+    """Whether an effect changes velocities: one with a limit of the time step then is a friction."""
+    return any(hasattr(effect, name) for name in FORCES)
+
+
 def room(effect, passes: int) -> float:
     """By how much the limit of an effect is longer in a step of so many ``passes`` than in one of one.
 
     In two passes 3 for what changes the density alone at a rate λ, as diffusion does: predicted from its
-    history it is stable for λΔt < 1/3, here for λΔt < 2 − (ωΔt)²/2 beside sound of the frequency ω, that is 1
-    at the largest ωΔt = 1.44; else 1.
+    history it is stable for λΔt < 1/3, here for λΔt < 2 − (ωΔt)²/2 beside sound of the frequency ω, that is
+    0.96 at the largest ωΔt = 1.44; else 1.
     """
-    pushes = any(hasattr(effect, name) for name in FORCES)
-    return 3.0 if passes == 2 and hasattr(effect, "density_rate") and not pushes else 1.0
+    return 3.0 if passes == 2 and hasattr(effect, "density_rate") and not pushes(effect) else 1.0
+
+
+def together(limits: Iterable[float]) -> float:
+    """The limit of the step, s, of frictions with these ``limits`` at once: decays add, 1/Δt = Σ 1/Δt_i.
+
+    In steps of one pass sound keeps the damping of disorder at a third of its limit, which the margin of
+    another friction bears; twice as much it does not.
+    """
+    rates = sum(1.0 / limit for limit in limits)
+    return 1.0 / rates if rates > 0.0 else math.inf
 
 
 @inside

@@ -1,10 +1,11 @@
 """For how many steps the rates of slow effects serve: two clocks, that of sound and that of friction."""
 
+import math
 from collections.abc import Iterable
 
 from psph.fields import HELD_ACCELERATION, HELD_DENSITY_RATE, Field
 from psph.physics.motion import HELD_COUPLE
-from psph.simulation.midway import room
+from psph.simulation.midway import pushes, room, together
 
 PACES = (8, 4, 2)
 """Steps for which they serve where their limits do not bear what is asked for."""
@@ -34,9 +35,15 @@ def steps_held(scene, effects: Iterable, extremes, kinds, rate_passes: int = 1) 
     rest = [sound, *(room(one, rate_passes) * one.longest_step(extremes) for one in free)]
     longest = scene.case.time.step or WORTH * min(rest)
     own = [(one.longest_step(extremes), one) for one in limited if is_held(one)]
+    beside = [one.longest_step(extremes) for one in free if pushes(one)]
     paces = sorted({asked, *(n for n in PACES if n < asked)}, reverse=True)
-    fits = (n for n in paces if all(step * share_of_limit(one, n) >= longest for step, one in own))
-    return next(fits, 1)
+    for n in paces:
+        steps = [step * share_of_limit(one, n) for step, one in own]
+        if min(steps, default=math.inf) >= longest and (
+            rate_passes == 1 or together(steps + beside) >= longest
+        ):
+            return n
+    return 1
 
 
 def held_parts(effect, scene) -> tuple:
