@@ -195,6 +195,8 @@ def _pass_lines(scene, plan: Plan, said: dict[str, list[str]]) -> Iterator[str]:
         often = "one at the middle of a step for the density, one at its end" if plan.midway else "one a step"
         yield f"Pass over the neighbours, {often}, {flops} flops a pair"
     yield from said["passes"]
+    if scene.case.time.passes == 2 and not plan.midway:
+        yield "Steps of one pass, for not all that is in the scene bears time.passes = 2"
     effects, laws = acting(plan), laws_of(plan)
     width = _column([one.name for one in (*effects, *laws)] + [e.effect.__name__ for e in plan.absent])
     for one in effects:
