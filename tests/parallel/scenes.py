@@ -207,7 +207,8 @@ def scene(family: Family, seed: int) -> str:
 
 
 def _wall_of(family: Family, sizes) -> dict:
-    return {"shape": _wall(family, sizes), "no_slip": family.viscous, "condition": family.condition}
+    sticks = family.viscous and family.condition != "penalty"
+    return {"shape": _wall(family, sizes), "no_slip": sticks, "condition": family.condition}
 
 
 def _motion(family: Family, rng, sizes) -> list[dict]:

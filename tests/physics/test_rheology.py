@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 import pytest
+from invariances.running import begun, by_id
+from invariances.scenes import SCENES
 from physics.pairs import H, sums_of, view
 
 from psph.physics.fluid.apparent import ApparentFriction, ApparentViscosity, FluidAlone, StickingWalls
@@ -159,3 +161,16 @@ def test_the_grip_is_one_at_the_face_and_fades_behind_it():
     grips = [sums_of(effect, p, np.argmin(abs(x) + abs(y - level * dx)))[-1] for level in (-0.5, -1.5, -2.5)]
     assert grips[0] > 0.9 and 0.0 < grips[1] < 0.1 and grips[2] == 0.0
     assert sums_of(effect, p, np.argmin(abs(x) + abs(y - 0.5 * dx)))[-1] == 0.0  # fluid
+
+
+def test_mud_begins_in_single_precision_as_in_double(tmp_path):
+    """Before the first sums no particle has an apparent viscosity: the mean of two such was 0/0 in single
+    precision, and no mud made a step."""
+    found = []
+    for precision in ("mixed", "double"):
+        ran = begun({**SCENES["mud by bingham"], "precision": precision}, tmp_path)
+        for _ in range(3):
+            ran.step()
+        found.append(by_id(ran, "velocity"))
+    single, double = found
+    assert 0.0 < np.abs(single - double).max() < 1e-5 * np.abs(double).max()

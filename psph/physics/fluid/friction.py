@@ -19,8 +19,8 @@ from psph.vectors import add, applied, dot, scale, times, transposed
 SINGULARITY = 0.01
 """η² = 0.01 h² keeps r² + η² away from zero."""
 
-NO_VISCOSITY = 1e-300
-"""Keeps a mean of two viscosities that are zero from dividing by zero."""
+NO_VISCOSITY = 1e-30
+"""Keeps a mean of two viscosities that are zero from dividing by zero, in single precision too."""
 
 VELOCITY_GRADIENT = Field(
     "velocity_gradient",
