@@ -12,6 +12,7 @@ from pydantic import PrivateAttr, Strict, ValidationError, model_validator
 from psph.case.consistency import contradictions, walk
 from psph.case.errors import dotted
 from psph.case.extensions import versions
+from psph.case.findings import keys_one_sided
 from psph.case.gauges import Gauge
 from psph.case.keys import Name, Table, key
 from psph.case.mesh import Mesh
@@ -91,11 +92,12 @@ class Case(WithMatter):
 
     @property
     def loaded(self) -> set[str]:
-        """Names of walls, bodies and solids on which the fluid's push is asked for; with a wall all that bear
-        it, since parts that meet share it."""
+        """Names of walls, bodies and solids on which the fluid's push is asked for; with a wall or a sensor
+        all that bear it, since parts that meet share it."""
         gauged = {name for gauge in self.gauges.values() if gauge.force for name in gauge.force.on}
+        sensed = any(gauge.sensor for gauge in self.gauges.values()) and not any(keys_one_sided(self))
         rigid = {name: one for _, name, one in self.entries if one.rigid}
-        if not gauged.isdisjoint(rigid):
+        if sensed or not gauged.isdisjoint(rigid):
             gauged |= {name for name, one in rigid.items() if one.condition in BEARING}
         return gauged | {name for _, name, one in self.entries if one.always_loaded}
 

@@ -27,7 +27,7 @@ SHAKEN = FLAP.replace(
 ROWS = "time,x,y\n0,0,0\n0.01,0.002,-0.003\n0.02,0.001,0.004\n0.06,0,0\n"
 
 SCENES = {  # the text, its end in s, and the group of what is on all ranks
-    "three bodies of different laws in contact": (CROWD, 0.03, 0),
+    "three bodies of different laws in contact": (CROWD, 0.06, 0),
     "a sheet on water and a post of another law in it": (SHAKEN, 0.05, 1),
 }
 

@@ -20,6 +20,7 @@ from psph.output.gauges.motion import MotionGauge
 from psph.output.gauges.points import CarriedPoints, PointGauge, disc
 from psph.output.gauges.reaction import ReactionGauge
 from psph.output.gauges.run_up import RunUpGauge
+from psph.output.gauges.sensor import SensorGauge, face_of
 from psph.output.gauges.stress import StressGauge
 from psph.output.probes import FieldProbe, Front
 from psph.output.tables import GAUGE
@@ -75,7 +76,10 @@ def gauge_of(scene, name: str, table, mirrors=None):
         case "point":
             probe = FieldProbe(name, asked.position, asked.fields, mirrors)
         case _:
-            points = disc(asked.position, AXES.index(asked.axis), asked.diameter, scene.spacing)
+            axis, beside = AXES.index(asked.axis), _beside(scene, asked)
+            if face := face_of(scene, beside, asked, axis):
+                return SensorGauge(name, every, beside.groups, face, _carrier(asked, names))
+            points = disc(asked.position, axis, asked.diameter, scene.spacing)
             probe = FieldProbe(name, points, ("pressure",), mirrors)
     carrier = _carrier(asked, names)
     return CarriedPoints(probe, every, carrier, probe.points) if carrier else PointGauge(probe, every)
