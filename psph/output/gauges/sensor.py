@@ -16,7 +16,7 @@ FINE = 0.5
 """Spacings between the points of a sensor, each of which counts for the rows of sites beside it."""
 
 
-class Face(NamedTuple):
+class SensorFace(NamedTuple):
     """The particles of a wall behind a sensor, by the sites where they start, and their shares in it.
 
     ``shares`` is an array over a box of sites, the lowest of which is at ``lowest``, m (dim,), each
@@ -59,7 +59,7 @@ class SensorGauge(NamedTuple):
     name: str
     every: float
     groups: tuple[int, ...]
-    face: Face
+    face: SensorFace
     carrier: Carrier | None = None
 
     def columns(self, scene) -> list[str]:
@@ -83,7 +83,7 @@ class SensorGauge(NamedTuple):
         return exact_sums(simulation.comm, (shares[behind] * across)[:, None]) / self.face.area
 
 
-def face_of(scene, beside, asked, axis: int) -> Face | None:
+def face_of(scene, beside, asked, axis: int) -> SensorFace | None:
     """The face, across an ``axis``, of the walls ``beside`` (psph.scene.outside.WallRegion) in which a sensor
     is ``asked`` for; None where no particles behind it bear a pressure."""
     layout, dx = scene.layout, scene.spacing
@@ -104,7 +104,7 @@ def face_of(scene, beside, asked, axis: int) -> Face | None:
         return None
     shares = _seen_once(layout, sites.first, np.moveaxis(shares[..., ::inwards], -1, axis))
     lowest = (sites.first + 0.5) * dx + layout.lattice.origin
-    return Face(
+    return SensorFace(
         shares, lowest, dx, inwards * np.eye(scene.dimensions)[axis], area * dx ** (scene.dimensions - 1)
     )
 
