@@ -135,3 +135,25 @@ def test_half_a_sensor_behind_a_plane_of_symmetry_is_the_other_half(tmp_path):
     read = readings(simulation, scene)
     assert read["plane.pressure"] == pytest.approx(read["beside.pressure"], rel=0.01)
     assert read["plane.pressure"] == pytest.approx(9800.0 * 0.3, rel=0.05)
+
+
+ROUND = """
+space = { dimensions = 2, spacing = 0.05, periodic = ["x"], lower = [0.0, -0.2], upper = [1.0, 1.5] }
+time.end = 1.0
+physics = { gravity = [0.0, -9.8], sound_speed = 30.0 }
+fluids.water = { shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }, pressure = "hydrostatic" }
+walls.floor.shape.box = { lower = [0.0, -0.2], upper = [1.0, 0.0] }
+"""
+
+
+def test_a_sensor_across_a_periodic_seam_or_round_a_period_has_each_particle_once(tmp_path):
+    places = {
+        "seam": ((0.0, 0.0), "y", 0.2),
+        "middle": ((0.5, 0.0), "y", 0.2),
+        "twice": ((0.3, 0.0), "y", 2.0),
+    }
+    simulation, scene = started(draft(tmp_path, ROUND + asked(places)), steps=5)
+    read = readings(simulation, scene)
+    assert read["middle.pressure"] == pytest.approx(9800.0, rel=0.02)
+    for name in ("seam", "twice"):
+        assert read[f"{name}.pressure"] == pytest.approx(read["middle.pressure"], rel=1e-6), name

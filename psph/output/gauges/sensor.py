@@ -36,7 +36,8 @@ class SensorFace(NamedTuple):
         for d, (period, count) in enumerate(zip(periods, self.shares.shape)):
             x = places[:, d] - self.lowest[d]
             if period is not None:
-                x = x - period * np.rint((x - 0.5 * self.spacing * count) / period)
+                first = _window(count, self.spacing, period) - 0.5
+                x = x - period * np.floor((x - first * self.spacing) / period)
             sites[:, d] = np.rint(x / self.spacing)
         within = ((sites >= 0) & (sites < self.shares.shape)).all(axis=1)
         shares = np.zeros(len(places))
@@ -137,8 +138,20 @@ def _sites(scene, beside, low: np.ndarray, high: np.ndarray, reach: int) -> _Sit
     return _Sites(first, walls, np.isin(held, told))
 
 
+def _window(count: int, spacing: float, period: float) -> int:
+    """The first site of the period about the middle of ``count`` sites."""
+    return (count - round(period / spacing)) // 2
+
+
 def _seen_once(layout, first: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """The shares of the sites from ``first`` on, those of images added to what a mirror shows."""
+    """The shares of the sites from ``first`` on, those of images added to what a period or a mirror shows."""
+    for d, period in enumerate(layout.periods):
+        if period is not None:
+            along, own = np.moveaxis(shares, d, 0), _window(shares.shape[d], layout.spacing, period)
+            sites = round(period / layout.spacing)
+            for k in (*range(own), *range(own + sites, len(along))):
+                along[own + (k - own) % sites] += along[k]
+                along[k] = 0.0
     for plane in layout.mirror_planes:
         d = plane.axis
         along = np.moveaxis(shares, d, 0)
