@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from drafts import draft
+from drafts import SQUARE, draft
 from gauging import start
 from scene.test_solid_checks import BEAM
 
@@ -56,3 +56,11 @@ def test_matter_with_waves_of_its_own_is_told_of_no_key_of_fluids(text, override
     assert "sound_speed" not in said and "tension_floor" not in said and "background_pressure" not in said
     assert "give a larger young" in said
     assert ('scheme = "stable"' in said) == ("scheme=sph" in overrides)
+
+
+@pytest.mark.parametrize(("passes", "times", "told"), [(1, 0.9, 0), (1, 1.1, 1), (2, 1.9, 0), (2, 2.1, 1)])
+def test_a_step_is_too_long_beyond_what_its_passes_allow(passes, times, told, tmp_path):
+    """By 0.2 h/(c + v) for each of them, h 0.12 m."""
+    fast = Scene(draft(tmp_path, SQUARE)).expected_speed + 10.0
+    said = advised(tmp_path, SQUARE, f"time.passes={passes}", f"time.step={times * 0.2 * 0.12 / fast}")
+    assert said.count("remove time.step") == told * len(GUARDS)

@@ -37,7 +37,7 @@ def _driven(scene, guard: str, suspect) -> Iterator[str]:
 
 def _long_step(scene) -> Iterator[str]:
     step, cfl = scene.case.time.step, scene.case.time.cfl
-    limit = cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
+    limit = scene.case.time.passes * cfl * scene.smoothing_length / (scene.sound_speed + scene.expected_speed)
     if step is not None and step > limit:
         yield f"remove time.step = {step:g}: time.cfl = {cfl:g} would allow {limit:.2g} s"
 
