@@ -33,9 +33,9 @@ class RigidBodies(Kind):
         return answer(census, friction)
 
     @cached_property
-    def longest_step(self) -> float:
-        """The longest step that they stand, s."""
-        return body_step(self.scene)
+    def longest_steps(self) -> tuple[float, float]:
+        """The longest steps that they stand of one pass and of two, s."""
+        return body_step(self.scene), body_step(self.scene, 2)
 
     @cached_property
     def share(self) -> float:
@@ -72,8 +72,9 @@ class RigidBodies(Kind):
 
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """The longest step that they stand, beside what brakes a light body too."""
-        if self.longest_step < np.inf:
-            yield self.longest_step, "bodies"
+        step = self.longest_steps[plan.rate_passes - 1]
+        if step < np.inf:
+            yield step, "bodies"
         for call in plan.called if self.share < BRAKED else ():
             if getattr(call.effect, "brakes", False):
                 yield braked(self.share, call.effect.longest_step(plan.extremes)), f"{call.title} of bodies"

@@ -76,8 +76,8 @@ def lines_of(scene: Scene, order: Sequence[str]) -> tuple[SpringLine, ...]:
     )
 
 
-def body_step(scene: Scene) -> float:
-    """The longest step that the bodies of a scene stand, s.
+def body_step(scene: Scene, passes: int = 1) -> float:
+    """The longest step of so many rate ``passes`` that the bodies of a scene stand, s.
 
     That of their lines; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within
     h of its surface A, whose push in a step would move it too far, or turn it.  A viscous fluid brakes such a
@@ -89,7 +89,7 @@ def body_step(scene: Scene) -> float:
     shortest = longest_step(lines_of(scene, [one.name for one in own]), Bodies(own, scene.gravity))
     share = lightest_share(scene)
     if share < 1.0:
-        shortest = min(shortest, 0.5 * share**0.5 * scene.smoothing_length / scene.sound_speed)
+        shortest = min(shortest, 0.5 * passes * share**0.5 * scene.smoothing_length / scene.sound_speed)
     if share < BRAKED and (thickest := _thickest(scene)):
         shortest = min(shortest, braked(share, friction_step(scene, thickest)))
     return shortest
