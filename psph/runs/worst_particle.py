@@ -21,7 +21,11 @@ SEEN = 6.0
 
 
 class Share(NamedTuple):
-    """What one effect does to a particle: m/s², kg/(m^d s), and the speed of a displacement, m/s."""
+    """What one effect does to a particle: m/s², kg/(m^d s), and the speed of a displacement, m/s.
+
+    All are those at the end of the step: one of two passes (psph.simulation.midway) has changed the density
+    by the rate at its middle instead.
+    """
 
     name: str
     acceleration: np.ndarray
