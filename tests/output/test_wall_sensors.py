@@ -157,3 +157,37 @@ def test_a_sensor_across_a_periodic_seam_or_round_a_period_has_each_particle_onc
     assert read["middle.pressure"] == pytest.approx(9800.0, rel=0.02)
     for name in ("seam", "twice"):
         assert read[f"{name}.pressure"] == pytest.approx(read["middle.pressure"], rel=1e-6), name
+
+
+WAYS = {
+    "mirrored": lambda x, y: (-x, y),
+    "upside down": lambda x, y: (x, -y),
+    "turned by a quarter": lambda x, y: (-y, x),
+    "with its axes exchanged": lambda x, y: (y, x),
+}
+
+
+def film(way):
+    """The text of a film that meets a wall, as ``way`` has its points, with a sensor across its rim."""
+
+    def box(*corners):
+        lower, upper = ([*map(end, zip(*(way(*one) for one in corners)))] for end in (min, max))
+        return f"shape.box = {{ lower = {lower}, upper = {upper} }}\n"
+
+    axis = "xy"[way(1.0, 0.0)[0] == 0.0]
+    return (
+        "space = { dimensions = 2, spacing = 0.0625 }\ntime.end = 1.0\nphysics.sound_speed = 20.0\n"
+        f"[fluids.water]\n{box((-1.0, 0.875), (-0.0625, 1.0))}"
+        f"velocity = {[*way(2.0, 0.0)]}\ndensity = 900.0\n"
+        f"[walls.wall]\n{box((0.0, 0.0), (0.25, 2.0))}" + table("rim", way(0.0, 1.06), axis, 0.1)
+    )
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_sensor_reads_the_same_however_the_scene_is_turned(tmp_path, way):
+    read = []
+    for name, one in (("as it is", lambda x, y: (x, y)), (way, WAYS[way])):
+        (tmp_path / name).mkdir()
+        simulation, scene = started(draft(tmp_path / name, film(one)), steps=60)
+        read.append(readings(simulation, scene)["rim.pressure"])
+    assert read[0] > 300.0 and read[1] == pytest.approx(read[0], rel=1e-9)
