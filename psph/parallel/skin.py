@@ -23,13 +23,15 @@ PART_OF_PERIOD = 0.25
 most."""
 
 NEAR_PLANE = 1.5
-"""Cutoffs from a mirror within which particles count as near it: whoever sees an image is within one."""
+"""Cutoffs from a mirror within which particles count as near it: whoever crosses it before new lists is."""
 
 REMEMBERED = (
     "drifted",
     "_apart",
     "_since",
     "_closing",
+    "_beyond",
+    "_crossing",
     "_acceleration",
     "_shift",
     "_before",
@@ -68,8 +70,9 @@ class Skin:
     2 a (t + Δt)), with the fastest shift s of a particle beside its velocity.  The predicted velocity
     that is measured still contains half a step of the acceleration before, and lacks half a step of
     the present one: a is the largest of both and of all since, Δt the longest of these steps.
-    Beside a mirror one neighbour may be an image: what both do across the plane counts too, twice the most
-    that any particle there does.  No particle is more than ``farthest`` m from where it was listed.  The same
+    An image in one of the ``planes`` is farther away than its particle, which is listed: their distances
+    squared differ by 4 d_i d_j, d those from the plane.  So images count only where a particle is beyond a
+    plane, twice as far as that.  No particle is more than ``farthest`` m from where it was listed.  The same
     on every rank.
     """
 
@@ -84,6 +87,7 @@ class Skin:
         """The lists are new."""
         self.drifted = self._apart = self._since = 0.0
         self._closing: float | None = None
+        self._beyond = self._crossing = -math.inf
         self._acceleration = self._shift = self._longest_step = 0.0
 
     def state(self) -> dict[str, float | None]:
@@ -132,9 +136,10 @@ class Skin:
 
     def _bounded(self, dt: float, speed: float) -> bool:
         t = self._since + dt
-        closing = self._closing + 2.0 * self._shift
-        apart = self._apart + t * (closing + 2.0 * self._acceleration * (t + self._longest_step))
-        return apart < self.width and self.drifted + self._way(dt, speed) < self.farthest
+        more = self._shift + self._acceleration * (t + self._longest_step)
+        beyond = max(self._beyond + t * (self._crossing + more), 0.0)
+        apart = self._apart + t * (self._closing + 2.0 * more)
+        return apart + 2.0 * beyond < self.width and self.drifted + self._way(dt, speed) < self.farthest
 
     def _way(self, dt: float, speed: float) -> float:
         return dt * (speed + self._shift + 0.5 * dt * self._acceleration)
@@ -151,25 +156,23 @@ class Skin:
         )
         # Ghosts are in the boxes, so that a pair across two slabs is seen by at least one of their ranks.
         mine = largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic)
-        squares = largest(domain.comm, [*mine, *self._across_planes()]).tolist()
-        apart, closing, drifted, *across = squares
-        # From an image a particle differs across the plane by the sum of both, along it as from the other.
-        ways, speeds = across[::2], across[1::2]
-        self._apart, self._closing = (apart + 4.0 * sum(ways)) ** 0.5, (closing + 4.0 * sum(speeds)) ** 0.5
+        measured = largest(domain.comm, [*mine, *self._across_planes()]).tolist()
+        apart, closing, drifted, self._beyond, self._crossing = measured
+        self._apart, self._closing = apart**0.5, closing**0.5
         self.drifted = drifted**0.5
         self._since = 0.0
 
-    def _across_planes(self) -> list[float]:
-        """Squares of the farthest way, m², and of the highest speed, m²/s², of this rank's particles across
-        the mirrors that they are near, of each axis with mirrors in turn."""
-        store = self.domain.store
-        most: dict[int, list[float]] = {plane.axis: [0.0, 0.0] for plane in self._planes}
+    def _across_planes(self) -> tuple[float, float]:
+        """How far this rank's particles are beyond a mirror, m, negative before it, and how fast they go
+        there, m/s, at the most; of those that were before it when they were listed."""
+        store, beyond, crossing = self.domain.store, -math.inf, -math.inf
         for plane in self._planes:
             x, listed, v = (
                 store[name][plane.axis][store.inner]
                 for name in ("position", "listed_position", "predicted_velocity")
             )
-            near = np.abs(x - plane.at) < NEAR_PLANE * self.domain.cutoff
-            largest_squares = (float(np.square(ways[near]).max(initial=0.0)) for ways in (x - listed, v))
-            most[plane.axis] = list(map(max, most[plane.axis], largest_squares))
-        return [square for squares in most.values() for square in squares]
+            way = plane.side * (x - plane.at)
+            near = (way > -NEAR_PLANE * self.domain.cutoff) & (plane.side * (listed - plane.at) <= 0.0)
+            beyond = max(beyond, float(way[near].max(initial=-math.inf)))
+            crossing = max(crossing, float((plane.side * v[near]).max(initial=-math.inf)))
+        return beyond, crossing

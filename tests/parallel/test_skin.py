@@ -7,6 +7,7 @@ import pytest
 from mpi4py import MPI
 from stores import store_of
 
+from psph.composition.mirrors import ABOVE, BELOW, Plane
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin
 from psph.particles.drift import bounding_boxes, largest_differences
@@ -157,6 +158,41 @@ def test_shifts_beside_the_velocity_count():
 def test_nobody_strays_too_far_in_a_periodic_domain():
     lasted = steps_until_over(domain_of(300, 2, (1,)), lambda x: np.ones_like(x) * 3.0)
     assert 0 < lasted < 0.25 / 3e-3 + 1
+
+
+def images_apart(domain, plane):
+    """Distances of all particles from the images of all others in ``plane``, and whether each is listed."""
+    x = np.array(domain.store["position"])[:, domain.store.inner]
+    image = x.copy()
+    image[plane.axis] = 2.0 * plane.at - x[plane.axis]
+    listed = np.zeros((x.shape[1],) * 2, bool)
+    for k in range(x.shape[1]):
+        begin, length = int(domain.lists.begin[k]), int(domain.lists.lengths[k])
+        listed[k, domain.lists.lists[begin : begin + length].astype(int) - domain.store.low] = True
+    away = np.linalg.norm(x[:, :, None] - image[:, None, :], axis=0)
+    return away[~np.eye(len(away), dtype=bool)], listed[~np.eye(len(away), dtype=bool)]
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("plane", (Plane(0, BELOW, 0.0), Plane(1, ABOVE, 1.0)))
+def test_images_are_listed_while_particles_are_before_the_mirror(plane, seed):
+    """Beyond it they come nearer than what is listed: without the plane the lists hold too long."""
+    support = CUTOFF - WIDE
+    missed = {}
+    for planes in ((plane,), ()):
+        domain = domain_of(900, 2, seed=seed)
+        store, skin = domain.store, Skin(domain, WIDE, planes)
+        row, inner = store.rows["position"][plane.axis], store.inner
+        store.data[store.rows["predicted_velocity"][plane.axis], inner] = plane.side
+        missed[planes] = 0
+        while skin.drifted < 0.07 and skin.holds(1e-3, 1.0, 0.0):
+            store.data[row, inner] += 1e-3 * plane.side
+            away, listed = images_apart(domain, plane)
+            missed[planes] = max(missed[planes], np.count_nonzero(~listed & (away < support)))
+            assert not planes or missed[planes] == 0
+        if planes:
+            assert skin.drifted > 0.3 * WIDE  # not at once
+    assert missed[()] > 0
 
 
 def test_a_broken_number_ends_them():
