@@ -38,10 +38,15 @@ class Extent(NamedTuple):
 
 
 class Travels(NamedTuple):
-    """Names of the fields that ghosts need once at a rebuild, and of those that they need in each step."""
+    """Names of the fields that ghosts need once at a rebuild, and of those that they need in each step.
+
+    ``sought``, one of the first, is above 0 in particles that every other looks for: whoever has none in the
+    cells around has no neighbours listed.  None: everyone lists everyone.
+    """
 
     at_rebuild: tuple[str, ...]
     refreshed: tuple[str, ...]
+    sought: str | None = None
 
 
 class Domain:
@@ -66,7 +71,7 @@ class Domain:
         self.lower, self.upper = tuple(extent.lower), tuple(extent.upper)
         self._home = (self.lower, self.upper)
         self._particles = comm.allreduce(store.owned)
-        self.ghost_fields, self.refreshed = travels
+        self.ghost_fields, self.refreshed, self.sought = travels
         self.lanes = lanes
         self.bounds: np.ndarray | None = None
         self.prices = Prices(comm.size)
@@ -125,6 +130,7 @@ class Domain:
             self.cutoff,
             self.periods,
             lanes,
+            None if self.sought is None else self.store[self.sought],
             self._fill,
         )
 

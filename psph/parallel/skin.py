@@ -136,9 +136,9 @@ class Skin:
 
     def _bounded(self, dt: float, speed: float) -> bool:
         t = self._since + dt
-        more = self._shift + self._acceleration * (t + self._longest_step)
-        beyond = max(self._beyond + t * (self._crossing + more), 0.0)
-        apart = self._apart + t * (self._closing + 2.0 * more)
+        pushed = self._acceleration * (t + self._longest_step)
+        apart = self._apart + t * (self._closing + 2.0 * self._shift + 2.0 * pushed)
+        beyond = max(self._beyond + t * (self._crossing + self._shift + pushed), 0.0)
         return apart + 2.0 * beyond < self.width and self.drifted + self._way(dt, speed) < self.farthest
 
     def _way(self, dt: float, speed: float) -> float:

@@ -55,23 +55,28 @@ def build(
     cutoff: float,
     periods,
     lanes: int,
+    sought,
     fill,
 ):
     """Lists of every owned particle, in the global order of cells, then ids.
 
     ``starts`` are the first columns of the cells of ``planes`` owned planes and one ghost plane
     on either side.  ``room`` is used again where it is large enough.  Rows are filled up to a
-    multiple of ``lanes``.  ``fill`` is :func:`fill_lists`, or one that is settled.
+    multiple of ``lanes``.  Where ``sought`` is given (columns,) a row stays empty that has no column above 0
+    in the cells around.  ``fill`` is :func:`fill_lists`, or one that is settled.
     """
-    owned = store.owned
-    position, cutoff = in_single_precision(store, grid, int(starts[0]), cutoff)
+    owned, first = store.owned, int(starts[0])
+    before = np.zeros(0 if sought is None else store.total - first + 1, np.int64)
+    if sought is not None:
+        np.cumsum(sought[first : store.total] > 0.0, out=before[1:])
+    position, cutoff = in_single_precision(store, grid, first, cutoff)
     # The guess of entries need not be right; the same lists come of any.
     if len(room.begin) < owned:
         room = empty(owned + owned // SPARE, max(len(room.lists), 64 * owned + 1024))
     near = Near(position, periods, cutoff * cutoff)
     # How many entries there are is known once they are written: too little room, and all is done again.
     while True:
-        parts = in_threads(fill, 1, planes + 1, near, grid, starts, store.low, owned, lanes, room)
+        parts = in_threads(fill, 1, planes + 1, near, grid, starts, store.low, owned, lanes, before, room)
         needed = max(parts)
         if needed == 0:
             return room
@@ -97,12 +102,13 @@ def in_single_precision(store, grid: Grid, first: int, cutoff: float):
 
 
 @compiled
-def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple, room):
+def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple, sought, room):
     """Fill the rows of some planes; returns 0, or about how many entries are needed for all.
 
     Planes take the part of the lists that is their part of the ``owned`` particles.
     The candidates of a cell are a few ranges of columns, eight to a group; all eight are compared at
-    once, and a table packs those that are near.
+    once, and a table packs those that are near.  ``sought`` counts, before each column from the first
+    on, those of which a row must have one in its cells around; it is empty where all rows are filled.
     """
     begin, lengths, lists = room.begin, room.lengths, room.lists
     rows, columns = grid.counts[1], grid.counts[2]
@@ -128,6 +134,10 @@ def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple
                 ranges, candidates = candidate_ranges(
                     plane, row, column, rows, columns, grid.periodic, grid.reach, starts, from_k, to_k
                 )
+                if len(sought) and not any_within(ranges, from_k, to_k, sought, starts[0]):
+                    for i in range(np.uint64(starts[cell]), np.uint64(starts[cell + 1])):
+                        begin[i - np.uint64(low)], lengths[i - np.uint64(low)] = end, 0
+                    continue
                 if candidates > len(column_of) * LANES:
                     column_of = np.empty(candidates // 4, np.uint32)
                     valid = np.empty(candidates // 4, np.uint64)
@@ -153,6 +163,16 @@ def fill_lists(first_plane, last_plane, near, grid, starts, low, owned, multiple
                         lists[end] = i
                         end += np.uint64(1)
     return np.int64(0)
+
+
+@compiled
+def any_within(ranges, from_k, to_k, before, first):
+    """Whether ``before``, which counts what is sought before each column from ``first`` on, rises within one
+    of the ranges."""
+    found, first = False, np.uint64(first)
+    for q in range(ranges):
+        found = found or before[to_k[q] - first] > before[from_k[q] - first]
+    return found
 
 
 @compiled

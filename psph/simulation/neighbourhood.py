@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from psph.composition.mirrors import with_own_rows
-from psph.fields import APART
+from psph.fields import APART, WALL
 from psph.kinds import Work
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.skin import Skin, Unlisted
@@ -35,7 +35,7 @@ class Neighbourhood:
             store,
             Extent(layout.axis, layout.lower, layout.upper, layout.periods),
             layout.reach.cutoff,
-            Travels(plan.ghost_fields, plan.refreshed),
+            Travels(plan.ghost_fields, plan.refreshed, _sought(scene, plan)),
             plan.space.lanes if plan.passes else None,
         )
         self.skin = Skin(self.domain, layout.reach.skin, plan.planes) if plan.passes else Unlisted()
@@ -130,3 +130,10 @@ class Neighbourhood:
     def restore(self, state: dict[str, float | None]) -> None:
         """Go on as if the lists had been in use since they were made."""
         self.skin.restore(state)
+
+
+def _sought(scene, plan: Plan) -> str | None:
+    """The field that tells those whom walls look for, where there are fluids and walls alone and walls rest
+    that no fluid is near."""
+    walls = all(one.is_fluid or one.kind == WALL for one in scene.species)
+    return next((one.told_by for one in plan.marking), None) if walls else None

@@ -13,17 +13,19 @@ from psph.parallel.domain import CELLS_A_PARTICLE, Domain, Extent, Travels
 NAMES = ("position", "listed_position", "density")
 
 
-def domain_of(positions, cutoff, lower, upper, periods, axis=0, comm=MPI.COMM_SELF, mine=None):
-    """A rebuilt domain of particles at ``positions`` (n, dim); their density is their id."""
+def domain_of(
+    positions, cutoff, lower, upper, periods, axis=0, comm=MPI.COMM_SELF, mine=None, less=0, sought=None
+):
+    """A rebuilt domain of particles at ``positions`` (n, dim); their density is their id less ``less``."""
     n, dim = positions.shape
     mine = np.arange(n) if mine is None else mine
     store = store_of(dim, NAMES, {"mass": 1.0})
     block = np.zeros((len(store.data), len(mine)))
     block[list(store.rows["position"])] = positions[mine].T
-    block[store.rows["density"].start] = mine
+    block[store.rows["density"].start] = mine - less
     store.append(mine, np.zeros(len(mine), np.uint8), block)
     extent = Extent(axis, lower, upper, periods)
-    domain = Domain(comm, store, extent, cutoff, Travels(("density",), ("position",)))
+    domain = Domain(comm, store, extent, cutoff, Travels(("density",), ("position",), sought))
     domain.rebuild()
     return domain
 
@@ -71,6 +73,24 @@ def test_lists_are_complete(dim, periodic, axis):
     found = neighbours_by_id(domain)
     assert {i: set(row) for i, row in found.items()} == expected
     assert all(len(row) == len(set(row)) for row in found.values())
+
+
+@pytest.mark.parametrize("dim, periodic, axis", CASES)
+def test_rows_stay_empty_where_nobody_is_sought(dim, periodic, axis):
+    """Of 300 the last 8 are: every row is whole that has one of them, or whose particle is one."""
+    rng = np.random.default_rng(6)
+    size = np.array([1.0, 0.8, 0.9])[:dim]
+    positions = rng.uniform(0, 1, (300, dim)) * size
+    positions[-8:] = 0.1 * size * rng.uniform(0, 1, (8, dim))
+    periods = tuple(size[d] if d in periodic else None for d in range(dim))
+    scene = (positions, 0.12, np.zeros(dim), size, periods, axis)
+    whole, found = (
+        neighbours_by_id(domain_of(*scene, less=291, sought=sought)) for sought in (None, "density")
+    )
+    empty = [k for k, row in found.items() if not row and whole[k]]
+    assert len(empty) > 50
+    assert all(row == whole[k] for k, row in found.items() if k not in empty)
+    assert all(k <= 291 and max(whole[k]) <= 0 for k in empty)
 
 
 @pytest.mark.parametrize("dim", (1, 2, 3))

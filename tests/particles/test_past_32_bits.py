@@ -103,6 +103,7 @@ def test_lists_name_columns_past_2_31(near_and_far):
         domain.cutoff,
         domain.periods,
         domain.lanes,
+        None if domain.sought is None else far.store[domain.sought],
         neighbours.fill_lists,
     )
     used = int(near.domain.lists.begin[near.store.owned - 1])
