@@ -325,7 +325,7 @@ class Solids(Work):
 
     def pairs(self) -> int:
         """In the reference."""
-        return round(self.neighbours * self.rows)
+        return round(self.neighbours * self._owned)
 
     def booked(self) -> tuple[float]:
         """Their stored energy, J."""

