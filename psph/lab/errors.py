@@ -15,6 +15,13 @@ class PeerFailed(BenchError):
     """LAMMPS began, and did not bear this problem to the end; raised on every rank."""
 
 
+class PeersError(Refused):
+    """Another code cannot be installed, or a run beside it failed."""
+
+    def __init__(self, message: str):
+        super().__init__(one_line(message))
+
+
 class StudyError(Refused):
     """A study that cannot be made or read."""
 

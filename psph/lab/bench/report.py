@@ -29,6 +29,7 @@ def _tables(runs: list[dict], ranks: bool) -> Iterator[str]:
         all_here = [run for run in runs if run["machine"] == machine]
         here = [run for run in all_here if AGAINST not in run] or all_here
         roofs = [run["roofline"] for run in here if run["ranks"] == here[0]["ranks"]]
+        beside = any("peer" in run for run in here)
         yield f"{machine}. On {_ranks(here[0])} a copy reaches {_best(roofs, 'copy_bytes')} GB/s,"
         yield f"multiply-adds {_best(roofs, 'multiply_add_flops')} Gflop/s."
         yield ""
@@ -42,10 +43,9 @@ def _tables(runs: list[dict], ranks: bool) -> Iterator[str]:
                 "M particle-steps/s a core",
                 "M pairs/s a core",
                 "spread",
-                "LAMMPS",
-                "psph/LAMMPS",
+                *(("LAMMPS", "psph/LAMMPS") if beside else ()),
             ),
-            map(_pace, here),
+            (_pace(run, beside) for run in here),
         )
         if ranks and (scaled := list(_scaled(here))):
             yield ""
@@ -127,13 +127,14 @@ def _name(run: dict) -> str:
     return f"{run['problem']}, {run['dimensions']}D"
 
 
-def _pace(run: dict) -> tuple[str, ...]:
+def _pace(run: dict, beside: bool) -> tuple[str, ...]:
+    """The cells of a run, those of LAMMPS too where any run of the table stood beside it."""
     core, cores = run["per_core"], run["ranks"] * run["threads"]
-    beside = "–", "–"
+    other: tuple[str, ...] = ("–", "–") if beside else ()
     if "peer" in run:
         peer = run["peer"]
         pace = _millions(peer["particle_steps_per_second"] / cores)
-        beside = (
+        other = (
             f"{pace} ± {_percent(peer['spread'])}",
             f"{peer['ratio']:.2f} ± {_percent(peer['ratio_spread'])}",
         )
@@ -143,7 +144,7 @@ def _pace(run: dict) -> tuple[str, ...]:
         _millions(core["particle_steps_per_second"]),
         f"{core['pairs_per_second'] / 1e6:.0f}",
         _percent(run["spread"]),
-        *beside,
+        *other,
     )
 
 
