@@ -21,6 +21,9 @@ from psph.theory.solutions.catalogue import SOLUTIONS, known
 HYDROSTATIC = "hydrostatic"
 """The pressure at the start of a fluid that is under its own weight."""
 
+RELAXED = "relaxed"
+"""The start of a fluid without order, but evenly crowded."""
+
 Law, LAW = own_law()
 
 
@@ -44,6 +47,10 @@ class Fluid(FreeMatter):
         "a viscosity that depends on the rate of strain, as that of mud or grains",
         None,
         otherwise="the constant `viscosity`",
+    )
+    start: Literal["lattice", RELAXED] = key(
+        'where particles are at the start: "lattice", or "relaxed", without order but evenly crowded',
+        "lattice",
     )
     equation_of_state: Law = LAW
     pressure: Annotated[Literal[HYDROSTATIC, EXACT] | float, WrapValidator(_pressure)] = key(
@@ -74,6 +81,7 @@ class Fluid(FreeMatter):
         yield from _hydrostatic(case)
         yield from _exact(case)
         yield from _rheologies(case)
+        yield from _relaxed(case)
         for name in case.walls.keys() & case.fluids.keys():
             yield ("walls", name), ..., "a fluid has this name too; give the wall another"
 
@@ -107,6 +115,21 @@ def _exact(case) -> Iterator[Finding]:
                         else "the case has no exact solution; give [exact], or numbers"
                     ),
                 )
+
+
+def _relaxed(case) -> Iterator[Finding]:
+    """A relaxed start where there is no disorder, or beside what speaks of sites."""
+    for name, fluid in case.fluids.items():
+        if fluid.start != RELAXED:
+            continue
+        loc = "fluids", name, "start"
+        if case.space.dimensions == 1:
+            yield loc, fluid.start, "a row of particles has but one even order; remove this key"
+        if case.perturbations:
+            yield loc, fluid.start, "perturbations name sites of the lattice; remove them, or this key"
+        if fluid.jitter:
+            says = 'start = "relaxed" has a disorder of its own; remove one of the two'
+            yield ("fluids", name, "jitter"), fluid.jitter, says
 
 
 def _rheologies(case) -> Iterator[Finding]:

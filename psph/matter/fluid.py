@@ -10,6 +10,7 @@ from psph.scene.fluid.opening import has_free_surface
 from psph.scene.fluid.periodic_gravity import creeping_speed, driven_speed
 from psph.scene.fluid.rheologies import rheology_lines
 from psph.scene.fluid.still import Still, stills_of
+from psph.scene.relaxing import ITERATIONS, relaxing
 from psph.scene.sites import sites_within
 from psph.scene.waving import wave_faults
 
@@ -80,6 +81,12 @@ class Fluids(Kind):
             f"(h/dx {space.smoothing:g}), support {support:g} m, "
             f"about {sites_within(scene, support):.0f} neighbours",
         )
+        if fluids := relaxing(scene.layout):
+            names = ", ".join(scene.layout.parts[number].name for number in fluids)
+            yield (
+                "matter",
+                f"  start       {names}: relaxed from a shaken lattice in {ITERATIONS} passes before the run",
+            )
         yield from (("friction", line) for line in self._friction(plan))
 
     def _friction(self, plan) -> Iterator[str]:

@@ -19,6 +19,7 @@ from psph.scene.particles import ParticleSet
 from psph.simulation.cpu import Engine
 from psph.simulation.filling import block_of
 from psph.simulation.plan import Plan
+from psph.simulation.relaxing import relaxed
 from psph.simulation.step import Simulation
 
 
@@ -62,7 +63,7 @@ def lattice_particles(scene, comm) -> ParticleSet:
     cuts = np.searchsorted(reached, goals)
     cuts[-1] = scene.layout.planes
     first, last = int(cuts[comm.rank]), int(cuts[comm.rank + 1])
-    return scene.particles(first, last, int(reached[first]))
+    return relaxed(scene, scene.particles(first, last, int(reached[first])), comm)
 
 
 def store_of(scene, plan: Plan, found: ParticleSet) -> Store:

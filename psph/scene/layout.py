@@ -194,6 +194,12 @@ class Layout:
         """The same at any points, their coordinates broadcast to ``shape``; uint8."""
         return _first_claim(self.masks(grid, shape), shape)
 
+    def holds(self, part: int, position: np.ndarray) -> np.ndarray:
+        """Whether a part has the points ``position`` (n, dim), m, within the domain; bool (n,)."""
+        x = [self.folded(d, along) for d, along in enumerate(position.T)]
+        inside = [(a >= low) & (a <= up) for a, low, up in zip(x, self.lower, self.upper)]
+        return np.logical_and.reduce([self.held(x, x[0].shape) == part, *inside])
+
     def near(self, part: int, first: int, last: int, reach: int) -> np.ndarray:
         """True at the sites of some planes with a site of a part at most ``reach`` away.
 

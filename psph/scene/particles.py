@@ -47,6 +47,14 @@ class ParticleSet:
         """A view of some rows."""
         return ParticleSet(*(array[first:last] for array in vars(self).values()))
 
+    def where(self, holds: np.ndarray) -> "ParticleSet":
+        """A copy of the rows where ``holds`` (n,) is true."""
+        return ParticleSet(*(array[holds] for array in vars(self).values()))
+
+    def joined(self, other: "ParticleSet") -> "ParticleSet":
+        """These particles, and the ``other`` ones behind them."""
+        return ParticleSet(*map(np.concatenate, zip(vars(self).values(), vars(other).values())))
+
 
 def fill(particles: ParticleSet, starts: Starts, first: int, last: int) -> None:
     """Put particles on the held sites of planes ``first`` to ``last - 1`` of the layout."""
@@ -63,6 +71,17 @@ def fill(particles: ParticleSet, starts: Starts, first: int, last: int) -> None:
         _sheared(chunk, starts)
         _as_exact(chunk, starts)
         done += len(sites)
+
+
+def settled_at(starts: Starts, ids: np.ndarray, material: np.ndarray, position: np.ndarray) -> ParticleSet:
+    """Particles of the parts ``material`` (n,) with these ``ids`` (n,), in the state that the scene has where
+    they are, ``position`` (n, dim) m."""
+    found = ParticleSet.empty(len(ids), position.shape[1], 0)
+    found.id[:], found.material[:], found.position[:] = ids, material, position
+    _start(found, starts)
+    _sheared(found, starts)
+    _as_exact(found, starts)
+    return found
 
 
 def _place(chunk: ParticleSet, starts: Starts, held: np.ndarray, sites: np.ndarray, begin: int) -> None:
@@ -108,15 +127,25 @@ def _shift(chunk: ParticleSet, starts: Starts) -> None:
     dimensions = chunk.position.shape[1]
     for index, part in enumerate(starts.layout.parts):
         rows = chunk.material == index
-        if part.jitter and rows.any():
+        if part.shake and rows.any():
             source = Philox(key=part.table.seed)
             source.advance(int(chunk.id[0]))
             drawn = Generator(source).random((len(chunk.id), NUMBERS_PER_COUNT))[rows, :dimensions]
-            chunk.position[rows] += (2.0 * drawn - 1.0) * (part.jitter * starts.layout.spacing)
+            shift = (2.0 * drawn - 1.0) * (part.shake * starts.layout.spacing)
+            chunk.position[rows] += (
+                _within(chunk.position[rows], shift, index, starts) if part.relaxes else shift
+            )
     for x, low, period in zip(chunk.position.T, starts.layout.lower, starts.layout.periods):
         if period is not None:
             x -= period * np.floor((x - low) / period)
             x[x >= low + period] = low  # rounding may land on the upper edge
+
+
+def _within(position: np.ndarray, shift: np.ndarray, part: int, starts: Starts) -> np.ndarray:
+    """The ``shift`` (n, dim) m; half of it, or none, where it would leave the shape of the part."""
+    for less in (0.5, 0.0):
+        shift = np.where(starts.layout.holds(part, position + shift)[:, None], shift, less * shift)
+    return shift
 
 
 def _sheared(chunk: ParticleSet, starts: Starts) -> None:

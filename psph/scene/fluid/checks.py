@@ -67,7 +67,7 @@ def _minimum_in_disorder(scene: Scene) -> Iterator[str]:
         or physics.reconstructed_damping
         or any(fluid.rubs for fluid in _tables(scene))
     )
-    disordered = any(fluid.jitter for fluid in _tables(scene))
+    disordered = any(part.shake for part in scene.layout.parts if part.flows)
     if physics.pressure_gradient == "minimum" and disordered and not rubs:
         yield (
             'physics.pressure_gradient: "minimum" does not restore order, and the fluid starts '

@@ -98,6 +98,16 @@ class Part:
         return self.table.jitter
 
     @property
+    def shake(self) -> float:
+        """The same of the places that its particles get first."""
+        return self.jitter
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether its particles find their places before they start (psph.scene.relaxing)."""
+        return False
+
+    @property
     def displaces(self) -> bool:
         """Whether it takes the place of what flows."""
         return False
