@@ -14,7 +14,7 @@ import numpy as np
 from psph.case import load
 from psph.fields import FLUID
 from psph.lab.errors import PeersError
-from psph.lab.peers.process import LOG, finished
+from psph.lab.peers.process import LOG, commit, finished
 from psph.lab.peers.records import Job, Outcome, State
 from psph.output.reader import Run
 from psph.parallel.reductions import world
@@ -87,8 +87,8 @@ class Own:
     objections: dict[str, str] = {}
 
     def prepare(self) -> str:
-        """Its version."""
-        return __version__
+        """The commit of its sources, or its version."""
+        return commit(Path(__file__).parent) or __version__
 
     def jobs(self, benchmark: str) -> list[Job]:
         """Its runs of a benchmark."""

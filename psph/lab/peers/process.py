@@ -57,6 +57,15 @@ def finished(
     return used.ru_utime + used.ru_stime
 
 
+def commit(sources: Path) -> str:
+    """The commit of a folder of sources; empty: it has none, or git is not there."""
+    git = ["git", "-C", str(sources), "rev-parse", "--short=9", "HEAD"]
+    try:
+        return subprocess.run(git, capture_output=True, text=True).stdout.strip()
+    except OSError:
+        return ""
+
+
 def last_words(log: Path) -> str:
     """The last line that says something of an error, or the last line."""
     lines = [line.strip() for line in log.read_text(encoding="utf-8", errors="replace").splitlines()]

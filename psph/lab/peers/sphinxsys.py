@@ -1,7 +1,6 @@
 """SPHinXsys, from a folder of its sources: its own tests, of the benchmark's size and Reynolds number."""
 
 import shutil
-import subprocess
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -10,7 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from psph.lab.errors import PeersError
-from psph.lab.peers.process import finished
+from psph.lab.peers.process import commit, finished
 from psph.lab.peers.records import Job, Outcome, State
 
 PATIENCE = 7200.0
@@ -111,12 +110,7 @@ class SPHinXsys:
             print(f"SPHinXsys: {' '.join(words)}", flush=True)
             what = "SPHinXsys is not built: it needs cmake, a compiler, Simbody, Eigen, TBB, Boost and spdlog"
             finished(what, words, self.folder / words[1].strip("-"), PATIENCE)
-        git = ["git", "-C", str(self.sources), "rev-parse", "--short=9", "HEAD"]
-        try:
-            said = subprocess.run(git, capture_output=True, text=True).stdout.strip()
-        except OSError:
-            said = ""
-        return said or "of its folder"
+        return commit(self.sources) or "no commit"
 
     def steps(self) -> list[list[str]]:
         """The commands that build its library and the tests."""

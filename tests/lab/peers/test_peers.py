@@ -1,5 +1,6 @@
 """Other codes beside psph: the judge, how they are installed and read, the tables; none of them is needed here."""
 
+import subprocess
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -12,7 +13,7 @@ from psph.lab.peers import cavity, command, judge, own, pysph, pysph_side, sphin
 from psph.lab.peers.benchmarks import BENCHMARKS, PACE, PACE_HEAD
 from psph.lab.peers.environment import PYSPH, Environment
 from psph.lab.peers.page import part, put, rows_of, table
-from psph.lab.peers.process import finished
+from psph.lab.peers.process import commit, finished
 from psph.lab.peers.records import Job, Outcome, State
 from psph.theory.solutions.setting import Setting
 from psph.theory.solutions.vortices import TaylorGreen
@@ -141,6 +142,15 @@ def test_a_process_gives_its_cpu_seconds_or_one_line(tmp_path):
         finished("it", [sys.executable, "-c", "while True: pass"], tmp_path / "d", 0.2)
     with pytest.raises(PeersError, match="No such file"):
         finished("it", [tmp_path / "nothing"], tmp_path / "e", 1.0)
+
+
+def test_sources_without_a_commit_have_none(tmp_path):
+    """Control: a folder of git that has one."""
+    assert commit(tmp_path) == ""
+    own_ = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a@b"]
+    for words in (["init", "-q"], ["commit", "-q", "--allow-empty", "-m", "first"]):
+        subprocess.run([*own_, *words], check=True)
+    assert len(commit(tmp_path)) == 9
 
 
 def test_a_column_of_water_is_as_high_as_it_is():
