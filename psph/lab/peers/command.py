@@ -36,7 +36,7 @@ def options() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(
         "run/peers", description="Run psph beside PySPH, SPHinXsys and LAMMPS, and renew docs/peers.md."
     )
-    made.add_argument("--quick", action="store_true", help="vortices, tank and pace alone: minutes")
+    made.add_argument("--quick", action="store_true", help="vortices, tank and pace alone: some ten minutes")
     made.add_argument("--only", nargs="+", choices=[*BENCHMARKS, PACE], help="these benchmarks alone")
     made.add_argument("--turns", type=int, default=1, help="how often each code has its turn (default: 1)")
     made.add_argument(
