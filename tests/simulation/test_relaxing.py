@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from drafts import WATER, draft, refusal
 from mpi4py import MPI
+from runs.resuming import keep, steps, taken_up
 
 from psph.fields import FLUID
 from psph.runs.explain import explain
@@ -126,6 +127,54 @@ def test_beside_mirrors_it_is_as_even_as_far_from_them(tmp_path):
     sums, crowding = unevenness(whole, np.concatenate(images))
     assert sums < 0.005
     assert crowding < 0.005
+
+
+OPEN = """
+scheme = "sph"
+space = {{ dimensions = 2, spacing = 0.1, kernel = "wendland-c2", smoothing = 1.4 }}
+time.end = 1.0
+physics.sound_speed = 10.0
+[fluids.water]
+start = "relaxed"
+shape.{}
+"""
+FORMS = {
+    "a disc": ("disc = { center = [0.0, 0.0], radius = 0.6 }", 112, 0.8),
+    "three in a row": ("box = { lower = [0.0, 0.0], upper = [0.3, 0.1] }", 3, 0.9),
+    "one": ("box = { lower = [0.0, 0.0], upper = [0.1, 0.1] }", 1, 0.0),
+    "far from 0": ("box = { lower = [1e5, 1e5], upper = [100001.0, 100000.5] }", 50, 0.8),
+}
+
+
+@pytest.mark.parametrize(("shape", "many", "least"), FORMS.values(), ids=FORMS)
+def test_small_round_and_far_shapes(tmp_path, shape, many, least):
+    scene, relaxed = found(tmp_path, OPEN.format(shape))
+    assert len(relaxed.id) == many
+    assert scene.layout.holds(0, relaxed.position).all()
+    away = np.linalg.norm(relaxed.position[:, None] - relaxed.position[None], axis=2)
+    assert (away + np.eye(many)).min() > least * 0.1
+
+
+def test_it_is_held_by_every_kind_of_wall_alike(tmp_path):
+    places = [
+        found(tmp_path, TANK, f"walls.tank.condition={condition}")[1].position
+        for condition in ("dynamic", "extrapolated", "repulsive", "penalty")
+    ]
+    assert all((one == places[0]).all() for one in places)
+
+
+def test_a_run_that_goes_on_does_not_relax_again(tmp_path, monkeypatch):
+    case = draft(tmp_path, PERIODIC, RELAXED)
+    through = steps(case, MPI.COMM_SELF, 4)
+    path = keep(steps(case, MPI.COMM_SELF, 2), case, tmp_path)
+    monkeypatch.setattr("psph.runs.setup.relaxed", lambda *_: pytest.fail("it relaxes"))
+    resumed = taken_up(case, path, MPI.COMM_SELF)
+    for _ in range(2):
+        resumed.step()
+    for name in ("position", "velocity", "density"):
+        assert (resumed.store.shown(name) == through.store.shown(name)).all(), name
+    with pytest.raises(pytest.fail.Exception):
+        steps(case, MPI.COMM_SELF, 0)  # the control: a start calls it
 
 
 @pytest.mark.parametrize(
