@@ -1,9 +1,8 @@
-"""Fluids that start relaxed find their places: from a shaken lattice they step to where it is less crowded.
+"""Fluids that start relaxed find their places: from a shaken lattice they go to where it is less crowded.
 
 A lattice is a special state: flow shears its rows apart, and where it breaks it sounds.  Relaxed particles
-stand as those of a flow do after a while, without order but evenly.  SPH codes pack particles so: Colagrossi,
-Bouscasse, Antuono & Marrone (2012), Comput. Phys. Commun. 183, 1641; the step is that of Lind, Xu, Stansby &
-Rogers (2012), J. Comput. Phys. 231, 1499.
+stand as those of a flow do after a while, without order but evenly.  Colagrossi, Bouscasse, Antuono & Marrone
+(2012), Comput. Phys. Commun. 183, 1641, pack particles so, by an acceleration −β Σ V ∇W and a friction.
 """
 
 from typing import NamedTuple
@@ -13,7 +12,7 @@ import numpy as np
 from psph.composition.mirrors import mirrors_of
 from psph.engine.jit import elementwise
 from psph.engine.threads import in_threads
-from psph.fields import LISTED_POSITION, POSITION, Field, view_of
+from psph.fields import LISTED_POSITION, POSITION, VECTOR, Field, view_of
 from psph.parallel.domain import Domain, Extent, Travels
 from psph.parallel.reductions import largest
 from psph.particles.store import Store
@@ -32,6 +31,10 @@ NEAR = 0.2
 """Weight R of the term that keeps pairs from clumping, in the first half of the steps: it takes pairs apart,
 but what it leaves is less even."""
 
+KEPT = 0.9
+"""Of a step, by the next one."""
+
+STEP = Field("step", "m", "the last step of a particle", VECTOR)
 WHOSE = Field("whose", "1", "number of the part that has it; −1 less that of who stands still")
 """Ghosts have no group, and so it travels."""
 
@@ -69,7 +72,7 @@ def relaxed(scene, found: ParticleSet, comm) -> ParticleSet:
 def _domain(scene, comm, moving: ParticleSet) -> Domain:
     """The domain of the particles that move, and of the sites that hold them."""
     layout, lattice = scene.layout, wider(scene.layout)
-    fields = (POSITION, LISTED_POSITION, WHOSE)
+    fields = (POSITION, LISTED_POSITION, WHOSE, STEP)
     store = Store(layout.dimensions, fields, {}, view_of(("position",)))
     ends = [lattice.planes * rank // comm.size for rank in (comm.rank, comm.rank + 1)]
     held = held_sites(layout, *ends)
@@ -110,11 +113,23 @@ def _relax(scene, domain: Domain) -> None:
         inner = store.low, store.low + store.owned
         by = crowd if 2 * k < ITERATIONS else even
         in_threads(find_ways, *inner, store["position"], store["whose"], store.low, domain.lists, by, way)
-        size = np.sqrt(sum(x * x for x in way))
-        shorter = step[0] / np.maximum(1.0, size * step[0] / step[1])
-        for x, along in zip(store["position"], way):
-            x[: store.total] += shorter * along
-        moved += float(largest(domain.comm, [(size * shorter).max(initial=0.0)])[0])
+        moved += float(largest(domain.comm, [_step(store, way, *step)])[0])
+
+
+def _step(store: Store, way: tuple, strength: float, longest: float) -> float:
+    """Move all particles here by 0.9 of their last step and ``strength`` m² times their ``way``, at most by
+    ``longest`` m; how far the fastest of them goes, m."""
+    inner = store.inner  # a ghost's step is its owner's to take
+    steps = [own[inner] for own in store[STEP.name]]
+    for own, along in zip(steps, way):
+        own *= KEPT
+        own += strength * along[inner]
+    size = np.sqrt(sum(own * own for own in steps))
+    shorter = 1.0 / np.maximum(1.0, size / longest)
+    for x, own in zip(store["position"], steps):
+        own *= shorter
+        x[inner] += own
+    return float((size * shorter).max(initial=0.0))
 
 
 def _crowd(scene) -> Crowd:
