@@ -222,6 +222,7 @@ OF_MATERIAL = (
     _fixed("mass", "kg", "mass"),
     _fixed("rest_density", "kg/m3", "density at zero pressure"),
     _fixed("viscosity", "m2/s", "kinematic viscosity"),
+    _fixed("cell_count", "1", "particles that fill a cell of the lattice of the start"),
     _fixed("is_fluid", "1", "1 in a fluid, else 0"),
     _fixed("mobile", "1", "1 where forces move the particle, else 0"),
     _fixed("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),

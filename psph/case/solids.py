@@ -79,6 +79,14 @@ class Solid(Hookean):
     """An elastic solid: total or updated Lagrangian SPH."""
 
     velocity: Vector | None = key("velocity at the start", None, unit="m/s", otherwise="zeros")
+    spacing: float | None = key(
+        "distance of its particles at the start, a half or a third of space.spacing: its shape still follows "
+        "the lattice of the scene",
+        None,
+        unit="m",
+        otherwise="space.spacing",
+        gt=0,
+    )
     density: float = key("density of the undeformed solid", unit="kg/m3", gt=0)
     young: float = key("Young's modulus E", unit="Pa", gt=0)
     poisson: float = key("Poisson's ratio ν; in 2D the solid is in plane strain", unit="1", gt=-1, lt=0.5)
@@ -184,6 +192,10 @@ class Solid(Hookean):
         """Whether its neighbours are those of the present."""
         return self.description == UPDATED
 
+    def finer(self, spacing: float) -> int:
+        """The ``spacing`` of the scene, m, over its own: 1, 2 or 3."""
+        return 1 if self.spacing is None else round(spacing / self.spacing)
+
     @property
     def grips(self) -> dict[str, Clamp]:
         """All its clamps by their keys: `clamped`, `clamps.NAME`."""
@@ -237,6 +249,9 @@ class Reaction(Table):
 
 OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
 
+FINEST, SAME = 3, 1e-6
+"""Of how many parts of the scene's spacing that of a solid may be one, and how near rounding has to be."""
+
 NOT_MET = "nothing is known of contact between solids and these; remove one of the two"
 
 
@@ -247,6 +262,7 @@ def elastic(case) -> Iterator[Finding]:
             yield ("anvils",), ..., "nothing feels them but solids; remove them, or give [solids.NAME]"
         return
     yield from _yielding(case)
+    yield from _finer(case)
     yield from updated(case) if updated_in(case) else _meeting(case)
     for name, anvil in case.anvils.items():
         if not any(anvil.normal):
@@ -308,6 +324,22 @@ def _rigid(case) -> Iterator[Finding]:
         yield ("bodies", name), ..., "a solid has this name too; give the body another"
     if case.bodies and case.anvils:
         yield ("anvils",), ..., refusals(Anvils)[BODIES]
+
+
+def _finer(case) -> Iterator[Finding]:
+    """Spacings of solids that are no part of the scene's, or beside what knows of one alone."""
+    dx = case.space.spacing
+    for name, solid in case.solids.items():
+        if solid.spacing is None:
+            continue
+        here = ("solids", name, "spacing")
+        if abs(dx / solid.spacing - solid.finer(dx)) > SAME or not 1 <= solid.finer(dx) <= FINEST:
+            fits = " or ".join(f"{dx / n:.6g}" for n in range(2, FINEST + 1))
+            yield here, solid.spacing, f"is no half or third of space.spacing; give {fits}, or remove it"
+        elif solid.finer(dx) > 1 and not case.fluids:
+            yield here, solid.spacing, "there is no fluid of another spacing; give space.spacing instead"
+        elif solid.finer(dx) > 1 and case.physics.contact is not None:
+            yield here, solid.spacing, "contact knows of one spacing; remove this key, or physics.contact"
 
 
 def _yielding(case) -> Iterator[Finding]:

@@ -22,6 +22,7 @@ OF_REFERENCE = (
     "flaws",
     "continues",
     "mie_gruneisen",
+    "spacing",
 )
 """Keys that mean nothing to a solid whose neighbours are those of the present."""
 

@@ -181,11 +181,12 @@ class ElasticSolids(SolidMatter):
 
     def _reach(self, plan) -> Iterator[str]:
         """Their kernel, and how far they touch."""
-        h = solid_plan(plan).smoothing_length
+        h, most = solid_plan(plan).smoothing_length, max(one.finer for one in self.made)
+        parted = f"; as fine as {h / most:g} m" if most > 1 else ""
         neighbours = sites_within(self.scene, support_of(h))
         yield (
             f"  kernel      of solids: {KERNEL}, h = {h:g} m "
-            f"(h/dx {SMOOTHING:.4g}), about {neighbours:.0f} neighbours in the reference"
+            f"(h/dx {SMOOTHING:.4g}{parted}), about {neighbours:.0f} neighbours in the reference"
         )
         if solid_plan(plan).touching:
             yield (

@@ -17,9 +17,10 @@ HOME = Field("home", "1", "rank that owns it in the simulation")
 
 
 def reference_rows(
-    comm, extent: Extent, support: float, ids: np.ndarray, places: np.ndarray, body: np.ndarray
+    comm, extent: Extent, supports: np.ndarray, ids: np.ndarray, places: np.ndarray, body: np.ndarray
 ) -> ReferenceRows:
-    """The neighbours within ``support`` m, in the same solid, of this rank's particles; collective.
+    """The neighbours in the same solid of this rank's particles, within its support of the ``supports`` of
+    all solids, m; collective.
 
     ``ids`` (n,), their ``places`` X (n, dim) in m, and the number of the ``body`` of each (n,).  They are
     looked for in a domain of their own, cut into slabs by X.
@@ -30,9 +31,9 @@ def reference_rows(
     for name, values in (("position", places.T), ("number", ids), ("body", body), ("home", comm.rank)):
         block[store.rows[name].start : store.rows[name].stop] = values
     store.append(ids, np.zeros(len(ids), np.uint8), block)
-    domain = Domain(comm, store, extent, support, Travels(("position", "number", "body"), ()))
+    domain = Domain(comm, store, extent, float(supports.max()), Travels(("position", "number", "body"), ()))
     domain.rebuild()  # by X: who owns a particle here is not who owns it in the simulation
-    counts, partners = _near(domain, support * CLOSED)
+    counts, partners = _near(domain, supports * CLOSED)
     inner = store.inner
     number = store["number"][inner].astype(np.int64)
     # Rows of one length, so that any of them can go to any rank; −1 fills them up.
@@ -50,7 +51,7 @@ def _largest(a, b):
     return max(a, b)
 
 
-def _near(domain: Domain, support: float) -> tuple[np.ndarray, np.ndarray]:
+def _near(domain: Domain, supports: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """How many neighbours each owned particle has in its solid, and their ids in rising order."""
     store, lists = domain.store, domain.lists
     lengths = lists.lengths[: store.owned].astype(np.int64)
@@ -66,6 +67,7 @@ def _near(domain: Domain, support: float) -> tuple[np.ndarray, np.ndarray]:
         if period is not None:
             away -= period * np.rint(away / period)
         apart2 += away * away
+    support = supports[store["body"][i].astype(np.int64)]
     near = (apart2 < support * support) & (store["body"][i] == store["body"][j])
     row, ids = row[near], store["number"][j[near]].astype(np.int64)
     order = np.lexsort((ids, row))

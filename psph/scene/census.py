@@ -1,13 +1,13 @@
 """The census: what one look at every site of a layout tells.  The second value of a scene."""
 
 from dataclasses import dataclass, field
-from functools import cached_property, reduce
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from psph.kinds import in_case
-from psph.scene.layout import Layout
+from psph.scene.layout import Layout, first_claim
 from psph.scene.meshes.drawn import sites_in
 
 
@@ -71,8 +71,8 @@ def take_census(layout: Layout) -> Census:
     for first, last in lattice.chunks():
         grid, shape = lattice.grid(first, last), lattice.shape(first, last)
         masks = layout.masks(grid, shape)
-        held = reduce(np.logical_or, masks)
-        census.counts[first:last] = np.count_nonzero(held.reshape(last - first, -1), axis=1)
+        each = layout.cell_counts[first_claim(masks, shape)]
+        census.counts[first:last] = each.reshape(last - first, -1).sum(axis=1)
         height = np.broadcast_to(sum(x * u for x, u in zip(grid, layout.up)), shape)
         for material, mask in enumerate(masks):
             if mask.any():

@@ -64,6 +64,13 @@ class Lattice:
         k = self.first[d] + np.arange(self.counts[d])
         return self.origin[d] + (k + 0.5) * self.spacing
 
+    def within_cell(self, finer: int) -> np.ndarray:
+        """From a site to the middles of the ``finer`` parts of its cell along each axis (n, dim), m."""
+        along = (np.arange(finer) - 0.5 * (finer - 1)) * (self.spacing / finer)
+        return np.stack(np.meshgrid(*[along] * len(self.counts), indexing="ij"), axis=-1).reshape(
+            -1, len(self.counts)
+        )
+
     def odd(self, position: np.ndarray) -> np.ndarray:
         """Whether the numbers k of the site around each position (n, dim) add up to an odd one."""
         sites = np.floor((position - np.array(self.origin)) / self.spacing).astype(np.int64)

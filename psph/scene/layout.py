@@ -186,13 +186,20 @@ class Layout:
         taken = reduce(np.logical_or, taking)
         return [mask & ~taken if part.flows else mask for part, mask in zip(self.parts, masks)]
 
+    @cached_property
+    def cell_counts(self) -> np.ndarray:
+        """How many particles a site gets that is held by each part (256,); none where it is held by none."""
+        counts = np.zeros(NONE + 1, np.int64)
+        counts[: len(self.parts)] = [part.finer**self.dimensions for part in self.parts]
+        return counts
+
     def materials(self, first: int, last: int) -> np.ndarray:
         """Number of the part at each site of some planes, uint8; the first that claims a site has it."""
         return self.held(self.lattice.grid(first, last), self.lattice.shape(first, last))
 
     def held(self, grid: Grid, shape: tuple[int, ...]) -> np.ndarray:
         """The same at any points, their coordinates broadcast to ``shape``; uint8."""
-        return _first_claim(self.masks(grid, shape), shape)
+        return first_claim(self.masks(grid, shape), shape)
 
     def holds(self, part: int, position: np.ndarray) -> np.ndarray:
         """Whether a part has the points ``position`` (n, dim), m, within the domain; bool (n,)."""
@@ -252,7 +259,8 @@ def _spread(held: np.ndarray, reach: int) -> np.ndarray:
     return spread
 
 
-def _first_claim(masks: Sequence[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+def first_claim(masks: Sequence[np.ndarray], shape: tuple[int, ...]) -> np.ndarray:
+    """Number of the part at each site by the ``masks`` of all parts, uint8: the first that claims it."""
     found = np.full(shape, NONE, np.uint8)
     for part in reversed(range(len(masks))):
         found[masks[part]] = part

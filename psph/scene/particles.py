@@ -62,8 +62,10 @@ def fill(particles: ParticleSet, starts: Starts, first: int, last: int) -> None:
     for begin, end in starts.layout.lattice.chunks(first, last):
         held = starts.layout.materials(begin, end)
         sites = np.flatnonzero(held != NONE)
+        sites = np.repeat(sites, starts.layout.cell_counts[held.ravel()[sites]])
         chunk = particles.rows(done, done + len(sites))
         _place(chunk, starts, held, sites, begin)
+        _part(chunk, starts)
         _start(chunk, starts)
         _dry(chunk, starts, sites, begin, end)
         _kick(chunk, starts, sites, begin, end)
@@ -89,6 +91,15 @@ def _place(chunk: ParticleSet, starts: Starts, held: np.ndarray, sites: np.ndarr
     chunk.material[:] = held.ravel()[sites]
     for d, k in zip(lattice.axes, np.unravel_index(sites, held.shape)):
         chunk.position[:, d] = lattice.coordinates(d)[k + begin if d == lattice.axis else k]
+
+
+def _part(chunk: ParticleSet, starts: Starts) -> None:
+    """Spread the particles of a part with a finer spacing over the cells of their sites."""
+    for part in starts.layout.parts:
+        rows = np.flatnonzero(chunk.material == part.number) if part.finer > 1 else ()
+        if len(rows):
+            within = starts.layout.lattice.within_cell(part.finer)
+            chunk.position[rows] += np.tile(within, (len(rows) // len(within), 1))
 
 
 def _start(chunk: ParticleSet, starts: Starts) -> None:
@@ -131,7 +142,7 @@ def _shift(chunk: ParticleSet, starts: Starts) -> None:
             source = Philox(key=part.table.seed)
             source.advance(int(chunk.id[0]))
             drawn = Generator(source).random((len(chunk.id), NUMBERS_PER_COUNT))[rows, :dimensions]
-            shift = (2.0 * drawn - 1.0) * (part.shake * starts.layout.spacing)
+            shift = (2.0 * drawn - 1.0) * (part.shake * starts.layout.spacing / part.finer)
             chunk.position[rows] += (
                 _within(chunk.position[rows], shift, index, starts) if part.relaxes else shift
             )

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from psph.case.keys import AXES
+from psph.case.solids import FINEST
 from psph.case.updated import referred_in
 from psph.physics.solid.laws import SaintVenantKirchhoff
 from psph.scene.calming import calming, impedance, solids_of
@@ -42,11 +43,12 @@ def solid_faults(scene: Scene) -> Iterator[str]:
     two clamps of a solid that share particles."""
     yield from _shared(scene)
     for number, name in _elastic(scene):
-        wide, axis = thinnest(scene.census, number)
+        wide, axis = _across(scene, number)
+        spacing = scene.spacing / scene.layout.parts[number].finer
         if wide == 1:
             yield (
                 f"solids.{name}.shape: one particle thick along {AXES[axis]}, where no strain is known; make "
-                f"it at least {FEWEST} spacings thick, {FEWEST * scene.spacing:.6g} m"
+                f"it at least {FEWEST} spacings thick, {FEWEST * spacing:.6g} m"
             )
         for load, table in scene.case.solids[name].loads.items():
             if not _pulls(scene, scene.layout.parts.of_whole(number), table.shape):
@@ -99,6 +101,12 @@ def solid_advice(scene: Scene) -> Iterator[str]:
     yield f"give {law}a larger hourglass, or some damping; look at the units of young, density and loads"
 
 
+def _across(scene: Scene, number: int) -> tuple[int, int]:
+    """The fewest particles of a solid along an axis, and that axis."""
+    cells, axis = thinnest(scene.census, number)
+    return cells * scene.layout.parts[number].finer, axis
+
+
 def _elastic(scene: Scene) -> Iterator[tuple[int, str]]:
     """The part and the name of each elastic solid, total or updated Lagrangian."""
     for part in scene.layout.parts:
@@ -108,11 +116,16 @@ def _elastic(scene: Scene) -> Iterator[tuple[int, str]]:
 
 def _of_either_description(scene: Scene, number: int, name: str) -> Iterator[str]:
     """A line for a solid that is thin, and for each number of it that is likely in another unit."""
-    table, (wide, axis) = scene.case.solids[name], thinnest(scene.census, number)
+    table, (wide, axis) = scene.case.solids[name], _across(scene, number)
     if 1 < wide < FEWEST:
+        part = scene.layout.parts[number]
+        fits, own = wide * scene.spacing / part.finer / FEWEST, ""
+        if scene.case.fluids and FINEST * fits >= scene.spacing * (1.0 - TOLERANCE):
+            parts = np.ceil(scene.spacing / fits - TOLERANCE)
+            own = f", or solids.{name}.spacing = {scene.spacing / parts:.6g}"
         yield (
             f"solids.{name}.shape: {wide} particles thick along {AXES[axis]}: it will bend too softly; "
-            f"give space.spacing = {wide * scene.spacing / FEWEST:.3g} or less"
+            f"give space.spacing = {fits:.3g} or less{own}"
         )
     if not LIGHTEST <= table.density <= HEAVIEST:
         yield f"solids.{name}.density: {table.density:g} kg/m3; steel has 7850, rubber 1100"
@@ -200,13 +213,14 @@ def _sites_in(scene: Scene, *shapes) -> int:
 
 
 def _pulls(scene: Scene, parts: list[int], shape) -> bool:
-    """Whether any site of these materials lies in a shape."""
+    """Whether any particle of these parts of one solid lies in a shape."""
     tolerance = TOLERANCE * scene.spacing
     for first, last in scene.layout.lattice.chunks():
         held = scene.layout.materials(first, last)
-        own = np.isin(held, parts)
-        if (inside(shape, scene.layout.lattice.grid(first, last), tolerance) & own).any():
-            return True
+        own, grid = np.isin(held, parts), scene.layout.lattice.grid(first, last)
+        for off in scene.layout.lattice.within_cell(scene.layout.parts[parts[0]].finer):
+            if (inside(shape, [x + d for x, d in zip(grid, off)], tolerance) & own).any():
+                return True
     return False
 
 
@@ -215,14 +229,18 @@ def solid_lines(scene: Scene) -> Iterator[str]:
     parts = scene.layout.parts
     for solid, number in enumerate(parts.solids):
         one, name, table = solids_of(scene.starts)[solid], parts[number].name, parts[number].table
-        wide, axis = thinnest(scene.census, number)
-        clamped = sum(int(scene.census.sizes[n]) for n in parts.of_whole(number) if n != number)
-        count = int(scene.census.sizes[number]) + clamped
+        wide, axis = _across(scene, number)
+        each = int(scene.layout.cell_counts[number])
+        clamped = each * sum(int(scene.census.sizes[n]) for n in parts.of_whole(number) if n != number)
+        count = each * int(scene.census.sizes[number]) + clamped
         yield (
             f"  solid       {name}: {_law(table)}, E {table.young:g} Pa, ν {table.poisson:g}, waves of "
             f"{one.wave_speed:.4g} m/s; {count:,} particles, {clamped:,} of them clamped, "
             f"{wide} across {AXES[axis]}"
         )
+        if one.finer > 1:
+            own = scene.spacing / one.finer
+            yield f"              its spacing is {own:g} m, 1/{one.finer} of space.spacing"
         if one.viscosity:
             given = (
                 "" if table.damping is not None else ", which calms what a step of the fluid does not resolve"

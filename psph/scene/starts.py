@@ -87,7 +87,8 @@ class Starts:
             Species(
                 name=part.name,
                 motion=motion,
-                mass=start.mass(volume),
+                mass=start.mass(volume) / part.finer**layout.dimensions,
+                cell_count=part.finer**layout.dimensions,
                 law=start.law,
                 loaded=part.loaded,
                 solid=part.solid,

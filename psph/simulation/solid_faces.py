@@ -89,7 +89,7 @@ def carry_faces(first, last, sums, weights, rows, moment, columns, drawn, now, i
         end = begin + np.uint64(lists.lengths[k])
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
-            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            pair = reference_pair(weights, k, i, j, softened(weights.softening, end - n))
             totals = terms.gather_each(sums, totals, i, j, pair)
         folded = terms.fold_each(sums, totals)
         f = matrix_product(folded[0], at(moment, k), i.reference)

@@ -27,8 +27,8 @@ class SolidLoads:
         solids of these numbers; collective."""
         store, scene = self.store, self.scene
         grid = [x[columns] for x in store["reference"]]
-        volume = scene.spacing**scene.dimensions
         for number, table in enumerate(self._tables):
+            volume = (scene.spacing / table.finer(scene.spacing)) ** scene.dimensions
             for load in table.loads.values():
                 pulled = inside(load.shape, grid, TOLERANCE * scene.spacing) & (solid == number)
                 [count] = whole_sums(self.comm, [np.count_nonzero(pulled)])

@@ -68,11 +68,13 @@ class Matter(NamedTuple):
 
 class Weights(NamedTuple):
     """How a pair is weighed: the ``kernel`` of solids, the ``periods`` in m, and the ``softening`` of lanes
-    behind the end of a row (psph.composition.space)."""
+    behind the end of a row (psph.composition.space).  ``finer`` is the spacing of the lattice, of which the
+    kernel is, over that of the solid of each row; None where all have that of the lattice."""
 
     kernel: Any
     periods: tuple
     softening: Any
+    finer: Any = None
 
 
 class Rows(NamedTuple):
@@ -85,11 +87,37 @@ class Rows(NamedTuple):
 
 
 @register_jitable
-def reference_pair(weights, i, j, softening):
-    """The pair of the views ``i`` and ``j`` in the reference."""
+def reference_pair(weights, k, i, j, softening):
+    """The pair of the views ``i``, of row ``k``, and ``j`` in the reference."""
     apart = nearest_image(subtract(i.reference, j.reference), weights.periods)
-    r = np.sqrt(dot(apart, apart) + softening)
-    return ReferencePair(apart, -j.volume * slope_over_r(weights.kernel, r, 1.0 / r))
+    r = stretched(weights.finer, k, np.sqrt(dot(apart, apart) + softening))
+    weight = -j.volume * slope_over_r(weights.kernel, r, 1.0 / r)
+    return ReferencePair(apart, stretched(weights.finer, k, stretched(weights.finer, k, weight)))
+
+
+def stretched(finer, k, value):
+    """n ``value``, n the spacing of the lattice over that of the solid of row ``k``: at n r the kernel of the
+    lattice weighs as that of the solid does at r, V_j g_ij = n² V g(n r), with V the volume of a cell."""
+    return value if finer is None else finer[k] * value
+
+
+@overload(stretched)
+def _typed_stretched(finer, k, value):
+    if isinstance(finer, types.NoneType):
+        return lambda finer, k, value: value
+    return lambda finer, k, value: finer[k] * value
+
+
+def own_volume(finer, k, i):
+    """V of the particle ``i`` of row ``k``, m^d."""
+    return i.volume if finer is None else i.volume / finer[k] ** len(i.reference)
+
+
+@overload(own_volume)
+def _typed_own_volume(finer, k, i):
+    if isinstance(finer, types.NoneType):
+        return lambda finer, k, i: i.volume
+    return lambda finer, k, i: i.volume / finer[k] ** len(i.reference)
 
 
 @register_jitable
@@ -111,7 +139,7 @@ def sum_moments(first, last, weights, rows, moment):
         end = begin + np.uint64(lists.lengths[k])
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
-            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            pair = reference_pair(weights, k, i, j, softened(weights.softening, end - n))
             sums = add(sums, scale(outer(pair.apart), pair.weight))
         whole = total(sums)
         spanned = determinant(whole, i.reference)
@@ -131,7 +159,7 @@ def sum_gradients(first, last, matter, weights, rows, moment, memory, flux):
         end = begin + np.uint64(lists.lengths[k])
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
-            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            pair = reference_pair(weights, k, i, j, softened(weights.softening, end - n))
             totals = terms.gather_each(matter.sums, totals, i, j, pair)
         folded = terms.fold_each(matter.sums, totals)
         number, a = matter.number[k], i.reference
@@ -197,7 +225,7 @@ def sum_inner_forces(first, last, matter, weights, rows, force):
         end = begin + np.uint64(lists.lengths[k])
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
-            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            pair = reference_pair(weights, k, i, j, softened(weights.softening, end - n))
             sums = add(sums, inner_force(weights, i, j, pair, stiffness))
         put(force, k, total(sums))
 
@@ -217,7 +245,7 @@ def measure(first, last, matter, weights, rows, moment, memory, found):
         end = begin + np.uint64(lists.lengths[k])
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
-            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            pair = reference_pair(weights, k, i, j, softened(weights.softening, end - n))
             totals = terms.gather_each(matter.sums, totals, i, j, pair)
         folded = terms.fold_each(matter.sums, totals)
         number, a = matter.number[k], i.reference
@@ -225,20 +253,20 @@ def measure(first, last, matter, weights, rows, moment, memory, found):
         misfit = spread(0.0, records)
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
-            pair = reference_pair(weights, i, j, softened(weights.softening, end - n))
+            pair = reference_pair(weights, k, i, j, softened(weights.softening, end - n))
             x_ij = nearest_image(subtract(i.position, j.position), weights.periods)
             off = subtract(applied(f, pair.apart), x_ij)
             misfit = misfit + pair.weight * dot(off, off)
         held = 0.25 * matter.stiffness[number] * total(misfit)
         dilated = dot(first_row(f, a), first_row(cofactor(f, a), a))
         if dilated == 0.0:  # its neighbours do not span space
-            found[0][k] = i.volume * held
+            found[0][k] = own_volume(weights.finer, k, i) * held
             put(found[1], k, scale(outer(a), 0.0))
             found[2][k] = found[3][k] = 0.0
             continue
         stored = weakened((energy(matter.laws, number, memory, k, f, a),), matter.intact, k)
         stored = weakened(stored, matter.share, k)
-        found[0][k] = i.volume * (stored[0] + held)
+        found[0][k] = own_volume(weights.finer, k, i) * (stored[0] + held)
         p = weakened(stress(matter.laws, number, memory, k, f, a), matter.intact, k)
         cauchy = scale(product_transposed(p, f, a), 1.0 / dilated)
         put(found[1], k, cauchy)

@@ -10,7 +10,7 @@ from psph.engine.jit import compiled
 from psph.engine.simd import spread, total, width_of
 from psph.engine.threads import in_threads
 from psph.physics.solid.shares import bounded, wish
-from psph.simulation.solid_pairs import Rows
+from psph.simulation.solid_pairs import Rows, stretched
 from psph.simulation.solid_table import SolidRecords
 from psph.smoothing import weight
 from psph.vectors import dot, nearest_image, subtract
@@ -53,6 +53,6 @@ def smooth(first, last, weights, rows, found):
         for n in range(begin, end, width_of(records)):
             j = fetch(rows.shown, records, lists.lists, n)
             apart = nearest_image(subtract(i.reference, j.reference), weights.periods)
-            r = np.sqrt(dot(apart, apart) + softened(weights.softening, end - n))
+            r = stretched(weights.finer, k, np.sqrt(dot(apart, apart) + softened(weights.softening, end - n)))
             sums = sums + j.given * weight(weights.kernel, r)
         found[k] = i.given * weight(weights.kernel, 0.0) + total(sums)

@@ -72,7 +72,8 @@ class Solids(Work):
         self._planned = planned = solid_plan(plan)
         solids, periods, self._h = planned.solids, domain.periods, planned.smoothing_length
         own, damped = kernel(KERNEL, self._h, d), is_damped(solids)
-        self.support = support_of(self._h)
+        finer = np.array([one.finer for one in solids], float)
+        self._finer, self.supports = finer if (finer > 1.0).any() else None, support_of(self._h) / finer
         sums = (Gradient(periods), *([GradientRate()] if damped else []))
         numbers = (np.array([getattr(s, n) for s in solids]) for n in ("stiffness", "viscosity", "density"))
         self._matter = Matter(planned.laws, sums, None, *numbers)
@@ -140,8 +141,11 @@ class Solids(Work):
         self._columns = columns[order].astype(np.uint64)
         self._owned, self._inner = len(columns), int(np.count_nonzero(~rim))
         self._matter = self._matter._replace(number=self._solid_of[store.group[columns[order]]])
-        density = self._matter.density[self._matter.number]
-        self._inverse_density, self._masses = 1.0 / density, density * self._volume
+        density, volume = self._matter.density[self._matter.number], self._volume
+        if self._finer is not None:
+            finer = self._finer[self._matter.number]
+            self._weights, volume = self._weights._replace(finer=finer), volume / finer**store.dimensions
+        self._inverse_density, self._masses = 1.0 / density, density * volume
         if self._faces:
             self._faces.settle(self._columns)
         if self.clamps:
@@ -344,7 +348,7 @@ class Solids(Work):
         extent = Extent(scene.layout.axis, scene.layout.lower, scene.layout.upper, scene.layout.periods)
         reference = store.shown("reference")[own]
         ids = store.id[store.inner][own]
-        return reference_rows(self.comm, extent, self.support, ids, reference, body[own])
+        return reference_rows(self.comm, extent, self.supports, ids, reference, body[own])
 
     def _memory(self, dt: float) -> Memory | None:
         """What particles remember, ``dt`` s after they last yielded; None where no solid does."""
@@ -367,16 +371,8 @@ class Solids(Work):
     def _put(self, table: SolidRecords, name: str, first: int, last: int) -> None:
         """Bring a field of some rows of a table up to date."""
         rows = np.array(self.store.rows[name], np.uint64)
-        self._each(
-            self._fill,
-            first,
-            last,
-            self.store.data,
-            rows,
-            self._columns,
-            table.records,
-            table.places[name][0],
-        )
+        place = table.places[name][0]
+        self._each(self._fill, first, last, self.store.data, rows, self._columns, table.records, place)
 
     def _each(self, loop, first: int, last: int, *args) -> None:
         if last > first:

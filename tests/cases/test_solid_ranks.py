@@ -26,9 +26,15 @@ SHAKEN = FLAP.replace(
 
 ROWS = "time,x,y\n0,0,0\n0.01,0.002,-0.003\n0.02,0.001,0.004\n0.06,0,0\n"
 
+FINER = SHAKEN.replace("[solids.sheet]", "[solids.sheet]\nspacing = 0.025").replace(
+    "[solids.post]", "[solids.post]\nspacing = 0.016666666666666666"
+)
+"""Both of spacings of their own."""
+
 SCENES = {  # the text, its end in s, and the group of what is on all ranks
     "three bodies of different laws in contact": (CROWD, 0.06, 0),
     "a sheet on water and a post of another law in it": (SHAKEN, 0.05, 1),
+    "the same of a half and a third of the spacing": (FINER, 0.05, 1),
 }
 
 

@@ -197,27 +197,51 @@ def test_water_lets_a_plate_sag_as_its_weight_says(tmp_path):
     assert sag.mean() == pytest.approx(-6.86e-5, rel=0.1) and late.std() < 2e-6
 
 
+MEASURED = {
+    "x": np.array(
+        [
+            (0.0024, 0.0436, 0.0835, 0.1213, 0.1616, 0.2031, 0.24, 0.2792, 0.3218, 0.361),
+            (-0.29, 12.89, 33.87, 43.84, 46.02, 44.0, 42.79, 40.57, 39.74, 36.93),
+        ]
+    ),
+    "y": np.array(
+        [
+            (0.0012, 0.042, 0.0828, 0.1224, 0.1633, 0.2017, 0.2437, 0.2822, 0.323, 0.3615),
+            (-0.34, 0.58, 9.58, 14.87, 17.05, 16.46, 13.84, 12.74, 11.89, 10.87),
+        ]
+    ),
+}
+"""s and mm: the free end of the gate in the experiment of Antoci, Gallati & Sibilla (2007), as digitised in
+data/fsi/ref_data of a fork of Project Chrono."""
+
+
 @pytest.fixture(scope="module")
 def opened(tmp_path_factory):
-    """How far the free end of the gate goes out and up at most, mm."""
-    gauge = table("gate", tmp_path_factory.mktemp("gate"), "time.end=0.15")
-    out, up = (1e3 * gauge[TIP.format(axis)].max() for axis in "xy")
+    """The way of the outer corner of the gate out and up."""
+    return table("gate", tmp_path_factory.mktemp("gate"))
+
+
+def wide_of(gauge, axis):
+    """rms of the difference from the experiment, over the rms of that."""
+    time, way = MEASURED[axis]
+    return np.sqrt(
+        np.mean((1e3 * np.interp(time, gauge["time"], gauge[TIP.format(axis)]) - way) ** 2) / np.mean(way**2)
+    )
+
+
+@LONG
+def test_a_gate_of_rubber_opens_as_far_as_in_the_experiment(opened):
+    out, up = (1e3 * opened[TIP.format(axis)].max() for axis in "xy")
     tell(f"gate: {out:.1f} mm out, {up:.1f} mm up")
-    return out, up
+    assert out == pytest.approx(46.02, rel=0.15) and up == pytest.approx(17.05, rel=0.15)
 
 
 @LONG
-def test_a_gate_of_rubber_opens_as_another_code_has_it(opened):
-    assert opened[0] == pytest.approx(45.8, rel=0.15)
-
-
-@LONG
-@pytest.mark.xfail(
-    reason="it goes out 9 to 12 % less far, and up goes as the square of out: docs/solids.md",
-    strict=True,
-)
-def test_a_gate_of_rubber_rises_as_another_code_has_it(opened):
-    assert opened[1] == pytest.approx(19.6, rel=0.15)
+@pytest.mark.xfail(reason="it is let go at once, and E 7.8 MPa is too stiff: docs/solids.md", strict=True)
+@pytest.mark.parametrize("axis", "xy")
+def test_a_gate_of_rubber_follows_the_experiment(axis, opened):
+    tell(f"gate: rms of {axis} {100.0 * wide_of(opened, axis):.0f} % of the experiment's")
+    assert wide_of(opened, axis) < 0.15
 
 
 @LONG

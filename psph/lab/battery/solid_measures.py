@@ -73,12 +73,12 @@ def operations(scene, plan) -> float:
     gradient = Gradient(scene.layout.periods)
 
     def first(weighed, i, j):
-        pair = reference_pair(Weights(weighed, scene.layout.periods, 0.0), i, j, 0.0)
+        pair = reference_pair(Weights(weighed, scene.layout.periods, 0.0), 0, i, j, 0.0)
         return gradient.gather((0.0,) * d * d, i, j, pair)
 
     def second(weighed, i, j):
         weights = Weights(weighed, scene.layout.periods, 0.0)
-        return inner_force(weights, i, j, reference_pair(weights, i, j, 0.0), 1.0)
+        return inner_force(weights, i, j, reference_pair(weights, 0, i, j, 0.0), 1.0)
 
     of_pair = sum(flops_of(each, own, shown, {"volume": 1.0}) for each in (first, second))
     return of_passes + sites_within(scene, support_of(h)) * of_pair

@@ -73,7 +73,9 @@ class GradientCorrection(NamedTuple):
         if all(one.is_fluid for one in scene.species):
             return self
         full = -first_moment(scene.kernel, scene.spacing, scene.dimensions) / scene.dimensions
-        return CorrectionBesideWalls(self.least, scene.spacing**scene.dimensions / full, hold_of(scene))
+        parted = any(one.cell_count > 1 for one in scene.species)
+        form = CorrectionBesideParted if parted else CorrectionBesideWalls
+        return form(self.least, scene.spacing**scene.dimensions / full, hold_of(scene))
 
     def start(self, i):
         """No neighbour yet."""
@@ -130,15 +132,41 @@ class CorrectionBesideWalls(NamedTuple):
 
     def finish_value(self, total, i, kernel):
         """L − 1."""
-        whole = i.mass * i.specific_volume / self.volume
-        behind = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - i.is_fluid), i.position)
-        return _correction(add(scale(total, i.is_fluid), behind), self.least, i.position)
+        return in_walls(total, i, i.mass, self)
 
     density_rate = GradientCorrection.density_rate
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
         return _corrected_push(felt(self.walls, i, j), i, j, pair)
+
+
+class CorrectionBesideParted(NamedTuple):
+    """Gradients are corrected to be exact for linear fields, beside walls and solids of a finer spacing too.
+
+    As :class:`CorrectionBesideWalls`, whose sum in a wall is that of the cells of the lattice: of n particles
+    in a cell each has an n-th of its volume, and the same L.
+    """
+
+    conserves = ("momentum",)
+
+    least: float
+    volume: float
+    walls: Hold = Holding()
+
+    writes = CORRECTION
+    lagged = True
+    slow = True
+
+    start = GradientCorrection.start
+    gather = GradientCorrection.gather
+
+    def finish_value(self, total, i, kernel):
+        """L − 1."""
+        return in_walls(total, i, i.cell_count * i.mass, self)
+
+    density_rate = GradientCorrection.density_rate
+    push = CorrectionBesideWalls.push
 
 
 class DifferenceCorrection(NamedTuple):
@@ -173,6 +201,14 @@ def needs_correction(physics):
             "takes corrected gradients; set physics.gradient_correction, and physics.pressure_gradient = "
             '"symmetric"'
         )
+
+
+@helper
+def in_walls(total, i, mass, of):
+    """L − 1, in a wall that of a lattice with the ``mass`` in a cell."""
+    whole = mass * i.specific_volume / of.volume
+    behind = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - i.is_fluid), i.position)
+    return _correction(add(scale(total, i.is_fluid), behind), of.least, i.position)
 
 
 @helper

@@ -135,7 +135,8 @@ class PositionShift(NamedTuple):
         """The shift that knows what a full neighbourhood sums up to."""
         if not all(one.bearing for one in scene.species):
             return None
-        return lattice_shift(self.strength, scene.kernel, scene.spacing, scene.dimensions)
+        made = lattice_shift(self.strength, scene.kernel, scene.spacing, scene.dimensions)
+        return PartedShift(*made) if any(one.cell_count > 1 for one in scene.species) else made
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
@@ -177,6 +178,34 @@ class LatticeShift(NamedTuple):
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
         return scale(_velocity(min(i.largest_speed, self.strength * i.sound_speed), i), dt)
+
+
+class PartedShift(NamedTuple):
+    """Particles shift from where they crowd to where they are few, with unchanged velocity.
+
+    As :class:`LatticeShift` beside solids of a finer spacing: n of a particle is that of the cell of which it
+    fills a part, so that these push as solids of the spacing of the lattice do.
+    """
+
+    conserves = ("momentum",)
+
+    strength: float
+    full: float
+    near: float
+
+    writes = CROWDED
+    lagged = True
+
+    start = LatticeShift.start
+
+    def gather(self, total, i, j, pair):
+        """Take neighbour j into both."""
+        share = j.specific_volume * pair.m_dw_r
+        n = share * (j.cell_count * self.near)
+        pull = share * n * (1.0 + CROWDING * n * (n * n))
+        return total[0] + share * pair.r2, add(total[1], scale(pair.x_ij, pull))
+
+    finish_value, displacement = LatticeShift.finish_value, LatticeShift.displacement
 
 
 def lattice_shift(strength: float, kernel, dx: float, dimensions: int) -> LatticeShift:

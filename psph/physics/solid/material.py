@@ -43,7 +43,7 @@ class ElasticSolid(NamedTuple):
 
     Bonds are cut beyond the ``critical_stretch``, infinite where it does not crack; ``flaws`` is the Weibull
     modulus of its scatter, 0 without (psph.physics.solid.cracks).  Its particles count by their shares where
-    it is ``shared`` (psph.physics.solid.shares)."""
+    it is ``shared`` (psph.physics.solid.shares); ``finer`` is the spacing of the lattice over its own."""
 
     name: str
     law: Any
@@ -54,10 +54,12 @@ class ElasticSolid(NamedTuple):
     critical_stretch: float = math.inf
     flaws: float = 0.0
     shared: bool = False
+    finer: int = 1
 
     def longest_step(self, smoothing_length: float, speed: float) -> float:
-        """By waves and friction, at the largest speed in m/s, s."""
-        h = smoothing_length
+        """By waves and friction, at the largest speed in m/s, s; ``smoothing_length`` is that of solids of
+        the spacing of the lattice, m."""
+        h = smoothing_length / self.finer
         by_waves = STEP * h / (self.wave_speed + speed)
         if remembers((self,)):
             by_waves /= PRESSED
@@ -82,12 +84,13 @@ def solid_of(
     mie_gruneisen: dict[str, float] | None = None,
     length: float = 0.0,
     shared: bool = False,
+    finer: int = 1,
 ) -> ElasticSolid:
     """The solid of these numbers: ``young`` and ``poisson`` E in Pa and ν, ``damping`` η in Pa s; where it
     yields, ``yield_stress`` and ``hardening`` in Pa, or the numbers of a table ``johnson_cook``; where it
     cracks, ``critical_stretch`` and perhaps the Weibull modulus ``flaws``; with the numbers of a table
-    ``mie_gruneisen`` its pressure is by that law, shocks as wide as some ``length`` in m; ``shared`` as in
-    :class:`ElasticSolid`."""
+    ``mie_gruneisen`` its pressure is by that law, shocks as wide as some ``length`` in m; ``shared`` and
+    ``finer`` as in :class:`ElasticSolid`."""
     lame, shear = moduli(young, poisson)
     bulk = lame + 2.0 * shear / 3.0
     compression: Any = EvenBulk(bulk)
@@ -102,7 +105,8 @@ def solid_of(
         yielding = LinearHardening(yield_stress, hardening)
     own = Metal(compression, shear, yielding) if yielding else LAWS[law](lame, shear)
     most = math.inf if critical_stretch is None else critical_stretch
-    return ElasticSolid(name, own, density, speed, damping, hourglass * young, most, flaws or 0.0, shared)
+    stiffness = hourglass * young
+    return ElasticSolid(name, own, density, speed, damping, stiffness, most, flaws or 0.0, shared, finer)
 
 
 def mie_gruneisen_of(

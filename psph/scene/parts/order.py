@@ -99,6 +99,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     for number, ((name, solid), made) in enumerate(zip(referred_in(case).items(), solids_in(case))):
         more: dict[str, Any] = {"source": continued(solid)} if flowing else {}
         more |= {"solid": FIRST_BODY + number, "bonded": number, "made": made, "loaded": bool(flowing)}
+        more |= {"finer": made.finer}
         add(ElasticPart, name, f"solids.{name}", solid, Immersed() if flowing else Elastic(), **more)
     for name, key, clamp in clamps_in(case):
         whole = found[[*flowing, *referred].index(name)]
@@ -113,6 +114,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
             source=whole.source,
             solid=whole.solid or WALL,
             bonded=whole.bonded,
+            finer=whole.finer,
             loaded=whole.bonded is not None and bool(flowing),
         )
     for name, wall in case.walls.items():

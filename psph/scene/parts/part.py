@@ -43,7 +43,8 @@ class Part:
     ``number`` is its place among the parts, ``whole`` that of the part of which it is a clamp, else its own;
     ``source`` that of the part whose density and state at the start it has.  ``solid`` is 0 for what flows,
     1 for a wall, and the number of an elastic solid or a rigid body from 2 on; ``bonded`` the number of the
-    total Lagrangian solid that it is of, or None; ``loaded`` whether the fluid's push on it is asked for.
+    total Lagrangian solid that it is of, or None; ``loaded`` whether the fluid's push on it is asked for;
+    ``finer`` is the spacing of the lattice over that of its particles.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Part:
     solid: int = WALL
     bonded: int | None = None
     loaded: bool = False
+    finer: int = 1
 
     flows: ClassVar[bool] = False
     """Whether it moves freely and finds its neighbours in space."""

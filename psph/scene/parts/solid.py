@@ -84,7 +84,7 @@ class ClampPart(HookeanPart):
 
 def _met(part: HookeanPart, known: Known) -> dict[str, Any]:
     """The P-wave modulus by which a contact with a solid is stiff, and the true mass of its particles."""
-    volume = known.spacing ** len(known.gravity)
+    volume = (known.spacing / part.finer) ** len(known.gravity)
     return {"wave_modulus": known.wave_moduli[part.bonded], "own_mass": part.table.density * volume}
 
 
@@ -110,7 +110,8 @@ def solids_in(case: Case) -> tuple[ElasticSolid, ...]:
             damping=0.0,
             johnson_cook=table.johnson_cook and dict(table.johnson_cook),
             mie_gruneisen=table.mie_gruneisen and dict(table.mie_gruneisen),
-            length=SMOOTHING * case.space.spacing,
+            length=SMOOTHING * case.space.spacing / table.finer(case.space.spacing),
+            finer=table.finer(case.space.spacing),
         )
         for name, table in referred_in(case).items()
     )
