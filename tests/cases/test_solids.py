@@ -237,6 +237,15 @@ def test_a_gate_of_rubber_opens_as_far_as_in_the_experiment(opened):
 
 
 @LONG
+def test_a_gate_of_rubber_begins_to_open_as_potential_flow_and_a_beam_do(opened):
+    """18.7 mm after 43.6 ms: three modes of a clamped beam of E/(1 − ν²) before water that fills a box, without
+    gravity at its surface, and hardly moves; by finite differences of 1 mm.  In the experiment 12.9 mm."""
+    way = 1e3 * np.interp(0.0436, opened["time"], opened[TIP.format("x")])
+    tell(f"gate: {way:.1f} mm after 43.6 ms")
+    assert way == pytest.approx(18.74, rel=0.05)
+
+
+@LONG
 @pytest.mark.xfail(reason="it is let go at once, and E 7.8 MPa is too stiff: docs/solids.md", strict=True)
 @pytest.mark.parametrize("axis", "xy")
 def test_a_gate_of_rubber_follows_the_experiment(axis, opened):

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from drafts import draft, refusal
 from gauging import readings, start, started
-from long import LONG
 from simulation.test_immersion import STIRRED, momentum
 
 from psph.physics.fluid.correction import CorrectionBesideWalls, GradientCorrection
@@ -80,7 +79,7 @@ def test_in_finer_walls_corrected_gradients_know_how_many_particles_a_cell_has(t
     assert pressed(case, 2)[0] > 1.05
 
 
-@pytest.mark.parametrize("parts", (2, pytest.param(3, marks=LONG)))
+@pytest.mark.parametrize("parts", (2, 3))
 def test_fluids_and_a_finer_solid_keep_the_momentum_of_both(parts, tmp_path):
     simulation = start(draft(tmp_path, STIRRED, f"solids.block.spacing={0.05 / parts}"))
     before, size = momentum(simulation)
@@ -145,7 +144,7 @@ def swung(folder, d, spacing, parts):
     return store.shown("velocity")[bar][order], store.shown("position")[bar][order]
 
 
-@pytest.mark.parametrize("d, parts", [(2, 2), (2, 3), pytest.param(3, 2, marks=LONG)])
+@pytest.mark.parametrize("d, parts", [(2, 2), (2, 3), (3, 2)])
 def test_a_finer_solid_moves_as_one_in_a_scene_of_its_spacing(d, parts, tmp_path):
     """Out of reach of the water, under its weight, a load and inner forces: in 3D with its shares."""
     (tmp_path / "alone").mkdir()
