@@ -162,6 +162,18 @@ def test_it_is_held_by_every_kind_of_wall_alike(tmp_path):
     assert all((one == places[0]).all() for one in places)
 
 
+def test_it_makes_room_for_a_body(tmp_path):
+    hole = "{ disc = { center = [0.4, 0.3], radius = 0.1 } }"
+    box = "shape.box = { lower = [0.0, 0.0], upper = [0.8, 0.4] }"
+    within = "shape.difference.from.box = { lower = [0.0, 0.0], upper = [0.8, 0.4] }"
+    text = TANK.replace(box, f"{within}\nshape.difference.minus = [{hole}]")
+    text = text[: text.index("[fluids.oil]")] + text[text.index("[walls.tank]") :]
+    scene, beside = found(tmp_path, text + f"[bodies.disc]\nshape = {hole}\ndensity = 500.0\n")
+    water, disc = (beside.position[beside.material == k] for k in (0, 2))
+    assert scene.layout.holds(0, water).all()
+    assert np.linalg.norm(water[:, None] - disc[None], axis=2).min() > 0.8 * 0.05
+
+
 def test_a_run_that_goes_on_does_not_relax_again(tmp_path, monkeypatch):
     case = draft(tmp_path, PERIODIC, RELAXED)
     through = steps(case, MPI.COMM_SELF, 4)
@@ -188,6 +200,15 @@ def test_a_run_that_goes_on_does_not_relax_again(tmp_path, monkeypatch):
         "a kick": (
             WATER + "start = 'relaxed'\n[[perturbations]]\nposition = [0.1, 0.1]\nvelocity = [1.0, 0.0]",
             "perturbations name sites of the lattice",
+        ),
+        "soils": (
+            WATER.replace("fluids.water", "soils.sand")
+            + "density = 2e3\nyoung = 1e6\npoisson = 0.3\nfriction_angle = 30.0\nstart = 'relaxed'",
+            "soils.sand.start: unknown key",
+        ),
+        "solids": (
+            WATER.replace("fluids.water", "solids.bar") + "young = 1e6\npoisson = 0.3\nstart = 'relaxed'",
+            "solids.bar.start: unknown key",
         ),
         "another word": (WATER + "start = 'glass'", "fluids.water.start: "),
     }.values(),
