@@ -610,7 +610,7 @@ def test_in_a_wall_the_correction_is_that_of_a_whole_lattice(dim):
     """Whatever is missing behind it; in a fluid it is that of the neighbours."""
     scene = SimpleNamespace(
         physics=SimpleNamespace(pressure_gradient="symmetric", tension_floor=None),
-        species=[SimpleNamespace(is_fluid=True), SimpleNamespace(is_fluid=False)],
+        species=[SimpleNamespace(is_fluid=one, cell_count=1) for one in (True, False)],
         kernel=kernel("wendland-c2", H, dim),
         spacing=H / 1.3,
         dimensions=dim,
