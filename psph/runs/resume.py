@@ -14,6 +14,7 @@ import numpy as np
 
 from psph.case import CaseError, load
 from psph.errors import LONGEST_QUOTE, shortened, typed
+from psph.fields import OF_MATERIAL
 from psph.output import checkpoint
 from psph.output.checkpoint import COPY, CheckpointError, Saved, checkpoint_path, checkpoints
 from psph.particles.store import Store
@@ -156,5 +157,7 @@ def listed_particles(scene, plan: Plan, saved: Saved) -> Store:
     ids, groups, listed = saved.share("id", "group", "listed_position")
     block = np.zeros((len(store.data), len(ids)))
     block[list(store.rows["position"])] = listed.T
+    for name in (field.name for field in OF_MATERIAL if field.name in store.rows):
+        block[store.rows[name].start] = plan.materials.values(name)[groups]  # lists ask who is a fluid
     store.append(ids, groups, block)
     return store
