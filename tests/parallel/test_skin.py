@@ -195,6 +195,25 @@ def test_images_are_listed_while_particles_are_before_the_mirror(plane, seed):
     assert missed[()] > 0
 
 
+@pytest.mark.parametrize("dim", (1, 2, 3))
+def test_images_in_corners_are_listed_too(dim):
+    """Two on the diagonal of a corner, a cutoff apart, cross all its planes at once; the image in all of them
+    comes nearer by 2 √dim times as far as they are beyond."""
+    domain = domain_of(2, dim)
+    store, planes = domain.store, [Plane(axis, BELOW, 0.0) for axis in range(dim)]
+    rows, inner = list(store.rows["position"]), store.inner
+    store.data[rows, inner] = np.array([0.0, 1.001 * CUTOFF / dim**0.5])
+    store.data[list(store.rows["predicted_velocity"]), inner] = -1.0
+    domain.rebuild()
+    assert not domain.lists.lengths[:2].max() > 1  # nobody but themselves
+    skin, support = Skin(domain, WIDE, planes), CUTOFF - WIDE
+    while skin.holds(1e-4, dim**0.5, 0.0):
+        store.data[rows, inner] -= 1e-4
+        x = np.array(store["position"])[:, inner]
+        assert np.linalg.norm(x[:, 0] + x[:, 1]) >= support
+    assert np.linalg.norm(x[:, 0] + x[:, 1]) < support + 0.1 * WIDE  # they hold as long as they can
+
+
 def test_a_broken_number_ends_them():
     domain = domain_of(100, 2)
     skin = Skin(domain, WIDE)
