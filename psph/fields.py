@@ -221,6 +221,7 @@ def _fixed(name: str, unit: str, meaning: str, image: Any = Same) -> Field:
 OF_MATERIAL = (
     _fixed("mass", "kg", "mass"),
     _fixed("rest_density", "kg/m3", "density at zero pressure"),
+    _fixed("sound_speed", "m/s", "numerical speed of sound"),
     _fixed("viscosity", "m2/s", "kinematic viscosity"),
     _fixed("cell_count", "1", "particles that fill a cell of the lattice of the start"),
     _fixed("is_fluid", "1", "1 in a fluid, else 0"),
@@ -252,7 +253,6 @@ APART = _fixed(
 )
 
 OF_SCENE = (
-    _fixed("sound_speed", "m/s", "numerical speed of sound"),
     _fixed("smoothing_length", "m", "smoothing length h"),
     _fixed("largest_speed", "m/s", "largest speed of any fluid particle, a step old; for displacements"),
 )

@@ -53,6 +53,13 @@ class Fluid(FreeMatter):
         "lattice",
     )
     equation_of_state: Law = LAW
+    sound_speed: float | None = key(
+        "numerical speed of sound of this fluid: a light one that may be trapped needs more than the others",
+        None,
+        unit="m/s",
+        otherwise="physics.sound_speed",
+        gt=0,
+    )
     pressure: Annotated[Literal[HYDROSTATIC, EXACT] | float, WrapValidator(_pressure)] = key(
         'pressure at the start: a number, "hydrostatic" (needs gravity) or "exact" (needs [exact])',
         0.0,

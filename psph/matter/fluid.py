@@ -55,7 +55,7 @@ class Fluids(Kind):
     def limits(self, plan, speed: float, acceleration: float) -> Iterator[tuple[float, str]]:
         """That of sound, and that of the largest acceleration."""
         h = plan.smoothing_length
-        yield plan.cfl * h / (plan.constants["sound_speed"] + speed), "sound (CFL)"
+        yield plan.cfl * h / (plan.extremes.sound_speed + speed), "sound (CFL)"
         if acceleration > 0.0:
             yield FORCE_LIMIT * (h / acceleration) ** 0.5, "force"
 

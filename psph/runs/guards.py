@@ -173,7 +173,8 @@ class Guards:
 
     def _energy(self) -> float:
         """Energy of motion, height, compression and deformation less what walls and frames have given, J."""
-        sim, c = self.simulation, self.scene.sound_speed
+        sim = self.simulation
+        c = sim.store.shown("sound_speed")
         materials, group = sim.plan.materials, sim.store.shown("group")
         laws, law_of, slack = materials.laws, materials.law_of[group], self._slack[group]
 

@@ -28,7 +28,8 @@ class Species(NamedTuple):
     ``wave_speed`` in m/s is that of pressure waves in matter whose deviatoric stress evolves, else the
     numerical one; ``own_mass`` in kg that of a particle of an elastic solid, which shows a fluid another one;
     ``stress_diffusion`` and ``rest_coefficient`` K₀ are those of a soil, 0 and 1 else; ``cell_count`` is the
-    number of particles that fill a cell of the lattice, more than 1 in a solid of a finer spacing.
+    number of particles that fill a cell of the lattice, more than 1 in a solid of a finer spacing;
+    ``sound_speed`` in m/s is the numerical one.
     """
 
     name: str
@@ -52,6 +53,7 @@ class Species(NamedTuple):
     rest_coefficient: float = 1.0
     own_mass: float = 0.0
     cell_count: int = 1
+    sound_speed: float = 0.0
 
     @property
     def inertia(self) -> float:

@@ -144,7 +144,7 @@ class Starts:
         return Start(
             law=part.law(self.layout.case),
             rest_density=part.table.density,
-            sound_speed=self.speeds.sound_speed,
+            sound_speed=part.own_sound_speed or self.speeds.sound_speed,
             pressure=0.0 if isinstance(pressure, str) else pressure,
             exact=(lambda x: self.layout.exact.pressure(x, 0.0, self.setting)) if pressure == EXACT else None,
             layer=self.layers.get(number),

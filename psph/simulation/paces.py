@@ -30,7 +30,7 @@ def steps_held(scene, effects: Iterable, extremes, kinds, rate_passes: int = 1) 
     if asked <= 1 or not all(kind.bears_held for kind in kinds):
         return 1
     limited = [one for one in effects if hasattr(one, "longest_step")]
-    sound = rate_passes * scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
+    sound = rate_passes * scene.case.time.cfl * scene.smoothing_length / extremes.sound_speed
     free = [one for one in limited if not is_held(one)]
     rest = [sound, *(room(one, rate_passes) * one.longest_step(extremes) for one in free)]
     longest = scene.case.time.step or WORTH * min(rest)

@@ -59,7 +59,7 @@ LOADED_READ = ("is_fluid",)
 ONLY_READ = (APPARENT.name, WHIRL.name)
 """What particles carry of their motion only where a formula reads it."""
 
-OF_SCENE = ("sound_speed", "smoothing_length", "kernel", "spacing", "dimensions")
+OF_SCENE = ("smoothing_length", "kernel", "spacing", "dimensions")
 
 Extremes = namedtuple("Extremes", (*OF_SCENE, *(f.name for f in OF_MATERIAL)))
 """What limits of the time step rest on."""
@@ -319,7 +319,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         if case.precision == "mixed"
         else Metres(tuple(scene.layout.periods)),
         smoothing_length=scene.smoothing_length,
-        constants=shared | {"sound_speed": scene.sound_speed, "smoothing_length": scene.smoothing_length},
+        constants=shared | {"smoothing_length": scene.smoothing_length},
         fields=fields,
         pulls=pulls,
         seen=seen,

@@ -65,7 +65,7 @@ class Simulation:
         self.engine = self.engine_type(scene, plan, store, comm, ledger)
         self.domain, self.neighbourhood = self.engine.domain, self.engine.neighbourhood
         self.population = Population(scene, plan, self.domain)
-        self.impacts = Impacts(plan.constants["sound_speed"] ** 2 / plan.smoothing_length)
+        self.impacts = Impacts(plan.extremes.sound_speed**2 / plan.smoothing_length)
         self.stages = tuple(stages_of(plan))
         self.time, self.then, self.dt, self.steps = 0.0, 0.0, 0.0, 0
         self.listed = False
@@ -164,7 +164,7 @@ class Simulation:
         """Raise BlowUp where no step can follow: the extremes are the same on every rank."""
         if not self.strain < np.inf:
             what = "a position, velocity or density is not finite"
-        elif self.fluid_speed > TOO_FAST * self.plan.constants["sound_speed"]:
+        elif self.fluid_speed > TOO_FAST * self.plan.extremes.sound_speed:
             what = f"a particle moves at {self.fluid_speed:.3g} m/s, over {TOO_FAST:g} speeds of sound"
         else:
             return

@@ -40,7 +40,7 @@ class ConservativeSmoothing(NamedTuple):
         """Coefficient of u_ij in the acceleration, 1/s."""
         v_i, v_j = i.specific_volume, j.specific_volume
         volume = 2.0 * j.mass * v_i * v_j / (v_i + v_j) * j.is_fluid
-        return -self.alpha * i.sound_speed / i.smoothing_length * volume * pair.w
+        return -self.alpha * min(i.sound_speed, j.sound_speed) / i.smoothing_length * volume * pair.w
 
     def longest_step(self, scene):
         """Δt ≤ h/(4 α c), s: see STABLE."""

@@ -34,14 +34,14 @@ class RiemannDissipation(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         closing = max(-pair.u_dot_x, 0.0) * pair.inverse_r
-        limited = min(self.eta * closing, i.sound_speed)
+        limited = min(self.eta * closing, min(i.sound_speed, j.sound_speed))
         mean = 0.5 * (i.specific_volume + j.specific_volume)  # ρ̄/(ρ_i ρ_j)
         return -mean * limited * closing * pair.m_dw_r
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
         v_i, v_j = i.specific_volume, j.specific_volume
-        jump = (i.pressure - j.pressure) / (i.sound_speed * (v_i + v_j))
+        jump = (i.pressure - j.pressure) / (min(i.sound_speed, j.sound_speed) * (v_i + v_j))
         met = where(i.is_fluid + j.is_fluid > 0.0, jump, 0.0)
         return 2.0 * v_j * v_j * met * pair.r * pair.m_dw_r
 

@@ -52,7 +52,7 @@ def amplification(tables, folder, step, steps=1) -> float:
     store, plan = simulation.store, simulation.plan
     dimensions, density = store.dimensions, float(store.owned_rows("density").mean())
     dx = tables["space"]["spacing"]
-    sound = plan.constants["sound_speed"]
+    sound = plan.extremes.sound_speed
     sizes = np.concatenate(
         [
             np.full(len(store.rows[name]), size_of(plan.fields[name].unit, dx, sound, density, dimensions))

@@ -14,7 +14,7 @@ from psph.vectors import nearest_image, subtract
 
 H = 0.013
 OPEN = (None, None, None)
-ONE_FOR_ALL = ("sound_speed", "smoothing_length", "largest_speed")
+ONE_FOR_ALL = ("smoothing_length", "largest_speed")
 """Entries of a view that all particles of a scene share."""
 
 
@@ -39,7 +39,7 @@ def view(n=2, dim=2, seed=3):
         wet=np.resize((1.0, 0.0, 0.0), n),
         stress_point=np.resize((1.0, 0.0, 0.0), n),
         slip=tuple(rng.normal(size=n) for _ in range(dim)),
-        sound_speed=50.0,
+        sound_speed=np.resize((50.0, 47.0, 62.0), n),
         smoothing_length=H,
         largest_speed=2.0,
         inside=np.resize((1.0, 0.0, 1.0), n),

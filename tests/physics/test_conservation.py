@@ -22,14 +22,23 @@ from psph.fields import filled
 from psph.physics.damping.acoustic import CorrectedDamper
 from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.apparent import ApparentFriction, CentralApparentFriction, FluidAlone
+from psph.physics.fluid.correction import VolumeCorrection
 from psph.physics.fluid.friction import Apparent, CorrectedRub, Rub
+from psph.physics.fluid.parting import Parting
 from psph.physics.fluid.rheology import Granular, HerschelBulkley, Newtonian
+from psph.physics.fluid.several import (
+    CorrectedVolumeBackground,
+    VolumeBackground,
+    VolumeContinuity,
+    VolumePressure,
+)
 from psph.physics.fluid.viscosity import (
     CentralNewtonianFriction,
     ImpactDamping,
     NewtonianFriction,
     PairDamping,
 )
+from psph.physics.fluid.weight import Steady
 from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
@@ -44,6 +53,10 @@ LAWS = (
 
 DRIFT = 1e-13
 """Largest change of a momentum in a box, relative to that of one of its fluids."""
+
+
+IN_VOLUMES = (VolumePressure, VolumeCorrection, VolumeBackground, CorrectedVolumeBackground)
+"""What several fluids feel in place of the forms of one."""
 
 
 def claiming(what):
@@ -62,6 +75,10 @@ def in_a_scene(effect, dim):
         "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
         "CentralApparentFriction": lambda: CentralApparentFriction(LAWS, 1.0, FluidAlone()),
         "PositionShift": lambda: LatticeShift(0.1, -1e-4, 1e-6),
+        "VolumePressure": lambda: VolumePressure(Parting(), Steady((None,) * (dim - 1) + (-9.8,))),
+        "VolumeCorrection": lambda: VolumeCorrection(0.5, 1e-6, Parting()),
+        "CorrectedVolumeBackground": lambda: CorrectedVolumeBackground(3000.0),
+        "VolumeBackground": lambda: VolumeBackground(3000.0),
         "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4, 0.2),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
     }
@@ -111,7 +128,7 @@ def rates(effect, p):
 
 
 @pytest.mark.parametrize("dim", (1, 2, 3))
-@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper])
+@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper, *IN_VOLUMES])
 def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
     forces, moves = rates(in_a_scene(effect, dim), crowd(dim))
     assert np.abs(forces).max() + np.abs(moves).max() > 0.0
@@ -119,7 +136,9 @@ def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
 
 
 @pytest.mark.parametrize("dim", (2, 3))
-@pytest.mark.parametrize("effect", [*claiming(ANGULAR), CentralApparentFriction])
+@pytest.mark.parametrize(
+    "effect", [*claiming(ANGULAR), CentralApparentFriction, VolumePressure, VolumeBackground]
+)
 def test_torques_between_different_particles_sum_up_to_nothing(effect, dim):
     p = crowd(dim)
     forces, moves = rates(in_a_scene(effect, dim), p)
@@ -224,3 +243,28 @@ def test_two_fluids_in_a_box_keep_their_momentum(tmp_path):
         drifts[name] = np.abs(np.subtract(after, before)).max() / 240.0  # kg m/s of the water
     assert len(drifts) > 15
     assert {name: d for name, d in drifts.items() if not d < DRIFT} == {}
+
+
+@pytest.mark.parametrize("dim", (1, 2, 3))
+@pytest.mark.parametrize("beside_a_wall", (False, True))
+def test_pressure_of_several_fluids_does_the_work_that_compression_takes(dim, beside_a_wall):
+    """Σ m a·u + Σ m p/ρ² dρ/dt = 0 over three fluids of 1000 : 100 : 1, and with a wall that continues one."""
+    p = crowd(dim)._replace(rest_density=np.array([1000.0, 100.0, 1.0]))
+    p = p._replace(specific_volume=1.0 / (p.rest_density * np.array([1.01, 0.98, 1.03])))
+    p = p._replace(mass=0.97e-4 / p.specific_volume, pressure=np.array([700.0, 900.0, 400.0]))
+    if beside_a_wall:
+        p = p._replace(is_fluid=np.array([1.0, 1.0, 0.0]), rest_density=np.array([1000.0, 100.0, 1000.0]))
+    for force, compressed in (
+        (VolumePressure(Parting(), Steady((None,) * dim)), VolumeContinuity()),
+        (VolumeCorrection(0.5, 1e-6, Parting()), VolumeCorrection(0.5, 1e-6, Parting())),
+    ):
+        work = taken = 0.0
+        for a in range(3):
+            for b in {0, 1, 2} - {a}:
+                i, j, pair = pair_of(p, a, b)
+                pushed = (radial((force,), i, j, pair) or 0.0) * np.array(pair.x_ij)
+                pushed = pushed + np.array(push((force,), i, j, pair) or (0.0,) * dim)
+                work += p.mass[a] * pushed @ np.array(i.velocity)
+                rate = compressed.density_rate(i, j, pair)
+                taken += p.mass[a] * p.pressure[a] * p.specific_volume[a] ** 2 * rate
+        assert abs(taken) > 0.0 and work == pytest.approx(-taken, rel=1e-12)

@@ -51,27 +51,44 @@ def test_what_does_not_rest_on_it_adds_nothing(tmp_path, keys):
     assert p == pytest.approx(9.8 * 1000.0 * (0.3 - y), rel=1e-9)
 
 
-def test_a_large_ratio_of_densities_is_warned_of(tmp_path):
-    lines = check(Scene(draft(tmp_path, LAYERS, "fluids.oil.density=100.0")))
+DIFFERENCES = ("physics.pressure_gradient=difference", "physics.fourth_order_diffusion=off")
+"""Sums of differences of the pressure know of one fluid."""
+IN_MASSES = (*DIFFERENCES, *(f"physics.{key}=off" for key in ("reconstructed_damping", "local_potential")))
+
+
+def test_a_large_ratio_of_densities_is_warned_of_in_sums_of_masses(tmp_path):
+    lines = check(Scene(draft(tmp_path, LAYERS, "fluids.oil.density=100.0", *IN_MASSES)))
     assert any("fluids.oil.density: 100 beside 1000 kg/m3 of fluids.water, a ratio of 10" in x for x in lines)
-    assert not any("a ratio of" in x for x in check(Scene(draft(tmp_path, LAYERS))))
+    for keys in ((), IN_MASSES, ("fluids.oil.density=100.0",)):
+        assert not any("a ratio of" in x for x in check(Scene(draft(tmp_path, LAYERS, *keys))))
+
+
+def test_what_can_be_trapped_is_told_the_speed_of_sound_that_it_needs(tmp_path):
+    (line,) = [x for x in check(Scene(draft(tmp_path, LAYERS, "fluids.oil.density=1.0"))) if "trap" in x]
+    _, needed = line.split("give ")
+    fast = f"fluids.oil.sound_speed={needed.split()[0]}"
+    assert fast == "fluids.oil.sound_speed=140"
+    for keys in ((), ("fluids.oil.density=1.0", "fluids.oil.sound_speed=141.0")):
+        assert not any("trap" in x for x in check(Scene(draft(tmp_path, LAYERS, *keys))))
 
 
 def test_a_wall_that_touches_two_fluids_is_warned_of(tmp_path):
     side = "walls.side={shape={box={lower=[0.5,-0.06],upper=[0.56,0.6]}}}"
-    lines = check(Scene(draft(tmp_path, LAYERS, side)))
+    assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS, side))))
+    lines = check(Scene(draft(tmp_path, LAYERS, side, *IN_MASSES)))
     assert [x.partition(": ")[2] for x in lines if "continues" in x] == [
         'walls.side.continues: "water", but it touches fluids.oil of 800 kg/m3 too, and currents '
         'arise along it; make the part there a wall of its own with continues = "oil"'
     ]
     assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS))))
-    alike = check(Scene(draft(tmp_path, LAYERS, side, "fluids.oil.density=1000.0")))
+    alike = check(Scene(draft(tmp_path, LAYERS, side, "fluids.oil.density=1000.0", *IN_MASSES)))
     assert not any("continues" in x for x in alike)
 
 
-def test_a_body_between_two_fluids_is_told_to_continue_one(tmp_path):
-    body = "bodies.box={density=900.0,shape={box={lower=[0.2,0.2],upper=[0.3,0.4]}}}"
-    (line,) = [x for x in check(Scene(draft(tmp_path, LAYERS, body))) if "continues" in x]
+def test_a_solid_between_two_fluids_is_told_to_continue_one(tmp_path):
+    """Beside elastic solids sums are in masses."""
+    solid = "solids.box={density=900.0,young=1e6,poisson=0.3,shape={box={lower=[0.5,0.2],upper=[0.6,0.4]}}}"
+    (line,) = [x for x in check(Scene(draft(tmp_path, LAYERS, solid))) if "continues" in x]
     assert line.endswith("currents arise along it; let it continue the fluid that it touches most")
 
 
@@ -89,4 +106,4 @@ def test_walls_that_meet_where_the_fluids_do_are_not_warned_of(tmp_path):
         "walls.low={shape={box={lower=[0.5,-0.06],upper=[0.56,0.3]}}}",
         'walls.high={continues="oil",shape={box={lower=[0.5,0.3],upper=[0.56,0.6]}}}',
     )
-    assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS, *walls))))
+    assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS, *walls, *IN_MASSES))))

@@ -8,7 +8,7 @@ from psph.fields import VECTOR, StillSlope
 from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.moments import fastest_smoothing
-from psph.physics.damping.matter import OneMatter, SeveralMatters, alike, matter_of, speed
+from psph.physics.damping.matter import Matter, OneMatter, alike, matter_of, speed
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.viscosity import inverse_square
@@ -41,7 +41,7 @@ class DensityDiffusion(NamedTuple):
         held = any(scene.gravity) or not all(one.is_fluid for one in scene.species)
         held = held or scene.frame is not None
         pull, matter = gravitation_of(scene), matter_of(scene)
-        return TankDiffusion(self.delta, pull, matter) if held or isinstance(matter, SeveralMatters) else self
+        return self if isinstance(matter, OneMatter) and not held else TankDiffusion(self.delta, pull, matter)
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
@@ -68,7 +68,7 @@ class TankDiffusion(NamedTuple):
 
     delta: float
     gravity: Gravitation
-    matter: OneMatter | SeveralMatters = OneMatter()
+    matter: Matter = OneMatter()
 
     def density_rate(self, i, j, pair):
         """One neighbour's share of dρ_i/dt, kg/(m^d s)."""
@@ -121,7 +121,7 @@ class BesideSmoothDensity(NamedTuple):
 
     delta: float
     gravity: Gravitation
-    matter: OneMatter | SeveralMatters = OneMatter()
+    matter: Matter = OneMatter()
 
     writes = Declared(
         "density_gradient", "kg/m4", "gradient of the density over its rest density", VECTOR, image=StillSlope

@@ -5,6 +5,7 @@ from typing import NamedTuple
 from psph.engine.jit import call_by_type
 from psph.formula import where
 from psph.physics.facts import Facts
+from psph.physics.fluid.several import differ, several
 
 
 class OneMatter(NamedTuple):
@@ -36,8 +37,29 @@ class SeveralMatters(NamedTuple):
         return i.wave_speed
 
 
+class SeveralFluids(NamedTuple):
+    """Density spreads within each fluid, where they differ in rest density or in speed of sound.
+
+    Across an interface nothing says which density is noise: the pressure is continuous, and no more.
+    """
+
+    def alike(self, i, j):
+        """1 between particles of one rest density and one speed of sound, else 0."""
+        faster, slower = max(i.wave_speed, j.wave_speed), min(i.wave_speed, j.wave_speed)
+        return where(faster > slower, 0.0, 1.0 - differ(i, j))
+
+    def speed(self, i):
+        """The speed of sound of the particle's own fluid, m/s."""
+        return i.wave_speed
+
+
+Matter = OneMatter | SeveralMatters | SeveralFluids
+
+
 def matter_of(scene: Facts):
     """Between which particles of a scene density spreads."""
+    if several(scene):
+        return SeveralFluids()
     return SeveralMatters() if len({one.wave_speed for one in scene.species}) > 1 else OneMatter()
 
 

@@ -11,7 +11,7 @@ from psph.formula import helper, where
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
-from psph.physics.fluid.viscosity import braking_step, inverse_square, lighter
+from psph.physics.fluid.viscosity import braking_step, inverse_square, lighter, slower
 from psph.vectors import add, dot, times
 
 NEAR = 0.7
@@ -120,10 +120,10 @@ class BesideLinearFlow(NamedTuple):
         g = 0.5 * dot(pair.x_ij, times(add(i.strain, j.strain), pair.x_ij))
         g = min(max(g, min(s, 0.0)), max(s, 0.0))
         rest = s - where(pair.r2 > self.near2, g, 0.0)
-        approach = min(s + (AT_WALLS * i.sound_speed) * pair.r, 0.0)
+        approach = min(s + (AT_WALLS * slower(i, j)) * pair.r, 0.0)
         felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, rest, approach)
         alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
-        strength = alpha * h * i.sound_speed * (v_i * lighter(i, j))
+        strength = alpha * h * slower(i, j) * (v_i * lighter(i, j))
         return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r
 
     def longest_step(self, scene):
@@ -182,8 +182,8 @@ class AtWalls(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        approach = min(pair.u_dot_x + (AT_WALLS * i.sound_speed) * pair.r, 0.0)
+        approach = min(pair.u_dot_x + (AT_WALLS * slower(i, j)) * pair.r, 0.0)
         felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, 0.0, approach)
         alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
-        strength = alpha * h * i.sound_speed * (v_i * lighter(i, j))
+        strength = alpha * h * slower(i, j) * (v_i * lighter(i, j))
         return strength * v_j * (felt * inverse_square(pair, h)) * pair.m_dw_r

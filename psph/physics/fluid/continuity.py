@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from psph.formula import where
 from psph.physics.facts import Facts
+from psph.physics.fluid.several import VolumeContinuity, several
 
 
 class Continuity(NamedTuple):
@@ -13,7 +14,9 @@ class Continuity(NamedTuple):
     """
 
     def in_scene(self, scene: Facts):
-        """Where elastic solids stand in a fluid, the form that knows them."""
+        """Where elastic solids stand in a fluid, and for several fluids, the form that knows them."""
+        if several(scene):
+            return VolumeContinuity()
         bonded = any(one.bonded is not None for one in scene.species)
         return ContinuityBesideBonded() if bonded and any(one.is_fluid for one in scene.species) else self
 

@@ -9,7 +9,8 @@ from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.moments import first_moment
 from psph.physics.facts import Facts
-from psph.physics.fluid.parting import Hold, Holding, felt, hold_of
+from psph.physics.fluid.parting import Hold, Holding, borne, felt, hold_of
+from psph.physics.fluid.several import in_volumes, several, shares
 from psph.vectors import (
     add,
     adjugate,
@@ -70,12 +71,14 @@ class GradientCorrection(NamedTuple):
         """The form that belongs to the scene's pressure gradient, and to its walls."""
         if scene.physics.pressure_gradient == "difference":
             return DifferenceCorrection(self.least)
+        full = -first_moment(scene.kernel, scene.spacing, scene.dimensions) / scene.dimensions
+        volume, walls = scene.spacing**scene.dimensions / full, hold_of(scene)
+        if several(scene):
+            return VolumeCorrection(self.least, volume, walls)
         if all(one.is_fluid for one in scene.species):
             return self
-        full = -first_moment(scene.kernel, scene.spacing, scene.dimensions) / scene.dimensions
         parted = any(one.cell_count > 1 for one in scene.species)
-        form = CorrectionBesideParted if parted else CorrectionBesideWalls
-        return form(self.least, scene.spacing**scene.dimensions / full, hold_of(scene))
+        return (CorrectionBesideParted if parted else CorrectionBesideWalls)(self.least, volume, walls)
 
     def start(self, i):
         """No neighbour yet."""
@@ -167,6 +170,43 @@ class CorrectionBesideParted(NamedTuple):
 
     density_rate = GradientCorrection.density_rate
     push = CorrectionBesideWalls.push
+
+
+class VolumeCorrection(NamedTuple):
+    """Gradients are corrected to be exact for linear fields, between fluids of several densities.
+
+    As :class:`CorrectionBesideWalls`, L from all neighbours alike: dρ_i/dt takes
+    ρ_i Σ V_j θ_ij u_ij·(L_i − 1)∇W_ij more, the pressure gradient
+    1/ρ_i Σ V_j [θ_ij p_i (L_i − 1) + θ_ji p_j (L_j − 1)] ∇W_ij (psph.physics.fluid.several).
+    """
+
+    conserves = ("momentum",)
+
+    least: float
+    volume: float
+    walls: Hold = Holding()
+
+    writes = CORRECTION
+    lagged = True
+    slow = True
+
+    start = GradientCorrection.start
+    gather = GradientCorrection.gather
+    finish_value = CorrectionBesideWalls.finish_value
+
+    def density_rate(self, i, j, pair):
+        """What L_i − 1 adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
+        weight = pair.m_dw_r * (shares(i, j)[0] * (j.specific_volume / i.specific_volume))
+        return weight * dot(pair.u_ij, times(i.gradient_correction, pair.x_ij))
+
+    def push(self, i, j, pair):
+        """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
+        theta_ij, theta_ji = shares(i, j)
+        own, other = borne(self.walls, i, j)
+        both = add(
+            scale(i.gradient_correction, theta_ij * own), scale(j.gradient_correction, theta_ji * other)
+        )
+        return scale(times(both, pair.x_ij), -in_volumes(i, j, pair))
 
 
 class DifferenceCorrection(NamedTuple):

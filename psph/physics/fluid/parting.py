@@ -7,21 +7,15 @@ from psph.formula import helper, where
 from psph.physics.facts import Facts
 
 WHATEVER = 1e30
-"""A tension that nothing reaches, Pa m⁶/kg²."""
-
-
-@helper
-def over_square(one):
-    """p/ρ² of a particle."""
-    return one.pressure * one.specific_volume * one.specific_volume
+"""A tension that nothing reaches, Pa."""
 
 
 class Holding(NamedTuple):
     """Walls pull the fluid as the fluid pulls itself: it cannot leave them."""
 
-    def felt(self, i, j):
-        """p/ρ² of both as the pair feels them."""
-        return over_square(i), over_square(j)
+    def borne(self, i, j):
+        """p of both as the pair feels them."""
+        return i.pressure, j.pressure
 
 
 class Parting(NamedTuple):
@@ -31,11 +25,11 @@ class Parting(NamedTuple):
     that a jet leaves at a sharp edge; without air there, suction would bend the jet around it.
     """
 
-    def felt(self, i, j):
-        """p/ρ² of both as the pair feels them."""
-        own = over_square(i)
+    def borne(self, i, j):
+        """p of both as the pair feels them."""
         lowest = (-WHATEVER * i.is_fluid) * j.is_fluid
-        return max(own, 0.0) + (min(own, 0.0) * i.is_fluid) * j.is_fluid, max(over_square(j), lowest)
+        own = max(i.pressure, 0.0) + (min(i.pressure, 0.0) * i.is_fluid) * j.is_fluid
+        return own, max(j.pressure, lowest)
 
 
 class PartingBesideStrength(NamedTuple):
@@ -44,17 +38,27 @@ class PartingBesideStrength(NamedTuple):
     The tension of a soil is bounded by its cohesion (:class:`psph.physics.stress.strength.Strength`).
     """
 
-    def felt(self, i, j):
-        """p/ρ² of both as the pair feels them."""
-        own = over_square(i)
+    def borne(self, i, j):
+        """p of both as the pair feels them."""
         clings = where(i.strength + j.strength > 0.0, 1.0, i.is_fluid * j.is_fluid)
-        return max(own, 0.0) + min(own, 0.0) * clings, max(over_square(j), -WHATEVER * clings)
+        own = max(i.pressure, 0.0) + min(i.pressure, 0.0) * clings
+        return own, max(j.pressure, -WHATEVER * clings)
 
 
 Hold = Holding | Parting | PartingBesideStrength
 
-felt = call_by_type("felt")
-"""(hold, i, j) → p_i/ρ_i² and p_j/ρ_j² as the pair feels them, m⁵/(kg s²) in 3D (:class:`Parting`)."""
+borne = call_by_type("borne")
+"""(hold, i, j) → p_i and p_j as the pair feels them, Pa (:class:`Parting`)."""
+
+
+@helper
+def felt(hold, i, j):
+    """p_i/ρ_i² and p_j/ρ_j² as the pair feels them, m⁵/(kg s²) in 3D."""
+    own, other = borne(hold, i, j)
+    return (
+        own * i.specific_volume * i.specific_volume,
+        other * j.specific_volume * j.specific_volume,
+    )
 
 
 def hold_of(scene: Facts) -> Hold:

@@ -10,6 +10,8 @@ from psph.fields import Same
 from psph.formula import where
 from psph.physics.facts import Facts
 from psph.physics.fluid.parting import Hold, Holding, felt, hold_of
+from psph.physics.fluid.several import CorrectedVolumeBackground, VolumeBackground, VolumePressure, several
+from psph.physics.fluid.weight import gravitation_of
 from psph.smoothing import KERNELS, weight
 from psph.theory.stability import parts
 from psph.vectors import add, scale, times, zero_like
@@ -42,8 +44,9 @@ class SymmetricPressure(NamedTuple):
     walls: Hold = Holding()
 
     def in_scene(self, scene: Facts):
-        """The form that knows whether walls hold the fluid."""
-        return SymmetricPressure(hold_of(scene))
+        """The form that knows whether walls hold the fluid, and whether there are several."""
+        walls = hold_of(scene)
+        return VolumePressure(walls, gravitation_of(scene)) if several(scene) else SymmetricPressure(walls)
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
@@ -205,6 +208,8 @@ class BackgroundPressure(NamedTuple):
         needed = self._needed(scene) if self.pressure == AUTO else self.pressure
         if needed is None:
             return None
+        if several(scene):
+            return CorrectedVolumeBackground(needed) if is_corrected(scene) else VolumeBackground(needed)
         return CorrectedBackground(needed) if is_corrected(scene) else BackgroundPressure(needed)
 
     def _needed(self, scene: Facts) -> float | None:

@@ -10,6 +10,7 @@ from psph.fields import Same
 from psph.formula import helper, where
 from psph.moments import moments_below_a_surface
 from psph.physics.facts import Facts
+from psph.physics.fluid.several import several
 from psph.physics.walls.conditions import BEARING, MIRROR
 
 SPARSE, NEARLY_FULL = 0.97, 0.99
@@ -32,8 +33,8 @@ class SummationDensity(NamedTuple):
     Zhang, Rezavand & Hu (2020), J. Comput. Phys. 404, 109135, take the sum in every step.  The slow
     form is psph's own: sound, in which f stays 1, does not feel it.  f is right on average: it is 0.999
     among particles that a flow has mixed; single ones differ by some thousandths, which costs vortices
-    accuracy.  So it is left out where no free surface lets the fluid sink, and before walls that bear no
-    pressure, whose rows are not full, and beside matter with an evolved stress.
+    accuracy.  So it is left out where no free surface, nor a lighter fluid, lets the fluid sink, and before
+    walls that bear no pressure, whose rows are not full, and beside matter with an evolved stress.
     """
 
     acts = (FLUIDS, *BEARING, MIRROR)
@@ -60,7 +61,9 @@ class SummationDensity(NamedTuple):
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
-        return "it needs a free surface, walls that bear pressure, and no matter with an evolved stress"
+        return (
+            "it needs a free surface or several fluids, bearing walls, and no matter with an evolved stress"
+        )
 
 
 class SummedOnLattice(NamedTuple):
@@ -116,7 +119,8 @@ def around_a_surface(rows: list[float]) -> tuple[float, float]:
 
 
 def _applies(scene: Facts) -> bool:
-    return scene.has_free_surface and all(one.bearing and not one.shear_modulus for one in scene.species)
+    sinks = scene.has_free_surface or several(scene)
+    return sinks and all(one.bearing and not one.shear_modulus for one in scene.species)
 
 
 @helper

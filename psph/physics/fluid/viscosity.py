@@ -52,6 +52,12 @@ def lighter(i, j):
     return min(i.rest_density, j.rest_density)
 
 
+@helper
+def slower(i, j):
+    """The smaller of the two speeds of sound, m/s, so that the pair feels one friction."""
+    return min(i.sound_speed, j.sound_speed)
+
+
 class LaminarViscosity(NamedTuple):
     """Newtonian friction of the fluids' own viscosities: the divergence of μ(∇u + ∇uᵀ).
 
@@ -230,7 +236,7 @@ class ArtificialViscosity(NamedTuple):
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
-        h, c = i.smoothing_length, i.sound_speed
+        h, c = i.smoothing_length, slower(i, j)
         v_i, v_j = i.specific_volume, j.specific_volume
         # μ = h (v_i + v_j) q and μ/ρ̄ = 2 h v_i v_j q: one division for both.
         q = min(pair.u_dot_x, 0.0) / ((pair.r2 + SINGULARITY * h * h) * (v_i + v_j))
@@ -273,7 +279,7 @@ class PairDamping(NamedTuple):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         # ρ̄ = ρ_i ρ_j/ρ₀
-        strength = self.alpha * h * i.sound_speed * (v_i * lighter(i, j))
+        strength = self.alpha * h * slower(i, j) * (v_i * lighter(i, j))
         return strength * v_j * (pair.u_dot_x * inverse_square(pair, h)) * pair.m_dw_r
 
     def numerical_viscosity(self, scene: Facts):
@@ -311,5 +317,5 @@ class ImpactDamping(NamedTuple):
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
         strength = self.beta * (v_i * lighter(i, j))
         approach = -h * pair.u_dot_x * inverse_square(pair, h)
-        excess = max(approach - ONSET * i.sound_speed, 0.0)
+        excess = max(approach - ONSET * max(i.sound_speed, j.sound_speed), 0.0)
         return -strength * v_j * (excess * excess) * pair.m_dw_r

@@ -9,6 +9,7 @@ from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.formula import where
 from psph.physics.facts import Facts
+from psph.physics.fluid.several import several
 from psph.smoothing import weight
 
 NOT_YET_SUMMED = 2.0
@@ -87,9 +88,11 @@ class TensionFloor(NamedTuple):
 
     def in_scene(self, scene: Facts):
         """None in a closed domain, where a fluid may be under tension; beside matter with a strength the form
-        that lets that open."""
+        that lets that open, beside a gas that which lets it expand."""
         if not scene.has_free_surface:
             return None
+        if several(scene):
+            return FloorOfLiquids(self.least, GAS * max(one.density for one in scene.species))
         return FloorBesideStrength(self.least) if scene.strengths else self
 
     def why_absent(self, scene: Facts):
@@ -109,6 +112,29 @@ class TensionFloor(NamedTuple):
     def linear(self, scene: Facts):
         """It does not act on a small disturbance."""
         return None
+
+
+GAS = 0.1
+"""Rest density over the largest of the scene below which a fluid expands as a gas does."""
+
+
+class FloorOfLiquids(NamedTuple):
+    """A lower bound of the density limits the tension of liquids, while a gas beside them expands.
+
+    The form of :class:`TensionFloor` in a scene with several fluids: those whose rest density is at least
+    ``lightest``, kg/m^d.
+    """
+
+    least: float
+    lightest: float
+
+    def limit_density(self, i, rho):
+        """ρ or its floor, kg/m^d."""
+        return where(i.rest_density < self.lightest, rho, max(rho, self.least * i.rest_density))
+
+    limit_wall_density = limit_density
+    bearing_density = TensionFloor.bearing_density
+    linear = TensionFloor.linear
 
 
 LOOSEST = 0.99

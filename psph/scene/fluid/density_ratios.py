@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from itertools import combinations
 
+from psph.physics.fluid.several import several
 from psph.scene.parts import Part
 from psph.scene.scene import Scene
 
@@ -14,9 +15,16 @@ ALIKE = 0.01
 """Densities that differ by less than this part are one for a wall."""
 
 
+COMPRESSED = 0.3
+"""Largest pressure over ρ₀c² that a trapped fluid bears: at five times that it blows up in a dam break."""
+
+
 def several_fluids(scene: Scene) -> Iterator[str]:
     """Warnings of a scene with fluids of different density, a line each."""
     fluids = [part for part in scene.layout.parts if part.flows]
+    if several(scene):
+        yield from _trapped(scene, fluids)
+        return
     for one, other in combinations(fluids, 2):
         own, beside = one.table.density, other.table.density
         ratio = max(own / beside, beside / own)
@@ -29,6 +37,21 @@ def several_fluids(scene: Scene) -> Iterator[str]:
             )
     if len(fluids) > 1:
         yield from _walls_of_another_fluid(scene, fluids)
+
+
+def _trapped(scene: Scene, fluids: list[Part]) -> Iterator[str]:
+    """What heavier fluids compress too far where they trap it: with ½ρ₀U², U the expected speed."""
+    heaviest = max(part.table.density for part in fluids)
+    for part, one in ((part, scene.species[part.number]) for part in fluids):
+        pressed = 0.5 * heaviest * scene.expected_speed**2
+        stiffness = one.density * one.sound_speed**2
+        if one.density < heaviest and pressed > COMPRESSED * stiffness:
+            needed = (pressed / (COMPRESSED * one.density)) ** 0.5
+            yield (
+                f"{part.key}.sound_speed: {one.sound_speed:.3g} m/s: heavier fluids press it with up to "
+                f"{pressed:.3g} Pa where they trap it, {pressed / stiffness:.2g} times its density times the "
+                f"square of that; give {needed:.3g} m/s or more if they can"
+            )
 
 
 def _walls_of_another_fluid(scene: Scene, fluids: list[Part]) -> Iterator[str]:

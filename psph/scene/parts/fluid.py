@@ -30,6 +30,11 @@ class FluidPart(Part):
         """As its table says."""
         return self.table.rheology.law if self.table.rheology else None
 
+    @property
+    def own_sound_speed(self) -> float | None:
+        """As its table says."""
+        return self.table.sound_speed
+
     def shown(self, known: Known) -> dict[str, Any]:
         """Its density and viscosity, or the law of that."""
         return super().shown(known) | {

@@ -119,6 +119,11 @@ class Part:
         """Of the fastest wave that its own moduli give it, m/s; 0 where its speed of sound is chosen."""
         return 0.0
 
+    @property
+    def own_sound_speed(self) -> float | None:
+        """The numerical speed of sound that the case gives it, m/s; None: that of all."""
+        return None
+
     def reach(self, whole: Reach, spacing: float, contact: bool) -> Reach | None:
         """How far its particles feel and see others, where that is not told by other parts.
 
@@ -166,7 +171,8 @@ class Part:
 
     def shown(self, known: Known) -> dict[str, Any]:
         """Of its species what others have too that continue it."""
-        return {"density": self.table.density, "viscosity": 0.0, "wave_speed": known.sound_speed}
+        sound = self.own_sound_speed or known.sound_speed
+        return {"density": self.table.density, "viscosity": 0.0, "wave_speed": sound, "sound_speed": sound}
 
     def own(self, known: Known) -> dict[str, Any]:
         """Of its species what is its own."""

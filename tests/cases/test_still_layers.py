@@ -1,0 +1,68 @@
+"""Still layers of two and three fluids, up to 1000 : 1, in a box of one wall that continues the heaviest."""
+
+import numpy as np
+import pytest
+from drafts import draft
+from gauging import start
+
+from psph.physics.damping import matter
+from psph.physics.fluid import continuity, correction, pressure, summation
+from psph.physics.surface import free
+from psph.simulation.step import BlowUp
+
+DX, HEIGHT = 0.05, 0.5
+LAYERS = f"""
+space = {{ dimensions = 2, spacing = {DX} }}
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+physics.sound_speed = 44.3
+[fluids.water]
+shape.box = {{ lower = [0.0, 0.0], upper = [0.5, 0.5] }}
+pressure = "hydrostatic"
+[fluids.light]
+shape.box = {{ lower = [0.0, 0.5], upper = [0.5, 1.0] }}
+pressure = "hydrostatic"
+[walls.tank]
+shape.difference.from.box = {{ lower = [-0.2, -0.2], upper = [0.7, 1.2] }}
+shape.difference.minus = [{{ box = {{ lower = [0.0, 0.0], upper = [0.5, 1.0] }} }}]
+continues = "water"
+"""
+THIRD = (
+    "fluids.light.shape.box.upper=[0.5, 0.75]",
+    "fluids.gas={shape={box={lower=[0.0,0.75],upper=[0.5,1.0]}},density=10.0,pressure='hydrostatic'}",
+)
+
+
+def settled(simulation, steps):
+    """After so many steps: the largest speed of the heaviest fluid, m/s, its pressure off a straight line over
+    ρgH, and how far its highest row has moved, in spacings."""
+    inner = simulation.store.inner
+    own = simulation.store.group[inner] == 0
+    y = np.array(simulation.store["position"])[1, inner][own].copy()
+    for _ in range(steps):
+        simulation.step()
+    simulation.settle_pressure()
+    inner = simulation.store.inner
+    own = simulation.store.group[inner] == 0
+    now = np.array(simulation.store["position"])[1, inner][own]
+    p = np.array(simulation.store["pressure"])[inner][own]
+    slope, level = np.polyfit(now, p, 1)
+    off = np.sqrt(np.mean((p - slope * now - level) ** 2)) / (9810.0 * HEIGHT)
+    slow = np.linalg.norm(np.array(simulation.store["velocity"])[:, inner][:, own], axis=0).max()
+    return slow, off, slope / -9810.0, (now.max() - y.max()) / DX
+
+
+@pytest.mark.parametrize("ratio, more", [(2.0, ()), (10.0, ()), (1000.0, ()), (10.0, THIRD)])
+def test_layers_rest(tmp_path, ratio, more):
+    """At the time step of one fluid: one speed of sound serves all."""
+    density = f"fluids.light.density={1000.0 / ratio}"
+    slow, off, slope, moved = settled(start(draft(tmp_path, LAYERS, density, *more)), 600)
+    assert slow < 2e-3 and off < 0.005 and slope == pytest.approx(1.0, abs=0.01) and abs(moved) < 0.1
+
+
+def test_sums_in_masses_do_not(tmp_path, monkeypatch):
+    """The control: the same layers with the forms that one fluid has."""
+    for module in (matter, continuity, correction, pressure, summation, free):
+        monkeypatch.setattr(module, "several", lambda scene: False)
+    with pytest.raises(BlowUp):
+        settled(start(draft(tmp_path, LAYERS, "fluids.light.density=100.0")), 20)
