@@ -79,7 +79,7 @@ def test_the_work_it_takes_is_that_of_compression(effect, continuity, dim):
     p = stored(effect, crowd(dim))
     power = float(np.sum(p.mass * np.sum(np.array(p.velocity).T * forces(effect, p), axis=1)))
     rate = rates(continuity, p) * p.is_fluid
-    expected = -float(np.sum(p.mass * ALPHA * H * C * rate**2 * p.specific_volume**2))
+    expected = -float(np.sum(p.mass * ALPHA * H * p.sound_speed * rate**2 * p.specific_volume**2))
     assert expected < 0.0
     assert power == pytest.approx(expected, rel=1e-10)
 

@@ -231,7 +231,7 @@ def test_artificial_viscosity(approaching):
         u = -u
     mu = H * (u @ x) / (r * r + 0.01 * H * H) if approaching else 0.0
     rho = (1 / p.specific_volume).mean()
-    big_pi = (-0.3 * 50.0 * mu + 0.6 * mu * mu) / rho
+    big_pi = (-0.3 * p.sound_speed.min() * mu + 0.6 * mu * mu) / rho
     a = ArtificialViscosity(0.3, 0.6).radial(*pair_of(p, 0, 1)) * x
     assert a == pytest.approx(-p.mass[1] * big_pi * grad_w)
     assert (a != 0).all() == approaching
@@ -342,7 +342,7 @@ def test_background_pressure_is_the_symmetric_form_of_a_constant(dim):
 
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_density_diffusion(dim):
-    p = view(dim=dim)
+    p = view(dim=dim)._replace(sound_speed=np.full(2, 50.0))  # of one matter
     x, _, r, _, grad_w = written_out(p, 0, 1)
     rho = 1 / p.specific_volume
     excess = rho - p.rest_density
@@ -605,12 +605,19 @@ def test_forms_for_a_scene_are_the_same_compiled(one, dim):
     agree_compiled(one(0.1, (0.3, -9.8, 1.0)[:dim]) if callable(one) else one, dim)
 
 
+def _species(is_fluid):
+    """A fluid or a wall of one density and speed of sound."""
+    return SimpleNamespace(
+        is_fluid=is_fluid, bonded=None, shear_modulus=0.0, density=1000.0, sound_speed=50.0, cell_count=1
+    )
+
+
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_in_a_wall_the_correction_is_that_of_a_whole_lattice(dim):
     """Whatever is missing behind it; in a fluid it is that of the neighbours."""
     scene = SimpleNamespace(
         physics=SimpleNamespace(pressure_gradient="symmetric", tension_floor=None),
-        species=[SimpleNamespace(is_fluid=one, cell_count=1) for one in (True, False)],
+        species=[_species(is_fluid=True), _species(is_fluid=False)],
         kernel=kernel("wendland-c2", H, dim),
         spacing=H / 1.3,
         dimensions=dim,
@@ -679,7 +686,7 @@ def test_pressure_work_is_what_continuity_says():
 
 def test_reads_are_found_by_a_trial_call():
     found = reads(PairDamping(), 2, kernel("cubic", H, 2), BUILT_IN.fields)
-    assert found.neighbour == {"mass", "specific_volume", "rest_density"}
+    assert found.neighbour == {"mass", "specific_volume", "rest_density", "sound_speed"}
     assert found.own == {"specific_volume", "rest_density", "smoothing_length", "sound_speed"}
     assert found.pair == {"inverse_r", "u_dot_x", "m_dw_r"}
 
@@ -817,7 +824,7 @@ def test_conservative_smoothing(dim):
     _, u, _, w, _ = written_out(p, 0, 1)
     effect, (i, j, pair) = ConservativeSmoothing(0.3), pair_of(p, 0, 1)
     mean = (1 / p.specific_volume).mean()
-    a = -0.3 * 50.0 / H * p.mass[1] / mean * w * u
+    a = -0.3 * p.sound_speed.min() / H * p.mass[1] / mean * w * u
     assert effect.shear(i, j, pair) * u == pytest.approx(a)
     back = effect.shear(*pair_of(p, 1, 0)) * -u * p.mass[1]
     assert back == pytest.approx(-p.mass[0] * a)

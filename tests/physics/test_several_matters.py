@@ -16,7 +16,7 @@ SPREADING = (TankDiffusion, BesideSmoothDensity)
 
 def beside(**fields):
     """A pair of particles that both flow, with further fields."""
-    p = view()._replace(is_fluid=np.ones(2), mass=np.array([0.06, 0.09]))
+    p = view()._replace(is_fluid=np.ones(2), mass=np.array([0.06, 0.09]), sound_speed=np.full(2, 50.0))
     return p._replace(**{name: np.array(values) for name, values in fields.items()})
 
 

@@ -100,6 +100,7 @@ def test_each_pair_only_loses_energy_whatever_the_strain(dim):
 
 def test_a_wall_damps_what_comes_fast_and_nothing_else():
     p = view()._replace(is_fluid=np.array([1.0, 0.0]), strain=tuple(np.full(2, 9.0) for _ in range(3)))
+    p = p._replace(sound_speed=np.array([C, 1.2 * C]))  # the slower one counts
     i, j, pair = pair_of(p, 0, 1)
     effect, plain = BesideLinearFlow(ALPHA, 0.0), PairDamping(ALPHA)
     for speed in (3.0 * C, 0.03 * C, 0.019 * C, 0.0, -0.5 * C):  # of approach

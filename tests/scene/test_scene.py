@@ -129,7 +129,7 @@ viscosity = 1e-4
 """
     )
     made = scene(tmp_path, text)
-    sound = {"wave_speed": made.sound_speed}
+    sound = {"wave_speed": made.sound_speed, "sound_speed": made.sound_speed}
     assert made.species == (
         Species("water", Free(), 1000.0, 0.0, pytest.approx(10.0), Linear(), **sound),
         Species("oil", Free(), 900.0, 1e-4, pytest.approx(9.0), Linear(), **sound),

@@ -66,7 +66,7 @@ def test_two_viscosities_become_an_array_of_ghosts_too(planned):
         "fluids.oil={shape={box={lower=[2.0,0.0],upper=[3.0,1.0]}}, viscosity=1e-2, density=800.0}",
     )
     assert {"mass", "rest_density", "viscosity"} <= set(plan.arrays)
-    assert set(plan.ghost_fields) == {"mass", "viscosity"}
+    assert set(plan.ghost_fields) == {"mass", "rest_density", "viscosity"}
     store = create_particles(scene, plan, MPI.COMM_SELF)
     assert set(np.unique(store.owned_rows("viscosity"))) == {1e-3, 1e-2}
     assert store.owned_rows("mass").min() == pytest.approx(8.0)
