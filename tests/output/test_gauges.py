@@ -103,7 +103,7 @@ def test_a_fluid_that_is_not_there_has_no_level(tmp_path):
 @pytest.mark.parametrize("every", [4, pytest.param(1, marks=LONG)])
 def test_force_on_walls_is_what_the_fluid_feels_of_them_turned_round(tmp_path, condition, every):
     case = draft(tmp_path, STIRRED.format(condition=condition, every=every))
-    simulation, scene = started(case, 7)
+    simulation, scene = started(case, 10)
     read, store = readings(simulation, scene), simulation.store
     fluid = store.shown("kind") == FLUID
     mass = store.shown("mass")[fluid, None]
