@@ -161,8 +161,10 @@ class Skin:
         )
         # Ghosts are in the boxes, so that a pair across two slabs is seen by at least one of their ranks.
         mine = largest_differences(*boxes, domain.planes, grid.counts[1], grid.of_counts, grid.periodic)
-        measured = largest(domain.comm, [*mine, *self._across_planes()]).tolist()
-        apart, closing, drifted, self._beyond, self._crossing = measured
+        across = self._across_planes() if self._planes else ()
+        apart, closing, drifted, *across = largest(domain.comm, [*mine, *across]).tolist()
+        if across:
+            self._beyond, self._crossing = across
         self._apart, self._closing = apart**0.5, closing**0.5
         self.drifted = drifted**0.5
         self._since = 0.0

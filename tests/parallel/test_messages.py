@@ -183,10 +183,10 @@ def test_a_rebuild_sends_what_does_not_change_too_and_no_more(watched):
     }
     case = type(case).model_validate(case.model_dump(exclude_unset=True) | {"fluids": fluids})
     simulation, events = watched(case)
-    assert simulation.plan.ghost_fields == ("mass",)
+    assert simulation.plan.ghost_fields == ("mass", "rest_density")  # of two fluids
     found = events_of_a_step(simulation, events, REBUILDING)
     sends = [event[1:] for event in found if event[0] == "Send_init"]
-    assert sorted(sends) == sorted(expected_sends(simulation, (*PLAIN, "mass")))
+    assert sorted(sends) == sorted(expected_sends(simulation, (*PLAIN, "mass", "rest_density")))
     names = [e[0] for e in found if e[0] not in ("Send_init", "Recv_init", "wait", "pairs")]
     # drift, extent, planes, movers; the counts of the ghost planes below and above; the limits
     moving = ["Alltoall", *(n for n in names if n in ("Irecv", "Isend"))]
