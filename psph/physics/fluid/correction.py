@@ -9,6 +9,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.moments import first_moment
 from psph.physics.facts import Facts
+from psph.physics.fluid.cells import Cells, Whole, cells_of, sharing
 from psph.physics.fluid.parting import Hold, Holding, borne, felt, hold_of
 from psph.physics.fluid.several import in_volumes, several, shares
 from psph.vectors import (
@@ -77,8 +78,7 @@ class GradientCorrection(NamedTuple):
             return VolumeCorrection(self.least, volume, walls)
         if all(one.is_fluid for one in scene.species):
             return self
-        parted = any(one.cell_count > 1 for one in scene.species)
-        return (CorrectionBesideParted if parted else CorrectionBesideWalls)(self.least, volume, walls)
+        return CorrectionBesideWalls(self.least, volume, walls, cells_of(scene))
 
     def start(self, i):
         """No neighbour yet."""
@@ -117,7 +117,8 @@ class CorrectionBesideWalls(NamedTuple):
     1·(m/ρ)/``volume``: behind a wall there is nothing, and an L of what is there would push the fluid in
     front of it, under a pressure that is the same everywhere.  ``volume`` is dx^d over the mean of the
     lattice's −Σ_j dx^d x_ij ∇W_ijᵀ, m^d.  ``walls`` say what stands for p beside them
-    (psph.physics.fluid.parting).
+    (psph.physics.fluid.parting).  Where particles share ``cells`` the m of all of a cell counts, and each has
+    the same L.
     """
 
     conserves = ("momentum",)
@@ -125,6 +126,7 @@ class CorrectionBesideWalls(NamedTuple):
     least: float
     volume: float
     walls: Hold = Holding()
+    cells: Cells = Whole()
 
     writes = CORRECTION
     lagged = True
@@ -135,41 +137,13 @@ class CorrectionBesideWalls(NamedTuple):
 
     def finish_value(self, total, i, kernel):
         """L − 1."""
-        return in_walls(total, i, i.mass, self)
+        return in_walls(total, i, sharing(self.cells, i) * i.mass, self)
 
     density_rate = GradientCorrection.density_rate
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
         return _corrected_push(felt(self.walls, i, j), i, j, pair)
-
-
-class CorrectionBesideParted(NamedTuple):
-    """Gradients are corrected to be exact for linear fields, beside walls and solids of a finer spacing too.
-
-    As :class:`CorrectionBesideWalls`, whose sum in a wall is that of the cells of the lattice: of n particles
-    in a cell each has an n-th of its volume, and the same L.
-    """
-
-    conserves = ("momentum",)
-
-    least: float
-    volume: float
-    walls: Hold = Holding()
-
-    writes = CORRECTION
-    lagged = True
-    slow = True
-
-    start = GradientCorrection.start
-    gather = GradientCorrection.gather
-
-    def finish_value(self, total, i, kernel):
-        """L − 1."""
-        return in_walls(total, i, i.cell_count * i.mass, self)
-
-    density_rate = GradientCorrection.density_rate
-    push = CorrectionBesideWalls.push
 
 
 class VolumeCorrection(NamedTuple):
@@ -192,7 +166,10 @@ class VolumeCorrection(NamedTuple):
 
     start = GradientCorrection.start
     gather = GradientCorrection.gather
-    finish_value = CorrectionBesideWalls.finish_value
+
+    def finish_value(self, total, i, kernel):
+        """L − 1."""
+        return in_walls(total, i, i.mass, self)
 
     def density_rate(self, i, j, pair):
         """What L_i − 1 adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""

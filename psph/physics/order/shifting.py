@@ -11,6 +11,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.moments import first_moment
 from psph.physics.facts import Facts
+from psph.physics.fluid.cells import Cells, Whole, cells_of, sharing
 from psph.physics.roles import ORDER
 from psph.physics.walls.conditions import BEARING, MIRROR
 from psph.smoothing import slope_over_r, weight
@@ -136,7 +137,7 @@ class PositionShift(NamedTuple):
         if not all(one.bearing for one in scene.species):
             return None
         made = lattice_shift(self.strength, scene.kernel, scene.spacing, scene.dimensions)
-        return PartedShift(*made) if any(one.cell_count > 1 for one in scene.species) else made
+        return made._replace(cells=cells_of(scene))
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
@@ -147,7 +148,8 @@ class LatticeShift(NamedTuple):
     """Particles shift from where they crowd to where they are few, with unchanged velocity.
 
     The form of :class:`PositionShift` for the lattice of a scene.
-    ``full`` is Σ dx^d r W′ over the lattice of the start; ``near`` 1/(dx^d W′(dx)/dx), m².
+    ``full`` is Σ dx^d r W′ over the lattice of the start; ``near`` 1/(dx^d W′(dx)/dx), m².  Where particles
+    share ``cells`` n is that of the cell of which each fills a part.
     """
 
     conserves = ("momentum",)
@@ -155,6 +157,7 @@ class LatticeShift(NamedTuple):
     strength: float
     full: float
     near: float
+    cells: Cells = Whole()
 
     writes = CROWDED
     lagged = True
@@ -166,7 +169,7 @@ class LatticeShift(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take neighbour j into both."""
         share = j.specific_volume * pair.m_dw_r
-        n = share * self.near
+        n = share * (sharing(self.cells, j) * self.near)
         pull = share * n * (1.0 + CROWDING * n * (n * n))
         return total[0] + share * pair.r2, add(total[1], scale(pair.x_ij, pull))
 
@@ -178,34 +181,6 @@ class LatticeShift(NamedTuple):
     def displacement(self, i, dt):
         """δx, m; proportional to Δt."""
         return scale(_velocity(min(i.largest_speed, self.strength * i.sound_speed), i), dt)
-
-
-class PartedShift(NamedTuple):
-    """Particles shift from where they crowd to where they are few, with unchanged velocity.
-
-    As :class:`LatticeShift` beside solids of a finer spacing: n of a particle is that of the cell of which it
-    fills a part, so that these push as solids of the spacing of the lattice do.
-    """
-
-    conserves = ("momentum",)
-
-    strength: float
-    full: float
-    near: float
-
-    writes = CROWDED
-    lagged = True
-
-    start = LatticeShift.start
-
-    def gather(self, total, i, j, pair):
-        """Take neighbour j into both."""
-        share = j.specific_volume * pair.m_dw_r
-        n = share * (j.cell_count * self.near)
-        pull = share * n * (1.0 + CROWDING * n * (n * n))
-        return total[0] + share * pair.r2, add(total[1], scale(pair.x_ij, pull))
-
-    finish_value, displacement = LatticeShift.finish_value, LatticeShift.displacement
 
 
 def lattice_shift(strength: float, kernel, dx: float, dimensions: int) -> LatticeShift:
