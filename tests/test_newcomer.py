@@ -119,8 +119,8 @@ IN_THE_CASE = {
     "air beside water": (
         "[walls.tank.shape",
         "fluids.air = { shape.box = { lower = [0.0, 0.3], upper = [0.2, 0.4] }, density = 1.2 }\n\n[walls.tank.shape",
-        "warning: drop.toml: fluids.air.sound_speed: 31.3 m/s: heavier fluids press it with up to 4.9e+03 Pa where "
-        "they trap it, 4.2 times its density times the square of that; give 117 m/s or more if they can",
+        "warning: drop.toml: fluids.air.sound_speed: 31.3 m/s is too low where heavier fluids trap it: up to "
+        "4.9e+03 Pa press on it, 4.2 times its density times c2; give 117 m/s or more if that can happen",
     ),
 }
 
