@@ -133,7 +133,7 @@ class Neighbourhood:
 
 
 def _sought(scene, plan: Plan) -> str | None:
-    """The field that tells those whom walls and rigid bodies look for: fluids, where there is nothing else and
-    they rest while none is near."""
+    """The field that tells those whom walls and rigid bodies look for: fluids, where there is nothing else
+    and they rest while none is near."""
     walls = all(one.is_fluid or one.kind == WALL for one in scene.species)
     return next((one.told_by for one in plan.marking), None) if walls else None

@@ -6,7 +6,7 @@ from psph.engine.jit import call_by_type
 from psph.physics.facts import Facts
 
 
-class Whole(NamedTuple):
+class OneEach(NamedTuple):
     """Every particle fills a cell."""
 
     def sharing(self, i):
@@ -14,7 +14,7 @@ class Whole(NamedTuple):
         return 1.0
 
 
-class Parted(NamedTuple):
+class Shared(NamedTuple):
     """Particles of solids with a finer spacing share cells."""
 
     def sharing(self, i):
@@ -22,12 +22,12 @@ class Parted(NamedTuple):
         return i.cell_count
 
 
-Cells = Whole | Parted
+Cells = OneEach | Shared
 
 sharing = call_by_type("sharing")
-"""(cells, i) → how many particles fill the cell of i: see :class:`Parted`."""
+"""(cells, i) → how many particles fill the cell of i: see :class:`Shared`."""
 
 
 def cells_of(scene: Facts) -> Cells:
     """Whether particles of a scene share cells."""
-    return Parted() if any(one.cell_count > 1 for one in scene.species) else Whole()
+    return Shared() if any(one.cell_count > 1 for one in scene.species) else OneEach()

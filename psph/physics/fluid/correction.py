@@ -9,7 +9,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.moments import first_moment
 from psph.physics.facts import Facts
-from psph.physics.fluid.cells import Cells, Whole, cells_of, sharing
+from psph.physics.fluid.cells import Cells, OneEach, cells_of, sharing
 from psph.physics.fluid.parting import Hold, Holding, borne, felt, hold_of
 from psph.physics.fluid.several import in_volumes, several, shares
 from psph.vectors import (
@@ -126,7 +126,7 @@ class CorrectionBesideWalls(NamedTuple):
     least: float
     volume: float
     walls: Hold = Holding()
-    cells: Cells = Whole()
+    cells: Cells = OneEach()
 
     writes = CORRECTION
     lagged = True

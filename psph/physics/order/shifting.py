@@ -11,7 +11,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.moments import first_moment
 from psph.physics.facts import Facts
-from psph.physics.fluid.cells import Cells, Whole, cells_of, sharing
+from psph.physics.fluid.cells import Cells, OneEach, cells_of, sharing
 from psph.physics.roles import ORDER
 from psph.physics.walls.conditions import BEARING, MIRROR
 from psph.smoothing import slope_over_r, weight
@@ -157,7 +157,7 @@ class LatticeShift(NamedTuple):
     strength: float
     full: float
     near: float
-    cells: Cells = Whole()
+    cells: Cells = OneEach()
 
     writes = CROWDED
     lagged = True

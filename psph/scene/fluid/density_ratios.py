@@ -48,9 +48,9 @@ def _trapped(scene: Scene, fluids: list[Part]) -> Iterator[str]:
         if one.density < heaviest and pressed > COMPRESSED * stiffness:
             needed = (pressed / (COMPRESSED * one.density)) ** 0.5
             yield (
-                f"{part.key}.sound_speed: {one.sound_speed:.3g} m/s is too low where heavier fluids trap it: up "
-                f"to {pressed:.3g} Pa press on it, {pressed / stiffness:.2g} times its density times c2; give "
-                f"{needed:.3g} m/s or more if that can happen"
+                f"{part.key}.sound_speed: {one.sound_speed:.3g} m/s is too low where heavier fluids "
+                f"trap it: up to {pressed:.3g} Pa press on it, {pressed / stiffness:.2g} times its "
+                f"density times c2; give {needed:.3g} m/s or more if that can happen"
             )
 
 
