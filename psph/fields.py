@@ -225,6 +225,7 @@ OF_MATERIAL = (
     _fixed("viscosity", "m2/s", "kinematic viscosity"),
     _fixed("cell_count", "1", "particles that fill a cell of the lattice of the start"),
     _fixed("is_fluid", "1", "1 in a fluid, else 0"),
+    _fixed("fluid", "1", "number of the fluid from 1 on, 0 in what is none"),
     _fixed("mobile", "1", "1 where forces move the particle, else 0"),
     _fixed("no_slip", "1", "1 in a wall to which the fluid sticks, else 0"),
     _fixed("rubs", "1", "1 in a viscous fluid and in a wall that it rubs on, else 0"),

@@ -14,6 +14,7 @@ from psph.fields import FLUID, PRESSURE, SAVED, by_name, view_of
 from psph.output.flowing import ALL, counted
 from psph.parallel.reductions import Contribution, Total, totals
 from psph.particles.store import Store
+from psph.particles.wetting import WET
 from psph.physics.walls.dry import DryWall
 from psph.smoothing import weight
 from psph.vectors import at, dot, nearest_image, subtract
@@ -206,14 +207,14 @@ def weigh_near(first, last, around, view, group, fluid, data, wet, rows, near, t
     """Fill ``near`` with the columns from ``first`` to ``last`` that are ``around`` a place, and the rows of
     ``terms`` with W V_j in the groups of ``fluid``, W V_j and W V_j f_j of each, f the ``rows`` of ``data``.
 
-    Returns how many they are.  Where ``wet`` is the number of a row, walls count where that is above 0.
+    Returns how many they are.  Where ``wet`` is the number of a row, walls count that show a pressure by it.
     """
     count = 0
     for k in range(np.uint64(first), np.uint64(last)):
         j = take(view, k)
         x = nearest_image(subtract(around.place, j.position), around.periods)
         r2 = dot(x, x)
-        if r2 < around.radius2 and (wet < 0 or data[wet, k] > 0.0):
+        if r2 < around.radius2 and (wet < 0 or data[wet, k] >= WET):
             share = weight(around.kernel, math.sqrt(r2)) * j.mass * j.specific_volume
             terms[count, 0] = share if fluid[group[k]] else 0.0
             terms[count, 1] = share

@@ -19,55 +19,70 @@ WETTING = 0.95
 """Part of the kernel's support within which fluid makes a wall wet; it stays so up to the whole support.
 W there is 1e-4 of that of a neighbour a spacing away, or less: no force tells one distance from the other."""
 
+DRY, BESIDE_OTHERS, WET = 0.0, 0.5, 1.0
+"""Without fluid in reach; with fluids alone that the wall does not serve with its own pressure; with one that
+it serves."""
+
 
 @elementwise
-def mark_wet(first, last, walls, low, lists, rows, support, periods, position, group, bearing, is_fluid, wet):
-    """``wet`` of the columns that the entries ``first`` to ``last`` of ``walls`` name: 0 in a wall without
-    fluid in reach, else 1.
+def mark_wet(first, last, walls, low, lists, rows, support, periods, position, group, serves, fluid, wet):
+    """``wet`` of the columns that the entries ``first`` to ``last`` of ``walls`` name: DRY in a wall without
+    fluid in reach, else BESIDE_OTHERS or WET.
 
     A wall becomes wet where fluid comes within the part WETTING of the kernel's ``support``, m, and dry
     where it leaves the support: between the two it stays what it was, so that water that trembles does not
     make a wall at the edge of its reach lose its pressure again and again.  ``lists`` are
     :class:`psph.particles.neighbours.Neighbours` of the particles from column ``low`` on, whose row becomes
-    empty in a dry wall that :class:`DryRows` let rest; ``is_fluid`` 1 in a fluid, else 0.  Particles of a
-    ``group`` that is not ``bearing`` stay dry.
+    empty in a dry wall that :class:`DryRows` let rest; ``fluid`` a number from 1 on in a fluid, else 0.
+    ``serves`` says of the group of a wall and the number of a fluid whether the wall shows it a pressure of
+    its own; particles of a group that serves none stay dry.
     """
     for w in range(np.uint64(first), np.uint64(last)):
         k = np.uint64(walls[w])
-        row = k - np.uint64(low)
-        found = is_fluid[k]
-        reach = support if wet[k] > 0.0 else WETTING * support
+        row, own = k - np.uint64(low), serves[group[k]]
+        found = WET if fluid[k] > 0.0 else DRY
+        reach = support if wet[k] >= WET else WETTING * support
+        others = support if wet[k] > DRY else WETTING * support
         n, end = lists.begin[row], lists.begin[row] + np.uint64(rows.lengths[row])
-        while found == 0.0 and bearing[group[k]] and n < end:
+        bears = own.any()
+        while found < WET and bears and n < end:
             j = np.uint64(lists.lists[n])
             x = nearest_image(subtract(at(position, k), at(position, j)), periods)
-            found = 1.0 if is_fluid[j] > 0.0 and dot(x, x) < reach * reach else 0.0
+            if own[np.uint64(fluid[j])] and dot(x, x) < reach * reach:
+                found = WET
+            elif fluid[j] > 0.0 and dot(x, x) < others * others:
+                found = BESIDE_OTHERS
             n += np.uint64(1)
         wet[k] = found
         if rows.rest[row]:
-            lists.lengths[row] = rows.lengths[row] if found > 0.0 else 0
+            lists.lengths[row] = rows.lengths[row] if found > DRY else 0
 
 
 @elementwise
-def find_undecided(first, last, low, lists, reach, periods, listed, group, bearing, is_fluid, wet, undecided):
+def find_undecided(first, last, low, lists, reach, periods, listed, group, serves, fluid, wet, undecided):
     """Which of the columns ``first`` to ``last`` :func:`mark_wet` may change while the lists last.
 
-    ``undecided`` of a row is True in a wall that bears a pressure, but where it is wet and fluid stood nearer
-    than ``reach``, m, at the ``listed`` places when the lists were made, and where it is dry and none is
-    listed.  ``reach`` is the support without the skin by which two particles may have parted since.
+    ``undecided`` of a row is True in a wall that bears a pressure, but where it is wet and a fluid that it
+    ``serves`` stood nearer than ``reach``, m, at the ``listed`` places when the lists were made, where others
+    stood so near and it lists none that it serves, and where it is dry and none is listed.  ``reach`` is the
+    support without the skin by which two particles may have parted since.
     """
     for k in range(np.uint64(first), np.uint64(last)):
-        row = k - np.uint64(low)
-        held = some = False
+        row, own = k - np.uint64(low), serves[group[k]]
+        held = beside = served = some = False
         n, end = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
-        bears = is_fluid[k] == 0.0 and bearing[group[k]]
+        bears = fluid[k] == 0.0 and own.any()
         while bears and not held and n < end:
             j = np.uint64(lists.lists[n])
             x = nearest_image(subtract(at(listed, k), at(listed, j)), periods)
-            some = some or is_fluid[j] > 0.0
-            held = is_fluid[j] > 0.0 and reach > 0.0 and dot(x, x) < reach * reach and wet[k] > 0.0
+            near = fluid[j] > 0.0 and reach > 0.0 and dot(x, x) < reach * reach
+            serves_it = own[np.uint64(fluid[j])]
+            some, served = some or fluid[j] > 0.0, served or serves_it
+            held = near and serves_it and wet[k] >= WET
+            beside = beside or near
             n += np.uint64(1)
-        undecided[row] = bears and not held and (some or wet[k] > 0.0)
+        held = held or beside and not served and wet[k] == BESIDE_OTHERS
+        undecided[row] = bears and not held and (some or wet[k] > DRY)
 
 
 @compiled

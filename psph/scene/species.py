@@ -29,7 +29,8 @@ class Species(NamedTuple):
     numerical one; ``own_mass`` in kg that of a particle of an elastic solid, which shows a fluid another one;
     ``stress_diffusion`` and ``rest_coefficient`` K₀ are those of a soil, 0 and 1 else; ``cell_count`` is the
     number of particles that fill a cell of the lattice, more than 1 in a solid of a finer spacing;
-    ``sound_speed`` in m/s is the numerical one.
+    ``sound_speed`` in m/s is the numerical one; ``fluid`` is the number of a fluid among those of the case
+    from 1 on, 0 of what is none.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Species(NamedTuple):
     own_mass: float = 0.0
     cell_count: int = 1
     sound_speed: float = 0.0
+    fluid: int = 0
 
     @property
     def inertia(self) -> float:

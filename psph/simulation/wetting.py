@@ -22,6 +22,8 @@ class Wetting:
 
     def __init__(self, effect, plan: Plan, store: Store, domain: Domain, reach: Reach):
         self.effect, self.plan, self.store, self.domain, self.reach = effect, plan, store, domain, reach
+        species = plan.materials.species
+        self._serves = np.array([effect.served(one, species) for one in species])
         self._undecided = self._loaded = np.zeros(0, np.uint64)
         self._rows = DryRows(np.zeros(0, np.uint32), np.zeros(0, bool))
 
@@ -66,7 +68,7 @@ class Wetting:
     def _kinds(self) -> tuple:
         """What the loops read of a particle but its place."""
         s = self.store
-        return s.group, self.plan.materials.bearing, s[self.effect.told_by], s[self.effect.marks.name]
+        return s.group, self._serves, s[self.effect.told_by], s[self.effect.marks.name]
 
     def _mark(self, walls: np.ndarray) -> None:
         s, reach = self.store, (self.reach.support, self.domain.periods)

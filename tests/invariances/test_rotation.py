@@ -50,6 +50,11 @@ TWO = {
     "oil": turning(0.6, viscosity=0.05, density=600.0),
     "water": turning(shape=less(disc(RADIUS), disc(0.6)), viscosity=0.01),
 }
+RATIO = {
+    "light": turning(0.6, density=1.0),
+    "heavy": turning(shape=less(disc(RADIUS), disc(0.6))),
+}
+"""And the drum continues the first one, which it does not touch."""
 BODY = {
     "shape": disc(0.35, CENTRE + SEAT),
     "density": 700.0,
@@ -71,6 +76,7 @@ SCENES = {
     "body": drum({"oil": OIL}, bodies={"disc": BODY}),
     "oil in a drum": drum({"oil": OIL}),
     "two fluids in a drum": drum(TWO),
+    "1000 : 1 in a drum": drum(RATIO),
     **{
         f"mud by {law} in a drum": drum({"mud": turning(density=1500.0, rheology={law: numbers})})
         for law, numbers in LAWS.items()
@@ -142,6 +148,7 @@ KEPT = dict.fromkeys(SCENES, 1e-3) | {
     "grains": 3e-3,
     "oil in a drum": 3e-3,
     "two fluids in a drum": 2e-3,
+    "1000 : 1 in a drum": 2e-3,
 }
 KEPT |= {f"{name} in two passes": KEPT[name] for name in IN_TWO_PASSES}
 KEPT["mud by bingham in a drum in two passes"] = 3e-3
@@ -160,7 +167,10 @@ UNSHIFTED = {
 }
 """The same without the shift; measured 2.1e-5, 3e-6, 3e-6, 9e-6, 1.1e-4 and 2.5e-4, where 4e-3 to 7e-3 are with it."""
 
-IN_DRUMS = [name for name, one in SCENES.items() if "walls" in one and name != "water"]
+IN_DRUMS = [
+    name for name, one in SCENES.items() if "walls" in one and name not in ("water", "1000 : 1 in a drum")
+]
+"""At 1000 : 1 the shift sets in sooner."""
 
 
 @pytest.mark.parametrize("name", long_but_for(SHORT, SCENES))

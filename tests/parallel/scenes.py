@@ -48,6 +48,14 @@ class Family(NamedTuple):
 
 GRAVITY = {"gravity": "drawn"}
 
+OTHERS = (
+    {"density": 800.0},
+    {"density": 100.0, "sound_speed": 20.0},
+    {"density": 1.0, "sound_speed": 20.0},
+    {"density": 1000.0, "sound_speed": 20.0},
+)
+"""Fluids beside one of 1000 kg/m³ and 10 m/s, in turn."""
+
 FAMILIES = {
     "tank": Family(2, walls=True, fluids=2, viscous=True, physics=GRAVITY),
     "mixed block": Family(
@@ -188,7 +196,7 @@ def scene(family: Family, seed: int) -> str:
         "neighbours": {"skin": _drawn(rng, 0.02, 0.3)},
         "parallel": {"axis": family.along},
         "physics": {"sound_speed": 10.0, **_physics(family, rng)},
-        "fluids": dict(_fluids(family, rng, sizes)),
+        "fluids": dict(_fluids(family, rng, sizes, OTHERS[seed % len(OTHERS)])),
         "perturbations": [_perturbation(rng, sizes) for _ in range(rng.integers(0, 3))],
     }
     if files := uses(family.physics):
@@ -325,17 +333,18 @@ def _physics(family: Family, rng) -> dict:
     return found
 
 
-def _fluids(family: Family, rng, sizes):
-    """Parts of the block one behind the other along the first axis, with holes and notches."""
+def _fluids(family: Family, rng, sizes, other: dict):
+    """Parts of the block one behind the other along the first axis, with holes and notches; from the second on
+    with the keys of an ``other``."""
     ends = np.linspace(0.0, sizes[0], family.fluids + 1).round(9).tolist()
     for k, (low, high) in enumerate(zip(ends, ends[1:])):
         lower, upper = [low, *[0.0] * (family.dimensions - 1)], [high, *sizes[1:]]
-        block = {"box": {"lower": lower, "upper": upper}}
+        block, made = {"box": {"lower": lower, "upper": upper}}, {"density": 1000.0} if k == 0 else other
         holes = [_hole(rng, family.dimensions, lower, upper) for _ in range(rng.integers(0, 4))]
         fluid = {
             "shape": {"difference": {"from": block, "minus": holes}} if holes else block,
-            "density": 1000.0 if k == 0 else 800.0,
-            "pressure": _drawn(rng, -500.0, 3000.0),
+            **made,
+            "pressure": _drawn(rng, -500.0, 3000.0) * made["density"] / 1000.0,
             "jitter": _drawn(rng, 0.0, 0.3),
             "seed": int(rng.integers(0, 1000)),
             "velocity": _vector(rng, family.dimensions, float(rng.choice([0.0, 3.0]))),

@@ -17,12 +17,13 @@ def lists_of(*names):
     )
 
 
-def a_pair(distance, before, other_is_fluid, first=9.5, bearing=True):
+def a_pair(distance, before, other_is_fluid, first=9.5, served=True, bearing=True):
     """A wall, wet or not before, and a neighbour at a distance across the end of a period: places, then what
     the loops read after them."""
     x = np.array([first, (first + distance) % PERIOD])
     is_fluid, wet = np.array([0.0, other_is_fluid]), np.array([before, 1.0])
-    return (x,), np.array([1, 0], np.uint8), np.array([True, bearing]), is_fluid, wet
+    serves = np.array([[False] * 3, [False, bearing and served, bearing]])
+    return (x,), np.array([1, 0], np.uint8), serves, is_fluid, wet
 
 
 def wet_at(distance, before, other_is_fluid=1.0, rests=True, **more):
@@ -32,7 +33,7 @@ def wet_at(distance, before, other_is_fluid=1.0, rests=True, **more):
     rows = DryRows(lists.lengths.copy(), np.array([rests, False]))
     mark_wet(0, 2, both, 0, lists, rows, SUPPORT, (PERIOD,), position, group, bears, is_fluid, wet)
     assert wet[1] == other_is_fluid  # fluid counts as wet, a wall beside a wall does not
-    assert lists.lengths.tolist() == [wet[0] if rests else 1, 1]
+    assert lists.lengths.tolist() == [wet[0] > 0.0 if rests else 1, 1]
     return wet[0]
 
 
@@ -62,6 +63,21 @@ def test_a_dry_wall_without_fluid_in_its_list_is_decided():
     assert undecided_at(0.5, 0.0, other_is_fluid=0.0)[0] is False
     assert undecided_at(0.5, 1.0, other_is_fluid=0.0)[0] is True
     assert undecided_at(0.9, 0.0, bearing=False) == [False, False]
+
+
+@pytest.mark.parametrize(
+    ("distance", "was_dry", "was_half"), [(0.94, 0.5, 0.5), (0.96, 0, 0.5), (1.01, 0, 0)]
+)
+def test_a_fluid_that_a_wall_does_not_serve_makes_it_half_wet(distance, was_dry, was_half):
+    """One that was wet before is so too; sums go on where fluid is in reach."""
+    assert wet_at(distance, 0.0, served=False) == was_dry
+    assert wet_at(distance, 0.5, served=False) == wet_at(distance, 1.0, served=False) == was_half
+
+
+def test_a_wall_that_is_half_wet_waits_for_a_fluid_that_it_serves():
+    """Near one it does not stay what it is; without one in its list it is decided, as the wet one is not."""
+    assert undecided_at(0.7, 0.5)[0] and undecided_at(0.7, 1.0, served=False)[0]
+    assert not undecided_at(0.7, 0.5, served=False)[0] and undecided_at(0.9, 0.5, served=False)[0]
 
 
 def test_another_wall_makes_no_wall_wet():

@@ -28,6 +28,7 @@ from psph.physics.fluid.parting import Parting
 from psph.physics.fluid.rheology import Granular, HerschelBulkley, Newtonian
 from psph.physics.fluid.several import (
     CorrectedVolumeBackground,
+    Mirroring,
     VolumeBackground,
     VolumeContinuity,
     VolumePressure,
@@ -75,9 +76,11 @@ def in_a_scene(effect, dim):
         "ArtificialStress": lambda: NeighbourStress(0.2, 1e-4),
         "CentralApparentFriction": lambda: CentralApparentFriction(LAWS, 1.0, FluidAlone()),
         "PositionShift": lambda: LatticeShift(0.1, -1e-4, 1e-6),
-        "VolumePressure": lambda: VolumePressure(Parting(), Steady((None,) * (dim - 1) + (-9.8,))),
-        "VolumeCorrection": lambda: VolumeCorrection(0.5, 1e-6, Parting()),
-        "CorrectedVolumeBackground": lambda: CorrectedVolumeBackground(3000.0),
+        "VolumePressure": lambda: VolumePressure(Parting(), Mirroring(Steady((None,) * (dim - 1) + (-9.8,)))),
+        "VolumeCorrection": lambda: VolumeCorrection(0.5, 1e-6, Mirroring(Steady((None,) * dim)), Parting()),
+        "CorrectedVolumeBackground": lambda: CorrectedVolumeBackground(
+            3000.0, Mirroring(Steady((None,) * dim))
+        ),
         "VolumeBackground": lambda: VolumeBackground(3000.0),
         "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4, 0.2),
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
@@ -254,9 +257,10 @@ def test_pressure_of_several_fluids_does_the_work_that_compression_takes(dim, be
     p = p._replace(mass=0.97e-4 / p.specific_volume, pressure=np.array([700.0, 900.0, 400.0]))
     if beside_a_wall:
         p = p._replace(is_fluid=np.array([1.0, 1.0, 0.0]), rest_density=np.array([1000.0, 100.0, 1000.0]))
+    facing = Mirroring(Steady((None,) * dim))
     for force, compressed in (
-        (VolumePressure(Parting(), Steady((None,) * dim)), VolumeContinuity()),
-        (VolumeCorrection(0.5, 1e-6, Parting()), VolumeCorrection(0.5, 1e-6, Parting())),
+        (VolumePressure(Parting(), facing), VolumeContinuity(facing)),
+        (VolumeCorrection(0.5, 1e-6, facing, Parting()), VolumeCorrection(0.5, 1e-6, facing, Parting())),
     ):
         work = taken = 0.0
         for a in range(3):

@@ -72,6 +72,13 @@ def test_what_can_be_trapped_is_told_the_speed_of_sound_that_it_needs(tmp_path):
         assert not any("trap" in x for x in check(Scene(draft(tmp_path, LAYERS, *keys))))
 
 
+@pytest.mark.parametrize(("density", "count"), [(100.0, 1), (800.0, 0)])
+def test_walls_without_pressure_beside_a_light_fluid_are_warned_of(tmp_path, density, count):
+    keys = (f"fluids.oil.density={density}", "walls.floor.condition=penalty")
+    lines = [x for x in check(Scene(draft(tmp_path, LAYERS, *keys))) if "bears no pressure" in x]
+    assert len(lines) == count and all(x.endswith('kg/m3 has; use "dynamic"') for x in lines)
+
+
 def test_a_wall_that_touches_two_fluids_is_warned_of(tmp_path):
     side = "walls.side={shape={box={lower=[0.5,-0.06],upper=[0.56,0.6]}}}"
     assert not any("continues" in x for x in check(Scene(draft(tmp_path, LAYERS, side))))

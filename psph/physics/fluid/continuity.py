@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from psph.formula import where
 from psph.physics.facts import Facts
-from psph.physics.fluid.several import VolumeContinuity, several
+from psph.physics.fluid.several import VolumeContinuity, facing_of, several
 
 
 class Continuity(NamedTuple):
@@ -16,7 +16,7 @@ class Continuity(NamedTuple):
     def in_scene(self, scene: Facts):
         """Where elastic solids stand in a fluid, and for several fluids, the form that knows them."""
         if several(scene):
-            return VolumeContinuity()
+            return VolumeContinuity(facing_of(scene))
         bonded = any(one.bonded is not None for one in scene.species)
         return ContinuityBesideBonded() if bonded and any(one.is_fluid for one in scene.species) else self
 

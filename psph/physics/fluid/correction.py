@@ -11,7 +11,7 @@ from psph.moments import first_moment
 from psph.physics.facts import Facts
 from psph.physics.fluid.cells import Cells, OneEach, cells_of, sharing
 from psph.physics.fluid.parting import Hold, Holding, borne, felt, hold_of
-from psph.physics.fluid.several import in_volumes, several, shares
+from psph.physics.fluid.several import Facing, facing_of, in_volumes, several, shares
 from psph.vectors import (
     add,
     adjugate,
@@ -75,7 +75,7 @@ class GradientCorrection(NamedTuple):
         full = -first_moment(scene.kernel, scene.spacing, scene.dimensions) / scene.dimensions
         volume, walls = scene.spacing**scene.dimensions / full, hold_of(scene)
         if several(scene):
-            return VolumeCorrection(self.least, volume, walls)
+            return VolumeCorrection(self.least, volume, facing_of(scene), walls)
         if all(one.is_fluid for one in scene.species):
             return self
         return CorrectionBesideWalls(self.least, volume, walls, cells_of(scene))
@@ -158,6 +158,7 @@ class VolumeCorrection(NamedTuple):
 
     least: float
     volume: float
+    facing: Facing
     walls: Hold = Holding()
 
     writes = CORRECTION
@@ -173,12 +174,12 @@ class VolumeCorrection(NamedTuple):
 
     def density_rate(self, i, j, pair):
         """What L_i − 1 adds to a neighbour's share of dρ_i/dt, kg/(m^d s)."""
-        weight = pair.m_dw_r * (shares(i, j)[0] * (j.specific_volume / i.specific_volume))
+        weight = pair.m_dw_r * (shares(self.facing, i, j)[0] * (j.specific_volume / i.specific_volume))
         return weight * dot(pair.u_ij, times(i.gradient_correction, pair.x_ij))
 
     def push(self, i, j, pair):
         """What L_i − 1 and L_j − 1 add to the symmetric pressure gradient, m/s²."""
-        theta_ij, theta_ji = shares(i, j)
+        theta_ij, theta_ji = shares(self.facing, i, j)
         own, other = borne(self.walls, i, j)
         both = add(
             scale(i.gradient_correction, theta_ij * own), scale(j.gradient_correction, theta_ji * other)

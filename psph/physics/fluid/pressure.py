@@ -10,8 +10,13 @@ from psph.fields import Same
 from psph.formula import where
 from psph.physics.facts import Facts
 from psph.physics.fluid.parting import Hold, Holding, felt, hold_of
-from psph.physics.fluid.several import CorrectedVolumeBackground, VolumeBackground, VolumePressure, several
-from psph.physics.fluid.weight import gravitation_of
+from psph.physics.fluid.several import (
+    CorrectedVolumeBackground,
+    VolumeBackground,
+    VolumePressure,
+    facing_of,
+    several,
+)
 from psph.smoothing import KERNELS, weight
 from psph.theory.stability import parts
 from psph.vectors import add, scale, times, zero_like
@@ -46,7 +51,7 @@ class SymmetricPressure(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows whether walls hold the fluid, and whether there are several."""
         walls = hold_of(scene)
-        return VolumePressure(walls, gravitation_of(scene)) if several(scene) else SymmetricPressure(walls)
+        return VolumePressure(walls, facing_of(scene)) if several(scene) else SymmetricPressure(walls)
 
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
@@ -209,7 +214,10 @@ class BackgroundPressure(NamedTuple):
         if needed is None:
             return None
         if several(scene):
-            return CorrectedVolumeBackground(needed) if is_corrected(scene) else VolumeBackground(needed)
+            corrected = is_corrected(scene)
+            return (
+                CorrectedVolumeBackground(needed, facing_of(scene)) if corrected else VolumeBackground(needed)
+            )
         return CorrectedBackground(needed) if is_corrected(scene) else BackgroundPressure(needed)
 
     def _needed(self, scene: Facts) -> float | None:

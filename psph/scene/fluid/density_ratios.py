@@ -24,6 +24,7 @@ def several_fluids(scene: Scene) -> Iterator[str]:
     fluids = [part for part in scene.layout.parts if part.flows]
     if several(scene):
         yield from _trapped(scene, fluids)
+        yield from _held_by_no_pressure(scene, fluids)
         return
     for one, other in combinations(fluids, 2):
         own, beside = one.table.density, other.table.density
@@ -51,6 +52,21 @@ def _trapped(scene: Scene, fluids: list[Part]) -> Iterator[str]:
                 f"{part.key}.sound_speed: {one.sound_speed:.3g} m/s is too low where heavier fluids "
                 f"trap it: up to {pressed:.3g} Pa press on it, {pressed / stiffness:.2g} times its "
                 f"density times c2; give {needed:.3g} m/s or more if that can happen"
+            )
+
+
+def _held_by_no_pressure(scene: Scene, fluids: list[Part]) -> Iterator[str]:
+    """Walls without a pressure, whose error is some hundredths of what the heaviest fluid weighs."""
+    light, heavy = (find(fluids, key=lambda part: part.table.density) for find in (min, max))
+    if heavy.table.density <= LARGEST_RATIO * light.table.density:
+        return
+    for part in scene.layout.parts:
+        condition = scene.species[part.number].condition
+        if part.is_wall and not scene.species[part.number].bearing:
+            yield (
+                f'{part.key}.condition: "{condition}" bears no pressure, and errs by some per cent of that '
+                f"of {heavy.key}, more than {light.key} of {light.table.density:g} kg/m3 has; use "
+                '"dynamic"'
             )
 
 

@@ -41,3 +41,7 @@ class FluidPart(Part):
             "viscosity": self.table.viscosity,
             "rheology": 1 + known.rheologies.index(self.rheology) if self.rheology else 0,
         }
+
+    def own(self, known: Known) -> dict[str, Any]:
+        """Its number among fluids, which come first."""
+        return {"fluid": 1 + self.number}
