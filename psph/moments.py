@@ -22,7 +22,7 @@ def first_moment(kernel, spacing: float, dimensions: int) -> float:
 def moments_below_a_surface(kernel, spacing: float, dimensions: int) -> list[float]:
     """Σ dx^d r W′ over the part of that lattice that the first, second ... row below a plane surface has."""
     rows = [0.0] * (_reach(kernel, spacing) + 1)
-    for *level, height in _sites(kernel, spacing, dimensions):
+    for *level, height in sites_around(kernel, spacing, dimensions):
         r = math.hypot(*level, height) * spacing
         rows[max(height, 0)] += r * kernel.dw(r) * spacing**dimensions
     return [*map(float, accumulate(rows))]
@@ -38,7 +38,7 @@ def seam_shares(kernel, spacing: float, dimensions: int) -> list[float]:
     if dimensions == 1:
         return []
     along, pressed = 0.0, [0.0] * _reach(kernel, spacing)
-    for *level, height in _sites(kernel, spacing, dimensions):
+    for *level, height in sites_around(kernel, spacing, dimensions):
         if height > 0:
             distance = math.hypot(*level, height)
             slope = -kernel.dw(distance * spacing) / distance
@@ -84,13 +84,13 @@ WAVES = 13
 
 def _waves(kernel, spacing: float, dimensions: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sites (n, d) in spacings, their dx^d (−W′/r) (n,), 1/m², and wave vectors (waves, d), rad a spacing."""
-    sites = np.array([*_sites(kernel, spacing, dimensions)], float)
+    sites = np.array([*sites_around(kernel, spacing, dimensions)], float)
     radii = np.linalg.norm(sites, axis=1) * spacing
     weights = np.array([-kernel.dw(r) / r for r in radii]) * spacing**dimensions
     return sites, weights, np.array([*product(np.linspace(0.0, np.pi, WAVES), repeat=dimensions)])
 
 
-def _sites(kernel, spacing: float, dimensions: int):
+def sites_around(kernel, spacing: float, dimensions: int):
     """Where the neighbours of a particle on a lattice are, in spacings."""
     reach = _reach(kernel, spacing)
     return (site for site in product(range(-reach, reach + 1), repeat=dimensions) if any(site))

@@ -268,7 +268,10 @@ DECLARE = {"acts", "refuses", "keys_of", "word", "measures", "regions"}
 
 ROOMS = (
     "matter/",
-    *(f"case/{room}" for room in ("bodies", "fluids", "hooke", "regions", "soils", "solids", "updated")),
+    *(
+        f"case/{room}"
+        for room in ("bodies", "fluids", "hooke", "regions", "soils", "solids", "tensions", "updated")
+    ),
     *(f"scene/{room}" for room in ("fluid/", "bod", "regions", "soils", "solid", "stressed", "volumes")),
     *(f"scene/{room}" for room in ("answering", "calming")),
     *(f"scene/parts/{room}" for room in ("fluid", "hookean", "order", "rigid", "soil", "solid")),

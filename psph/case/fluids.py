@@ -3,18 +3,19 @@
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import ValidationError, WrapValidator, create_model
+from pydantic import Field, ValidationError, WrapValidator, create_model
 from pydantic_core import PydanticCustomError
 
 from psph.acts import FLUIDS
 from psph.case.findings import Finding, frictions_of
-from psph.case.keys import AXES, key
+from psph.case.keys import AXES, Name, key
 from psph.case.matter import FreeMatter
 from psph.case.physics import own_law
 from psph.case.placed import Answering
 from psph.case.rheology import Rheology
 from psph.case.shapes import Shape
 from psph.case.study import EXACT
+from psph.case.tensions import tension_findings
 from psph.physics.catalogue import BUILT_IN, Catalogue
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 
@@ -51,6 +52,12 @@ class Fluid(FreeMatter):
     start: Literal["lattice", RELAXED] = key(
         'where particles are at the start: "lattice", or "relaxed", without order but evenly crowded',
         "lattice",
+    )
+    surface_tension: float | None = key(
+        "surface tension at its free surface", None, unit="N/m", otherwise="0", ge=0
+    )
+    interfacial_tension: dict[Name, Annotated[float, Field(ge=0)]] = key(
+        "tension between it and other fluids, by their names: { oil = 0.03 }, in the table of either", {}
     )
     equation_of_state: Law = LAW
     sound_speed: float | None = key(
@@ -89,6 +96,7 @@ class Fluid(FreeMatter):
         yield from _exact(case)
         yield from _rheologies(case)
         yield from _relaxed(case)
+        yield from tension_findings(case)
         for name in case.walls.keys() & case.fluids.keys():
             yield ("walls", name), ..., "a fluid has this name too; give the wall another"
 

@@ -41,6 +41,7 @@ from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
 from psph.physics.stress.faces import SmoothFace
 from psph.physics.stress.strength import Strength
 from psph.physics.surface.free import FreeSurface, TensionFloor
+from psph.physics.surface.tension import SurfaceTension
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
 from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
@@ -127,6 +128,7 @@ CATALOGUE = (
     Entry("physics.central_friction", CentralFriction),
     Entry("physics.laplacian_friction", LaplacianFriction),
     Entry("fluids.*.rheology", ApparentViscosity),
+    Entry("fluids.*.surface_tension|fluids.*.interfacial_tension", SurfaceTension),
     Entry("walls.*.no_slip", NoSlip),
     Entry("walls.*.continues", DryWall),
     Entry(f"walls.*.condition={EXTRAPOLATED}", ExtrapolatedWall),

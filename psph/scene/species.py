@@ -30,7 +30,8 @@ class Species(NamedTuple):
     ``stress_diffusion`` and ``rest_coefficient`` K₀ are those of a soil, 0 and 1 else; ``cell_count`` is the
     number of particles that fill a cell of the lattice, more than 1 in a solid of a finer spacing;
     ``sound_speed`` in m/s is the numerical one; ``fluid`` is the number of a fluid among those of the case
-    from 1 on, 0 of what is none.
+    from 1 on, 0 of what is none, and ``tensions`` in N/m are first its surface tension and then those between
+    it and each fluid, in this order; empty where the case tells none.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Species(NamedTuple):
     cell_count: int = 1
     sound_speed: float = 0.0
     fluid: int = 0
+    tensions: tuple[float, ...] = ()
 
     @property
     def inertia(self) -> float:

@@ -19,9 +19,9 @@ class Pulls(NamedTuple):
     ``uniform`` m/s² is the sum of those that are the same everywhere: what is rigid bears it at its centre of
     mass, and its potential is a height.  On what moves as a ``whole`` the others are summed over its
     particles; what is ``bonded`` to its neighbours of the start is pulled by all.  ``held`` have another
-    potential.  The work of what has none is booked, of ``booked`` on what moves in the passes over
-    neighbours, of ``booked_in_bonds`` on what is bonded in a fluid; where it only takes energy, as an effect
-    says with ``dissipates``, it need not be.
+    potential, some as surfaces do and without a body force.  The work of what has none is booked, of
+    ``booked`` on what moves in the passes over neighbours, of ``booked_in_bonds`` on what is bonded in a
+    fluid; where it only takes energy, as an effect says with ``dissipates``, it need not be.
     """
 
     uniform: Vector
@@ -50,6 +50,8 @@ def shares_loop(called: Iterable[Called], flows: bool) -> tuple[Called, ...]:
 
 def pulls_of(called: Iterable[Called], dimensions: int, flows: bool) -> Pulls:
     """What pulls in a scene, where something may flow: ``flows``."""
+    called = tuple(called)
+    held = tuple(one.effect for one in called if hasattr(one.effect, "potential"))
     called = tuple(call for call in called if hasattr(call.effect, "body"))
     pulling, moving = [one.effect for one in called], [one.effect for one in shares_loop(called, flows)]
     on_whole = [one.effect for one in called if not set(WHOLE).isdisjoint(one.acts)]
@@ -61,7 +63,7 @@ def pulls_of(called: Iterable[Called], dimensions: int, flows: bool) -> Pulls:
         uniform,
         tuple(one for one in on_whole if not _is_uniform(one)),
         tuple(bonded),
-        tuple(one for one in pulling if hasattr(one, "potential")),
+        held,
         tuple(filter(_is_booked, moving)),
         tuple(filter(_is_booked, bonded)) if flows else (),
     )

@@ -30,6 +30,8 @@ def view(n=2, dim=2, seed=3):
         viscosity=rng.uniform(0.5, 1.0, n),
         kernel_sum=rng.uniform(0.8, 1.0, n),
         is_fluid=np.resize((1.0, 0.0, 1.0), n),
+        fluid=np.resize((1.0, 0.0, 2.0), n),
+        surface_vector=tuple(rng.normal(size=n) for _ in range(dim)),
         mobile=np.resize((0.0, 1.0, 1.0), n),
         no_slip=np.resize((0.0, 1.0), n),
         rubs=np.resize((1.0, 0.0, 1.0), n),

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from jobs import clean_environment
-from physics.pairs import ONE_FOR_ALL, pair_of, sums_of, view
+from physics.pairs import ONE_FOR_ALL, H, pair_of, sums_of, view
 from physics.test_effects import made
 from remedies import ENTRIES, remedy, using
 from simulation.test_absence import calling_for
@@ -43,6 +43,7 @@ from psph.physics.fluid.weight import Steady
 from psph.physics.order.potential import InDisorder, LocalPotential, neutral_potential
 from psph.physics.order.shifting import LatticeShift
 from psph.physics.order.stress import NeighbourStress
+from psph.physics.surface.tension import Blunt, SurfaceTension, TensionAmong, TensionOfOne, Tensions
 
 MOMENTUM, ANGULAR = "momentum", "angular momentum"
 LAWS = (
@@ -55,6 +56,10 @@ LAWS = (
 DRIFT = 1e-13
 """Largest change of a momentum in a box, relative to that of one of its fluids."""
 
+
+BLUNT = Blunt(1e9, 1.0 / (4.0 * H * H), 1.0)
+AMONG = TensionAmong(0.1, 0.1, BLUNT, 1.0, (Tensions(0.3, (0.0, 0.5)),) * 3, (1.0, 2.0), (1.0, 1.0), 1.8)
+"""Tension of the fluids of a crowd, the first of which has two particles."""
 
 IN_VOLUMES = (VolumePressure, VolumeCorrection, VolumeBackground, CorrectedVolumeBackground)
 """What several fluids feel in place of the forms of one."""
@@ -83,6 +88,8 @@ def in_a_scene(effect, dim):
         ),
         "VolumeBackground": lambda: VolumeBackground(3000.0),
         "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4, 0.2),
+        "SurfaceTension": lambda: TensionOfOne(0.1, 0.1, BLUNT, 1.0),
+        "TensionAmong": lambda: AMONG,
         "LocalPotential": lambda: InDisorder(*neutral_potential(0.5, 50.0, 0.01, dim), 12.5),
     }
     return forms.get(effect.__name__, lambda: made(effect, dim))()
@@ -107,6 +114,7 @@ def crowd(dim):
     """Three fluid particles that differ in everything and run into each other."""
     p = view(n=3, dim=dim)
     inward = tuple(u - 3000.0 * x for u, x in zip(p.velocity, p.position))
+    p = p._replace(fluid=np.array([1.0, 2.0, 1.0]))
     return p._replace(is_fluid=np.ones(3), rubs=np.ones(3), mobile=np.ones(3), velocity=inward)
 
 
@@ -131,10 +139,13 @@ def rates(effect, p):
 
 
 @pytest.mark.parametrize("dim", (1, 2, 3))
-@pytest.mark.parametrize("effect", [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper, *IN_VOLUMES])
+@pytest.mark.parametrize(
+    "effect", [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper, TensionAmong, *IN_VOLUMES]
+)
 def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
     forces, moves = rates(in_a_scene(effect, dim), crowd(dim))
-    assert np.abs(forces).max() + np.abs(moves).max() > 0.0
+    flat = dim == 1 and effect in (SurfaceTension, TensionAmong)  # a point has no tension
+    assert (np.abs(forces).max() + np.abs(moves).max() > 0.0) != flat
     assert np.abs(forces.sum(axis=0)).max() <= 1e-13 * np.abs(forces).max()
 
 
@@ -190,6 +201,10 @@ velocity = [-0.5, 0.2]
 """
 
 
+BETWEEN = {"SurfaceTension": ["fluids.water.interfacial_tension={oil=5.0}"]}
+"""What some ask of two fluids."""
+
+
 def after_steps(folder, scheme, density, overrides, steps=4):
     """Momentum (2,) of a box of two fluids before and after some steps, and what the effects claim."""
     from drafts import draft
@@ -223,6 +238,7 @@ def boxes():
             overrides = [
                 o for text in calling_for(entry) for o in (text, text.replace("fluids.water", "fluids.oil"))
             ]
+            overrides += BETWEEN.get(entry.effect.__name__, [])
             yield entry.effect.__name__, ("sph", 800.0, [*using(entry.effect), *sorted(set(overrides))])
     yield "the stable scheme", ("stable", 800.0, [])
     yield "the stable scheme, a light fluid", ("stable", 200.0, [])

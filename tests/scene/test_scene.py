@@ -131,8 +131,8 @@ viscosity = 1e-4
     made = scene(tmp_path, text)
     sound = {"wave_speed": made.sound_speed, "sound_speed": made.sound_speed}
     assert made.species == (
-        Species("water", Free(), 1000.0, 0.0, pytest.approx(10.0), Linear(), **sound),
-        Species("oil", Free(), 900.0, 1e-4, pytest.approx(9.0), Linear(), **sound),
+        Species("water", Free(), 1000.0, 0.0, pytest.approx(10.0), Linear(), fluid=1, **sound),
+        Species("oil", Free(), 900.0, 1e-4, pytest.approx(9.0), Linear(), fluid=2, **sound),
         Species("tank", Fixed(), 900.0, 1e-4, pytest.approx(9.0), Linear(), solid=1, **sound),
     )
 

@@ -6,6 +6,7 @@ from psph.engine.jit import call_by_type
 from psph.formula import where
 from psph.physics.facts import Facts
 from psph.physics.fluid.several import differ, several
+from psph.physics.surface.tension import same
 
 
 class OneMatter(NamedTuple):
@@ -53,11 +54,28 @@ class SeveralFluids(NamedTuple):
         return i.wave_speed
 
 
-Matter = OneMatter | SeveralMatters | SeveralFluids
+class FluidsUnderTension(NamedTuple):
+    """Density spreads within each fluid, where there is a tension between them: the pressure is not
+    continuous across it, even where they are alike in all else."""
+
+    def alike(self, i, j):
+        """1 between particles of one fluid, or of one and a wall that continues it, else 0."""
+        faster, slower = max(i.wave_speed, j.wave_speed), min(i.wave_speed, j.wave_speed)
+        within = 1.0 - i.is_fluid * j.is_fluid * (1.0 - same(i, j))
+        return where(faster > slower, 0.0, within * (1.0 - differ(i, j)))
+
+    def speed(self, i):
+        """The speed of sound of the particle's own fluid, m/s."""
+        return i.wave_speed
+
+
+Matter = OneMatter | SeveralMatters | SeveralFluids | FluidsUnderTension
 
 
 def matter_of(scene: Facts):
     """Between which particles of a scene density spreads."""
+    if any(any(one.tensions[1:]) for one in scene.species):
+        return FluidsUnderTension()
     if several(scene):
         return SeveralFluids()
     return SeveralMatters() if len({one.wave_speed for one in scene.species}) > 1 else OneMatter()

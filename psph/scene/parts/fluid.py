@@ -1,5 +1,6 @@
 """Fluids as parts of a scene."""
 
+from dataclasses import dataclass
 from typing import Any
 
 from psph.case.fluids import RELAXED
@@ -10,8 +11,12 @@ SHAKEN = 1.0
 back to their rows."""
 
 
+@dataclass(frozen=True)
 class FluidPart(Part):
-    """A fluid."""
+    """A fluid; ``tensions`` in N/m are its surface tension and those between it and each fluid, in their
+    order."""
+
+    tensions: tuple[float, ...] = ()
 
     flows = True
 
@@ -43,5 +48,5 @@ class FluidPart(Part):
         }
 
     def own(self, known: Known) -> dict[str, Any]:
-        """Its number among fluids, which come first."""
-        return {"fluid": 1 + self.number}
+        """Its number among fluids, which come first, and its tensions."""
+        return {"fluid": 1 + self.number, "tensions": self.tensions}

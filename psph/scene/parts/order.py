@@ -7,6 +7,7 @@ import numpy as np
 
 from psph.case import Case
 from psph.case.motion import motion_of
+from psph.case.tensions import tensions_in
 from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
 from psph.physics.motion import Fixed, Free
@@ -79,6 +80,7 @@ def _run(parts: Iterator[Part]) -> range:
 def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     """The parts of a case with this ``gravity``, m/s²."""
     flowing, referred = list(case.flowing), list(referred_in(case))
+    tensions = tensions_in(case)
     found: list[Part] = []
 
     def add(kind: type[Part], name: str, key: str, table, motion, loaded: bool = False, **more: Any) -> None:
@@ -91,7 +93,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         return flowing.index(table.continues) if flowing else 0
 
     for name, fluid in case.fluids.items():
-        add(FluidPart, name, f"fluids.{name}", fluid, Free(), solid=0)
+        add(FluidPart, name, f"fluids.{name}", fluid, Free(), solid=0, tensions=tensions[name])
     for name, soil in case.soils.items():
         add(SoilPart, name, f"soils.{name}", soil, Free(), solid=0)
     for name, solid in updated_in(case).items():

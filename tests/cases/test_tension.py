@@ -1,0 +1,71 @@
+"""Drops under surface tension: their pressure, their currents and momentum, in 2D and 3D, alone and in others."""
+
+import math
+
+import numpy as np
+import pytest
+from drafts import draft
+from gauging import start
+
+DROP = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 4.0
+physics.sound_speed = 10.0
+[fluids.water]
+shape.disc = { center = [0.0, 0.0], radius = 1.0 }
+density = 1.0
+viscosity = 0.1
+pressure = 1.0
+"""
+ALONE = "fluids.water.surface_tension=1.0"
+BALL = (
+    "space={dimensions=3,spacing=0.2}",
+    "fluids.water.shape.disc=off",
+    "fluids.water.shape.ball={center=[0.0,0.0,0.0],radius=1.0}",
+    "fluids.water.pressure=2.0",
+)
+
+
+def immersed(density):
+    """Overrides: the drop in a box of another fluid."""
+    box = "{box={lower=[-2.0,-2.0],upper=[2.0,2.0]}}"
+    return (
+        "space={dimensions=2,spacing=0.1,periodic=['x','y'],lower=[-2.0,-2.0],upper=[2.0,2.0]}",
+        f"fluids.other={{shape={{difference={{from={box},"
+        f"minus=[{{disc={{center=[0.0,0.0],radius=1.0}}}}]}}}},density={density},viscosity=0.1}}",
+        "fluids.water.interfacial_tension={other=1.0}",
+    )
+
+
+def settled(simulation, end):
+    """At that time the mean pressure in the middle of the drop over that beside it, the root mean square of
+    its velocity, its largest radius, and the momentum of all over that of the drop at 1 m/s."""
+    while simulation.time < end:
+        simulation.step()
+    simulation.settle_pressure()
+    store, inner = simulation.store, simulation.store.inner
+    x, v = (np.array(store[name])[:, inner] for name in ("position", "velocity"))
+    p, mass = np.array(store["pressure"])[inner], store.shown("mass")
+    own, r = store.group[inner] == 0, np.linalg.norm(x, axis=0)
+    beside = p[(r > 1.5) & (r < 2.0)]
+    excess = p[own & (r < 0.6)].mean() - (beside.mean() if len(beside) else 0.0)
+    momentum = np.abs((mass * v).sum(axis=1)).max() / (mass * own).sum()
+    return excess, math.sqrt((v[:, own] ** 2).sum(axis=0).mean()), r[own].max(), momentum
+
+
+@pytest.mark.parametrize("around", [(ALONE,), immersed(1.0), immersed(0.001)], ids=("none", "1:1", "1000:1"))
+def test_a_drop_keeps_its_form_and_the_pressure_of_laplace(tmp_path, around):
+    """σ/R and up to a quarter more at ten spacings a radius, since the tension acts one spacing inside."""
+    excess, speed, radius, momentum = settled(start(draft(tmp_path, DROP, *around)), 2.0)
+    assert 1.0 < excess < 1.25 and speed < 0.06 and radius < 1.01 and momentum < 1e-13
+
+
+def test_a_ball_too(tmp_path):
+    excess, speed, radius, momentum = settled(start(draft(tmp_path, DROP, ALONE, *BALL)), 0.5)
+    assert 2.0 < excess < 3.0 and speed < 0.1 and radius < 1.05 and momentum < 1e-13
+
+
+def test_without_tension_it_loses_its_pressure(tmp_path):
+    """The control."""
+    excess, *_ = settled(start(draft(tmp_path, DROP)), 2.0)
+    assert excess < 0.1
