@@ -52,7 +52,13 @@ def settled(simulation, steps):
     return slow, off, slope / -9810.0, (now.max() - y.max()) / DX
 
 
-@pytest.mark.parametrize("ratio, more", [(2.0, ()), (10.0, ()), (1000.0, ()), (10.0, THIRD)])
+DAMPER = ("physics.acoustic_damper={}",)
+"""Its sums in masses blew up at the fourth step."""
+
+
+@pytest.mark.parametrize(
+    "ratio, more", [(2.0, ()), (10.0, ()), (1000.0, ()), (10.0, THIRD), (1000.0, DAMPER)]
+)
 def test_layers_rest(tmp_path, ratio, more):
     """At the time step of one fluid: one speed of sound serves all."""
     density = f"fluids.light.density={1000.0 / ratio}"

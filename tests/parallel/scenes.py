@@ -196,7 +196,7 @@ def scene(family: Family, seed: int) -> str:
         "neighbours": {"skin": _drawn(rng, 0.02, 0.3)},
         "parallel": {"axis": family.along},
         "physics": {"sound_speed": 10.0, **_physics(family, rng)},
-        "fluids": dict(_fluids(family, rng, sizes, OTHERS[seed % len(OTHERS)])),
+        "fluids": dict(_fluids(family, rng, sizes, _other(family, seed))),
         "perturbations": [_perturbation(rng, sizes) for _ in range(rng.integers(0, 3))],
     }
     if files := uses(family.physics):
@@ -331,6 +331,11 @@ def _physics(family: Family, rng) -> dict:
             value = {"frequency": _drawn(rng, *value), "center": [1.0] * family.dimensions}
         found[name] = _drawn(rng, *value) if isinstance(value, tuple) else value
     return found
+
+
+def _other(family: Family, seed: int) -> dict:
+    """Files of remedies sum over masses: they know of one density, or of two that are near each other."""
+    return OTHERS[0 if uses(family.physics) else seed % len(OTHERS)]
 
 
 def _fluids(family: Family, rng, sizes, other: dict):

@@ -10,10 +10,13 @@ from physics.test_effects import written_out
 from psph.physics.damping.acoustic import AcousticDamper, CorrectedDamper
 from psph.physics.fluid.continuity import Continuity
 from psph.physics.fluid.correction import GradientCorrection
+from psph.physics.motion import Free
+from psph.scene.species import Species
 from psph.smoothing import kernel
 
 DIMENSIONS = (1, 2, 3)
 ALPHA, C = 0.3, 50.0
+WATER = Species("water", Free(), 1000.0, 0.0, 1.0, None, sound_speed=C)
 
 
 def crowd(dim, n=8, **fields):
@@ -102,7 +105,8 @@ def test_the_form_follows_the_pressure_gradient_and_the_step_the_coefficient():
         (0.7, "difference", AcousticDamper),
     ):
         physics = SimpleNamespace(gradient_correction=least, pressure_gradient=gradient)
-        assert type(AcousticDamper(0.4).in_scene(SimpleNamespace(physics=physics))) is form
+        scene = SimpleNamespace(physics=physics, species=[WATER])
+        assert type(AcousticDamper(0.4).in_scene(scene)) is form
     shared = {"smoothing_length": H, "sound_speed": C, "spacing": H / 1.4, "dimensions": 2}
     scene = SimpleNamespace(kernel=kernel("wendland-c2", H, 2), **shared)
     assert AcousticDamper(0.25).longest_step(scene) == pytest.approx(0.4 * H / C, rel=0.05)

@@ -19,7 +19,7 @@ from simulation.test_absence import calling_for
 
 from psph.composition.terms import displacement, push, radial, shear
 from psph.fields import filled
-from psph.physics.damping.acoustic import CorrectedDamper
+from psph.physics.damping.acoustic import ByL, CorrectedDamper, VolumeDamper
 from psph.physics.damping.reconstructed import BesideLinearFlow
 from psph.physics.fluid.apparent import ApparentFriction, CentralApparentFriction, FluidAlone
 from psph.physics.fluid.correction import VolumeCorrection
@@ -87,6 +87,7 @@ def in_a_scene(effect, dim):
             3000.0, Mirroring(Steady((None,) * dim))
         ),
         "VolumeBackground": lambda: VolumeBackground(3000.0),
+        "VolumeDamper": lambda: VolumeDamper(0.3, Mirroring(Steady((None,) * dim)), ByL()),
         "ReconstructedDamping": lambda: BesideLinearFlow(0.3, 1e-4, 0.2),
         "SurfaceTension": lambda: TensionOfOne(0.1, 0.1, BLUNT, 1.0),
         "TensionAmong": lambda: AMONG,
@@ -140,7 +141,8 @@ def rates(effect, p):
 
 @pytest.mark.parametrize("dim", (1, 2, 3))
 @pytest.mark.parametrize(
-    "effect", [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper, TensionAmong, *IN_VOLUMES]
+    "effect",
+    [*claiming(MOMENTUM), CorrectedRub, CorrectedDamper, VolumeDamper, TensionAmong, *IN_VOLUMES],
 )
 def test_forces_between_different_particles_sum_up_to_nothing(effect, dim):
     forces, moves = rates(in_a_scene(effect, dim), crowd(dim))

@@ -1,14 +1,16 @@
 """A bulk viscosity: sound fades, and a flow that keeps its volume does not feel it."""
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field
 
+from psph.engine.jit import call_by_type
 from psph.fields import Field as Declared
 from psph.fields import Same
 from psph.moments import fastest_wave
 from psph.physics.facts import Facts
 from psph.physics.fluid.pressure import is_corrected
+from psph.physics.fluid.several import Facing, facing_of, in_volumes, several, shares
 from psph.vectors import add, dot, scale, times
 
 STABLE = 0.6
@@ -37,7 +39,9 @@ class AcousticDamper(NamedTuple):
     lagged = True
 
     def in_scene(self, scene: Facts):
-        """With corrected gradients, the form that has them."""
+        """With corrected gradients, and for several fluids, the form that has them."""
+        if several(scene):
+            return VolumeDamper(self.alpha, facing_of(scene), ByL() if is_corrected(scene) else AsTheyAre())
         return CorrectedDamper(self.alpha) if is_corrected(scene) else self
 
     def start(self, i):
@@ -95,3 +99,58 @@ class CorrectedDamper(NamedTuple):
         both = add(scale(i.gradient_correction, q_i), scale(j.gradient_correction, q_j))
         whole = add(scale(pair.x_ij, q_i + q_j), times(both, pair.x_ij))
         return scale(whole, -pair.m_dw_r)
+
+
+class AsTheyAre(NamedTuple):
+    """Gradients without a correction."""
+
+    def turned(self, i, x):
+        """x, m."""
+        return x
+
+
+class ByL(NamedTuple):
+    """Corrected gradients."""
+
+    def turned(self, i, x):
+        """L_i x, m."""
+        return add(x, times(i.gradient_correction, x))
+
+
+turned = call_by_type("turned")
+"""(gradients, i, x) → what stands for x in the gradient of the kernel that i takes, m."""
+
+
+class VolumeDamper(NamedTuple):
+    """A pressure against the rate of compression, in fluids of several densities.
+
+    As :class:`AcousticDamper`, with dρ_i/dt = ρ_i Σ_j V_j θ_ij u_ij·L_i∇W_ij and
+    a_i = −1/ρ_i Σ_j V_j (θ_ij q_i L_i + θ_ji q_j L_j) ∇W_ij (psph.physics.fluid.several); ``gradients`` say
+    whether there is an L.  It conserves momentum.
+    """
+
+    conserves = ("momentum",)
+    brakes = True
+
+    alpha: float
+    facing: Facing
+    gradients: Any
+
+    writes = AcousticDamper.writes
+    lagged = True
+
+    start = AcousticDamper.start
+    finish_value = AcousticDamper.finish_value
+    longest_step = AcousticDamper.longest_step
+
+    def gather(self, total, i, j, pair):
+        """Add a neighbour's share of dρ_i/dt."""
+        share = shares(self.facing, i, j)[0] * (j.specific_volume / i.specific_volume)
+        return total + dot(pair.u_ij, turned(self.gradients, i, pair.x_ij)) * (share * pair.m_dw_r)
+
+    def push(self, i, j, pair):
+        """Acceleration, m/s²."""
+        theta_ij, theta_ji = shares(self.facing, i, j)
+        own = scale(turned(self.gradients, i, pair.x_ij), theta_ij * i.compression)
+        other = scale(turned(self.gradients, j, pair.x_ij), theta_ji * j.compression)
+        return scale(add(own, other), -in_volumes(i, j, pair))

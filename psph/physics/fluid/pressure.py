@@ -31,6 +31,9 @@ AUTO = "auto"
 MARGIN = 1.4
 """Such a pressure over what the scene is known to need."""
 
+BORNE = 0.1
+"""The same over ρ₀c² of the softest of several fluids, at most: at 1.0 its particles lose their order."""
+
 
 EDGE = 0.9
 """Kernel sum below which a particle is at a surface: the last row of a square lattice has 0.73 to
@@ -226,7 +229,10 @@ class BackgroundPressure(NamedTuple):
             return None
         dip = 0.5 * max(m.density for m in scene.species) * scene.starting_speed**2
         lacking = scene.standing_tension if is_corrected(scene) else max(-scene.lowest_pressure, dip)
-        return MARGIN * lacking if lacking > 0.0 else None
+        if lacking <= 0.0:
+            return None
+        softest = min(one.density * one.sound_speed**2 for one in scene.species)
+        return min(MARGIN * lacking, BORNE * softest) if several(scene) else MARGIN * lacking
 
     def why_absent(self, scene: Facts):
         """Why "auto" gives none."""
