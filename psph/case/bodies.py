@@ -89,6 +89,14 @@ class Body(Placed):
     lines: dict[Name, Line] = key("springs, dampers and mooring lines by name", {})
     no_slip: bool = key("the fluid has the body's velocity at its face; needs a viscosity", False)
     condition: Literal[BEARING] = key("how it acts on the fluid, as the condition of a wall", DYNAMIC)
+    contact_angle: float | None = key(
+        "angle at which surfaces of fluids meet it, measured through the heavier one; needs a tension",
+        None,
+        unit="degrees",
+        otherwise="90",
+        gt=0,
+        lt=180,
+    )
     continues: Name | None = key(
         "the fluid whose density and initial pressure its particles have",
         None,

@@ -8,8 +8,12 @@ from psph.case.corners import present
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.physics.surface.tension import SurfaceTension
+from psph.physics.walls.conditions import MIRROR
 
 KEY = "interfacial_tension"
+
+UPRIGHT = 90.0
+"""Degrees between a surface and what it meets where nothing else is told."""
 
 
 def tensions_in(case) -> dict[str, tuple[float, ...]]:
@@ -38,6 +42,7 @@ def tension_findings(case) -> Iterator[Finding]:
             again = getattr(case.fluids[other], KEY).get(name, value)
             if again != value:
                 yield loc, value, f"fluids.{other}.{KEY}.{name} is {again:g}; remove one of the two"
+    yield from _angles(case)
     if not any(_asked(case)):
         return
     loc, told = next(_asked(case)), dict(_told(case))
@@ -50,6 +55,17 @@ def tension_findings(case) -> Iterator[Finding]:
     for corner, says in refusals(SurfaceTension).items():
         if corner in present(case):
             yield loc, ..., says
+
+
+def _angles(case) -> Iterator[Finding]:
+    """Contact angles where there is no tension, or nothing that could pull."""
+    for entry in (one for one in case.entries if one.of.rigid and one.of.contact_angle is not None):
+        loc, angle = (*entry.loc, "contact_angle"), entry.of.contact_angle
+        if not any(_asked(case)):
+            yield loc, angle, "no fluid has a tension; give fluids.NAME.surface_tension, or remove this key"
+        elif entry.of.condition == MIRROR and angle != UPRIGHT:
+            says = "surfaces meet a mirror at 90 degrees; take another condition, or remove this key"
+            yield loc, angle, says
 
 
 def _asked(case) -> Iterator[tuple[str, ...]]:

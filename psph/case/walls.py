@@ -45,6 +45,14 @@ class Wall(Placed):
         None,
         otherwise="the first fluid, or soil",
     )
+    contact_angle: float | None = key(
+        "angle at which surfaces of fluids meet it, measured through the heavier one; needs a tension",
+        None,
+        unit="degrees",
+        otherwise="90",
+        gt=0,
+        lt=180,
+    )
     displaces: bool = key("it replaces fluid and soil where they overlap at the start, as a body does", False)
 
     called: ClassVar = "wall"

@@ -40,6 +40,7 @@ from psph.physics.solid.contact import SolidContact
 from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
 from psph.physics.stress.faces import SmoothFace
 from psph.physics.stress.strength import Strength
+from psph.physics.surface.contact import ContactAngle, ContactLine
 from psph.physics.surface.free import FreeSurface, TensionFloor
 from psph.physics.surface.tension import SurfaceTension
 from psph.physics.walls.conditions import EXTRAPOLATED, PENALTY, REPULSIVE
@@ -129,6 +130,8 @@ CATALOGUE = (
     Entry("physics.laplacian_friction", LaplacianFriction),
     Entry("fluids.*.rheology", ApparentViscosity),
     Entry("fluids.*.surface_tension|fluids.*.interfacial_tension", SurfaceTension),
+    Entry("fluids.*.surface_tension|fluids.*.interfacial_tension", ContactLine),
+    Entry("walls.*.contact_angle", ContactAngle),
     Entry("walls.*.no_slip", NoSlip),
     Entry("walls.*.continues", DryWall),
     Entry(f"walls.*.condition={EXTRAPOLATED}", ExtrapolatedWall),

@@ -31,7 +31,8 @@ class Species(NamedTuple):
     number of particles that fill a cell of the lattice, more than 1 in a solid of a finer spacing;
     ``sound_speed`` in m/s is the numerical one; ``fluid`` is the number of a fluid among those of the case
     from 1 on, 0 of what is none, and ``tensions`` in N/m are first its surface tension and then those between
-    it and each fluid, in this order; empty where the case tells none.
+    it and each fluid, in this order; empty where the case tells none; ``wetting`` is the cosine of the angle
+    at which surfaces of fluids meet a wall or a body.
     """
 
     name: str
@@ -58,6 +59,7 @@ class Species(NamedTuple):
     sound_speed: float = 0.0
     fluid: int = 0
     tensions: tuple[float, ...] = ()
+    wetting: float = 0.0
 
     @property
     def inertia(self) -> float:

@@ -15,6 +15,8 @@ shape.disc = { center = [1.0, 1.0], radius = 0.5 }
 shape.disc = { center = [2.0, 2.0], radius = 0.5 }
 """
 AIR = "fluids.air={shape={disc={center=[1.0,2.0],radius=0.3}}}"
+WALL = "walls.side={shape={box={lower=[0.0,0.0],upper=[3.0,0.3]}}}"
+MIRROR = "walls.side={shape={box={lower=[0.0,0.0],upper=[3.0,0.3]}},condition='mirror'}"
 BETWEEN = "fluids.water.interfacial_tension={oil=0.03}"
 
 
@@ -71,6 +73,20 @@ def test_each_fluid_knows_its_own_and_those_of_its_pairs(tmp_path):
                 "friction_angle=30.0,geostatic=false}",
             ),
             "fluids.water.interfacial_tension: surface tension knows no soil",
+        ),
+        (
+            (WALL, "walls.side.contact_angle=60.0"),
+            "walls.side.contact_angle: 60.0: no fluid has a tension; give fluids.NAME.surface_tension, or remove "
+            "this key",
+        ),
+        (
+            (BETWEEN, WALL, "walls.side.contact_angle=180.0"),
+            "walls.side.contact_angle: 180.0 is out of range",
+        ),
+        (
+            (BETWEEN, MIRROR, "walls.side.contact_angle=60.0"),
+            "walls.side.contact_angle: 60.0: surfaces meet a mirror at 90 degrees; take another condition, or "
+            "remove this key",
         ),
     ],
 )

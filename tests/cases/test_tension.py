@@ -7,6 +7,8 @@ import pytest
 from drafts import draft
 from gauging import start
 
+from psph.physics.surface.contact import ContactLine
+
 DROP = """
 space = { dimensions = 2, spacing = 0.1 }
 time.end = 4.0
@@ -69,3 +71,50 @@ def test_without_tension_it_loses_its_pressure(tmp_path):
     """The control."""
     excess, *_ = settled(start(draft(tmp_path, DROP)), 2.0)
     assert excess < 0.1
+
+
+HALF = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 4.0
+physics.sound_speed = 10.0
+[fluids.water]
+shape.difference.from.disc = { center = [0.0, 0.0], radius = 1.0 }
+shape.difference.minus = [{ box = { lower = [-2.0, -2.0], upper = [2.0, 0.0] } }]
+density = 1.0
+viscosity = 0.2
+pressure = 1.0
+surface_tension = 1.0
+[walls.floor]
+shape.box = { lower = [-3.0, -0.4], upper = [3.0, 0.0] }
+"""
+
+
+def angle(simulation, dx=0.1):
+    """The contact angle of a drop of the form of a cap, degrees: by its height over half of its base."""
+    x = np.array(simulation.store["position"])[:, simulation.store.inner]
+    x = x[:, simulation.store.group[simulation.store.inner] == 0]
+    foot = x[0, x[1] < dx]
+    height = x[1].max() + 0.5 * dx
+    return math.degrees(2.0 * math.atan(height / (0.5 * (np.ptp(foot) + dx))))
+
+
+@pytest.mark.parametrize(
+    "told, least, most", ((None, 85.0, 100.0), (60.0, 55.0, 72.0), (120.0, 112.0, 130.0))
+)
+def test_a_drop_on_a_wall_meets_it_at_the_angle_of_the_case(tmp_path, told, least, most):
+    keys = [f"walls.floor.contact_angle={told}"] if told else []
+    simulation = start(draft(tmp_path, HALF, *keys))
+    while simulation.time < 4.0:
+        simulation.step()
+    assert least < angle(simulation) < most
+
+
+def test_without_its_hold_on_walls_a_drop_is_lifted_off(tmp_path, monkeypatch):
+    """The control."""
+    monkeypatch.setattr(ContactLine, "in_scene", lambda self, scene: None)
+    simulation = start(draft(tmp_path, HALF))
+    while simulation.time < 2.0:
+        simulation.step()
+    store = simulation.store
+    own = store.group[store.inner] == 0
+    assert np.array(store["position"])[1, store.inner][own].min() > 0.3

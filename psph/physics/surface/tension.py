@@ -250,7 +250,7 @@ def blunt_kernel(kernel, spacing: float, dimensions: int) -> Blunt:
     inverse = (kernel.inverse_h / kernel.support) ** 2
     made = Blunt(1.0, inverse, (NOISE / spacing) ** 2)
     r2 = _squares(kernel, spacing, dimensions)
-    return made._replace(steep=1.0 / float((r2 * _by_r2(made, r2)).sum() * spacing**dimensions))
+    return made._replace(steep=1.0 / float((r2 * by_r2(made, r2)).sum() * spacing**dimensions))
 
 
 def flat_surface(of: Blunt, kernel, spacing: float, dimensions: int) -> tuple[float, float]:
@@ -262,7 +262,7 @@ def flat_surface(of: Blunt, kernel, spacing: float, dimensions: int) -> tuple[fl
     sites = np.array([*sites_around(kernel, spacing, dimensions)], float) * spacing
     r2, volume = (sites**2).sum(axis=1), spacing**dimensions
     slopes = np.array([float(slope_over_r(kernel, r, 1.0 / r)) for r in np.sqrt(r2)])
-    weights, tension, vectors = _by_r2(of, r2), 0.0, 0.0
+    weights, tension, vectors = by_r2(of, r2), 0.0, 0.0
     for depth in range(round(sites.max() / spacing) + 1):
         below = sites[:, -1] < (depth + 0.5) * spacing
         normal = -volume * (slopes[below, None] * sites[below]).sum(axis=0)
@@ -278,7 +278,7 @@ def _squares(kernel, spacing: float, dimensions: int) -> np.ndarray:
     return (sites**2).sum(axis=1)
 
 
-def _by_r2(of: Blunt, r2: np.ndarray) -> np.ndarray:
+def by_r2(of: Blunt, r2: np.ndarray) -> np.ndarray:
     """k at these r², m^-(d+2)."""
     return of.steep * (1.0 - np.minimum(r2 * of.inverse, 1.0) ** 3)
 

@@ -1,5 +1,6 @@
 """Walls and rigid bodies as parts of a scene: what flows and what is elastic runs into them."""
 
+import math
 from typing import Any
 
 from psph.scene.parts.part import Known, Part
@@ -18,6 +19,7 @@ class RigidPart(Part):
             "no_slip": self.table.no_slip,
             "condition": self.table.condition,
             "wave_modulus": max(known.wave_moduli, default=0.0),
+            "wetting": math.cos(math.radians(self.table.contact_angle)) if self.table.contact_angle else 0.0,
         }
 
 
