@@ -118,3 +118,24 @@ def test_without_its_hold_on_walls_a_drop_is_lifted_off(tmp_path, monkeypatch):
     store = simulation.store
     own = store.group[store.inner] == 0
     assert np.array(store["position"])[1, store.inner][own].min() > 0.3
+
+
+BOUNDS = "space={{dimensions=2,spacing=0.1,lower=[{},-2.0],upper=[2.0,2.0]{}}}"
+HALVED = (
+    BOUNDS.format("0.0", ",symmetry=['x.lower']"),
+    "fluids.water.shape.disc=off",
+    "fluids.water.shape.difference={from={disc={center=[0.0,0.0],radius=1.0}},"
+    "minus=[{box={lower=[-2.0,-2.0],upper=[0.0,2.0]}}]}",
+)
+
+
+def test_half_a_drop_before_a_plane_of_symmetry_moves_as_a_whole_one(tmp_path):
+    found = []
+    for keys in ((BOUNDS.format("-2.0", ""),), HALVED):
+        simulation = start(draft(tmp_path, DROP, ALONE, *keys))
+        for _ in range(40):
+            simulation.step()
+        x = np.array(simulation.store["position"])[:, simulation.store.inner]
+        x = x[:, x[0] > 0.0]
+        found.append(x[:, np.lexsort(np.round(x, 6))])
+    assert np.abs(found[0] - found[1]).max() < 1e-13
