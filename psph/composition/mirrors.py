@@ -270,9 +270,12 @@ def _typed_image_of(reflection, i, j):
 def _seen(view, widths: tuple[int, ...], rules: dict[str, type]):
     """The function (reflection, i, j) → the image of a ``view`` j whose entries have so many components."""
     dimensions = widths[view._fields.index("position")]
+    told = dict(zip(view._fields, widths))
+    # Of one matter no loop need read them of a neighbour; of several each image is of its own.
+    known = all(told.get(name, ABSENT) != ABSENT and rules[name] is not type(None) for name in OF_COLUMN)
     parts = (
-        f"j.{name}" if width == ABSENT else _text(name, rules[name], width, dimensions)
-        for name, width in zip(view._fields, widths)
+        f"j.{name}" if width == ABSENT else _text(name, rules[name], width, dimensions, "ij"[known])
+        for name, width in told.items()
     )
     return unrolled(
         "reflection, i, j",
@@ -284,8 +287,9 @@ def _seen(view, widths: tuple[int, ...], rules: dict[str, type]):
     )
 
 
-STILL = "weight(reflection, i, j)"
-SQUARED = "(i.sound_speed * i.sound_speed)"
+OF_COLUMN = ("rest_density", "sound_speed")
+STILL = "weight(reflection, {of}, j)"
+SQUARED = "({of}.sound_speed * {of}.sound_speed)"
 
 OF_NUMBERS = {
     Same: "j.{name}",
@@ -304,20 +308,21 @@ OF_COMPONENTS = {
     VelocityGradient: "reflection.turn_velocity[{d}] * reflection.turn[{e}] * j.{name}[{n}]",
     StrainRate: "reflection.turn_strain[{n}] * j.{name}[{n}]",
     Stress: "reflection.turn_stress[{n}] * j.{name}[{n}]",
-    StressUnderWeight: "steeper(reflection, i, j) * (reflection.turn_stress[{n}] * j.{name}[{n}])",
-    StillSlope: "reflection.turn[{d}] * j.{name}[{n}] + slope(reflection, i)[{d}]",
+    StressUnderWeight: "steeper(reflection, {of}, j) * (reflection.turn_stress[{n}] * j.{name}[{n}])",
+    StillSlope: "reflection.turn[{d}] * j.{name}[{n}] + slope(reflection, {of})[{d}]",
 }
 """How it has component n of a vector along axis d, or of a matrix of axes d and e."""
 
 
-def _text(name: str, rule: type, width: int, dimensions: int) -> str:
-    """How an image has the entry ``name``, of ``width`` components, or 0 for a number, by a ``rule``."""
+def _text(name: str, rule: type, width: int, dimensions: int, of: str) -> str:
+    """How an image has the entry ``name``, of ``width`` components, or 0 for a number, by a ``rule``; ``of``
+    is which of i and j a still column is made of."""
     axes = range(dimensions)
     if rule is type(None):  # nobody reads it of a neighbour: psph.simulation.reading
         return "None"
     if not width:
         least = f"min({', '.join(f'reflection.turn[{d}]' for d in axes)})"
-        return OF_NUMBERS[rule].format(name=name, least=least)
+        return OF_NUMBERS[rule].format(name=name, least=least, of=of)
     shapes: dict[int, list[tuple[int, ...]]] = {
         dimensions: [(d,) for d in axes],
         dimensions * (dimensions + 1) // 2: [(d, e) for d in axes for e in axes if d <= e],
@@ -325,7 +330,7 @@ def _text(name: str, rule: type, width: int, dimensions: int) -> str:
     }
     parts = (
         OF_COMPONENTS[rule].format(
-            name=name, n=n, d=at[0], e=at[-1], turn=" * ".join(f"reflection.turn[{d}]" for d in at)
+            name=name, n=n, d=at[0], e=at[-1], of=of, turn=" * ".join(f"reflection.turn[{d}]" for d in at)
         )
         for n, at in enumerate(shapes[width])
     )
@@ -333,9 +338,9 @@ def _text(name: str, rule: type, width: int, dimensions: int) -> str:
 
 
 @register_jitable
-def weight_behind(reflection, i, j):
-    """By how much the pressure of a still column is higher at the image than at j itself, Pa."""
-    return i.rest_density * along(_way(reflection, j), reflection.gravity)
+def weight_behind(reflection, of, j):
+    """By how much the pressure of a still column, made as ``of`` is, is higher at the image than at j, Pa."""
+    return of.rest_density * along(_way(reflection, j), reflection.gravity)
 
 
 STEEPEST = 3.0
@@ -346,13 +351,13 @@ NO_PRESSURE = 1e-30
 
 
 @register_jitable
-def steeper_behind(reflection, i, j):
+def steeper_behind(reflection, of, j):
     """By what a stress grows from j to its image with the weight of a still column, where a plane sticks.
 
     (p′ + T)/(p + T) of pressures above 0, T the mean tension at which there is no strength left.
     """
     own = max(j.pressure, 0.0) + j.cone_tip
-    seen = max(j.pressure + weight_behind(reflection, i, j), 0.0) + j.cone_tip
+    seen = max(j.pressure + weight_behind(reflection, of, j), 0.0) + j.cone_tip
     return 1.0 + reflection.sticks * (min(seen / (own + NO_PRESSURE), STEEPEST) - 1.0)
 
 

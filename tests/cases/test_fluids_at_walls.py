@@ -100,3 +100,11 @@ def test_walls_without_pressure_do_not_mirror(tmp_path, monkeypatch):
     with pytest.raises(BlowUp):
         for _ in range(700):
             simulation.step()
+
+
+def test_the_image_of_a_fluid_is_that_of_its_own_column(tmp_path):
+    """Behind a mirror across a part of gravity: with the weight of the water the image of air had a density below
+    nothing, and the water before it 1e24 m/s²."""
+    keys = ("fluids.light.density=1.0", "physics.gravity=[3.0,-9.81]", "physics.sound_speed=20.0")
+    simulation = start(draft(tmp_path, LAYERS, *keys, "walls.tank.condition=mirror"))
+    assert 1.0 < simulation.acceleration < 2000.0

@@ -134,6 +134,7 @@ TWO = {
     "water": water(shape=box((0.0, 0.0), (1.5, 0.5)), viscosity=0.02),
     "oil": water(shape=box((0.0, 0.5), (1.5, 1.0)), density=600.0, viscosity=0.1),
 }
+AIR = {"water": TWO["water"], "air": TWO["oil"] | {"density": 1.0}}
 DISC = {"shape": {"disc": {"center": [0.75, 0.5], "radius": 0.3}}, "density": 700.0}
 SWING = {"sinusoid": {"angle": 0.2, "frequency": 2.0, "center": [0.7, 0.3], "phase": 0.5}}
 SWAY = {"translation": {"velocity": [0.7, 0.4]}, "ramp": 0.05}
@@ -147,6 +148,9 @@ SCENES = {
         perturbations=shifts(*WATER),
     ),
     "two fluids": poured({"tank": tank(no_slip=True)}, TWO),
+    "air": poured({"tank": tank(no_slip=True)}, AIR),
+    "air between mirrors": poured({"tank": tank(condition="mirror")}, AIR),
+    "rocked air": poured({"tank": tank(motion=[SWING, SWAY])}, AIR),
     "tank": poured({"tank": tank()}),
     "plain": poured({"tank": tank()}, scheme="sph"),
     "sticky tank": poured({"tank": tank(no_slip=True)}, {"water": water(viscosity=0.1)}),
