@@ -12,11 +12,12 @@ SCALAR, VECTOR, SYMMETRIC, MATRIX, AXIAL = "scalar", "vector", "symmetric", "mat
 """Shapes of a field: a number, one number per axis, a symmetric matrix (its rows from the diagonal
 on), a full matrix by rows, one number per axis of rotation (in 2D z, in 3D x, y, z)."""
 
-FLUID, WALL, SOLID, OTHER = 0, 1, 2, 3
+FLUID, WALL, SOLID, OTHER, BUFFER = 0, 1, 2, 3, 4
 """Values of ``kind``: a fluid particle moves freely, a wall particle does not, a solid one is held by its
-neighbours of the start, another one is moved by the work of a kind of matter (psph.kinds)."""
+neighbours of the start, another one is moved by the work of a kind of matter (psph.kinds), that of a buffer
+is fluid behind an open end."""
 
-KINDS = ("fluid", "wall", "solid", "other")
+KINDS = ("fluid", "wall", "solid", "other", "buffer")
 """Their names, in this order."""
 
 
@@ -207,7 +208,7 @@ per the same."""
 
 IDENTITY = (
     Field("id", "1", "number of the particle, unique and constant", saved=True),
-    Field("kind", "1", "0 fluid, 1 wall, 2 elastic solid", saved=True),
+    Field("kind", "1", "0 fluid, 1 wall, 2 elastic solid, 3 other, 4 buffer of an open end", saved=True),
     Field("group", "1", "number of its fluid, solid or wall, in the order of the case", saved=True),
 )
 """Whole numbers that stand beside the fields."""

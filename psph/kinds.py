@@ -19,6 +19,7 @@ CATALOGUE = (
     "psph.matter.body:RigidBodies",
     "psph.matter.wall:Walls",
     "psph.matter.region:Regions",
+    "psph.matter.end:OpenEnds",
 )
 """Module and class of each kind that psph has, in the order in which they are asked.  They are named here and
 imported when a scene is there, since they stand above all that asks them."""
@@ -136,6 +137,10 @@ class Work:
         ``poses`` (psph.simulation.poses) are those of rigid motions."""
         yield from ()
 
+    def passed(self) -> Iterator[str]:
+        """Lines at the end of a run: what has come into the domain and gone out of it."""
+        yield from ()
+
     def booked(self) -> Sequence[float]:
         """The values of the columns that its kind adds to log.csv; the same bits on any number of ranks."""
         return ()
@@ -215,7 +220,8 @@ class Kind:
 
     @classmethod
     def driven_speed(cls, census: Any) -> float:
-        """The most that gravity along periodic axes can make of its speed by the end of the run, m/s."""
+        """The most that gravity along periodic axes, or what drives it else, can make of its speed by the end
+        of the run, m/s."""
         return 0.0
 
     @classmethod
@@ -287,6 +293,11 @@ class Kind:
         """Whether the rate of density may be summed at the middle of a step (psph.simulation.midway): its
         particles stand there too, since they move by rates of the engine or by poses."""
         return False
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """What its work reads of neighbours of what materials fix (psph.fields.OF_MATERIAL)."""
+        return ()
 
     def renews(self, passes: Sequence) -> tuple[str, ...]:
         """Fields that its work fills anew just before the ``passes`` over neighbours are summed."""

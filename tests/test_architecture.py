@@ -60,6 +60,7 @@ LATE = {
     "psph/case/loader.py": 5,
     "psph/lab/bench/command.py": 1,
     "psph/matter/body.py": 1,
+    "psph/matter/end.py": 1,
     "psph/matter/solid.py": 5,
     "psph/matter/wall.py": 1,
     "psph/output/export/command.py": 5,
@@ -270,15 +271,15 @@ ROOMS = (
     "matter/",
     *(
         f"case/{room}"
-        for room in ("bodies", "fluids", "hooke", "regions", "soils", "solids", "tensions", "updated")
+        for room in ("bodies", "ends", "fluids", "hooke", "regions", "soils", "solids", "tensions", "updated")
     ),
     *(f"scene/{room}" for room in ("fluid/", "bod", "regions", "soils", "solid", "stressed", "volumes")),
-    *(f"scene/{room}" for room in ("answering", "calming")),
-    *(f"scene/parts/{room}" for room in ("fluid", "hookean", "order", "rigid", "soil", "solid")),
+    *(f"scene/{room}" for room in ("answering", "calming", "ends")),
+    *(f"scene/parts/{room}" for room in ("end", "fluid", "hookean", "order", "rigid", "soil", "solid")),
     *("physics/rigid/bod", "physics/rigid/contact", "physics/rigid/lines", "physics/rigid/pushes"),
     *("physics/solid/", "physics/stress/", "physics/region"),
     *(f"simulation/{room}" for room in ("solid", "immersion", "pressed", "floating", "touching", "meetings")),
-    *(f"simulation/{room}" for room in ("clamps", "obstacles", "paddles", "wet_contact")),
+    *(f"simulation/{room}" for room in ("clamps", "end", "obstacles", "paddles", "wet_contact")),
     *("particles/others", "particles/partners", "parallel/reference", "parallel/partner"),
     *(f"output/gauges/{room}" for room in ("motion", "reaction", "stress")),
     *("lab/battery/solid", "lab/bench/lammps_solid", "lab/bench/block"),

@@ -46,7 +46,7 @@ def files_of(case) -> list[tuple[str, Path]]:
     folder, drawn = Path(case.file).parent, (mesh.file for mesh in case.meshes.values())
     measured = (one.file for one in case.experiments.values() if lies_in(folder, one.file))
     used = (name for name in case.use if not name.startswith(PYTHON))
-    names = dict.fromkeys([*used, *(series.file for series in case.series), *drawn, *measured])
+    names = dict.fromkeys([*used, *(one.file for one in (*case.series, *case.courses)), *drawn, *measured])
     return [(name, folder / name) for name in names]
 
 

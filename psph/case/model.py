@@ -10,6 +10,7 @@ import tomli_w
 from pydantic import PrivateAttr, Strict, ValidationError, model_validator
 
 from psph.case.consistency import contradictions, walk
+from psph.case.courses import Columned
 from psph.case.errors import dotted
 from psph.case.extensions import versions
 from psph.case.findings import keys_one_sided
@@ -152,6 +153,11 @@ class Case(WithMatter):
         return {(*loc, "motion"): parts for loc, parts in motions.items() if parts}
 
     @cached_property
+    def courses(self) -> list[Columned]:
+        """The columns of files that the case gives over time or a place."""
+        return [value for _, value in walk(self) if isinstance(value, Columned)]
+
+    @cached_property
     def meshes(self) -> dict[str, Mesh]:
         """The shapes that geometry files draw, by their dotted keys."""
         return {dotted(loc): value for loc, value in walk(self) if isinstance(value, Mesh)}
@@ -159,7 +165,7 @@ class Case(WithMatter):
     @property
     def versions(self) -> list[str]:
         """A word for each file that the case uses: another content gives another word."""
-        named = (*self.series, *self.meshes.values())
+        named = (*self.series, *self.courses, *self.meshes.values())
         return [*versions(self.catalogue), *(one.found.digest for one in named)]
 
     @cached_property

@@ -5,10 +5,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from mpi4py import MPI
 
-from psph.fields import FLUID, WALL
+from psph.fields import BUFFER, FLUID, WALL
 from psph.parallel.reductions import Contribution, exact_sums
 from psph.particles.store import Store
 from psph.rows import projected
+
+LED = (WALL, BUFFER)
+"""Kinds of particles that forces do not move."""
 
 
 def columns(dimensions: int, of_kinds: Sequence[str] = ()) -> list[str]:
@@ -33,7 +36,7 @@ def logged(store: Store, gravity: Sequence[float], potential: np.ndarray | float
 
     ``potential`` φ (n,), J/kg, is that of other forces than ``gravity``.
     """
-    flows, moves = store.kinds == FLUID, store.kinds != WALL
+    flows, moves = store.kinds == FLUID, ~np.isin(store.kinds, LED)
     moved = _members(store, moves)
     fluid = moved if (flows == moves).all() else _members(store, flows)
     mass, speeds = (_of(store, name, moved) for name in (_inert(store), "velocity"))
@@ -87,7 +90,7 @@ def total_energy(
     )
     with np.errstate(invalid="ignore", divide="ignore"):
         stored = compressed(store.shown("density"), store.shown("rest_density"))
-    moves = (store.shown("kind") != WALL) & ~led[store.shown("group")]
+    moves = ~np.isin(store.shown("kind"), LED) & ~led[store.shown("group")]
     moving = store.shown(_inert(store)) * np.where(moves, moved + potential, 0.0)
     energy = moving + store.shown("mass") * stored
     return float(exact_sums(comm, energy[:, None])[0])
@@ -101,7 +104,7 @@ def work_done(comm: MPI.Comm, store: Store) -> float:
 
 def moving_mass(comm: MPI.Comm, store: Store) -> float:
     """Mass of fluids and solids, kg; the same bits on any number of ranks, collective."""
-    mass = np.where(store.shown("kind") != WALL, store.shown(_inert(store)), 0.0)
+    mass = np.where(np.isin(store.shown("kind"), LED), 0.0, store.shown(_inert(store)))
     return float(exact_sums(comm, mass[:, None])[0])
 
 

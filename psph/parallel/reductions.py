@@ -129,3 +129,8 @@ def whole_sums(comm: MPI.Comm, values: np.ndarray) -> np.ndarray:
 def wrapped_sums(comm: MPI.Comm, values) -> list[int]:
     """Sums of whole numbers below 2⁶⁴ over all ranks, modulo 2⁶⁴; collective."""
     return _over_ranks(comm, np.array(values, dtype=np.uint64), MPI.SUM).tolist()
+
+
+def all_rows(comm: MPI.Comm, rows: np.ndarray) -> np.ndarray:
+    """The ``rows`` (n, k) of all ranks, one rank after the other; collective."""
+    return np.concatenate(comm.allgather(rows)) if comm.size > 1 else rows

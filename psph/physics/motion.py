@@ -15,7 +15,7 @@ Neither is integrated, so that particles never drift from where they belong, how
 
 from typing import NamedTuple
 
-from psph.fields import AXIAL, FLUID, MATRIX, OTHER, VECTOR, WALL, Field, Turned, VelocityGradient
+from psph.fields import AXIAL, BUFFER, FLUID, MATRIX, OTHER, VECTOR, WALL, Field, Turned, VelocityGradient
 
 ANCHOR = Field("anchor", "m", "place at time zero, of particles whose motion is prescribed", VECTOR)
 
@@ -56,6 +56,7 @@ class Free(NamedTuple):
     """Particles move as forces have them."""
 
     kind = FLUID
+    flows = True
     goes_free = True
     is_free = True
 
@@ -64,6 +65,13 @@ class Fixed(NamedTuple):
     """Particles stay where they are."""
 
     kind = WALL
+
+
+class Buffered(NamedTuple):
+    """Particles stand behind an open end and go as that says (psph.matter.end)."""
+
+    kind = BUFFER
+    flows = True
 
 
 class OfItsKind(NamedTuple):
@@ -79,6 +87,11 @@ FREE, FIXED, RIGID, PRESCRIBED = 0, 1, 2, 3
 def is_free(motion) -> bool:
     """Whether forces move particles."""
     return getattr(motion, "is_free", False)
+
+
+def flows(motion) -> bool:
+    """Whether what moves so is fluid to its neighbours."""
+    return getattr(motion, "flows", False)
 
 
 def goes_free(motion) -> bool:

@@ -87,6 +87,8 @@ class Guards:
                 f"{count:,} fluid particles have left the walls, over a rim or through a gap: they are "
                 "a spacing or more below or beside them"
             )
+        for kind in self.simulation.engine.kinds:
+            yield from kind.passed()
         if self.scene.layout.parts.walls:
             for kind in self.simulation.engine.kinds:
                 yield from kind.summary(self.simulation.engine.poses, *self._around)

@@ -165,7 +165,7 @@ def _site_faults(scene: Scene) -> Iterator[str]:
             yield f"{part.key}: holds no particle of the solid; let the shapes meet"
         elif not size and any(census.sizes[n] for n in parts.of_whole(part.number)):
             yield f"{part.key}: its clamps hold all of it; leave a part of it free"
-        elif not size:
+        elif not size and not part.may_be_empty:
             yield (
                 f"{part.key}.shape: no lattice site lies in it; make it larger than space.spacing, or move it"
             )

@@ -21,9 +21,9 @@ from psph.physics.walls.conditions import MIRROR
 from psph.scene.lattice import TOLERANCE, Lattice, lattice_around
 from psph.scene.meshes.drawn import Drawn, drawn
 from psph.scene.mirrors import around, clipped, planes_of
-from psph.scene.parts import Parts, parts_of
+from psph.scene.parts import Part, Parts, parts_of
 from psph.scene.parts.order import among
-from psph.scene.shapes import Corner, Grid, bounds, inside
+from psph.scene.shapes import Corner, Grid, bounds
 from psph.smoothing import kernel
 from psph.theory.solutions.catalogue import SOLUTIONS
 from psph.theory.solutions.setting import Surroundings
@@ -174,17 +174,24 @@ class Layout:
 
     def masks(self, grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:
         """For each part, True at the sites that it claims."""
+        return self._masks(self.parts, grid, shape)
+
+    def held_before_ends(self, grid: Grid, shape: tuple[int, ...]) -> np.ndarray:
+        """Number of the part at each point as if there were no open ends, as :meth:`held`."""
+        return first_claim(self._masks(self.parts[: self.parts.ends.start], grid, shape), shape)
+
+    def _masks(self, parts: Sequence[Part], grid: Grid, shape: tuple[int, ...]) -> list[np.ndarray]:
         tolerance = TOLERANCE * self.spacing
-        masks = [np.broadcast_to(inside(part.shape, grid, tolerance), shape) for part in self.parts]
-        for part in (part for part in self.parts if part.of_another):
+        masks = [np.broadcast_to(part.claimed(self, grid, tolerance), shape) for part in parts]
+        for part in (part for part in parts if part.of_another):
             whole = masks[part.whole]
             masks[part.number] = masks[part.number] & whole
             masks[part.whole] = whole & ~masks[part.number]
-        taking = [masks[part.number] for part in self.parts if part.displaces]
+        taking = [masks[part.number] for part in parts if part.displaces]
         if not taking:
             return masks
         taken = reduce(np.logical_or, taking)
-        return [mask & ~taken if part.flows else mask for part, mask in zip(self.parts, masks)]
+        return [mask & ~taken if part.flows else mask for part, mask in zip(parts, masks)]
 
     @cached_property
     def cell_counts(self) -> np.ndarray:

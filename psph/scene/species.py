@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.fields import FLUID, WALL
-from psph.physics.motion import is_free
+from psph.fields import WALL
+from psph.physics.motion import flows, is_free
 from psph.physics.walls.conditions import BEARING, DYNAMIC, EXTRAPOLATED, PENALTY, REPULSIVE
 
 
@@ -73,8 +73,8 @@ class Species(NamedTuple):
 
     @property
     def is_fluid(self) -> bool:
-        """Whether it is a fluid."""
-        return self.kind == FLUID
+        """Whether it is a fluid, to its neighbours."""
+        return flows(self.motion)
 
     @property
     def rubs(self) -> bool:

@@ -268,7 +268,8 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     present, pulls = {entry for entry, *_ in fitted}, pulls_of(called, scene.dimensions, flows)
     loaded = materials.loaded is not None
     for_loads = LOADED_READ * (flows and loaded)
-    own = {*ALWAYS_READ, *for_loads}.union(*(c.reads.own | c.reads.neighbour for c in called))
+    of_works = tuple(name for kind in matter for name in kind.reads)
+    own = {*ALWAYS_READ, *for_loads, *of_works}.union(*(c.reads.own | c.reads.neighbour for c in called))
     told = carried_fields(materials, scene.frame)
     told_by = {e.told_by for e in marking}
     shared, varying = split(species, own | told_by)
@@ -300,6 +301,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
     fresh = {name for one in passes for name in one.neighbour_fields if name not in one.brought}
     brought = {name for one in passes for name in one.brought}
     neighbour = {name for one in (*passes, *([met] if met else [])) for name in one.neighbour_fields}
+    neighbour.update(of_works)
     refreshed = tuple(n for n in stored if n in fresh and n in (*computed, APPARENT.name))
     renewed = {name for kind in matter for name in kind.renews(passes)}
     return Plan(

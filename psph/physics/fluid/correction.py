@@ -9,6 +9,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper
 from psph.moments import first_moment
 from psph.physics.facts import Facts
+from psph.physics.fluid.buffers import Buffers, NoBuffers, buffers_of, in_front
 from psph.physics.fluid.cells import Cells, OneEach, cells_of, sharing
 from psph.physics.fluid.parting import Hold, Holding, borne, felt, hold_of
 from psph.physics.fluid.several import Facing, facing_of, in_volumes, several, shares
@@ -73,12 +74,12 @@ class GradientCorrection(NamedTuple):
         if scene.physics.pressure_gradient == "difference":
             return DifferenceCorrection(self.least)
         full = -first_moment(scene.kernel, scene.spacing, scene.dimensions) / scene.dimensions
-        volume, walls = scene.spacing**scene.dimensions / full, hold_of(scene)
+        volume, walls, buffers = scene.spacing**scene.dimensions / full, hold_of(scene), buffers_of(scene)
         if several(scene):
-            return VolumeCorrection(self.least, volume, facing_of(scene), walls)
-        if all(one.is_fluid for one in scene.species):
+            return VolumeCorrection(self.least, volume, facing_of(scene), walls, buffers)
+        if all(one.is_fluid and one.mobile for one in scene.species):
             return self
-        return CorrectionBesideWalls(self.least, volume, walls, cells_of(scene))
+        return CorrectionBesideWalls(self.least, volume, walls, cells_of(scene), buffers)
 
     def start(self, i):
         """No neighbour yet."""
@@ -118,7 +119,7 @@ class CorrectionBesideWalls(NamedTuple):
     front of it, under a pressure that is the same everywhere.  ``volume`` is dx^d over the mean of the
     lattice's −Σ_j dx^d x_ij ∇W_ijᵀ, m^d.  ``walls`` say what stands for p beside them
     (psph.physics.fluid.parting).  Where particles share ``cells`` the m of all of a cell counts, and each has
-    the same L.
+    the same L.  What stands behind open ends, ``buffers``, has that of a lattice too.
     """
 
     conserves = ("momentum",)
@@ -127,6 +128,7 @@ class CorrectionBesideWalls(NamedTuple):
     volume: float
     walls: Hold = Holding()
     cells: Cells = OneEach()
+    buffers: Buffers = NoBuffers()
 
     writes = CORRECTION
     lagged = True
@@ -160,6 +162,7 @@ class VolumeCorrection(NamedTuple):
     volume: float
     facing: Facing
     walls: Hold = Holding()
+    buffers: Buffers = NoBuffers()
 
     writes = CORRECTION
     lagged = True
@@ -224,9 +227,9 @@ def needs_correction(physics):
 @helper
 def in_walls(total, i, mass, of):
     """L − 1, in a wall that of a lattice with the ``mass`` in a cell."""
-    whole = mass * i.specific_volume / of.volume
-    behind = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - i.is_fluid), i.position)
-    return _correction(add(scale(total, i.is_fluid), behind), of.least, i.position)
+    whole, front = mass * i.specific_volume / of.volume, in_front(of.buffers, i)
+    behind = less_diagonal(outer(zero_like(i.position)), -whole * (1.0 - front), i.position)
+    return _correction(add(scale(total, front), behind), of.least, i.position)
 
 
 @helper

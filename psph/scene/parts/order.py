@@ -1,4 +1,5 @@
-"""The order of the parts of a case: what flows, elastic solids, their clamped parts, walls, bodies."""
+"""The order of the parts of a case: what flows, elastic solids, their clamped parts, walls, bodies, and the
+buffers of open ends."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -10,9 +11,10 @@ from psph.case.motion import motion_of
 from psph.case.tensions import tensions_in
 from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
-from psph.physics.motion import Fixed, Free
+from psph.physics.motion import Buffered, Fixed, Free
 from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp
 from psph.physics.walls.conditions import MIRROR
+from psph.scene.parts.end import Behind, EndPart, behind
 from psph.scene.parts.fluid import FluidPart
 from psph.scene.parts.part import Part
 from psph.scene.parts.rigid import BodyPart, WallPart
@@ -55,6 +57,11 @@ class Parts(tuple[Part, ...]):
     def bodies(self) -> range:
         """Rigid bodies."""
         return _run(part for part in self if part.moves_whole)
+
+    @property
+    def ends(self) -> range:
+        """The buffers of open ends."""
+        return range(len(self) - sum(isinstance(part, EndPart) for part in self), len(self))
 
     @property
     def boundaries(self) -> range:
@@ -126,4 +133,11 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     for number, (name, body) in enumerate(case.bodies.items(), FIRST_BODY):
         solid = WALL if referred else number
         add(BodyPart, name, f"bodies.{name}", body, None, source=continued(body), solid=solid)
+    placed = tuple(found)
+    for name, end in case.ends.items():
+        shape = behind(case, end, placed)
+        for number, (poured, fluid) in enumerate(case.fluids.items()):
+            filled = None if end.fluid is None else end.fluid == poured
+            table = Behind(end, fluid, shape, filled)
+            add(EndPart, f"{name} ({poured})", f"ends.{name}", table, Buffered(), source=number, solid=0)
     return Parts(found)

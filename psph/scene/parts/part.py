@@ -1,5 +1,6 @@
 """What every part of a case tells of itself, and what its species needs to know."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
@@ -10,6 +11,7 @@ from psph.case.parameters import last_part
 from psph.case.shapes import Shape
 from psph.fields import WALL
 from psph.particles.reach import Reach
+from psph.scene.shapes import inside
 
 LOOKS = ("fluid", "wall", "elastic solid", "rigid body")
 """As what particles are shown by other programs, in the order of its numbers there."""
@@ -71,6 +73,8 @@ class Part:
     """Whether its deviatoric stress evolves (psph.physics.stress)."""
     keeps_form: ClassVar[bool] = False
     """Whether it keeps its form, so that it may hang, stand or fly by itself."""
+    may_be_empty: ClassVar[bool] = False
+    """Whether it may begin without a particle."""
     looks: ClassVar[str] = LOOKS[0]
     """As what it is shown."""
 
@@ -93,6 +97,10 @@ class Part:
     def moves_freely(self) -> bool:
         """Whether forces move its particles one by one."""
         return self.flows or self.keeps_neighbours
+
+    def claimed(self, layout: Any, grid: Sequence[np.ndarray], tolerance: float) -> np.ndarray:
+        """True at the points of a ``grid`` that it claims in a ``layout``, as psph.scene.shapes.inside."""
+        return inside(self.shape, grid, tolerance)
 
     @property
     def jitter(self) -> float:

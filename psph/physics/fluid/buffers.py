@@ -1,0 +1,34 @@
+"""What corrected gradients take for fluid with neighbours all around: not what stands behind an open end."""
+
+from typing import NamedTuple
+
+from psph.engine.jit import call_by_type
+from psph.physics.facts import Facts
+
+
+class NoBuffers(NamedTuple):
+    """All fluid."""
+
+    def in_front(self, i):
+        """1 in a fluid, else 0."""
+        return i.is_fluid
+
+
+class BesideBuffers(NamedTuple):
+    """Fluid that forces move: behind an end there is nothing, as behind a wall."""
+
+    def in_front(self, i):
+        """1 in a fluid in front of an end, else 0."""
+        return i.is_fluid * i.mobile
+
+
+Buffers = NoBuffers | BesideBuffers
+
+in_front = call_by_type("in_front")
+"""(buffers, i) → 1 in fluid in front of open ends, else 0: see :class:`BesideBuffers`."""
+
+
+def buffers_of(scene: Facts) -> Buffers:
+    """Whether some fluid of a scene stands behind an open end."""
+    held = any(one.is_fluid and not one.mobile for one in scene.species)
+    return BesideBuffers() if held else NoBuffers()

@@ -1,0 +1,177 @@
+"""Open ends of a scene: where each stands, what it gives, and whose particles are its buffers."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from psph.case.courses import AcrossFace, Course
+from psph.case.ends import OpenEnd
+from psph.case.keys import AXES
+from psph.physics.open_ends import grown, parabola, pipe
+from psph.scene.layout import NONE, Layout
+from psph.scene.parts.end import EndPart, rows_of
+
+SETTLE = 2.0
+"""Times that a wave runs through the domain until it counts as a change of the flow."""
+
+
+@dataclass(frozen=True, eq=False)
+class EndFace:
+    """An open end as the step needs it.
+
+    ``number`` among the ends; its plane stands ``at`` m along ``axis``, ``sign`` is that of its inward
+    direction; ``lower`` and ``upper`` (dim,) m are the corners of the box around its buffers, which are
+    ``layers`` spacings deep.  ``groups`` has, for each fluid, the number of its buffer.  ``kind`` is the key
+    of what is given, ``given`` its value by time, ``feeding`` the number of the end that a pump takes from.
+    ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean.  ``settle`` in s is None
+    where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
+    ``wave_speed`` in m/s is that of the waves that it lets out; ``spacing`` dx, m; ``rows`` of particles
+    stand behind it at the start.
+    """
+
+    name: str
+    number: int
+    axis: int
+    at: float
+    sign: int
+    lower: np.ndarray
+    upper: np.ndarray
+    layers: int
+    groups: tuple[int, ...]
+    kind: str
+    given: Callable[[float], float]
+    feeding: int | None
+    shape: Callable[[np.ndarray], np.ndarray]
+    settle: float | None
+    height: float
+    wave_speed: float
+    spacing: float
+    rows: float
+
+    @property
+    def by_pressure(self) -> bool:
+        """Whether it gives a pressure."""
+        return self.kind in ("pressure", "level")
+
+    @cached_property
+    def fluid_of(self) -> np.ndarray:
+        """The fluid of which each group of particles is the buffer (256,)."""
+        found = np.zeros(NONE + 1, np.uint8)
+        found[list(self.groups)] = np.arange(len(self.groups))
+        return found
+
+    def depth(self, along: np.ndarray) -> np.ndarray:
+        """How far behind the plane coordinates ``along`` its axis are, m."""
+        return (self.at - along) * self.sign
+
+
+def faces_of(scene) -> tuple[EndFace, ...]:
+    """The open ends of a scene (psph.scene.scene.Scene)."""
+    names = [*scene.case.ends]
+    return tuple(_face(scene, names, name) for name in names)
+
+
+def groups_of(layout: Layout, name: str) -> tuple[int, ...]:
+    """The numbers of the buffers of an end, in the order of the fluids."""
+    return tuple(
+        part.number for part in layout.parts if isinstance(part, EndPart) and part.key == f"ends.{name}"
+    )
+
+
+def _face(scene, names: list[str], name: str) -> EndFace:
+    layout, end = scene.layout, scene.case.ends[name]
+    groups = groups_of(layout, name)
+    box = layout.parts[groups[0]].shape.form
+    lower, upper = np.array(box.lower), np.array(box.upper)
+    held = [n for n in groups if scene.census.sizes[n]]
+    half = 0.5 * layout.spacing
+    wet_low = scene.census.lowest[held].min(axis=0) - half if held else lower
+    wet_high = scene.census.highest[held].max(axis=0) + half if held else upper
+    across = [d for d in range(layout.dimensions) if d != end.axis]
+    height = _height(scene, end, wet_low, wet_high)
+    return EndFace(
+        name=name,
+        number=names.index(name),
+        axis=end.axis,
+        at=end.at,
+        sign=end.sign,
+        lower=lower,
+        upper=upper,
+        layers=rows_of(scene.case, end),
+        groups=groups,
+        kind=end.given,
+        given=_given(end),
+        feeding=names.index(end.pump) if end.pump else None,
+        shape=_shape(end, across, wet_low[across], wet_high[across]),
+        settle=_settle(scene, end, height) if end.lets_waves_out else None,
+        height=height,
+        wave_speed=wave_speed(scene, height),
+        spacing=layout.spacing,
+        rows=float(scene.census.sizes[list(groups)].sum()) / rows_of(scene.case, end),
+    )
+
+
+def _given(end: OpenEnd) -> Callable[[float], float]:
+    """What is given, by time in s."""
+    told = getattr(end, end.given)
+
+    def value(time: float) -> float:
+        now = float(told.at(time)) if isinstance(told, Course) else told
+        return now * grown(time, end.ramp) if end.ramp else now
+
+    return value if end.pump is None else (lambda time: math.nan)
+
+
+def _height(scene, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> float:
+    """How far a face reaches along gravity where there is air above it, m; else 0."""
+    layout, half = scene.layout, 0.5 * scene.spacing
+    up = np.abs(layout.up)
+    up[end.axis] = 0.0
+    if end.fluid is not None or not up.any():
+        return 0.0
+    axis = int(up.argmax())
+    above = high[axis] + half if layout.up[axis] > 0.0 else low[axis] - half
+    grid = []
+    for d in range(layout.dimensions):
+        x = np.arange(low[d] + half, high[d], scene.spacing)
+        x = np.array([above]) if d == axis else x[:1] if d == end.axis else x
+        grid.append(x.reshape([-1 if k == d else 1 for k in range(layout.dimensions)]))
+    shape = np.broadcast_shapes(*(x.shape for x in grid))
+    open_above = end.level is not None or (layout.held(grid, shape) == NONE).any()
+    return float(high[axis] - low[axis]) if open_above else 0.0
+
+
+def _shape(end: OpenEnd, across: list[int], low: np.ndarray, high: np.ndarray) -> Callable:
+    """The speed of what comes in over its mean, of places (n, dim), m."""
+    told = end.profile
+    if isinstance(told, AcrossFace):
+        axis = AXES.index(told.along)
+        ends = low[across.index(axis)], high[across.index(axis)]
+        mean = float(np.mean(told.at(np.linspace(*ends, MEAN_OF))))
+        return lambda x: told.at(x[:, axis]) / mean
+    by_name = {"parabola": parabola, "pipe": pipe}
+    if told not in by_name or not across:
+        return lambda x: np.ones(len(x))
+    return lambda x: by_name[told](x[:, across], low, high)
+
+
+MEAN_OF = 1001
+"""Places between the sides of a face at which a profile from a file is averaged."""
+
+
+def _settle(scene, end: OpenEnd, height: float) -> float:
+    """The time in which references follow, s."""
+    if end.settle is not None:
+        return end.settle
+    layout = scene.layout
+    length = layout.upper[end.axis] - layout.lower[end.axis]
+    return SETTLE * length / wave_speed(scene, height)
+
+
+def wave_speed(scene, height: float) -> float:
+    """The speed of the waves that leave through a face of this ``height`` below a surface, m/s."""
+    pull = math.hypot(*scene.gravity)
+    return math.sqrt(pull * height) if height and pull else scene.sound_speed

@@ -1,0 +1,181 @@
+"""Means over the faces of open ends as whole numbers, and the state that is put behind them."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from psph.engine.jit import elementwise
+from psph.formula import helper
+from psph.simulation.end_fit import FITTED, NEAR, SEEN
+from psph.simulation.rules import density
+
+BY_SPEED, BY_PRESSURE, BY_LEVEL = 0, 1, 2
+"""What an end gives."""
+
+TERMS = 14
+"""Numbers that are summed for an end: over its buffer, a row counting once, 1, p, u, the pressure given, ρ₀c,
+and of what comes in 1 and u; over the fluid in front 1, ξ, p − p_t, ξ², ξ (p − p_t); particles that have come
+too far; those behind that see the fluid in front of the plane itself."""
+
+ONE = 2.0**40
+"""The whole number of a term as large as its unit."""
+
+MOST = 4.0
+"""In units, the largest term: beyond it a run has blown up."""
+
+
+class Units(NamedTuple):
+    """Of terms: ``pressure`` ρ₀c² in Pa, ``impedance`` ρ₀c in kg/(m² s), ``speed`` c in m/s, ``length`` dx in
+    m, the largest of a scene."""
+
+    pressure: float
+    impedance: float
+    speed: float
+    length: float
+
+
+class Standing(NamedTuple):
+    """Particles behind the planes or before them as lists were made: their ``columns`` (n,), the ``end``
+    (n,), the ``shape`` (n,) of what comes in there; ``weight`` (n,) in Pa is added to a pressure that is
+    given, and ``height`` (n,) in m is along gravity."""
+
+    columns: np.ndarray
+    end: np.ndarray
+    shape: np.ndarray
+    weight: np.ndarray
+    height: np.ndarray
+
+
+class Told(NamedTuple):
+    """What ends give now, (ends,): ``what`` it is; its ``value``, of a velocity end the mean speed; how much
+    ``faster`` than the fluid, m/s, where that goes out of a velocity end, else NaN; the ``inflow``, mean
+    speed in m/s of what comes in through a pressure end, the ``slope`` of its pressure in Pa/m; whether a
+    surface is ``open`` above it."""
+
+    what: np.ndarray
+    value: np.ndarray
+    faster: np.ndarray
+    inflow: np.ndarray
+    slope: np.ndarray
+    open: np.ndarray
+
+
+class Flowing(NamedTuple):
+    """The arrays of all columns that are read and filled, (columns,): ``rest`` densities in kg/m^d, speeds of
+    ``sound`` in m/s; ``pull`` is g in m/s²."""
+
+    position: Any
+    velocity: Any
+    predicted: Any
+    density: Any
+    volume: Any
+    pressure: Any
+    rest: Any
+    sound: Any
+    group: Any
+    pull: float
+
+
+@helper
+def _given_at(told, end, weight, height, k, flowing):
+    """The pressure that an end gives column ``k``, Pa: p_t, or that of a still column under a surface,
+    ρ₀c²(exp(g z/c²) − 1)."""
+    c2 = flowing.sound[k] * flowing.sound[k]
+    column = flowing.rest[k] * c2 * np.expm1(max(told.value[end] - height, 0.0) * flowing.pull / c2)
+    return column if told.what[end] == BY_LEVEL else told.value[end] + weight
+
+
+@helper
+def _whole(share):
+    """A term in its unit as a whole number, exact to 2^-40; 0 for what is no number."""
+    return np.int64(np.rint(max(-MOST, min(MOST, share)) * ONE)) if share == share else np.int64(0)
+
+
+@helper
+def _depth(planes, end, flowing, k):
+    """How far behind its plane column ``k`` is, m."""
+    return (planes.place[end] - flowing.position[planes.axis[end]][k]) * planes.sign[end]
+
+
+@elementwise
+def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
+    """Add to ``sums`` (ends, TERMS) what those ``behind`` the planes have, as they have ``seen`` the fluid;
+    particles that are ``far`` m before a plane have come too far."""
+    for n in range(len(behind.columns)):
+        k, end = behind.columns[n], behind.end[n]
+        depth = _depth(planes, end, flowing, k)
+        into = seen[n, FITTED + 1 + planes.axis[end]] * planes.sign[end]
+        hat = max(1.0 - abs(depth / units.length - 1.0), 0.0) * seen[n, SEEN]
+        enters = hat if into > 0.0 else 0.0
+        given = 0.0
+        if told.what[end] != BY_SPEED:
+            given = _given_at(told, end, behind.weight[n], behind.height[n], k, flowing)
+        row = sums[end]
+        row[0] += _whole(hat)
+        row[1] += _whole(hat * seen[n, FITTED] / units.pressure)
+        row[2] += _whole(hat * into / units.speed)
+        row[3] += _whole(hat * given / units.pressure)
+        row[4] += _whole(hat * flowing.rest[k] * flowing.sound[k] / units.impedance)
+        row[5] += _whole(enters)
+        row[6] += _whole(enters * into / units.speed)
+        row[12] += 1 if depth < -far else 0
+        row[13] += _whole(seen[n, NEAR])
+
+
+@elementwise
+def sum_before(front, planes, told, flowing, units, far, reach, sums):
+    """Add to ``sums`` (ends, TERMS) what the fluid in ``front`` of the planes has within ``reach`` m;
+    particles that are ``far`` m behind one have come too far."""
+    for n in range(len(front.columns)):
+        k, end = front.columns[n], front.end[n]
+        depth, row = _depth(planes, end, flowing, k), sums[end]
+        row[12] += 1 if depth > far else 0
+        if told.what[end] != BY_SPEED and -reach < depth <= 0.0:
+            over = flowing.pressure[k] - _given_at(told, end, front.weight[n], front.height[n], k, flowing)
+            x, p = depth / units.length, over / units.pressure
+            row[7] += _whole(1.0)
+            row[8] += _whole(x)
+            row[9] += _whole(p)
+            row[10] += _whole(x * x / MOST)
+            row[11] += _whole(x * p)
+
+
+@elementwise
+def fill_behind(behind, planes, told, flowing, laws, law_of, seen, fastest):
+    """Give those ``behind`` the planes their velocity, pressure and density.
+
+    ``fastest`` (2,) gets the largest square of a change of the velocity and of the velocity, m²/s².
+    """
+    dim = len(flowing.velocity)
+    for n in range(len(behind.columns)):
+        k, end = np.uint64(behind.columns[n]), behind.end[n]
+        axis, sign, sees = planes.axis[end], planes.sign[end], seen[n, SEEN] > 0.0
+        into = seen[n, FITTED + 1 + axis] * sign if sees else flowing.velocity[axis][k] * sign
+        pressure = seen[n, FITTED]
+        if told.what[end] == BY_SPEED:
+            out = told.faster[end] == told.faster[end]
+            along = into + told.faster[end] if out else behind.shape[n] * told.value[end]
+        else:
+            along = behind.shape[n] * told.inflow[end] if into > 0.0 else into
+            depth = _depth(planes, end, flowing, k)
+            pressure = _given_at(told, end, behind.weight[n], behind.height[n], k, flowing)
+            pressure += told.slope[end] * depth
+        along += planes.speed[end]
+        pressure += planes.pressure[end]
+        if told.open[end]:
+            pressure = max(pressure, 0.0)
+        change2 = speed2 = 0.0
+        for d in range(dim):
+            v = seen[n, FITTED + 1 + d] if along < 0.0 and sees and not told.open[end] else 0.0
+            if d == axis:
+                v = along * sign
+            change2 += (v - flowing.velocity[d][k]) ** 2
+            speed2 += v * v
+            flowing.velocity[d][k] = v
+            flowing.predicted[d][k] = v
+        fastest[0], fastest[1] = max(fastest[0], change2), max(fastest[1], speed2)
+        law = law_of[flowing.group[k]]
+        rho = density(laws, law, pressure, flowing.rest[k], flowing.sound[k])
+        flowing.density[k] = rho
+        flowing.volume[k] = 1.0 / rho
+        flowing.pressure[k] = pressure

@@ -1,0 +1,101 @@
+"""Who passes through an open end, and who is born and dies behind it, the same on any number of ranks."""
+
+import numpy as np
+
+from psph.engine.settled import settled
+from psph.fields import FLUID
+from psph.parallel.reductions import all_rows, exact_sums, whole_sums
+from psph.scene.ends import EndFace
+from psph.simulation.end_queues import DIES, run_queues
+from psph.simulation.end_state import Books
+
+BEYOND = 2
+"""Spacings behind the last layer up to which fluid behind a plane is taken for what went out."""
+
+MOBILE = "mobile"
+
+
+def within(face: EndFace, domain, rows: np.ndarray) -> np.ndarray:
+    """Those of some ``rows`` of owned particles that are between the sides of an end."""
+    keep = np.ones(len(rows), bool)
+    places = domain.inside(domain.store.shown("position")[rows])
+    for d, x in enumerate(places.T):
+        if d != face.axis:
+            keep &= (x >= face.lower[d]) & (x < face.upper[d])
+    return rows[keep]
+
+
+class Passage:
+    """The particles of a ``domain`` that pass through an open end: those of the buffer of ``face`` become
+    fluid where they have come in, fluid of the buffer where it has gone out, by queues
+    (psph.simulation.end_queues)."""
+
+    def __init__(self, face: EndFace, domain):
+        self.face, self.domain, self.store = face, domain, domain.store
+        self._queue = settled(run_queues)
+
+    def renew(self, books: Books, population) -> None:
+        """Let particles change sides, be born and die; new lists have to follow.  Collective."""
+        store, face = self.store, self.face
+        behind = np.flatnonzero(np.isin(store.shown("group"), face.groups))
+        depth = face.depth(store["position"][face.axis][store.inner])
+        deepest = (face.layers + BEYOND) * face.spacing
+        fluid = (store.shown("kind") == FLUID) & (depth > 0.0) & (depth < deepest)
+        out = within(face, self.domain, np.flatnonzero(fluid))
+        rows = np.concatenate([behind, out])
+        crossing = np.concatenate([(depth[behind] <= 0.0).astype(np.int64), np.full(len(out), -1)])
+        fate, born, place, births = self._queued(rows, depth[rows], crossing)
+        self._book(books, rows, crossing, births, fate == DIES)
+        newborn = self._copied(rows[born > 0.0], born[born > 0.0])
+        self._change(rows[crossing == 1], rows[crossing == -1])
+        staying = np.delete(np.arange(store.owned), rows[fate == DIES])
+        store.reorder((store.low + staying).astype(np.uint32), 0, 0)
+        store.append(population.next_id + place, *newborn)
+        population.next_id += births
+
+    def _queued(self, rows: np.ndarray, depth: np.ndarray, crossing: np.ndarray):
+        """Fates (n,), depths of births (n,), 0 for none, the places (births here,) of these among all, and
+        how many these are."""
+        across = [d for d in range(self.store.dimensions) if d != self.face.axis]
+        table = np.empty((len(rows), 3 + len(across)))
+        table[:, 0] = self.store.shown("id")[rows]
+        table[:, 1], table[:, 2] = depth, crossing
+        table[:, 3:] = self.store.shown("position")[rows][:, across]
+        everyone = all_rows(self.domain.comm, table)
+        everyone = np.ascontiguousarray(everyone[np.argsort(everyone[:, 0])].T)
+        fate, born = np.zeros(len(everyone.T), np.int64), np.zeros(len(everyone.T))
+        periods = np.array([self.domain.periods[d] or 0.0 for d in across])
+        who, size, layers = everyone[2].astype(np.int64), self.face.spacing, self.face.layers
+        self._queue(everyone[1], everyone[3:], periods, who, size, layers, fate, born)
+        mine, comes = np.searchsorted(everyone[0], table[:, 0]), born > 0.0
+        places = np.cumsum(comes) - 1
+        return fate[mine], born[mine], places[mine][comes[mine]], int(np.count_nonzero(comes))
+
+    def _book(self, books: Books, rows, crossing, births: int, dies) -> None:
+        comm, mass = self.domain.comm, self.store.shown("mass")[rows]
+        came, went = crossing == 1, crossing == -1
+        mass_in, mass_out = exact_sums(comm, np.stack([mass * came, mass * went], axis=1)).tolist()
+        numbers = np.count_nonzero([came, went, dies], axis=1)
+        came_in, went_out, died = whole_sums(comm, numbers).tolist()
+        books.number_in += came_in
+        books.number_out += went_out
+        books.mass_in += mass_in
+        books.mass_out += mass_out
+        books.born += births
+        books.died += died
+
+    def _change(self, came: np.ndarray, went: np.ndarray) -> None:
+        """Particles of some rows become fluid, or of the buffer."""
+        store, low = self.store, self.store.low
+        of_fluid, of_buffer = self.face.fluid_of, np.array(self.face.groups, np.uint8)
+        store.group[low + came] = of_fluid[store.group[low + came]]
+        store.group[low + went] = of_buffer[store.group[low + went]]
+        if MOBILE in store:
+            store[MOBILE][low + came], store[MOBILE][low + went] = 1.0, 0.0
+
+    def _copied(self, parents: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Groups and numbers of those that are born at a ``depth`` (n,), m, as their ``parents`` are."""
+        columns = self.store.low + parents
+        block = self.store.data[:, columns].copy()
+        block[self.store.rows["position"][self.face.axis]] = self.face.at - self.face.sign * depth
+        return self.store.group[columns].copy(), block

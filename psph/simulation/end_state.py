@@ -1,0 +1,112 @@
+"""What the steps of an open end rest on: the means over its face, the answer to waves, its books."""
+
+import math
+from dataclasses import asdict, dataclass, field
+from typing import Self
+
+from psph.physics.open_ends import NO_ANSWER, WaveAnswer, follow, of_pressure_end, of_velocity_end
+from psph.scene.ends import EndFace
+from psph.simulation.end_means import MOST, ONE, Units
+
+SLOW = 10.0
+"""Times the settling time in which the slope of the pressure along the normal is followed."""
+
+FEWEST = 0.5
+"""Rows below which a face has no fluid before it."""
+
+
+@dataclass
+class Means:
+    """Means over a face: ``rows`` of particles, pressure and the pressure given in Pa, inward speed, and that
+    of what comes in, in m/s, ρ₀c in kg/(m² s)."""
+
+    rows: float = 0.0
+    pressure: float = 0.0
+    speed: float = 0.0
+    given: float = 0.0
+    impedance: float = 0.0
+    inflow: float = 0.0
+
+
+@dataclass
+class Books:
+    """What has passed through an end since the start: particles, and their mass in kg; how many were born and
+    have died behind it."""
+
+    number_in: int = 0
+    number_out: int = 0
+    mass_in: float = 0.0
+    mass_out: float = 0.0
+    born: int = 0
+    died: int = 0
+
+
+@dataclass
+class EndState:
+    """The ``means`` over a face and its ``books``; the ``reference`` of waves; of a surface the ``smoothed``
+    means; the ``slope`` of the pressure along the normal, Pa/m; what is ``added`` behind the face; whether
+    particles are ``due`` to change sides."""
+
+    means: Means = field(default_factory=Means)
+    books: Books = field(default_factory=Books)
+    reference: float | None = None
+    smoothed: tuple[float, float] | None = None
+    slope: float = 0.0
+    added: WaveAnswer = NO_ANSWER
+    due: bool = False
+
+    @classmethod
+    def restored(cls, kept: dict) -> Self:
+        """From what :meth:`kept` gave."""
+        means, books, smoothed = Means(**kept["means"]), Books(**kept["books"]), kept["smoothed"]
+        further = {"added": WaveAnswer(*kept["added"]), "smoothed": smoothed and tuple(smoothed)}
+        return cls(**(kept | {"means": means, "books": books} | further))
+
+    def kept(self) -> dict:
+        """For a checkpoint."""
+        return asdict(self) | {"added": list(self.added)}
+
+    def measure(self, face: EndFace, sums: list[int], units: Units, dt: float) -> None:
+        """Take the ``sums`` over a face (psph.simulation.end_means.TERMS) after a step of ``dt`` s."""
+        rows, p, u, given, z, entering, inflow, *slope, due, near = (one / ONE for one in sums)
+        self.due = due > 0.0
+        if not near or rows < FEWEST:
+            self.means = Means()
+            return
+        self.means = Means(
+            rows,
+            p / rows * units.pressure,
+            u / rows * units.speed,
+            given / rows * units.pressure,
+            z / rows * units.impedance,
+            inflow / entering * units.speed if entering else 0.0,
+        )
+        if face.by_pressure and face.settle:
+            self._follow_slope(face.settle, slope, units, dt)
+
+    def _follow_slope(self, settle: float, terms: list[float], units: Units, dt: float) -> None:
+        count, far, over, square, product = terms
+        spread = count * square * MOST - far * far
+        found = (count * product - far * over) / spread if count > 2.0 and spread > 0.0 else 0.0
+        self.slope = follow(self.slope, found * units.pressure / units.length, dt, SLOW * settle)
+
+    def answer(self, face: EndFace, told: float, sound_speed: float, dt: float) -> None:
+        """What is added behind a face in this step so that waves leave; ``told`` m/s is the mean speed of a
+        velocity end."""
+        means = self.means
+        if face.settle is None or means.rows < FEWEST or math.isnan(told):
+            self.added = NO_ANSWER
+            return
+        pressure, inward, impedance = means.pressure, means.speed, means.impedance
+        if face.height:
+            impedance *= face.wave_speed / sound_speed
+            old, lag = self.smoothed or (pressure, inward), 2.0 * face.height / sound_speed
+            pressure, inward = (follow(was, now, dt, lag) for was, now in zip(old, (pressure, inward)))
+            self.smoothed = pressure, inward
+        followed = inward if face.by_pressure else pressure
+        reference = followed if self.reference is None else self.reference
+        if face.by_pressure:
+            self.added = of_pressure_end(pressure, means.given, inward, reference, impedance)
+        else:
+            self.added = of_velocity_end(inward, told, pressure, reference, impedance)
+        self.reference = follow(reference, followed, dt, face.settle)

@@ -1,0 +1,248 @@
+"""The open ends of a simulation on a rank."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from psph.engine.settled import settled
+from psph.fields import FLUID
+from psph.kinds import Rank, Work
+from psph.parallel.reductions import whole_sums
+from psph.scene.ends import EndFace, faces_of
+from psph.simulation.end_fit import FITTED, Planes, Vicinity, moments_of, see_fronts
+from psph.simulation.end_means import (
+    BY_LEVEL,
+    BY_PRESSURE,
+    BY_SPEED,
+    TERMS,
+    Flowing,
+    Standing,
+    Told,
+    Units,
+    fill_behind,
+    sum_before,
+    sum_behind,
+)
+from psph.simulation.end_passage import MOBILE, Passage, within
+from psph.simulation.end_state import Books, EndState
+
+MOVED = 0.4
+"""Spacings past the plane at which particles change sides before lists are due."""
+
+FRONT = 3.0
+"""Spacings in front of a plane within which the slope of the pressure is taken."""
+
+HELD_STILL = ("acceleration", "density_rate")
+"""What forces give the particles of a buffer, and they do not take."""
+
+PAID_IN = 50.0
+"""Rows in whose time a pump brings a row that it owes."""
+
+WHAT = {"pressure": BY_PRESSURE, "level": BY_LEVEL}
+
+
+class Buffers(Work):
+    """The buffers of the open ends of a scene on a rank.
+
+    Particles behind a plane go with the velocity that the end gives them, and show the fluid the density
+    that goes with its pressure; forces do not move them.
+    """
+
+    name = "ends"
+
+    def __init__(self, rank: Rank):
+        scene, self.plan, self.store, self.domain = rank.scene, rank.plan, rank.store, rank.domain
+        self.comm, self.ledger = rank.domain.comm, rank.ledger
+        self.faces, self.dx = faces_of(scene), scene.spacing
+        self.states = [EndState() for _ in self.faces]
+        self.passages = [Passage(face, self.domain) for face in self.faces]
+        self.up, self.gravity = np.array(scene.layout.up), np.array(scene.gravity)
+        self.around = Vicinity(scene.kernel, scene.spacing, tuple(scene.gravity), tuple(scene.layout.periods))
+        fluids = [one for one in self.plan.materials.species if one.is_fluid]
+        # Fluids of one density are one to the fit: ghosts tell no more.
+        self.densities = sorted({one.density for one in fluids})
+        c = max(one.sound_speed for one in fluids)
+        self.units = Units(self.densities[-1] * c * c, self.densities[-1] * c, c, self.dx)
+        loops = see_fronts, sum_behind, sum_before, fill_behind
+        self._see, self._sum_behind, self._sum_before, self._fill = map(settled, loops)
+        self._fastest = np.zeros(2)
+        self.settle()
+
+    # Who is where.
+
+    def settle(self) -> None:
+        """The particles of the buffers, and the fluid in front of each plane."""
+        store = self.store
+        groups, fluid = store.shown("group"), store.shown("kind") == FLUID
+        behind, front = [], []
+        for face in self.faces:
+            depth = face.depth(store["position"][face.axis][store.inner])
+            near = fluid & (depth > -(FRONT + 1.0) * self.dx) & (depth < face.layers * self.dx)
+            behind.append(np.flatnonzero(np.isin(groups, face.groups)))
+            front.append(within(face, self.domain, np.flatnonzero(near)))
+        self.behind, self.front = self._standing(behind), self._standing(front)
+        self.matter = self._matter()
+        self._sums = np.zeros(moments_of(store.dimensions))
+        self._seen = np.zeros((len(self.behind.columns), FITTED + 1 + store.dimensions))
+
+    def _standing(self, rows: list[np.ndarray]) -> Standing:
+        """Particles in some ``rows`` of each end."""
+        store = self.store
+        parts = []
+        for face, own in zip(self.faces, rows):
+            places = self.domain.inside(store.shown("position")[own])
+            away = places - 0.5 * (face.lower + face.upper)
+            away[:, face.axis] = 0.0
+            weight = store.shown("rest_density")[own] * (away @ self.gravity)
+            parts.append(
+                (
+                    store.low + own,
+                    np.full(len(own), face.number),
+                    face.shape(places),
+                    weight,
+                    places @ self.up,
+                )
+            )
+        return Standing(*(np.concatenate(part) for part in zip(*parts)))
+
+    def _matter(self) -> np.ndarray:
+        """For each column the number of its fluid, with a minus behind a plane; 0: no fluid."""
+        rest, mobile, flows = (self._column(name) for name in ("rest_density", MOBILE, "is_fluid"))
+        number = 1 + np.searchsorted(self.densities, rest)
+        return (number * (flows > 0.0) * np.where(mobile > 0.0, 1, -1)).astype(np.int64)
+
+    def _column(self, name: str) -> np.ndarray:
+        """Of what materials fix, an array over all columns."""
+        return np.broadcast_to(self.store.value(name), self.store.capacity)
+
+    def renew(self, simulation) -> None:
+        """Let particles change sides, be born and die, where lists are due or some have come too far."""
+        if simulation.listed and not any(state.due for state in self.states):
+            return
+        with self.ledger("ends"):
+            for passage, state in zip(self.passages, self.states):
+                passage.renew(state.books, simulation.population)
+        simulation.listed = False
+
+    # What they are like.
+
+    def advance(self, time: float, dt: float, largest_speed: float) -> None:
+        """They drift with their velocity."""
+        own = self.behind.columns
+        for x, v in zip(self.store["position"], self.store["velocity"]):
+            x[own] += dt * v[own]
+
+    def impose(self, simulation) -> None:
+        """The state of the buffers at the new time, from the fluid in front of the planes; collective."""
+        if simulation.listed:
+            with self.ledger("halo"):
+                self.domain.halo.refresh(self.plan.refreshed)
+            simulation.listed = False  # ghosts are fresh, but for what follows
+        with self.ledger("ends"):
+            self._impose(simulation.then, simulation.dt)
+
+    def _impose(self, time: float, dt: float) -> None:
+        store, planes, flowing = self.store, self._planes(), self._flowing()
+        lists, fields = self.domain.lists, ("position", "predicted_velocity", "pressure", "specific_volume")
+        behind, seen, arrays = self.behind, self._seen, (store[name] for name in fields)
+        front = planes, self.around, store.low, lists, self.matter, *arrays
+        self._see(behind.columns, behind.end, *front, self._sums, seen)
+        sums = np.zeros((len(self.faces), TERMS), np.int64)
+        told = self._told(time)
+        limits = self.units, MOVED * self.dx
+        self._sum_behind(behind, planes, told, flowing, *limits, seen, sums)
+        self._sum_before(self.front, planes, told, flowing, *limits, FRONT * self.dx, sums)
+        for face, state, one in zip(self.faces, self.states, whole_sums(self.comm, sums).tolist()):
+            state.measure(face, one, self.units, dt)
+        for face, state in zip(self.faces, self.states):
+            state.answer(face, self._mean_speed(face, time), self.units.speed, dt)
+        materials = self.plan.materials
+        self._fastest[:] = 0.0
+        laws = materials.laws, materials.law_of
+        self._fill(behind, self._planes(), self._told(time), flowing, *laws, seen, self._fastest)
+        self._fastest[0] /= dt * dt if dt else np.inf
+
+    def _planes(self) -> Planes:
+        faces, added = self.faces, [state.added for state in self.states]
+        return Planes(
+            np.array([face.axis for face in faces]),
+            np.array([face.at for face in faces]),
+            np.array([float(face.sign) for face in faces]),
+            np.array([one.pressure for one in added]),
+            np.array([one.speed for one in added]),
+        )
+
+    def _told(self, time: float) -> Told:
+        """What the ends give at ``time``, s."""
+        speeds = [self._mean_speed(face, time) for face in self.faces]
+        given = [face.given(time) if face.by_pressure else u for face, u in zip(self.faces, speeds)]
+        faster = [
+            u - one.means.speed if u < 0.0 and one.means.rows else math.nan
+            for u, one in zip(speeds, self.states)
+        ]
+        return Told(
+            np.array([WHAT.get(face.kind, BY_SPEED) for face in self.faces]),
+            np.array(given),
+            np.array(faster),
+            np.array([state.means.inflow for state in self.states]),
+            np.array([state.slope for state in self.states]),
+            np.array([face.height > 0.0 for face in self.faces]),
+        )
+
+    def _flowing(self) -> Flowing:
+        store = self.store
+        fields = ("position", "velocity", "predicted_velocity", "density", "specific_volume", "pressure")
+        fixed = self._column("rest_density"), self._column("sound_speed")
+        pull = float(np.linalg.norm(self.gravity))
+        return Flowing(*(store[name] for name in fields), *fixed, store.group, pull)
+
+    def _mean_speed(self, face: EndFace, time: float) -> float:
+        """The mean inward speed that a velocity end tells, m/s; 0 of a pressure end."""
+        if face.kind == "velocity" or face.by_pressure:
+            return 0.0 if face.by_pressure else face.given(time)
+        rows = self.states[face.number].means.rows
+        area = (rows or face.rows) * self.dx ** (self.store.dimensions - 1)
+        if face.kind == "flow":
+            return face.given(time) / area if area else 0.0
+        return self._pumped(self.states[face.feeding], self.states[face.number].books, rows or face.rows)
+
+    def _pumped(self, source: EndState, own: Books, rows: float) -> float:
+        """The mean speed of what a pump brings, m/s: that of what leaves at its ``source``, and what it owes
+        by the books, a row in the time of PAID_IN rows."""
+        left = source.books.number_out - source.books.number_in
+        owed = (left - own.number_in + own.number_out) / rows if rows else 0.0
+        speed = -source.means.speed * source.means.rows / rows if rows else 0.0
+        return speed * (1.0 + owed / PAID_IN)
+
+    # What forces do not do.
+
+    def after_sums(self, time: float, dt: float) -> None:
+        """Nothing accelerates a buffer."""
+        store, own = self.store, self.behind.columns
+        for name in HELD_STILL:
+            for row in store.rows[name]:
+                store.data[row, own] = 0.0
+
+    def kick(self, dt: float) -> tuple[float, ...]:
+        """The largest |a|² and |v|² of the buffers."""
+        change2, speed2 = self._fastest.tolist()
+        return 0.0, change2, 0.0 if np.isfinite(speed2) else np.inf, 0.0, speed2
+
+    # What is kept and told.
+
+    def passed(self) -> Iterator[str]:
+        """What has come in and gone out through each end."""
+        for face, state in zip(self.faces, self.states):
+            books = state.books
+            came = f"{books.number_in:,} particles ({books.mass_in:.6g} kg) came in"
+            went = f"{books.number_out:,} ({books.mass_out:.6g} kg) went out"
+            yield f"ends.{face.name}: {came}, {went}"
+
+    def state(self) -> dict:
+        """The states of all ends."""
+        return {"ends": [state.kept() for state in self.states]}
+
+    def restore(self, state: dict) -> None:
+        """Go on from there."""
+        self.states = [EndState.restored(one) for one in state["ends"]]

@@ -1,0 +1,236 @@
+"""Open ends by themselves: what particles behind a plane see, who is born and dies, waves that leave."""
+
+import numpy as np
+import pytest
+from drafts import draft
+from gauging import start
+
+from psph.particles.neighbours import Neighbours
+from psph.physics.open_ends import (
+    column_pressure,
+    follow,
+    grown,
+    of_pressure_end,
+    of_velocity_end,
+    parabola,
+    pipe,
+)
+from psph.simulation.end_fit import FITTED, NEAR, SEEN, Planes, Vicinity, moments_of, see_fronts
+from psph.simulation.end_queues import DIES, STAYS, run_queues
+from psph.smoothing import kernel
+
+DX = 0.1
+
+
+def around(dimensions, axis, sign):
+    """A jittered lattice of fluid before a plane through the origin and a buffer of four rows behind it:
+    places (dim, n), and whether each is behind."""
+    drawn = np.random.default_rng(3)
+    side = (np.arange(-5, 5) + 0.5) * DX
+    places = np.stack(np.meshgrid(*[side] * dimensions, indexing="ij")).reshape(dimensions, -1)
+    places = places[:, sign * places[axis] > -4.0 * DX]
+    places = places + drawn.uniform(-0.1, 0.1, places.shape) * DX
+    return places, sign * places[axis] < 0.0
+
+
+def seen_by(dimensions, axis, sign, field, added=(0.0, 0.0), gravity=None):
+    """What the buffer sees of fluid whose pressure and velocity are ``field`` (1 + dim, n) of places."""
+    places, behind = around(dimensions, axis, sign)
+    p, *v = field(places)
+    n, gravity = places.shape[1], gravity or (0.0,) * dimensions
+    p, v = p + added[0] * behind, np.array(v)
+    v[axis] += added[1] * sign * behind
+    lists = Neighbours(
+        np.arange(n, dtype=np.uint64) * np.uint64(n),
+        np.full(n, n, np.uint32),
+        np.tile(np.arange(n, dtype=np.uint32), n),
+    )
+    columns = np.flatnonzero(behind)
+    planes = Planes(np.array([axis]), np.zeros(1), np.array([float(sign)]), *np.array(added)[:, None])
+    vicinity = Vicinity(kernel("wendland-c2", 1.4 * DX, dimensions), DX, gravity, (None,) * dimensions)
+    seen = np.zeros((len(columns), FITTED + 1 + dimensions))
+    arrays = tuple(places), tuple(v), p, np.full(n, 1e-3)
+    matter, none = np.where(behind, -1, 1), np.zeros(len(columns), np.int64)
+    see_fronts(
+        columns, none, planes, vicinity, 0, lists, matter, *arrays, np.zeros(moments_of(dimensions)), seen
+    )
+    return seen, places[:, columns]
+
+
+@pytest.mark.parametrize(
+    "dimensions, axis, sign", [(1, 0, 1), (2, 0, 1), (2, 1, -1), (3, 0, -1), (3, 1, 1), (3, 2, 1)]
+)
+def test_what_is_linear_across_the_face_is_seen_exactly(dimensions, axis, sign):
+    """Where fluid in front of the plane is seen by itself.  Control: along the normal it is not."""
+    slopes = np.arange(1.0, 1.0 + dimensions)
+    slopes[axis] = 0.0
+
+    def field(x):
+        return np.stack([(3.0 + n) + (slopes * (1.0 + n)) @ x for n in range(1 + dimensions)])
+
+    seen, places = seen_by(dimensions, axis, sign, field)
+    near = seen[:, NEAR] > 0.0
+    assert near.any() and seen[near, SEEN].all()
+    np.testing.assert_allclose(seen[near, FITTED:], field(places[:, near]).T, atol=1e-12)
+    slopes[axis] = 1.0
+    seen, places = seen_by(dimensions, axis, sign, field)
+    assert abs(seen[near, FITTED:] - field(places[:, near]).T).max() > DX
+
+
+@pytest.mark.parametrize("dimensions, axis", [(2, 0), (3, 1)])
+def test_what_was_added_to_the_buffer_is_taken_off(dimensions, axis):
+    """Rows out of reach of the fluid see those before them, less what these got in the last step."""
+
+    def field(x):
+        return np.stack([np.full(x.shape[1], 2.0 + n) for n in range(1 + dimensions)])
+
+    seen, places = seen_by(dimensions, axis, 1, field, added=(50.0, 0.3))
+    far = (seen[:, SEEN] > 0.0) & (seen[:, NEAR] == 0.0)
+    assert far.any()
+    np.testing.assert_allclose(seen[far, FITTED:], field(places[:, far]).T, atol=1e-12)
+
+
+def test_a_still_column_is_seen_as_one():
+    """ρg·x is taken along: across the face, and along it."""
+    gravity = (2.0, -9.0)
+
+    def field(x):
+        return np.stack([1000.0 * (np.array(gravity) @ x), 0.0 * x[0], 0.0 * x[0]])
+
+    seen, places = seen_by(2, 0, 1, field, gravity=gravity)
+    near = seen[:, NEAR] > 0.0
+    np.testing.assert_allclose(seen[near, FITTED], field(places[:, near])[0], atol=1e-9)
+
+
+def queued(depth, across, crossing, layers=4, period=0.0):
+    """Fates and births of particles behind a plane in 2D, in spacings."""
+    n = len(depth)
+    fate, born = np.zeros(n, np.int64), np.zeros(n)
+    places = np.array(depth, float) * DX, np.array([across], float) * DX
+    run_queues(*places, np.array([period * DX]), np.array(crossing), DX, layers, fate, born)
+    return fate, born / DX
+
+
+def test_who_comes_in_leaves_a_place_at_the_end_of_the_strip():
+    """The strip beside it has no part in it."""
+    fate, born = queued([-0.1, 0.9, 1.9, 2.9, 3.9], [0.0, 0.0, 0.0, 0.0, 1.0], [1, 0, 0, 0, 0])
+    assert (fate == STAYS).all() and born.tolist() == pytest.approx([3.9, 0, 0, 0, 0])
+
+
+def test_nobody_is_born_into_a_full_strip():
+    """Control: one that is not full (above)."""
+    fate, born = queued([-0.1, 0.5, 1.5, 2.5, 3.5], [0.0] * 5, [1, 0, 0, 0, 0])
+    assert not born.any() and (fate == STAYS).all()
+
+
+def test_who_goes_out_takes_the_place_of_the_last():
+    """Where the strip would hold more than its layers."""
+    fate, born = queued([0.1, 0.9, 1.9, 2.9, 3.9], [0.0] * 5, [-1, 0, 0, 0, 0])
+    assert fate.tolist() == [STAYS] * 4 + [DIES] and not born.any()
+    fate, _ = queued([0.1, 0.9, 1.9, 2.9], [0.0] * 4, [-1, 0, 0, 0])
+    assert (fate == STAYS).all()
+
+
+def test_who_is_too_deep_dies_and_strips_go_on_across_a_period():
+    """A strip at one end of a period holds those at the other."""
+    fate, _ = queued([5.6, 1.0], [0.0, 0.0], [0, 0])
+    assert fate.tolist() == [DIES, STAYS]
+    _, born = queued([-0.1, 0.9, 1.9, 2.9, 3.9], [0.1, 9.9, 9.9, 9.9, 9.9], [1, 0, 0, 0, 0], period=10.0)
+    assert not born.any()  # full, by way of the period
+    _, born = queued([-0.1, 0.9, 1.9, 2.9, 3.9], [0.1, 9.9, 9.9, 9.9, 9.9], [1, 0, 0, 0, 0])
+    assert born.any()
+
+
+def test_to_and_fro_keeps_the_number():
+    """One that crosses in and out again, many times: the strip has four layers or three and a half."""
+    depth = [0.1, 1.1, 2.1, 3.1]
+    for _ in range(20):
+        fate, born = queued([-0.1, *depth[1:]], [0.0] * 4, [1, 0, 0, 0])
+        depth = [*depth[1:], *born[born > 0.0]]
+        assert len(depth) == 4 and (fate == STAYS).all()
+        fate, born = queued([0.1, *depth], [0.0] * 5, [-1, 0, 0, 0, 0])
+        depth = [d for d, one in zip([0.1, *depth], fate) if one == STAYS]
+        assert len(depth) == 4 and not born.any()
+
+
+Z = 1500.0
+
+
+def test_a_wave_that_goes_out_finds_no_answer():
+    """p' = −Z u' with u inward goes out: its pressure and its speed are what the end adds, as if the fluid
+    went on.  Controls: a wave that comes in is taken away at once, and the mean state is left alone."""
+    for size in (40.0, -7.0):
+        out = of_pressure_end(size, 0.0, -size / Z, 0.0, Z)
+        assert out == pytest.approx((size, 0.0))
+        out = of_velocity_end(-size / Z, 0.0, size, 0.0, Z)
+        assert out == pytest.approx((0.0, -size / Z))
+    assert of_pressure_end(3.0, 3.0, 0.2, 0.2, Z) == pytest.approx((0.0, 0.0))
+    assert of_velocity_end(0.2, 0.2, 3.0, 3.0, Z) == pytest.approx((0.0, 0.0))
+    assert of_pressure_end(40.0, 0.0, 40.0 / Z, 0.0, Z) == pytest.approx((0.0, -40.0 / Z))
+
+
+def test_profiles_have_a_mean_of_one():
+    """Over a fine lattice of the face; they are zero at its sides."""
+    s = (np.arange(400) + 0.5) / 400
+    line = parabola(s[:, None] * 2.0 + 1.0, np.array([1.0]), np.array([3.0]))
+    assert line.mean() == pytest.approx(1.0, abs=1e-4) and line.max() == pytest.approx(1.5, abs=1e-4)
+    y, z = (x.ravel() for x in np.meshgrid(s, s))
+    both = np.stack([y, z], axis=1)
+    low, high = np.zeros(2), np.ones(2)
+    assert parabola(both, low, high).mean() == pytest.approx(1.0, abs=1e-4)
+    inside = np.hypot(y - 0.5, z - 0.5) < 0.5
+    assert pipe(both, low, high)[inside].mean() == pytest.approx(1.0, abs=2e-3)
+    assert not pipe(both, low, high)[~inside].any()
+
+
+def test_what_is_given_grows_and_references_follow():
+    """Half of it after half of the ramp; 1 − 1/e of a jump after the settling time."""
+    assert [grown(t, 2.0) for t in (0.0, 1.0, 2.0, 9.0)] == pytest.approx([0.0, 0.5, 1.0, 1.0])
+    assert follow(1.0, 3.0, 0.5, 0.5) == pytest.approx(3.0 - 2.0 / np.e)
+
+
+def test_a_column_under_a_level_is_at_rest():
+    """dp/dz = ρg with the density of its own pressure."""
+    z, rho, c, g = np.linspace(0.0, 2.0, 2001), 900.0, 30.0, 9.81
+    p = column_pressure(z, rho, c, g)
+    np.testing.assert_allclose(np.gradient(p, z)[1:-1], (rho + p / c**2)[1:-1] * g, rtol=1e-6)
+    assert column_pressure(np.array([-1.0]), rho, c, g) == 0.0
+
+
+STREAM = """
+space = { dimensions = 2, spacing = 0.1, periodic = ["y"], lower = [-0.4, 0.0], upper = [1.4, 1.0] }
+time.end = 9.0
+physics.sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+velocity = [1.0, 0.0]
+[ends.inlet]
+at = 0.0
+inward = "+x"
+velocity = 1.0
+[ends.outlet]
+at = 1.0
+inward = "-x"
+pressure = 0.0
+"""
+
+
+def test_forces_do_not_move_a_buffer_and_books_balance(tmp_path):
+    """Particles inside less those of the start are what came in less what went out, exactly; buffers keep
+    their number; nobody has the number of another."""
+    simulation = start(draft(tmp_path, STREAM))
+    store, buffers = simulation.store, simulation.engine.of("ends")
+    before = np.count_nonzero(store.shown("kind") == 0)
+    mass = store.shown("mass")[0]
+    for _ in range(450):
+        simulation.step()
+        assert not store["acceleration"][0][buffers.behind.columns].any()
+    books = [state.books for state in buffers.states]
+    assert min(book.number_in + book.number_out for book in books) > 50
+    gained = sum(book.number_in - book.number_out for book in books)
+    assert np.count_nonzero(store.shown("kind") == 0) == before + gained
+    assert sum(book.mass_in for book in books) == pytest.approx(mass * books[0].number_in)
+    assert np.count_nonzero(store.shown("kind") == 4) == 80
+    assert len(np.unique(store.shown("id"))) == store.owned
+    speed = store.shown("velocity")[:, 0]
+    assert abs(speed - 1.0).max() < 1e-5
