@@ -274,7 +274,7 @@ ROOMS = (
         for room in ("bodies", "ends", "fluids", "hooke", "regions", "soils", "solids", "tensions", "updated")
     ),
     *(f"scene/{room}" for room in ("fluid/", "bod", "regions", "soils", "solid", "stressed", "volumes")),
-    *(f"scene/{room}" for room in ("answering", "calming", "ends")),
+    *(f"scene/{room}" for room in ("answering", "calming", "end")),
     *(f"scene/parts/{room}" for room in ("end", "fluid", "hookean", "order", "rigid", "soil", "solid")),
     *("physics/rigid/bod", "physics/rigid/contact", "physics/rigid/lines", "physics/rigid/pushes"),
     *("physics/solid/", "physics/stress/", "physics/region"),

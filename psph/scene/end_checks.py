@@ -25,8 +25,8 @@ def end_faults(scene) -> Iterator[str]:
             )
         if end.pump and not scene.has_free_surface:
             yield (
-                f"ends.{name}.pump: gives a speed and no pressure, so without a free surface nothing drives the "
-                "flow; give a pressure at both ends"
+                f"ends.{name}.pump: gives a speed and no pressure, so without a free surface nothing "
+                "drives the flow; give a pressure at both ends"
             )
         if end.layers and end.layers < (needed := rows_reached(layout.case)):
             says = f"the kernel reaches over {needed} rows; give {needed} or more"
