@@ -56,7 +56,7 @@ class OpenEnd(Answering):
         "uniform",
     )
     ramp: float = key("time over which what is given grows from zero at the start", 0.0, unit="s", ge=0)
-    fluid: Name | None = key(
+    filled: Name | None = key(
         "the fluid with which all of it is filled at the start",
         None,
         otherwise="what stands in front of it",
@@ -153,8 +153,8 @@ class OpenEnd(Answering):
 
     def _givens(self, loc, case) -> Iterator[Finding]:
         fluids = [*case.fluids]
-        if self.fluid is not None and self.fluid not in fluids:
-            yield (*loc, "fluid"), self.fluid, f"no fluid has this name; {advise(self.fluid, fluids)}"
+        if self.filled is not None and self.filled not in fluids:
+            yield (*loc, "filled"), self.filled, f"no fluid has this name; {advise(self.filled, fluids)}"
         if self.pump is not None:
             others = [name for name in case.ends if name != loc[1]]
             if self.pump not in others:

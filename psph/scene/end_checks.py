@@ -16,12 +16,12 @@ def end_faults(scene) -> Iterator[str]:
     layout, census = scene.layout, scene.census
     for name, end in layout.case.ends.items():
         sites = int(census.sizes[list(groups_of(layout, name))].sum())
-        if not sites and end.fluid is not None:
+        if not sites and end.filled is not None:
             yield f"ends.{name}.span: no lattice site lies behind it that no wall holds; make it larger"
         elif not sites and end.given in ("velocity", "flow", "pump"):
             yield (
                 f"ends.{name}: no fluid stands in front of its plane, so nothing can come in; name it with "
-                f'fluid = "{next(iter(layout.case.fluids))}", or move the plane'
+                f'filled = "{next(iter(layout.case.fluids))}", or move the plane'
             )
         if end.pump and not scene.has_free_surface:
             yield (

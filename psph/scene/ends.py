@@ -130,7 +130,7 @@ def _height(scene, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> float:
     layout, half = scene.layout, 0.5 * scene.spacing
     up = np.abs(layout.up)
     up[end.axis] = 0.0
-    if end.fluid is not None or not up.any():
+    if end.filled is not None or not up.any():
         return 0.0
     axis = int(up.argmax())
     above = high[axis] + half if layout.up[axis] > 0.0 else low[axis] - half

@@ -145,7 +145,7 @@ def test_flow_between_plates(tmp_path):
 
 def test_what_is_pumped_out_comes_in(tmp_path):
     """From a drain in the side of a tank to a nozzle above it: as much comes in as goes out but for a row."""
-    more = ('ends.nozzle={at=0.0,inward="+x",span={y=[0.5,0.6]},pump="drain",fluid="water"}',)
+    more = ('ends.nozzle={at=0.0,inward="+x",span={y=[0.5,0.6]},pump="drain",filled="water"}',)
     more += ('ends.drain={at=0.6,inward="-x",span={y=[0.0,0.1]},velocity=-0.5}',)
     more += ("fluids.water.shape.box.upper=[0.6, 0.24]",)
     drained = NOZZLE.replace("upper = [0.0, 0.6] } }", DRAIN)
@@ -226,5 +226,5 @@ at = 0.0
 inward = "+x"
 span.y = [0.5, 0.6]
 velocity = 1.0
-fluid = "water"
+filled = "water"
 """

@@ -137,7 +137,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
     for name, end in case.ends.items():
         shape = behind(case, end, placed)
         for number, (poured, fluid) in enumerate(case.fluids.items()):
-            filled = None if end.fluid is None else end.fluid == poured
+            filled = None if end.filled is None else end.filled == poured
             table = Behind(end, fluid, shape, filled)
             add(EndPart, f"{name} ({poured})", f"ends.{name}", table, Buffered(), source=number, solid=0)
     return Parts(found)
