@@ -6,7 +6,8 @@ from drafts import draft, refusal
 from gauging import readings, start, started
 from simulation.test_immersion import STIRRED, momentum
 
-from psph.physics.fluid.correction import CorrectionBesideWalls, GradientCorrection
+from psph.physics.fluid.cells import OneEach
+from psph.physics.fluid.correction import GradientCorrection
 from psph.runs.explain import explain
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
@@ -75,7 +76,7 @@ def test_an_even_pressure_presses_a_finer_plate_as_a_coarse_one(parts, turned, t
 def test_in_finer_walls_corrected_gradients_know_how_many_particles_a_cell_has(tmp_path, monkeypatch):
     """The control: with L by the volume of one particle the plate pushes harder at once."""
     case, fit = draft(tmp_path, HELD, "solids.plate.spacing=0.025"), GradientCorrection.in_scene
-    monkeypatch.setattr(GradientCorrection, "in_scene", lambda *of: CorrectionBesideWalls(*fit(*of)))
+    monkeypatch.setattr(GradientCorrection, "in_scene", lambda *of: fit(*of)._replace(cells=OneEach()))
     assert pressed(case, 2)[0] > 1.05
 
 
