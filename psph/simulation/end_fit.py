@@ -40,6 +40,15 @@ class Planes(NamedTuple):
     speed: np.ndarray
 
 
+class Listed(NamedTuple):
+    """Who is near whom: ``lists`` of the particles from column ``low`` on; ``matter`` (columns,) numbers the
+    fluids from 1 on, those behind a plane with a minus, and 0 is no fluid."""
+
+    low: int
+    lists: Any
+    matter: np.ndarray
+
+
 class Vicinity(NamedTuple):
     """What is the same for all particles: the ``kernel``, ``spacing`` in m, ``gravity`` in m/s² and the
     ``periods`` in m."""
@@ -50,6 +59,22 @@ class Vicinity(NamedTuple):
     periods: tuple[float | None, ...]
 
 
+class Flowing(NamedTuple):
+    """The arrays of all columns that are read and filled, (columns,): ``rest`` densities in kg/m^d, speeds of
+    ``sound`` in m/s; ``pull`` is g in m/s²."""
+
+    position: Any
+    velocity: Any
+    predicted: Any
+    density: Any
+    volume: Any
+    pressure: Any
+    rest: Any
+    sound: Any
+    group: Any
+    pull: float
+
+
 def moments_of(dimensions: int) -> int:
     """Numbers of a particle that :func:`see_fronts` sums: Σw, Σwt, Σwttᵀ, and for the pressure and each
     component of the velocity Σwf and Σwtf."""
@@ -57,88 +82,61 @@ def moments_of(dimensions: int) -> int:
 
 
 @elementwise
-def see_fronts(
-    columns, ends, planes, around, low, lists, matter, position, velocity, pressure, volume, sums, seen
-):
+def see_fronts(columns, ends, planes, vicinity, listed, flowing, sums, seen):
     """The fluid in front of the planes as each of some ``columns`` behind them sees it.
 
-    ``ends`` (n,) says behind which; ``matter`` numbers the fluids from 1 on, those behind a plane with a
-    minus; ``sums`` (:func:`moments_of`,) is room; ``seen`` (n, FITTED + 1 + dim) gets the columns SEEN to
-    FITTED.  Where too little fluid in front of the plane is near, buffer particles of it count that are
-    nearer to the plane, less what was added to them in the last step.
+    ``ends`` (n,) says behind which; ``sums`` (:func:`moments_of`,) is room; ``seen`` (n, FITTED + 1 + dim)
+    gets the columns SEEN to FITTED.  Where too little fluid in front of the plane is near, buffer particles
+    of it count that are nearer to the plane, less what was added to them in the last step.
     """
     for n in range(len(columns)):
         k, end = np.uint64(columns[n]), ends[n]
-        gravity = around.gravity
-        xi = (planes.place[end] - position[planes.axis[end]][k]) * planes.sign[end]
         for nearer in range(2):
-            _sum_front(
-                k,
-                end,
-                xi,
-                nearer,
-                planes,
-                around,
-                low,
-                lists,
-                matter,
-                position,
-                velocity,
-                pressure,
-                volume,
-                gravity,
-                sums,
-            )
+            _sum_front(k, end, nearer, planes, vicinity, listed, flowing, sums)
             if sums[0] > TOO_FEW:
                 break
         seen[n, :] = 0.0
         if sums[0] > 0.0:
             seen[n, SEEN], seen[n, NEAR] = 1.0, 1.0 - nearer
-            _fit(planes.axis[end], len(position), FLAT * around.spacing**2, sums, seen[n, FITTED:])
+            least, dim = FLAT * vicinity.spacing**2, len(flowing.position)
+            _fit(planes.axis[end], dim, least, sums, seen[n, FITTED:])
 
 
 @helper
-def _sum_front(
-    k,
-    end,
-    xi,
-    nearer,
-    planes,
-    around,
-    low,
-    lists,
-    matter,
-    position,
-    velocity,
-    pressure,
-    volume,
-    gravity,
-    sums,
-):
+def depth(planes, end, flowing, k):
+    """How far behind the plane of an end column ``k`` is, m."""
+    return (planes.place[end] - flowing.position[planes.axis[end]][k]) * planes.sign[end]
+
+
+@helper
+def _sum_front(k, end, nearer, planes, vicinity, listed, flowing, sums):
     """Fill ``sums`` for column ``k``."""
-    axis, sign, dx = planes.axis[end], planes.sign[end], around.spacing
+    axis, sign, dx = planes.axis[end], planes.sign[end], vicinity.spacing
+    position, lists, matter = flowing.position, listed.lists, listed.matter
     dim = len(position)
-    row, cell = k - np.uint64(low), dx**dim
+    row, cell, xi = k - np.uint64(listed.low), dx**dim, depth(planes, end, flowing, k)
     sums[:] = 0.0
     entry, last = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
     while entry < last:
         j = np.uint64(lists.lists[entry])
         entry += np.uint64(1)
-        xi_j = (planes.place[end] - position[axis][j]) * sign
+        xi_j = depth(planes, end, flowing, j)
         behind = nearer == 1 and matter[j] == -abs(matter[k])
         if j != k and xi_j <= xi - AHEAD * dx and (matter[j] == abs(matter[k]) or behind):
-            x_jk = nearest_image(subtract(at(position, j), at(position, k)), around.periods)
-            w = weight(around.kernel, np.sqrt(dot(x_jk, x_jk))) * cell
+            x_jk = nearest_image(subtract(at(position, j), at(position, k)), vicinity.periods)
+            w = weight(vicinity.kernel, np.sqrt(dot(x_jk, x_jk))) * cell
             sums[0] += w
             for d in range(dim):
                 across = 0.0 if d == axis else x_jk[d]
                 sums[1 + d] += w * across
                 for o in range(dim):
                     sums[1 + dim + d * dim + o] += w * across * (0.0 if o == axis else x_jk[o])
+            p = flowing.pressure[j] - dot(vicinity.gravity, x_jk) / flowing.volume[j]
+            p -= planes.pressure[end] if behind else 0.0
             for value in range(dim + 1):
-                f = pressure[j] - dot(gravity, x_jk) / volume[j] - (planes.pressure[end] if behind else 0.0)
+                f = p
                 if value > 0:
-                    f = velocity[value - 1][j]
+                    f = flowing.predicted[value - 1][j]
                     if behind and value - 1 == axis:
                         f -= planes.speed[end] * sign
                 place = 1 + dim + dim * dim + value * (dim + 1)

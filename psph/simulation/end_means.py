@@ -1,12 +1,12 @@
 """Means over the faces of open ends as whole numbers, and the state that is put behind them."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from psph.engine.jit import elementwise
 from psph.formula import helper
-from psph.simulation.end_fit import FITTED, NEAR, SEEN
+from psph.simulation.end_fit import FITTED, NEAR, SEEN, depth
 from psph.simulation.rules import density
 
 BY_SPEED, BY_PRESSURE, BY_LEVEL = 0, 1, 2
@@ -60,22 +60,6 @@ class Told(NamedTuple):
     open: np.ndarray
 
 
-class Flowing(NamedTuple):
-    """The arrays of all columns that are read and filled, (columns,): ``rest`` densities in kg/m^d, speeds of
-    ``sound`` in m/s; ``pull`` is g in m/s²."""
-
-    position: Any
-    velocity: Any
-    predicted: Any
-    density: Any
-    volume: Any
-    pressure: Any
-    rest: Any
-    sound: Any
-    group: Any
-    pull: float
-
-
 @helper
 def _given_at(told, end, weight, height, k, flowing):
     """The pressure that an end gives column ``k``, Pa: p_t, or that of a still column under a surface,
@@ -91,21 +75,15 @@ def _whole(share):
     return np.int64(np.rint(max(-MOST, min(MOST, share)) * ONE)) if share == share else np.int64(0)
 
 
-@helper
-def _depth(planes, end, flowing, k):
-    """How far behind its plane column ``k`` is, m."""
-    return (planes.place[end] - flowing.position[planes.axis[end]][k]) * planes.sign[end]
-
-
 @elementwise
 def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
     """Add to ``sums`` (ends, TERMS) what those ``behind`` the planes have, as they have ``seen`` the fluid;
     particles that are ``far`` m before a plane have come too far."""
     for n in range(len(behind.columns)):
         k, end = behind.columns[n], behind.end[n]
-        depth = _depth(planes, end, flowing, k)
+        xi = depth(planes, end, flowing, k)
         into = seen[n, FITTED + 1 + planes.axis[end]] * planes.sign[end]
-        hat = max(1.0 - abs(depth / units.length - 1.0), 0.0) * seen[n, SEEN]
+        hat = max(1.0 - abs(xi / units.length - 1.0), 0.0) * seen[n, SEEN]
         enters = hat if into > 0.0 else 0.0
         given = 0.0
         if told.what[end] != BY_SPEED:
@@ -118,7 +96,7 @@ def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
         row[4] += _whole(hat * flowing.rest[k] * flowing.sound[k] / units.impedance)
         row[5] += _whole(enters)
         row[6] += _whole(enters * into / units.speed)
-        row[12] += 1 if depth < -far else 0
+        row[12] += 1 if xi < -far else 0
         row[13] += _whole(seen[n, NEAR])
 
 
@@ -128,11 +106,11 @@ def sum_before(front, planes, told, flowing, units, far, reach, sums):
     particles that are ``far`` m behind one have come too far."""
     for n in range(len(front.columns)):
         k, end = front.columns[n], front.end[n]
-        depth, row = _depth(planes, end, flowing, k), sums[end]
-        row[12] += 1 if depth > far else 0
-        if told.what[end] != BY_SPEED and -reach < depth <= 0.0:
+        xi, row = depth(planes, end, flowing, k), sums[end]
+        row[12] += 1 if xi > far else 0
+        if told.what[end] != BY_SPEED and -reach < xi <= 0.0:
             over = flowing.pressure[k] - _given_at(told, end, front.weight[n], front.height[n], k, flowing)
-            x, p = depth / units.length, over / units.pressure
+            x, p = xi / units.length, over / units.pressure
             row[7] += _whole(1.0)
             row[8] += _whole(x)
             row[9] += _whole(p)
@@ -157,9 +135,9 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, seen, fastest):
             along = into + told.faster[end] if out else behind.shape[n] * told.value[end]
         else:
             along = behind.shape[n] * told.inflow[end] if into > 0.0 else into
-            depth = _depth(planes, end, flowing, k)
+            xi = depth(planes, end, flowing, k)
             pressure = _given_at(told, end, behind.weight[n], behind.height[n], k, flowing)
-            pressure += told.slope[end] * depth
+            pressure += told.slope[end] * xi
         along += planes.speed[end]
         pressure += planes.pressure[end]
         if told.open[end]:

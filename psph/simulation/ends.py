@@ -10,13 +10,12 @@ from psph.fields import FLUID
 from psph.kinds import Rank, Work
 from psph.parallel.reductions import whole_sums
 from psph.scene.ends import EndFace, faces_of
-from psph.simulation.end_fit import FITTED, Planes, Vicinity, moments_of, see_fronts
+from psph.simulation.end_fit import FITTED, Flowing, Listed, Planes, Vicinity, moments_of, see_fronts
 from psph.simulation.end_means import (
     BY_LEVEL,
     BY_PRESSURE,
     BY_SPEED,
     TERMS,
-    Flowing,
     Standing,
     Told,
     Units,
@@ -58,7 +57,9 @@ class Buffers(Work):
         self.states = [EndState() for _ in self.faces]
         self.passages = [Passage(face, self.domain) for face in self.faces]
         self.up, self.gravity = np.array(scene.layout.up), np.array(scene.gravity)
-        self.around = Vicinity(scene.kernel, scene.spacing, tuple(scene.gravity), tuple(scene.layout.periods))
+        self.vicinity = Vicinity(
+            scene.kernel, scene.spacing, tuple(scene.gravity), tuple(scene.layout.periods)
+        )
         fluids = [one for one in self.plan.materials.species if one.is_fluid]
         # Fluids of one density are one to the fit: ghosts tell no more.
         self.densities = sorted({one.density for one in fluids})
@@ -143,11 +144,9 @@ class Buffers(Work):
             self._impose(simulation.then, simulation.dt)
 
     def _impose(self, time: float, dt: float) -> None:
-        store, planes, flowing = self.store, self._planes(), self._flowing()
-        lists, fields = self.domain.lists, ("position", "predicted_velocity", "pressure", "specific_volume")
-        behind, seen, arrays = self.behind, self._seen, (store[name] for name in fields)
-        front = planes, self.around, store.low, lists, self.matter, *arrays
-        self._see(behind.columns, behind.end, *front, self._sums, seen)
+        planes, flowing, behind, seen = self._planes(), self._flowing(), self.behind, self._seen
+        listed = Listed(self.store.low, self.domain.lists, self.matter)
+        self._see(behind.columns, behind.end, planes, self.vicinity, listed, flowing, self._sums, seen)
         sums = np.zeros((len(self.faces), TERMS), np.int64)
         told = self._told(time)
         limits = self.units, MOVED * self.dx

@@ -15,7 +15,17 @@ from psph.physics.open_ends import (
     parabola,
     pipe,
 )
-from psph.simulation.end_fit import FITTED, NEAR, SEEN, Planes, Vicinity, moments_of, see_fronts
+from psph.simulation.end_fit import (
+    FITTED,
+    NEAR,
+    SEEN,
+    Flowing,
+    Listed,
+    Planes,
+    Vicinity,
+    moments_of,
+    see_fronts,
+)
 from psph.simulation.end_queues import DIES, STAYS, run_queues
 from psph.smoothing import kernel
 
@@ -49,11 +59,10 @@ def seen_by(dimensions, axis, sign, field, added=(0.0, 0.0), gravity=None):
     planes = Planes(np.array([axis]), np.zeros(1), np.array([float(sign)]), *np.array(added)[:, None])
     vicinity = Vicinity(kernel("wendland-c2", 1.4 * DX, dimensions), DX, gravity, (None,) * dimensions)
     seen = np.zeros((len(columns), FITTED + 1 + dimensions))
-    arrays = tuple(places), tuple(v), p, np.full(n, 1e-3)
+    flowing = Flowing(tuple(places), None, tuple(v), None, np.full(n, 1e-3), p, None, None, None, 0.0)
     matter, none = np.where(behind, -1, 1), np.zeros(len(columns), np.int64)
-    see_fronts(
-        columns, none, planes, vicinity, 0, lists, matter, *arrays, np.zeros(moments_of(dimensions)), seen
-    )
+    listed, sums = Listed(0, lists, matter), np.zeros(moments_of(dimensions))
+    see_fronts(columns, none, planes, vicinity, listed, flowing, sums, seen)
     return seen, places[:, columns]
 
 

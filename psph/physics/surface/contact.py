@@ -233,17 +233,14 @@ def pulled_line(of: Blunt, kernel, spacing: float, dimensions: int, cos: float) 
     sites = np.array([*sites_around(kernel, spacing, dimensions)], float) * spacing
     volume, reach = spacing**dimensions, round(sites.max() / spacing) + 1
     slopes = np.array([float(slope_over_r(kernel, r, 1.0 / r)) for r in np.linalg.norm(sites, axis=1)])
-    weights, found = by_r2(of, (sites**2).sum(axis=1)), 0.0
-    outward = np.array([math.sqrt(1.0 - cos * cos), cos])
-    for place, height, cut in product(range(-3 * reach, 3 * reach), range(reach), range(CUTS)):
-        here = (np.array([place, height]) + 0.5) * spacing - [cut * spacing / CUTS, 0.0]
-        if here @ outward >= 0.0:
-            continue
-        around = here + sites[:, [0, -1]]
-        wall = sites[:, -1] < -(height + 0.5) * spacing
-        held = wall | (around @ outward < 0.0)
-        normal = volume * (slopes[held, None] * sites[held]).sum(axis=0)
-        vector = np.array(vector_of(of, tuple(normal.tolist()), 1.0))
-        along = float(vector[0]) * float(np.linalg.norm(vector))
-        found += spacing**2 * along * volume * float(weights[wall].sum()) / CUTS
-    return found
+    weights, outward = by_r2(of, (sites**2).sum(axis=1)), np.array([math.sqrt(1.0 - cos * cos), cos])
+    places = np.array([*product(range(-3 * reach, 3 * reach), range(reach), range(CUTS))], float)
+    here = (places[:, :2] + 0.5) * spacing
+    here[:, 0] -= places[:, 2] * (spacing / CUTS)
+    here = here[here @ outward < 0.0]
+    wall = sites[:, -1] < -here[:, 1:]
+    held = wall | ((here[:, None] + sites[:, [0, -1]]) @ outward < 0.0)
+    normal = volume * (held @ (slopes[:, None] * sites))
+    vector = np.array(vector_of(of, tuple(normal.T), 1.0))
+    along = vector[0] * np.linalg.norm(vector, axis=0)
+    return float(along @ (wall @ weights)) * spacing**2 * volume / CUTS
