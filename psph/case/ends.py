@@ -166,8 +166,12 @@ class OpenEnd(Answering):
         if self.level is not None and not any(g for d, g in enumerate(gravity) if d != self.axis):
             says = "a level needs gravity across the end; set physics.gravity, or give a pressure"
             yield (*loc, "level"), self.level, says
+        if self.level is not None and self.ramp:
+            says = "would let the level grow from a height of 0; give a series of levels"
+            yield (*loc, "ramp"), self.ramp, says
         if self.profile == "pipe" and case.space.dimensions != 3:
             yield (*loc, "profile"), self.profile, "is of 3D; give parabola"
-        if isinstance(self.profile, AcrossFace) and self.profile.along == self.inward[1]:
-            says = "runs along the end's own axis; give one across it"
+        across = [axis for axis in AXES[: case.space.dimensions] if axis != self.inward[1]]
+        if isinstance(self.profile, AcrossFace) and self.profile.along not in across:
+            says = f"is no axis across the end; give {' or '.join(across)}" if across else "is of 2D and 3D"
             yield (*loc, "profile", "along"), self.profile.along, says

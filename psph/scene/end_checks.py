@@ -4,11 +4,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from psph.case.courses import AcrossFace
 from psph.case.keys import AXES
-from psph.scene.ends import groups_of
+from psph.scene.ends import UNLIKE, groups_of, mean_of, unlike
 from psph.scene.layout import NONE
 from psph.scene.parts.end import rows_of, rows_reached
 from psph.scene.shapes import shown
+
+LEAST_MEAN = 1e-3
+"""Part of its largest value below which the mean of a profile is none."""
 
 
 def end_faults(scene) -> Iterator[str]:
@@ -23,6 +27,8 @@ def end_faults(scene) -> Iterator[str]:
                 f"ends.{name}: no fluid stands in front of its plane, so nothing can come in; name it with "
                 f'filled = "{next(iter(layout.case.fluids))}", or move the plane'
             )
+        if sites and isinstance(end.profile, AcrossFace):
+            yield from _flat_profile(scene, name, end)
         if end.pump and not scene.has_free_surface:
             yield (
                 f"ends.{name}.pump: gives a speed and no pressure, so without a free surface nothing "
@@ -33,9 +39,32 @@ def end_faults(scene) -> Iterator[str]:
             yield f"ends.{name}.layers: {end.layers}: {says}"
 
 
+def _flat_profile(scene, name: str, end) -> Iterator[str]:
+    """A profile whose mean is nothing beside its values: it has no shape."""
+    axis, half = AXES.index(end.profile.along), 0.5 * scene.spacing
+    held = [n for n in groups_of(scene.layout, name) if scene.census.sizes[n]]
+    ends = scene.census.lowest[held, axis].min() - half, scene.census.highest[held, axis].max() + half
+    mean = mean_of(end.profile, *ends)
+    if not abs(mean) > LEAST_MEAN * end.profile.largest:
+        yield (
+            f"ends.{name}.profile: {end.profile.file} has a mean of {mean:.3g} between {ends[0]:.4g} and "
+            f"{ends[1]:.4g} m; its shape is by its mean, so give one that flows one way"
+        )
+
+
 def end_warnings(scene) -> Iterator[str]:
-    """Ends whose sides nothing holds."""
+    """Ends whose sides nothing holds, or with fluid behind them, or that cannot let waves out."""
     for name, end in scene.case.ends.items():
+        if end.waves == "out" and unlike(scene):
+            yield (
+                f"ends.{name}.waves: out: densities times speeds of sound of the fluids differ by more than "
+                f"{UNLIKE:g}, so that no one answer fits all; waves come back"
+            )
+        if (site := _fluid_behind(scene, name, end)) is not None:
+            yield (
+                f"ends.{name}: fluid stands behind its buffer at {shown(site)} and stays there; move the "
+                "plane to the edge of the fluid"
+            )
         if (open_at := _open_side(scene, name, end)) is not None:
             axis, site = open_at
             depth = rows_of(scene.case, end) * scene.spacing
@@ -67,6 +96,20 @@ def _open_side(scene, name: str, end) -> tuple[str, tuple[float, ...]] | None:
                 free &= ~_mirrored(layout, d, beside[:, d])
                 if free.any():
                     return f"{'+' if sign > 0 else '-'}{AXES[d]}", tuple(places[free][0].tolist())
+    return None
+
+
+def _fluid_behind(scene, name: str, end) -> tuple[float, ...] | None:
+    """A place right behind the buffer of an end where fluid stands; None where there is none."""
+    layout, numbers = scene.layout, groups_of(scene.layout, name)
+    back = end.at - end.sign * (rows_of(scene.case, end) + 0.5) * scene.spacing
+    for first, last in layout.lattice.chunks():
+        own = np.isin(layout.materials(first, last), numbers)
+        grid = [np.broadcast_to(x, own.shape)[own] for x in layout.lattice.grid(first, last)]
+        grid[end.axis] = np.full_like(grid[end.axis], back)
+        fluid = layout.flows(layout.held(grid, grid[0].shape))
+        if fluid.any():
+            return tuple(float(x[fluid][0]) for x in grid)
     return None
 
 

@@ -14,6 +14,12 @@ from psph.physics.open_ends import grown, parabola, pipe
 from psph.scene.layout import NONE, Layout
 from psph.scene.parts.end import EndPart, rows_of
 
+PLACES = 1001
+"""Places between the sides of a face at which a profile from a file is averaged."""
+
+UNLIKE = 10.0
+"""Between fluids whose ρ₀c differ by more, one answer of the whole face to waves would tear the lighter."""
+
 SETTLE = 2.0
 """Times that a wave runs through the domain until it counts as a change of the flow."""
 
@@ -23,8 +29,9 @@ class EndFace:
     """An open end as the step needs it.
 
     ``number`` among the ends; its plane stands ``at`` m along ``axis``, ``sign`` is that of its inward
-    direction; ``lower`` and ``upper`` (dim,) m are the corners of the box around its buffers, which are
-    ``layers`` spacings deep.  ``groups`` has, for each fluid, the number of its buffer.  ``kind`` is the key
+    direction; ``lower`` and ``upper`` (dim,) m are the corners of the box in which its buffers may be, which
+    are ``layers`` spacings deep, ``middle`` (dim,) m that of where they are at the start.  ``groups`` has,
+    for each fluid, the number of its buffer.  ``kind`` is the key
     of what is given, ``given`` its value by time, ``feeding`` the number of the end that a pump takes from.
     ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean.  ``settle`` in s is None
     where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
@@ -39,6 +46,7 @@ class EndFace:
     sign: int
     lower: np.ndarray
     upper: np.ndarray
+    middle: np.ndarray
     layers: int
     groups: tuple[int, ...]
     kind: str
@@ -100,13 +108,14 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         sign=end.sign,
         lower=lower,
         upper=upper,
+        middle=0.5 * (wet_low + wet_high),
         layers=rows_of(scene.case, end),
         groups=groups,
         kind=end.given,
         given=_given(end),
         feeding=names.index(end.pump) if end.pump else None,
         shape=_shape(end, across, wet_low[across], wet_high[across]),
-        settle=_settle(scene, end, height) if end.lets_waves_out else None,
+        settle=_settle(scene, end, height) if end.lets_waves_out and not unlike(scene) else None,
         height=height,
         wave_speed=wave_speed(scene, height),
         spacing=layout.spacing,
@@ -150,7 +159,7 @@ def _shape(end: OpenEnd, across: list[int], low: np.ndarray, high: np.ndarray) -
     if isinstance(told, AcrossFace):
         axis = AXES.index(told.along)
         ends = low[across.index(axis)], high[across.index(axis)]
-        mean = float(np.mean(told.at(np.linspace(*ends, MEAN_OF))))
+        mean = mean_of(told, *ends)
         return lambda x: told.at(x[:, axis]) / mean
     by_name = {"parabola": parabola, "pipe": pipe}
     if told not in by_name or not across:
@@ -158,8 +167,15 @@ def _shape(end: OpenEnd, across: list[int], low: np.ndarray, high: np.ndarray) -
     return lambda x: by_name[told](x[:, across], low, high)
 
 
-MEAN_OF = 1001
-"""Places between the sides of a face at which a profile from a file is averaged."""
+def mean_of(profile: AcrossFace, low: float, high: float) -> float:
+    """The mean of a ``profile`` from a file between the sides of a face, at ``low`` and ``high`` m."""
+    return float(np.mean(profile.at(np.linspace(low, high, PLACES))))
+
+
+def unlike(scene) -> bool:
+    """Whether ρ₀c of the fluids differ by more than one answer to waves serves."""
+    found = [one.density * one.sound_speed for one in scene.species if one.is_fluid]
+    return max(found) > UNLIKE * min(found)
 
 
 def _settle(scene, end: OpenEnd, height: float) -> float:

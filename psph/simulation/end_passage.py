@@ -15,11 +15,10 @@ BEYOND = 2
 MOBILE = "mobile"
 
 
-def within(face: EndFace, domain, rows: np.ndarray) -> np.ndarray:
-    """Those of some ``rows`` of owned particles that are between the sides of an end."""
+def within(face: EndFace, domain, rows: np.ndarray, places: str = "position") -> np.ndarray:
+    """Those of some ``rows`` of owned particles whose ``places`` are between the sides of an end."""
     keep = np.ones(len(rows), bool)
-    places = domain.inside(domain.store.shown("position")[rows])
-    for d, x in enumerate(places.T):
+    for d, x in enumerate(domain.inside(domain.store.shown(places)[rows]).T):
         if d != face.axis:
             keep &= (x >= face.lower[d]) & (x < face.upper[d])
     return rows[keep]

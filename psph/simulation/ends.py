@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from psph.engine.settled import settled
-from psph.fields import FLUID
+from psph.fields import FLUID, LISTED_POSITION
 from psph.kinds import Rank, Work
 from psph.parallel.reductions import whole_sums
 from psph.scene.ends import EndFace, faces_of
@@ -31,6 +31,8 @@ MOVED = 0.4
 
 FRONT = 3.0
 """Spacings in front of a plane within which the slope of the pressure is taken."""
+
+LISTED = LISTED_POSITION.name
 
 HELD_STILL = ("acceleration", "density_rate")
 """What forces give the particles of a buffer, and they do not take."""
@@ -73,15 +75,16 @@ class Buffers(Work):
     # Who is where.
 
     def settle(self) -> None:
-        """The particles of the buffers, and the fluid in front of each plane."""
+        """The particles of the buffers, and the fluid in front of each plane, by the places at which lists
+        were made: a run that is resumed finds them again."""
         store = self.store
         groups, fluid = store.shown("group"), store.shown("kind") == FLUID
         behind, front = [], []
         for face in self.faces:
-            depth = face.depth(store["position"][face.axis][store.inner])
+            depth = face.depth(store[LISTED][face.axis][store.inner])
             near = fluid & (depth > -(FRONT + 1.0) * self.dx) & (depth < face.layers * self.dx)
             behind.append(np.flatnonzero(np.isin(groups, face.groups)))
-            front.append(within(face, self.domain, np.flatnonzero(near)))
+            front.append(within(face, self.domain, np.flatnonzero(near), LISTED))
         self.behind, self.front = self._standing(behind), self._standing(front)
         self.matter = self._matter()
         self._sums = np.zeros(moments_of(store.dimensions))
@@ -92,8 +95,8 @@ class Buffers(Work):
         store = self.store
         parts = []
         for face, own in zip(self.faces, rows):
-            places = self.domain.inside(store.shown("position")[own])
-            away = places - 0.5 * (face.lower + face.upper)
+            places = self.domain.inside(store.shown(LISTED)[own])
+            away = places - face.middle
             away[:, face.axis] = 0.0
             weight = store.shown("rest_density")[own] * (away @ self.gravity)
             parts.append(

@@ -53,13 +53,14 @@ class EndPart(Part):
         return rows_of(case, self.table.end)
 
     def claimed(self, layout, grid: Grid, tolerance: float) -> np.ndarray:
-        """True at the sites of the box behind the plane, where its fluid stands in front of it, or of all of
-        the box."""
+        """True at the sites of the box behind the plane that no wall holds, where its fluid stands in front
+        of it, or of all of the box."""
         box, end = inside(self.shape, grid, tolerance), self.table.end
-        if self.table.filled is not None:
-            return box & self.table.filled
         if not np.any(box):
             return box
+        box = box & ~layout.stands(layout.held_before_ends(grid, np.shape(box)))
+        if self.table.filled is not None:
+            return box & self.table.filled
         front = [x if d != end.axis else np.full_like(x, self._front(layout)) for d, x in enumerate(grid)]
         return box & (layout.held_before_ends(front, np.shape(box)) == self.source)
 

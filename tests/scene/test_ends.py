@@ -1,0 +1,154 @@
+"""What is found of open ends before a run: where they stand, what is refused, what is warned of."""
+
+import numpy as np
+import pytest
+from cases.test_open_ends import CHANNEL, NOZZLE, PLATES, STREAM
+from drafts import draft
+from gauging import start
+
+from psph.case import CaseError
+from psph.scene import Scene
+from psph.scene.end_checks import end_faults, end_warnings
+from psph.scene.ends import faces_of
+
+CLOSED = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+pressure = "hydrostatic"
+[walls.plates]
+shape.difference.from.box = { lower = [-0.6, -FLOOR], upper = [1.6, 1.4] }
+shape.difference.minus = [{ box = { lower = [-0.6, 0.0], upper = [1.6, 1.0] } }]
+[ends.one]
+at = 0.0
+inward = "+x"
+velocity = 0.0
+[ends.two]
+at = 1.0
+inward = "-x"
+pressure = 4905.0
+"""
+
+
+@pytest.mark.parametrize("floor", ["0.4", "2.0"])
+def test_a_pressure_is_that_in_the_middle_of_the_fluid(tmp_path, floor):
+    """However thick the walls are: not in the middle of all."""
+    faces = faces_of(Scene(draft(tmp_path, CLOSED.replace("FLOOR", floor))))
+    assert [face.middle[1] for face in faces] == pytest.approx([0.5, 0.5])
+
+
+def test_who_is_near_a_plane_is_told_by_where_lists_were_made(tmp_path):
+    """So that a resumed run finds the same: places have moved since."""
+    simulation = start(draft(tmp_path, CHANNEL))
+    buffers, store = simulation.engine.of("ends"), simulation.store
+    for _ in range(40):
+        simulation.step()
+    before = buffers.front
+    assert abs(np.array(store["position"]) - np.array(store["listed_position"])).max() > 0.0
+    buffers.settle()
+    for now, then in zip(buffers.front, before):
+        np.testing.assert_array_equal(now, then)
+
+
+LIGHT = "fluids.air={density=1.2,sound_speed=50.0,shape={box={lower=[0.0,0.5],upper=[1.0,1.0]}}}"
+
+
+def two(folder, *more):
+    """A stream of water under air."""
+    text = STREAM.format(
+        dim=2,
+        across=["y"],
+        low=[-0.4, 0.0],
+        high=[1.4, 1.0],
+        zeros=[0.0, 0.0],
+        ones=[1.0, 0.5],
+        velocity=[1.0, 0.0],
+        first=0.0,
+        second=1.0,
+        way="+x",
+        back="-x",
+    )
+    return draft(folder, text, LIGHT, "fluids.air.velocity=[1.0, 0.0]", *more)
+
+
+def test_waves_come_back_where_one_answer_would_tear_a_light_fluid(tmp_path):
+    """Water and air flow through both ends as they stand; who asks for more is told."""
+    case = two(tmp_path)
+    assert [face.settle for face in faces_of(Scene(case))] == [None, None]
+    simulation = start(case)
+    for _ in range(60):
+        simulation.step()
+    assert abs(simulation.store.shown("velocity") - [1.0, 0.0]).max() < 1e-3
+    [line] = end_warnings(Scene(two(tmp_path, 'ends.inlet.waves="out"')))
+    assert line.startswith("ends.inlet.waves: out: densities times speeds of sound")
+
+
+@pytest.mark.parametrize(
+    "text, keys, says",
+    [
+        (NOZZLE, ("ends.nozzle.span.y=[0.2, 0.3]",), "ends.nozzle.span: no lattice site lies behind it"),
+        (PLATES, ("ends.inlet.at=-1.0",), "ends.inlet: no fluid stands in front of its plane"),
+        (PLATES, ("ends.inlet.layers=2",), "ends.inlet.layers: 2: the kernel reaches over 3 rows"),
+        (PLATES, ('ends.inlet={at=0.0,inward="+x",pump="outlet"}',), "ends.inlet.pump: gives a speed and no"),
+    ],
+)
+def test_what_cannot_let_anything_in_is_a_fault(tmp_path, text, keys, says):
+    """Control: the same without it."""
+    [line] = end_faults(Scene(draft(tmp_path, text, *keys)))
+    assert line.startswith(says)
+    assert not [*end_faults(Scene(draft(tmp_path, text)))]
+
+
+@pytest.mark.parametrize("values, fine", [((0.0, 0.0), False), ((-1.0, 1.0), False), ((0.5, 1.0), True)])
+def test_a_profile_needs_a_mean(tmp_path, values, fine):
+    """Its shape is told by that."""
+    (tmp_path / "prof.csv").write_text("place,u\n0.0,{}\n1.0,{}\n".format(*values))
+    profile = 'ends.inlet.profile={file="prof.csv",along="y",place="place",value="u"}'
+    found = [*end_faults(Scene(draft(tmp_path, PLATES, profile)))]
+    assert (not found) if fine else found[0].startswith("ends.inlet.profile: prof.csv has a mean of")
+
+
+@pytest.mark.parametrize(
+    "text, key, says",
+    [
+        (CHANNEL, "ends.upstream.at=1.0", "ends.upstream: fluid stands behind its buffer at"),
+        (PLATES, "ends.inlet.span.y=[0.3, 0.6]", "ends.inlet: nothing holds what stands behind its plane at"),
+    ],
+)
+def test_what_is_likely_not_meant_is_said(tmp_path, text, key, says):
+    """Control: the same without it."""
+    [line] = end_warnings(Scene(draft(tmp_path, text, key)))
+    assert line.startswith(says)
+    assert not [*end_warnings(Scene(draft(tmp_path, text)))]
+
+
+@pytest.mark.parametrize(
+    "text, keys, says",
+    [
+        (PLATES, ("ends.inlet.pressure=1.0",), "ends.inlet: velocity and pressure are given"),
+        (PLATES, ('ends.inlet.inward="+z"',), 'ends.inlet.inward: "+z": there are 2 axes'),
+        (PLATES, ("ends.inlet.span.x=[0.0, 1.0]",), "ends.inlet.span.x"),
+        (PLATES, ("ends.inlet.span.y=[1.0, 0.0]",), "ends.inlet.span.y"),
+        (PLATES, ('ends.inlet.filled="wine"',), 'ends.inlet.filled: "wine": no fluid has this name'),
+        (PLATES, ('ends.outlet={at=2.0,inward="-x",level=1.0}',), "ends.outlet.level: 1.0: a level needs"),
+        (PLATES, ('ends.inlet={at=0.0,inward="+x",pump="outle"}',), "ends.inlet.pump"),
+        (PLATES, ('ends.inlet.profile="pipe"',), "ends.inlet.profile"),
+        (CHANNEL, ("ends.downstream.ramp=1.0",), "ends.downstream.ramp: 1.0: would let the level grow"),
+        (CHANNEL, ("frame.motion.translation.velocity=[1.0, 0.0]",), "ends: stand in a frame that rests"),
+    ],
+)
+def test_what_contradicts_itself_is_refused_in_a_line(tmp_path, text, keys, says):
+    """By file, key, value and cure."""
+    with pytest.raises(CaseError) as refused:
+        draft(tmp_path, text, *keys)
+    assert any(says in line for line in refused.value.lines)
+
+
+def test_a_profile_runs_across_the_end(tmp_path):
+    """In 2D not along z."""
+    (tmp_path / "prof.csv").write_text("place,value\n0.0,1.0\n1.0,1.0\n")
+    for axis in "xz":
+        with pytest.raises(CaseError, match="is no axis across the end; give y"):
+            draft(tmp_path, PLATES, f'ends.inlet.profile={{file="prof.csv",along="{axis}"}}')
