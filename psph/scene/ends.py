@@ -30,8 +30,9 @@ class EndFace:
 
     ``number`` among the ends; its plane stands ``at`` m along ``axis``, ``sign`` is that of its inward
     direction; ``lower`` and ``upper`` (dim,) m are the corners of the box in which its buffers may be, which
-    are ``layers`` spacings deep, ``middle`` (dim,) m that of where they are at the start.  ``groups`` has,
-    for each fluid, the number of its buffer.  ``kind`` is the key
+    are ``layers`` spacings deep, ``middle`` (dim,) m that of where they are at the start; they do not move
+    out of ``sides`` (2, dim), m, infinite where the domain repeats.  ``groups`` has, for each fluid, the
+    number of its buffer.  ``kind`` is the key
     of what is given, ``given`` its value by time, ``feeding`` the number of the end that a pump takes from.
     ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean.  ``settle`` in s is None
     where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
@@ -47,6 +48,7 @@ class EndFace:
     lower: np.ndarray
     upper: np.ndarray
     middle: np.ndarray
+    sides: np.ndarray
     layers: int
     groups: tuple[int, ...]
     kind: str
@@ -109,6 +111,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         lower=lower,
         upper=upper,
         middle=0.5 * (wet_low + wet_high),
+        sides=_sides(layout, end, wet_low, wet_high),
         layers=rows_of(scene.case, end),
         groups=groups,
         kind=end.given,
@@ -121,6 +124,13 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         spacing=layout.spacing,
         rows=float(scene.census.sizes[list(groups)].sum()) / rows_of(scene.case, end),
     )
+
+
+def _sides(layout: Layout, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """How far across the end the particles behind it may move (2, dim), m."""
+    free = [d == end.axis or layout.periods[d] is not None for d in range(layout.dimensions)]
+    half = 0.5 * layout.spacing
+    return np.array([np.where(free, -np.inf, low + half), np.where(free, np.inf, high - half)])
 
 
 def _given(end: OpenEnd) -> Callable[[float], float]:

@@ -31,13 +31,15 @@ on its pressure in Pa and its velocity in m/s."""
 class Planes(NamedTuple):
     """The planes of open ends: they stand at ``place`` m along ``axis``, with the ``sign`` of the inward
     direction; ``pressure`` in Pa and inward ``speed`` in m/s were added behind them in the last step
-    (ends,)."""
+    (ends,).  Nothing behind them moves on beyond ``low`` and ``high`` (ends, dim), m."""
 
     axis: np.ndarray
     place: np.ndarray
     sign: np.ndarray
     pressure: np.ndarray
     speed: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
 
 
 class Listed(NamedTuple):

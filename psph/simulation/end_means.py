@@ -145,8 +145,11 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, seen, fastest):
         change2 = speed2 = 0.0
         for d in range(dim):
             v = seen[n, FITTED + 1 + d] if along < 0.0 and sees and not told.open[end] else 0.0
+            x = flowing.position[d][k]
             if d == axis:
                 v = along * sign
+            elif (v < 0.0 and x < planes.low[end, d]) or (v > 0.0 and x > planes.high[end, d]):
+                v = 0.0
             change2 += (v - flowing.velocity[d][k]) ** 2
             speed2 += v * v
             flowing.velocity[d][k] = v

@@ -173,6 +173,8 @@ class Buffers(Work):
             np.array([float(face.sign) for face in faces]),
             np.array([one.pressure for one in added]),
             np.array([one.speed for one in added]),
+            np.array([face.sides[0] for face in faces]),
+            np.array([face.sides[1] for face in faces]),
         )
 
     def _told(self, time: float) -> Told:
