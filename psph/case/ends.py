@@ -46,8 +46,11 @@ class OpenEnd(Answering):
     pressure: float | Course | None = key(
         "pressure at its plane; under gravity across it that in the middle of its height", None, unit="Pa"
     )
-    level: float | Course | None = key(
-        "height of the water's surface along the axis of gravity; hydrostatic below", None, unit="m"
+    level: float | Course | Literal["found"] | None = key(
+        "height of the water's surface along the axis of gravity, or found: that of the water in front; "
+        "hydrostatic below",
+        None,
+        unit="m",
     )
     pump: Name | None = key("the end whose flow comes in here: what leaves there", None)
     profile: Literal["uniform", "parabola", "pipe"] | AcrossFace = key(

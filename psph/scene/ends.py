@@ -11,6 +11,7 @@ from psph.case.courses import AcrossFace, Course
 from psph.case.ends import OpenEnd
 from psph.case.keys import AXES
 from psph.physics.open_ends import grown, parabola, pipe
+from psph.scene.end_rows import Rows, raised, rows_behind
 from psph.scene.layout import NONE, Layout
 from psph.scene.parts.end import EndPart, rows_of
 
@@ -37,7 +38,7 @@ class EndFace:
     ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean.  ``settle`` in s is None
     where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
     ``wave_speed`` in m/s is that of the waves that it lets out; ``spacing`` dx, m; ``rows`` of particles
-    stand behind it at the start.
+    stand behind it at the start; ``surface`` has the rows that its level fills, None without a surface.
     """
 
     name: str
@@ -60,6 +61,7 @@ class EndFace:
     wave_speed: float
     spacing: float
     rows: float
+    surface: Rows | None
 
     @property
     def by_pressure(self) -> bool:
@@ -101,7 +103,10 @@ def _face(scene, names: list[str], name: str) -> EndFace:
     wet_low = scene.census.lowest[held].min(axis=0) - half if held else lower
     wet_high = scene.census.highest[held].max(axis=0) + half if held else upper
     across = [d for d in range(layout.dimensions) if d != end.axis]
-    height = _height(scene, end, wet_low, wet_high)
+    height, layers = _height(scene, end, wet_low, wet_high), rows_of(scene.case, end)
+    if height:
+        lower, upper = raised(layout, end, lower, upper)
+    surface = rows_behind(layout, end, groups, lower, upper, layers) if height else None
     return EndFace(
         name=name,
         number=names.index(name),
@@ -112,7 +117,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         upper=upper,
         middle=0.5 * (wet_low + wet_high),
         sides=_sides(layout, end, wet_low, wet_high),
-        layers=rows_of(scene.case, end),
+        layers=layers,
         groups=groups,
         kind=end.given,
         given=_given(end),
@@ -122,7 +127,8 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         height=height,
         wave_speed=wave_speed(scene, height),
         spacing=layout.spacing,
-        rows=float(scene.census.sizes[list(groups)].sum()) / rows_of(scene.case, end),
+        rows=float(scene.census.sizes[list(groups)].sum()) / layers,
+        surface=surface,
     )
 
 
@@ -134,14 +140,14 @@ def _sides(layout: Layout, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> n
 
 
 def _given(end: OpenEnd) -> Callable[[float], float]:
-    """What is given, by time in s."""
+    """What is given, by time in s; no number where it is found."""
     told = getattr(end, end.given)
 
     def value(time: float) -> float:
         now = float(told.at(time)) if isinstance(told, Course) else told
         return now * grown(time, end.ramp) if end.ramp else now
 
-    return value if end.pump is None else (lambda time: math.nan)
+    return (lambda time: math.nan) if isinstance(told, str) else value
 
 
 def _height(scene, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> float:

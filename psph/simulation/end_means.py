@@ -12,13 +12,17 @@ from psph.simulation.rules import density
 BY_SPEED, BY_PRESSURE, BY_LEVEL = 0, 1, 2
 """What an end gives."""
 
-TERMS = 14
+TERMS = 15
 """Numbers that are summed for an end: over its buffer, a row counting once, 1, p, u, the pressure given, ρ₀c,
 and of what comes in 1 and u; over the fluid in front 1, ξ, p − p_t, ξ², ξ (p − p_t); particles that have come
-too far; those behind that see the fluid in front of the plane itself."""
+too far; those behind that see the fluid in front of the plane itself; rows of fluid in front, each counting
+once."""
 
 ONE = 2.0**40
 """The whole number of a term as large as its unit."""
+
+FALLS = 4.0
+"""Spacings of the column behind a plane that its pressure pushes where nothing is in front."""
 
 MOST = 4.0
 """In units, the largest term: beyond it a run has blown up."""
@@ -108,6 +112,8 @@ def sum_before(front, planes, told, flowing, units, far, reach, sums):
         k, end = front.columns[n], front.end[n]
         xi, row = depth(planes, end, flowing, k), sums[end]
         row[12] += 1 if xi > far else 0
+        tent = max(0.5 - abs(0.25 * xi / units.length + 0.5), 0.0)
+        row[14] += _whole(tent * flowing.rest[k] * flowing.volume[k])
         if told.what[end] != BY_SPEED and -reach < xi <= 0.0:
             over = flowing.pressure[k] - _given_at(told, end, front.weight[n], front.height[n], k, flowing)
             x, p = xi / units.length, over / units.pressure
@@ -118,9 +124,16 @@ def sum_before(front, planes, told, flowing, units, far, reach, sums):
             row[11] += _whole(x * p)
 
 
+@helper
+def _let_go(into, push, length, dt):
+    """The inward speed, m/s, of what has nothing before it, after dt: p/ρ, the ``push`` in m²/s², pushes a
+    column of this ``length``, m, up to √(2p/ρ)."""
+    return max(into, min(into + dt * push / length, np.sqrt(2.0 * max(push, 0.0))))
+
+
 @elementwise
-def fill_behind(behind, planes, told, flowing, laws, law_of, seen, fastest):
-    """Give those ``behind`` the planes their velocity, pressure and density.
+def fill_behind(behind, planes, told, flowing, laws, law_of, units, dt, seen, fastest):
+    """Give those ``behind`` the planes their velocity, pressure and density after a step of ``dt`` s.
 
     ``fastest`` (2,) gets the largest square of a change of the velocity and of the velocity, m²/s².
     """
@@ -134,10 +147,13 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, seen, fastest):
             out = told.faster[end] == told.faster[end]
             along = into + told.faster[end] if out else behind.shape[n] * told.value[end]
         else:
-            along = behind.shape[n] * told.inflow[end] if into > 0.0 else into
             xi = depth(planes, end, flowing, k)
             pressure = _given_at(told, end, behind.weight[n], behind.height[n], k, flowing)
             pressure += told.slope[end] * xi
+            if sees:
+                along = behind.shape[n] * told.inflow[end] if into > 0.0 else into
+            else:
+                along = _let_go(into, pressure / flowing.rest[k], FALLS * units.length, dt)
         along += planes.speed[end]
         pressure += planes.pressure[end]
         if told.open[end]:

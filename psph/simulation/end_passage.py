@@ -4,10 +4,12 @@ import numpy as np
 
 from psph.engine.settled import settled
 from psph.fields import FLUID
+from psph.kinds import Rank
 from psph.parallel.reductions import all_rows, exact_sums, whole_sums
 from psph.scene.ends import EndFace
+from psph.simulation.end_levels import Surface, fit_rows
 from psph.simulation.end_queues import DIES, run_queues
-from psph.simulation.end_state import Books
+from psph.simulation.end_state import Books, EndState
 
 BEYOND = 2
 """Spacings behind the last layer up to which fluid behind a plane is taken for what went out."""
@@ -29,11 +31,11 @@ class Passage:
     fluid where they have come in, fluid of the buffer where it has gone out, by queues
     (psph.simulation.end_queues)."""
 
-    def __init__(self, face: EndFace, domain):
-        self.face, self.domain, self.store = face, domain, domain.store
+    def __init__(self, face: EndFace, rank: Rank, up: np.ndarray):
+        self.face, self.domain, self.store, self.up = face, rank.domain, rank.store, up
         self._queue = settled(run_queues)
 
-    def renew(self, books: Books, population) -> None:
+    def renew(self, state: EndState, population) -> None:
         """Let particles change sides, be born and die; new lists have to follow.  Collective."""
         store, face = self.store, self.face
         behind = np.flatnonzero(np.isin(store.shown("group"), face.groups))
@@ -43,18 +45,22 @@ class Passage:
         out = within(face, self.domain, np.flatnonzero(fluid))
         rows = np.concatenate([behind, out])
         crossing = np.concatenate([(depth[behind] <= 0.0).astype(np.int64), np.full(len(out), -1)])
-        fate, born, place, births = self._queued(rows, depth[rows], crossing)
-        self._book(books, rows, crossing, births, fate == DIES)
+        fate, born, place, births, sites = self._queued(rows, depth[rows], crossing, state.surface)
+        self._book(state.books, rows, crossing, births + len(sites), fate == DIES)
         newborn = self._copied(rows[born > 0.0], born[born > 0.0])
         self._change(rows[crossing == 1], rows[crossing == -1])
         staying = np.delete(np.arange(store.owned), rows[fate == DIES])
         store.reorder((store.low + staying).astype(np.uint32), 0, 0)
         store.append(population.next_id + place, *newborn)
         population.next_id += births
+        if len(sites):
+            velocity = np.zeros_like(sites)
+            velocity[:, face.axis] = face.sign * max(state.means.speed, 0.0)
+            population.let_in(sites, velocity, face.surface.group)
 
-    def _queued(self, rows: np.ndarray, depth: np.ndarray, crossing: np.ndarray):
-        """Fates (n,), depths of births (n,), 0 for none, the places (births here,) of these among all, and
-        how many these are."""
+    def _queued(self, rows, depth, crossing, surface: Surface | None):
+        """Fates (n,), depths of births (n,), 0 for none, the places (births here,) of these among all, how
+        many these are, and the places (m, dim), m, of those who are born as a level rises."""
         across = [d for d in range(self.store.dimensions) if d != self.face.axis]
         table = np.empty((len(rows), 3 + len(across)))
         table[:, 0] = self.store.shown("id")[rows]
@@ -66,9 +72,15 @@ class Passage:
         periods = np.array([self.domain.periods[d] or 0.0 for d in across])
         who, size, layers = everyone[2].astype(np.int64), self.face.spacing, self.face.layers
         self._queue(everyone[1], everyone[3:], periods, who, size, layers, fate, born)
+        sites = np.zeros((0, self.store.dimensions))
+        if surface is not None and surface.unfilled and surface.comes_in:
+            standing = np.where(who == 1, born > 0.0, fate != DIES)
+            above, sites = fit_rows(self.face, surface.full, everyone[3:], periods, standing, self.up)
+            fate[above & (who < 1)], born[above] = DIES, 0.0
+            surface.unfilled = False
         mine, comes = np.searchsorted(everyone[0], table[:, 0]), born > 0.0
         places = np.cumsum(comes) - 1
-        return fate[mine], born[mine], places[mine][comes[mine]], int(np.count_nonzero(comes))
+        return fate[mine], born[mine], places[mine][comes[mine]], int(np.count_nonzero(comes)), sites
 
     def _book(self, books: Books, rows, crossing, births: int, dies) -> None:
         comm, mass = self.domain.comm, self.store.shown("mass")[rows]

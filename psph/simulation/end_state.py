@@ -6,6 +6,7 @@ from typing import Self
 
 from psph.physics.open_ends import NO_ANSWER, WaveAnswer, follow, of_pressure_end, of_velocity_end
 from psph.scene.ends import EndFace
+from psph.simulation.end_levels import Surface
 from psph.simulation.end_means import MOST, ONE, Units
 
 SLOW = 10.0
@@ -45,7 +46,8 @@ class Books:
 class EndState:
     """The ``means`` over a face and its ``books``; the ``reference`` of waves; of a surface the ``smoothed``
     means; the ``slope`` of the pressure along the normal, Pa/m; what is ``added`` behind the face; whether
-    particles are ``due`` to change sides."""
+    particles are ``due`` to change sides; how many sites in front are full of ``standing`` fluid; the
+    ``surface`` behind it, where there is one."""
 
     means: Means = field(default_factory=Means)
     books: Books = field(default_factory=Books)
@@ -54,13 +56,29 @@ class EndState:
     slope: float = 0.0
     added: WaveAnswer = NO_ANSWER
     due: bool = False
+    standing: float = 0.0
+    surface: Surface | None = None
 
     @classmethod
     def restored(cls, kept: dict) -> Self:
         """From what :meth:`kept` gave."""
         means, books, smoothed = Means(**kept["means"]), Books(**kept["books"]), kept["smoothed"]
+        surface = kept["surface"] and Surface(**kept["surface"])
         further = {"added": WaveAnswer(*kept["added"]), "smoothed": smoothed and tuple(smoothed)}
+        further["surface"] = surface
         return cls(**(kept | {"means": means, "books": books} | further))
+
+    @classmethod
+    def at_start(cls, face: EndFace) -> Self:
+        """Nothing has passed, and the rows of a surface are full as they are drawn."""
+        return cls(surface=face.surface and Surface(face.surface.wet))
+
+    def given(self, face: EndFace, time: float) -> float:
+        """What a pressure end gives at ``time``, s: Pa, or the level, given or found, in m."""
+        value = face.given(time)
+        if value == value or self.surface is None or face.surface is None:
+            return value
+        return self.surface.level(face.surface)
 
     def kept(self) -> dict:
         """For a checkpoint."""
@@ -68,8 +86,9 @@ class EndState:
 
     def measure(self, face: EndFace, sums: list[int], units: Units, dt: float) -> None:
         """Take the ``sums`` over a face (psph.simulation.end_means.TERMS) after a step of ``dt`` s."""
-        rows, p, u, given, z, entering, inflow, *slope, due, near = (one / ONE for one in sums)
+        rows, p, u, given, z, entering, inflow, *slope, due, near, standing = (one / ONE for one in sums)
         self.due = due > 0.0
+        self.standing = standing
         if not near or rows < FEWEST:
             self.means = Means()
             return
@@ -83,6 +102,16 @@ class EndState:
         )
         if face.by_pressure and face.settle:
             self._follow_slope(face.settle, slope, units, dt)
+
+    def follow_surface(self, face: EndFace, told: float, level: float, units: Units, dt: float) -> None:
+        """Which rows behind the plane are to be full: by a ``level`` in m, or where it is no number by that
+        of the fluid in front; ``told`` m/s is the mean speed of a velocity end."""
+        if self.surface is None or face.surface is None:
+            return
+        mean = self.means.speed if face.by_pressure else told
+        self.surface.see(face, self.standing, mean >= 0.0, units.speed, dt)
+        self.surface.settle(face.surface, level, face.spacing)
+        self.due |= self.surface.unfilled and self.surface.comes_in
 
     def _follow_slope(self, settle: float, terms: list[float], units: Units, dt: float) -> None:
         count, far, over, square, product = terms

@@ -56,9 +56,9 @@ class Buffers(Work):
         scene, self.plan, self.store, self.domain = rank.scene, rank.plan, rank.store, rank.domain
         self.comm, self.ledger = rank.domain.comm, rank.ledger
         self.faces, self.dx = faces_of(scene), scene.spacing
-        self.states = [EndState() for _ in self.faces]
-        self.passages = [Passage(face, self.domain) for face in self.faces]
+        self.states = [EndState.at_start(face) for face in self.faces]
         self.up, self.gravity = np.array(scene.layout.up), np.array(scene.gravity)
+        self.passages = [Passage(face, rank, self.up) for face in self.faces]
         self.vicinity = Vicinity(
             scene.kernel, scene.spacing, tuple(scene.gravity), tuple(scene.layout.periods)
         )
@@ -126,7 +126,7 @@ class Buffers(Work):
             return
         with self.ledger("ends"):
             for passage, state in zip(self.passages, self.states):
-                passage.renew(state.books, simulation.population)
+                passage.renew(state, simulation.population)
         simulation.listed = False
 
     # What they are like.
@@ -158,11 +158,13 @@ class Buffers(Work):
         for face, state, one in zip(self.faces, self.states, whole_sums(self.comm, sums).tolist()):
             state.measure(face, one, self.units, dt)
         for face, state in zip(self.faces, self.states):
-            state.answer(face, self._mean_speed(face, time), self.units.speed, dt)
+            told, level = self._mean_speed(face, time), face.given(time) if face.kind == "level" else math.nan
+            state.answer(face, told, self.units.speed, dt)
+            state.follow_surface(face, told, level, self.units, dt)
         materials = self.plan.materials
         self._fastest[:] = 0.0
-        laws = materials.laws, materials.law_of
-        self._fill(behind, self._planes(), self._told(time), flowing, *laws, seen, self._fastest)
+        fixed = materials.laws, materials.law_of, self.units, dt
+        self._fill(behind, self._planes(), self._told(time), flowing, *fixed, seen, self._fastest)
         self._fastest[0] /= dt * dt if dt else np.inf
 
     def _planes(self) -> Planes:
@@ -180,7 +182,10 @@ class Buffers(Work):
     def _told(self, time: float) -> Told:
         """What the ends give at ``time``, s."""
         speeds = [self._mean_speed(face, time) for face in self.faces]
-        given = [face.given(time) if face.by_pressure else u for face, u in zip(self.faces, speeds)]
+        given = [
+            state.given(face, time) if face.by_pressure else u
+            for face, state, u in zip(self.faces, self.states, speeds)
+        ]
         faster = [
             u - one.means.speed if u < 0.0 and one.means.rows else math.nan
             for u, one in zip(speeds, self.states)

@@ -25,7 +25,7 @@ class Population:
         for sink in sinks:
             self._take_out(sink, time)
         for source, group in sources:
-            self._let_in(*source.appear(self.asked, time), group)
+            self.let_in(*source.appear(self.asked, time), group)
         self.asked = time
 
     def state(self) -> dict:
@@ -44,8 +44,9 @@ class Population:
         staying = np.delete(np.arange(store.owned), gone)
         store.reorder((store.low + staying).astype(np.uint32), 0, 0)
 
-    def _let_in(self, position: np.ndarray, velocity: np.ndarray, group: int) -> None:
-        """Rank 0 holds them until the new lists send them where they belong."""
+    def let_in(self, position: np.ndarray, velocity: np.ndarray, group: int) -> None:
+        """Particles of a ``group`` begin at ``position`` (n, dim), m, with a ``velocity``, m/s; rank 0
+        holds them until the new lists send them where they belong."""
         n, store = len(position), self.domain.store
         if n and self.domain.comm.rank == 0:
             species = np.full(n, group, np.uint8)
