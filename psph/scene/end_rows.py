@@ -19,8 +19,8 @@ HIGHER = 1.0
 class Rows:
     """The rows behind an end, from the lowest up.
 
-    ``sites`` has for each row the places (n, dim), m, of its sites right behind the plane, ``layers`` of them
-    stand one behind the other along ``axis``, towards ``back``; ``heights`` (rows,) m are along gravity, as
+    ``sites`` has for each row the places (n, dim), m, of its sites right behind the plane; ``back`` m is the
+    step along ``axis`` from there to those behind them.  ``heights`` (rows,) m are along ``up`` (dim,), as
     levels are.  The lowest ``wet`` rows hold fluid at the start; what is born later is of the buffer
     ``group``.
     """
@@ -31,7 +31,7 @@ class Rows:
     group: int
     axis: int
     back: float
-    layers: int
+    up: np.ndarray
 
     @property
     def counts(self) -> np.ndarray:
@@ -50,15 +50,18 @@ class Rows:
         edges = np.append(self.heights - half, self.heights[-1] + half)
         return float(np.interp(count, full, edges))
 
-    def behind(self, sites: np.ndarray) -> np.ndarray:
-        """Places (n · layers, dim), m, of all that stand behind some ``sites`` (n, dim)."""
-        places = np.repeat(sites, self.layers, axis=0)
-        places[:, self.axis] += self.back * np.tile(np.arange(self.layers), len(sites))
+    def behind(self, plane: float, sites: np.ndarray, begins: np.ndarray, lacking: np.ndarray) -> np.ndarray:
+        """Places (n, dim), m, of as many as are ``lacking`` behind each of some ``sites`` (m, dim), from the
+        depth ``begins`` (m,) m behind the ``plane`` on, a spacing apart."""
+        places = np.repeat(sites, lacking, axis=0)
+        place = np.arange(len(places)) - np.repeat(np.cumsum(lacking) - lacking, lacking)
+        depth = np.repeat(begins, lacking) + abs(self.back) * place
+        places[:, self.axis] = plane + np.sign(self.back) * depth
         return places
 
 
 def rows_behind(
-    layout: Layout, end: OpenEnd, groups: tuple[int, ...], lower: np.ndarray, upper: np.ndarray, layers: int
+    layout: Layout, end: OpenEnd, groups: tuple[int, ...], lower: np.ndarray, upper: np.ndarray
 ) -> Rows | None:
     """The rows behind an end whose buffers are in a box from ``lower`` to ``upper`` (dim,), m;
     None where gravity does not pull across it, or nothing can stand behind it."""
@@ -90,7 +93,7 @@ def rows_behind(
         group=int(held[wet - 1][own[wet - 1]][0]) if wet else groups[fluid],
         axis=end.axis,
         back=-end.sign * layout.spacing,
-        layers=layers,
+        up=np.array(layout.up),
     )
 
 

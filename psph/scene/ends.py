@@ -106,7 +106,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
     height, layers = _height(scene, end, wet_low, wet_high), rows_of(scene.case, end)
     if height:
         lower, upper = raised(layout, end, lower, upper)
-    surface = rows_behind(layout, end, groups, lower, upper, layers) if height else None
+    surface = rows_behind(layout, end, groups, lower, upper) if height else None
     return EndFace(
         name=name,
         number=names.index(name),

@@ -31,8 +31,8 @@ class Passage:
     fluid where they have come in, fluid of the buffer where it has gone out, by queues
     (psph.simulation.end_queues)."""
 
-    def __init__(self, face: EndFace, rank: Rank, up: np.ndarray):
-        self.face, self.domain, self.store, self.up = face, rank.domain, rank.store, up
+    def __init__(self, face: EndFace, rank: Rank):
+        self.face, self.domain, self.store = face, rank.domain, rank.domain.store
         self._queue = settled(run_queues)
 
     def renew(self, state: EndState, population) -> None:
@@ -75,9 +75,12 @@ class Passage:
         sites = np.zeros((0, self.store.dimensions))
         if surface is not None and surface.unfilled and surface.comes_in:
             standing = np.where(who == 1, born > 0.0, fate != DIES)
-            above, sites = fit_rows(self.face, surface.full, everyone[3:], periods, standing, self.up)
-            fate[above & (who < 1)], born[above] = DIES, 0.0
-            surface.unfilled = False
+            if surface.turned:
+                fate[standing & (who < 1)], born[:], standing[:] = DIES, 0.0, False
+            deep = np.where(born > 0.0, born, everyone[1])
+            surplus, sites = fit_rows(self.face, surface.full, deep, everyone[3:], periods, standing)
+            fate[surplus & (who < 1)], born[surplus] = DIES, 0.0
+            surface.unfilled = surface.turned = False
         mine, comes = np.searchsorted(everyone[0], table[:, 0]), born > 0.0
         places = np.cumsum(comes) - 1
         return fate[mine], born[mine], places[mine][comes[mine]], int(np.count_nonzero(comes)), sites

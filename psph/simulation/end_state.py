@@ -12,6 +12,9 @@ from psph.simulation.end_means import MOST, ONE, Units
 SLOW = 10.0
 """Times the settling time in which the slope of the pressure along the normal is followed."""
 
+BACK = 0.5
+"""Settling times in which a velocity end under a surface makes up for what its answers to waves let astray."""
+
 FEWEST = 0.5
 """Rows below which a face has no fluid before it."""
 
@@ -45,15 +48,17 @@ class Books:
 @dataclass
 class EndState:
     """The ``means`` over a face and its ``books``; the ``reference`` of waves; of a surface the ``smoothed``
-    means; the ``slope`` of the pressure along the normal, Pa/m; what is ``added`` behind the face; whether
-    particles are ``due`` to change sides; how many sites in front are full of ``standing`` fluid; the
-    ``surface`` behind it, where there is one."""
+    means; the ``slope`` of the pressure along the normal, Pa/m; how far the answers to waves lead ``astray``
+    from a speed that is given, m/s; what is ``added`` behind the face; whether particles are ``due`` to
+    change sides; how many sites in front are full of ``standing`` fluid; the ``surface`` behind it, where
+    there is one."""
 
     means: Means = field(default_factory=Means)
     books: Books = field(default_factory=Books)
     reference: float | None = None
     smoothed: tuple[float, float] | None = None
     slope: float = 0.0
+    astray: float = 0.0
     added: WaveAnswer = NO_ANSWER
     due: bool = False
     standing: float = 0.0
@@ -109,7 +114,7 @@ class EndState:
         if self.surface is None or face.surface is None:
             return
         mean = self.means.speed if face.by_pressure else told
-        self.surface.see(face, self.standing, mean >= 0.0, units.speed, dt)
+        self.surface.see(face, self.standing, mean, units.speed, dt)
         self.surface.settle(face.surface, level, face.spacing)
         self.due |= self.surface.unfilled and self.surface.comes_in
 
@@ -137,5 +142,8 @@ class EndState:
         if face.by_pressure:
             self.added = of_pressure_end(pressure, means.given, inward, reference, impedance)
         else:
-            self.added = of_velocity_end(inward, told, pressure, reference, impedance)
+            answer = of_velocity_end(inward, told, pressure, reference, impedance)
+            self.added = answer._replace(speed=answer.speed - self.astray)
+            if face.height:
+                self.astray = follow(self.astray, answer.speed, dt, BACK * face.settle)
         self.reference = follow(reference, followed, dt, face.settle)

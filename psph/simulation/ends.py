@@ -58,7 +58,7 @@ class Buffers(Work):
         self.faces, self.dx = faces_of(scene), scene.spacing
         self.states = [EndState.at_start(face) for face in self.faces]
         self.up, self.gravity = np.array(scene.layout.up), np.array(scene.gravity)
-        self.passages = [Passage(face, rank, self.up) for face in self.faces]
+        self.passages = [Passage(face, rank) for face in self.faces]
         self.vicinity = Vicinity(
             scene.kernel, scene.spacing, tuple(scene.gravity), tuple(scene.layout.periods)
         )

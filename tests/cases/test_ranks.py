@@ -83,6 +83,7 @@ END = {
     "ends/open_channel": 0.15,
     "ends/nozzle": 0.12,
     "ends/open_pipe": 0.15,
+    "ends/tide": 3.2,  # rows are born as it rises
     "tension/drop": 0.1,
     "tension/oscillating_drop": 0.1,
     "tension/drop_on_wall": 0.1,
