@@ -1,7 +1,8 @@
-"""Rows of lattice sites behind an open end under a surface, one upon the other: a level that moves fills and
+"""SurfaceRows of lattice sites behind an open end under a surface, one upon the other: a level that moves fills and
 empties them."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -16,7 +17,7 @@ HIGHER = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class SurfaceRows:
     """The rows behind an end, from the lowest up.
 
     ``sites`` has for each row the places (n, dim), m, of its sites right behind the plane; ``back`` m is the
@@ -33,7 +34,7 @@ class Rows:
     back: float
     up: np.ndarray
 
-    @property
+    @cached_property
     def counts(self) -> np.ndarray:
         """How many sites each has (rows,)."""
         return np.array([len(row) for row in self.sites])
@@ -45,10 +46,15 @@ class Rows:
 
     def level_of(self, count: float) -> float:
         """The level up to which ``count`` sites are full, m."""
-        full = np.concatenate([[0.0], np.cumsum(self.counts)])
+        return float(np.interp(count, *self._edges))
+
+    @cached_property
+    def _edges(self) -> tuple[np.ndarray, np.ndarray]:
+        """How many sites are full up to the lower edge of each row and the upper one of the last, and where
+        these are, m."""
         half = 0.5 * abs(self.back)
         edges = np.append(self.heights - half, self.heights[-1] + half)
-        return float(np.interp(count, full, edges))
+        return np.concatenate([[0.0], np.cumsum(self.counts)]), edges
 
     def behind(self, plane: float, sites: np.ndarray, begins: np.ndarray, lacking: np.ndarray) -> np.ndarray:
         """Places (n, dim), m, of as many as are ``lacking`` behind each of some ``sites`` (m, dim), from the
@@ -62,7 +68,7 @@ class Rows:
 
 def rows_behind(
     layout: Layout, end: OpenEnd, groups: tuple[int, ...], lower: np.ndarray, upper: np.ndarray
-) -> Rows | None:
+) -> SurfaceRows | None:
     """The rows behind an end whose buffers are in a box from ``lower`` to ``upper`` (dim,), m;
     None where gravity does not pull across it, or nothing can stand behind it."""
     up = np.array(layout.up)
@@ -86,7 +92,7 @@ def rows_behind(
     at_plane = places.copy()
     at_plane[..., end.axis] = end.at
     heights = at_plane @ np.array(layout.up)
-    return Rows(
+    return SurfaceRows(
         sites=tuple(row[one] for row, one in zip(places, free)),
         heights=np.array([row[one].mean() for row, one in zip(heights, free)]),
         wet=wet,

@@ -11,7 +11,7 @@ from psph.case.courses import AcrossFace, Course
 from psph.case.ends import OpenEnd
 from psph.case.keys import AXES
 from psph.physics.open_ends import grown, parabola, pipe
-from psph.scene.end_rows import Rows, raised, rows_behind
+from psph.scene.end_rows import SurfaceRows, raised, rows_behind
 from psph.scene.layout import NONE, Layout
 from psph.scene.parts.end import EndPart, rows_of
 
@@ -61,7 +61,7 @@ class EndFace:
     wave_speed: float
     spacing: float
     rows: float
-    surface: Rows | None
+    surface: SurfaceRows | None
 
     @property
     def by_pressure(self) -> bool:

@@ -1,4 +1,4 @@
-"""Rows behind an open end that a level fills and empties as it rises and falls."""
+"""SurfaceRows behind an open end that a level fills and empties as it rises and falls."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from psph.engine.jit import elementwise
 from psph.engine.settled import settled
 from psph.formula import helper
 from psph.physics.open_ends import follow
-from psph.scene.end_rows import Rows
+from psph.scene.end_rows import SurfaceRows
 from psph.scene.ends import EndFace
 
 HOLDS = 0.25
@@ -24,11 +24,11 @@ ABOVE = 0.75
 """Spacings above the middle of the highest row from which a particle is of none."""
 
 FEWEST_ROWS = 4.0
-"""Rows over whose height a level is smoothed at least."""
+"""SurfaceRows over whose height a level is smoothed at least."""
 
 
 @dataclass
-class Surface:
+class EndLevel:
     """The level behind an end: how many of its rows are ``full``, how many sites the fluid in front fills,
     smoothed over time, None before there is any; whether fluid ``comes_in``; whether rows are still to be
     filled or emptied."""
@@ -39,7 +39,7 @@ class Surface:
     unfilled: bool = False
     turned: bool = False
 
-    def level(self, rows: Rows) -> float:
+    def level(self, rows: SurfaceRows) -> float:
         """Of the fluid in front, else that of the rows, m."""
         full = float(rows.counts[: self.full].sum())
         return rows.level_of(full if self.count is None else self.count)
@@ -54,14 +54,14 @@ class Surface:
         elif self.comes_in and speed < -TURNS * face.wave_speed:
             self.comes_in = self.turned = False
 
-    def settle(self, rows: Rows, level: float, dx: float) -> None:
-        """Rows that a ``level`` in m fills, or that of the fluid in front where it is no number."""
+    def settle(self, rows: SurfaceRows, level: float, dx: float) -> None:
+        """SurfaceRows that a ``level`` in m fills, or that of the fluid in front where it is no number."""
         full = rows_full(rows, self.full, level if level == level else self.level(rows), dx)
         self.unfilled |= full != self.full
         self.full = full
 
 
-def rows_full(rows: Rows, full: int, level: float, dx: float) -> int:
+def rows_full(rows: SurfaceRows, full: int, level: float, dx: float) -> int:
     """How many rows a ``level`` in m fills where ``full`` were full before."""
     while full < len(rows.heights) and level > rows.heights[full] + HOLDS * dx:
         full += 1

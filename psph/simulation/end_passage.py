@@ -7,7 +7,7 @@ from psph.fields import FLUID
 from psph.kinds import Rank
 from psph.parallel.reductions import all_rows, exact_sums, whole_sums
 from psph.scene.ends import EndFace
-from psph.simulation.end_levels import Surface, fit_rows
+from psph.simulation.end_levels import EndLevel, fit_rows
 from psph.simulation.end_queues import DIES, run_queues
 from psph.simulation.end_state import Books, EndState
 
@@ -58,7 +58,7 @@ class Passage:
             velocity[:, face.axis] = face.sign * max(state.means.speed, 0.0)
             population.let_in(sites, velocity, face.surface.group)
 
-    def _queued(self, rows, depth, crossing, surface: Surface | None):
+    def _queued(self, rows, depth, crossing, surface: EndLevel | None):
         """Fates (n,), depths of births (n,), 0 for none, the places (births here,) of these among all, how
         many these are, and the places (m, dim), m, of those who are born as a level rises."""
         across = [d for d in range(self.store.dimensions) if d != self.face.axis]

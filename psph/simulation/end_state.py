@@ -6,14 +6,14 @@ from typing import Self
 
 from psph.physics.open_ends import NO_ANSWER, WaveAnswer, follow, of_pressure_end, of_velocity_end
 from psph.scene.ends import EndFace
-from psph.simulation.end_levels import Surface
+from psph.simulation.end_levels import EndLevel
 from psph.simulation.end_means import MOST, ONE, Units
 
 SLOW = 10.0
 """Times the settling time in which the slope of the pressure along the normal is followed."""
 
 BACK = 0.5
-"""Settling times in which a velocity end under a surface makes up for what its answers to waves let astray."""
+"""Settling times in which a velocity end under a surface makes up for what answers to waves let astray."""
 
 FEWEST = 0.5
 """Rows below which a face has no fluid before it."""
@@ -62,13 +62,13 @@ class EndState:
     added: WaveAnswer = NO_ANSWER
     due: bool = False
     standing: float = 0.0
-    surface: Surface | None = None
+    surface: EndLevel | None = None
 
     @classmethod
     def restored(cls, kept: dict) -> Self:
         """From what :meth:`kept` gave."""
         means, books, smoothed = Means(**kept["means"]), Books(**kept["books"]), kept["smoothed"]
-        surface = kept["surface"] and Surface(**kept["surface"])
+        surface = kept["surface"] and EndLevel(**kept["surface"])
         further = {"added": WaveAnswer(*kept["added"]), "smoothed": smoothed and tuple(smoothed)}
         further["surface"] = surface
         return cls(**(kept | {"means": means, "books": books} | further))
@@ -76,7 +76,7 @@ class EndState:
     @classmethod
     def at_start(cls, face: EndFace) -> Self:
         """Nothing has passed, and the rows of a surface are full as they are drawn."""
-        return cls(surface=face.surface and Surface(face.surface.wet))
+        return cls(surface=face.surface and EndLevel(face.surface.wet))
 
     def given(self, face: EndFace, time: float) -> float:
         """What a pressure end gives at ``time``, s: Pa, or the level, given or found, in m."""

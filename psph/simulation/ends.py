@@ -66,6 +66,11 @@ class Buffers(Work):
         # Fluids of one density are one to the fit: ghosts tell no more.
         self.densities = sorted({one.density for one in fluids})
         c = max(one.sound_speed for one in fluids)
+        stand = [(face.axis, face.at, float(face.sign)) for face in self.faces]
+        self._stand = tuple(map(np.array, zip(*stand)))
+        self._sides = tuple(np.array([face.sides[n] for face in self.faces]) for n in (0, 1))
+        what = [(WHAT.get(face.kind, BY_SPEED), face.height > 0.0) for face in self.faces]
+        self._what = tuple(map(np.array, zip(*what)))
         self.units = Units(self.densities[-1] * c * c, self.densities[-1] * c, c, self.dx)
         loops = see_fronts, sum_behind, sum_before, fill_behind
         self._see, self._sum_behind, self._sum_before, self._fill = map(settled, loops)
@@ -87,6 +92,7 @@ class Buffers(Work):
             front.append(within(face, self.domain, np.flatnonzero(near), LISTED))
         self.behind, self.front = self._standing(behind), self._standing(front)
         self.matter = self._matter()
+        self._fixed = self._column("rest_density"), self._column("sound_speed")
         self._sums = np.zeros(moments_of(store.dimensions))
         self._seen = np.zeros((len(self.behind.columns), FITTED + 1 + store.dimensions))
 
@@ -168,43 +174,25 @@ class Buffers(Work):
         self._fastest[0] /= dt * dt if dt else np.inf
 
     def _planes(self) -> Planes:
-        faces, added = self.faces, [state.added for state in self.states]
-        return Planes(
-            np.array([face.axis for face in faces]),
-            np.array([face.at for face in faces]),
-            np.array([float(face.sign) for face in faces]),
-            np.array([one.pressure for one in added]),
-            np.array([one.speed for one in added]),
-            np.array([face.sides[0] for face in faces]),
-            np.array([face.sides[1] for face in faces]),
-        )
+        added = np.array([state.added for state in self.states])
+        return Planes(*self._stand, *np.ascontiguousarray(added.T), *self._sides)
 
     def _told(self, time: float) -> Told:
         """What the ends give at ``time``, s."""
-        speeds = [self._mean_speed(face, time) for face in self.faces]
-        given = [
-            state.given(face, time) if face.by_pressure else u
-            for face, state, u in zip(self.faces, self.states, speeds)
-        ]
-        faster = [
-            u - one.means.speed if u < 0.0 and one.means.rows else math.nan
-            for u, one in zip(speeds, self.states)
-        ]
-        return Told(
-            np.array([WHAT.get(face.kind, BY_SPEED) for face in self.faces]),
-            np.array(given),
-            np.array(faster),
-            np.array([state.means.inflow for state in self.states]),
-            np.array([state.slope for state in self.states]),
-            np.array([face.height > 0.0 for face in self.faces]),
-        )
+        rows = []
+        for face, state in zip(self.faces, self.states):
+            u, means = self._mean_speed(face, time), state.means
+            given = state.given(face, time) if face.by_pressure else u
+            faster = u - means.speed if u < 0.0 and means.rows else math.nan
+            rows.append((given, faster, means.inflow, state.slope))
+        what, open_above = self._what
+        return Told(what, *np.ascontiguousarray(np.array(rows).T), open_above)
 
     def _flowing(self) -> Flowing:
         store = self.store
         fields = ("position", "velocity", "predicted_velocity", "density", "specific_volume", "pressure")
-        fixed = self._column("rest_density"), self._column("sound_speed")
         pull = float(np.linalg.norm(self.gravity))
-        return Flowing(*(store[name] for name in fields), *fixed, store.group, pull)
+        return Flowing(*(store[name] for name in fields), *self._fixed, store.group, pull)
 
     def _mean_speed(self, face: EndFace, time: float) -> float:
         """The mean inward speed that a velocity end tells, m/s; 0 of a pressure end."""

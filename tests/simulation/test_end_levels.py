@@ -7,7 +7,7 @@ from gauging import start
 
 from psph.scene import Scene
 from psph.scene.ends import faces_of
-from psph.simulation.end_levels import Surface, fit_strips, rows_full
+from psph.simulation.end_levels import EndLevel, fit_strips, rows_full
 
 DX = 0.1
 BASIN = """
@@ -53,7 +53,11 @@ def test_rows_of_a_channel_with_sloping_banks(tmp_path):
     text = BASIN.replace("dimensions = 2", "dimensions = 3")
     for old, new in (("0.0]", "0.0, 0.0]"), ("-9.81]", "-9.81, 0.0]"), ("0.6]", "0.6, 0.6]")):
         text = text.replace(old, new)
-    text = text.replace("0.0, 0.0, -9.81", "0.0, -9.81").replace("-0.4]", "-0.4, -0.4]").replace("1.6]", "1.6, 1.0]")
+    text = (
+        text.replace("0.0, 0.0, -9.81", "0.0, -9.81")
+        .replace("-0.4]", "-0.4, -0.4]")
+        .replace("1.6]", "1.6, 1.0]")
+    )
     banks = "[walls.bank]\nshape.box = { lower = [-0.5, 0.0, 0.0], upper = [1.0, 0.3, 0.2] }\n"
     rows = surface_of(tmp_path, text + banks)
     assert rows.counts[:5].tolist() == [8, 8, 8, 10, 10]
@@ -89,7 +93,7 @@ def test_strips_are_filled_and_emptied():
 def test_flow_that_turns_counts_past_a_hundredth_of_the_speed_of_waves(tmp_path):
     """Noise of still water turns nothing."""
     [face] = faces_of(Scene(draft(tmp_path, BASIN)))
-    surface = Surface(6)
+    surface = EndLevel(6)
     for speed, comes_in, turned in (
         (-0.01, True, False),
         (-0.1, False, False),
