@@ -1,4 +1,4 @@
-"""SurfaceRows of lattice sites behind an open end under a surface, one upon the other: a level that moves fills and
+"""Rows of lattice sites behind an open end under a surface, one upon the other: a level that moves fills and
 empties them."""
 
 from dataclasses import dataclass
