@@ -51,14 +51,14 @@ class Standing(NamedTuple):
 
 
 class Told(NamedTuple):
-    """What ends give now, (ends,): ``what`` it is; its ``value``, of a velocity end the mean speed; how much
-    ``faster`` than the fluid, m/s, where that goes out of a velocity end, else NaN; the ``inflow``, mean
-    speed in m/s of what comes in through a pressure end, the ``slope`` of its pressure in Pa/m; whether a
-    surface is ``open`` above it."""
+    """What ends give now, (ends,): ``what`` it is; its ``value``, of a velocity end the mean speed; 1 where
+    that goes ``out``, so that the fluid gives its shape, else 0; the ``inflow``, mean speed in m/s of what
+    comes in through a pressure end, the ``slope`` of its pressure in Pa/m; whether a surface is ``open``
+    above it."""
 
     what: np.ndarray
     value: np.ndarray
-    faster: np.ndarray
+    out: np.ndarray
     inflow: np.ndarray
     slope: np.ndarray
     open: np.ndarray
@@ -144,8 +144,7 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, units, dt, seen, fa
         into = seen[n, FITTED + 1 + axis] * sign if sees else flowing.velocity[axis][k] * sign
         pressure = seen[n, FITTED]
         if told.what[end] == BY_SPEED:
-            out = told.faster[end] == told.faster[end]
-            along = into + told.faster[end] if out else behind.shape[n] * told.value[end]
+            along = into if told.out[end] > 0.0 else behind.shape[n] * told.value[end]
         else:
             xi = depth(planes, end, flowing, k)
             pressure = _given_at(told, end, behind.weight[n], behind.height[n], k, flowing)

@@ -49,9 +49,9 @@ class Books:
 class EndState:
     """The ``means`` over a face and its ``books``; the ``reference`` of waves; of a surface the ``smoothed``
     means; the ``slope`` of the pressure along the normal, Pa/m; how far the answers to waves lead ``astray``
-    from a speed that is given, m/s; what is ``added`` behind the face; whether particles are ``due`` to
-    change sides; how many sites in front are full of ``standing`` fluid; the ``surface`` behind it, where
-    there is one."""
+    from a speed that is given, m/s; what is ``added`` behind the face; how much ``faster`` than the fluid in
+    front goes what a velocity end draws out, m/s, below 0; whether particles are ``due`` to change sides; how
+    many sites in front are full of ``standing`` fluid; the ``surface`` behind it, where there is one."""
 
     means: Means = field(default_factory=Means)
     books: Books = field(default_factory=Books)
@@ -60,6 +60,7 @@ class EndState:
     slope: float = 0.0
     astray: float = 0.0
     added: WaveAnswer = NO_ANSWER
+    faster: float = 0.0
     due: bool = False
     standing: float = 0.0
     surface: EndLevel | None = None
@@ -128,6 +129,7 @@ class EndState:
         """What is added behind a face in this step so that waves leave; ``told`` m/s is the mean speed of a
         velocity end."""
         means = self.means
+        self.faster = told - means.speed if told < 0.0 and means.rows else 0.0
         if face.settle is None or means.rows < FEWEST or math.isnan(told):
             self.added = NO_ANSWER
             return

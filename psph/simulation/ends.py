@@ -174,7 +174,7 @@ class Buffers(Work):
         self._fastest[0] /= dt * dt if dt else np.inf
 
     def _planes(self) -> Planes:
-        added = np.array([state.added for state in self.states])
+        added = np.array([(one.added.pressure, one.added.speed + one.faster) for one in self.states])
         return Planes(*self._stand, *np.ascontiguousarray(added.T), *self._sides)
 
     def _told(self, time: float) -> Told:
@@ -183,8 +183,8 @@ class Buffers(Work):
         for face, state in zip(self.faces, self.states):
             u, means = self._mean_speed(face, time), state.means
             given = state.given(face, time) if face.by_pressure else u
-            faster = u - means.speed if u < 0.0 and means.rows else math.nan
-            rows.append((given, faster, means.inflow, state.slope))
+            out = 1.0 if u < 0.0 and means.rows else 0.0
+            rows.append((given, out, means.inflow, state.slope))
         what, open_above = self._what
         return Told(what, *np.ascontiguousarray(np.array(rows).T), open_above)
 
@@ -209,7 +209,7 @@ class Buffers(Work):
         by the books, a row in the time of PAID_IN rows."""
         left = source.books.number_out - source.books.number_in
         owed = (left - own.number_in + own.number_out) / rows if rows else 0.0
-        speed = -source.means.speed * source.means.rows / rows if rows else 0.0
+        speed = -(source.means.speed + source.faster) * source.means.rows / rows if rows else 0.0
         return speed * (1.0 + owed / PAID_IN)
 
     # What forces do not do.

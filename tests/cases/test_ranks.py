@@ -83,6 +83,11 @@ END = {
     "ends/open_channel": 0.15,
     "ends/nozzle": 0.12,
     "ends/open_pipe": 0.15,
+    "ends/bend": 0.3,
+    "ends/cylinder_re20": 0.05,
+    "ends/cylinder_re100": 0.01,
+    "ends/filling": 0.3,
+    "ends/pump": 0.3,
     "ends/tide": 3.2,  # rows are born as it rises
     "tension/drop": 0.1,
     "tension/oscillating_drop": 0.1,

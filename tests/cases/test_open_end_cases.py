@@ -1,0 +1,143 @@
+"""The shipped cases with open ends, coarser and shorter, against what their heads expect."""
+
+import numpy as np
+import pytest
+from cases.bend_by_differences import bend
+from cases.measures import CASES, finished, window
+from gauging import start
+
+from psph.case import load
+
+PUMPED = 0.05
+"""What the pump's case asks for, m²/s."""
+
+SHORT_CHANNEL = (
+    "space.spacing=0.01",
+    "physics.sound_speed=3.0",
+    "time.end=1.5",
+    "fluids.fluid.shape.difference.from.box.upper=[0.9, 0.41]",
+    "walls.channel.shape.difference.from.box.upper=[0.94, 0.45]",
+    "walls.channel.shape.difference.minus=[{box={lower=[-0.04, 0.0], upper=[0.94, 0.41]}}]",
+    "ends.outlet.at=0.9",
+)
+"""Of the cylinder at Re 20: 10 spacings a diameter, and 0.9 m of channel."""
+
+
+def begun(name, *overrides):
+    """The simulation of a shipped case, and the states of its ends."""
+    simulation = start(load(f"{CASES}/ends/{name}.toml", overrides))
+    return simulation, simulation.engine.of("ends").states
+
+
+def of_fluid(simulation, name):
+    """A field of the fluid's particles."""
+    store = simulation.store
+    return store.shown(name)[store.shown("kind") == 0]
+
+
+def test_what_a_pump_draws_in_it_gives_out():
+    """To two rows, at the flow that is asked for to 5 %.  What is behind the intake goes as fast as the flow
+    asks, each row, and does not run away from the fluid."""
+    simulation, (intake, outlet) = begun("pump", "space.spacing=0.025", "ends.intake.ramp=0.2")
+    before, row, speeds = len(of_fluid(simulation, "id")), 4, []
+    store, [face, _] = simulation.store, simulation.engine.of("ends").faces
+    while simulation.time < 1.0:
+        simulation.step()
+        assert abs(outlet.books.number_in - intake.books.number_out) <= 2 * row
+        if simulation.time > 0.4:
+            drawn = np.isin(store.shown("group"), face.groups)
+            asked = PUMPED / (intake.means.rows * 0.025)
+            speeds.append((store.shown("velocity")[drawn, 0].mean(), asked))
+    goes, asked = np.mean(speeds, axis=0)
+    assert goes == pytest.approx(asked, rel=0.03)
+    assert intake.books.number_out == pytest.approx(PUMPED * 0.9 / 0.025**2, rel=0.05)
+    assert len(of_fluid(simulation, "id")) == before + outlet.books.number_in - intake.books.number_out
+
+
+def test_a_tank_is_filled_by_its_flow():
+    """As many particles as the flow says, to a row; the surface rises by what they fill, to 0.4 spacings."""
+    dx = 0.025
+    simulation, [inlet] = begun("filling", f"space.spacing={dx}", "time.end=9")
+    while simulation.time < 1.5:
+        simulation.step()
+    came = 0.1 * 1.25
+    assert inlet.books.number_in * dx**2 == pytest.approx(came, abs=8 * dx**2)
+    x, y = of_fluid(simulation, "position").T
+    heights = [y[np.abs(x - middle) < 0.05].max() + 0.5 * dx for middle in np.arange(0.05, 1.0, 0.1)]
+    assert np.mean(heights) == pytest.approx(0.2 + came, abs=0.4 * dx)
+
+
+def test_what_went_round_a_bend_is_in_the_books():
+    """What came in less what went out is inside, to the particle; both are as the flow says to a row of 10."""
+    simulation, (inlet, outlet) = begun("bend", "space.spacing=0.1", "ends.inlet.ramp=0.5")
+    before = len(of_fluid(simulation, "id"))
+    while simulation.time < 3.0:
+        simulation.step()
+    came, went = inlet.books.number_in, outlet.books.number_out
+    inside = before + came - went - inlet.books.number_out + outlet.books.number_in
+    assert len(of_fluid(simulation, "id")) == inside
+    assert np.array([came, went]) * 0.1**2 == pytest.approx(3.0 - 0.25, abs=0.1)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(900)
+def test_the_pressure_falls_in_a_bend():
+    """As by finite differences, to 4 %; in a straight channel it would fall by 14 % less."""
+    simulation, _ = begun("bend")
+    falls = []
+    while simulation.time < 13.9:
+        simulation.step()
+        if simulation.time > 8.0 and simulation.steps % 20 == 0:
+            falls.append(fall_of_pressure(simulation))
+    p, _, v = bend(20, 0.02)
+    assert v[-20:, 20:].mean(axis=0) == pytest.approx(np.ones(80))
+    exact = p[9:11, :20].mean() - p[-20:, 89:91].mean()
+    assert np.mean(falls) == pytest.approx(exact, rel=0.04)
+
+
+def fall_of_pressure(simulation):
+    """From x = 0.5 to y = 4.5, Pa."""
+    simulation.settle_pressure()
+    (x, y), p = of_fluid(simulation, "position").T, of_fluid(simulation, "pressure")
+    return p[(np.abs(x - 0.5) < 0.25) & (y < 1.0)].mean() - p[np.abs(y - 4.5) < 0.25].mean()
+
+
+def drags(run, speed):
+    """Times in s, and the coefficients of drag and lift, 2F/(ρU²D), of a cylinder's case."""
+    table = run.gauges()["cylinder"]
+    scale = 2.0 / (speed**2 * 0.1)
+    return table["time"], scale * table["cylinder.force_x"], scale * table["cylinder.force_y"]
+
+
+def test_drag_of_a_cylinder(tmp_path):
+    """At Re 20 within 5 % of 5.5795, coarse and soon after the start, in a short channel."""
+    time, drag, lift = drags(finished("ends/cylinder_re20", tmp_path, *SHORT_CHANNEL), 0.2)
+    assert drag[time > 1.0].mean() == pytest.approx(5.5795, rel=0.05)
+    assert abs(lift[time > 1.0].mean()) < 0.1
+
+
+@pytest.mark.long
+@pytest.mark.timeout(900)
+def test_a_cylinder_at_re_20(tmp_path):
+    """The drag, and the pressure before less behind it, within 2 and 4 % of the benchmark."""
+    run = finished("ends/cylinder_re20", tmp_path, "time.end=3.0")
+    time, drag, lift = drags(run, 0.2)
+    assert drag[time > 2.0].mean() == pytest.approx(5.5795, rel=0.02)
+    assert lift[time > 2.0].mean() == pytest.approx(0.0106, abs=0.02)
+    front, back = (window(run.gauges()[k], f"{k}.pressure", 2.0, 3.0).mean() for k in ("front", "back"))
+    assert front - back == pytest.approx(0.1175, rel=0.04)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(900)
+def test_a_cylinder_at_re_100_sheds_vortices(tmp_path):
+    """At 10 spacings a diameter St is within 5 % of 0.3, the mean drag within 12 % of 3.2."""
+    run = finished("ends/cylinder_re100", tmp_path, "space.spacing=0.01")
+    time, drag, lift = drags(run, 1.0)
+    late = time > 1.5
+    lift = (lift[late] - lift[late].mean()) * np.hanning(np.count_nonzero(late))
+    count = 16 * len(lift)
+    spectrum = np.abs(np.fft.rfft(lift, count))
+    strouhal = 0.1 * np.fft.rfftfreq(count, 0.002)[spectrum.argmax()]
+    assert strouhal == pytest.approx(0.3, rel=0.05)
+    assert drag[late].mean() == pytest.approx(3.2, rel=0.12)
