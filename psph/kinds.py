@@ -122,6 +122,10 @@ class Work:
         """Energy that it stores, J; the same bits on any number of ranks."""
         return 0.0
 
+    def given(self) -> tuple[float, float]:
+        """Energy that it has brought in since the start, J, and how far off that may be."""
+        return 0.0, 0.0
+
     def overlapping(self, store: Any, depth: float) -> np.ndarray | None:
         """Above 0 for each particle of the ``store`` (owned,) that is more than ``depth`` spacings inside
         what it must not enter; None where none is on any rank."""

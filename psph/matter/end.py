@@ -18,7 +18,6 @@ class OpenEnds(Kind):
 
     name = "ends"
     moves = True
-    keeps_energy = False
     reads = ("mobile", "is_fluid", "rest_density")
 
     @property

@@ -171,10 +171,12 @@ class Guards:
 
     def _gain(self) -> float:
         """Energy won since the start, in the unit of its bound."""
-        return (self._energy() - self.simulation.energy_at_start) / self._unit
+        off = sum(kind.given()[1] for kind in self.simulation.engine.kinds)
+        return (self._energy() - self.simulation.energy_at_start - off) / self._unit
 
     def _energy(self) -> float:
-        """Energy of motion, height, compression and deformation less what walls and frames have given, J."""
+        """Energy of motion, height, compression and deformation less what walls, frames and open ends have
+        given, J."""
         sim = self.simulation
         c = sim.store.shown("sound_speed")
         materials, group = sim.plan.materials, sim.store.shown("group")
@@ -189,7 +191,7 @@ class Guards:
 
         heights, held = sim.plan.pulls.heights(self.scene.layout.periods), sim.engine.potential()
         whole = total_energy(sim.comm, sim.store, heights, compressed, self._led, held)
-        whole += sim.engine.stored_energy()
+        whole += sim.engine.stored_energy() - sum(kind.given()[0] for kind in sim.engine.kinds)
         return whole - (work_done(sim.comm, sim.store) if sim.plan.books_work else 0.0)
 
     def _warn(self, guard: str) -> None:

@@ -12,11 +12,11 @@ from psph.simulation.rules import density
 BY_SPEED, BY_PRESSURE, BY_LEVEL = 0, 1, 2
 """What an end gives."""
 
-TERMS = 15
+TERMS = 16
 """Numbers that are summed for an end: over its buffer, a row counting once, 1, p, u, the pressure given, ρ₀c,
 and of what comes in 1 and u; over the fluid in front 1, ξ, p − p_t, ξ², ξ (p − p_t); particles that have come
 too far; those behind that see the fluid in front of the plane itself; rows of fluid in front, each counting
-once."""
+once; over its buffer pu."""
 
 ONE = 2.0**40
 """The whole number of a term as large as its unit."""
@@ -102,6 +102,7 @@ def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
         row[6] += _whole(enters * into / units.speed)
         row[12] += 1 if xi < -far else 0
         row[13] += _whole(seen[n, NEAR])
+        row[15] += _whole(hat * seen[n, FITTED] * into / (units.pressure * units.speed))
 
 
 @elementwise

@@ -33,6 +33,7 @@ class Passage:
 
     def __init__(self, face: EndFace, rank: Rank):
         self.face, self.domain, self.store = face, rank.domain, rank.domain.store
+        self.gravity = np.array(rank.scene.gravity)
         self._queue = settled(run_queues)
 
     def renew(self, state: EndState, population) -> None:
@@ -86,17 +87,28 @@ class Passage:
         return fate[mine], born[mine], places[mine][comes[mine]], int(np.count_nonzero(comes)), sites
 
     def _book(self, books: Books, rows, crossing, births: int, dies) -> None:
-        comm, mass = self.domain.comm, self.store.shown("mass")[rows]
+        comm = self.domain.comm
         came, went = crossing == 1, crossing == -1
-        mass_in, mass_out = exact_sums(comm, np.stack([mass * came, mass * went], axis=1)).tolist()
+        mass_in, mass_out, energy, momentum = self._carried(rows, came, went)
         numbers = np.count_nonzero([came, went, dies], axis=1)
         came_in, went_out, died = whole_sums(comm, numbers).tolist()
         books.number_in += came_in
         books.number_out += went_out
         books.mass_in += mass_in
         books.mass_out += mass_out
+        books.energy += energy
+        books.momentum += momentum
         books.born += births
         books.died += died
+
+    def _carried(self, rows, came, went) -> list[float]:
+        """Mass in and out, kg, energy of motion and height, J, and inward momentum, kg m/s, in less out."""
+        store, net = self.store, came.astype(float) - went
+        mass, v = store.shown("mass")[rows], store.shown("velocity")[rows]
+        energy = 0.5 * (v * v).sum(axis=1) - self.domain.inside(store.shown("position")[rows]) @ self.gravity
+        inward = self.face.sign * v[:, self.face.axis]
+        carried = mass[:, None] * np.stack([came, went, net * energy, net * inward], axis=1)
+        return exact_sums(self.domain.comm, carried).tolist()
 
     def _change(self, came: np.ndarray, went: np.ndarray) -> None:
         """Particles of some rows become fluid, or of the buffer."""

@@ -35,7 +35,8 @@ class Means:
 @dataclass
 class Books:
     """What has passed through an end since the start: particles, and their mass in kg; how many were born and
-    have died behind it."""
+    have died behind it; the ``energy`` of motion and height, J, and inward ``momentum``, kg m/s, of those who
+    came in less that of those who went out, the ``work``, J, and ``impulse``, N s, of the pressure."""
 
     number_in: int = 0
     number_out: int = 0
@@ -43,6 +44,10 @@ class Books:
     mass_out: float = 0.0
     born: int = 0
     died: int = 0
+    energy: float = 0.0
+    momentum: float = 0.0
+    work: float = 0.0
+    impulse: float = 0.0
 
 
 @dataclass
@@ -92,9 +97,11 @@ class EndState:
 
     def measure(self, face: EndFace, sums: list[int], units: Units, dt: float) -> None:
         """Take the ``sums`` over a face (psph.simulation.end_means.TERMS) after a step of ``dt`` s."""
-        rows, p, u, given, z, entering, inflow, *slope, due, near, standing = (one / ONE for one in sums)
-        self.due = due > 0.0
-        self.standing = standing
+        rows, p, u, given, z, entering, inflow, *slope, due, near, standing, power = (n / ONE for n in sums)
+        self.due, self.standing = due > 0.0, standing
+        face_of_a_row = face.spacing ** (len(face.lower) - 1)
+        self.books.work += power * units.pressure * units.speed * face_of_a_row * dt
+        self.books.impulse += p * units.pressure * face_of_a_row * dt
         if not near or rows < FEWEST:
             self.means = Means()
             return

@@ -37,6 +37,9 @@ LISTED = LISTED_POSITION.name
 HELD_STILL = ("acceleration", "density_rate")
 """What forces give the particles of a buffer, and they do not take."""
 
+OFF = 0.05
+"""Part of the energy that has come in and gone out by which books of it may be off."""
+
 PAID_IN = 50.0
 """Rows in whose time a pump brings a row that it owes."""
 
@@ -228,13 +231,21 @@ class Buffers(Work):
 
     # What is kept and told.
 
+    def given(self) -> tuple[float, float]:
+        """Energy that has come in, J, and how far off that may be: work is by means over the faces."""
+        books = [state.books for state in self.states]
+        turned_over = sum(abs(one.energy) + abs(one.work) for one in books)
+        return sum(one.energy + one.work for one in books), OFF * turned_over
+
     def passed(self) -> Iterator[str]:
         """What has come in and gone out through each end."""
         for face, state in zip(self.faces, self.states):
             books = state.books
             came = f"{books.number_in:,} particles ({books.mass_in:.6g} kg) came in"
             went = f"{books.number_out:,} ({books.mass_out:.6g} kg) went out"
-            yield f"ends.{face.name}: {came}, {went}"
+            energy = f"{books.energy:.4g} J, and {books.work:.4g} J as work of the pressure"
+            push = f"{books.momentum:.4g} kg m/s, and {books.impulse:.4g} N s as its push"
+            yield f"ends.{face.name}: {came}, {went}; in less out with {energy}; inward {push}"
 
     def state(self) -> dict:
         """The states of all ends."""
