@@ -12,8 +12,10 @@ from psph.case.findings import Finding
 from psph.case.keys import AXES, Name, Table, key
 from psph.case.placed import Answering
 
-GIVENS = ("velocity", "flow", "pressure", "level", "pump")
-"""The keys of which an end has one."""
+GIVENS = ("velocity", "flow", "pressure", "pump", "level")
+"""The keys of which an end has one; a level beside another says where the surface is."""
+
+LEVEL = GIVENS[-1]
 
 MOST_GROUPS = 250
 """Fluids, walls, bodies and the buffers of ends together: particles know theirs by one byte."""
@@ -47,8 +49,8 @@ class OpenEnd(Answering):
         "pressure at its plane; under gravity across it that in the middle of its height", None, unit="Pa"
     )
     level: float | Course | Literal["found"] | None = key(
-        "height of the water's surface along the axis of gravity, or found: that of the water in front; "
-        "hydrostatic below",
+        "height of the water's surface along the axis of gravity, or found: that of the water in front; by "
+        "itself pressure is hydrostatic below, beside a speed or a flow it says how high these reach",
         None,
         unit="m",
     )
@@ -98,6 +100,11 @@ class OpenEnd(Answering):
         return next((name for name in GIVENS if getattr(self, name) is not None), "")
 
     @property
+    def moves_rows(self) -> bool:
+        """Whether its level fills and empties rows behind its plane."""
+        return self.level is not None or self.given in ("flow", "pump")
+
+    @property
     def steady(self) -> bool:
         """Whether what is given is a number from the start."""
         return not self.ramp and isinstance(getattr(self, self.given), float)
@@ -130,6 +137,8 @@ class OpenEnd(Answering):
         for name, end in case.ends.items():
             loc = ("ends", name)
             given = [one for one in GIVENS if getattr(end, one) is not None]
+            if len(given) > 1 and given[-1] == LEVEL:
+                given.pop()
             if len(given) != 1:
                 said = f"{' and '.join(given)} are given" if given else "nothing is given"
                 yield loc, ..., f"{said}; give one of {', '.join(GIVENS)}"
@@ -169,7 +178,7 @@ class OpenEnd(Answering):
         if self.level is not None and not any(g for d, g in enumerate(gravity) if d != self.axis):
             says = "a level needs gravity across the end; set physics.gravity, or give a pressure"
             yield (*loc, "level"), self.level, says
-        if self.level is not None and self.ramp:
+        if self.given == LEVEL and self.ramp:
             says = "would let the level grow from a height of 0; give a series of levels"
             yield (*loc, "ramp"), self.ramp, says
         if self.profile == "pipe" and case.space.dimensions != 3:

@@ -45,9 +45,9 @@ def messages(
     """One line for each finding; ``source`` names what set the key at a location, and ``filled`` the profile
     or the scheme by which another key has the value that a finding speaks of."""
     findings = error.errors(include_url=False)[:MOST_FINDINGS]
-    for details in findings:
-        if not _follows_from_another(details, findings):
-            loc = _as_written(details, data)
+    located = [(details, _as_written(details, data)) for details in findings]
+    for details, loc in located:
+        if not (_follows_from_another(details, findings) or _fits_worse(details, loc, located)):
             says = _sentence(details, loc, schema)
             yield f"{source(loc)}: {dotted(loc)}: {says}{_set_elsewhere(says, loc, filled)}"
 
@@ -90,6 +90,24 @@ def _follows_from_another(details: Details, findings: list[Details]) -> bool:
     )
 
 
+def _fits_worse(details: Details, loc: Location, located: list[tuple[Details, Location]]) -> bool:
+    """Where a key takes a number, a word or a table, one line is enough: of the kind that the value is."""
+    own = _how_foreign(details)
+    return own > 0 and any(
+        (where == loc and _how_foreign(other) < own) or (where[: len(loc)] == loc and len(where) > len(loc))
+        for other, where in located
+    )
+
+
+def _how_foreign(details: Details) -> int:
+    """0 for a finding about a value of the right kind; the larger, the less the value is what is wanted."""
+    kind, value = details["type"], details["input"]
+    if kind not in WANTED and kind != "literal_error":
+        return 0
+    table = kind in ("model_type", "dict_type")
+    return 3 if table else 1 if (kind == "literal_error") == isinstance(value, str) else 2
+
+
 def _as_written(details: Details, data: Any) -> Location:
     """The location in the keys of the file, without the branches that pydantic adds."""
     loc: list[str | int] = []
@@ -122,7 +140,7 @@ def _sentence(details: Details, loc: Location, schema: Details) -> str:
         shown = f"{plain(value)}: " if isinstance(value, (str, int, float, list, tuple)) else ""
         return shown + details["msg"]
     if kind == "literal_error":
-        return f"{plain(value)} is not known; {advise(str(value), _words(schema, node))}"
+        return f"{plain(value)} is not known; {advise(str(value), _words(schema, node or find(schema, loc)))}"
     if kind in WANTED:
         return f"{plain(value)} is not {WANTED[kind]}; {_how_to_give(details, loc, schema)}"
     if kind in ("too_short", "too_long"):
@@ -148,7 +166,8 @@ def _where_it_is_known(loc: Location, schema: Details, value: Any) -> str:
 
 def _words(schema: Details, node: Details | None) -> list[str]:
     """The words that may stand at a node."""
-    return [x for branch in alternatives(schema, node or {}) for x in branch.get("enum", ())]
+    branches = alternatives(schema, node or {})
+    return [x for one in branches for x in one.get("enum", [one["const"]] if "const" in one else ())]
 
 
 def _how_to_add(loc: Location, schema: Details) -> str:

@@ -170,7 +170,9 @@ def _site_faults(scene: Scene) -> Iterator[str]:
                 f"{part.key}.shape: no lattice site lies in it; make it larger than space.spacing, or move it"
             )
     for (one, other), site in sorted(census.clashes.items()):
-        if not parts[one].rigid or parts[other].moves_whole:
+        if not parts[one].drawn or not parts[other].drawn:
+            yield f"{parts[other].key}: overlaps {parts[one].key} at {shown(site)}; move one"
+        elif not parts[one].rigid or parts[other].moves_whole:
             move = "" if parts[one].flows else "move one, or "
             yield (
                 f"{parts[other].key}.shape: overlaps {parts[one].key} at {shown(site)}; {move}subtract "

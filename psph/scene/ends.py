@@ -34,7 +34,8 @@ class EndFace:
     are ``layers`` spacings deep, ``middle`` (dim,) m that of where they are at the start; they do not move
     out of ``sides`` (2, dim), m, infinite where the domain repeats.  ``groups`` has, for each fluid, the
     number of its buffer.  ``kind`` is the key
-    of what is given, ``given`` its value by time, ``feeding`` the number of the end that a pump takes from.
+    of what is given, ``given`` its value by time, ``level`` that of its surface, no number where it is found,
+    ``feeding`` the number of the end that a pump takes from.
     ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean.  ``settle`` in s is None
     where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
     ``wave_speed`` in m/s is that of the waves that it lets out; ``spacing`` dx, m; ``rows`` of particles
@@ -54,6 +55,7 @@ class EndFace:
     groups: tuple[int, ...]
     kind: str
     given: Callable[[float], float]
+    level: Callable[[float], float]
     feeding: int | None
     shape: Callable[[np.ndarray], np.ndarray]
     settle: float | None
@@ -106,7 +108,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
     height, layers = _height(scene, end, wet_low, wet_high), rows_of(scene.case, end)
     if height:
         lower, upper = raised(layout, end, lower, upper)
-    surface = rows_behind(layout, end, groups, lower, upper) if height else None
+    surface = rows_behind(layout, end, groups, lower, upper) if height and end.moves_rows else None
     return EndFace(
         name=name,
         number=names.index(name),
@@ -120,7 +122,8 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         layers=layers,
         groups=groups,
         kind=end.given,
-        given=_given(end),
+        given=_by_time(getattr(end, end.given), end.ramp),
+        level=_by_time(end.level),
         feeding=names.index(end.pump) if end.pump else None,
         shape=_shape(end, across, wet_low[across], wet_high[across]),
         settle=_settle(scene, end, height) if end.lets_waves_out and not unlike(scene) else None,
@@ -139,15 +142,14 @@ def _sides(layout: Layout, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> n
     return np.array([np.where(free, -np.inf, low + half), np.where(free, np.inf, high - half)])
 
 
-def _given(end: OpenEnd) -> Callable[[float], float]:
-    """What is given, by time in s; no number where it is found."""
-    told = getattr(end, end.given)
+def _by_time(told: float | str | Course | None, ramp: float = 0.0) -> Callable[[float], float]:
+    """What is told, by time in s; no number where it is found."""
 
     def value(time: float) -> float:
-        now = float(told.at(time)) if isinstance(told, Course) else told
-        return now * grown(time, end.ramp) if end.ramp else now
+        now = float(told.at(time)) if isinstance(told, Course) else float(told or 0.0)
+        return now * grown(time, ramp) if ramp else now
 
-    return (lambda time: math.nan) if isinstance(told, str) else value
+    return (lambda time: math.nan) if told is None or isinstance(told, str) else value
 
 
 def _height(scene, end: OpenEnd, low: np.ndarray, high: np.ndarray) -> float:

@@ -167,9 +167,9 @@ class Buffers(Work):
         for face, state, one in zip(self.faces, self.states, whole_sums(self.comm, sums).tolist()):
             state.measure(face, one, self.units, dt)
         for face, state in zip(self.faces, self.states):
-            told, level = self._mean_speed(face, time), face.given(time) if face.kind == "level" else math.nan
+            told = self._mean_speed(face, time)
             state.answer(face, told, self.units.speed, dt)
-            state.follow_surface(face, told, level, self.units, dt)
+            state.follow_surface(face, told, face.level(time), self.units, dt)
         materials = self.plan.materials
         self._fastest[:] = 0.0
         fixed = materials.laws, materials.law_of, self.units, dt

@@ -8,6 +8,7 @@ from gauging import start
 
 from psph.case import CaseError
 from psph.scene import Scene
+from psph.scene.checks import check
 from psph.scene.end_checks import end_faults, end_warnings
 from psph.scene.ends import faces_of
 
@@ -136,6 +137,13 @@ def test_what_is_likely_not_meant_is_said(tmp_path, text, key, says):
         (PLATES, ('ends.inlet={at=0.0,inward="+x",pump="outle"}',), "ends.inlet.pump"),
         (PLATES, ('ends.inlet.profile="pipe"',), "ends.inlet.profile"),
         (CHANNEL, ("ends.downstream.ramp=1.0",), "ends.downstream.ramp: 1.0: would let the level grow"),
+        (PLATES, ('ends.inlet.velocity="fast"',), 'ends.inlet.velocity: "fast" is not a number'),
+        (CHANNEL, ('ends.downstream.level="fond"',), "\"fond\" is not known; did you mean 'found'?"),
+        (
+            PLATES,
+            ('ends.inlet.profile={file="no.csv",along="y"}',),
+            "no.csv: No such file or directory; give a file",
+        ),
         (CHANNEL, ("frame.motion.translation.velocity=[1.0, 0.0]",), "ends: stand in a frame that rests"),
     ],
 )
@@ -143,7 +151,16 @@ def test_what_contradicts_itself_is_refused_in_a_line(tmp_path, text, keys, says
     """By file, key, value and cure."""
     with pytest.raises(CaseError) as refused:
         draft(tmp_path, text, *keys)
-    assert any(says in line for line in refused.value.lines)
+    [line] = refused.value.lines
+    assert says in line
+
+
+def test_ends_that_overlap_are_moved(tmp_path):
+    """An end has no shape from which another could be subtracted."""
+    both = draft(tmp_path, PLATES, "ends.outlet.at=0.2", 'ends.outlet.inward="+x"')
+    with pytest.raises(CaseError) as refused:
+        check(Scene(both))
+    assert any("ends.outlet: overlaps ends.inlet at" in line for line in refused.value.lines)
 
 
 def test_a_profile_runs_across_the_end(tmp_path):

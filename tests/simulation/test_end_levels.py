@@ -138,7 +138,9 @@ def test_what_comes_in_fills_the_rows_that_it_finds(tmp_path, given):
     """A basin that fills: the end is as high as the water before it, and by a flow the volume is right but for
     half a row where waves come back."""
     key, value = given.split("=")
-    simulation = start(draft(tmp_path, BASIN.replace("level = 0.6", f'{key} = {value}\nwaves = "back"')))
+    simulation = start(
+        draft(tmp_path, BASIN.replace("level = 0.6", f'{key} = {value}\nwaves = "back"\nlevel = "found"'))
+    )
     before = volume(simulation)
     run_to(simulation, 5.0)
     [state] = simulation.engine.of("ends").states

@@ -37,6 +37,7 @@ class EndPart(Part):
     """The buffer of an open end, of one fluid."""
 
     may_be_empty = True
+    drawn = False
 
     @property
     def displaces(self) -> bool:

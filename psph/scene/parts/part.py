@@ -75,6 +75,8 @@ class Part:
     """Whether it keeps its form, so that it may hang, stand or fly by itself."""
     may_be_empty: ClassVar[bool] = False
     """Whether it may begin without a particle."""
+    drawn: ClassVar[bool] = True
+    """Whether the case draws its shape, from which another can be subtracted."""
     looks: ClassVar[str] = LOOKS[0]
     """As what it is shown."""
 
