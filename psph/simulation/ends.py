@@ -1,6 +1,5 @@
 """The open ends of a simulation on a rank."""
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
