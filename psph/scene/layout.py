@@ -152,6 +152,7 @@ class Layout:
         return Surroundings(
             dimensions=self.dimensions,
             density=first.density,
+            densities=tuple(part.table.density for part in self.parts if part.flows),
             viscosity=first.viscosity,
             gravity=self.gravity,
             lower=self.lower,

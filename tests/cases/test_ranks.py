@@ -89,6 +89,10 @@ END = {
     "ends/filling": 0.3,
     "ends/pump": 0.3,
     "ends/tide": 3.2,  # rows are born as it rises
+    "layers/dam_break": 0.02,
+    "layers/sloshing": 0.1,
+    "layers/rayleigh_taylor": 0.1,
+    "layers/kelvin_helmholtz": 0.1,
     "tension/drop": 0.1,
     "tension/oscillating_drop": 0.1,
     "tension/drop_on_wall": 0.1,

@@ -67,8 +67,7 @@ def test_what_can_be_trapped_is_told_the_speed_of_sound_that_it_needs(tmp_path):
     (line,) = [x for x in check(Scene(draft(tmp_path, LAYERS, "fluids.oil.density=1.0"))) if "trap" in x]
     _, needed = line.split("give ")
     fast = f"fluids.oil.sound_speed={needed.split()[0]}"
-    assert fast == "fluids.oil.sound_speed=140"
-    for keys in ((), ("fluids.oil.density=1.0", "fluids.oil.sound_speed=141.0")):
+    for keys in ((), ("fluids.oil.density=1.0", fast)):
         assert not any("trap" in x for x in check(Scene(draft(tmp_path, LAYERS, *keys))))
 
 

@@ -8,6 +8,7 @@ from psph.engine.jit import call_by_type
 from psph.fields import SYMMETRIC, StrainRate
 from psph.fields import Field as Declared
 from psph.formula import helper, where
+from psph.physics.damping.matter import FluidsUnderTension, Matter, SeveralFluids, alike, matter_of
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder, needs_correction
 from psph.physics.fluid.strain import linear_rate, no_rate, rate_weight, take_rate
@@ -21,12 +22,20 @@ AT_WALLS = 0.02
 """Speed of approach over the speed of sound that a wall does not damp."""
 
 
+AT_OTHERS = 0.1
+"""The same of another fluid: pairs of rows that slide along each other approach at up to their difference."""
+
+
 class Whole(NamedTuple):
     """All that flows is seen in a mirror as what goes on behind the plane."""
 
     def flows(self, i, j):
         """1 where j flows on with i, else 0."""
         return j.is_fluid
+
+    def lies(self, i, j):
+        """1 where j counts as a part of what is around i, else 0."""
+        return 1.0
 
 
 class EndingAtPlanes(NamedTuple):
@@ -39,9 +48,40 @@ class EndingAtPlanes(NamedTuple):
         """1 where j flows on with i, else 0."""
         return where(i.strength * j.strength < 0.0, 0.0, j.is_fluid)
 
+    lies = Whole.lies
 
-flows = call_by_type("flows")
+
+class EndingAtOthers(NamedTuple):
+    """A fluid ends at one of another ``matter`` as at a free surface: both slide along each other, and
+    that is no disorder; what approaches the other is damped as before a wall."""
+
+    matter: Matter
+
+    def flows(self, i, j):
+        """1 where j flows on with i, else 0."""
+        return j.is_fluid * alike(self.matter, i, j)
+
+    def lies(self, i, j):
+        """1 where j counts as a part of what is around i, else 0."""
+        return 1.0 - i.is_fluid * j.is_fluid * (1.0 - alike(self.matter, i, j))
+
+
+flows, lies = call_by_type("flows"), call_by_type("lies")
 """(images, i, j) → 1 or 0: see :class:`Whole`."""
+
+
+@helper
+def unfelt(images, i, j):
+    """The speed of approach that what does not flow on with i does not damp, m/s."""
+    return (AT_WALLS + (AT_OTHERS - AT_WALLS) * (1.0 - lies(images, i, j))) * slower(i, j)
+
+
+def images_of(scene: Facts):
+    """What flows on with what in a scene."""
+    if scene.strengths:
+        return EndingAtPlanes()
+    matter = matter_of(scene)
+    return EndingAtOthers(matter) if isinstance(matter, SeveralFluids | FluidsUnderTension) else Whole()
 
 
 class ReconstructedDamping(NamedTuple):
@@ -72,8 +112,7 @@ class ReconstructedDamping(NamedTuple):
     def in_scene(self, scene: Facts):
         """The form that knows the spacing."""
         more = max(self.in_disorder - self.alpha, 0.0)
-        images = EndingAtPlanes() if scene.strengths else Whole()
-        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2, more, images)
+        return BesideLinearFlow(self.alpha, (NEAR * scene.spacing) ** 2, more, images_of(scene))
 
     @staticmethod
     def conflicts(physics, kernel):
@@ -106,8 +145,8 @@ class BesideLinearFlow(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take the velocity of a fluid neighbour, and the place of any."""
-        weight = rate_weight(j, pair)
-        return take_rate(total, pair, pair.u_ij, weight * flows(self.images, i, j), weight)
+        weight, images = rate_weight(j, pair), self.images
+        return take_rate(total, pair, pair.u_ij, weight * flows(images, i, j), weight * lies(images, i, j))
 
     def finish_value(self, total, i, kernel):
         """E_i, 1/s."""
@@ -120,7 +159,7 @@ class BesideLinearFlow(NamedTuple):
         g = 0.5 * dot(pair.x_ij, times(add(i.strain, j.strain), pair.x_ij))
         g = min(max(g, min(s, 0.0)), max(s, 0.0))
         rest = s - where(pair.r2 > self.near2, g, 0.0)
-        approach = min(s + (AT_WALLS * slower(i, j)) * pair.r, 0.0)
+        approach = min(s + unfelt(self.images, i, j) * pair.r, 0.0)
         felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, rest, approach)
         alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
         strength = alpha * h * slower(i, j) * (v_i * lighter(i, j))
@@ -182,7 +221,7 @@ class AtWalls(NamedTuple):
     def radial(self, i, j, pair):
         """Coefficient of x_ij in the acceleration, 1/s²."""
         h, v_i, v_j = i.smoothing_length, i.specific_volume, j.specific_volume
-        approach = min(pair.u_dot_x + (AT_WALLS * slower(i, j)) * pair.r, 0.0)
+        approach = min(pair.u_dot_x + unfelt(self.images, i, j) * pair.r, 0.0)
         felt = where(i.is_fluid * flows(self.images, i, j) > 0.0, 0.0, approach)
         alpha = self.alpha + self.more * (half_disorder(ROUGH, i) + half_disorder(ROUGH, j))
         strength = alpha * h * slower(i, j) * (v_i * lighter(i, j))

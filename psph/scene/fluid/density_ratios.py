@@ -16,7 +16,10 @@ ALIKE = 0.01
 
 
 COMPRESSED = 0.3
-"""Largest pressure over ρ₀c² that a trapped fluid bears: at five times that it blows up in a dam break."""
+"""Largest pressure over ρ₀c² that a trapped fluid bears: at 0.5 the guard of the density ends a run."""
+
+ROUNDED = 1.005
+"""What a speed of sound is raised by before it is told in three digits: so that it is enough."""
 
 
 def several_fluids(scene: Scene) -> Iterator[str]:
@@ -41,17 +44,18 @@ def several_fluids(scene: Scene) -> Iterator[str]:
 
 
 def _trapped(scene: Scene, fluids: list[Part]) -> Iterator[str]:
-    """What heavier fluids compress too far where they trap it: with ½ρ₀U², U the expected speed."""
+    """What heavier fluids compress too far where they trap it: with ρ₀U², U the expected speed, twice the
+    pressure of what stops there, since jets that meet in a corner shut it in."""
     heaviest = max(part.table.density for part in fluids)
     for part, one in ((part, scene.species[part.number]) for part in fluids):
-        pressed = 0.5 * heaviest * scene.expected_speed**2
+        pressed = heaviest * scene.expected_speed**2
         stiffness = one.density * one.sound_speed**2
         if one.density < heaviest and pressed > COMPRESSED * stiffness:
             needed = (pressed / (COMPRESSED * one.density)) ** 0.5
             yield (
                 f"{part.key}.sound_speed: {one.sound_speed:.3g} m/s is too low where heavier fluids "
                 f"trap it: up to {pressed:.3g} Pa press on it, {pressed / stiffness:.2g} times its "
-                f"density times c2; give {needed:.3g} m/s or more if that can happen"
+                f"density times c2; give {ROUNDED * needed:.3g} m/s or more if that can happen"
             )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from psph.theory.solutions.channel import Couette, Poiseuille
 from psph.theory.solutions.drop import EllipticDrop
+from psph.theory.solutions.layers import InterfacialWave
 from psph.theory.solutions.setting import Surroundings
 from psph.theory.solutions.still import Hydrostatic
 from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
@@ -24,6 +25,7 @@ SOLUTIONS = {
     "couette": Couette,
     "sound_wave": SoundWave,
     "standing_wave": StandingWave,
+    "interfacial_wave": InterfacialWave,
     "hydrostatic": Hydrostatic,
     "elliptic_drop": EllipticDrop,
 }

@@ -9,6 +9,7 @@ import pytest
 from psph.theory.solutions.catalogue import SOLUTIONS, known
 from psph.theory.solutions.channel import Couette, Poiseuille
 from psph.theory.solutions.drop import EllipticDrop
+from psph.theory.solutions.layers import InterfacialWave
 from psph.theory.solutions.setting import Setting
 from psph.theory.solutions.still import Hydrostatic
 from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
@@ -17,6 +18,7 @@ from psph.theory.solutions.waves import SoundWave, StandingWave
 FREE = Setting(
     dimensions=2,
     density=2.0,
+    densities=(2.0,),
     viscosity=0.0,
     sound_speed=10.0,
     gravity=(0.0, 0.0),
@@ -31,6 +33,7 @@ IN_3D = replace(
 CHANNEL = replace(STICKY, periods=(1.0, None))
 DRIVEN = replace(CHANNEL, gravity=(0.4, 0.0))
 HEAVY = replace(FREE, gravity=(0.0, -9.81), periods=(None, None))
+LAYERED = replace(HEAVY, densities=(2.0, 1.0))
 STEP = 1e-4
 
 FLOWS = {
@@ -41,6 +44,7 @@ FLOWS = {
     "couette": (Couette(0.1, 0.9, 0.7), CHANNEL),
     "sound_wave": (SoundWave(1e-4, 0.5), FREE),
     "standing_wave": (StandingWave(1e-5, 1.0, 0.5, 0.9), HEAVY),
+    "interfacial_wave": (InterfacialWave(1e-3, 0.7, (0.9, 0.1), (0.2, -0.1), 0.9), LAYERED),
     "hydrostatic": (Hydrostatic(0.8), HEAVY),
     "elliptic_drop": (EllipticDrop(3.0, 0.4), replace(FREE, periods=(None, None))),
 }
@@ -161,3 +165,55 @@ def test_still_water_and_a_wave_know_gravity():
 )
 def test_what_does_not_fit_is_said(flow, setting, says):
     assert says in flow.unfit(setting)
+
+
+@pytest.mark.parametrize("gravity", (-9.81, 0.0, 2.0))
+def test_a_wave_between_layers_obeys_what_holds_at_its_interface(gravity):
+    """Both sides move with it, and bear one pressure: ∂p/∂x = −ρ (∂/∂t + U ∂/∂x) u − ρg ∂η/∂x there; lids hold."""
+    wave, setting = (
+        InterfacialWave(1e-6, 0.7, (0.3, 0.5), (0.2, -0.1)),
+        replace(LAYERED, gravity=(0.0, gravity)),
+    )
+    k, x, t, near = 2.0 * math.pi / 0.7, np.linspace(0.0, 0.7, 9), 0.3, 1e-5
+
+    def height(x, t):
+        return (wave.displacement(t, setting)[0] * np.exp(1j * k * x)).real
+
+    slopes = []
+    for way, flow, rho in zip((-1.0, 1.0), wave.flows, setting.densities):
+
+        def along(f, flow=flow):
+            """(∂/∂t + U ∂/∂x) f."""
+            ahead, back = (f(x + flow * s, t + s) for s in (STEP, -STEP))
+            return (ahead - back) / (2.0 * STEP)
+
+        def speed(x, t, way=way):
+            return wave.velocity(np.column_stack([x, np.full_like(x, way * near)]), t, setting)
+
+        assert np.abs(speed(x, t)[:, 1] - along(height)).max() < 1e-3 * wave.speed
+        rise = (height(x + STEP, t) - height(x - STEP, t)) / (2.0 * STEP)
+        slopes.append(rho * (along(speed)[:, 0] - gravity * rise))
+    assert np.abs(slopes[0] - slopes[1]).max() < 2e-3 * np.abs(slopes[0]).max() > 0.0
+    lids = np.array([[0.13, -0.3], [0.13, 0.5]])
+    assert np.abs(wave.velocity(lids, t, setting)[:, 1]).max() == 0.0
+
+
+def test_waves_between_layers_swing_and_grow_as_told():
+    """The periods of layers of half a metre at 2, 10 and 1000 : 1; Rayleigh–Taylor at 1.8 : 1; Kelvin–Helmholtz,
+    k ΔU √(ρ₁ρ₂)/(ρ₁ + ρ₂)."""
+    wave = InterfacialWave(0.1, 2.0, (0.5, 0.5))
+    for light, period in ((500.0, 2.047), (100.0, 1.307), (1.0, 1.183)):
+        _, swing = wave.roots(replace(LAYERED, densities=(1000.0, light)))
+        assert 2.0 * math.pi / swing.real == pytest.approx(period, abs=6e-4) and swing.imag == 0.0
+    deep = InterfacialWave(0.1, 1.0, (5.0, 5.0), (-0.5, 0.5))
+    falling = replace(LAYERED, densities=(1.0, 1.8), gravity=(0.0, -1.0))
+    _, growth = deep._replace(flows=(0.0, 0.0)).roots(falling)
+    assert abs(growth.imag) == pytest.approx(1.3398, abs=1e-4) and growth.real == pytest.approx(
+        0.0, abs=1e-12
+    )
+    for light in (1000.0, 500.0):
+        drift, growth = deep.roots(replace(LAYERED, densities=(1000.0, light), gravity=(0.0, 0.0)))
+        found = 2.0 * math.pi * math.sqrt(1000.0 * light) / (1000.0 + light)
+        assert abs(growth.imag) == pytest.approx(found) and drift.real == pytest.approx(
+            math.pi * (light - 1000.0) / (1000.0 + light)
+        )
