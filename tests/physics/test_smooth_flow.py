@@ -11,7 +11,8 @@ from physics.test_conservation import potential_of_unequal
 
 from psph.case import CaseError, load
 from psph.physics.damping.diffusion import BesideSmoothDensity, DensityDiffusion, TankDiffusion
-from psph.physics.damping.reconstructed import BesideLinearFlow
+from psph.physics.damping.matter import SeveralFluids
+from psph.physics.damping.reconstructed import BesideLinearFlow, EndingAtOthers, Whole
 from psph.physics.fluid.correction import GradientCorrection
 from psph.physics.fluid.pressure import BackgroundPressure, CorrectedBackground
 from psph.physics.fluid.viscosity import PairDamping
@@ -22,6 +23,7 @@ from psph.simulation.plan import make_plan
 
 DIMENSIONS = (1, 2, 3)
 ALPHA, C = 0.3, 50.0
+OTHERS = EndingAtOthers(SeveralFluids())
 
 
 def crowd(dim, n=12, seed=5):
@@ -68,6 +70,16 @@ def test_walls_tell_how_neighbours_lie_and_no_rate_of_strain():
     assert 0.0 < np.linalg.norm(beside) < np.linalg.norm(without)
 
 
+def test_other_fluids_are_as_nothing_to_the_rate_of_strain():
+    p, _, upper = linear_flow(crowd(2), 2)
+    apart = p._replace(rest_density=np.append(np.full(6, 1000.0), np.full(6, 500.0)))
+    apart = apart._replace(velocity=tuple(np.append(u[:6], 9.0 * u[6:]) for u in apart.velocity))
+    apart = apart._replace(wave_speed=np.full(12, C))
+    found = sums_of(BesideLinearFlow(ALPHA, 0.0, 0.0, OTHERS), apart, 3)
+    assert found == pytest.approx([part[3] for part in upper], rel=1e-9)
+    assert found != pytest.approx(sums_of(BesideLinearFlow(ALPHA, 0.0), apart, 3), rel=0.1)
+
+
 @pytest.mark.parametrize("dim", DIMENSIONS)
 def test_a_linear_flow_is_not_damped_and_what_is_beside_it_is(dim):
     p, _, _ = linear_flow(crowd(dim), dim)
@@ -98,14 +110,17 @@ def test_each_pair_only_loses_energy_whatever_the_strain(dim):
     assert some > 20
 
 
-def test_a_wall_damps_what_comes_fast_and_nothing_else():
-    p = view()._replace(is_fluid=np.array([1.0, 0.0]), strain=tuple(np.full(2, 9.0) for _ in range(3)))
+@pytest.mark.parametrize(
+    "is_fluid, images, unfelt", ((0.0, Whole(), 0.02), (0.0, OTHERS, 0.02), (1.0, OTHERS, 0.1))
+)
+def test_a_wall_or_another_fluid_damps_what_comes_fast_and_nothing_else(is_fluid, images, unfelt):
+    p = view()._replace(is_fluid=np.array([1.0, is_fluid]), strain=tuple(np.full(2, 9.0) for _ in range(3)))
     p = p._replace(sound_speed=np.array([C, 1.2 * C]))  # the slower one counts
     i, j, pair = pair_of(p, 0, 1)
-    effect, plain = BesideLinearFlow(ALPHA, 0.0), PairDamping(ALPHA)
-    for speed in (3.0 * C, 0.03 * C, 0.019 * C, 0.0, -0.5 * C):  # of approach
+    effect, plain = BesideLinearFlow(ALPHA, 0.0, 0.0, images), PairDamping(ALPHA)
+    for speed in (3.0 * C, 0.13 * C, 0.09 * C, 0.03 * C, 0.019 * C, 0.0, -0.5 * C):  # of approach
         moving = pair._replace(u_dot_x=-speed * pair.r)
-        felt = max(speed - 0.02 * C, 0.0)
+        felt = max(speed - unfelt * C, 0.0)
         expected = plain.radial(i, j, pair._replace(u_dot_x=-felt * pair.r))
         assert effect.radial(i, j, moving) == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
