@@ -230,7 +230,8 @@ class Kind:
 
     @classmethod
     def creeping_speed(cls, census: Any) -> float:
-        """The speed of it that sets that of sound where gravity along periodic axes drives it slowly, m/s."""
+        """The speed that sets that of sound where gravity along periodic axes drives it slowly, or tension
+        pulls at it, m/s."""
         return 0.0
 
     @classmethod

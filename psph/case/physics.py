@@ -26,7 +26,8 @@ def physics_table(catalogue: Sequence[Entry] = CATALOGUE + EQUATIONS_OF_STATE) -
                 None,
                 unit="m/s",
                 otherwise="ten times the expected speed: free fall over the fluid's height, what gravity "
-                "drives along a periodic axis, or the largest initial speed",
+                "drives along a periodic axis, surface tension a film of four spacings, or the largest "
+                "initial speed",
                 gt=0,
             ),
         )

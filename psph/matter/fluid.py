@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from psph.case.fluids import HYDROSTATIC
 from psph.kinds import Kind
 from psph.scene.fluid.advice import fluid_advice
+from psph.scene.fluid.capillary import capillary_speed
 from psph.scene.fluid.checks import fluid_warnings
 from psph.scene.fluid.opening import has_free_surface
 from psph.scene.fluid.periodic_gravity import creeping_speed, driven_speed
@@ -38,8 +39,8 @@ class Fluids(Kind):
 
     @classmethod
     def creeping_speed(cls, census) -> float:
-        """√(gH) (psph.scene.fluid.periodic_gravity)."""
-        return creeping_speed(census)
+        """√(gH) (psph.scene.fluid.periodic_gravity), or that of a film (psph.scene.fluid.capillary)."""
+        return max(creeping_speed(census), capillary_speed(census))
 
     @classmethod
     def layers(cls, census) -> Mapping[int, Still]:

@@ -154,6 +154,7 @@ class Layout:
             density=first.density,
             densities=tuple(part.table.density for part in self.parts if part.flows),
             viscosity=first.viscosity,
+            surface_tension=getattr(first, "surface_tension", None) or 0.0,
             gravity=self.gravity,
             lower=self.lower,
             upper=self.upper,

@@ -66,8 +66,9 @@ class Speeds:
 
     @cached_property
     def sound_speed(self) -> float:
-        """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow; no less than
-        the fastest wave of what flows and has moduli; that, or the one of solids, where all have some.
+        """c in m/s: as given, else ten times the expected speed, and enough for a creeping flow and for
+        surface tension; no less than the fastest wave of what flows and has moduli; that, or the one of
+        solids, where all have some.
 
         Raises CaseError where nothing moves and nothing falls.
         """
@@ -78,7 +79,8 @@ class Speeds:
         if all(heard):
             return waves
         given = case.physics.sound_speed
-        if given is None and not self.expected > 0.0:
+        creeping = [kind.creeping_speed(self.census) for kind in in_case(case)]
+        if given is None and not max(self.expected, *creeping) > 0.0:
             raise CaseError(
                 [
                     f"{case.file}: physics.sound_speed: missing, and it cannot be derived since "
@@ -86,5 +88,4 @@ class Speeds:
                     "speed that you expect"
                 ]
             )
-        creeping = (kind.creeping_speed(self.census) for kind in in_case(case))
         return max(given or SOUND_OVER_SPEED * max(self.expected, *creeping), waves)

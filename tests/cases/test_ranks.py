@@ -97,6 +97,7 @@ END = {
     "tension/oscillating_drop": 0.1,
     "tension/drop_on_wall": 0.1,
     "tension/rising_bubble": 0.05,
+    "tension/liquid_thread": 0.1,
     "hard/drop": 0.05,
     "hard/patch_3d": 0.02,
     "hard/twins": 2e-3,

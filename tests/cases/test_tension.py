@@ -4,10 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from cases.measures import CASES
 from drafts import draft
 from gauging import start
 
+from psph.case import load
 from psph.physics.surface.contact import ContactLine
+from psph.scene import Scene
 
 DROP = """
 space = { dimensions = 2, spacing = 0.1 }
@@ -139,3 +142,33 @@ def test_half_a_drop_before_a_plane_of_symmetry_moves_as_a_whole_one(tmp_path):
         x = x[:, x[0] > 0.0]
         found.append(x[:, np.lexsort(np.round(x, 6))])
     assert np.abs(found[0] - found[1]).max() < 1e-13
+
+
+SHORT = (
+    "space={dimensions=3,spacing=0.2013833,periodic=['x'],lower=[0.0,-2.5,-2.5],upper=[4.8332,2.5,2.5]}",
+    "fluids.water.shape.cylinder={center=[2.4166,0.0,0.0],radius=1.0,height=4.8332,axis='x'}",
+    "exact.liquid_thread.length=4.8332",
+)
+"""kR = 1.3."""
+
+
+def swelling(*keys):
+    """Of a thread of five spacings a radius: how fast its wave moves at 2.8 and 5.6 s, over its start."""
+    case = load(f"{CASES}/tension/liquid_thread.toml", ("space.spacing=0.199472", *keys))
+    scene, simulation, found = Scene(case), start(case), []
+    store = simulation.store
+    for time in (0.0, 2.8, 5.6):
+        while simulation.time < time:
+            simulation.step()
+        x, v = (np.array(store[name])[:, store.inner].T for name in ("position", "velocity"))
+        form = scene.layout.exact.velocity(x, 0.0, scene.starts.setting)
+        found.append((v * form).sum() / (form**2).sum())
+    return np.array(found[1:]) / found[0]
+
+
+def test_a_long_wave_breaks_a_thread_and_a_short_one_does_not():
+    """Plateau's and Rayleigh's limit, kR = 1: 0.7 grows, if slower than by theory, 1.3 swings back."""
+    before, after = swelling()
+    assert 1.3 * before < after
+    before, after = swelling(*SHORT)
+    assert before < 0.0 and abs(after) < 0.3

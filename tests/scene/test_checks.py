@@ -474,6 +474,22 @@ BED = "walls.plates.shape={ box = { lower = [0.0, -0.2], upper = [1.0, 0.0] } }"
 FREE = ("walls.plates.condition=mirror", "walls.plates.no_slip=false")
 
 
+def test_surface_tension_asks_for_its_speed_of_sound(tmp_path):
+    """That of the edge of a film of four spacings, √(2σ/ρe); without a tension a drop at rest has none."""
+    drop = """
+    space = { dimensions = 2, spacing = 0.1 }
+    time.end = 1.0
+    [fluids.water]
+    shape.disc = { center = [0.0, 0.0], radius = 1.0 }
+    density = 2.0
+    """
+    assert Scene(draft(tmp_path, drop, "fluids.water.surface_tension=4.0")).sound_speed == pytest.approx(
+        10.0 * (2.0 * 4.0 / (2.0 * 0.4)) ** 0.5
+    )
+    with pytest.raises(CaseError, match="physics.sound_speed: missing"):
+        Scene(draft(tmp_path, drop)).speeds.sound_speed
+
+
 @pytest.mark.parametrize(
     ("sets", "speed"),
     [

@@ -46,8 +46,7 @@ def taylor_green(outcome: Outcome) -> tuple[str, ...]:
     state = last(outcome)
     flow = TaylorGreen(1.0, 1.0)
     where = {"lower": (0.0, 0.0), "upper": (1.0, 1.0), "periods": (1.0, 1.0), "gravity": (0.0, 0.0)}
-    fluid = {"density": 1.0, "densities": (1.0,), "viscosity": 1.0 / REYNOLDS, "sound_speed": 10.0}
-    setting = Setting(dimensions=2, **fluid, **where)
+    setting = Setting(dimensions=2, density=1.0, viscosity=1.0 / REYNOLDS, sound_speed=10.0, **where)
     exact = flow.velocity(state.position, state.time, setting)
     off = state.velocity - exact
     speeds, errors = np.linalg.norm(exact, axis=1), np.linalg.norm(off, axis=1)

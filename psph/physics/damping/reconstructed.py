@@ -96,7 +96,8 @@ class ReconstructedDamping(NamedTuple):
     Frontiere, Raskin & Owen (2017), J. Comput. Phys. 332, 160, for a viscosity on approach.  In disorder and
     at a surface, as :class:`LocalPotential <psph.physics.order.potential.LocalPotential>` sees it with
     t = 0.2, α rises to ``in_disorder`` where that is larger: psph's own.  A wall damps what approaches it at
-    more than 0.02 c, the excess alone, and nothing else.  It conserves momentum and angular momentum.
+    more than 0.02 c, the excess alone, and nothing else; so does a fluid of another density, at 0.1 c, and
+    counts in no sum.  It conserves momentum and angular momentum.
     """
 
     conserves = ("momentum", "angular momentum")

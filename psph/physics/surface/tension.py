@@ -11,6 +11,7 @@ whole is scaled by the tension that a flat surface of the starting lattice has. 
 """
 
 import math
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -66,7 +67,7 @@ class SurfaceTension(NamedTuple):
         blunt = blunt_kernel(scene.kernel, scene.spacing, scene.dimensions)
         tension, vectors = flat_surface(blunt, scene.kernel, scene.spacing, scene.dimensions)
         strength, energy = largest / tension, largest / vectors
-        inertia = min(_inertias(fluids))
+        inertia = min(inertias([(one.density, one.tensions) for one in fluids]))
         if len(fluids) == 1:
             return TensionOfOne(strength, energy, blunt, inertia)
         shares = tuple(row.over(largest) for row in (Tensions(0.0, rows[0].beside), *rows))
@@ -289,8 +290,9 @@ def _row(one, fluids) -> Tensions:
     return Tensions(one.tensions[0], tuple(part * tension for part, tension in zip(parts, one.tensions[1:])))
 
 
-def _inertias(fluids):
-    """ρ₀/σ of each surface that there can be, of the heavier fluid, s²/m³."""
-    for one in fluids:
-        densities = (one.density, *(max(one.density, other.density) for other in fluids))
-        yield from (rho / sigma for rho, sigma in zip(densities, one.tensions) if sigma > 0.0)
+def inertias(fluids: Sequence[tuple[float, tuple[float, ...]]]) -> Iterator[float]:
+    """ρ₀/σ of each surface that there can be, of the heavier fluid, s²/m³; of each of the ``fluids`` its
+    density and its tensions."""
+    for density, tensions in fluids:
+        densities = (density, *(max(density, other) for other, _ in fluids))
+        yield from (rho / sigma for rho, sigma in zip(densities, tensions) if sigma > 0.0)

@@ -14,6 +14,7 @@ from psph.theory.solutions.drop import EllipticDrop
 from psph.theory.solutions.layers import InterfacialWave
 from psph.theory.solutions.setting import Surroundings
 from psph.theory.solutions.still import Hydrostatic
+from psph.theory.solutions.thread import LiquidThread
 from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
 from psph.theory.solutions.waves import SoundWave, StandingWave
 
@@ -26,6 +27,7 @@ SOLUTIONS = {
     "sound_wave": SoundWave,
     "standing_wave": StandingWave,
     "interfacial_wave": InterfacialWave,
+    "liquid_thread": LiquidThread,
     "hydrostatic": Hydrostatic,
     "elliptic_drop": EllipticDrop,
 }

@@ -13,6 +13,11 @@ LEAST = 1e-12
 """Of |δ| t: below it sin(δt)/δ is t."""
 
 
+def swung(delta: complex, t: float) -> tuple[complex, complex]:
+    """sin(δt)/δ in s and its rate, cos δt, at ``t`` s: t where δ is 0."""
+    return (cmath.sin(delta * t) / delta if abs(delta) * t > LEAST else t), cmath.cos(delta * t)
+
+
 class InterfacialWave(NamedTuple):
     """A small wave between two layers without friction: it swings, or grows under gravity or by their shear.
 
@@ -70,9 +75,9 @@ class InterfacialWave(NamedTuple):
     def displacement(self, t: float, setting: Surroundings) -> tuple[complex, complex]:
         """η in m and its rate in m/s at x = 0 and ``t`` s, as complex amplitudes of e^(ikx)."""
         mean, delta = self.roots(setting)
-        swung = cmath.sin(delta * t) / delta if abs(delta) * t > LEAST else t
+        moved, rate = swung(delta, t)
         turned = self.speed * cmath.exp(-1j * mean * t)
-        return turned * swung, turned * (cmath.cos(delta * t) - 1j * mean * swung)
+        return turned * moved, turned * (rate - 1j * mean * moved)
 
     def velocity(self, x: np.ndarray, t: float, setting: Setting) -> np.ndarray:
         """u (n, dim) in m/s at ``x`` (n, dim) m and ``t`` s: of the fluid that is there by η."""

@@ -8,14 +8,15 @@ class Surroundings:
     """The fluid, what acts on it, and the domain: what is known before any speed of sound.
 
     ``density`` ρ₀ in kg/m³ of the first fluid, ``densities`` those of all in the order of the case, kinematic
-    ``viscosity`` in m²/s of the first, ``gravity`` in m/s²; ``lower`` and ``upper``
-    are the corners of the domain in m, ``periods`` a length in m or None for each axis.
+    ``viscosity`` in m²/s and ``surface_tension`` in N/m of the first, ``gravity`` in m/s²; ``lower`` and
+    ``upper`` are the corners of the domain in m, ``periods`` a length in m or None for each axis.
     """
 
     dimensions: int
     density: float
-    densities: tuple[float, ...]
+    densities: tuple[float, ...] = ()
     viscosity: float
+    surface_tension: float = 0.0
     gravity: tuple[float, ...]
     lower: tuple[float, ...]
     upper: tuple[float, ...]

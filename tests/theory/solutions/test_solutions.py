@@ -12,6 +12,7 @@ from psph.theory.solutions.drop import EllipticDrop
 from psph.theory.solutions.layers import InterfacialWave
 from psph.theory.solutions.setting import Setting
 from psph.theory.solutions.still import Hydrostatic
+from psph.theory.solutions.thread import LiquidThread
 from psph.theory.solutions.vortices import Beltrami, Gresho, TaylorGreen
 from psph.theory.solutions.waves import SoundWave, StandingWave
 
@@ -34,6 +35,7 @@ CHANNEL = replace(STICKY, periods=(1.0, None))
 DRIVEN = replace(CHANNEL, gravity=(0.4, 0.0))
 HEAVY = replace(FREE, gravity=(0.0, -9.81), periods=(None, None))
 LAYERED = replace(HEAVY, densities=(2.0, 1.0))
+SURFACED = replace(IN_3D, surface_tension=3.0)
 STEP = 1e-4
 
 FLOWS = {
@@ -45,6 +47,7 @@ FLOWS = {
     "sound_wave": (SoundWave(1e-4, 0.5), FREE),
     "standing_wave": (StandingWave(1e-5, 1.0, 0.5, 0.9), HEAVY),
     "interfacial_wave": (InterfacialWave(1e-3, 0.7, (0.9, 0.1), (0.2, -0.1), 0.9), LAYERED),
+    "liquid_thread": (LiquidThread(0.1, 0.5, 0.9), SURFACED),
     "hydrostatic": (Hydrostatic(0.8), HEAVY),
     "elliptic_drop": (EllipticDrop(3.0, 0.4), replace(FREE, periods=(None, None))),
 }
@@ -217,3 +220,28 @@ def test_waves_between_layers_swing_and_grow_as_told():
         assert abs(growth.imag) == pytest.approx(found) and drift.real == pytest.approx(
             math.pi * (light - 1000.0) / (1000.0 + light)
         )
+
+
+@pytest.mark.parametrize("waves", (0.7, 1.3))
+def test_the_surface_of_a_thread_moves_as_the_wave_and_bears_what_laplace_says(waves):
+    """Without friction ρ ∂u/∂t = −∂p/∂x at r = R, p = −σ (η/R² + η″), here at a node."""
+    radius, setting = 0.9, replace(SURFACED, viscosity=0.0)
+    thread, t = LiquidThread(0.1, 2.0 * math.pi * radius / waves, radius), 0.3
+    k = waves / radius
+    height, rate = thread.displacement(t, setting)
+    crest, side = np.array([[0.0, radius, 0.0]]), np.array([[0.25 * thread.length, 0.0, radius]])
+    assert thread.velocity(crest, t, setting)[0, 1] == pytest.approx(rate)
+    ahead, back = (thread.velocity(side, t + s, setting)[0, 0] for s in (STEP, -STEP))
+    pressure_slope = (
+        3.0 * (k * k - 1.0 / radius**2) * height * -k
+    )  # at a node, σ (k² − 1/R²) η is the pressure
+    assert 2.0 * (ahead - back) / (2.0 * STEP) == pytest.approx(-pressure_slope, rel=1e-5)
+    growing = thread.roots(setting)[1].imag
+    assert (growing != 0.0) == (waves < 1.0)
+
+
+def test_threads_grow_at_the_rate_of_rayleigh():
+    """0.343 √(σ/ρR³) at kR = 0.7, near the fastest."""
+    one = replace(SURFACED, density=1.0, surface_tension=1.0, viscosity=0.0)
+    _, growth = LiquidThread(0.1, 2.0 * math.pi / 0.7, 1.0).roots(one)
+    assert abs(growth) == pytest.approx(0.3433, abs=1e-4)
