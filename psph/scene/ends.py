@@ -36,7 +36,8 @@ class EndFace:
     number of its buffer.  ``kind`` is the key
     of what is given, ``given`` its value by time, ``level`` that of its surface, no number where it is found,
     ``feeding`` the number of the end that a pump takes from.
-    ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean.  ``settle`` in s is None
+    ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean, which is not 1 everywhere
+    where it is ``shaped``.  ``settle`` in s is None
     where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
     ``wave_speed`` in m/s is that of the waves that it lets out; ``spacing`` dx, m; ``rows`` of particles
     stand behind it at the start; ``surface`` has the rows that its level fills, None without a surface.
@@ -58,6 +59,7 @@ class EndFace:
     level: Callable[[float], float]
     feeding: int | None
     shape: Callable[[np.ndarray], np.ndarray]
+    shaped: bool
     settle: float | None
     height: float
     wave_speed: float
@@ -125,6 +127,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         given=_by_time(getattr(end, end.given), end.ramp),
         level=_by_time(end.level),
         feeding=names.index(end.pump) if end.pump else None,
+        shaped=end.profile != "uniform",
         shape=_shape(end, across, wet_low[across], wet_high[across]),
         settle=_settle(scene, end, height) if end.lets_waves_out and not unlike(scene) else None,
         height=height,

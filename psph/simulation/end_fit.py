@@ -31,7 +31,8 @@ on its pressure in Pa and its velocity in m/s."""
 class Planes(NamedTuple):
     """The planes of open ends: they stand at ``place`` m along ``axis``, with the ``sign`` of the inward
     direction; ``pressure`` in Pa and inward ``speed`` in m/s were added behind them in the last step
-    (ends,).  Nothing behind them moves on beyond ``low`` and ``high`` (ends, dim), m."""
+    (ends,).  Nothing behind them moves on beyond ``low`` and ``high`` (ends, dim), m.  ``middle`` (ends, dim)
+    m is that of each at the start, ``up`` and ``gravity`` (dim,) of all, ``pull`` the size of that, m/s²."""
 
     axis: np.ndarray
     place: np.ndarray
@@ -40,6 +41,10 @@ class Planes(NamedTuple):
     speed: np.ndarray
     low: np.ndarray
     high: np.ndarray
+    middle: np.ndarray
+    up: np.ndarray
+    gravity: np.ndarray
+    pull: float
 
 
 class Listed(NamedTuple):
@@ -63,7 +68,7 @@ class Vicinity(NamedTuple):
 
 class Flowing(NamedTuple):
     """The arrays of all columns that are read and filled, (columns,): ``rest`` densities in kg/m^d, speeds of
-    ``sound`` in m/s; ``pull`` is g in m/s²."""
+    ``sound`` in m/s."""
 
     position: Any
     velocity: Any
@@ -74,7 +79,6 @@ class Flowing(NamedTuple):
     rest: Any
     sound: Any
     group: Any
-    pull: float
 
 
 def moments_of(dimensions: int) -> int:

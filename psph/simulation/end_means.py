@@ -40,14 +40,11 @@ class Units(NamedTuple):
 
 class Standing(NamedTuple):
     """Particles behind the planes or before them as lists were made: their ``columns`` (n,), the ``end``
-    (n,), the ``shape`` (n,) of what comes in there; ``weight`` (n,) in Pa is added to a pressure that is
-    given, and ``height`` (n,) in m is along gravity."""
+    (n,), the ``shape`` (n,) of what comes in there."""
 
     columns: np.ndarray
     end: np.ndarray
     shape: np.ndarray
-    weight: np.ndarray
-    height: np.ndarray
 
 
 class Told(NamedTuple):
@@ -65,11 +62,17 @@ class Told(NamedTuple):
 
 
 @helper
-def _given_at(told, end, weight, height, k, flowing):
-    """The pressure that an end gives column ``k``, Pa: p_t, or that of a still column under a surface,
-    ρ₀c²(exp(g z/c²) − 1)."""
+def _given_at(told, end, planes, k, flowing):
+    """The pressure that an end gives column ``k``, Pa: p_t in the middle of its height, or that of a still
+    column under a surface, ρ₀c²(exp(g z/c²) − 1)."""
+    height = weight = 0.0
+    for d in range(len(flowing.position)):
+        x = flowing.position[d][k]
+        height += planes.up[d] * x
+        if d != planes.axis[end]:
+            weight += flowing.rest[k] * planes.gravity[d] * (x - planes.middle[end, d])
     c2 = flowing.sound[k] * flowing.sound[k]
-    column = flowing.rest[k] * c2 * np.expm1(max(told.value[end] - height, 0.0) * flowing.pull / c2)
+    column = flowing.rest[k] * c2 * np.expm1(max(told.value[end] - height, 0.0) * planes.pull / c2)
     return column if told.what[end] == BY_LEVEL else told.value[end] + weight
 
 
@@ -91,7 +94,7 @@ def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
         enters = hat if into > 0.0 else 0.0
         given = 0.0
         if told.what[end] != BY_SPEED:
-            given = _given_at(told, end, behind.weight[n], behind.height[n], k, flowing)
+            given = _given_at(told, end, planes, k, flowing)
         row = sums[end]
         row[0] += _whole(hat)
         row[1] += _whole(hat * seen[n, FITTED] / units.pressure)
@@ -116,7 +119,7 @@ def sum_before(front, planes, told, flowing, units, far, reach, sums):
         tent = max(0.5 - abs(0.25 * xi / units.length + 0.5), 0.0)
         row[14] += _whole(tent * flowing.rest[k] * flowing.volume[k])
         if told.what[end] != BY_SPEED and -reach < xi <= 0.0:
-            over = flowing.pressure[k] - _given_at(told, end, front.weight[n], front.height[n], k, flowing)
+            over = flowing.pressure[k] - _given_at(told, end, planes, k, flowing)
             x, p = xi / units.length, over / units.pressure
             row[7] += _whole(1.0)
             row[8] += _whole(x)
@@ -148,7 +151,7 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, units, dt, seen, fa
             along = into if told.out[end] > 0.0 else behind.shape[n] * told.value[end]
         else:
             xi = depth(planes, end, flowing, k)
-            pressure = _given_at(told, end, behind.weight[n], behind.height[n], k, flowing)
+            pressure = _given_at(told, end, planes, k, flowing)
             pressure += told.slope[end] * xi
             if sees:
                 along = behind.shape[n] * told.inflow[end] if into > 0.0 else into

@@ -16,6 +16,9 @@ BEYOND = 2
 
 MOBILE = "mobile"
 
+ALIKE = 1e-6
+"""Spacings by which depths differ that count as one."""
+
 
 def within(face: EndFace, domain, rows: np.ndarray, places: str = "position") -> np.ndarray:
     """Those of some ``rows`` of owned particles whose ``places`` are between the sides of an end."""
@@ -72,7 +75,8 @@ class Passage:
         fate, born = np.zeros(len(everyone.T), np.int64), np.zeros(len(everyone.T))
         periods = np.array([self.domain.periods[d] or 0.0 for d in across])
         who, size, layers = everyone[2].astype(np.int64), self.face.spacing, self.face.layers
-        self._queue(everyone[1], everyone[3:], periods, who, size, layers, fate, born)
+        order = np.lexsort((everyone[0], np.rint(everyone[1] / (ALIKE * size))))
+        self._queue(order, everyone[1], everyone[3:], periods, who, size, layers, fate, born)
         sites = np.zeros((0, self.store.dimensions))
         if surface is not None and surface.unfilled and surface.comes_in:
             standing = np.where(who == 1, born > 0.0, fate != DIES)

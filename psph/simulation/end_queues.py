@@ -19,8 +19,9 @@ STAYS, DIES = 0, 1
 
 
 @elementwise
-def run_queues(depth, across, periods, crossing, dx, layers, fate, born):
-    """What becomes of the particles behind the plane of an end, in the order of their ids.
+def run_queues(order, depth, across, periods, crossing, dx, layers, fate, born):
+    """What becomes of the particles behind the plane of an end, who takes a place in the ``order`` (n,) of
+    depths, so that it is the same however a scene is turned.
 
     ``depth`` (n,) m behind it, ``across`` (axes, n) m along the face with ``periods`` there, 0 where it does
     not repeat; ``crossing`` (n,) is 1 for those that have come in, −1 for those that have gone out and now
@@ -31,7 +32,7 @@ def run_queues(depth, across, periods, crossing, dx, layers, fate, born):
     for k in range(n):
         fate[k] = DIES if crossing[k] < 1 and depth[k] > (layers + SLACK) * dx else STAYS
         born[k] = 0.0
-    for k in range(n):
+    for k in order:
         if crossing[k] == -1 and fate[k] == STAYS:
             count, last = 0, k
             for j in range(n):
@@ -41,7 +42,7 @@ def run_queues(depth, across, periods, crossing, dx, layers, fate, born):
                         last = j
             if count > layers:
                 fate[last] = DIES
-    for k in range(n):
+    for k in order:
         if crossing[k] == 1:
             count, deepest = 0, depth[k]
             for j in range(n):
@@ -63,6 +64,6 @@ def _beside(across, periods, k, j, dx):
         t = across[d, j] - across[d, k]
         if periods[d] > 0.0:
             t -= periods[d] * np.rint(t / periods[d])
-        if not -0.5 * dx <= t < 0.5 * dx:
+        if abs(t) > 0.5 * dx:
             return False
     return True

@@ -70,6 +70,8 @@ class Buffers(Work):
         c = max(one.sound_speed for one in fluids)
         stand = [(face.axis, face.at, float(face.sign)) for face in self.faces]
         self._stand = tuple(map(np.array, zip(*stand)))
+        middles = np.array([face.middle for face in self.faces])
+        self._pull = middles, self.up, self.gravity, float(np.linalg.norm(self.gravity))
         self._sides = tuple(np.array([face.sides[n] for face in self.faces]) for n in (0, 1))
         what = [(WHAT.get(face.kind, BY_SPEED), face.height > 0.0) for face in self.faces]
         self._what = tuple(map(np.array, zip(*what)))
@@ -89,7 +91,7 @@ class Buffers(Work):
         behind, front = [], []
         for face in self.faces:
             depth = face.depth(store[LISTED][face.axis][store.inner])
-            near = fluid & (depth > -(FRONT + 1.0) * self.dx) & (depth < face.layers * self.dx)
+            near = fluid & (depth > -(FRONT + 2.0) * self.dx) & (depth < face.layers * self.dx)
             behind.append(np.flatnonzero(np.isin(groups, face.groups)))
             front.append(within(face, self.domain, np.flatnonzero(near), LISTED))
         self.behind, self.front = self._standing(behind), self._standing(front)
@@ -100,23 +102,18 @@ class Buffers(Work):
 
     def _standing(self, rows: list[np.ndarray]) -> Standing:
         """Particles in some ``rows`` of each end."""
-        store = self.store
-        parts = []
-        for face, own in zip(self.faces, rows):
-            places = self.domain.inside(store.shown(LISTED)[own])
-            away = places - face.middle
-            away[:, face.axis] = 0.0
-            weight = store.shown("rest_density")[own] * (away @ self.gravity)
-            parts.append(
-                (
-                    store.low + own,
-                    np.full(len(own), face.number),
-                    face.shape(places),
-                    weight,
-                    places @ self.up,
-                )
-            )
-        return Standing(*(np.concatenate(part) for part in zip(*parts)))
+        ends = [np.full(len(own), face.number) for face, own in zip(self.faces, rows)]
+        columns = self.store.low + np.concatenate(rows)
+        return Standing(columns, np.concatenate(ends), np.ones(len(columns)))
+
+    def _find_shapes(self) -> None:
+        """The shape of what comes in, where particles behind the planes stand now."""
+        behind, position = self.behind, self.store["position"]
+        for face in self.faces:
+            if face.shaped:
+                own = behind.end == face.number
+                places = np.stack([x[behind.columns[own]] for x in position], axis=1)
+                behind.shape[own] = face.shape(self.domain.inside(places))
 
     def _matter(self) -> np.ndarray:
         """For each column the number of its fluid, with a minus behind a plane; 0: no fluid."""
@@ -130,7 +127,7 @@ class Buffers(Work):
 
     def renew(self, simulation) -> None:
         """Let particles change sides, be born and die, where lists are due or some have come too far."""
-        if simulation.listed and not any(state.due for state in self.states):
+        if not any(state.due for state in self.states):
             return
         with self.ledger("ends"):
             for passage, state in zip(self.passages, self.states):
@@ -155,6 +152,7 @@ class Buffers(Work):
             self._impose(simulation.then, simulation.dt)
 
     def _impose(self, time: float, dt: float) -> None:
+        self._find_shapes()
         planes, flowing, behind, seen = self._planes(), self._flowing(), self.behind, self._seen
         listed = Listed(self.store.low, self.domain.lists, self.matter)
         self._see(behind.columns, behind.end, planes, self.vicinity, listed, flowing, self._sums, seen)
@@ -177,7 +175,7 @@ class Buffers(Work):
 
     def _planes(self) -> Planes:
         added = np.array([(one.added.pressure, one.added.speed + one.faster) for one in self.states])
-        return Planes(*self._stand, *np.ascontiguousarray(added.T), *self._sides)
+        return Planes(*self._stand, *np.ascontiguousarray(added.T), *self._sides, *self._pull)
 
     def _told(self, time: float) -> Told:
         """What the ends give at ``time``, s."""
@@ -193,8 +191,7 @@ class Buffers(Work):
     def _flowing(self) -> Flowing:
         store = self.store
         fields = ("position", "velocity", "predicted_velocity", "density", "specific_volume", "pressure")
-        pull = float(np.linalg.norm(self.gravity))
-        return Flowing(*(store[name] for name in fields), *self._fixed, store.group, pull)
+        return Flowing(*(store[name] for name in fields), *self._fixed, store.group)
 
     def _mean_speed(self, face: EndFace, time: float) -> float:
         """The mean inward speed that a velocity end tells, m/s; 0 of a pressure end."""

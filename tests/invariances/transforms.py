@@ -41,6 +41,8 @@ class Turn(NamedTuple):
 
     def of(self, table: Any, key: str = "") -> Any:
         """A table of a case, turned."""
+        if isinstance(table, dict) and "inward" in table:
+            return {**table, **self._end(**table)}
         if isinstance(table, dict):
             found = {name: self.of(value, name) for name, value in table.items()}
             if key in ("box", "space") and "lower" in table:
@@ -61,14 +63,29 @@ class Turn(NamedTuple):
             return [self.of(one, key) for one in table]
         return table
 
+    def _end(self, at, inward, span=None, **_):
+        """Where an open end then stands."""
+        to, way = self._axis(inward[1])
+        ends = {AXES[self._axis(name)[0]]: (self._axis(name)[1], pair) for name, pair in (span or {}).items()}
+        return {
+            "at": way * at,
+            "inward": ("+" if (inward[0] == "+") == (way > 0.0) else "-") + AXES[to],
+            "span": {name: sorted(sign * x for x in pair) for name, (sign, pair) in ends.items()},
+        }
+
+    def _axis(self, name) -> tuple[int, float]:
+        """Which axis one becomes, and whether it then points the other way."""
+        column = self.matrix[:, AXES.index(name)]
+        to = int(np.abs(column).argmax())
+        return to, float(column[to])
+
     def _sides(self, names):
         """Axes and sides, by their names."""
         if isinstance(names, list):
             return [self._sides(name) for name in names]
         axis, _, side = names.partition(".")
-        column = self.matrix[:, AXES.index(axis)]
-        to = int(np.abs(column).argmax())
-        if side and column[to] < 0.0:
+        to, way = self._axis(axis)
+        if side and way < 0.0:
             side = {"lower": "upper", "upper": "lower"}[side]
         return AXES[to] + (f".{side}" if side else "")
 
@@ -105,6 +122,8 @@ class Extruded(NamedTuple):
             return [*table, self.depth if key == "upper" else 0.0]
         if key == "spin":
             return [0.0, 0.0, table]
+        if key == "flow":
+            return table * self.depth
         if key == "velocity_gradient":
             return [*([*row, 0.0] for row in table), [0.0] * 3]
         if key in (*POINTS, *DIRECTIONS) and isinstance(table, list):
@@ -125,13 +144,18 @@ class Shift(NamedTuple):
 
     def of(self, table: Any, key: str = "") -> Any:
         """A table of a case, moved; all that is in it drifts."""
+        if isinstance(table, dict) and "inward" in table:
+            way = dict(zip(AXES, self.way))
+            span = {name: [x + way[name] for x in pair] for name, pair in table.get("span", {}).items()}
+            rest = {name: self.of(value, name) for name, value in table.items() if name not in ("at", "span")}
+            return {**rest, "at": table["at"] + way[table["inward"][1]], "span": span}
         if isinstance(table, dict):
             return {name: self._of_table(name, value, key) for name, value in table.items()}
         if key in (*POINTS, "lower", "upper"):
             return _clean(np.add(table, self.way))
         if key == "points":
             return [_clean(np.add(point, self.way)) for point in table]
-        if key == "water_level":
+        if key in ("water_level", "level"):
             return table - float(np.dot(self.way, PULL) / np.linalg.norm(PULL))  # a height against gravity
         if isinstance(table, list):
             return [self.of(one, key) for one in table]
@@ -162,7 +186,7 @@ UNIT_OF = {
     **dict.fromkeys(
         (
             *("spacing", "radius", "shift", "diameter", "amplitude", "lower", "upper", "points", *POINTS),
-            *("length", "water_level"),
+            *("length", "water_level", "level", *AXES),
         ),
         "m",
     ),
@@ -178,7 +202,7 @@ UNIT_OF = {
         ("largest_viscosity", "plastic_viscosity", "viscosity_at_rest", "viscosity_in_shear", "damping"),
         "Pa s",
     ),
-    "viscosity": "m2/s",
+    **dict.fromkeys(("viscosity", "flow"), "m2/s"),
 }
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tomli_w
-from invariances.scenes import SCENES
+from invariances.scenes import SCENES, STREAMS
 from jobs import mpirun
 from long import long_but_for, tell
 from parallel.scenes import FAMILIES, scene
@@ -62,6 +62,13 @@ def test_soils_beside_walls_and_bodies_have_the_same_bits_however_they_are_run(n
     for axis in "xy":
         (tmp_path / f"{axis}.toml").write_text(tomli_w.dumps(with_a_gap(SCENES[name], axis)))
     all_alike(told(tmp_path, 30), 2)
+
+
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("name", long_but_for((), STREAMS))
+def test_streams_through_open_ends_have_the_same_bits_however_they_are_run(name, tmp_path):
+    (tmp_path / "x.toml").write_text(tomli_w.dumps(STREAMS[name] | {"parallel": {"axis": "x"}}))
+    all_alike(told(tmp_path, 60), 1)
 
 
 def all_alike(found, scenes):

@@ -57,10 +57,10 @@ def seen_by(dimensions, axis, sign, field, added=(0.0, 0.0), gravity=None):
     )
     columns = np.flatnonzero(behind)
     pushed = np.array(added)[:, None]
-    planes = Planes(np.array([axis]), np.zeros(1), np.array([float(sign)]), *pushed, None, None)
+    planes = Planes(np.array([axis]), np.zeros(1), np.array([float(sign)]), *pushed, *[None] * 5, 0.0)
     vicinity = Vicinity(kernel("wendland-c2", 1.4 * DX, dimensions), DX, gravity, (None,) * dimensions)
     seen = np.zeros((len(columns), FITTED + 1 + dimensions))
-    flowing = Flowing(tuple(places), None, tuple(v), None, np.full(n, 1e-3), p, None, None, None, 0.0)
+    flowing = Flowing(tuple(places), None, tuple(v), None, np.full(n, 1e-3), p, None, None, None)
     matter, none = np.where(behind, -1, 1), np.zeros(len(columns), np.int64)
     listed, sums = Listed(0, lists, matter), np.zeros(moments_of(dimensions))
     see_fronts(columns, none, planes, vicinity, listed, flowing, sums, seen)
@@ -117,7 +117,9 @@ def queued(depth, across, crossing, layers=4, period=0.0):
     n = len(depth)
     fate, born = np.zeros(n, np.int64), np.zeros(n)
     places = np.array(depth, float) * DX, np.array([across], float) * DX
-    run_queues(*places, np.array([period * DX]), np.array(crossing), DX, layers, fate, born)
+    run_queues(
+        np.argsort(depth), *places, np.array([period * DX]), np.array(crossing), DX, layers, fate, born
+    )
     return fate, born / DX
 
 
