@@ -7,6 +7,7 @@ from psph.kinds import Kind
 from psph.scene.fluid.advice import fluid_advice
 from psph.scene.fluid.capillary import capillary_speed
 from psph.scene.fluid.checks import fluid_warnings
+from psph.scene.fluid.costs import cost_lines
 from psph.scene.fluid.opening import has_free_surface
 from psph.scene.fluid.periodic_gravity import creeping_speed, driven_speed
 from psph.scene.fluid.rheologies import rheology_lines
@@ -88,6 +89,8 @@ class Fluids(Kind):
                 "matter",
                 f"  start       {names}: relaxed from a shaken lattice in {ITERATIONS} passes before the run",
             )
+        for place, line in enumerate(cost_lines(scene, plan.cfl)):
+            yield "matter", f"  {'fluids' if not place else '':<11} {line}"
         yield from (("friction", line) for line in self._friction(plan))
 
     def _friction(self, plan) -> Iterator[str]:

@@ -176,3 +176,23 @@ def test_a_topic_that_there_is_not_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(Soils, "lines", lambda self, plan, dt: iter([("mater", "sand")]))
     with pytest.raises(Refused, match="soils: lines: mater: no such topic; give one of matter, reach, "):
         list(explain(Scene(draft(tmp_path, TANK)), 1))
+
+
+def test_each_fluid_says_what_it_costs(tmp_path):
+    """Its particles, and the steps that its sound allows: those of the faster sound are the shorter.  Control: of
+    one fluid there is nothing to compare."""
+    light = "fluids.air={density=10.0,sound_speed=200.0,shape={box={lower=[0.0,1.0],upper=[1.0,1.2]}}}"
+    text = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 1.0
+physics.sound_speed = 40.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+"""
+    lines = [*explain(Scene(draft(tmp_path, text, light)), 1)]
+    [water] = [line for line in lines if "100 of 120 particles" in line]
+    [air] = [line for line in lines if "20 of 120 particles" in line]
+    assert "by itself" in water and "none asks for shorter ones" in air
+    steps = [float(re.search(r"steps of (\S+) s", line).group(1)) for line in (water, air)]
+    assert steps[0] > 4.0 * steps[1]
+    assert not any("of 100 particles" in line for line in explain(Scene(draft(tmp_path, text)), 1))
