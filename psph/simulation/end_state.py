@@ -121,8 +121,9 @@ class EndState:
         of the fluid in front; ``told`` m/s is the mean speed of a velocity end."""
         if self.surface is None or face.surface is None:
             return
-        mean = self.means.speed if face.by_pressure else told
-        self.surface.see(face, self.standing, mean, units.speed, dt)
+        if face.by_pressure:  # where nothing is in front, nothing keeps out what stands there
+            told = self.means.speed if self.means.rows else face.wave_speed
+        self.surface.see(face, self.standing, told, units.speed, dt)
         self.surface.settle(face.surface, level, face.spacing)
         self.due |= self.surface.unfilled and self.surface.comes_in
 
