@@ -272,6 +272,17 @@ def test_a_damping_zone_takes_speed_within_it_alone(begin, end, axis):
     assert at(0.7, shear_modulus=2e6) == (0.0, 0.0)  # in a soil
 
 
+def test_a_damping_zone_in_a_stream_leaves_the_stream():
+    """a = −β s² (v − U): what goes with it feels nothing, at rest it is carried on.  Control: the zone at rest."""
+    zone = DampingZone(1.0, 3.0, "y", 8.0, 0.4).in_scene(SimpleNamespace(dimensions=2))
+    assert zone.longest_step(None) == pytest.approx(0.5 / 8.0)
+    at = lambda velocity: view()._replace(position=(5.0, 2.0), velocity=velocity, shear_modulus=0.0)
+    assert zone.body(at((0.0, 0.4))) == (0.0, 0.0)
+    assert zone.body(at((0.3, 0.0))) == pytest.approx((-0.6, 0.8))
+    still = DampingZone(1.0, 3.0, "y", 8.0).in_scene(SimpleNamespace(dimensions=2))
+    assert still.body(at((0.0, 0.4))) == pytest.approx((0.0, -0.8))
+
+
 def test_free_surface():
     p = view()
     effect, (i, j, pair) = FreeSurface(0.9), pair_of(p, 0, 1)
