@@ -270,3 +270,44 @@ def test_nothing_behind_a_plane_moves_through_the_walls_beside_it(tmp_path, text
     across = store.shown("velocity")[leaves, 1]
     assert across[y[leaves] < 0.9].min() > 0.1
     assert (across[y[leaves] > 0.95].max() == 0.0) == held
+
+
+LAYERS = """
+space = { dimensions = 2, spacing = 0.1, lower = [-0.5, -0.4], upper = [1.5, 1.0] }
+time.end = 9.0
+physics = { gravity = [0.0, -9.81], sound_speed = 35.0 }
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.3] }
+pressure = "hydrostatic"
+velocity = [0.4, 0.0]
+[fluids.oil]
+shape.box = { lower = [0.0, 0.3], upper = [1.0, 0.6] }
+density = 700.0
+pressure = "hydrostatic"
+velocity = [0.4, 0.0]
+[walls.floor]
+shape.box = { lower = [-0.5, -0.4], upper = [1.5, 0.0] }
+[ends.left]
+at = 0.0
+inward = "+x"
+velocity = 0.4
+[ends.right]
+at = 1.0
+inward = "-x"
+velocity = -0.4
+"""
+
+
+def test_buffers_of_several_fluids_are_fluids(tmp_path):
+    """Oil upon water comes in by layers: what stands behind a plane, and has come in, is of its fluid, and
+    goes on to see what is in front."""
+    simulation = start(draft(tmp_path, LAYERS))
+    store, buffers = simulation.store, simulation.engine.of("ends")
+    while simulation.time < 1.0:
+        simulation.step()
+        assert buffers.states[0].means.rows > 5.0
+    assert buffers.states[0].books.number_in >= 18
+    of = np.where(store.shown("rest_density") > 900.0, 1.0, 2.0)
+    flows = store.shown("kind") != 1
+    np.testing.assert_array_equal(store.shown("fluid")[flows], of[flows])
+    assert abs(store.shown("velocity")[flows]).max() < 0.8

@@ -12,7 +12,7 @@ from psph.case.ends import OpenEnd
 from psph.case.keys import AXES
 from psph.case.shapes import Box, Shape
 from psph.scene.lattice import TOLERANCE
-from psph.scene.parts.part import Part
+from psph.scene.parts.part import Known, Part
 from psph.scene.shapes import Grid, bounds, inside
 from psph.smoothing import KERNELS
 
@@ -33,8 +33,11 @@ class Behind:
         return self.fluid.velocity
 
 
+@dataclass(frozen=True)
 class EndPart(Part):
-    """The buffer of an open end, of one fluid."""
+    """The buffer of an open end, of one fluid, with the ``tensions`` of that."""
+
+    tensions: tuple[float, ...] = ()
 
     may_be_empty = True
     drawn = False
@@ -48,6 +51,10 @@ class EndPart(Part):
     def jitter(self) -> float:
         """Rows stand in order."""
         return 0.0
+
+    def own(self, known: Known) -> dict[str, Any]:
+        """The number of its fluid among fluids, and the tensions of that."""
+        return {"fluid": 1 + self.source, "tensions": self.tensions}
 
     def rows(self, case: Case) -> int:
         """Layers of its particles behind the plane."""

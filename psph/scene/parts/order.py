@@ -139,5 +139,6 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
         for number, (poured, fluid) in enumerate(case.fluids.items()):
             filled = None if end.filled is None else end.filled == poured
             table = Behind(end, fluid, shape, filled)
-            add(EndPart, f"{name} ({poured})", f"ends.{name}", table, Buffered(), source=number, solid=0)
+            more = {"source": number, "solid": 0, "tensions": tensions[poured]}
+            add(EndPart, f"{name} ({poured})", f"ends.{name}", table, Buffered(), **more)
     return Parts(found)
