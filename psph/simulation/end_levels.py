@@ -1,4 +1,4 @@
-"""SurfaceRows behind an open end that a level fills and empties as it rises and falls."""
+"""Rows behind an open end that a level fills and empties as it rises and falls."""
 
 from dataclasses import dataclass
 
@@ -24,14 +24,14 @@ ABOVE = 0.75
 """Spacings above the middle of the highest row from which a particle is of none."""
 
 FEWEST_ROWS = 4.0
-"""SurfaceRows over whose height a level is smoothed at least."""
+"""Rows over whose height a level is smoothed at least."""
 
 
 @dataclass
 class EndLevel:
     """The level behind an end: how many of its rows are ``full``, how many sites the fluid in front fills,
     smoothed over time, None before there is any; whether fluid ``comes_in``; whether rows are still to be
-    filled or emptied."""
+    filled or emptied, and all anew since the flow has ``turned``."""
 
     full: int
     count: float | None = None
@@ -55,7 +55,7 @@ class EndLevel:
             self.comes_in = self.turned = False
 
     def settle(self, rows: SurfaceRows, level: float, dx: float) -> None:
-        """SurfaceRows that a ``level`` in m fills, or that of the fluid in front where it is no number."""
+        """Rows that a ``level`` in m fills, or that of the fluid in front where it is no number."""
         full = rows_full(rows, self.full, level if level == level else self.level(rows), dx)
         self.unfilled |= full != self.full
         self.full = full
