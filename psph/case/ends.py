@@ -137,7 +137,7 @@ class OpenEnd(Answering):
         for name, end in case.ends.items():
             loc = ("ends", name)
             given = [one for one in GIVENS if getattr(end, one) is not None]
-            if len(given) > 1 and given[-1] == LEVEL:
+            if len(given) == 2 and given[-1] == LEVEL and given[0] != "pressure":
                 given.pop()
             if len(given) != 1:
                 said = f"{' and '.join(given)} are given" if given else "nothing is given"

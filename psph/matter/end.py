@@ -44,7 +44,8 @@ class OpenEnds(Kind):
             elif end.given == "pressure":
                 fastest = max(fastest, (2.0 * value / lightest) ** 0.5)
             elif end.given == "level":
-                fastest = max(fastest, (2.0 * pull * spread(layout)) ** 0.5)
+                deep = max(spread(layout), value - lowest(layout))
+                fastest = max(fastest, (2.0 * pull * deep) ** 0.5)
         return fastest
 
     def faults(self) -> Iterator[str]:
@@ -93,6 +94,12 @@ def spread(layout) -> float:
     """How far the domain reaches along gravity, m."""
     ends = zip(layout.lower, layout.upper, layout.up)
     return sum(abs(u) * (high - low) for low, high, u in ends)
+
+
+def lowest(layout) -> float:
+    """The least height along gravity of the domain, m, as levels are."""
+    ends = zip(layout.lower, layout.upper, layout.up)
+    return sum(min(u * low, u * high) for low, high, u in ends)
 
 
 def _work(simulation):

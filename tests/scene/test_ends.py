@@ -137,6 +137,11 @@ def test_what_is_likely_not_meant_is_said(tmp_path, text, key, says):
         (PLATES, ('ends.inlet={at=0.0,inward="+x",pump="outle"}',), "ends.inlet.pump"),
         (PLATES, ('ends.inlet.profile="pipe"',), "ends.inlet.profile"),
         (CHANNEL, ("ends.downstream.ramp=1.0",), "ends.downstream.ramp: 1.0: would let the level grow"),
+        (
+            CHANNEL,
+            ("ends.downstream.pressure=1.0",),
+            "ends.downstream: pressure and level are given; give one of",
+        ),
         (PLATES, ('ends.inlet.velocity="fast"',), 'ends.inlet.velocity: "fast" is not a number'),
         (CHANNEL, ('ends.downstream.level="fond"',), "\"fond\" is not known; did you mean 'found'?"),
         (
