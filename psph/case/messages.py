@@ -165,9 +165,9 @@ def _where_it_is_known(loc: Location, schema: Details, value: Any) -> str:
 
 
 def _words(schema: Details, node: Details | None) -> list[str]:
-    """The words that may stand at a node."""
+    """The words that may stand at a node; numbers as they are written."""
     branches = alternatives(schema, node or {})
-    return [x for one in branches for x in one.get("enum", [one["const"]] if "const" in one else ())]
+    return [str(x) for one in branches for x in one.get("enum", [one["const"]] if "const" in one else ())]
 
 
 def _how_to_add(loc: Location, schema: Details) -> str:

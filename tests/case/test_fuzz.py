@@ -216,7 +216,7 @@ def starts():
 
 
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("examples", (40, pytest.param(1200, marks=LONG)))
+@pytest.mark.parametrize("examples", (120, pytest.param(1200, marks=LONG)))
 def test_what_is_accepted_starts(examples, tmp_path, starts):
     """No case that passed every check ends in a traceback: it runs, or is stopped in plain words."""
     tally, path = Tally(), tmp_path / "case.toml"

@@ -148,6 +148,10 @@ FAULTS = {
         replaced('kernel = "hyperbolic"', 'kernel = "cubik"'),
         "space.kernel: \"cubik\" is not known; did you mean 'cubic'?",
     ),
+    "a number that is none of a choice": (
+        replaced("end = 2.0", "end = 2.0\npasses = 0"),
+        "time.passes: 0 is not known; known here: 1, 2",
+    ),
     "an unknown choice of effect": (
         replaced("[physics]", '[physics]\npressure_gradient = "antisymetric"'),
         "physics.pressure_gradient: \"antisymetric\" is not known; did you mean 'symmetric'?",
