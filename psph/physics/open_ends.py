@@ -11,12 +11,17 @@ so that the wave that goes out finds no answer: Thompson (1987), J. Comput. Phys
 Lastiwka, Basa & Quinlan (2009), Int. J. Numer. Meth. Fluids 61, 709.  Here means alone are corrected: by
 particle, rows with different speeds part.  Waves that take longer than τ count as a change of the flow.
 Under a free surface Z = ρ₀√(gH).
+
+Under a level layers of fluids at rest have p = c²(ρ − ρ₀) and dp/dz = −ρg, so that p + ρ₀c² grows
+downwards in each by exp(gd/c²) over d.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
+
+from psph.formula import helper
 
 
 class WaveAnswer(NamedTuple):
@@ -71,8 +76,28 @@ def pipe(across: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return np.maximum(2.0 * (1.0 - ((across - middle) ** 2).sum(axis=1) / radius**2), 0.0)
 
 
-def column_pressure(depth: np.ndarray, rest_density, sound_speed, gravity: float) -> np.ndarray:
-    """Pressure at a ``depth`` (n,) m below the surface of a fluid at rest whose p = c²(ρ − ρ₀), Pa:
-    ρ₀c²(exp(g z/c²) − 1), and none above it."""
-    c2 = sound_speed * sound_speed
-    return rest_density * c2 * np.expm1(np.maximum(depth, 0.0) * gravity / c2)
+@helper
+def column_pressure(level, height, pull, edges, rest, sound):
+    """Pressure at a ``height`` below the ``level`` of fluids at rest, Pa, and none above it.
+
+    Layers from the lowest up meet at ``edges`` (layers + 1,), m, of which the first is below all and the last
+    above, with ``rest`` densities (layers,), kg/m^d, and speeds of ``sound`` (layers,), m/s, under a ``pull``
+    in m/s².
+    """
+    pressure, top = 0.0, level
+    for n in range(len(rest) - 1, -1, -1):
+        low = max(edges[n], height)
+        if top > low:
+            c2 = sound[n] * sound[n]
+            pressure += (pressure + rest[n] * c2) * np.expm1((top - low) * pull / c2)
+            top = low
+    return pressure
+
+
+@helper
+def column_weight(middle, height, pull, edges, rest):
+    """−∫ρg dz from the ``middle`` to a ``height``, Pa, by the same layers."""
+    low, high, weight = min(middle, height), max(middle, height), 0.0
+    for n in range(len(rest)):
+        weight += rest[n] * pull * max(min(high, edges[n + 1]) - max(low, edges[n]), 0.0)
+    return weight if height < middle else -weight

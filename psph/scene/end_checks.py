@@ -4,9 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from psph.case.courses import AcrossFace
+from psph.case.courses import AcrossFace, Course
+from psph.case.ends import LEVEL
 from psph.case.keys import AXES
+from psph.scene.end_columns import column_of
+from psph.scene.end_rows import across_up
 from psph.scene.ends import UNLIKE, groups_of, mean_of, unlike
+from psph.scene.lattice import TOLERANCE
 from psph.scene.layout import NONE
 from psph.scene.parts.end import rows_of, rows_reached
 from psph.scene.shapes import shown
@@ -27,6 +31,11 @@ def end_faults(scene) -> Iterator[str]:
                 f"ends.{name}: no fluid stands in front of its plane, so nothing can come in; name it with "
                 f'filled = "{next(iter(layout.case.fluids))}", or move the plane'
             )
+        if end.given in ("pressure", LEVEL) and (height := beside(scene, name, end)) is not None:
+            yield (
+                f"ends.{name}.{end.given}: is that of layers, and fluids of different density stand beside "
+                f"each other before its plane at {height:.4g} m; let them stand in layers, or give a velocity"
+            )
         if sites and isinstance(end.profile, AcrossFace):
             yield from _flat_profile(scene, name, end)
         if end.pump and not scene.has_free_surface:
@@ -37,6 +46,13 @@ def end_faults(scene) -> Iterator[str]:
         if end.layers and end.layers < (needed := rows_reached(layout.case)):
             says = f"the kernel reaches over {needed} rows; give {needed} or more"
             yield f"ends.{name}.layers: {end.layers}: {says}"
+
+
+def beside(scene, name: str, end) -> float | None:
+    """The height at which fluids of different density stand beside each other behind an end, m; else None."""
+    groups = groups_of(scene.layout, name)
+    box = scene.layout.parts[groups[0]].shape.form
+    return column_of(scene, end, groups, np.array(box.lower), np.array(box.upper))[1]
 
 
 def _flat_profile(scene, name: str, end) -> Iterator[str]:
@@ -60,6 +76,12 @@ def end_warnings(scene) -> Iterator[str]:
                 f"ends.{name}.waves: out: densities times speeds of sound of the fluids differ by more than "
                 f"{UNLIKE:g}, so that no one answer fits all; waves come back"
             )
+        if (heights := _above_water(scene, end)) is not None:
+            low, water = heights
+            yield (
+                f"ends.{name}.span: begins at a height of {low:.4g} m, and fluid reaches {water:.4g} m, "
+                "so that nothing passes before it rises there; let the span begin lower"
+            )
         if (site := _fluid_behind(scene, name, end)) is not None:
             yield (
                 f"ends.{name}: fluid stands behind its buffer at {shown(site)} and stays there; move the "
@@ -72,6 +94,21 @@ def end_warnings(scene) -> Iterator[str]:
                 f"ends.{name}: nothing holds what stands behind its plane at {shown(site)}, towards {axis}; "
                 f"let walls go on for {depth:.3g} m behind it"
             )
+
+
+def _above_water(scene, end) -> tuple[float, float] | None:
+    """The heights, m, at which a span begins and up to which fluid stands or a level is given, where that is
+    below; else None."""
+    up = across_up(scene.layout, end)
+    rising = int(np.abs(up).argmax())
+    told = getattr(end.span, AXES[rising])
+    if told is None or abs(up[rising]) < 1.0 or end.filled is not None:
+        return None
+    water = [scene.census.surface_of(n) for n in range(len(scene.case.fluids)) if scene.census.sizes[n]]
+    water += [one.level for one in scene.case.ends.values() if isinstance(one.level, float)]
+    water += [one.level.largest for one in scene.case.ends.values() if isinstance(one.level, Course)]
+    low = min(up[rising] * x for x in told)
+    return (low, max(water)) if water and low >= max(water) - TOLERANCE * scene.spacing else None
 
 
 def _open_side(scene, name: str, end) -> tuple[str, tuple[float, ...]] | None:

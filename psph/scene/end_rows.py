@@ -71,12 +71,11 @@ def rows_behind(
 ) -> SurfaceRows | None:
     """The rows behind an end whose buffers are in a box from ``lower`` to ``upper`` (dim,), m;
     None where gravity does not pull across it, or nothing can stand behind it."""
-    up = np.array(layout.up)
-    up[end.axis] = 0.0
+    up = across_up(layout, end)
     if not up.any():
         return None
     rising = int(np.abs(up).argmax())
-    places = _sites(layout, end, lower, upper, rising)
+    places = sites_behind(layout, end, lower, upper, rising)
     if up[rising] < 0.0:
         places = places[::-1]
     held = layout.held([*np.moveaxis(places, -1, 0)], places.shape[:-1])
@@ -88,7 +87,6 @@ def rows_behind(
         return None
     free, own, held, places = free[rows], own[rows], held[rows], places[rows]
     wet = int(np.flatnonzero(own.reshape(len(own), -1).any(axis=1)).max(initial=-1)) + 1
-    fluid = [*layout.case.fluids].index(end.filled) if end.filled is not None else 0
     at_plane = places.copy()
     at_plane[..., end.axis] = end.at
     heights = at_plane @ np.array(layout.up)
@@ -96,7 +94,7 @@ def rows_behind(
         sites=tuple(row[one] for row, one in zip(places, free)),
         heights=np.array([row[one].mean() for row, one in zip(heights, free)]),
         wet=wet,
-        group=int(held[wet - 1][own[wet - 1]][0]) if wet else groups[fluid],
+        group=int(held[wet - 1][own[wet - 1]][0]) if wet else groups[first_fluid(layout, end)],
         axis=end.axis,
         back=-end.sign * layout.spacing,
         up=np.array(layout.up),
@@ -107,8 +105,7 @@ def raised(
     layout: Layout, end: OpenEnd, lower: np.ndarray, upper: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """The box from ``lower`` to ``upper`` (dim,), m, behind an end, as far up as its level may rise."""
-    up, low, high = np.array(layout.up), lower.copy(), upper.copy()
-    up[end.axis] = 0.0
+    up, low, high = across_up(layout, end), lower.copy(), upper.copy()
     rising = int(np.abs(up).argmax())
     if getattr(end.span, AXES[rising]) is None:
         given = end.level.largest if isinstance(end.level, Course) else end.level
@@ -118,7 +115,21 @@ def raised(
     return low, high
 
 
-def _sites(layout: Layout, end: OpenEnd, lower: np.ndarray, upper: np.ndarray, rising: int) -> np.ndarray:
+def across_up(layout: Layout, end: OpenEnd) -> np.ndarray:
+    """The unit vector against gravity (dim,), but for what is along the end."""
+    up = np.array(layout.up)
+    up[end.axis] = 0.0
+    return up
+
+
+def first_fluid(layout: Layout, end: OpenEnd) -> int:
+    """The number of the fluid that comes in first where none stands in front of an end."""
+    return [*layout.case.fluids].index(end.filled) if end.filled is not None else 0
+
+
+def sites_behind(
+    layout: Layout, end: OpenEnd, lower: np.ndarray, upper: np.ndarray, rising: int
+) -> np.ndarray:
     """The lattice sites (rows, ..., dim) right behind the plane, by rows along the axis ``rising``, m."""
     dx, axes = layout.spacing, []
     for d, origin in enumerate(layout.lattice.origin):

@@ -11,6 +11,7 @@ from psph.case.courses import AcrossFace, Course
 from psph.case.ends import OpenEnd
 from psph.case.keys import AXES
 from psph.physics.open_ends import grown, parabola, pipe
+from psph.scene.end_columns import Column, column_of
 from psph.scene.end_rows import SurfaceRows, raised, rows_behind
 from psph.scene.layout import NONE, Layout
 from psph.scene.parts.end import EndPart, rows_of
@@ -40,7 +41,8 @@ class EndFace:
     where it is ``shaped``.  ``settle`` in s is None
     where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
     ``wave_speed`` in m/s is that of the waves that it lets out; ``spacing`` dx, m; ``rows`` of particles
-    stand behind it at the start; ``surface`` has the rows that its level fills, None without a surface.
+    stand behind it at the start; ``column`` has the fluids there, the lowest first; ``surface`` has the rows
+    that its level fills, None without a surface.
     """
 
     name: str
@@ -65,6 +67,7 @@ class EndFace:
     wave_speed: float
     spacing: float
     rows: float
+    column: Column
     surface: SurfaceRows | None
 
     @property
@@ -107,6 +110,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
     wet_low = scene.census.lowest[held].min(axis=0) - half if held else lower
     wet_high = scene.census.highest[held].max(axis=0) + half if held else upper
     across = [d for d in range(layout.dimensions) if d != end.axis]
+    column, _ = column_of(scene, end, groups, lower, upper)
     height, layers = _height(scene, end, wet_low, wet_high), rows_of(scene.case, end)
     if height:
         lower, upper = raised(layout, end, lower, upper)
@@ -134,6 +138,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         wave_speed=wave_speed(scene, height),
         spacing=layout.spacing,
         rows=float(scene.census.sizes[list(groups)].sum()) / layers,
+        column=column,
         surface=surface,
     )
 

@@ -32,7 +32,9 @@ class Planes(NamedTuple):
     """The planes of open ends: they stand at ``place`` m along ``axis``, with the ``sign`` of the inward
     direction; ``pressure`` in Pa and inward ``speed`` in m/s were added behind them in the last step
     (ends,).  Nothing behind them moves on beyond ``low`` and ``high`` (ends, dim), m.  ``middle`` (ends, dim)
-    m is that of each at the start, ``up`` and ``gravity`` (dim,) of all, ``pull`` the size of that, m/s²."""
+    m is that of each at the start; the layers of its fluids meet at ``edges`` (ends, layers + 1), m along
+    ``up`` (dim,), with ``rest`` densities (ends, layers), kg/m^d, and speeds of ``sound``, m/s; gravity along
+    ``up`` is ``pull``, m/s²."""
 
     axis: np.ndarray
     place: np.ndarray
@@ -42,8 +44,10 @@ class Planes(NamedTuple):
     low: np.ndarray
     high: np.ndarray
     middle: np.ndarray
+    edges: np.ndarray
+    rest: np.ndarray
+    sound: np.ndarray
     up: np.ndarray
-    gravity: np.ndarray
     pull: float
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from psph.engine.jit import elementwise
 from psph.formula import helper
+from psph.physics.open_ends import column_pressure, column_weight
 from psph.simulation.end_fit import FITTED, NEAR, SEEN, depth
 from psph.simulation.rules import density
 
@@ -64,16 +65,16 @@ class Told(NamedTuple):
 @helper
 def _given_at(told, end, planes, k, flowing):
     """The pressure that an end gives column ``k``, Pa: p_t in the middle of its height, or that of a still
-    column under a surface, ρ₀c²(exp(g z/c²) − 1)."""
-    height = weight = 0.0
+    column under a surface; below that of the fluids that stood behind it."""
+    edges, rest, pull = planes.edges[end], planes.rest[end], planes.pull
+    height = middle = 0.0
     for d in range(len(flowing.position)):
-        x = flowing.position[d][k]
-        height += planes.up[d] * x
-        if d != planes.axis[end]:
-            weight += flowing.rest[k] * planes.gravity[d] * (x - planes.middle[end, d])
-    c2 = flowing.sound[k] * flowing.sound[k]
-    column = flowing.rest[k] * c2 * np.expm1(max(told.value[end] - height, 0.0) * planes.pull / c2)
-    return column if told.what[end] == BY_LEVEL else told.value[end] + weight
+        x, by_level = flowing.position[d][k], told.what[end] == BY_LEVEL
+        height += planes.up[d] * (x if by_level or d != planes.axis[end] else planes.place[end])
+        middle += planes.up[d] * (planes.middle[end, d] if d != planes.axis[end] else planes.place[end])
+    if by_level:
+        return column_pressure(told.value[end], height, pull, edges, rest, planes.sound[end])
+    return told.value[end] + column_weight(middle, height, pull, edges, rest)
 
 
 @helper

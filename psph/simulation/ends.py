@@ -8,6 +8,7 @@ from psph.engine.settled import settled
 from psph.fields import FLUID, LISTED_POSITION
 from psph.kinds import Rank, Work
 from psph.parallel.reductions import whole_sums
+from psph.scene.end_columns import side_by_side
 from psph.scene.ends import EndFace, faces_of
 from psph.simulation.end_fit import FITTED, Flowing, Listed, Planes, Vicinity, moments_of, see_fronts
 from psph.simulation.end_means import (
@@ -59,7 +60,6 @@ class Buffers(Work):
         self.comm, self.ledger = rank.domain.comm, rank.ledger
         self.faces, self.dx = faces_of(scene), scene.spacing
         self.states = [EndState.at_start(face) for face in self.faces]
-        self.up, self.gravity = np.array(scene.layout.up), np.array(scene.gravity)
         self.passages = [Passage(face, rank) for face in self.faces]
         self.vicinity = Vicinity(
             scene.kernel, scene.spacing, tuple(scene.gravity), tuple(scene.layout.periods)
@@ -71,7 +71,13 @@ class Buffers(Work):
         stand = [(face.axis, face.at, float(face.sign)) for face in self.faces]
         self._stand = tuple(map(np.array, zip(*stand)))
         middles = np.array([face.middle for face in self.faces])
-        self._pull = middles, self.up, self.gravity, float(np.linalg.norm(self.gravity))
+        pull = float(np.linalg.norm(scene.layout.height_gravity))
+        self._columns = (
+            middles,
+            *side_by_side([face.column for face in self.faces]),
+            np.array(scene.layout.up),
+            pull,
+        )
         self._sides = tuple(np.array([face.sides[n] for face in self.faces]) for n in (0, 1))
         what = [(WHAT.get(face.kind, BY_SPEED), face.height > 0.0) for face in self.faces]
         self._what = tuple(map(np.array, zip(*what)))
@@ -175,7 +181,7 @@ class Buffers(Work):
 
     def _planes(self) -> Planes:
         added = np.array([(one.added.pressure, one.added.speed + one.faster) for one in self.states])
-        return Planes(*self._stand, *np.ascontiguousarray(added.T), *self._sides, *self._pull)
+        return Planes(*self._stand, *np.ascontiguousarray(added.T), *self._sides, *self._columns)
 
     def _told(self, time: float) -> Told:
         """What the ends give at ``time``, s."""

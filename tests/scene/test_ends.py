@@ -102,6 +102,33 @@ def test_what_cannot_let_anything_in_is_a_fault(tmp_path, text, keys, says):
     assert not [*end_faults(Scene(draft(tmp_path, text)))]
 
 
+BESIDE = """
+space = { dimensions = 3, spacing = 0.1, lower = [-0.4, -0.4, 0.0], upper = [1.0, 1.0, 1.0], periodic = ["z"] }
+time.end = 1.0
+physics.gravity = [0.0, -9.81, 0.0]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.0, 0.5, 0.5] }
+[fluids.oil]
+density = 800.0
+shape.box = { lower = [0.0, 0.0, 0.5], upper = [1.0, 0.5, 1.0] }
+[walls.floor]
+shape.box = { lower = [-0.4, -0.4, 0.0], upper = [1.0, 0.0, 1.0] }
+[ends.sea]
+at = 0.0
+inward = "+x"
+level = 0.5
+"""
+
+
+def test_fluids_beside_each_other_have_no_column(tmp_path):
+    """They are refused.  Controls: of one density, and where a velocity is given."""
+    [line] = end_faults(Scene(draft(tmp_path, BESIDE)))
+    assert line.startswith("ends.sea.level: is that of layers, and fluids of different density stand beside")
+    assert not [*end_faults(Scene(draft(tmp_path, BESIDE, "fluids.oil.density=1000.0")))]
+    velocity = 'ends.sea={at=0.0,inward="+x",velocity=0.1}'
+    assert not [*end_faults(Scene(draft(tmp_path, BESIDE, velocity)))]
+
+
 @pytest.mark.parametrize("values, fine", [((0.0, 0.0), False), ((-1.0, 1.0), False), ((0.5, 1.0), True)])
 def test_a_profile_needs_a_mean(tmp_path, values, fine):
     """Its shape is told by that."""
@@ -116,6 +143,11 @@ def test_a_profile_needs_a_mean(tmp_path, values, fine):
     [
         (CHANNEL, "ends.upstream.at=1.0", "ends.upstream: fluid stands behind its buffer at"),
         (PLATES, "ends.inlet.span.y=[0.3, 0.6]", "ends.inlet: nothing holds what stands behind its plane at"),
+        (
+            CHANNEL,
+            "ends.downstream.span.y=[1.0, 1.4]",
+            "ends.downstream.span: begins at a height of 1 m, and",
+        ),
     ],
 )
 def test_what_is_likely_not_meant_is_said(tmp_path, text, key, says):

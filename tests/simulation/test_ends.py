@@ -8,6 +8,7 @@ from gauging import start
 from psph.particles.neighbours import Neighbours
 from psph.physics.open_ends import (
     column_pressure,
+    column_weight,
     follow,
     grown,
     of_pressure_end,
@@ -15,6 +16,8 @@ from psph.physics.open_ends import (
     parabola,
     pipe,
 )
+from psph.scene import ends
+from psph.scene.end_columns import Column
 from psph.simulation.end_fit import (
     FITTED,
     NEAR,
@@ -57,7 +60,7 @@ def seen_by(dimensions, axis, sign, field, added=(0.0, 0.0), gravity=None):
     )
     columns = np.flatnonzero(behind)
     pushed = np.array(added)[:, None]
-    planes = Planes(np.array([axis]), np.zeros(1), np.array([float(sign)]), *pushed, *[None] * 5, 0.0)
+    planes = Planes(np.array([axis]), np.zeros(1), np.array([float(sign)]), *pushed, *[None] * 7, 0.0)
     vicinity = Vicinity(kernel("wendland-c2", 1.4 * DX, dimensions), DX, gravity, (None,) * dimensions)
     seen = np.zeros((len(columns), FITTED + 1 + dimensions))
     flowing = Flowing(tuple(places), None, tuple(v), None, np.full(n, 1e-3), p, None, None, None)
@@ -201,12 +204,30 @@ def test_what_is_given_grows_and_references_follow():
     assert follow(1.0, 3.0, 0.5, 0.5) == pytest.approx(3.0 - 2.0 / np.e)
 
 
-def test_a_column_under_a_level_is_at_rest():
-    """dp/dz = ρg with the density of its own pressure."""
-    z, rho, c, g = np.linspace(0.0, 2.0, 2001), 900.0, 30.0, 9.81
-    p = column_pressure(z, rho, c, g)
-    np.testing.assert_allclose(np.gradient(p, z)[1:-1], (rho + p / c**2)[1:-1] * g, rtol=1e-6)
-    assert column_pressure(np.array([-1.0]), rho, c, g) == 0.0
+LAYERED = np.array([-np.inf, 0.9995, np.inf]), np.array([900.0, 700.0]), np.array([30.0, 20.0])
+
+
+def test_layers_under_a_level_are_at_rest():
+    """dp/dz = −ρg with the density of its own pressure, and none above; there are two densities."""
+    edges, rest, sound = LAYERED
+    z, g = np.linspace(0.0, 2.0, 2001), 9.81
+    p = np.array([column_pressure(2.0, one, g, edges, rest, sound) for one in z])
+    of = np.where(z < edges[1], 0, 1)
+    density = rest[of] + p / sound[of] ** 2
+    np.testing.assert_allclose(-np.diff(p), 0.5 * (density[1:] + density[:-1]) * g * 1e-3, rtol=2e-4)
+    assert column_pressure(2.0, 2.5, g, edges, rest, sound) == 0.0
+
+
+def test_weight_is_that_of_the_layers_between():
+    """Up and down from the middle, across the edge and within a layer."""
+    edges, rest, _ = LAYERED
+    for middle, height, weight in (
+        (0.5, 1.5, -799.9),
+        (1.5, 0.5, 799.9),
+        (0.2, 0.7, -450.0),
+        (2.0, 1.5, 350.0),
+    ):
+        assert column_weight(middle, height, 1.0, edges, rest) == pytest.approx(weight)
 
 
 STREAM = """
@@ -311,3 +332,30 @@ def test_buffers_of_several_fluids_are_fluids(tmp_path):
     flows = store.shown("kind") != 1
     np.testing.assert_array_equal(store.shown("fluid")[flows], of[flows])
     assert abs(store.shown("velocity")[flows]).max() < 0.8
+
+
+LAYERS_AT_REST = LAYERS.replace("velocity = [0.4, 0.0]\n", "").replace(
+    "upper = [1.5, 1.0] }", "upper = [1.5, 1.4] }", 1
+)
+BY_LEVELS = ('ends.left={at=0.0,inward="+x",level=0.6}', 'ends.right={at=1.0,inward="-x",level=0.6}')
+MIDDLE = 0.3 * 9.81 * 700.0
+BY_PRESSURES = tuple(one.replace("level=0.6", f"pressure={MIDDLE}") for one in BY_LEVELS)
+LID = ("walls.lid.shape.box={lower=[-0.5,0.6],upper=[1.5,1.0]}",)
+
+
+@pytest.mark.parametrize("given", [BY_LEVELS, (*BY_PRESSURES, *LID)])
+def test_layers_between_ends_rest(tmp_path, monkeypatch, given):
+    """Oil upon water under a level or between plates stays at rest.  Control: under a column of oil alone the
+    water is driven."""
+
+    def fastest():
+        simulation = start(draft(tmp_path, LAYERS_AT_REST, *given))
+        while simulation.time < 0.8:
+            simulation.step()
+        store = simulation.store
+        return abs(store.shown("velocity")[store.shown("kind") == 0]).max()
+
+    assert fastest() < 0.02
+    oil = Column(np.array([-np.inf, np.inf]), np.array([700.0]), np.array([35.0]))
+    monkeypatch.setattr(ends, "column_of", lambda *_: (oil, None))
+    assert fastest() > 0.1
