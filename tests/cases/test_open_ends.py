@@ -232,11 +232,11 @@ filled = "water"
 
 
 PIPE = """
-space = { dimensions = 2, spacing = 0.05, periodic = ["y"], lower = [-0.2, 0.0], upper = [2.2, 0.3] }
+space = { dimensions = 2, spacing = 0.05, periodic = ["y"], lower = [-0.2, 0.0], upper = [2.2, 0.5] }
 time.end = 9.0
 physics.sound_speed = 20.0
 [fluids.water]
-shape.box = { lower = [0.0, 0.0], upper = [2.0, 0.3] }
+shape.box = { lower = [0.0, 0.0], upper = [2.0, 0.5] }
 [ends.one]
 at = 0.0
 inward = "+x"

@@ -30,5 +30,9 @@ in_front = call_by_type("in_front")
 
 def buffers_of(scene: Facts) -> Buffers:
     """Whether some fluid of a scene stands behind an open end."""
-    held = any(one.is_fluid and not one.mobile for one in scene.species)
-    return BesideBuffers() if held else NoBuffers()
+    return BesideBuffers() if open_ended(scene) else NoBuffers()
+
+
+def open_ended(scene: Facts) -> bool:
+    """Whether fluid comes and goes: some of it stands behind an open end."""
+    return any(one.is_fluid and not one.mobile for one in scene.species)

@@ -10,6 +10,7 @@ from psph.fields import Same
 from psph.formula import helper, where
 from psph.moments import moments_below_a_surface
 from psph.physics.facts import Facts
+from psph.physics.fluid.buffers import open_ended
 from psph.physics.fluid.several import several
 from psph.physics.walls.conditions import BEARING, MIRROR
 
@@ -33,8 +34,10 @@ class SummationDensity(NamedTuple):
     Zhang, Rezavand & Hu (2020), J. Comput. Phys. 404, 109135, take the sum in every step.  The slow
     form is psph's own: sound, in which f stays 1, does not feel it.  f is right on average: it is 0.999
     among particles that a flow has mixed; single ones differ by some thousandths, which costs vortices
-    accuracy.  So it is left out where no free surface, nor a lighter fluid, lets the fluid sink, and before
-    walls that bear no pressure, whose rows are not full, and beside matter with an evolved stress.
+    accuracy.  So it is left out where no free surface, nor a lighter fluid, lets the fluid sink, and no open
+    end lets more or fewer particles come than go (without it 1.9 % more stand about the cylinder at
+    Reynolds number 20 after 12 s); before walls that bear no pressure, whose rows are not full; and beside
+    matter with an evolved stress.
     """
 
     acts = (FLUIDS, *BEARING, MIRROR)
@@ -62,7 +65,8 @@ class SummationDensity(NamedTuple):
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
         return (
-            "it needs a free surface or several fluids, bearing walls, and no matter with an evolved stress"
+            "it needs a free surface, several fluids or open ends, bearing walls, and no matter with an "
+            "evolved stress"
         )
 
 
@@ -119,8 +123,8 @@ def around_a_surface(rows: list[float]) -> tuple[float, float]:
 
 
 def _applies(scene: Facts) -> bool:
-    sinks = scene.has_free_surface or several(scene)
-    return sinks and all(one.bearing and not one.shear_modulus for one in scene.species)
+    loosens = scene.has_free_surface or several(scene) or open_ended(scene)
+    return loosens and all(one.bearing and not one.shear_modulus for one in scene.species)
 
 
 @helper
