@@ -230,17 +230,17 @@ def _continued(case) -> Iterator[Finding]:
 def _friction(case) -> Iterator[Finding]:
     rubs = any(entry.of.rubs for entry in case.movers)
     named = frictions_of(case)
-    for entry in (one for one in case.entries if one.of.rigid):
-        wall, loc = entry.of, (*entry.loc, "no_slip")
-        if wall.no_slip and not rubs:
+    for entry in (one for one in case.entries if getattr(one.of, "no_slip", False)):
+        loc, condition = (*entry.loc, "no_slip"), getattr(entry.of, "condition", None)
+        if not rubs:
             yield (
                 loc,
                 True,
                 ("no fluid has a viscosity; set fluids.NAME.viscosity or .rheology, or remove no_slip"),
             )
-        elif wall.no_slip and (says := refusals(NoSlip).get(wall.condition)):
+        elif says := refusals(NoSlip).get(condition):
             yield loc, True, says
-        elif wall.no_slip and named:
+        elif named:
             yield loc, True, f"does not work with physics.{named[0]}; remove one of the two"
 
 

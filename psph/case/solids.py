@@ -128,6 +128,7 @@ class Solid(Hookean):
         None,
         otherwise="the first fluid",
     )
+    no_slip: bool = key("the fluid has the solid's velocity at its face; needs a viscosity", False)
     hourglass: float | None = key(
         "strength α of the control of zigzag modes, which cause no stress",
         None,

@@ -23,6 +23,7 @@ OF_REFERENCE = (
     "continues",
     "mie_gruneisen",
     "spacing",
+    "no_slip",
 )
 """Keys that mean nothing to a solid whose neighbours are those of the present."""
 

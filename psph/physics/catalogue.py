@@ -48,7 +48,7 @@ from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
 from psph.physics.walls.penalty import PenaltyWall
 from psph.physics.walls.repulsive import RepulsiveWall
-from psph.physics.walls.slip import NoSlip
+from psph.physics.walls.slip import NoSlip, SolidTurn
 
 
 class Entry(NamedTuple):
@@ -132,7 +132,8 @@ CATALOGUE = (
     Entry("fluids.*.surface_tension|fluids.*.interfacial_tension", SurfaceTension),
     Entry("fluids.*.surface_tension|fluids.*.interfacial_tension", ContactLine),
     Entry("walls.*.contact_angle", ContactAngle),
-    Entry("walls.*.no_slip", NoSlip),
+    Entry("walls.*.no_slip|solids.*.no_slip", NoSlip),
+    Entry("solids.*.no_slip", SolidTurn),
     Entry("walls.*.continues", DryWall),
     Entry(f"walls.*.condition={EXTRAPOLATED}", ExtrapolatedWall),
     Entry(f"walls.*.condition={REPULSIVE}", RepulsiveWall),

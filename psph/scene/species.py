@@ -79,8 +79,10 @@ class Species(NamedTuple):
     @property
     def rubs(self) -> bool:
         """Whether it takes part in the friction of fluids: one with a viscosity, or a wall, which has that of
-        the fluid before it.  On elastic solids, and on soils, a fluid slips."""
-        return bool(self.viscosity or self.rheology) if self.is_fluid else self.kind == WALL
+        the fluid before it, as an elastic solid has to which the fluid sticks.  On soils a fluid slips."""
+        if self.is_fluid:
+            return bool(self.viscosity or self.rheology)
+        return self.kind == WALL or self.no_slip
 
     @property
     def bearing(self) -> bool:

@@ -66,8 +66,8 @@ class ElasticPart(HookeanPart):
         return whole._replace(support=max(whole.support, support + BEYOND * spacing)) if contact else None
 
     def own(self, known: Known) -> dict[str, Any]:
-        """Beside its shear modulus what contacts know of it."""
-        return super().own(known) | _met(self, known)
+        """Beside its shear modulus what contacts know of it, and whether fluids stick to it."""
+        return super().own(known) | _met(self, known) | {"no_slip": self.table.no_slip}
 
 
 class ClampPart(HookeanPart):
@@ -78,7 +78,7 @@ class ClampPart(HookeanPart):
 
     def own(self, known: Known) -> dict[str, Any]:
         """The same as its solid, whose deviatoric stress does not evolve here."""
-        own = super().own(known)
+        own = super().own(known) | {"no_slip": self.table.no_slip}
         return own if self.bonded is None else own | _met(self, known)
 
 
