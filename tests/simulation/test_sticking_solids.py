@@ -75,11 +75,11 @@ def sheared(folder, *overrides):
 
 @pytest.mark.parametrize("finer", (1, 2))
 def test_couette_flow_over_an_elastic_slab(finer, tmp_path):
-    """Linear to 0.5 %, at rest at the face, and the clamp bears μU/H a metre.  Control: over a slab on which
+    """Linear to 1 %, at rest at the face, and the clamp bears μU/H a metre.  Control: over a slab on which
     it slips, the oil goes with the lid."""
     slope, there, force = sheared(tmp_path, f"solids.slab.spacing={0.1 / finer}")
-    assert (slope, there) == pytest.approx((1.0, 0.0), abs=0.005)
-    assert force == pytest.approx(500.0 * 0.5 * 1.2, rel=0.01)
+    assert (slope, there) == pytest.approx((1.0, 0.0), abs=0.01)
+    assert force == pytest.approx(500.0 * 0.5 * 1.2, rel=0.015)
     if finer == 1:
         slope, there, force = sheared(tmp_path, "solids.slab.no_slip=false")
         assert there > 0.9 and abs(force) < 15.0

@@ -167,7 +167,7 @@ class SolidTurn(NamedTuple):
 
     def gather(self, total, i, j, pair):
         """Take a neighbour of the same solid."""
-        weight = rate_weight(j, pair) * where(abs(i.solid - j.solid) > 0.5, 0.0, 1.0)
+        weight = rate_weight(j, pair) * where(max(i.solid - j.solid, j.solid - i.solid) > 0.5, 0.0, 1.0)
         return take_rate(total, pair, pair.u_ij, weight, weight)
 
     def finish_value(self, total, i, kernel):
