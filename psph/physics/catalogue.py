@@ -37,6 +37,7 @@ from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.contact import SolidContact
+from psph.physics.solid.turn import SolidTurn
 from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
 from psph.physics.stress.faces import SmoothFace
 from psph.physics.stress.strength import Strength
@@ -48,7 +49,7 @@ from psph.physics.walls.dry import DryWall
 from psph.physics.walls.extrapolated import ExtrapolatedWall
 from psph.physics.walls.penalty import PenaltyWall
 from psph.physics.walls.repulsive import RepulsiveWall
-from psph.physics.walls.slip import NoSlip, SolidTurn
+from psph.physics.walls.slip import NoSlip
 
 
 class Entry(NamedTuple):

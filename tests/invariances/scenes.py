@@ -234,7 +234,14 @@ SCENES = {
     "block and body in oil": poured(
         {"tank": tank(no_slip=True)},
         {"water": water(viscosity=0.1)},
-        solids={"block": {"shape": box((0.25, 0.25), (0.625, 0.75)), "velocity": [1.0, 0.3], **RUBBER}},
+        solids={
+            "block": {
+                "shape": box((0.25, 0.25), (0.625, 0.75)),
+                "velocity": [1.0, 0.3],
+                "no_slip": True,
+                **RUBBER,
+            }
+        },
         bodies={
             "disc": {
                 "shape": {"disc": {"center": [0.9375, 0.5], "radius": 0.25}},

@@ -3,15 +3,14 @@
 from typing import Any, NamedTuple
 
 from psph.engine.jit import call_by_type
-from psph.fields import MATRIX, VECTOR, Drifting, Field, Same, VelocityGradient
-from psph.formula import helper, where
+from psph.fields import VECTOR, Drifting, Field, Same
+from psph.formula import helper
 from psph.physics.facts import Facts
 from psph.physics.fluid.apparent import rub_beside
 from psph.physics.fluid.friction import Rub, rub, rub_of
-from psph.physics.fluid.strain import linear_gradient, no_rate, rate_weight, take_rate
 from psph.physics.motion import is_rigid
 from psph.physics.walls.conditions import CONDITIONS, STICKING
-from psph.vectors import add, applied, scale, subtract, transposed, zero_like
+from psph.vectors import add, applied, scale, subtract, zero_like
 
 MIRRORED = Field(
     "slip",
@@ -22,15 +21,6 @@ MIRRORED = Field(
 )
 GRIP = Field(
     "grip", "1", "how much of what a wall mirrors counts in a rate of strain; 0 in the fluid", image=Same
-)
-
-SOLID_TURN = Field(
-    "solid_turn",
-    "1/s",
-    "how an elastic solid turns to which the fluid sticks: the velocity of what turns with it and is r away "
-    "differs by [ω] r",
-    MATRIX,
-    image=VelocityGradient,
 )
 
 FULL_GRIP = 4.0
@@ -57,19 +47,19 @@ class Turning(NamedTuple):
 
 
 class Bending(NamedTuple):
-    """Of what has no slip elastic solids turn, each particle by itself (:class:`SolidTurn`)."""
-
-    def carried(self, i, j, pair):
-        """The velocity of fluid j less what the turn of the solid at i makes of it between them, m/s."""
-        return add(j.velocity, applied(i.solid_turn, pair.x_ij))
-
-
-class TurningOrBending(NamedTuple):
-    """Walls without slip turn as they move as a whole, and elastic solids."""
+    """What has no slip turns as it bends, each particle by itself (psph.physics.solid.turn)."""
 
     def carried(self, i, j, pair):
         """The velocity of fluid j less what the turn of i makes of it between them, m/s."""
-        return add(j.velocity, applied(add(i.whirl, i.solid_turn), pair.x_ij))
+        return add(j.velocity, applied(i.own_turn, pair.x_ij))
+
+
+class TurningOrBending(NamedTuple):
+    """Of what has no slip some turns as it moves as a whole, and some as it bends."""
+
+    def carried(self, i, j, pair):
+        """The velocity of fluid j less what the turn of i makes of it between them, m/s."""
+        return add(j.velocity, applied(add(i.whirl, i.own_turn), pair.x_ij))
 
 
 carried = call_by_type("carried")
@@ -144,37 +134,6 @@ def _turning(sticking):
     if any(one.bonded is not None for one in sticking):
         return TurningOrBending() if rigid else Bending()
     return Turning() if rigid else Straight()
-
-
-class SolidTurn(NamedTuple):
-    """An elastic solid knows how it turns, where a fluid sticks to it.
-
-    [ω]_i = (G_i − G_iᵀ)/2, G_i = −Σ_j V_j u_ij ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ over the particles of the
-    same solid: exact where it turns as a whole.  It is that of the step before, and serves
-    :class:`NoSlip` as the turn of a rigid wall does.
-    """
-
-    writes = SOLID_TURN
-    lagged = True
-
-    def in_scene(self, scene: Facts):
-        """Nothing where no friction acts."""
-        return self if scene.rheologies or any(one.viscosity for one in scene.species) else None
-
-    def start(self, i):
-        """No neighbour yet."""
-        return no_rate(i)
-
-    def gather(self, total, i, j, pair):
-        """Take a neighbour of the same solid."""
-        weight = rate_weight(j, pair) * where(max(i.solid - j.solid, j.solid - i.solid) > 0.5, 0.0, 1.0)
-        return take_rate(total, pair, pair.u_ij, weight, weight)
-
-    def finish_value(self, total, i, kernel):
-        """The components of [ω] of such a solid, 1/s; zeros in all else."""
-        gradient = linear_gradient(total, i)
-        spin = subtract(gradient, transposed(gradient, i.position))
-        return scale(spin, 0.5 * i.no_slip * where(i.shear_modulus > 0.0, 1.0, 0.0))
 
 
 class MirroredFlow(NamedTuple):
