@@ -9,6 +9,7 @@ from drafts import draft
 from gauging import start
 
 from psph.case import load
+from psph.physics.surface import tension
 from psph.physics.surface.contact import ContactLine
 from psph.scene import Scene
 
@@ -60,14 +61,30 @@ def settled(simulation, end):
 
 @pytest.mark.parametrize("around", [(ALONE,), immersed(1.0), immersed(0.001)], ids=("none", "1:1", "1000:1"))
 def test_a_drop_keeps_its_form_and_the_pressure_of_laplace(tmp_path, around):
-    """σ/R and up to a quarter more at ten spacings a radius, since the tension acts one spacing inside."""
+    """σ/R, and some more on the crooked edge of a lattice with ten spacings a radius."""
     excess, speed, radius, momentum = settled(start(draft(tmp_path, DROP, *around)), 2.0)
-    assert 1.0 < excess < 1.25 and speed < 0.06 and radius < 1.01 and momentum < 1e-13
+    assert 1.0 < excess < 1.16 and speed < 0.03 and radius < 1.01 and momentum < 1e-13
+
+
+@pytest.mark.parametrize("spacing, error", ((0.1, 0.05), (0.05, 0.025)))
+def test_from_a_relaxed_start_the_pressure_is_that_of_laplace(tmp_path, spacing, error):
+    """In the mean over two seconds: within 5 % at 10 spacings a radius and 2.5 % at 20."""
+    relaxed = ("fluids.water.start='relaxed'", f"space.spacing={spacing}")
+    simulation = start(draft(tmp_path, DROP, ALONE, *relaxed))
+    found = [settled(simulation, 2.0 + 0.25 * n)[0] for n in range(9)]
+    assert np.mean(found) == pytest.approx(1.0, abs=error)
+
+
+def test_a_tension_that_ignores_the_curvature_errs_by_more(tmp_path, monkeypatch):
+    """The control: it acts 1.5 spacings inside."""
+    monkeypatch.setattr(tension, "DEPTH", 0.0)
+    simulation = start(draft(tmp_path, DROP, ALONE, "fluids.water.start='relaxed'"))
+    assert np.mean([settled(simulation, 2.0 + 0.25 * n)[0] for n in range(9)]) > 1.1
 
 
 def test_a_ball_too(tmp_path):
     excess, speed, radius, momentum = settled(start(draft(tmp_path, DROP, ALONE, *BALL)), 0.5)
-    assert 2.0 < excess < 3.0 and speed < 0.1 and radius < 1.05 and momentum < 1e-13
+    assert 1.7 < excess < 2.3 and speed < 0.1 and radius < 1.05 and momentum < 1e-13
 
 
 def test_without_tension_it_loses_its_pressure(tmp_path):
@@ -116,7 +133,7 @@ def test_without_its_hold_on_walls_a_drop_is_lifted_off(tmp_path, monkeypatch):
     """The control."""
     monkeypatch.setattr(ContactLine, "in_scene", lambda self, scene: None)
     simulation = start(draft(tmp_path, HALF))
-    while simulation.time < 2.0:
+    while simulation.time < 2.5:
         simulation.step()
     store = simulation.store
     own = store.group[store.inner] == 0

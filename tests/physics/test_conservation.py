@@ -58,7 +58,7 @@ DRIFT = 1e-13
 """Largest change of a momentum in a box, relative to that of one of its fluids."""
 
 
-BLUNT = Blunt(1e9, 1.0 / (4.0 * H * H), 1.0)
+BLUNT = Blunt(1e9, 1.0 / (4.0 * H * H), 1.0, H)
 AMONG = TensionAmong(0.1, 0.1, BLUNT, 1.0, (Tensions(0.3, (0.0, 0.5)),) * 3, (1.0, 2.0), (1.0, 1.0), 1.8)
 """Tension of the fluids of a crowd, the first of which has two particles."""
 

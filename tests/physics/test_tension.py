@@ -9,7 +9,7 @@ import pytest
 
 from psph.composition.pair import geometry
 from psph.moments import sites_around
-from psph.physics.surface.tension import TensionOfOne, blunt_kernel, borne, flat_surface
+from psph.physics.surface.tension import DEPTH, TensionOfOne, blunt, blunt_kernel, borne, flat_surface
 from psph.smoothing import kernel, slope_over_r
 from psph.vectors import add, scale, subtract
 
@@ -92,6 +92,32 @@ def test_a_flat_surface_is_not_pushed_outwards(dim):
     for depth in range(3):
         force = sum(push for _, push in surface.pushes((*(0,) * (dim - 1), -depth)))
         assert force == pytest.approx(0.0, abs=1e-12 * SIGMA * DX ** (dim - 2))
+
+
+ROUND = 10 * DX
+"""A radius, m."""
+
+
+@pytest.mark.parametrize("across, part", ((1.0, 1.0 - DEPTH * DX / ROUND), (-1.0, 1.0 + DEPTH * DX / ROUND)))
+def test_along_a_round_surface_a_pair_pulls_by_its_depth_less_and_around_a_hollow_more(across, part):
+    """δκ less, of a pair on a circle; two beside each other on the axis of a cylinder pull as on a plane."""
+    effect = under(3)
+
+    def one(turn, along):
+        out = np.array([math.cos(turn), math.sin(turn), 0.0])
+        x = across * ROUND * out + np.array([0.0, 0.0, along])
+        one = {"position": tuple(x), "surface_vector": tuple(out), "specific_volume": 1.0, "mass": 1.0}
+        return SimpleNamespace(**one, is_fluid=1.0, velocity=(0.0,) * 3)
+
+    def pull(*places):
+        i, j = (one(*place) for place in places)
+        pair = geometry(kernel("wendland-c2", H, 3), subtract(i.position, j.position), 0.0, i, j)
+        both = add(borne(i.surface_vector, pair.x_ij), borne(j.surface_vector, pair.x_ij))
+        plane = effect.strength * blunt(effect.kernel, pair) * np.linalg.norm(both)
+        return np.linalg.norm(effect.push(i, j, pair)) / plane
+
+    assert pull((0.0, 0.0), (DX / ROUND, 0.0)) == pytest.approx(part, rel=1e-12)
+    assert pull((0.0, 0.0), (0.0, DX)) == pytest.approx(1.0, rel=1e-12)
 
 
 class SchemesOwn(TensionOfOne):

@@ -7,7 +7,9 @@ kernel of the scheme in the force, that stress tears a surface: a row of particl
 which keeps its order only where the pull of a pair grows with its length.  So the force has a blunt kernel of
 its own, k ∝ 1 − (r/R)⁶, R its reach, with which the flat surface of a lattice is neutral.  Only pairs of one
 fluid carry tension, of two fluids each the part ρ₀/(ρ₀_1 + ρ₀_2), so that both are accelerated alike.  The
-whole is scaled by the tension that a flat surface of the starting lattice has.  psph's own.
+whole is scaled by the tension that a flat surface of the starting lattice has.  The stress acts 1.5 spacings
+inside the surface, δ: a tension of σ there would have the pressure of a smaller drop, σ/(R − δ), so each pair
+pulls with 1 − δκ of it, κ the curvature along the pair.  psph's own.
 """
 
 import math
@@ -29,11 +31,20 @@ from psph.vectors import add, dot, excess, multiply, scale, subtract, zero_like
 NOISE = 0.05
 """Length of a normal, in 1/dx, that half of it is taken for disorder."""
 
+DEPTH = 1.5
+"""How far inside the surface its tension acts, in spacings: of drops at rest, 10 and 20 spacings a radius."""
+
+BENT = 0.5
+"""Largest part by which curvature changes the pull of a pair."""
+
 FULL = 0.95
 """Part of a whole neighbourhood of any fluids from which on there is no free surface."""
 
 NOTHING = 1e-12
 """Keeps a mean over no other fluid from dividing by zero."""
+
+SMALL = 1e-30
+"""Keeps pairs far from any surface from dividing by zero, m."""
 
 VECTOR_OF_STRESS = Declared(
     "surface_vector", "m^-1/2", "normal n of a surface over the root of its length", VECTOR, image=Turned
@@ -43,8 +54,9 @@ VECTOR_OF_STRESS = Declared(
 class SurfaceTension(NamedTuple):
     """Surface tension, at free surfaces and between fluids.
 
-    a_i = −(1/ρ_i) Σ_j V_j (σ_iT_i + σ_jT_j)/C x_ij k_ij over the own fluid, T = |n| 1 − n nᵀ/|n|, n the
-    normal from the own side, k a blunt kernel, C what a flat surface of the starting lattice would have
+    a_i = −(1/ρ_i) Σ_j V_j (σ_iT_i + σ_jT_j)/C x_ij k_ij (1 − δκ_ij) over the own fluid, T = |n| 1 − n nᵀ/|n|,
+    n the normal from the own side, k a blunt kernel, C what a flat surface of the starting lattice would
+    have, δ the depth at which the stress acts, κ_ij the curvature along the pair
     (psph.physics.surface.tension).  σ_i is that between the two fluids that meet, times the part of the own
     one.  Walls and bodies count as more of each fluid.
     """
@@ -85,12 +97,14 @@ class SurfaceTension(NamedTuple):
 class Blunt(NamedTuple):
     """k = ``steep`` (1 − (r/R)⁶) for r < R, with Σ dx^d r² k = 1 on the lattice of the start; m^-(d+2).
 
-    ``inverse`` is 1/R², ``noise2`` the square of the length of a normal that is half disorder, 1/m².
+    ``inverse`` is 1/R², ``noise2`` the square of the length of a normal that is half disorder, 1/m², and
+    ``depth`` δ that at which the stress acts, m.
     """
 
     steep: float
     inverse: float
     noise2: float
+    depth: float
 
 
 class Tensions(NamedTuple):
@@ -135,10 +149,21 @@ def borne(vector, x):
 
 
 @helper
+def unbent(of, i, j, pair):
+    """1 − δκ of a pair, with κ = (n_i/|n_i| − n_j/|n_j|)·x_ij/r² times the geometric mean of both |n| over
+    the arithmetic one."""
+    m_i, m_j = i.surface_vector, j.surface_vector
+    size2_i, size2_j = dot(m_i, m_i), dot(m_j, m_j)
+    turn = np.sqrt(size2_j) * dot(m_i, pair.x_ij) - np.sqrt(size2_i) * dot(m_j, pair.x_ij)
+    part = 2.0 * of.depth * turn / max((size2_i + size2_j) * pair.r2, SMALL)
+    return 1.0 - min(max(part, -BENT), BENT)
+
+
+@helper
 def pulled(of, i, j, pair, alike):
     """Acceleration by a neighbour, m/s²; ``alike``: 1 of the same fluid, else 0."""
     both = add(borne(i.surface_vector, pair.x_ij), borne(j.surface_vector, pair.x_ij))
-    weight = of.strength * alike * blunt(of.kernel, pair)
+    weight = of.strength * alike * blunt(of.kernel, pair) * unbent(of.kernel, i, j, pair)
     return scale(both, -weight * (i.specific_volume * j.specific_volume * j.mass))
 
 
@@ -249,7 +274,7 @@ def blunt_kernel(kernel, spacing: float, dimensions: int) -> Blunt:
     """The kernel of the force for the lattice of ``spacing`` m; it reaches as far as the smoothing
     ``kernel``."""
     inverse = (kernel.inverse_h / kernel.support) ** 2
-    made = Blunt(1.0, inverse, (NOISE / spacing) ** 2)
+    made = Blunt(1.0, inverse, (NOISE / spacing) ** 2, DEPTH * spacing)
     r2 = _squares(kernel, spacing, dimensions)
     return made._replace(steep=1.0 / float((r2 * by_r2(made, r2)).sum() * spacing**dimensions))
 
