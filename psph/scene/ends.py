@@ -22,6 +22,9 @@ PLACES = 1001
 UNLIKE = 10.0
 """Between fluids whose ρ₀c differ by more, one answer of the whole face to waves would tear the lighter."""
 
+SLOW = 10.0
+"""Times the settling time in which the slope of the pressure along the normal is followed."""
+
 SETTLE = 2.0
 """Times that a wave runs through the domain until it counts as a change of the flow."""
 
@@ -38,11 +41,11 @@ class EndFace:
     of what is given, ``given`` its value by time, ``level`` that of its surface, no number where it is found,
     ``feeding`` the number of the end that a pump takes from.
     ``shape`` has, of places (n, dim), m, the speed of what comes in over its mean, which is not 1 everywhere
-    where it is ``shaped``.  ``settle`` in s is None
-    where waves come back.  ``height`` in m is that of the face along gravity, 0 without a surface above it;
-    ``wave_speed`` in m/s is that of the waves that it lets out; ``spacing`` dx, m; ``rows`` of particles
-    stand behind it at the start; ``column`` has the fluids there, the lowest first; ``surface`` has the rows
-    that its level fills, None without a surface.
+    where it is ``shaped``.  ``settle`` in s is None where waves come back; slopes of the pressure are
+    followed in the time ``follows``, s.  ``height`` in m is that of the face along gravity, 0 without a
+    surface above it; ``wave_speed`` in m/s is that of the waves that it lets out; ``spacing`` dx, m; ``rows``
+    of particles stand behind it at the start; ``column`` has the fluids there, the lowest first; ``surface``
+    has the rows that its level fills, None without a surface.
     """
 
     name: str
@@ -63,6 +66,7 @@ class EndFace:
     shape: Callable[[np.ndarray], np.ndarray]
     shaped: bool
     settle: float | None
+    follows: float
     height: float
     wave_speed: float
     spacing: float
@@ -134,6 +138,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         shaped=end.profile != "uniform",
         shape=_shape(end, across, wet_low[across], wet_high[across]),
         settle=_settle(scene, end, height) if end.lets_waves_out and not unlike(scene) else None,
+        follows=SLOW * _settle(scene, end, height),
         height=height,
         wave_speed=wave_speed(scene, height),
         spacing=layout.spacing,

@@ -1,8 +1,9 @@
 """What the fluid in front of an open end is like, as particles behind its plane see it.
 
-f = f₀ + f₁·t over the fluid in front of the plane, constant along the normal and linear across it, by least
-squares with the weights W dx^d.  A mean of zeroth order leaves the profile of a channel behind by half a
-spacing in each row.
+f = f₀ + f₁·t + t·f₂·t over the fluid in front of the plane, constant along the normal and of second order
+across it, by least squares with the weights W dx^d.  A mean leaves the profile of a channel behind by half a
+spacing in each row; what is linear is too slow by half the curvature times the variance of t, 1 % of a
+channel 20 spacings wide, and the fluid in front is dammed up by it.
 """
 
 from typing import Any, NamedTuple
@@ -21,11 +22,11 @@ AHEAD = 0.25
 """By so many spacings a neighbour has to be nearer to the fluid."""
 
 FLAT = 0.05
-"""Part of dx² that the variance of places across the face has to exceed for a fit that is linear there."""
+"""Variance of a term of the fit, in spacings, less what terms before it tell, below which it is left out."""
 
-SEEN, NEAR, FITTED = 0, 1, 2
-"""Columns of what is seen: 1 where there is fluid; 1 where it is in front of the plane itself; from FITTED
-on its pressure in Pa and its velocity in m/s."""
+SEEN, NEAR, DEPTH, FITTED = 0, 1, 2, 3
+"""Columns of what is seen: 1 where there is fluid; 1 where it is in front of the plane itself; its mean depth
+behind the plane in m; from FITTED on its pressure in Pa and its velocity in m/s."""
 
 
 class Planes(NamedTuple):
@@ -34,7 +35,7 @@ class Planes(NamedTuple):
     (ends,).  Nothing behind them moves on beyond ``low`` and ``high`` (ends, dim), m.  ``middle`` (ends, dim)
     m is that of each at the start; the layers of its fluids meet at ``edges`` (ends, layers + 1), m along
     ``up`` (dim,), with ``rest`` densities (ends, layers), kg/m^d, and speeds of ``sound``, m/s; gravity along
-    ``up`` is ``pull``, m/s²."""
+    ``up`` is ``pull``, m/s²; whether a surface is ``open`` above each (ends,)."""
 
     axis: np.ndarray
     place: np.ndarray
@@ -49,6 +50,7 @@ class Planes(NamedTuple):
     sound: np.ndarray
     up: np.ndarray
     pull: float
+    open: np.ndarray
 
 
 class Listed(NamedTuple):
@@ -85,31 +87,47 @@ class Flowing(NamedTuple):
     group: Any
 
 
-def moments_of(dimensions: int) -> int:
-    """Numbers of a particle that :func:`see_fronts` sums: Σw, Σwt, Σwttᵀ, and for the pressure and each
-    component of the velocity Σwf and Σwtf."""
-    return 1 + dimensions + dimensions**2 + (1 + dimensions) ** 2
+class Fit(NamedTuple):
+    """Room for the fit of one particle: its ``terms`` (n,) 1, t and tt, Σw times their products ``square``
+    (n, n), Σw times them times the values ``right`` (n, 1 + dim), and ``share`` (n,), what of each of these
+    makes f₀."""
+
+    terms: np.ndarray
+    square: np.ndarray
+    right: np.ndarray
+    share: np.ndarray
+
+
+def room_for(dimensions: int) -> Fit:
+    """Room for a fit."""
+    n = dimensions * (dimensions + 1) // 2
+    return Fit(np.zeros(n), np.zeros((n, n)), np.zeros((n, 1 + dimensions)), np.zeros(n))
 
 
 @elementwise
-def see_fronts(columns, ends, planes, vicinity, listed, flowing, sums, seen):
+def see_fronts(columns, ends, planes, vicinity, listed, flowing, fit, seen):
     """The fluid in front of the planes as each of some ``columns`` behind them sees it.
 
-    ``ends`` (n,) says behind which; ``sums`` (:func:`moments_of`,) is room; ``seen`` (n, FITTED + 1 + dim)
+    ``ends`` (n,) says behind which; ``fit`` is room (:func:`room_for`); ``seen`` (n, FITTED + 1 + dim)
     gets the columns SEEN to FITTED.  Where too little fluid in front of the plane is near, buffer particles
     of it count that are nearer to the plane, less what was added to them in the last step.
     """
     for n in range(len(columns)):
         k, end = np.uint64(columns[n]), ends[n]
         for nearer in range(2):
-            _sum_front(k, end, nearer, planes, vicinity, listed, flowing, sums)
-            if sums[0] > TOO_FEW:
+            mean_depth = _sum_front(k, end, nearer, planes, vicinity, listed, flowing, fit)
+            if fit.square[0, 0] > TOO_FEW:
                 break
         seen[n, :] = 0.0
-        if sums[0] > 0.0:
-            seen[n, SEEN], seen[n, NEAR] = 1.0, 1.0 - nearer
-            least, dim = FLAT * vicinity.spacing**2, len(flowing.position)
-            _fit(planes.axis[end], dim, least, sums, seen[n, FITTED:])
+        if fit.square[0, 0] > 0.0:
+            seen[n, SEEN], seen[n, NEAR], seen[n, DEPTH] = 1.0, 1.0 - nearer, mean_depth
+            _factor(fit.square)
+            for value in range(fit.right.shape[1]):
+                if value < 2:
+                    count = len(fit.share) if value and not planes.open[end] else fit.right.shape[1] - 1
+                    _solve(fit.square, fit.share, count)
+                for one in range(count):
+                    seen[n, FITTED + value] += fit.share[one] * fit.right[one, value]
 
 
 @helper
@@ -119,13 +137,13 @@ def depth(planes, end, flowing, k):
 
 
 @helper
-def _sum_front(k, end, nearer, planes, vicinity, listed, flowing, sums):
-    """Fill ``sums`` for column ``k``."""
+def _sum_front(k, end, nearer, planes, vicinity, listed, flowing, fit):
+    """Fill the ``fit`` for column ``k``; the mean depth of what it sees, m."""
     axis, sign, dx = planes.axis[end], planes.sign[end], vicinity.spacing
     position, lists, matter = flowing.position, listed.lists, listed.matter
     dim = len(position)
     row, cell, xi = k - np.uint64(listed.low), dx**dim, depth(planes, end, flowing, k)
-    sums[:] = 0.0
+    fit.square[:], fit.right[:], deep = 0.0, 0.0, 0.0
     entry, last = lists.begin[row], lists.begin[row] + np.uint64(lists.lengths[row])
     while entry < last:
         j = np.uint64(lists.lists[entry])
@@ -135,49 +153,60 @@ def _sum_front(k, end, nearer, planes, vicinity, listed, flowing, sums):
         if j != k and xi_j <= xi - AHEAD * dx and (matter[j] == abs(matter[k]) or behind):
             x_jk = nearest_image(subtract(at(position, j), at(position, k)), vicinity.periods)
             w = weight(vicinity.kernel, np.sqrt(dot(x_jk, x_jk))) * cell
-            sums[0] += w
-            for d in range(dim):
-                across = 0.0 if d == axis else x_jk[d]
-                sums[1 + d] += w * across
-                for o in range(dim):
-                    sums[1 + dim + d * dim + o] += w * across * (0.0 if o == axis else x_jk[o])
+            deep += w * xi_j
             p = flowing.pressure[j] - dot(vicinity.gravity, x_jk) / flowing.volume[j]
             p -= planes.pressure[end] if behind else 0.0
-            for value in range(dim + 1):
-                f = p
-                if value > 0:
-                    f = flowing.predicted[value - 1][j]
-                    if behind and value - 1 == axis:
-                        f -= planes.speed[end] * sign
-                place = 1 + dim + dim * dim + value * (dim + 1)
-                sums[place] += w * f
+            _set_terms(axis, dim, x_jk, dx, fit.terms)
+            for one in range(len(fit.terms)):
+                part = w * fit.terms[one]
+                for other in range(one + 1):
+                    fit.square[one, other] += part * fit.terms[other]
+                fit.right[one, 0] += part * p
                 for d in range(dim):
-                    sums[place + 1 + d] += w * f * (0.0 if d == axis else x_jk[d])
+                    added = planes.speed[end] * sign if behind and d == axis else 0.0
+                    fit.right[one, 1 + d] += part * (flowing.predicted[d][j] - added)
+    return deep / fit.square[0, 0] if deep else 0.0
 
 
 @helper
-def _fit(axis, dim, least, sums, fitted):
-    """f₀ of each value from ``sums``, linear across where places differ by more than ``least``, m²."""
-    one = 1 if axis == 0 else 0
-    two = 3 - axis - one if dim == 3 else one
-    total, values = sums[0], 1 + dim + dim * dim
-    mean_1, mean_2 = sums[1 + one % dim] / total, sums[1 + two % dim] / total
-    spread_11 = sums[1 + dim + (one % dim) * (dim + 1)] / total - mean_1 * mean_1
-    spread_22 = sums[1 + dim + (two % dim) * (dim + 1)] / total - mean_2 * mean_2
-    spread_12 = sums[1 + dim + (one % dim) * dim + two % dim] / total - mean_1 * mean_2
-    size = spread_11 * spread_22 - spread_12 * spread_12
-    both = dim == 3 and spread_11 > least and spread_22 > least and size > FLAT * spread_11 * spread_22
-    for value in range(dim + 1):
-        place = values + value * (dim + 1)
-        mean = sums[place] / total
-        with_1 = sums[place + 1 + one % dim] / total - mean * mean_1
-        with_2 = sums[place + 1 + two % dim] / total - mean * mean_2
-        if both:
-            mean -= mean_1 * (with_1 * spread_22 - with_2 * spread_12) / size
-            mean -= mean_2 * (with_2 * spread_11 - with_1 * spread_12) / size
-        else:
-            if dim > 1 and spread_11 > least:
-                mean -= mean_1 * with_1 / spread_11
-            if dim == 3 and spread_22 > least:
-                mean -= mean_2 * with_2 / spread_22
-        fitted[value] = mean
+def _set_terms(axis, dim, x, dx, terms):
+    """1, t and tt of a place ``x`` beside a particle, m, in spacings across the face."""
+    terms[0], n = 1.0, 1
+    for d in range(dim):
+        if d != axis:
+            terms[n] = x[d] / dx
+            n += 1
+    for one in range(1, dim):
+        for other in range(one, dim):
+            terms[n] = terms[one] * terms[other]
+            n += 1
+
+
+@helper
+def _factor(square):
+    """The lower half of ``square`` (n, n) becomes its factors LDLᵀ.  Terms that those before them nearly tell
+    are left out."""
+    total = square[0, 0]
+    for i in range(len(square)):
+        for j in range(i):
+            for k in range(j):
+                square[i, j] -= square[i, k] * square[k, k] * square[j, k]
+            square[i, j] = square[i, j] / square[j, j] if square[j, j] > 0.0 else 0.0
+        for k in range(i):
+            square[i, i] -= square[i, k] * square[k, k] * square[i, k]
+        if square[i, i] <= FLAT * total:
+            square[i, : i + 1] = 0.0
+
+
+@helper
+def _solve(square, share, n):
+    """``share`` (n,) of the least squares f₀ = share·right of the first ``n`` terms: the first row of the
+    inverse of what is ``square`` in factors."""
+    for i in range(n):
+        share[i] = 1.0 if i == 0 else 0.0
+        for j in range(i):
+            share[i] -= square[i, j] * share[j]
+    for i in range(n - 1, -1, -1):
+        share[i] = share[i] / square[i, i] if square[i, i] > 0.0 else 0.0
+        for j in range(i + 1, n):
+            share[i] -= square[j, i] * share[j]

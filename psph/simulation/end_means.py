@@ -7,7 +7,7 @@ import numpy as np
 from psph.engine.jit import elementwise
 from psph.formula import helper
 from psph.physics.open_ends import column_pressure, column_weight
-from psph.simulation.end_fit import FITTED, NEAR, SEEN, depth
+from psph.simulation.end_fit import DEPTH, FITTED, NEAR, SEEN, depth
 from psph.simulation.rules import density
 
 BY_SPEED, BY_PRESSURE, BY_LEVEL = 0, 1, 2
@@ -51,15 +51,13 @@ class Standing(NamedTuple):
 class Told(NamedTuple):
     """What ends give now, (ends,): ``what`` it is; its ``value``, of a velocity end the mean speed; 1 where
     that goes ``out``, so that the fluid gives its shape, else 0; the ``inflow``, mean speed in m/s of what
-    comes in through a pressure end, the ``slope`` of its pressure in Pa/m; whether a surface is ``open``
-    above it."""
+    comes in through a pressure end, the ``slope`` of its pressure in Pa/m."""
 
     what: np.ndarray
     value: np.ndarray
     out: np.ndarray
     inflow: np.ndarray
     slope: np.ndarray
-    open: np.ndarray
 
 
 @helper
@@ -93,12 +91,14 @@ def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
         into = seen[n, FITTED + 1 + planes.axis[end]] * planes.sign[end]
         hat = max(1.0 - abs(xi / units.length - 1.0), 0.0) * seen[n, SEEN]
         enters = hat if into > 0.0 else 0.0
-        given = 0.0
+        given, pressure = 0.0, seen[n, FITTED]
         if told.what[end] != BY_SPEED:
             given = _given_at(told, end, planes, k, flowing)
+            fall = planes.up[planes.axis[end]] * planes.sign[end] * planes.pull * flowing.rest[k]
+            pressure -= fall * (xi - seen[n, DEPTH]) + told.slope[end] * seen[n, DEPTH]
         row = sums[end]
         row[0] += _whole(hat)
-        row[1] += _whole(hat * seen[n, FITTED] / units.pressure)
+        row[1] += _whole(hat * pressure / units.pressure)
         row[2] += _whole(hat * into / units.speed)
         row[3] += _whole(hat * given / units.pressure)
         row[4] += _whole(hat * flowing.rest[k] * flowing.sound[k] / units.impedance)
@@ -106,7 +106,7 @@ def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
         row[6] += _whole(enters * into / units.speed)
         row[12] += 1 if xi < -far else 0
         row[13] += _whole(seen[n, NEAR])
-        row[15] += _whole(hat * seen[n, FITTED] * into / (units.pressure * units.speed))
+        row[15] += _whole(hat * pressure * into / (units.pressure * units.speed))
 
 
 @elementwise
@@ -160,11 +160,11 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, units, dt, seen, fa
                 along = _let_go(into, pressure / flowing.rest[k], FALLS * units.length, dt)
         along += planes.speed[end]
         pressure += planes.pressure[end]
-        if told.open[end]:
+        if planes.open[end]:
             pressure = max(pressure, 0.0)
         change2 = speed2 = 0.0
         for d in range(dim):
-            v = seen[n, FITTED + 1 + d] if along < 0.0 and sees and not told.open[end] else 0.0
+            v = seen[n, FITTED + 1 + d] if along < 0.0 and sees and not planes.open[end] else 0.0
             x = flowing.position[d][k]
             if d == axis:
                 v = along * sign

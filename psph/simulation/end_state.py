@@ -9,9 +9,6 @@ from psph.scene.ends import EndFace
 from psph.simulation.end_levels import EndLevel
 from psph.simulation.end_means import MOST, ONE, Units
 
-SLOW = 10.0
-"""Times the settling time in which the slope of the pressure along the normal is followed."""
-
 BACK = 0.5
 """Settling times in which a velocity end under a surface makes up for what answers to waves let astray."""
 
@@ -53,7 +50,8 @@ class Books:
 @dataclass
 class EndState:
     """The ``means`` over a face and its ``books``; the ``reference`` of waves; of a surface the ``smoothed``
-    means; the ``slope`` of the pressure along the normal, Pa/m; how far the answers to waves lead ``astray``
+    means; the ``slope`` of the pressure along the normal, Pa/m, None before
+    there is any; how far the answers to waves lead ``astray``
     from a speed that is given, m/s; what is ``added`` behind the face; how much ``faster`` than the fluid in
     front goes what a velocity end draws out, m/s, below 0; whether particles are ``due`` to change sides; how
     many sites in front are full of ``standing`` fluid; the ``surface`` behind it, where there is one."""
@@ -62,7 +60,7 @@ class EndState:
     books: Books = field(default_factory=Books)
     reference: float | None = None
     smoothed: tuple[float, float] | None = None
-    slope: float = 0.0
+    slope: float | None = None
     astray: float = 0.0
     added: WaveAnswer = NO_ANSWER
     faster: float = 0.0
@@ -113,8 +111,8 @@ class EndState:
             z / rows * units.impedance,
             inflow / entering * units.speed if entering else 0.0,
         )
-        if face.by_pressure and face.settle:
-            self._follow_slope(face.settle, slope, units, dt)
+        if face.by_pressure and (face.settle or not face.height):
+            self._follow_slope(face.follows, slope, units, dt)
 
     def follow_surface(self, face: EndFace, told: float, level: float, units: Units, dt: float) -> None:
         """Which rows behind the plane are to be full: by a ``level`` in m, or where it is no number by that
@@ -127,11 +125,12 @@ class EndState:
         self.surface.settle(face.surface, level, face.spacing)
         self.due |= self.surface.unfilled and self.surface.comes_in
 
-    def _follow_slope(self, settle: float, terms: list[float], units: Units, dt: float) -> None:
+    def _follow_slope(self, time: float, terms: list[float], units: Units, dt: float) -> None:
         count, far, over, square, product = terms
         spread = count * square * MOST - far * far
         found = (count * product - far * over) / spread if count > 2.0 and spread > 0.0 else 0.0
-        self.slope = follow(self.slope, found * units.pressure / units.length, dt, SLOW * settle)
+        found *= units.pressure / units.length
+        self.slope = found if self.slope is None else follow(self.slope, found, dt, time)
 
     def answer(self, face: EndFace, told: float, sound_speed: float, dt: float) -> None:
         """What is added behind a face in this step so that waves leave; ``told`` m/s is the mean speed of a

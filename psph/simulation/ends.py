@@ -10,7 +10,7 @@ from psph.kinds import Rank, Work
 from psph.parallel.reductions import whole_sums
 from psph.scene.end_columns import side_by_side
 from psph.scene.ends import EndFace, faces_of
-from psph.simulation.end_fit import FITTED, Flowing, Listed, Planes, Vicinity, moments_of, see_fronts
+from psph.simulation.end_fit import FITTED, Flowing, Listed, Planes, Vicinity, room_for, see_fronts
 from psph.simulation.end_means import (
     BY_LEVEL,
     BY_PRESSURE,
@@ -46,6 +46,20 @@ PAID_IN = 50.0
 WHAT = {"pressure": BY_PRESSURE, "level": BY_LEVEL}
 
 
+def planes_of(faces, layout) -> Planes:
+    """The planes of ``faces`` before anything is added behind them."""
+    stand = [(face.axis, face.at, float(face.sign), 0.0, 0.0) for face in faces]
+    return Planes(
+        *map(np.array, zip(*stand)),
+        *(np.array([face.sides[n] for face in faces]) for n in (0, 1)),
+        np.array([face.middle for face in faces]),
+        *side_by_side([face.column for face in faces]),
+        np.array(layout.up),
+        float(np.linalg.norm(layout.height_gravity)),
+        np.array([face.height > 0.0 for face in faces]),
+    )
+
+
 class Buffers(Work):
     """The buffers of the open ends of a scene on a rank.
 
@@ -68,19 +82,8 @@ class Buffers(Work):
         # Fluids of one density are one to the fit: ghosts tell no more.
         self.densities = sorted({one.density for one in fluids})
         c = max(one.sound_speed for one in fluids)
-        stand = [(face.axis, face.at, float(face.sign)) for face in self.faces]
-        self._stand = tuple(map(np.array, zip(*stand)))
-        middles = np.array([face.middle for face in self.faces])
-        pull = float(np.linalg.norm(scene.layout.height_gravity))
-        self._columns = (
-            middles,
-            *side_by_side([face.column for face in self.faces]),
-            np.array(scene.layout.up),
-            pull,
-        )
-        self._sides = tuple(np.array([face.sides[n] for face in self.faces]) for n in (0, 1))
-        what = [(WHAT.get(face.kind, BY_SPEED), face.height > 0.0) for face in self.faces]
-        self._what = tuple(map(np.array, zip(*what)))
+        self.planes = planes_of(self.faces, scene.layout)
+        self._what = np.array([WHAT.get(face.kind, BY_SPEED) for face in self.faces])
         self.units = Units(self.densities[-1] * c * c, self.densities[-1] * c, c, self.dx)
         loops = see_fronts, sum_behind, sum_before, fill_behind
         self._see, self._sum_behind, self._sum_before, self._fill = map(settled, loops)
@@ -103,7 +106,7 @@ class Buffers(Work):
         self.behind, self.front = self._standing(behind), self._standing(front)
         self.matter = self._matter()
         self._fixed = self._column("rest_density"), self._column("sound_speed")
-        self._sums = np.zeros(moments_of(store.dimensions))
+        self._fit = room_for(store.dimensions)
         self._seen = np.zeros((len(self.behind.columns), FITTED + 1 + store.dimensions))
 
     def _standing(self, rows: list[np.ndarray]) -> Standing:
@@ -161,7 +164,7 @@ class Buffers(Work):
         self._find_shapes()
         planes, flowing, behind, seen = self._planes(), self._flowing(), self.behind, self._seen
         listed = Listed(self.store.low, self.domain.lists, self.matter)
-        self._see(behind.columns, behind.end, planes, self.vicinity, listed, flowing, self._sums, seen)
+        self._see(behind.columns, behind.end, planes, self.vicinity, listed, flowing, self._fit, seen)
         sums = np.zeros((len(self.faces), TERMS), np.int64)
         told = self._told(time)
         limits = self.units, MOVED * self.dx
@@ -181,7 +184,8 @@ class Buffers(Work):
 
     def _planes(self) -> Planes:
         added = np.array([(one.added.pressure, one.added.speed + one.faster) for one in self.states])
-        return Planes(*self._stand, *np.ascontiguousarray(added.T), *self._sides, *self._columns)
+        pressure, speed = np.ascontiguousarray(added.T)
+        return self.planes._replace(pressure=pressure, speed=speed)
 
     def _told(self, time: float) -> Told:
         """What the ends give at ``time``, s."""
@@ -190,9 +194,8 @@ class Buffers(Work):
             u, means = self._mean_speed(face, time), state.means
             given = state.given(face, time) if face.by_pressure else u
             out = 1.0 if u < 0.0 and means.rows else 0.0
-            rows.append((given, out, means.inflow, state.slope))
-        what, open_above = self._what
-        return Told(what, *np.ascontiguousarray(np.array(rows).T), open_above)
+            rows.append((given, out, means.inflow, state.slope or 0.0))
+        return Told(self._what, *np.ascontiguousarray(np.array(rows).T))
 
     def _flowing(self) -> Flowing:
         store = self.store
