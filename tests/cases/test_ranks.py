@@ -86,6 +86,7 @@ END = {
     "ends/bend": 0.3,
     "ends/cylinder_re20": 0.05,
     "ends/cylinder_re100": 0.01,
+    "ends/elastic_bar": 0.01,
     "ends/filling": 0.3,
     "ends/pump": 0.3,
     "ends/weir": 0.1,
