@@ -21,6 +21,7 @@ space = { dimensions = 2, spacing = 0.05 }
 shape.difference.from.box = { lower = [0.0, 0.0], upper = [2.0, 0.4] }
 shape.difference.minus = [{ box = { lower = [0.9, 0.0], upper = [1.1, 0.3] } }]
 density = 1000.0
+viscosity = 0.02
 pressure = "hydrostatic"
 velocity = [0.3, 0.0]
 [walls.tank]
@@ -31,6 +32,7 @@ shape.box = { lower = [0.0, 0.4], upper = [2.0, 0.6] }
 clamps.grip.shape.box = { lower = [0.0, 0.4], upper = [0.3, 0.6] }
 clamps.grip.motion.sinusoid = { amplitude = [0.0, 0.02], period = 0.1 }
 density = 1300.0
+no_slip = true
 young = 3.0e6
 poisson = 0.35
 damping = 5.0
@@ -38,6 +40,7 @@ damping = 5.0
 shape.box = { lower = [0.9, 0.0], upper = [1.1, 0.3] }
 clamped.box = { lower = [0.9, 0.0], upper = [1.1, 0.1] }
 density = 1100.0
+no_slip = true
 young = 2.0e6
 poisson = 0.45
 law = "neo-hookean"
