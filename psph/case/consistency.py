@@ -111,7 +111,7 @@ def _dimensions(case) -> Iterator[Finding]:
     dimensions = case.space.dimensions
     foreign: Location = ("no key",)  # the shape that does not belong here: one line is enough
     for loc, value in walk(case):
-        if loc[:2] == ("study", "vary"):  # lists there are ladders, not vectors
+        if loc[:2] == ("study", "vary") or loc[-2:-1] == ("span",):  # ladders, intervals: no vectors
             continue
         only_in = getattr(value, "only_in", dimensions)
         if only_in != dimensions:

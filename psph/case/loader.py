@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from psph.case.model import Case
     from psph.physics.catalogue import Catalogue
 
-BARE_WORD = re.compile(r"[A-Za-z][\w.-]*")
+BARE_WORD = re.compile(r"[+-]?[A-Za-z][\w.-]*")
 PLACE_IN_LIST = re.compile(r"[0-9]{1,9}")
 HALF = re.compile("[\ud800-\udfff]")
 """Half a character: how Python shows bytes of the command line that are no UTF-8."""

@@ -112,6 +112,11 @@ def test_a_later_override_wins(tmp_path):
     assert draft(tmp_path, WATER, "time.end=3.0", "time.end=4.0").time.end == 4.0
 
 
+def test_a_direction_is_a_word(tmp_path):
+    text = WATER + '[ends.mouth]\nat = 0.0\ninward = "+x"\npressure = 0.0\n'
+    assert draft(tmp_path, text, "ends.mouth.inward=-x").ends["mouth"].inward == "-x"
+
+
 @pytest.mark.parametrize(
     ("override", "says"),
     [

@@ -129,6 +129,12 @@ def test_fluids_beside_each_other_have_no_column(tmp_path):
     assert not [*end_faults(Scene(draft(tmp_path, BESIDE, velocity)))]
 
 
+def test_an_end_in_3d_reaches_as_far_as_its_span(tmp_path):
+    """Two numbers along each axis across it are no point in space."""
+    [face] = faces_of(Scene(draft(tmp_path, BESIDE, "ends.sea.span.z=[0.0, 0.5]")))
+    assert (face.lower[2], face.upper[2]) == pytest.approx((0.0, 0.5))
+
+
 @pytest.mark.parametrize("values, fine", [((0.0, 0.0), False), ((-1.0, 1.0), False), ((0.5, 1.0), True)])
 def test_a_profile_needs_a_mean(tmp_path, values, fine):
     """Its shape is told by that."""
