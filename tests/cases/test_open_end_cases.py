@@ -188,6 +188,17 @@ def test_the_discharge_of_a_weir(tmp_path):
     assert level > 0.5 and level == pytest.approx(0.51, abs=0.025)
 
 
+@pytest.mark.long
+@pytest.mark.timeout(600)
+def test_the_discharge_of_a_sluice(tmp_path):
+    """At 7 spacings an opening: within 7 % of that by the depth before it, with a contraction of 0.61."""
+    run = finished("ends/sluice", tmp_path, "space.spacing=0.02", "time.end=7.0")
+    depth = window(run.gauges()["head"], "head.level", 5.0, 7.0).mean()
+    flow = window(run.gauges()["gate"], "gate.flow", 5.0, 7.0).mean()
+    jet = 0.61 * 0.15
+    assert flow == pytest.approx(jet * np.sqrt(19.62 * depth / (1.0 + jet / depth)), rel=0.07)
+
+
 def test_a_hydraulic_jump_runs_up_a_stream(tmp_path):
     """At 8 spacings a depth: behind it 0.362 m within 5 %, by Bélanger, and the stream before it comes in as
     it is told.  Control: what comes in without a jump is as deep as at the start."""

@@ -90,6 +90,7 @@ END = {
     "ends/filling": 0.3,
     "ends/pump": 0.3,
     "ends/weir": 0.1,
+    "ends/sluice": 0.1,
     "ends/bore": 0.1,
     "ends/tide": 3.2,  # rows are born as it rises
     "layers/dam_break": 0.02,
