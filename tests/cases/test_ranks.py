@@ -102,6 +102,8 @@ END = {
     "tension/drop_on_wall": 0.1,
     "tension/rising_bubble": 0.05,
     "tension/liquid_thread": 0.1,
+    "tension/film": 0.1,
+    "tension/liquid_bridge": 0.05,
     "hard/drop": 0.05,
     "hard/patch_3d": 0.02,
     "hard/twins": 2e-3,

@@ -7,6 +7,7 @@ import pytest
 from cases.measures import CASES
 from drafts import draft
 from gauging import start
+from long import LONG
 
 from psph.case import load
 from psph.physics.surface import tension
@@ -159,6 +160,132 @@ def test_half_a_drop_before_a_plane_of_symmetry_moves_as_a_whole_one(tmp_path):
         x = x[:, x[0] > 0.0]
         found.append(x[:, np.lexsort(np.round(x, 6))])
     assert np.abs(found[0] - found[1]).max() < 1e-13
+
+
+FILM = f"{CASES}/tension/film.toml"
+
+
+def retreat(*keys):
+    """By how much the edge of the film of the case has drawn back at 2 and 4 s, m, and at 2 s, before the film at
+    the plane of symmetry moves, the momentum of all over 2σt."""
+    simulation, found, momentum = start(load(FILM, keys)), [], []
+    store = simulation.store
+    for time in (2.0, 4.0):
+        while simulation.time < time:
+            simulation.step()
+        x, v = (np.array(store[name])[0, store.inner] for name in ("position", "velocity"))
+        found.append(12.0 - x.max() - 0.05)
+        momentum.append(-(store.shown("mass") * v).sum() / (2.0 * simulation.time))
+    return found, momentum[0]
+
+
+def rounded(time, thickness=1.0, sigma=1.0, rho=1.0):
+    """By how much a film is drawn back that takes itself up into a round rim: s − D with the s for which
+    s (s − D) = 2σt²/(ρe), D = √(4es/π); m."""
+    least, most = 4.0 * thickness / math.pi, 100.0 * thickness
+    for _ in range(60):
+        s = 0.5 * (least + most)
+        back = s - math.sqrt(4.0 * thickness * s / math.pi)
+        least, most = (s, most) if s * back < 2.0 * sigma * time**2 / (rho * thickness) else (least, s)
+    return back
+
+
+def test_a_film_draws_back_as_by_taylor_and_culick():
+    """Its momentum is 2σt, and its edge where the round rim has it that takes this up."""
+    found, momentum = retreat()
+    assert found == pytest.approx([rounded(2.0), rounded(4.0)], rel=0.02)
+    assert momentum == pytest.approx(1.0, abs=0.005)
+
+
+def test_without_tension_a_film_stays():
+    """The control."""
+    found, momentum = retreat("fluids.water.surface_tension=0.0")
+    assert found == pytest.approx([0.0, 0.0], abs=0.06) and abs(momentum) < 1e-3
+
+
+PLATES = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 6.0
+physics.sound_speed = 10.0
+[fluids.water]
+shape.box = { lower = [-2.0, 0.0], upper = [2.0, 2.0] }
+density = 1.0
+viscosity = 0.2
+surface_tension = 1.0
+[walls.below]
+shape.box = { lower = [-4.0, -0.4], upper = [4.0, 0.0] }
+[walls.above]
+shape.box = { lower = [-4.0, 2.0], upper = [4.0, 2.4] }
+"""
+
+
+def between_plates(path, angle, *keys):
+    """Of a bridge in 2D, in the mean of 4 to 6 s: its pressure, Pa, and by how much it is thicker in the middle
+    than at the plates, at each side, m."""
+    angles = (f"walls.{name}.contact_angle={angle}" for name in ("below", "above"))
+    simulation, found = start(draft(path, PLATES, *keys, *angles)), []
+    store = simulation.store
+    for time in (4.0, 4.5, 5.0, 5.5, 6.0):
+        while simulation.time < time:
+            simulation.step()
+        simulation.settle_pressure()
+        own = store.group[store.inner] == 0
+        x, p = (
+            np.array(store["position"])[:, store.inner][:, own],
+            np.array(store["pressure"])[store.inner][own],
+        )
+        middle = np.ptp(x[0, np.abs(x[1] - 1.0) < 0.15])
+        feet = 0.5 * (np.ptp(x[0, x[1] < 0.12]) + np.ptp(x[0, x[1] > 1.88]))
+        found.append((p[np.abs(x[0]) < 1.0].mean(), 0.5 * (middle - feet)))
+    return np.mean(found, axis=0)
+
+
+PULLING = ("physics.tension_floor=off", "fluids.water.pressure=-0.5")
+"""Overrides: walls pull, as a hollow meniscus must."""
+
+
+@pytest.mark.parametrize("angle, keys", ((90.0, ()), (120.0, ()), pytest.param(60.0, PULLING, marks=LONG)))
+def test_a_bridge_between_plates_has_the_meniscus_of_its_angle(tmp_path, angle, keys):
+    """An arc of radius H/(−2 cos φ), its pressure σ over that; within a spacing and 0.15 σ/H."""
+    pressure, bulge = between_plates(tmp_path, angle, *keys)
+    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    assert pressure == pytest.approx(-2.0 * cos / 2.0, abs=0.15)
+    assert bulge == pytest.approx(-cos * (1.0 - sin) / cos**2 if angle != 90.0 else 0.0, abs=0.1)
+
+
+BRIDGE = ("space.spacing=0.25", "space.lower=[-0.5,-3.0,-3.0]")
+LOW = "{{cylinder={{center=[{},0.0,0.0],radius=2.25,height=0.5,axis='x'}}}}"
+
+
+def leaning(length):
+    """Of a bridge of four spacings a radius between plates: how far its middle is off theirs at 2 and 5 s, m."""
+    plates = f"[{LOW.format(-0.25)},{LOW.format(length + 0.25)}]"
+    case = load(
+        f"{CASES}/tension/liquid_bridge.toml",
+        (
+            *BRIDGE,
+            f"space.upper=[{2.0 * length - 0.5},3.0,3.0]",
+            f"fluids.water.shape.cylinder={{center=[{length / 2.0},0.0,0.0],radius=1.0,height={length},axis='x'}}",
+            f"exact.liquid_thread.length={2.0 * length}",
+            f"walls.plates.shape.union={plates}",
+        ),
+    )
+    simulation, found = start(case), []
+    store = simulation.store
+    for time in (2.0, 5.0):
+        while simulation.time < time:
+            simulation.step()
+        own = store.group[store.inner] == 0
+        found.append(0.5 * length - np.array(store["position"])[0, store.inner][own].mean())
+    return found
+
+
+def test_a_long_bridge_breaks_and_a_short_one_does_not():
+    """Vogel's limit of lines that slide, a length of πR: 4.5 R leans on, 2.5 R comes back."""
+    before, after = leaning(4.5)
+    assert 0.0 < 2.0 * before < after
+    before, after = leaning(2.5)
+    assert abs(after) < max(before, 0.06)
 
 
 SHORT = (
