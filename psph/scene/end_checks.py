@@ -12,8 +12,12 @@ from psph.scene.end_rows import across_up
 from psph.scene.ends import UNLIKE, groups_of, mean_of, unlike
 from psph.scene.lattice import TOLERANCE
 from psph.scene.layout import NONE
+from psph.scene.moving import moving_parts
 from psph.scene.parts.end import rows_of, rows_reached
 from psph.scene.shapes import shown
+
+HELD = 0.5
+"""Spacings that a wall may move and still hold what stands behind a plane."""
 
 LEAST_MEAN = 1e-3
 """Part of its largest value below which the mean of a profile is none."""
@@ -87,6 +91,11 @@ def end_warnings(scene) -> Iterator[str]:
                 f"ends.{name}: fluid stands behind its buffer at {shown(site)} and stays there; move the "
                 "plane to the edge of the fluid"
             )
+        if (wall := _goes_away(scene, name, end)) is not None:
+            yield (
+                f"ends.{name}: {wall} holds what stands behind its plane and moves, and the plane is still; "
+                "let a wall at rest hold it"
+            )
         if (open_at := _open_side(scene, name, end)) is not None:
             axis, site = open_at
             depth = rows_of(scene.case, end) * scene.spacing
@@ -115,24 +124,39 @@ def _open_side(scene, name: str, end) -> tuple[str, tuple[float, ...]] | None:
     """A direction across an end, and a site behind its plane, beside which there is nothing; None where all
     is held, but for what is above it."""
     layout = scene.layout
+    for d, sign, places, held in _beside(scene, name, end):
+        if layout.up[d] * sign > 0.0 or _repeats(layout, d):
+            continue
+        free = (held == NONE) & ~_mirrored(layout, d, places[:, d] + sign * layout.spacing)
+        if free.any():
+            return f"{'+' if sign > 0 else '-'}{AXES[d]}", tuple(places[free][0].tolist())
+    return None
+
+
+def _beside(scene, name: str, end) -> Iterator[tuple[int, float, np.ndarray, np.ndarray]]:
+    """For each direction across an end, an axis and a sign, its sites behind the plane (n, dim), m, and what
+    is beside each (n,)."""
+    layout = scene.layout
     numbers = groups_of(layout, name)
     for first, last in layout.lattice.chunks():
-        held = layout.materials(first, last)
-        grid = layout.lattice.grid(first, last)
-        own = np.isin(held, numbers)
+        own = np.isin(layout.materials(first, last), numbers)
         if not own.any():
             continue
+        grid = layout.lattice.grid(first, last)
         places = np.stack([np.broadcast_to(x, own.shape)[own] for x in grid], axis=1)
         for d in (d for d in range(layout.dimensions) if d != end.axis):
             for sign in (-1.0, 1.0):
-                if layout.up[d] * sign > 0.0 or _repeats(layout, d):
-                    continue
                 beside = places.copy()
                 beside[:, d] += sign * layout.spacing
-                free = layout.held([*beside.T], (len(beside),)) == NONE
-                free &= ~_mirrored(layout, d, beside[:, d])
-                if free.any():
-                    return f"{'+' if sign > 0 else '-'}{AXES[d]}", tuple(places[free][0].tolist())
+                yield d, sign, places, layout.held([*beside.T], (len(beside),))
+
+
+def _goes_away(scene, name: str, end) -> str | None:
+    """The key of a wall that holds what stands behind an end, and moves; None where none does."""
+    moving = {n: key for n, key, sweep in moving_parts(scene.census) if sweep.way > HELD * scene.spacing}
+    for _, _, _, held in _beside(scene, name, end) if moving else ():
+        if found := sorted(set(held.tolist()) & set(moving)):
+            return moving[found[0]]
     return None
 
 

@@ -163,6 +163,15 @@ def test_what_is_likely_not_meant_is_said(tmp_path, text, key, says):
     assert not [*end_warnings(Scene(draft(tmp_path, text)))]
 
 
+@pytest.mark.parametrize("key, moves", [("motion", True), ("no_slip", False)])
+def test_a_plane_does_not_ride_on_a_wall(tmp_path, key, moves):
+    """Who lets the wall move that holds what stands behind is told, for each end."""
+    more = f"walls.plates.{key}=" + ("[{translation={velocity=[0.2, 0.0]}}]" if moves else "false")
+    found = [*end_warnings(Scene(draft(tmp_path, PLATES, more)))]
+    assert len(found) == 2 * moves
+    assert all("walls.plates holds what stands behind its plane and moves" in line for line in found)
+
+
 @pytest.mark.parametrize(
     "text, keys, says",
     [
