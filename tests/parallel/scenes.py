@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import tomli_w
+from parallel import open_scenes
 from remedies import uses
 
 LENGTH, WIDTH, SPACING = 30, 12, 0.1
@@ -21,7 +22,8 @@ class Family(NamedTuple):
     a floor, and ``condition`` of what kind; ``muddy`` whether the first fluid has a
     rheology; ``fluids`` how many, of different densities; ``gather_every`` how seldom slow sums
     are taken and ``passes`` of a step; ``symmetry`` its planes; ``moves`` whether the walls do, ``framed`` whether the frame of reference;
-    ``floats`` whether there are bodies; ``absorbs`` whether its walls are those of a flume, with a paddle that
+    ``floats`` whether there are bodies; ``ends`` whether it is a channel with open ends, under a "lid" or a
+    "surface"; ``absorbs`` whether its walls are those of a flume, with a paddle that
     takes up waves.
     """
 
@@ -43,6 +45,7 @@ class Family(NamedTuple):
     floats: bool = False
     framed: bool = False
     absorbs: bool = False
+    ends: str = ""
     physics: dict = {}
 
 
@@ -177,6 +180,8 @@ FAMILIES |= {
     for name in ("tank", "half", "mixed tank", "borne", "rolled", "afloat", "framed", "flume", "mud in 3D")
 }
 
+FAMILIES |= {name: Family(walls=True, **keys) for name, keys in open_scenes.FAMILIES.items()}
+
 
 def _seldom(family: Family) -> dict:
     """Slow sums, and rates that serve for several steps, are renewed equally seldom."""
@@ -201,6 +206,8 @@ def scene(family: Family, seed: int) -> str:
     }
     if files := uses(family.physics):
         case = {"use": files, **case}
+    if family.ends:
+        case["ends"] = open_scenes.ends(rng, _drawn, sizes, family.ends == "lid")
     if family.walls:
         case["walls"] = {"wall": _wall_of(family, sizes)}
     if family.moves:
@@ -216,7 +223,11 @@ def scene(family: Family, seed: int) -> str:
 
 def _wall_of(family: Family, sizes) -> dict:
     sticks = family.viscous and family.condition != "penalty"
-    return {"shape": _wall(family, sizes), "no_slip": sticks, "condition": family.condition}
+    if family.ends:
+        shape = open_scenes.channel(sizes, 5 * SPACING, family.periodic, family.ends == "lid")
+    else:
+        shape = _wall(family, sizes)
+    return {"shape": shape, "no_slip": sticks, "condition": family.condition}
 
 
 def _motion(family: Family, rng, sizes) -> list[dict]:
@@ -339,11 +350,13 @@ def _other(family: Family, seed: int) -> dict:
 
 
 def _fluids(family: Family, rng, sizes, other: dict):
-    """Parts of the block one behind the other along the first axis, with holes and notches; from the second on
-    with the keys of an ``other``."""
-    ends = np.linspace(0.0, sizes[0], family.fluids + 1).round(9).tolist()
-    for k, (low, high) in enumerate(zip(ends, ends[1:])):
-        lower, upper = [low, *[0.0] * (family.dimensions - 1)], [high, *sizes[1:]]
+    """Parts of the block one behind the other along the first axis, between ends along the last, with holes
+    and notches; from the second on with the keys of an ``other``."""
+    axis = family.dimensions - 1 if family.ends else 0
+    edges = np.linspace(0.0, sizes[axis], family.fluids + 1).round(9).tolist()
+    for k, (low, high) in enumerate(zip(edges, edges[1:])):
+        lower, upper = [0.0] * family.dimensions, [*sizes]
+        lower[axis], upper[axis] = low, high
         block, made = {"box": {"lower": lower, "upper": upper}}, {"density": 1000.0} if k == 0 else other
         holes = [_hole(rng, family.dimensions, lower, upper) for _ in range(rng.integers(0, 4))]
         fluid = {

@@ -16,7 +16,7 @@ from parallel.scenes import FAMILIES, scene
 from remedies import FILES, beside
 
 TESTS = Path(__file__).parents[1]
-SHORT = ("tank",)
+SHORT = ("tank", "stream")
 
 
 def told(folder, steps):
