@@ -36,6 +36,7 @@ class OpenEnd(Answering):
 
     at: float = key("where its plane stands along its axis", unit="m")
     inward: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = key("the direction into the domain")
+    on: Name | None = key("the wall with which its plane moves, along its axis", None)
     span: Spans = key("how far it reaches across that", make=Spans)
     velocity: float | Course | None = key(
         "mean speed inward: a number, or a table with the file of a series; below 0 it flows out",
@@ -167,6 +168,8 @@ class OpenEnd(Answering):
         fluids = [*case.fluids]
         if self.filled is not None and self.filled not in fluids:
             yield (*loc, "filled"), self.filled, f"no fluid has this name; {advise(self.filled, fluids)}"
+        if self.on is not None and self.on not in case.walls:
+            yield (*loc, "on"), self.on, f"no wall has this name; {advise(self.on, [*case.walls])}"
         if self.pump is not None:
             others = [name for name in case.ends if name != loc[1]]
             if self.pump not in others:

@@ -82,6 +82,7 @@ class OpenEnds(Kind):
             unit = f" {GIVEN_IN[end.given]}" if isinstance(told, float) else ""
             waves = f"waves leave, {face.settle:.3g} s" if face.settle else "waves come back"
             stands = f"{face.name}: {AXES[face.axis]} = {face.at:g} m"
+            stands += f" on {end.on}" if end.on else ""
             yield "matter", f"  open end    {stands}, {end.given} {said}{unit}; {waves}"
 
 

@@ -8,6 +8,7 @@ from psph.case.courses import AcrossFace, Course
 from psph.case.ends import LEVEL
 from psph.case.keys import AXES
 from psph.scene.end_columns import column_of
+from psph.scene.end_rides import ride_faults
 from psph.scene.end_rows import across_up
 from psph.scene.ends import UNLIKE, groups_of, mean_of, unlike
 from psph.scene.lattice import TOLERANCE
@@ -42,6 +43,7 @@ def end_faults(scene) -> Iterator[str]:
             )
         if sites and isinstance(end.profile, AcrossFace):
             yield from _flat_profile(scene, name, end)
+        yield from ride_faults(scene, name, end)
         if end.pump and not scene.has_free_surface:
             yield (
                 f"ends.{name}.pump: gives a speed and no pressure, so without a free surface nothing "
@@ -93,8 +95,8 @@ def end_warnings(scene) -> Iterator[str]:
             )
         if (wall := _goes_away(scene, name, end)) is not None:
             yield (
-                f"ends.{name}: {wall} holds what stands behind its plane and moves, and the plane is still; "
-                "let a wall at rest hold it"
+                f"ends.{name}: {wall} holds what stands behind its plane and moves, and the plane does not; "
+                f'let it go along with on = "{wall.partition(".")[2]}", or a wall at rest hold it'
             )
         if (open_at := _open_side(scene, name, end)) is not None:
             axis, site = open_at
@@ -153,7 +155,8 @@ def _beside(scene, name: str, end) -> Iterator[tuple[int, float, np.ndarray, np.
 
 def _goes_away(scene, name: str, end) -> str | None:
     """The key of a wall that holds what stands behind an end, and moves; None where none does."""
-    moving = {n: key for n, key, sweep in moving_parts(scene.census) if sweep.way > HELD * scene.spacing}
+    parts = (one for one in moving_parts(scene.census) if one[1] != f"walls.{end.on}")
+    moving = {n: key for n, key, sweep in parts if sweep.way > HELD * scene.spacing}
     for _, _, _, held in _beside(scene, name, end) if moving else ():
         if found := sorted(set(held.tolist()) & set(moving)):
             return moving[found[0]]

@@ -12,6 +12,7 @@ from psph.case.ends import OpenEnd
 from psph.case.keys import AXES
 from psph.physics.open_ends import grown, parabola, pipe
 from psph.scene.end_columns import Column, column_of
+from psph.scene.end_rides import Ride, ride_of
 from psph.scene.end_rows import SurfaceRows, raised, rows_behind
 from psph.scene.layout import NONE, Layout
 from psph.scene.parts.end import EndPart, rows_of
@@ -33,7 +34,8 @@ SETTLE = 2.0
 class EndFace:
     """An open end as the step needs it.
 
-    ``number`` among the ends; its plane stands ``at`` m along ``axis``, ``sign`` is that of its inward
+    ``number`` among the ends; its plane stands ``at`` m along ``axis`` at the start and goes
+    on by its ``ride``, ``sign`` is that of its inward
     direction; ``lower`` and ``upper`` (dim,) m are the corners of the box in which its buffers may be, which
     are ``layers`` spacings deep, ``middle`` (dim,) m that of where they are at the start; they do not move
     out of ``sides`` (2, dim), m, infinite where the domain repeats.  ``groups`` has, for each fluid, the
@@ -52,6 +54,7 @@ class EndFace:
     number: int
     axis: int
     at: float
+    ride: Ride
     sign: int
     lower: np.ndarray
     upper: np.ndarray
@@ -86,9 +89,13 @@ class EndFace:
         found[list(self.groups)] = np.arange(len(self.groups))
         return found
 
-    def depth(self, along: np.ndarray) -> np.ndarray:
-        """How far behind the plane coordinates ``along`` its axis are, m."""
-        return (self.at - along) * self.sign
+    def depth(self, along: np.ndarray, place: float) -> np.ndarray:
+        """How far behind the plane, which stands at a ``place``, coordinates ``along`` its axis are, m."""
+        return (place - along) * self.sign
+
+    def pace(self, time: float) -> float:
+        """How fast the plane goes inward, m/s."""
+        return self.sign * self.ride.pace(time)
 
 
 def faces_of(scene) -> tuple[EndFace, ...]:
@@ -124,6 +131,7 @@ def _face(scene, names: list[str], name: str) -> EndFace:
         number=names.index(name),
         axis=end.axis,
         at=end.at,
+        ride=ride_of(scene, end),
         sign=end.sign,
         lower=lower,
         upper=upper,

@@ -30,15 +30,17 @@ behind the plane in m; from FITTED on its pressure in Pa and its velocity in m/s
 
 
 class Planes(NamedTuple):
-    """The planes of open ends: they stand at ``place`` m along ``axis``, with the ``sign`` of the inward
-    direction; ``pressure`` in Pa and inward ``speed`` in m/s were added behind them in the last step
-    (ends,).  Nothing behind them moves on beyond ``low`` and ``high`` (ends, dim), m.  ``middle`` (ends, dim)
-    m is that of each at the start; the layers of its fluids meet at ``edges`` (ends, layers + 1), m along
-    ``up`` (dim,), with ``rest`` densities (ends, layers), kg/m^d, and speeds of ``sound``, m/s; gravity along
-    ``up`` is ``pull``, m/s²; whether a surface is ``open`` above each (ends,)."""
+    """The planes of open ends: they stand at ``place`` m along ``axis`` and go inward with the ``pace``, m/s;
+    the inward direction has the ``sign``; ``pressure`` in Pa and inward ``speed`` in m/s were added behind
+    them in the last step (ends,). Nothing behind them moves on beyond ``low`` and ``high`` (ends, dim), m.
+    ``middle`` (ends, dim) m is that of each at the start; the layers of its fluids meet at ``edges`` (ends,
+    layers + 1), m along ``up`` (dim,), with ``rest`` densities (ends, layers), kg/m^d, and speeds of
+    ``sound``, m/s; gravity along ``up`` is ``pull``, m/s²; whether a surface is ``open`` above each
+    (ends,)."""
 
     axis: np.ndarray
     place: np.ndarray
+    pace: np.ndarray
     sign: np.ndarray
     pressure: np.ndarray
     speed: np.ndarray

@@ -71,10 +71,16 @@ def rows_full(rows: SurfaceRows, full: int, level: float, dx: float) -> int:
 
 
 def fit_rows(
-    face: EndFace, full: int, depth: np.ndarray, across: np.ndarray, periods: np.ndarray, standing: np.ndarray
+    face: EndFace,
+    place: float,
+    full: int,
+    depth: np.ndarray,
+    across: np.ndarray,
+    periods: np.ndarray,
+    standing: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Who is too many behind a face of which ``full`` rows are to be full (n,), and the places (m, dim), m,
-    at which someone lacks, row by row.
+    """Who is too many behind a face at a ``place``, m, of which ``full`` rows are to be full (n,), and the
+    places (m, dim), m, at which someone lacks, row by row.
 
     Particles are at a ``depth`` (n,) m behind the plane and ``across`` (axes, n) m, with ``periods`` there, 0
     where it does not repeat; those ``standing`` (n,) count.
@@ -89,7 +95,7 @@ def fit_rows(
     places, counted = np.ascontiguousarray(sites[:, axes]), standing & ~above
     strips = places, depth, across, periods, dx, face.layers, counted
     lacking = settled(fit_strips)(*strips, surplus, begins)
-    return above | surplus, rows.behind(face.at, sites, begins, lacking)
+    return above | surplus, rows.behind(place, sites, begins, lacking)
 
 
 @elementwise

@@ -90,7 +90,7 @@ def sum_behind(behind, planes, told, flowing, units, far, seen, sums):
         xi = depth(planes, end, flowing, k)
         into = seen[n, FITTED + 1 + planes.axis[end]] * planes.sign[end]
         hat = max(1.0 - abs(xi / units.length - 1.0), 0.0) * seen[n, SEEN]
-        enters = hat if into > 0.0 else 0.0
+        enters = hat if into > planes.pace[end] else 0.0
         given, pressure = 0.0, seen[n, FITTED]
         if told.what[end] != BY_SPEED:
             given = _given_at(told, end, planes, k, flowing)
@@ -147,15 +147,15 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, units, dt, seen, fa
         k, end = np.uint64(behind.columns[n]), behind.end[n]
         axis, sign, sees = planes.axis[end], planes.sign[end], seen[n, SEEN] > 0.0
         into = seen[n, FITTED + 1 + axis] * sign if sees else flowing.velocity[axis][k] * sign
-        pressure = seen[n, FITTED]
+        pressure, pace = seen[n, FITTED], planes.pace[end]
         if told.what[end] == BY_SPEED:
-            along = into if told.out[end] > 0.0 else behind.shape[n] * told.value[end]
+            along = into if told.out[end] > 0.0 else pace + behind.shape[n] * told.value[end]
         else:
             xi = depth(planes, end, flowing, k)
             pressure = _given_at(told, end, planes, k, flowing)
             pressure += told.slope[end] * xi
             if sees:
-                along = behind.shape[n] * told.inflow[end] if into > 0.0 else into
+                along = pace + behind.shape[n] * (told.inflow[end] - pace) if into > pace else into
             else:
                 along = _let_go(into, pressure / flowing.rest[k], FALLS * units.length, dt)
         along += planes.speed[end]
@@ -164,7 +164,7 @@ def fill_behind(behind, planes, told, flowing, laws, law_of, units, dt, seen, fa
             pressure = max(pressure, 0.0)
         change2 = speed2 = 0.0
         for d in range(dim):
-            v = seen[n, FITTED + 1 + d] if along < 0.0 and sees and not planes.open[end] else 0.0
+            v = seen[n, FITTED + 1 + d] if along < pace and sees and not planes.open[end] else 0.0
             x = flowing.position[d][k]
             if d == axis:
                 v = along * sign

@@ -39,19 +39,21 @@ class Passage:
         self.gravity = np.array(rank.scene.gravity)
         self._queue = settled(run_queues)
 
-    def renew(self, state: EndState, population) -> None:
-        """Let particles change sides, be born and die; new lists have to follow.  Collective."""
+    def renew(self, state: EndState, time: float, population) -> None:
+        """Let particles change sides, be born and die behind the plane at a ``time`` in s; new lists have to
+        follow.  Collective."""
         store, face = self.store, self.face
+        plane = face.ride.place(time)
         behind = np.flatnonzero(np.isin(store.shown("group"), face.groups))
-        depth = face.depth(store["position"][face.axis][store.inner])
+        depth = face.depth(store["position"][face.axis][store.inner], plane)
         deepest = (face.layers + BEYOND) * face.spacing
         fluid = (store.shown("kind") == FLUID) & (depth > 0.0) & (depth < deepest)
         out = within(face, self.domain, np.flatnonzero(fluid))
         rows = np.concatenate([behind, out])
         crossing = np.concatenate([(depth[behind] <= 0.0).astype(np.int64), np.full(len(out), -1)])
-        fate, born, place, births, sites = self._queued(rows, depth[rows], crossing, state.surface)
+        fate, born, place, births, sites = self._queued(plane, rows, depth[rows], crossing, state.surface)
         self._book(state.books, rows, crossing, births + len(sites), fate == DIES)
-        newborn = self._copied(rows[born > 0.0], born[born > 0.0])
+        newborn = self._copied(plane, rows[born > 0.0], born[born > 0.0])
         self._change(rows[crossing == 1], rows[crossing == -1])
         staying = np.delete(np.arange(store.owned), rows[fate == DIES])
         store.reorder((store.low + staying).astype(np.uint32), 0, 0)
@@ -59,10 +61,10 @@ class Passage:
         population.next_id += births
         if len(sites):
             velocity = np.zeros_like(sites)
-            velocity[:, face.axis] = face.sign * max(state.means.speed, 0.0)
+            velocity[:, face.axis] = face.sign * max(state.means.speed, face.pace(time))
             population.let_in(sites, velocity, face.surface.group)
 
-    def _queued(self, rows, depth, crossing, surface: EndLevel | None):
+    def _queued(self, plane, rows, depth, crossing, surface: EndLevel | None):
         """Fates (n,), depths of births (n,), 0 for none, the places (births here,) of these among all, how
         many these are, and the places (m, dim), m, of those who are born as a level rises."""
         across = [d for d in range(self.store.dimensions) if d != self.face.axis]
@@ -83,7 +85,7 @@ class Passage:
             if surface.turned:
                 fate[standing & (who < 1)], born[:], standing[:] = DIES, 0.0, False
             deep = np.where(born > 0.0, born, everyone[1])
-            surplus, sites = fit_rows(self.face, surface.full, deep, everyone[3:], periods, standing)
+            surplus, sites = fit_rows(self.face, plane, surface.full, deep, everyone[3:], periods, standing)
             fate[surplus & (who < 1)], born[surplus] = DIES, 0.0
             surface.unfilled = surface.turned = False
         mine, comes = np.searchsorted(everyone[0], table[:, 0]), born > 0.0
@@ -123,9 +125,9 @@ class Passage:
         if MOBILE in store:
             store[MOBILE][low + came], store[MOBILE][low + went] = 1.0, 0.0
 
-    def _copied(self, parents: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _copied(self, plane: float, parents: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Groups and numbers of those that are born at a ``depth`` (n,), m, as their ``parents`` are."""
         columns = self.store.low + parents
         block = self.store.data[:, columns].copy()
-        block[self.store.rows["position"][self.face.axis]] = self.face.at - self.face.sign * depth
+        block[self.store.rows["position"][self.face.axis]] = plane - self.face.sign * depth
         return self.store.group[columns].copy(), block

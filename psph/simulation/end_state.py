@@ -114,14 +114,16 @@ class EndState:
         if face.by_pressure and (face.settle or not face.height):
             self._follow_slope(face.follows, slope, units, dt)
 
-    def follow_surface(self, face: EndFace, told: float, level: float, units: Units, dt: float) -> None:
+    def follow_surface(
+        self, face: EndFace, told: float, pace: float, level: float, units: Units, dt: float
+    ) -> None:
         """Which rows behind the plane are to be full: by a ``level`` in m, or where it is no number by that
-        of the fluid in front; ``told`` m/s is the mean speed of a velocity end."""
+        of the fluid in front; ``told`` m/s is the mean speed of a velocity end, ``pace`` the plane's."""
         if self.surface is None or face.surface is None:
             return
         if face.by_pressure:  # where nothing is in front, nothing keeps out what stands there
             told = self.means.speed if self.means.rows else face.wave_speed
-        self.surface.see(face, self.standing, told, units.speed, dt)
+        self.surface.see(face, self.standing, told - pace, units.speed, dt)
         self.surface.settle(face.surface, level, face.spacing)
         self.due |= self.surface.unfilled and self.surface.comes_in
 
@@ -132,11 +134,11 @@ class EndState:
         found *= units.pressure / units.length
         self.slope = found if self.slope is None else follow(self.slope, found, dt, time)
 
-    def answer(self, face: EndFace, told: float, sound_speed: float, dt: float) -> None:
+    def answer(self, face: EndFace, told: float, pace: float, sound_speed: float, dt: float) -> None:
         """What is added behind a face in this step so that waves leave; ``told`` m/s is the mean speed of a
-        velocity end."""
+        velocity end, ``pace`` that of the plane."""
         means = self.means
-        self.faster = told - means.speed if told < 0.0 and means.rows else 0.0
+        self.faster = told - means.speed if told < pace and means.rows else 0.0
         if face.settle is None or means.rows < FEWEST or math.isnan(told):
             self.added = NO_ANSWER
             return

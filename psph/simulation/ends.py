@@ -48,7 +48,7 @@ WHAT = {"pressure": BY_PRESSURE, "level": BY_LEVEL}
 
 def planes_of(faces, layout) -> Planes:
     """The planes of ``faces`` before anything is added behind them."""
-    stand = [(face.axis, face.at, float(face.sign), 0.0, 0.0) for face in faces]
+    stand = [(face.axis, face.at, 0.0, float(face.sign), 0.0, 0.0) for face in faces]
     return Planes(
         *map(np.array, zip(*stand)),
         *(np.array([face.sides[n] for face in faces]) for n in (0, 1)),
@@ -72,7 +72,7 @@ class Buffers(Work):
     def __init__(self, rank: Rank):
         scene, self.plan, self.store, self.domain = rank.scene, rank.plan, rank.store, rank.domain
         self.comm, self.ledger = rank.domain.comm, rank.ledger
-        self.faces, self.dx = faces_of(scene), scene.spacing
+        self.faces, self.dx, self.time = faces_of(scene), scene.spacing, 0.0
         self.states = [EndState.at_start(face) for face in self.faces]
         self.passages = [Passage(face, rank) for face in self.faces]
         self.vicinity = Vicinity(
@@ -83,6 +83,7 @@ class Buffers(Work):
         self.densities = sorted({one.density for one in fluids})
         c = max(one.sound_speed for one in fluids)
         self.planes = planes_of(self.faces, scene.layout)
+        self._rides = [face.ride.place for face in self.faces], [face.pace for face in self.faces]
         self._what = np.array([WHAT.get(face.kind, BY_SPEED) for face in self.faces])
         self.units = Units(self.densities[-1] * c * c, self.densities[-1] * c, c, self.dx)
         loops = see_fronts, sum_behind, sum_before, fill_behind
@@ -99,7 +100,7 @@ class Buffers(Work):
         groups, fluid = store.shown("group"), store.shown("kind") == FLUID
         behind, front = [], []
         for face in self.faces:
-            depth = face.depth(store[LISTED][face.axis][store.inner])
+            depth = face.depth(store[LISTED][face.axis][store.inner], face.ride.place(self.time))
             near = fluid & (depth > -(FRONT + 2.0) * self.dx) & (depth < face.layers * self.dx)
             behind.append(np.flatnonzero(np.isin(groups, face.groups)))
             front.append(within(face, self.domain, np.flatnonzero(near), LISTED))
@@ -136,11 +137,12 @@ class Buffers(Work):
 
     def renew(self, simulation) -> None:
         """Let particles change sides, be born and die, where lists are due or some have come too far."""
+        self.time = simulation.then
         if not any(state.due for state in self.states):
             return
         with self.ledger("ends"):
             for passage, state in zip(self.passages, self.states):
-                passage.renew(state, simulation.population)
+                passage.renew(state, self.time, simulation.population)
         simulation.listed = False
 
     # What they are like.
@@ -161,6 +163,7 @@ class Buffers(Work):
             self._impose(simulation.then, simulation.dt)
 
     def _impose(self, time: float, dt: float) -> None:
+        self.time = time
         self._find_shapes()
         planes, flowing, behind, seen = self._planes(), self._flowing(), self.behind, self._seen
         listed = Listed(self.store.low, self.domain.lists, self.matter)
@@ -173,9 +176,10 @@ class Buffers(Work):
         for face, state, one in zip(self.faces, self.states, whole_sums(self.comm, sums).tolist()):
             state.measure(face, one, self.units, dt)
         for face, state in zip(self.faces, self.states):
-            told = self._mean_speed(face, time)
-            state.answer(face, told, self.units.speed, dt)
-            state.follow_surface(face, told, face.level(time), self.units, dt)
+            pace = face.pace(time)
+            told = self._mean_speed(face, time) + pace
+            state.answer(face, told, pace, self.units.speed, dt)
+            state.follow_surface(face, told, pace, face.level(time), self.units, dt)
         materials = self.plan.materials
         self._fastest[:] = 0.0
         fixed = materials.laws, materials.law_of, self.units, dt
@@ -185,7 +189,8 @@ class Buffers(Work):
     def _planes(self) -> Planes:
         added = np.array([(one.added.pressure, one.added.speed + one.faster) for one in self.states])
         pressure, speed = np.ascontiguousarray(added.T)
-        return self.planes._replace(pressure=pressure, speed=speed)
+        place, pace = (np.array([f(self.time) for f in of]) for of in self._rides)
+        return self.planes._replace(place=place, pace=pace, pressure=pressure, speed=speed)
 
     def _told(self, time: float) -> Told:
         """What the ends give at ``time``, s."""
@@ -203,21 +208,23 @@ class Buffers(Work):
         return Flowing(*(store[name] for name in fields), *self._fixed, store.group)
 
     def _mean_speed(self, face: EndFace, time: float) -> float:
-        """The mean inward speed that a velocity end tells, m/s; 0 of a pressure end."""
+        """The mean inward speed that a velocity end tells, beside its plane, m/s; 0 of a pressure end."""
         if face.kind == "velocity" or face.by_pressure:
             return 0.0 if face.by_pressure else face.given(time)
         rows = self.states[face.number].means.rows
         area = (rows or face.rows) * self.dx ** (self.store.dimensions - 1)
         if face.kind == "flow":
             return face.given(time) / area if area else 0.0
-        return self._pumped(self.states[face.feeding], self.states[face.number].books, rows or face.rows)
+        return self._pumped(face, self.states[face.number].books, rows or face.rows)
 
-    def _pumped(self, source: EndState, own: Books, rows: float) -> float:
+    def _pumped(self, face: EndFace, own: Books, rows: float) -> float:
         """The mean speed of what a pump brings, m/s: that of what leaves at its ``source``, and what it owes
         by the books, a row in the time of PAID_IN rows."""
+        source = self.states[face.feeding]
+        away = self.faces[face.feeding].pace(self.time) - source.means.speed - source.faster
         left = source.books.number_out - source.books.number_in
         owed = (left - own.number_in + own.number_out) / rows if rows else 0.0
-        speed = -(source.means.speed + source.faster) * source.means.rows / rows if rows else 0.0
+        speed = away * source.means.rows / rows if rows else 0.0
         return speed * (1.0 + owed / PAID_IN)
 
     # What forces do not do.
@@ -254,8 +261,9 @@ class Buffers(Work):
 
     def state(self) -> dict:
         """The states of all ends."""
-        return {"ends": [state.kept() for state in self.states]}
+        return {"ends": [state.kept() for state in self.states], "ends_at": self.time}
 
     def restore(self, state: dict) -> None:
         """Go on from there."""
         self.states = [EndState.restored(one) for one in state["ends"]]
+        self.time = state["ends_at"]

@@ -337,6 +337,10 @@ STREAMS = {
     "past a disc": streaming(
         PLATES, OPEN, bodies={"disc": {**DISC, "pivot": [0.75, 0.5], "spin": 2.0, "no_slip": True}}
     ),
+    "in plates that go": streaming(
+        {**PLATES, "motion": [{"translation": {"velocity": [0.7, 0.0]}, "ramp": 0.05}]},
+        {name: {**one, "on": "walls"} for name, one in OPEN.items()},
+    ),
     "over a nozzle": streaming(
         FLOOR,
         {"left": {"at": 0.0, "inward": "+x", "velocity": 2.0, "span": {"y": [0.25, 0.75]}}},

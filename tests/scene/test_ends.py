@@ -183,6 +183,7 @@ def test_a_plane_does_not_ride_on_a_wall(tmp_path, key, moves):
         (PLATES, ('ends.outlet={at=2.0,inward="-x",level=1.0}',), "ends.outlet.level: 1.0: a level needs"),
         (PLATES, ('ends.inlet={at=0.0,inward="+x",pump="outle"}',), "ends.inlet.pump"),
         (PLATES, ('ends.inlet.profile="pipe"',), "ends.inlet.profile"),
+        (PLATES, ('ends.inlet.on="plate"',), 'ends.inlet.on: "plate": no wall has this name; did you mean'),
         (CHANNEL, ("ends.downstream.ramp=1.0",), "ends.downstream.ramp: 1.0: would let the level grow"),
         (
             CHANNEL,
@@ -221,3 +222,25 @@ def test_a_profile_runs_across_the_end(tmp_path):
     for axis in "xz":
         with pytest.raises(CaseError, match="is no axis across the end; give y"):
             draft(tmp_path, PLATES, f'ends.inlet.profile={{file="prof.csv",along="{axis}"}}')
+
+
+RIDES = 'ends.inlet.on="plates"', 'ends.outlet.on="plates"'
+
+
+@pytest.mark.parametrize(
+    "motion, fine",
+    [
+        ("[{translation={velocity=[0.2, 0.0]}}]", True),
+        ("[{translation={velocity=[0.2, 0.1]}}]", False),
+        ("[{rotation={speed=1.0,center=[0.0,0.0]}}]", False),
+    ],
+)
+def test_a_plane_rides_along_its_axis(tmp_path, motion, fine):
+    """On a wall that goes along it, which is then no fault and no warning; on another it is a fault."""
+    case = draft(tmp_path, PLATES, f"walls.plates.motion={motion}", *RIDES)
+    faults = [*end_faults(Scene(case))]
+    assert len(faults) == (0 if fine else 2)
+    assert all("plates: the motion of this wall is not one along x" in line for line in faults)
+    assert not fine or not [*end_warnings(Scene(case))]
+    rests = draft(tmp_path, PLATES, *RIDES)
+    assert len([*end_faults(Scene(rests))]) == 2

@@ -61,7 +61,8 @@ def seen_by(dimensions, axis, sign, field, added=(0.0, 0.0), gravity=None, under
     )
     columns = np.flatnonzero(behind)
     pushed = np.array(added)[:, None]
-    stands, surface = (np.array([axis]), np.zeros(1), np.array([float(sign)])), np.array([under])
+    still, surface = np.zeros(1), np.array([under])
+    stands = np.array([axis]), still, still, np.array([float(sign)])
     planes = Planes(*stands, *pushed, *[None] * 7, 0.0, surface)
     vicinity = Vicinity(kernel("wendland-c2", 1.4 * DX, dimensions), DX, gravity, (None,) * dimensions)
     seen = np.zeros((len(columns), FITTED + 1 + dimensions))
