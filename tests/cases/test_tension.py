@@ -253,6 +253,28 @@ def test_a_bridge_between_plates_has_the_meniscus_of_its_angle(tmp_path, angle, 
     assert bulge == pytest.approx(-cos * (1.0 - sin) / cos**2 if angle != 90.0 else 0.0, abs=0.1)
 
 
+def running(*keys):
+    """The mean velocity of the drop of the case from 4 to 12 s along its wall: all of it, its foot, its top, m/s."""
+    simulation, found = start(load(f"{CASES}/tension/sliding_drop.toml", keys)), []
+    store = simulation.store
+    while simulation.time < 12.0:
+        simulation.step()
+        if simulation.time > 4.0:
+            own = store.group[store.inner] == 0
+            x, v = (np.array(store[name])[:, store.inner][:, own] for name in ("position", "velocity"))
+            found.append([v[0, part].mean() for part in (x[1] > 0.0, x[1] < 0.2, x[1] > 0.7)])
+    return np.mean(found, axis=0)
+
+
+def test_a_drop_runs_down_a_wall_by_its_weight_over_its_viscosity():
+    """No drop sticks, and on a wall that holds the fluid it rolls; the control: on a level wall it rests."""
+    mean, foot, top = running()
+    assert 0.03 < mean < 0.08 and top > 1.5 * foot > 0.0
+    assert running("physics.gravity=[0.2,-0.1]")[0] == pytest.approx(2.0 * mean, rel=0.2)
+    assert running("fluids.water.viscosity=0.4")[0] == pytest.approx(0.5 * mean, rel=0.2)
+    assert abs(running("physics.gravity=[0.0,-0.1]")[0]) < 0.05 * mean
+
+
 BRIDGE = ("space.spacing=0.25", "space.lower=[-0.5,-3.0,-3.0]")
 LOW = "{{cylinder={{center=[{},0.0,0.0],radius=2.25,height=0.5,axis='x'}}}}"
 
