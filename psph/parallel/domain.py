@@ -70,7 +70,6 @@ class Domain:
         self.axis, self.periods = extent.axis, tuple(extent.periods)
         self.lower, self.upper = tuple(extent.lower), tuple(extent.upper)
         self._home = (self.lower, self.upper)
-        self._particles = comm.allreduce(store.owned)
         self.ghost_fields, self.refreshed, self.sought = travels
         self.lanes = lanes
         self.bounds: np.ndarray | None = None
@@ -203,13 +202,14 @@ class Domain:
     def _fit_grid(self) -> Grid:
         """The grid over the domain and particles outside it; the same on any number of ranks.
 
-        It depends on where particles are now and on nothing before: it shrinks as they come back.
+        It depends on where particles are now, and how many, and on nothing before: it shrinks as they
+        come back, and a run that is resumed after births has the same.
         Where it would have too many cells, its longest side beyond the domain is halved, again and
         again; particles farther out are counted to the outermost cells.
         """
         steps = self._steps_outside()
         grid = self._grid_with(steps)
-        allowed = CELLS_A_PARTICLE * self._particles
+        allowed = CELLS_A_PARTICLE * self.comm.allreduce(self.store.owned) if steps.any() else 0.0
         while steps.any() and math.prod(grid.counts) > allowed:
             steps[np.argmax(steps)] //= 2
             grid = self._grid_with(steps)

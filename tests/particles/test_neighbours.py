@@ -162,3 +162,18 @@ def test_the_grid_follows_jets_within_bounds_and_comes_back(dim):
         if places is flown:
             assert domain.upper[-1] > 1.2 and domain.grid != home  # it did follow
     assert domain.grid == home
+
+
+def test_the_grid_knows_nothing_of_how_many_there_were():
+    """Particles that were born count as those of the start: a run that is resumed has the same grid."""
+    places = np.random.default_rng(3).uniform(0, 1, (600, 2))
+    places[:40, 1] += np.linspace(0.1, 3.5, 40)
+    extent = (0.12, (0.0, 0.0), (1.0, 1.0), (None, None))
+    domain = domain_of(places[:200], *extent)
+    born = np.zeros((len(domain.store.data), 400))
+    born[list(domain.store.rows["position"])] = places[200:].T
+    domain.store.append(np.arange(200, 600), np.zeros(400, np.uint8), born)
+    few = domain.grid
+    domain.rebuild()
+    assert domain.grid == domain_of(places, *extent).grid
+    assert domain.grid != few
