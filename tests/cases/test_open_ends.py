@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from drafts import draft
 from gauging import start
-from scipy.spatial import cKDTree
 
 STREAM = """
 space = {{ dimensions = {dim}, spacing = 0.1, periodic = {across}, lower = {low}, upper = {high} }}
@@ -327,85 +326,3 @@ at = 2.4
 inward = "-x"
 pressure = 0.0
 """
-
-
-DUCT = """
-space = { dimensions = 2, spacing = 0.1 }
-time.end = 9.0
-physics.sound_speed = 20.0
-[fluids.water]
-shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.6] }
-velocity = [SPEED, 0.0]
-[walls.duct]
-shape.difference.from.box = { lower = [-0.6, -0.4], upper = [1.6, 1.0] }
-shape.difference.minus = [{ box = { lower = [-0.6, 0.0], upper = [1.6, 0.6] } }]
-motion = [{ translation = { velocity = [PACE, 0.0] } }]
-[ends.inlet]
-at = 0.0
-inward = "+x"
-velocity = 1.0
-on = "duct"
-[ends.outlet]
-at = 1.0
-inward = "-x"
-pressure = 0.0
-on = "duct"
-"""
-
-
-def carried(folder, pace, on):
-    """Places and speeds beside a duct that goes at a pace, after 1 s of a stream of 1 m/s in it, and the books."""
-    text = DUCT.replace("SPEED", str(1.0 + pace)).replace("PACE", str(pace))
-    simulation = start(draft(folder, text if on else text.replace('on = "duct"', "")))
-    while simulation.time < 1.0:
-        simulation.step()
-    store, states = simulation.store, simulation.engine.of("ends").states
-    fluid, way = store.shown("kind") == 0, np.array([pace, 0.0])
-    books = [(one.books.number_in, one.books.number_out) for one in states]
-    return store.shown("position")[fluid] - way * simulation.time, store.shown("velocity")[fluid] - way, books
-
-
-@pytest.mark.parametrize("pace", [0.5, -1.5])
-def test_ends_go_with_a_duct_as_if_it_were_still(tmp_path, pace):
-    """As many pass, and what is inside is where it would be to 0.2 dx, as fast to 1 %: steps are others.
-    Control: between planes that stay behind it is not."""
-    x, v, books = carried(tmp_path, 0.0, True)
-    for on in (True, False):
-        places, speeds, passed = carried(tmp_path, pace, on)
-        apart, rows = cKDTree(x).query(places)
-        off = abs(speeds - v[rows]).max()
-        assert (passed == books) == on
-        assert (apart.max() < 0.02 and off < 0.01) if on else off > 0.4
-
-
-PISTON = """
-space = { dimensions = 2, spacing = 0.05 }
-time.end = 9.0
-physics.sound_speed = 15.0
-[fluids.water]
-shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.6] }
-[walls.tank]
-shape.difference.from.box = { lower = [-0.6, -0.2], upper = [1.2, 0.8] }
-shape.difference.minus = [{ box = { lower = [-0.6, 0.0], upper = [1.0, 0.6] } }]
-[walls.piston]
-shape.difference.from.box = { lower = [-0.2, 0.0], upper = [0.0, 0.6] }
-shape.difference.minus = [{ box = { lower = [-0.2, 0.05], upper = [0.0, 0.55] } }]
-motion = [{ translation = { velocity = [PACE, 0.0] }, ramp = 0.2 }]
-[ends.hole]
-at = 0.0
-inward = "+x"
-span.y = [0.05, 0.55]
-pressure = 300.0
-on = "piston"
-"""
-
-
-@pytest.mark.parametrize("pace", [0.4, 0.0])
-def test_what_a_piston_displaces_leaves_through_its_hole(tmp_path, pace):
-    """But for a row, where the hole is nearly as wide; and nothing where it rests."""
-    simulation = start(draft(tmp_path, PISTON.replace("PACE", str(pace))))
-    while simulation.time < 1.1:
-        simulation.step()
-    [state] = simulation.engine.of("ends").states
-    left = state.books.number_out - state.books.number_in
-    assert left == pytest.approx(pace * 1.0 * 0.6 / 0.05**2, abs=10)
