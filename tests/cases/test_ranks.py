@@ -105,6 +105,7 @@ END = {
     "tension/film": 0.1,
     "tension/liquid_bridge": 0.05,
     "tension/sliding_drop": 0.1,
+    "tension/jet": 0.05,
     "hard/drop": 0.05,
     "hard/patch_3d": 0.02,
     "hard/twins": 2e-3,

@@ -275,6 +275,22 @@ def test_a_drop_runs_down_a_wall_by_its_weight_over_its_viscosity():
     assert abs(running("physics.gravity=[0.0,-0.1]")[0]) < 0.05 * mean
 
 
+@LONG
+def test_a_jet_breaks_into_drops_of_the_flow_of_a_period():
+    """Beyond 12 R each piece between two gaps is 9π R³ of water."""
+    simulation = start(load(f"{CASES}/tension/jet.toml"))
+    while simulation.time < 14.0:
+        simulation.step()
+    store = simulation.store
+    x, mass = np.array(store["position"])[0, store.inner], store.shown("mass")
+    water = store.group[store.inner] == 0
+    order = np.sort(x[water & (x > 12.0)])
+    ends = np.flatnonzero(np.diff(order) > 0.5)
+    pieces = np.diff(ends) * mass[water].max()
+    drops = pieces[pieces > 1.0]  # what is left of threads is less
+    assert len(drops) >= 2 and drops == pytest.approx(9.0 * math.pi, rel=0.1)
+
+
 BRIDGE = ("space.spacing=0.25", "space.lower=[-0.5,-3.0,-3.0]")
 LOW = "{{cylinder={{center=[{},0.0,0.0],radius=2.25,height=0.5,axis='x'}}}}"
 
