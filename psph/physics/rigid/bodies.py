@@ -42,6 +42,8 @@ KEPT = (
     "prescribed_turn",
     "pressing",
     "twisting",
+    "bearing",
+    "bearing_turn",
 )
 """The arrays of a state."""
 
@@ -62,7 +64,8 @@ class Bodies:
     velocity and angular velocity as they will be at the end of the step if the force stays; ``loose`` (n, 1)
     is 0 for a body that is held, which shows no velocity and no acceleration, else 1; ``prescribed``, m/s²,
     and ``prescribed_turn``, rad/s² (n, 3), are the accelerations of what is prescribed.  ``pressing`` N and
-    ``twisting`` N m (n, 3) are what contacts were in the last step, in the mean over it.
+    ``twisting`` N m (n, 3) are what contacts were in the last step, in the mean over it, ``bearing`` and
+    ``bearing_turn`` what joints bear at the end of it.
     """
 
     def __init__(self, bodies: Sequence[RigidBody], gravity: Sequence[float]):
@@ -94,15 +97,17 @@ class Bodies:
         self.ahead, self.spin_ahead = np.zeros((n, 3)), np.zeros((n, 3))
         self.prescribed, self.prescribed_turn = np.zeros((n, 3)), np.zeros((n, 3))
         self.pressing, self.twisting = np.zeros((n, 3)), np.zeros((n, 3))
+        self.bearing, self.bearing_turn = np.zeros((n, 3)), np.zeros((n, 3))
         self._led = [row for row, one in enumerate(bodies) if one.motion]
         self._swung = any(one.motion and one.pivot for one in bodies)
         self._lead(range(n), 0.0)
         self._begin()
 
-    def drift(self, then: float, dt: float, contacts=None) -> None:
+    def drift(self, then: float, dt: float, contacts=None, joints=None) -> None:
         """The first half of the kick, and the way to the end of the step of ``dt`` s at ``then``.
 
-        ``contacts`` between the two keep bodies from getting into each other (psph.simulation.touching).
+        ``contacts`` between the two keep bodies from getting into each other (psph.simulation.touching), and
+        ``joints`` together (psph.physics.rigid.joints).
         """
         before = self.velocity, self.spin_by(self.angular_momentum)
         self._kick(then, dt)
@@ -110,19 +115,31 @@ class Bodies:
         if contacts and dt > 0.0:
             contacts.meet(self, before, then, dt)
         loose, step = then > self.held, self._lasting(then, dt)
-        self.place = np.where(self.slides, self.place + step * self.velocity, self.place)
-        self._tumble(step[self.tumbling, 0])
-        self.angle = self.angle + step[self.hinged, 0] * self._spin_of_hinged(self.angular_momentum)
-        self._follow(then)
+        if joints:
+            joints.move(self, then, dt, lambda: self._go(then, step))
+        else:
+            self._go(then, step)
         velocity = np.where(self.slides, self.velocity + 0.5 * step * self.force / self.mass, self.velocity)
-        self._show(loose, velocity, self.angular_momentum + 0.5 * step * self._driving)
+        momentum = self.angular_momentum + 0.5 * step * self._driving
+        self._show(loose, *(joints.steadied(self, velocity, momentum) if joints else (velocity, momentum)))
 
-    def kick(self, then: float, dt: float, contacts=None) -> None:
-        """The second half of the kick, by the forces at the end of the step and by ``contacts``."""
+    def kick(self, then: float, dt: float, contacts=None, joints=None) -> None:
+        """The second half of the kick, by the forces at the end of the step, ``contacts`` and ``joints``."""
         self._kick(then, dt)
         if contacts:
             contacts.rest(self, dt)
+        if joints:
+            joints.rest(self, dt)
         self._show(then > self.held, self.velocity, self.angular_momentum)
+
+    def pose(self) -> tuple[np.ndarray, ...]:
+        """Where they stand, for :meth:`put`."""
+        return self.place, self.turn.copy(), self.frame, self.angle
+
+    def put(self, pose: tuple[np.ndarray, ...]) -> None:
+        """Let them stand there again."""
+        self.place, turn, self.frame, self.angle = pose
+        self.turn = turn.copy()
 
     def load(self, force: np.ndarray, torque: np.ndarray) -> None:
         """Forces and torques about the reference points (n, 3) at the end of the step; weight is added."""
@@ -146,13 +163,13 @@ class Bodies:
 
     @property
     def pushed(self) -> np.ndarray:
-        """All forces, N (n, 3), those of contacts among them."""
-        return self.force + self.pressing
+        """All forces, N (n, 3), those of contacts and joints among them."""
+        return self.force + self.pressing + self.bearing
 
     @property
     def turned_by(self) -> np.ndarray:
         """All torques about the reference points, N m (n, 3)."""
-        return self.torque + self.twisting
+        return self.torque + self.twisting + self.bearing_turn
 
     @property
     def acceleration(self) -> np.ndarray:
@@ -163,7 +180,7 @@ class Bodies:
     def angular_acceleration(self) -> np.ndarray:
         """By the last torques, rad/s² (n, 3): I⁻¹ (T − r × M A − ω × L); or as their motions have it."""
         found = self.prescribed_turn.copy()
-        driving = self._driving + self.twisting
+        driving = self._driving + self.twisting + self.bearing_turn
         found[self.hinged] = self.axis[self.hinged] * self._spin_of_hinged(driving)[:, None]
         if len(self.tumbling):
             spin, momentum = self.spin_ahead[self.tumbling], self.angular_momentum[self.tumbling]
@@ -280,6 +297,13 @@ class Bodies:
         self.loose = loose.astype(float)
         self.ahead = np.where(self.slides & ~loose, 0.0, velocity)
         self._spin(np.where(loose, momentum, 0.0))
+
+    def _go(self, then: float, step: np.ndarray) -> None:
+        """Places and turns at ``then``, s, each body after its own ``step`` (n, 1), s."""
+        self.place = np.where(self.slides, self.place + step * self.velocity, self.place)
+        self._tumble(step[self.tumbling, 0])
+        self.angle = self.angle + step[self.hinged, 0] * self._spin_of_hinged(self.angular_momentum)
+        self._follow(then)
 
     def _lasting(self, then: float, dt: float) -> np.ndarray:
         """How much of the step of ``dt`` s that ends at ``then`` each body is not held in, s (n, 1)."""

@@ -1,0 +1,349 @@
+"""Joints between rigid bodies, and of bodies with what stands still or moves as it is told.
+
+All joints are held at once, by impulses and not by springs: a step moves the bodies so that at its end every
+joint fits, and lets them go on with velocities at which it stays so.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from psph.physics.rigid.bodies import Bodies
+from psph.physics.rigid.contact import Yielding
+from psph.physics.rigid.lines import STEP
+from psph.vectors import Vector
+
+ROUNDS = 40
+"""In which the joints of a step are made to fit, at most; some four do."""
+
+FITS = 1e-13
+"""Of the longest arm of a joint, or of 1 rad: what is left of a gap."""
+
+SHARED = 1e-10
+"""Of the largest eigenvalue, below which a combination of rows holds nothing that others do not."""
+
+SLIDE, TURN, TILT, LENGTH, GO, SPIN = range(6)
+"""What a row of a joint is about: that it does not slide along a way, turn about it or tilt its axis about
+it, or keeps a length; and its coordinate, along a way or about it."""
+
+ORIGIN = (0.0, 0.0, 0.0)
+
+KEPT = ("push", "twist", "ways", "latched")
+"""The arrays of a state."""
+
+
+class Joint(NamedTuple):
+    """What joins the body of the row ``body`` with that of the row ``other``, None for what no force moves.
+
+    ``here`` and ``there`` are the points of the two that it joins, where they are at the start, m.  ``slides``
+    are directions along which the first may not move seen from the other, ``turns`` those about which it may not
+    turn, and ``tilts`` those about which an ``axis`` of both may not tilt; all of them turn with the other.
+    ``length`` in m is that of a rod between the points, None without one.  ``leader`` has the pose of the other
+    where it moves as it is told.  ``along`` is the way, or the axis, of its coordinate q: where the joint ``goes``
+    how far along it in m, else the angle about it in rad.  q has ``limits``, a spring of the ``stiffness`` (N/m or
+    N m) about ``rest``, and a damper with the ``damping`` (N s/m or N m s).  What reaches a limit with a ``latch``
+    stays there.
+    """
+
+    name: str
+    body: int
+    other: int | None
+    here: Vector
+    there: Vector
+    slides: tuple[Vector, ...] = ()
+    turns: tuple[Vector, ...] = ()
+    tilts: tuple[Vector, ...] = ()
+    axis: Vector | None = None
+    length: float | None = None
+    leader: Any = None
+    along: Vector | None = None
+    goes: bool = False
+    limits: tuple[float, float] = (-np.inf, np.inf)
+    stiffness: float = 0.0
+    rest: float = 0.0
+    damping: float = 0.0
+    latch: bool = False
+
+
+class Rows(NamedTuple):
+    """The rows of all joints at a moment: the ``gap`` of each (m,), m or rad, or the coordinate q of a joint; the
+    ``push`` N s and ``twist`` N m s (m, 3) of a unit impulse on the first body, and what turns the second ``back``;
+    ``told`` (m,) the rates at which what leads opens the gaps, m/s or rad/s."""
+
+    gap: np.ndarray
+    push: np.ndarray
+    twist: np.ndarray
+    back: np.ndarray
+    told: np.ndarray
+
+
+class Joints:
+    """The ``joints`` of the ``bodies`` of a scene (psph.physics.rigid.bodies).
+
+    With g(X) = 0 for all joints and the rows G = ∂g/∂X: V½ = V + Δt M⁻¹ F/2 + M⁻¹ G(X)ᵀ λ with the λ for which
+    g = 0 after the step, and V = V½ + Δt M⁻¹ F/2 + M⁻¹ Gᵀ μ with the μ for which G V = 0: SHAKE and RATTLE
+    (Ryckaert, Ciccotti & Berendsen 1977, J. Comput. Phys. 23, 327; Andersen 1983, J. Comput. Phys. 52, 24), for
+    bodies that turn.  What several rows could bear is shared evenly.  A limit is a row as long as it is reached
+    and pushes back.
+
+    ``push`` N s and ``twist`` N m s (n, 3) are the impulses of each joint on its first body in the last step, about
+    its point; ``ways`` (n,) the coordinates q, angles beyond half a turn too; ``latched`` (n,) −1 or 1 for what
+    stays at its lower or upper limit, else 0.
+    """
+
+    def __init__(self, joints: Sequence[Joint], bodies: Bodies):
+        self.joints, count = tuple(joints), len(bodies.bodies)
+        self._leaders = [*dict.fromkeys(one.leader for one in joints if one.other is None)]
+        self._first = np.array([one.body for one in joints])
+        self._second = np.array(
+            [count + self._leaders.index(one.leader) if one.other is None else one.other for one in joints]
+        )
+        origin = [one.pose(0.0).reference if one else ORIGIN for one in self._leaders]
+        self._reference = np.concatenate([bodies.reference, np.reshape(origin, (-1, 3))])
+        self._here, self._there = (np.array([getattr(one, of) for one in joints]) for of in ("here", "there"))
+        rows = [(j, *row) for j, one in enumerate(joints) for row in _rows_of(one)]
+        self._of, self._what, self._way = (np.array(of) for of in zip(*rows))
+        self._axis = np.array([one.axis or ORIGIN for one in joints])[self._of]
+        self._length = np.array([one.length or 0.0 for one in joints])[self._of]
+        self._lower, self._upper = (
+            np.array([one.limits[side] for one in joints])[self._of] for side in (0, 1)
+        )
+        self._latches, self._free = np.array([one.latch for one in joints]), self._what >= GO
+        arms = np.abs(self._here - self._reference[self._first]).max()
+        self._enough = FITS * max(1.0, float(arms), float(self._length.max()))
+        self.push, self.twist = np.zeros((2, len(joints), 3))
+        self.ways, self.latched, self._stops = np.zeros((3, len(joints)))
+        self._see(bodies, 0.0)
+
+    def move(self, bodies: Bodies, then: float, dt: float, go: Callable[[], None]) -> None:
+        """Let the bodies ``go`` to ``then``, s, by impulses at its beginning after which all joints fit."""
+        self.push, self.twist = np.zeros_like(self.push), np.zeros_like(self.twist)
+        self._stops = self.latched.copy()
+        before, kept, give = self._now, bodies.pose(), bodies.yielding(then)
+        given, let_go = np.zeros(len(self._of)), np.zeros(len(self._of), bool)
+        binds = self._binds()
+        solve = self._solver(before, give, binds)
+        for _ in range(ROUNDS):
+            go()
+            gaps = self._gaps(self._rows(bodies, then))
+            if not dt > 0.0:
+                break
+            if not np.abs(np.where(binds, gaps, 0.0)).max() > self._enough:
+                if not self._switch(gaps, given, let_go):
+                    break
+                binds = self._binds()
+                solve = self._solver(before, give, binds)
+            bodies.put(kept)
+            share = np.where(binds, solve(np.where(binds, -gaps / dt, 0.0)), -given)
+            given = given + share
+            self._act(bodies, before, share)
+        self.latched = np.where(self._latches, self._stops, 0.0)
+        self._see(bodies, then)
+        self._bear(bodies, self._sums(before, given), dt)
+
+    def rest(self, bodies: Bodies, dt: float) -> None:
+        """Velocities at the end of a step of ``dt`` s at which all joints stay as they are."""
+        share = self._staying(bodies.velocity, bodies.spin_by(bodies.angular_momentum))
+        self._act(bodies, self._now, share)
+        self._bear(bodies, self._sums(self._now, share), dt)
+
+    def steadied(self, bodies: Bodies, velocity: np.ndarray, momentum: np.ndarray) -> tuple:
+        """The ``velocity`` and angular ``momentum`` (n, 3) that the joints would make of these."""
+        push, twist = self._sums(self._now, self._staying(velocity, bodies.spin_by(momentum)))
+        return np.where(bodies.slides, velocity + push / bodies.mass, velocity), momentum + twist
+
+    def pulls(self, bodies: Bodies) -> tuple[np.ndarray, np.ndarray]:
+        """Forces, N, and torques about the reference points, N m, (n, 3) of springs and dampers in joints."""
+        rates = self._rates(self._now, bodies.ahead, bodies.spin_ahead)
+        stiff, rest, damped = (self._told(name) for name in ("stiffness", "rest", "damping"))
+        share = stiff * (rest - self.ways[self._of]) - damped * rates
+        return self._sums(self._now, np.where(self._free, share, 0.0))
+
+    def longest_step(self) -> float:
+        """Δt ≤ 0.2/√(k y) and 0.2/(ζ y), s, with y by which a joint gives way along its coordinate, 1/kg or
+        1/(kg m²), where no other joint holds it."""
+        give = np.where(self._free, np.diagonal(self._answers(self._now, self._give)), 0.0)
+        rates = np.sqrt(self._told("stiffness") * give), self._told("damping") * give
+        rate = max(float(one.max()) for one in rates)
+        return STEP / rate if rate > 0.0 else float(np.inf)
+
+    def widest(self) -> float:
+        """How far a joint gapes, m or rad."""
+        return float(np.abs(np.where(self._binds(), self._gaps(self._now), 0.0)).max())
+
+    def state(self) -> dict:
+        """What the next steps rest on, as lists of numbers."""
+        return {name: getattr(self, name).tolist() for name in KEPT}
+
+    def restore(self, state: dict, bodies: Bodies, time: float) -> None:
+        """Go on from there at ``time``, s."""
+        for name in KEPT:
+            setattr(self, name, np.reshape(state[name], getattr(self, name).shape).astype(float))
+        self._stops = self.latched.copy()
+        self._see(bodies, time)
+
+    def _see(self, bodies: Bodies, time: float) -> None:
+        """Take in where the joints are at ``time``, s, and how bodies give way there."""
+        self._now, self._give = self._rows(bodies, time), bodies.yielding(time)
+        self._calm: tuple | None = None
+        unrolled = self._unrolled(self._now.gap)
+        self.ways[self._of[self._free]] = unrolled[self._free]
+
+    def _unrolled(self, gap: np.ndarray) -> np.ndarray:
+        """The coordinates: of angles the ones nearest to those of before."""
+        turns = np.round((self.ways[self._of] - gap) / (2.0 * np.pi))
+        return np.where(self._what == SPIN, gap + 2.0 * np.pi * turns, gap)
+
+    def _gaps(self, rows: Rows) -> np.ndarray:
+        """Of what binds; of limits, how far beyond them it is."""
+        way, side = self._unrolled(rows.gap), self._stops[self._of]
+        limit = np.where(side > 0.0, self._upper, self._lower)
+        beyond = np.where(way > self._upper, way - self._upper, np.minimum(way - self._lower, 0.0))
+        with np.errstate(invalid="ignore"):  # where there is no limit
+            return np.where(self._free, np.where(side != 0.0, way - limit, beyond), rows.gap)
+
+    def _binds(self) -> np.ndarray:
+        """Which rows hold."""
+        return ~self._free | (self._stops[self._of] != 0.0)
+
+    def _switch(self, gaps: np.ndarray, given: np.ndarray, let_go: np.ndarray) -> bool:
+        """Whether a limit has been reached, or pulls and lets go."""
+        side = self._stops[self._of]
+        pulls = self._free & (side * given > 0.0) & (self.latched[self._of] == 0.0)
+        reached = self._free & (side == 0.0) & (gaps != 0.0) & ~let_go
+        let_go |= pulls
+        changed = pulls | reached
+        self._stops[self._of[changed]] = np.where(reached, np.sign(gaps), 0.0)[changed]
+        return bool(changed.any())
+
+    def _staying(self, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
+        """The impulses (m,) after which no gap opens; a limit does not pull."""
+        if self._calm is None:
+            self._calm = self._binds(), self._solver(self._now, self._give, self._binds())
+        binds, solve = self._calm
+        rates, side = self._rates(self._now, velocity, spin), self._stops[self._of]
+        share = solve(np.where(binds, -rates, 0.0))
+        pulls = self._free & (side * share > 0.0) & (self.latched[self._of] == 0.0)
+        if pulls.any():
+            binds = binds & ~pulls
+            share = self._solver(self._now, self._give, binds)(np.where(binds, -rates, 0.0))
+        return share
+
+    def _rows(self, bodies: Bodies, time: float) -> Rows:
+        """All rows where the bodies stand at ``time``, s."""
+        place, turn, velocity, spin = self._standing(bodies, time)
+        one, other = self._first[self._of], self._second[self._of]
+        here = place[one] + _turned(turn[one], self._here[self._of] - self._reference[one])
+        there = place[other] + _turned(turn[other], self._there[self._of] - self._reference[other])
+        apart, way = here - there, _turned(turn[other], self._way)
+        distance = np.sqrt((apart**2).sum(axis=1))
+        is_length = self._what == LENGTH
+        way = np.where(is_length[:, None], apart / np.where(distance > 0.0, distance, 1.0)[:, None], way)
+        slides = np.isin(self._what, (SLIDE, LENGTH, GO))[:, None]
+        arm = np.where(is_length[:, None], there, here) - place[other]
+        push = np.where(slides, way, 0.0)
+        twist = np.where(slides, np.cross(here - place[one], way), way)
+        back = np.where(slides, np.cross(arm, way), way)
+        relative = turn[one] @ turn[other].transpose(0, 2, 1)
+        sine, cosine = _vector_of(relative), 0.5 * (np.trace(relative, axis1=1, axis2=2) - 1.0)
+        tilted = np.cross(_turned(turn[other], self._axis), _turned(turn[one], self._axis))
+        along = {
+            SLIDE: apart,
+            TURN: sine,
+            TILT: tilted,
+            LENGTH: apart,
+            GO: apart,
+            SPIN: sine,
+        }
+        gap = sum(np.where(self._what == what, (way * of).sum(axis=1), 0.0) for what, of in along.items())
+        gap = np.where(self._what == SPIN, np.arctan2(gap, cosine), gap - self._length * is_length)
+        told = -(push * velocity[other]).sum(axis=1) - (back * spin[other]).sum(axis=1)
+        return Rows(gap, push, twist, back, told)
+
+    def _standing(self, bodies: Bodies, time: float) -> tuple[np.ndarray, ...]:
+        """Place and turn of bodies and of what leads them; velocity and spin of what leads, 0 of bodies."""
+        poses = [one.pose(time) if one else None for one in self._leaders]
+        still = ORIGIN, np.eye(3), ORIGIN, ORIGIN
+        led = [
+            (p.translation, np.reshape(p.rotation, (3, 3)), p.velocity, p.angular_velocity) if p else still
+            for p in poses
+        ]
+        none = np.zeros_like(bodies.place)
+        own = bodies.place, bodies.turn, none, none
+        return tuple(
+            np.concatenate([of, np.reshape([k[n] for k in led], (-1, *of.shape[1:]))])
+            for n, of in enumerate(own)
+        )
+
+    def _rates(self, rows: Rows, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
+        """How fast gaps open, m/s or rad/s (m,), of bodies with this ``velocity`` and ``spin`` (n, 3)."""
+        one, other = self._first[self._of], np.minimum(self._second[self._of], len(velocity) - 1)
+        first = (rows.push * velocity[one]).sum(axis=1) + (rows.twist * spin[one]).sum(axis=1)
+        second = (rows.push * velocity[other]).sum(axis=1) + (rows.back * spin[other]).sum(axis=1)
+        return first - np.where(self._second[self._of] < len(velocity), second, 0.0) + rows.told
+
+    def _answers(self, rows: Rows, give: Yielding) -> np.ndarray:
+        """The matrix G M⁻¹ Gᵀ (m, m): how fast the gap of a row opens after a unit impulse of another."""
+        count, m = len(give.sliding), len(self._of)
+        one, other, each = self._first[self._of], self._second[self._of], np.arange(m)
+        whole, free = np.zeros((m, count, 6)), other < count
+        whole[each, one] = np.hstack([rows.push, rows.twist])
+        whole[each[free], other[free]] -= np.hstack([rows.push, rows.back])[free]
+        moved = np.concatenate(
+            [whole[:, :, :3] * give.sliding, np.einsum("mnd,nde->mne", whole[:, :, 3:], give.turning)], axis=2
+        )
+        return moved.reshape(m, -1) @ whole.reshape(m, -1).T
+
+    def _solver(self, rows: Rows, give: Yielding, binds: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """What finds the impulses (m,) of the rows that bind, by the rates (m,) that they have to make."""
+        matrix = np.where(binds[:, None] & binds, self._answers(rows, give), 0.0)
+        values, ways = np.linalg.eigh(0.5 * (matrix + matrix.T))
+        holds = values > SHARED * max(float(values[-1]), np.finfo(float).tiny)
+        ways = ways[:, holds] / np.sqrt(values[holds])
+        return lambda rates: ways @ (ways.T @ rates)
+
+    def _sums(self, rows: Rows, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Impulses and their moments about the reference points (n, 3) of each body."""
+        count = len(self._reference) - len(self._leaders)
+        found = np.zeros((2, len(self._reference), 3))
+        for of, first, second in zip(found, (rows.push, rows.twist), (rows.push, rows.back)):
+            np.add.at(of, self._first[self._of], share[:, None] * first)
+            np.add.at(of, self._second[self._of], -share[:, None] * second)
+        return found[0, :count], found[1, :count]
+
+    def _act(self, bodies: Bodies, rows: Rows, share: np.ndarray) -> None:
+        """Let impulses act, and add them to those of the step."""
+        bodies.shoved(*self._sums(rows, share))
+        slides = (rows.push != 0.0).any(axis=1)[:, None]
+        np.add.at(self.push, self._of, share[:, None] * rows.push)
+        np.add.at(self.twist, self._of, np.where(slides, 0.0, share[:, None] * rows.twist))
+
+    def _bear(self, bodies: Bodies, impulses: tuple[np.ndarray, np.ndarray], dt: float) -> None:
+        """What bears bodies, by the impulses of half a step of ``dt`` s."""
+        bodies.bearing, bodies.bearing_turn = (2.0 * one / dt if dt > 0.0 else one for one in impulses)
+
+    def _told(self, name: str) -> np.ndarray:
+        """A number of the joint of each row."""
+        return np.array([getattr(one, name) for one in self.joints])[self._of]
+
+
+def _rows_of(joint: Joint) -> Iterator[tuple[int, Vector]]:
+    """What each row of a joint is about, and its way."""
+    yield from ((SLIDE, way) for way in joint.slides)
+    yield from ((TURN, way) for way in joint.turns)
+    yield from ((TILT, way) for way in joint.tilts)
+    if joint.length is not None:
+        yield LENGTH, ORIGIN
+    if joint.along is not None:
+        yield (GO if joint.goes else SPIN), joint.along
+
+
+def _turned(turn: np.ndarray, ways: np.ndarray) -> np.ndarray:
+    return np.einsum("nde,ne->nd", turn, ways)
+
+
+def _vector_of(turn: np.ndarray) -> np.ndarray:
+    """Axis times sine of the angle of matrices (n, 3, 3)."""
+    m = 0.5 * (turn - turn.transpose(0, 2, 1))
+    return np.stack([m[:, 2, 1], m[:, 0, 2], m[:, 1, 0]], axis=1)
