@@ -161,6 +161,19 @@ class MotionOf(Table):
     of: Name = key("the name of the body")
 
 
+class JointOf(Table):
+    """What a joint does to the first of its bodies, and how far it has gone."""
+
+    acts: ClassVar = (BODIES,)
+
+    of: Name = key("the name of the joint")
+
+    def contradictions(self, case) -> Iterator[Finding]:
+        """A joint that is none."""
+        if self.of not in case.joints:
+            yield ("of",), self.of, f"no joint has this name; {advise(self.of, case.joints)}"
+
+
 class Displacement(Table):
     """How far a point of a solid has moved, by the straight line fitted to the particles around it."""
 
@@ -201,6 +214,7 @@ class Gauge(Table):
         "sensor",
         "flow",
         "motion",
+        "joint",
         "displacement",
         "reaction",
         "stress",
@@ -214,6 +228,7 @@ class Gauge(Table):
     sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise=ANOTHER_KIND)
     flow: Flow | None = key("flow through a section", None, otherwise=ANOTHER_KIND)
     motion: MotionOf | None = key("motion of a rigid body", None, otherwise=ANOTHER_KIND)
+    joint: JointOf | None = key("what a joint bears", None, otherwise=ANOTHER_KIND)
     displacement: Displacement | None = key("how far a point of a solid moves", None, otherwise=ANOTHER_KIND)
     reaction: Reaction | None = key("what clamps and anvils bear", None, otherwise=ANOTHER_KIND)
     stress: StressAt | None = key("stress at a point of a solid or a soil", None, otherwise=ANOTHER_KIND)

@@ -32,7 +32,7 @@ def gauged(case) -> Iterator[Finding]:
         if says := _cannot_carry(case, getattr(asked, "moves_with", None)):
             yield ("gauges", name, gauge.kind, "moves_with"), asked.moves_with, says
         of, known = getattr(asked, "of", None), names_of(case.entries, *acts_on(asked))
-        if isinstance(of, str) and of not in known:
+        if isinstance(of, str) and of not in known and hasattr(asked, "measures"):
             says = f"no {asked.measures} has this name; {advise(of, known)}"
             yield ("gauges", name, gauge.kind, "of"), of, says
         if hasattr(asked, "contradictions"):

@@ -4,6 +4,7 @@ from psph.case.basics import Basics
 from psph.case.bodies import Body
 from psph.case.ends import OpenEnd
 from psph.case.fluids import Fluid
+from psph.case.joints import JointTable
 from psph.case.keys import Name, key
 from psph.case.placed import Answering
 from psph.case.regions import Region
@@ -30,6 +31,7 @@ class WithMatter(Basics):
         "the walls by name: particles that the fluid runs into", {}, max_length=MANY
     )
     bodies: dict[Name, Body] = key("the rigid bodies by name", {}, max_length=MANY)
+    joints: dict[Name, JointTable] = key("the joints of bodies by name", {}, max_length=MANY)
     ends: dict[Name, OpenEnd] = key(
         "the open ends by name: planes through which fluid comes and goes", {}, max_length=MANY
     )

@@ -13,6 +13,7 @@ from psph.scene.answering import answer
 from psph.scene.bodies import BRAKED, body_step, braked, in_words, lightest_share
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.body_parts import bodies_of
+from psph.scene.joints import joint_words
 from psph.scene.solids import meets
 from psph.scene.volumes import moved_as_whole
 
@@ -89,6 +90,8 @@ class RigidBodies(Kind):
         """What each is."""
         for body in bodies_of(self.scene.census):
             yield "matter", f"  body        {body.name}: {in_words(self.scene, body)}"
+        for words in joint_words(self.scene):
+            yield "matter", f"  joint       {words}"
 
 
 def push_bodies(simulation) -> None:

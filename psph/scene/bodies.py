@@ -13,6 +13,7 @@ from psph.physics.rigid.lines import SpringLine, longest_step
 from psph.physics.rigid.pose import in_space
 from psph.physics.solid.contact import SolidContact
 from psph.scene.body_parts import bodies_of
+from psph.scene.joints import joint_step
 from psph.scene.scene import Scene
 from psph.scene.volumes import Volume, volume_of
 
@@ -79,14 +80,16 @@ def lines_of(scene: Scene, order: Sequence[str]) -> tuple[SpringLine, ...]:
 def body_step(scene: Scene, passes: int = 1) -> float:
     """The longest step of so many rate ``passes`` that the bodies of a scene stand, s.
 
-    That of their lines; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within
+    That of their lines and of what is in their joints; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within
     h of its surface A, whose push in a step would move it too far, or turn it.  A viscous fluid brakes such a
     body within M/ρAh of the time in which it comes to rest itself: Δt ≤ 2M/ρAh of the limit of its viscosity.
     Contact is hard, and asks for
     no step of its own; that with elastic solids has one (psph.physics.solid.contact).
     """
     own = bodies_of(scene.census)
-    shortest = longest_step(lines_of(scene, [one.name for one in own]), Bodies(own, scene.gravity))
+    bodies = Bodies(own, scene.gravity)
+    shortest = longest_step(lines_of(scene, [one.name for one in own]), bodies)
+    shortest = min(shortest, joint_step(scene, bodies))
     share = lightest_share(scene)
     if share < 1.0:
         shortest = min(shortest, 0.5 * passes * share**0.5 * scene.smoothing_length / scene.sound_speed)

@@ -9,9 +9,11 @@ from psph.kinds import Work
 from psph.parallel.reductions import whole_sums
 from psph.physics.rigid.bodies import Bodies, crossing
 from psph.physics.rigid.body import RigidBody
+from psph.physics.rigid.joints import Joints
 from psph.physics.rigid.lines import pulls
 from psph.physics.rigid.pushes import add_pushes
 from psph.scene.bodies import lines_of, shares_of
+from psph.scene.joints import joints_of
 from psph.simulation.touching import Contacts
 
 BITS = 58
@@ -25,8 +27,9 @@ class FloatingBodies(Work):
     ``rows`` are their places there and ``bodies`` their state (psph.physics.rigid.bodies), the same on
     every rank: the fluid's pushes are added as whole numbers, so that they do not depend on how
     particles are spread, in ``units`` of N and N m.  ``body_of`` has the row of each group's body, −1 without
-    one; ``tensions`` are those of their lines, N; ``masses`` share the mass of each body among its particles
-    (psph.scene.bodies.shares_of), where body forces ask for that.
+    one; ``tensions`` are those of their lines, N; ``joints`` hold them together, None without any; ``masses``
+    share the mass of each body among its particles (psph.scene.bodies.shares_of), where body forces ask for
+    that.
     """
 
     name = "bodies"
@@ -39,6 +42,8 @@ class FloatingBodies(Work):
         self.masses = shares_of(scene) if plan.pulls.whole else None
         self.lines = lines_of(scene, [one.name for one in own])
         self.tensions = np.zeros(len(self.lines))
+        joined = joints_of(scene, [one.name for one in own])
+        self.joints = Joints(joined, self.bodies) if joined else None
         self.body_of = np.full(len(plan.materials.species), -1)
         for group, one in enumerate(scene.species):
             if isinstance(one.motion, RigidBody):
@@ -58,7 +63,7 @@ class FloatingBodies(Work):
 
     def drift(self, time: float, dt: float) -> None:
         """The first half of a kick, and the way to ``time``, s, with contacts."""
-        self.bodies.drift(time, dt, self.contacts)
+        self.bodies.drift(time, dt, self.contacts, self.joints)
 
     def push(self, engine, time: float, dt: float) -> None:
         """The second half of the kick at ``time``, s, by body forces and the pushes that the last pass of the
@@ -68,7 +73,7 @@ class FloatingBodies(Work):
         parts = engine.each(self._push, *of_each, engine.view(0.0), engine.columns())
         self.load(sum(parts), engine.domain.comm)
         if dt > 0.0:
-            self.bodies.kick(time, dt, self.contacts)
+            self.bodies.kick(time, dt, self.contacts, self.joints)
         engine.poses.turn_to(time)
 
     def overlapping(self, store, depth: float) -> np.ndarray | None:
@@ -107,11 +112,13 @@ class FloatingBodies(Work):
 
     def state(self) -> dict:
         """Where they are, and how they move."""
-        return self.bodies.state()
+        return self.bodies.state() | ({"joints": self.joints.state()} if self.joints else {})
 
     def restore(self, state: dict) -> None:
         """Go on from there."""
         self.bodies.restore(state)
+        if self.joints:
+            self.joints.restore(state["joints"], self.bodies)
 
     def maps(self, time: float = 0.0) -> np.ndarray:
         """The affine maps of each body, as psph.physics.rigid.pose.maps: (n, 3, dim, 1 + dim)."""
@@ -130,4 +137,6 @@ class FloatingBodies(Work):
         collective."""
         total = whole_sums(comm, pushes).astype(np.float64)
         pull, twist, self.tensions = pulls(self.lines, self.bodies)
+        if self.joints:
+            pull, twist = (a + b for a, b in zip((pull, twist), self.joints.pulls(self.bodies)))
         self.bodies.load(total[:, :3] * self.units[0] + pull, total[:, 3:] * self.units[1] + twist)

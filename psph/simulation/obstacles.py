@@ -11,6 +11,7 @@ from psph.composition.mirrors import BELOW
 from psph.physics.motion import Fixed, is_rigid
 from psph.physics.rigid.body import RigidBody
 from psph.scene.distance import Faces, corners_of, faces_of
+from psph.scene.joints import apart
 from psph.scene.shapes import bounds
 
 LAYER = 1.0
@@ -47,7 +48,7 @@ class Obstacle(NamedTuple):
 
     ``key`` is its key in the case; ``tips`` are what it meets the faces of bodies with, None of a mirror;
     ``body`` is the row of a body, −1 of others; ``pose`` that of the map that places it, −1 where it stays;
-    ``cuts`` are the rows of bodies that it cuts in two, and does not meet.
+    ``cuts`` are the rows of bodies that it cuts in two, or is joined to, and does not meet.
     """
 
     key: str
@@ -85,7 +86,9 @@ class MirrorFace(NamedTuple):
 
 def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
     """Bodies, walls that stay or move as a whole, and mirrors; ``rows`` are the poses of the bodies."""
-    ends = {}
+    ends, joined, names = {}, apart(scene), {}
+    for part in scene.layout.parts.bodies:
+        names[rows.index(int(plan.materials.pose_of[part]))] = scene.layout.parts[part].name
     for part in scene.layout.parts.boundaries:
         key, motion, shape = (
             scene.layout.parts[part].key,
@@ -93,11 +96,15 @@ def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
             scene.layout.parts[part].shape,
         )
         pose = int(plan.materials.pose_of[part]) if is_rigid(motion) else -1
+        own = scene.layout.parts[part].name
+        cuts = tuple(row for row, name in names.items() if {own, name} in joined)
         if isinstance(motion, RigidBody):
             ends[row := rows.index(pose)] = bounds(shape)
-            yield Obstacle(key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose)
+            yield Obstacle(
+                key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose, cuts
+            )
         elif isinstance(motion, Fixed) or is_rigid(motion):
-            yield Obstacle(key, shape, tips_of(shape, scene.spacing), -1, pose)
+            yield Obstacle(key, shape, tips_of(shape, scene.spacing), -1, pose, cuts)
     for one in scene.layout.mirror_planes:
         cut = [row for row, (low, up) in ends.items() if low[one.axis] < one.at < up[one.axis]]
         plane = MirrorFace(one.axis, one.at, 1 if one.side == BELOW else -1)

@@ -15,6 +15,7 @@ from psph.output.gauges.displacement import DisplacementGauge
 from psph.output.gauges.fit import REACH
 from psph.output.gauges.flow import FlowGauge
 from psph.output.gauges.force import ForceGauge
+from psph.output.gauges.joint import JointGauge
 from psph.output.gauges.level import LevelGauge
 from psph.output.gauges.motion import MotionGauge
 from psph.output.gauges.points import CarriedPoints, PointGauge, disc
@@ -64,6 +65,8 @@ def gauge_of(scene, name: str, table, mirrors=None):
             return FlowGauge(name, every, axis, asked.lower, asked.upper, _of(scene, asked))
         case "motion":
             return MotionGauge.of(scene, name, every, asked)
+        case "joint":
+            return JointGauge.of(scene, name, every, asked)
         case "displacement":
             groups = tuple(_groups(scene, asked.of))
             return DisplacementGauge(name, every, groups, asked.at, REACH * scene.spacing)

@@ -1,7 +1,7 @@
 """Joints between rigid bodies, and of bodies with what stands still or moves as it is told.
 
-All joints are held at once, by impulses and not by springs: a step moves the bodies so that at its end every
-joint fits, and lets them go on with velocities at which it stays so.
+All joints are held at once, by impulses and not by springs: a step moves the bodies so that at its end
+every joint fits, and lets them go on with velocities at which it stays so.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -36,14 +36,14 @@ KEPT = ("push", "twist", "ways", "latched")
 class Joint(NamedTuple):
     """What joins the body of the row ``body`` with that of the row ``other``, None for what no force moves.
 
-    ``here`` and ``there`` are the points of the two that it joins, where they are at the start, m.  ``slides``
-    are directions along which the first may not move seen from the other, ``turns`` those about which it may not
-    turn, and ``tilts`` those about which an ``axis`` of both may not tilt; all of them turn with the other.
-    ``length`` in m is that of a rod between the points, None without one.  ``leader`` has the pose of the other
-    where it moves as it is told.  ``along`` is the way, or the axis, of its coordinate q: where the joint ``goes``
-    how far along it in m, else the angle about it in rad.  q has ``limits``, a spring of the ``stiffness`` (N/m or
-    N m) about ``rest``, and a damper with the ``damping`` (N s/m or N m s).  What reaches a limit with a ``latch``
-    stays there.
+    ``here`` and ``there`` are the points of the two that it joins, where they are at the start, m.
+    ``slides`` are directions along which the first may not move seen from the other, ``turns`` those about
+    which it may not turn, and ``tilts`` those about which an ``axis`` of both may not tilt; all of them
+    turn with the other. ``length`` in m is that of a rod between the points, None without one.  ``leader``
+    has the pose of the other where it moves as it is told.  ``along`` is the way, or the axis, of its
+    coordinate q: where the joint ``goes`` how far along it in m, else the angle about it in rad.  q has
+    ``limits``, a spring of the ``stiffness`` (N/m or N m) about ``rest``, and a damper with the ``damping``
+    (N s/m or N m s).  What reaches a limit with a ``latch`` stays there.
     """
 
     name: str
@@ -67,9 +67,9 @@ class Joint(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """The rows of all joints at a moment: the ``gap`` of each (m,), m or rad, or the coordinate q of a joint; the
-    ``push`` N s and ``twist`` N m s (m, 3) of a unit impulse on the first body, and what turns the second ``back``;
-    ``told`` (m,) the rates at which what leads opens the gaps, m/s or rad/s."""
+    """The rows of all joints at a moment: the ``gap`` of each (m,), m or rad, or the coordinate q of a
+    joint; the ``push`` N s and ``twist`` N m s (m, 3) of a unit impulse on the first body, and what turns
+    the second ``back``; ``told`` (m,) the rates at which what leads opens the gaps, m/s or rad/s."""
 
     gap: np.ndarray
     push: np.ndarray
@@ -81,23 +81,24 @@ class Rows(NamedTuple):
 class Joints:
     """The ``joints`` of the ``bodies`` of a scene (psph.physics.rigid.bodies).
 
-    With g(X) = 0 for all joints and the rows G = ∂g/∂X: V½ = V + Δt M⁻¹ F/2 + M⁻¹ G(X)ᵀ λ with the λ for which
-    g = 0 after the step, and V = V½ + Δt M⁻¹ F/2 + M⁻¹ Gᵀ μ with the μ for which G V = 0: SHAKE and RATTLE
-    (Ryckaert, Ciccotti & Berendsen 1977, J. Comput. Phys. 23, 327; Andersen 1983, J. Comput. Phys. 52, 24), for
-    bodies that turn.  What several rows could bear is shared evenly.  A limit is a row as long as it is reached
-    and pushes back.
+    With g(X) = 0 for all joints and the rows G = ∂g/∂X: V½ = V + Δt M⁻¹ F/2 + M⁻¹ G(X)ᵀ λ with the λ for
+    which g = 0 after the step, and V = V½ + Δt M⁻¹ F/2 + M⁻¹ Gᵀ μ with the μ for which G V = 0: SHAKE and
+    RATTLE (Ryckaert, Ciccotti & Berendsen 1977, J. Comput. Phys. 23, 327; Andersen 1983, J. Comput. Phys.
+    52, 24), for bodies that turn.  What several rows could bear is shared evenly.  A limit is a row as long
+    as it is reached and pushes back.
 
-    ``push`` N s and ``twist`` N m s (n, 3) are the impulses of each joint on its first body in the last step, about
-    its point; ``ways`` (n,) the coordinates q, angles beyond half a turn too; ``latched`` (n,) −1 or 1 for what
-    stays at its lower or upper limit, else 0.
+    ``push`` N s and ``twist`` N m s (n, 3) are the impulses of each joint on its first body in the last
+    step, about its point; ``ways`` (n,) the coordinates q, angles beyond half a turn too; ``latched`` (n,)
+    −1 or 1 for what stays at its lower or upper limit, else 0.
     """
 
     def __init__(self, joints: Sequence[Joint], bodies: Bodies):
         self.joints, count = tuple(joints), len(bodies.bodies)
-        self._leaders = [*dict.fromkeys(one.leader for one in joints if one.other is None)]
+        led = [one.leader for one in joints if one.other is None]
+        self._leaders = [one for k, one in enumerate(led) if not any(one is other for other in led[:k])]
         self._first = np.array([one.body for one in joints])
         self._second = np.array(
-            [count + self._leaders.index(one.leader) if one.other is None else one.other for one in joints]
+            [count + self._lead(one) if one.other is None else one.other for one in joints]
         )
         origin = [one.pose(0.0).reference if one else ORIGIN for one in self._leaders]
         self._reference = np.concatenate([bodies.reference, np.reshape(origin, (-1, 3))])
@@ -174,18 +175,22 @@ class Joints:
 
     def state(self) -> dict:
         """What the next steps rest on, as lists of numbers."""
-        return {name: getattr(self, name).tolist() for name in KEPT}
+        return {name: getattr(self, name).tolist() for name in KEPT} | {"time": self._time}
 
-    def restore(self, state: dict, bodies: Bodies, time: float) -> None:
-        """Go on from there at ``time``, s."""
+    def restore(self, state: dict, bodies: Bodies) -> None:
+        """Go on from there."""
         for name in KEPT:
             setattr(self, name, np.reshape(state[name], getattr(self, name).shape).astype(float))
         self._stops = self.latched.copy()
-        self._see(bodies, time)
+        self._see(bodies, state["time"])
+
+    def _lead(self, joint: Joint) -> int:
+        """Which leader it has."""
+        return next(k for k, one in enumerate(self._leaders) if one is joint.leader)
 
     def _see(self, bodies: Bodies, time: float) -> None:
         """Take in where the joints are at ``time``, s, and how bodies give way there."""
-        self._now, self._give = self._rows(bodies, time), bodies.yielding(time)
+        self._now, self._give, self._time = self._rows(bodies, time), bodies.yielding(time), time
         self._calm: tuple | None = None
         unrolled = self._unrolled(self._now.gap)
         self.ways[self._of[self._free]] = unrolled[self._free]
