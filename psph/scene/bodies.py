@@ -80,11 +80,11 @@ def lines_of(scene: Scene, order: Sequence[str]) -> tuple[SpringLine, ...]:
 def body_step(scene: Scene, passes: int = 1) -> float:
     """The longest step of so many rate ``passes`` that the bodies of a scene stand, s.
 
-    That of their lines and of what is in their joints; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body weighs less than the fluid within
-    h of its surface A, whose push in a step would move it too far, or turn it.  A viscous fluid brakes such a
-    body within M/ρAh of the time in which it comes to rest itself: Δt ≤ 2M/ρAh of the limit of its viscosity.
-    Contact is hard, and asks for
-    no step of its own; that with elastic solids has one (psph.physics.solid.contact).
+    That of their lines and of what is in their joints; and in a fluid Δt ≤ 0.5 √(M/ρAh) h/c where a body
+    weighs less than the fluid within h of its surface A, whose push in a step would move it too far, or turn
+    it.  A viscous fluid brakes such a body within M/ρAh of the time in which it comes to rest itself: Δt ≤
+    2M/ρAh of the limit of its viscosity.  Contact is hard, and asks for no step of its own; that with elastic
+    solids has one (psph.physics.solid.contact).
     """
     own = bodies_of(scene.census)
     bodies = Bodies(own, scene.gravity)

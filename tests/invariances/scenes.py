@@ -120,6 +120,22 @@ def sand(**keys):
     return {"shape": BLOCK, "velocity_gradient": STIR, "velocity_center": [0.7, 0.4], **SAND, **keys}
 
 
+def jointed():
+    """Two bodies on a common point, one of which slides along x on a spring with a damper."""
+    middles = (np.array([x, 0.5625]) for x in (0.4375, 1.0625))
+    left, right = (
+        {"shape": box(*(np.array([[-0.1875, -0.1875], [0.1875, 0.1875]]) + at).tolist()), "density": density}
+        for at, density in zip(middles, (700.0, 1300.0))
+    )
+    return {
+        "bodies": {"left": {**left, "spin": 2.0}, "right": {**right, "velocity": [1.0, 0.0]}},
+        "joints": {
+            "knee": {"of": ["left", "right"], "ball": {"at": [0.75, 0.5625]}},
+            "rail": {"of": ["right"], "slider": {"along": [1.0, 0.0], "stiffness": 2e4, "damping": 300.0}},
+        },
+    }
+
+
 def moored(here, there):
     """Two bodies: one on a spring with a damper, one on a hinge, and a rope between them."""
     spring = {"at": list(here), "anchor": [-1.0, 1.5], "stiffness": 2e5, "length": 1.4, "damping": 300.0}
@@ -298,6 +314,7 @@ SCENES = {
         walls={"tank": tank()},
         physics={"gravity": PULL},
     ),
+    "jointed bodies": poured({"tank": tank()}, **jointed()),
     "moored bodies": poured({"tank": tank()}, bodies=moored((0.4375, 0.5625), (1.0625, 0.5625))),
     "moored bodies on wet soils": scene(
         soils={

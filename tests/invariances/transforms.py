@@ -14,6 +14,7 @@ DIRECTIONS = (
     "amplitude",
     "shift",
     "normal",
+    "along",
     "direction",
     "translation",
     "force",
@@ -180,7 +181,7 @@ class Shift(NamedTuple):
 NO_UNIT = (
     "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction", "restitution",
     "exponent", "friction", "fast_friction", "inertial_number", "damping_ratio", "angle", "phase", "cfl",
-    "gather_every", "hourglass", "alpha", "skin", "rate", "epsilon", "delta", "beta", "contact",
+    "gather_every", "hourglass", "along", "alpha", "skin", "rate", "epsilon", "delta", "beta", "contact",
 )  # fmt: skip
 UNIT_OF = {
     **dict.fromkeys(

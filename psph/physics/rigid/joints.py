@@ -190,7 +190,8 @@ class Joints:
 
     def _see(self, bodies: Bodies, time: float) -> None:
         """Take in where the joints are at ``time``, s, and how bodies give way there."""
-        self._now, self._give, self._time = self._rows(bodies, time), bodies.yielding(time), time
+        self._now, self._time = self._rows(bodies, time), time
+        self._give = bodies.yielding(float(np.nextafter(time, np.inf)))  # none is loose at the time 0
         self._calm: tuple | None = None
         unrolled = self._unrolled(self._now.gap)
         self.ways[self._of[self._free]] = unrolled[self._free]
