@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from psph.engine.jit import elementwise
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.rigid.contact import Yielding
 from psph.physics.rigid.lines import STEP
@@ -21,7 +22,7 @@ FITS = 1e-13
 """Of the longest arm of a joint, or of 1 rad: what is left of a gap."""
 
 SHARED = 1e-10
-"""Of the largest eigenvalue, below which a combination of rows holds nothing that others do not."""
+"""Part of its answer to itself that is left of a row which forbids what others do: it bears nothing."""
 
 SLIDE, TURN, TILT, LENGTH, GO, SPIN = range(6)
 """What a row of a joint is about: that it does not slide along a way, turn about it or tilt its axis about
@@ -112,7 +113,9 @@ class Joints:
         )
         self._latches, self._free = np.array([one.latch for one in joints]), self._what >= GO
         arms = np.abs(self._here - self._reference[self._first]).max()
-        self._enough = FITS * max(1.0, float(arms), float(self._length.max()))
+        gyration = np.sqrt(np.trace(bodies.inertia, axis1=1, axis2=2) / bodies.mass[:, 0])
+        size = max(float(arms), float(gyration.max()), float(self._length.max()))
+        self._enough = FITS * np.where(np.isin(self._what, (SLIDE, LENGTH, GO)), size, 1.0)
         self.push, self.twist = np.zeros((2, len(joints), 3))
         self.ways, self.latched, self._stops = np.zeros((3, len(joints)))
         self._see(bodies, 0.0)
@@ -130,7 +133,7 @@ class Joints:
             gaps = self._gaps(self._rows(bodies, then))
             if not dt > 0.0:
                 break
-            if not np.abs(np.where(binds, gaps, 0.0)).max() > self._enough:
+            if not (np.abs(np.where(binds, gaps, 0.0)) > self._enough).any():
                 if not self._switch(gaps, given, let_go):
                     break
                 binds = self._binds()
@@ -303,11 +306,15 @@ class Joints:
 
     def _solver(self, rows: Rows, give: Yielding, binds: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         """What finds the impulses (m,) of the rows that bind, by the rates (m,) that they have to make."""
-        matrix = np.where(binds[:, None] & binds, self._answers(rows, give), 0.0)
-        values, ways = np.linalg.eigh(0.5 * (matrix + matrix.T))
-        holds = values > SHARED * max(float(values[-1]), np.finfo(float).tiny)
-        ways = ways[:, holds] / np.sqrt(values[holds])
-        return lambda rates: ways @ (ways.T @ rates)
+        rows_held = np.flatnonzero(binds)
+        factors = factored(self._answers(rows, give)[np.ix_(rows_held, rows_held)])
+
+        def solve(rates: np.ndarray) -> np.ndarray:
+            found = np.zeros(len(binds))
+            found[rows_held] = solved(factors, rates[rows_held])
+            return found
+
+        return solve
 
     def _sums(self, rows: Rows, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Impulses and their moments about the reference points (n, 3) of each body."""
@@ -353,3 +360,39 @@ def _vector_of(turn: np.ndarray) -> np.ndarray:
     """Axis times sine of the angle of matrices (n, 3, 3)."""
     m = 0.5 * (turn - turn.transpose(0, 2, 1))
     return np.stack([m[:, 2, 1], m[:, 0, 2], m[:, 1, 0]], axis=1)
+
+
+@elementwise
+def factored(matrix):
+    """L below, and D on the diagonal, of the ``matrix`` (m, m) = L D Lᵀ; zeros in D of rows that forbid
+    nothing new.  Other units change no bit of it but by their powers of two."""
+    a = matrix.copy()
+    for k in range(len(a)):
+        if not a[k, k] > SHARED * matrix[k, k]:
+            a[k, k] = 0.0
+            continue
+        for i in range(k + 1, len(a)):
+            factor = a[i, k] / a[k, k]
+            for j in range(k + 1, i + 1):
+                a[i, j] -= factor * a[j, k]
+        for i in range(k + 1, len(a)):
+            a[i, k] /= a[k, k]
+    return a
+
+
+@elementwise
+def solved(factors, rates):
+    """x (m,) with L D Lᵀ x = ``rates``; zeros where D is."""
+    x = rates.copy()
+    for k in range(len(x)):
+        if factors[k, k] > 0.0:
+            for i in range(k + 1, len(x)):
+                x[i] -= factors[i, k] * x[k]
+            x[k] /= factors[k, k]
+        else:
+            x[k] = 0.0
+    for k in range(len(x) - 1, -1, -1):
+        if factors[k, k] > 0.0:
+            for i in range(k + 1, len(x)):
+                x[k] -= factors[i, k] * x[i]
+    return x
