@@ -271,17 +271,37 @@ ROOMS = (
     "matter/",
     *(
         f"case/{room}"
-        for room in ("bodies", "ends", "fluids", "hooke", "regions", "soils", "solids", "tensions", "updated")
+        for room in (
+            "bodies",
+            "ends",
+            "fluids",
+            "hooke",
+            "joints",
+            "regions",
+            "soils",
+            "solids",
+            "tensions",
+            "updated",
+        )
     ),
-    *(f"scene/{room}" for room in ("fluid/", "bod", "regions", "soils", "solid", "stressed", "volumes")),
+    *(
+        f"scene/{room}"
+        for room in ("fluid/", "bod", "joints", "regions", "soils", "solid", "stressed", "volumes")
+    ),
     *(f"scene/{room}" for room in ("answering", "calming", "end")),
     *(f"scene/parts/{room}" for room in ("end", "fluid", "hookean", "order", "rigid", "soil", "solid")),
-    *("physics/rigid/bod", "physics/rigid/contact", "physics/rigid/lines", "physics/rigid/pushes"),
+    *(
+        "physics/rigid/bod",
+        "physics/rigid/contact",
+        "physics/rigid/joints",
+        "physics/rigid/lines",
+        "physics/rigid/pushes",
+    ),
     *("physics/solid/", "physics/stress/", "physics/region"),
     *(f"simulation/{room}" for room in ("solid", "immersion", "pressed", "floating", "touching", "meetings")),
     *(f"simulation/{room}" for room in ("clamps", "end", "obstacles", "paddles", "wet_contact")),
     *("particles/others", "particles/partners", "parallel/reference", "parallel/partner"),
-    *(f"output/gauges/{room}" for room in ("motion", "reaction", "stress")),
+    *(f"output/gauges/{room}" for room in ("joint", "motion", "reaction", "stress")),
     *("lab/battery/solid", "lab/bench/lammps_solid", "lab/bench/block"),
     *("lab/maps/elastic", "lab/report/elastic", "theory/stability/elastic", "theory/stability/zigzags"),
 )

@@ -67,7 +67,7 @@ class Joint(NamedTuple):
     latch: bool = False
 
 
-class Rows(NamedTuple):
+class JointRows(NamedTuple):
     """The rows of all joints at a moment: the ``gap`` of each (m,), m or rad, or the coordinate q of a
     joint; the ``push`` N s and ``twist`` N m s (m, 3) of a unit impulse on the first body, and what turns
     the second ``back``; ``told`` (m,) the rates at which what leads opens the gaps, m/s or rad/s."""
@@ -204,7 +204,7 @@ class Joints:
         turns = np.round((self.ways[self._of] - gap) / (2.0 * np.pi))
         return np.where(self._what == SPIN, gap + 2.0 * np.pi * turns, gap)
 
-    def _gaps(self, rows: Rows) -> np.ndarray:
+    def _gaps(self, rows: JointRows) -> np.ndarray:
         """Of what binds; of limits, how far beyond them it is."""
         way, side = self._unrolled(rows.gap), self._stops[self._of]
         limit = np.where(side > 0.0, self._upper, self._lower)
@@ -239,7 +239,7 @@ class Joints:
             share = self._solver(self._now, self._give, binds)(np.where(binds, -rates, 0.0))
         return share
 
-    def _rows(self, bodies: Bodies, time: float) -> Rows:
+    def _rows(self, bodies: Bodies, time: float) -> JointRows:
         """All rows where the bodies stand at ``time``, s."""
         place, turn, velocity, spin = self._standing(bodies, time)
         one, other = self._first[self._of], self._second[self._of]
@@ -268,7 +268,7 @@ class Joints:
         gap = sum(np.where(self._what == what, (way * of).sum(axis=1), 0.0) for what, of in along.items())
         gap = np.where(self._what == SPIN, np.arctan2(gap, cosine), gap - self._length * is_length)
         told = -(push * velocity[other]).sum(axis=1) - (back * spin[other]).sum(axis=1)
-        return Rows(gap, push, twist, back, told)
+        return JointRows(gap, push, twist, back, told)
 
     def _standing(self, bodies: Bodies, time: float) -> tuple[np.ndarray, ...]:
         """Place and turn of bodies and of what leads them; velocity and spin of what leads, 0 of bodies."""
@@ -285,14 +285,14 @@ class Joints:
             for n, of in enumerate(own)
         )
 
-    def _rates(self, rows: Rows, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
+    def _rates(self, rows: JointRows, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
         """How fast gaps open, m/s or rad/s (m,), of bodies with this ``velocity`` and ``spin`` (n, 3)."""
         one, other = self._first[self._of], np.minimum(self._second[self._of], len(velocity) - 1)
         first = (rows.push * velocity[one]).sum(axis=1) + (rows.twist * spin[one]).sum(axis=1)
         second = (rows.push * velocity[other]).sum(axis=1) + (rows.back * spin[other]).sum(axis=1)
         return first - np.where(self._second[self._of] < len(velocity), second, 0.0) + rows.told
 
-    def _answers(self, rows: Rows, give: Yielding) -> np.ndarray:
+    def _answers(self, rows: JointRows, give: Yielding) -> np.ndarray:
         """The matrix G M⁻¹ Gᵀ (m, m): how fast the gap of a row opens after a unit impulse of another."""
         count, m = len(give.sliding), len(self._of)
         one, other, each = self._first[self._of], self._second[self._of], np.arange(m)
@@ -304,7 +304,9 @@ class Joints:
         )
         return moved.reshape(m, -1) @ whole.reshape(m, -1).T
 
-    def _solver(self, rows: Rows, give: Yielding, binds: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    def _solver(
+        self, rows: JointRows, give: Yielding, binds: np.ndarray
+    ) -> Callable[[np.ndarray], np.ndarray]:
         """What finds the impulses (m,) of the rows that bind, by the rates (m,) that they have to make."""
         rows_held = np.flatnonzero(binds)
         factors = factored(self._answers(rows, give)[np.ix_(rows_held, rows_held)])
@@ -316,7 +318,7 @@ class Joints:
 
         return solve
 
-    def _sums(self, rows: Rows, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _sums(self, rows: JointRows, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Impulses and their moments about the reference points (n, 3) of each body."""
         count = len(self._reference) - len(self._leaders)
         found = np.zeros((2, len(self._reference), 3))
@@ -325,7 +327,7 @@ class Joints:
             np.add.at(of, self._second[self._of], -share[:, None] * second)
         return found[0, :count], found[1, :count]
 
-    def _act(self, bodies: Bodies, rows: Rows, share: np.ndarray) -> None:
+    def _act(self, bodies: Bodies, rows: JointRows, share: np.ndarray) -> None:
         """Let impulses act, and add them to those of the step."""
         bodies.shoved(*self._sums(rows, share))
         slides = (rows.push != 0.0).any(axis=1)[:, None]
