@@ -35,6 +35,11 @@ class Columned(Table):
         """The largest size of a value."""
         return float(np.abs(self._rows[:, 1]).max())
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The least and the largest value."""
+        return float(self._rows[:, 1].min()), float(self._rows[:, 1].max())
+
     def at(self, x):
         """The value at ``x``, between rows along a straight line, beyond them that of the last."""
         return np.interp(x, self._rows[:, 0], self._rows[:, 1])

@@ -9,7 +9,7 @@ from psph.case.ends import LEVEL
 from psph.case.keys import AXES
 from psph.scene.end_columns import column_of
 from psph.scene.end_rides import ride_faults
-from psph.scene.end_rows import across_up
+from psph.scene.end_rows import across_up, rows_behind
 from psph.scene.ends import UNLIKE, groups_of, mean_of, unlike
 from psph.scene.lattice import TOLERANCE
 from psph.scene.layout import NONE
@@ -88,6 +88,12 @@ def end_warnings(scene) -> Iterator[str]:
                 f"ends.{name}.span: begins at a height of {low:.4g} m, and fluid reaches {water:.4g} m, "
                 "so that nothing passes before it rises there; let the span begin lower"
             )
+        if (heights := _below_the_bed(scene, name, end)) is not None:
+            low, bed = heights
+            yield (
+                f"ends.{name}.level: {low:.4g} m is below the bed behind its plane, at {bed:.4g} m, so that "
+                "all of the fluid runs out; give a height above it, against gravity"
+            )
         if (site := _fluid_behind(scene, name, end)) is not None:
             yield (
                 f"ends.{name}: fluid stands behind its buffer at {shown(site)} and stays there; move the "
@@ -117,9 +123,26 @@ def _above_water(scene, end) -> tuple[float, float] | None:
         return None
     water = [scene.census.surface_of(n) for n in range(len(scene.case.fluids)) if scene.census.sizes[n]]
     water += [one.level for one in scene.case.ends.values() if isinstance(one.level, float)]
-    water += [one.level.largest for one in scene.case.ends.values() if isinstance(one.level, Course)]
+    water += [_levels(one)[1] for one in scene.case.ends.values() if isinstance(one.level, Course)]
     low = min(up[rising] * x for x in told)
     return (low, max(water)) if water and low >= max(water) - TOLERANCE * scene.spacing else None
+
+
+def _below_the_bed(scene, name: str, end) -> tuple[float, float] | None:
+    """The least level that an end is given and the height of the bed behind it, m, where that is above; else
+    None."""
+    groups = groups_of(scene.layout, name)
+    if not isinstance(end.level, (float, Course)) or not groups:
+        return None
+    box = scene.layout.parts[groups[0]].shape.form
+    rows = rows_behind(scene.layout, end, groups, np.array(box.lower), np.array(box.upper))
+    low, half = _levels(end)[0], 0.5 * scene.spacing
+    return (low, rows.heights[0] - half) if rows is not None and low < rows.heights[0] - half else None
+
+
+def _levels(end) -> tuple[float, float]:
+    """The least and the largest level that an end is given, m."""
+    return end.level.ends if isinstance(end.level, Course) else (end.level, end.level)
 
 
 def _open_side(scene, name: str, end) -> tuple[str, tuple[float, ...]] | None:

@@ -154,6 +154,7 @@ def test_a_profile_needs_a_mean(tmp_path, values, fine):
             "ends.downstream.span.y=[1.0, 1.4]",
             "ends.downstream.span: begins at a height of 1 m, and",
         ),
+        (CHANNEL, "ends.downstream.level=-0.1", "ends.downstream.level: -0.1 m is below the bed"),
     ],
 )
 def test_what_is_likely_not_meant_is_said(tmp_path, text, key, says):
