@@ -90,7 +90,7 @@ SCENES = {
     ),
     "stiff solid in oil": drum(
         {"oil": turning(shape=less(disc(RADIUS), disc(0.5)), viscosity=0.05)},
-        solids={"disc": turning(0.5, **{**RUBBER, "young": 8e6}, no_slip=True)},
+        solids={"disc": turning(0.5, **{**RUBBER, "young": 8e6})},
     ),
     "damped solid": free({}, solids={"disc": turning(**RUBBER, damping=200.0, law="neo-hookean")}),
     "bound solid": free(NO_SOUND, solids={"disc": turning(**RUBBER)}),
@@ -224,9 +224,9 @@ def test_a_stiff_disc_in_oil_does_not_swell_and_shrink(tmp_path, monkeypatch):
     """Waves across it are calmed, which a step leaves unresolved.  The control: by as much as waves that take all of
     its thickness along."""
     name = "stiff solid in oil"
-    assert turned(name, tmp_path, 0.4 * np.pi)[0] < 5e-3
+    assert turned(name, tmp_path, 0.5 * np.pi)[0] < 5e-3
     monkeypatch.setattr(calming, "BREATHING", 1.0)
-    assert turned(name, tmp_path, 0.4 * np.pi)[0] > 0.05
+    assert turned(name, tmp_path, 0.5 * np.pi)[0] > 0.05
 
 
 def test_a_flow_that_is_no_turn_is_seen(tmp_path):

@@ -200,7 +200,8 @@ def test_friction_at_a_wall_without_slip_is_that_with_the_mirrored_velocity(corr
     physics = SimpleNamespace(gradient_correction=correction, central_friction=None, laplacian_friction=None)
 
     def forms(*motions):
-        species = [SimpleNamespace(no_slip=n < 1, viscosity=1.0, motion=one) for n, one in enumerate(motions)]
+        common = {"viscosity": 1.0, "bonded": None}
+        species = [SimpleNamespace(no_slip=n < 1, motion=one, **common) for n, one in enumerate(motions)]
         scene = SimpleNamespace(physics=physics, species=species, rheologies=())
         return LaminarViscosity().in_scene(scene), NoSlip().in_scene(scene)
 

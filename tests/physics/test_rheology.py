@@ -135,7 +135,9 @@ def test_a_wall_counts_by_its_grip_with_what_it_mirrors():
 @pytest.mark.parametrize("correction", (None, GradientCorrection(0.5)))
 def test_no_slip_rubs_as_the_fluid_does(correction):
     physics = SimpleNamespace(gradient_correction=correction, central_friction=None, laplacian_friction=None)
-    mud = SimpleNamespace(no_slip=True, rheology=1, density=1000.0, viscosity=0.0, rubs=True, motion=Fixed())
+    mud = SimpleNamespace(
+        no_slip=True, rheology=1, density=1000.0, viscosity=0.0, rubs=True, motion=Fixed(), bonded=None
+    )
     scene = SimpleNamespace(physics=physics, species=(mud,), rheologies=(PASTE,))
     friction, sticking = ApparentViscosity().in_scene(scene), NoSlip().in_scene(scene)
     assert isinstance(sticking, GrippedFlow) and friction.largest == PASTE.largest / 1000.0
