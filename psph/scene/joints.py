@@ -26,7 +26,7 @@ def joints_of(scene: Scene, order: Sequence[str]) -> tuple[Joint, ...]:
     places = {one.name: one.reference for one in bodies_of(scene.census)}
     found = []
     for name, table in scene.case.joints.items():
-        other, motion = rows.get(table.of[-1]), motions[table.of[-1]]
+        other, motion = rows.get(table.of[-1]), motions.get(table.of[-1])
         if len(table.of) == 1:
             other, motion = None, None
         leader = motion if other is None and motion is not None and is_rigid(motion) else None

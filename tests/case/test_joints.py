@@ -65,6 +65,15 @@ def test_a_joint_that_cannot_be_is_refused(was, now, where, says, tmp_path):
     assert any(where in line and says in line for line in lines), lines
 
 
+def test_a_joint_with_a_mirror_stays_where_it_is(tmp_path):
+    """A mirror has no particles; it stands still."""
+    text = ARM.replace('of = ["upper"]', 'of = ["upper", "floor"]').replace(
+        "[walls.floor]", '[walls.floor]\ncondition = "mirror"'
+    )
+    simulation, _ = started(draft(tmp_path, text), 2)
+    assert simulation.engine.of("bodies").joints.widest() < 1e-12
+
+
 def test_a_hinge_bears_what_hangs_on_it(tmp_path):
     """At the first moment of a fall from level: of a uniform rod a quarter of its weight, here of two densities by
     R = M g (1 − M c²/I), about the hinge."""
