@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from cases.measures import finished, window
 
-POWER = 2.19
-"""Of waves 0.04 m high with a period of 1.2 s on 0.3 m of water, W/m: ρgH²/8 times their group velocity."""
+HEIGHT, POWER = 0.064, 5.61
+"""Of waves with a period of 1.2 s on 0.3 m of water, m and W/m: ρgH²/8 times their group velocity."""
 
 
 def swings(folder, damping):
@@ -14,7 +14,7 @@ def swings(folder, damping):
     angle = window(run.gauges()["hinge"], "hinge.turn", 7.2, 9.6)
     level = window(run.gauges()["behind"], "behind.level", 7.2, 9.6)
     rate = np.gradient(angle, 2.4 / (len(angle) - 1))
-    return damping * (rate**2).mean() / POWER, np.sqrt(8.0) * level.std() / 0.04
+    return damping * (rate**2).mean() / POWER, np.sqrt(8.0) * level.std() / HEIGHT
 
 
 @pytest.mark.long
