@@ -161,6 +161,13 @@ def _export(options, comm) -> None:
         print(export(options.folder, options.to, options.times, options.out))
 
 
+def _measure(options, comm) -> None:
+    from psph.lab.measure.command import measure
+
+    if comm.rank == 0:
+        measure(options.folder, options.gauge, options.times, options.out, print)
+
+
 def _report(options, comm) -> None:
     from psph.lab.report.page import report
 
@@ -248,6 +255,7 @@ VERBS = {
     "schema": (_schema, "the JSON schema of a case file"),
     "plot": (_plot, "pictures of a finished run"),
     "export": (_export, "the frames of a run as files of other programs: VTK, Gadget, ParaView"),
+    "measure": (_measure, "gauges on the frames of a run, those of its case or new ones"),
     "report": (_report, "a run, a study, a battery, a map or a bench as one HTML file for a browser"),
     "study": (_study, "error and run time of a case over spacings, kernels and other choices"),
     "stability": (_stability, "growth rates of lattice instabilities; hard cases under every scheme"),

@@ -138,6 +138,7 @@ def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
     )
     _add_plot_options(verb["plot"])
     _add_export_options(verb["export"])
+    _add_measure_options(verb["measure"])
     verb["report"].add_argument(
         "folder",
         action=_Folder,
@@ -184,6 +185,20 @@ def _add_export_options(export: argparse.ArgumentParser) -> None:
     export.add_argument("--to", required=True, choices=PROGRAMS, help="kind of file")
     export.add_argument("--times", type=float, nargs="+", help="frames nearest to these, s (default: all)")
     export.add_argument("--out", action=_Folder, help="folder of the files (default: one in FOLDER)")
+
+
+def _add_measure_options(measure: argparse.ArgumentParser) -> None:
+    measure.add_argument("folder", action=_Folder, help="the folder of a run")
+    measure.add_argument(
+        "--gauge",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="a gauge of the case, a new one as 'NAME.level={foot=[1.0, 0.0], top=[1.0, 2.0]}', or a TOML file "
+        "with [gauges.NAME] (repeatable; default: all of the case)",
+    )
+    measure.add_argument("--times", type=float, nargs="+", help="frames nearest to these, s (default: all)")
+    measure.add_argument("--out", action=_Folder, help="folder of the tables (default: FOLDER)")
 
 
 def _add_study_options(study: argparse.ArgumentParser) -> None:

@@ -135,6 +135,27 @@ def _nearest_image(a, periods):
     return unrolled("a, periods", f"return {tuple_of(parts)}", wrapped=_wrapped)
 
 
+def inside(a: Vector, lower: tuple, periods: tuple) -> Vector:
+    """The periodic image of a place ``a`` between ``lower`` and a period beyond, m, by the same operations as
+    those by which a domain takes particles back (psph.parallel.domain)."""
+    return tuple(x if p is None else _taken_back(x, low, p) for x, low, p in zip(a, lower, periods))
+
+
+@register_jitable
+def _taken_back(x, low, period):
+    x = x - period * np.floor((x - low) / period)
+    return low if x >= low + period else x
+
+
+@overload(inside)
+def _inside(a, lower, periods):
+    parts = (
+        f"a[{d}]" if isinstance(period, types.NoneType) else f"taken_back(a[{d}], lower[{d}], periods[{d}])"
+        for d, period in enumerate(periods)
+    )
+    return unrolled("a, lower, periods", f"return {tuple_of(parts)}", taken_back=_taken_back)
+
+
 def nearest_to(a: Vector, b: Vector, periods: tuple) -> Vector:
     """The periodic image of ``a`` that is nearest to ``b``; exactly a where it is a itself."""
     return tuple(x if p is None else _moved(x, y, p) for x, y, p in zip(a, b, periods))

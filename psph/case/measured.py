@@ -58,7 +58,7 @@ def _cannot_carry(case, name: str | None) -> str | None:
 def due(case) -> Iterator[Finding]:
     """Intervals so short that moments of output would be lost in rounding."""
     end = case.time.end
-    cadences = [(("output", name), interval) for name, interval in case.output]
+    cadences = [(("output", name), every) for name, every in case.output if name != "fields"]
     cadences += [(("gauges", name, "every"), gauge.every) for name, gauge in case.gauges.items()]
     for loc, interval in cadences:
         if interval is not None and end > MOST_MOMENTS * interval:

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Strict
 
-from psph.case.keys import Axis, Table, Vector, key
+from psph.case.keys import Axis, Name, Table, Vector, key
 
 
 class Probe(Table):
@@ -48,6 +48,9 @@ class Output(Table):
         "time between rows of probes.csv", None, unit="s", otherwise="time.end / 1000", gt=0
     )
     log: float | None = key("time between rows of log.csv", None, unit="s", otherwise="time.end / 200", gt=0)
+    fields: Annotated[tuple[Name, ...], Strict(False)] = key(
+        'further fields of particles that frames hold, such as "load", for gauges after the run', ()
+    )
 
 
 class Checkpoint(Table):

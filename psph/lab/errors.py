@@ -11,6 +11,13 @@ class BenchError(Refused):
     """A measurement that cannot be made."""
 
 
+class MeasureError(Refused):
+    """A gauge that stored frames cannot be asked."""
+
+    def __init__(self, message: str):
+        super().__init__(one_line(message))
+
+
 class PeerFailed(BenchError):
     """LAMMPS began, and did not bear this problem to the end; raised on every rank."""
 

@@ -17,12 +17,15 @@ from psph.particles.store import Store
 from psph.particles.wetting import WET
 from psph.physics.walls.dry import DryWall
 from psph.smoothing import weight
-from psph.vectors import at, dot, nearest_image, subtract
+from psph.vectors import at, dot, inside, nearest_image, subtract
 
 MEASURED = by_name(SAVED)
 
 ROUNDING = 1e-9
 """In spacings: a length that is a whole number of them but for rounding has that many points."""
+
+WET_MARK = DryWall.marks.name
+"""The field that tells which walls have fluid in reach."""
 
 NONE = -1
 """In the place of the number of a row: there is none."""
@@ -112,9 +115,9 @@ class FieldProbe:
         ``place``."""
         store, periods, kernel = simulation.store, simulation.domain.periods, simulation.plan.kernel
         first, last = simulation.neighbourhood.columns_near(place, _radius(kernel))
-        around = Nearby(place, _radius(kernel) ** 2, kernel, periods)
+        around = Nearby(place, _radius(kernel) ** 2, kernel, simulation.domain.lower, periods)
         near, terms = np.empty(last - first, np.int64), np.empty((last - first, 2 + len(rows)))
-        [wet] = store.rows[DryWall.marks] if DryWall.marks in store else [NONE]
+        [wet] = store.rows[WET_MARK] if WET_MARK in store else [NONE]
         groups = store.group, store.kinds == FLUID
         count = self._weigh(first, last, around, _weighed(store), *groups, store.data, wet, rows, near, terms)
         near, terms = near[:count], terms[:count]
@@ -156,7 +159,8 @@ class Front:
         """How far those of this rank reach."""
         store = simulation.store
         fluid = counted(store.kinds, self.of)[store.shown("group")]
-        reach = store["position"][self.axis][store.inner].max(where=fluid, initial=-np.inf)
+        places = simulation.domain.inside(store.shown("position"))[:, self.axis]
+        reach = places.max(where=fluid, initial=-np.inf)
         return Contribution(tops=[float(reach)])
 
     def values(self, store: Store, total: Total) -> np.ndarray:
@@ -194,11 +198,13 @@ def _weighed(store: Store):
 
 
 class Nearby(NamedTuple):
-    """The particles within the square of a radius, m², of a ``place`` (dim,), m, and their weights there."""
+    """The particles within the square of a radius, m², of a ``place`` (dim,), m, and their weights there;
+    ``periods``, m, count from the corner ``lower``."""
 
     place: tuple[float, ...]
     radius2: float
     kernel: Any
+    lower: tuple[float, ...]
     periods: tuple
 
 
@@ -212,7 +218,8 @@ def weigh_near(first, last, around, view, group, fluid, data, wet, rows, near, t
     count = 0
     for k in range(np.uint64(first), np.uint64(last)):
         j = take(view, k)
-        x = nearest_image(subtract(around.place, j.position), around.periods)
+        there = inside(j.position, around.lower, around.periods)
+        x = nearest_image(subtract(around.place, there), around.periods)
         r2 = dot(x, x)
         if r2 < around.radius2 and (wet < 0 or data[wet, k] >= WET):
             share = weight(around.kernel, math.sqrt(r2)) * j.mass * j.specific_volume

@@ -1,5 +1,7 @@
 """A run's folder, read back: finished or still running."""
 
+import csv
+import json
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -10,7 +12,7 @@ import numpy as np
 
 from psph.errors import one_line
 from psph.output.errors import NotThere, cause
-from psph.output.tables import ERRORS, GAUGE, LOG, PROBES
+from psph.output.tables import ERRORS, GAUGE, LOG, POSES, PROBES
 from psph.output.xdmf import index_of
 
 T = TypeVar("T")
@@ -99,6 +101,19 @@ class Run:
         begin, end = GAUGE.split("{}")
         tables = sorted(self.folder.glob(GAUGE.format("*")))
         return {path.name.removeprefix(begin).removesuffix(end): _columns(path) for path in tables}
+
+    def poses(self) -> dict[float, tuple[float, dict]]:
+        """By the time of each frame, s: the time step before, s, and the state of what forces or waves move
+        as a whole; empty where nothing is."""
+        path = self.folder / POSES
+        if not path.exists():
+            return {}
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                rows = [row for row in csv.reader(file) if len(row) == 3][1:]
+            return {float(time): (float(dt), json.loads(state)) for time, dt, state in rows}
+        except (OSError, ValueError) as error:
+            raise NotThere(f"{path}: {one_line(str(error))}; is it a table of psph?") from None
 
     def measured(self, column: str) -> dict[str, np.ndarray]:
         """The table, of the probes or of a gauge, that has a column such as ``tip.front``; empty: none."""

@@ -12,14 +12,20 @@ from psph.output.errors import OutputError, cause, together
 LOG, PROBES, ERRORS = "log.csv", "probes.csv", "errors.csv"
 """The tables of a run: log, probes, errors against the exact solution."""
 
+POSES = "poses.csv"
+"""At the time of each frame the state of what forces, or waves, move as a whole, as JSON."""
+
 GAUGE = "gauge-{}.csv"
 """The table of a gauge of that name."""
+
+MEASURED = "measured-{}.csv"
+"""The same of a gauge on the frames of a run (psph.lab.measure)."""
 
 
 def tables_of(case: Mapping[str, Any]) -> list[str]:
     """Names of the files of all tables that a run may have, from the keys of its ``case``."""
     gauges = (GAUGE.format(name) for name in case.get("gauges", {}))
-    return [LOG, PROBES, ERRORS, *gauges, *(f"{name}.csv" for name in case.get("tables", {}))]
+    return [LOG, PROBES, ERRORS, POSES, *gauges, *(f"{name}.csv" for name in case.get("tables", {}))]
 
 
 class CsvTable:

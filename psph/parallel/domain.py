@@ -177,11 +177,14 @@ class Domain:
 
         Between two rebuilds a particle may have left the domain on one side.
         """
-        if any(self.periods):
-            position = position.copy()
-            for _ in self._folded(position.T):
-                pass
-        return position
+        return self.taken_back(position)[0] if any(self.periods) else position
+
+    def taken_back(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Positions as of :meth:`inside`, and by how many periods each was beyond (n, dim): both copies."""
+        position, beyond = position.copy(), np.zeros(position.shape)
+        for d, periods in self._folded(position.T):
+            beyond[:, d] = periods
+        return position, beyond
 
     def _wrap(self) -> None:
         store, inner = self.store, self.store.inner

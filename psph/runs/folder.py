@@ -16,7 +16,7 @@ from psph.output.checkpoint import COPY, Saved, checkpoints, half_written, remov
 from psph.output.errors import OutputError, together
 from psph.output.pictures.names import remove_pictures
 from psph.output.rows import open_file
-from psph.output.tables import tables_of
+from psph.output.tables import MEASURED, tables_of
 from psph.output.xdmf import ENDING, XdmfIndex
 from psph.runs.post_mortem import PICTURE, REPORT, remove_post_mortem
 from psph.runs.summary import SUMMARY
@@ -133,7 +133,8 @@ def _clear(case, folder: Path) -> None:
     """Remove what an earlier run has left, and write the case and the files that it uses."""
     # What has such a name in a folder without a run is none of ours.
     for run, earlier in _runs_in(folder, case.name):
-        for name in (*tables_of(earlier), SUMMARY):
+        measured = (path.name for path in folder.glob(MEASURED.format("*")))
+        for name in (*tables_of(earlier), SUMMARY, *measured):
             (folder / name).unlink(missing_ok=True)
         XdmfIndex(run).remove()
         run.unlink()

@@ -1,5 +1,6 @@
 """What a run writes and when: frames, probes, log.  Cadence never changes the steps."""
 
+import json
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -10,6 +11,7 @@ import numpy as np
 
 from psph.case.keys import AXES
 from psph.engine.jit import processor
+from psph.fields import CROSSED
 from psph.output import diagnostics
 from psph.output.accuracy import Accuracy
 from psph.output.checkpoint import Saved
@@ -17,7 +19,7 @@ from psph.output.errors import together
 from psph.output.frames import FrameFile
 from psph.output.gauges import gauges_of
 from psph.output.probes import FieldProbe, Front, sensor
-from psph.output.tables import ERRORS, LOG, PROBES, CsvTable
+from psph.output.tables import ERRORS, LOG, POSES, PROBES, CsvTable
 from psph.parallel.reductions import Contribution, Total, alone, totals
 from psph.simulation.step import Simulation
 from psph.version import __version__
@@ -103,6 +105,10 @@ class Record:
         self.probe_table = None
         if names:
             self.probe_table = CsvTable(folder / PROBES, ["time", *names], comm, sizes.get(PROBES))
+        self._movers = [work for work in simulation.engine.kinds if work.rows]
+        self.poses = None
+        if self._movers:
+            self.poses = CsvTable(folder / POSES, ["time", "dt", "state"], comm, sizes.get(POSES))
         self.log = CsvTable(
             folder / LOG,
             diagnostics.columns(
@@ -194,9 +200,14 @@ class Record:
         """All saved fields of all particles."""
         sim = self.simulation
         arrays = {field.name: sim.store.shown(field.name) for field in sim.plan.saved}
-        arrays["position"] = sim.domain.inside(arrays["position"])
+        arrays["position"], beyond = sim.domain.taken_back(arrays["position"])
+        if CROSSED.name in arrays:
+            arrays[CROSSED.name] = arrays[CROSSED.name] + beyond
         arrays["pressure"] = sim.engine.shown_pressure()
         self.frames.write(self.written, sim.time, sim.steps, arrays)
+        if self.poses:
+            state = {key: value for work in self._movers for key, value in work.state().items()}
+            self.poses.write([sim.time, sim.dt, json.dumps(state)])
         self.written += 1
 
     def write_probes(self, *numbers: Total) -> None:
@@ -254,5 +265,5 @@ class Record:
     @property
     def tables(self) -> list[CsvTable]:
         """Those that this run has."""
-        own = (self.log, self.probe_table, self.errors, *(file for _, file in self.further))
+        own = (self.log, self.probe_table, self.errors, self.poses, *(file for _, file in self.further))
         return [table for table in own if table is not None]

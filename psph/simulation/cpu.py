@@ -189,9 +189,13 @@ class Engine:
         ``ranges`` of columns or of all."""
         every = [(self.store.low, self.store.low + self.store.owned)]
         for first, last in every if ranges is None else ranges:
-            self._state(first, last, self._rules, self.view(largest_speed), self.columns())
+            self.bear(first, last, largest_speed)
         for kind in self.kinds:
             kind.measure()
+
+    def bear(self, first: int, last: int, largest_speed: float) -> None:
+        """Pressure and 1/ρ of the columns ``first`` to ``last`` from their density."""
+        self._state(first, last, self._rules, self.view(largest_speed), self.columns())
 
     def shown_pressure(self) -> np.ndarray:
         """The pressure of this rank's particles, Pa (n,), as :meth:`settle_pressure` has left it; of elastic

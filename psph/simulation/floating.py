@@ -112,11 +112,13 @@ class FloatingBodies(Work):
 
     def state(self) -> dict:
         """Where they are, and how they move."""
-        return self.bodies.state() | ({"joints": self.joints.state()} if self.joints else {})
+        state = self.bodies.state() | {"tensions": self.tensions.tolist()}
+        return state | ({"joints": self.joints.state()} if self.joints else {})
 
     def restore(self, state: dict) -> None:
         """Go on from there."""
         self.bodies.restore(state)
+        self.tensions = np.array(state.get("tensions", self.tensions), dtype=float)  # older ones have none
         if self.joints:
             self.joints.restore(state["joints"], self.bodies)
 

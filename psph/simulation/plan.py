@@ -36,7 +36,13 @@ from psph.simulation.movement import carried_fields
 from psph.simulation.paces import held_fields, held_parts, is_held, steps_held
 from psph.simulation.passes import Pass, array_of, make_passes
 from psph.simulation.pulls import Pulls, pulls_of, shares_loop
-from psph.simulation.reading import Called, called_with, refuse_unwritten, refuse_without_image
+from psph.simulation.reading import (
+    Called,
+    called_with,
+    kept_in_frames,
+    refuse_unwritten,
+    refuse_without_image,
+)
 
 OF_STATE = ("position", "rest_density", "sound_speed")
 """Quantities that kick, drift and the equation of state read of every particle."""
@@ -111,6 +117,8 @@ class Plan:
     fixed_step: float | None
     extremes: Any
     """The scene's shared values, and the largest of those that differ by material."""
+    kept: tuple[str, ...]
+    """Fields that frames hold beside those of every frame (output.fields)."""
     steps_held: int
     """For how many steps the rates of friction serve (psph.simulation.paces)."""
 
@@ -147,7 +155,7 @@ class Plan:
     @property
     def saved(self) -> tuple[Field, ...]:
         """The fields of a frame."""
-        return tuple(field for field in (*IDENTITY, *self.stored) if field.saved)
+        return tuple(f for f in (*IDENTITY, *self.stored) if f.saved or f.name in self.kept)
 
     @property
     def view(self) -> type:
@@ -341,6 +349,7 @@ def make_plan(scene, catalogue: Catalogue | None = None) -> Plan:
         cfl=case.time.cfl * rate_passes,
         fixed_step=case.time.step,
         extremes=extremes,
+        kept=kept_in_frames(scene, stored),
         steps_held=hold_for,
     )
 

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from psph.acts import acts_on
+from psph.case.errors import CaseError
 from psph.case.extensions import origin
 from psph.composition.trial import Reads, UnknownField, WrongShape, reads
 from psph.errors import Refused, one_line
@@ -73,6 +74,17 @@ def refuse_without_image(scene, called: Iterable[Called], fields: Mapping[str, F
                     f"an image has it, as {RULES} (psph.fields), or take the mirrors away"
                 )
                 raise WithoutImage(_line(scene, call.effect, f"{call.name} {says}"))
+
+
+def kept_in_frames(scene, stored: Iterable[str]) -> tuple[str, ...]:
+    """The further fields that the case wants in frames (output.fields).  CaseError where the particles of the
+    scene, which carry those ``stored``, carry no such thing."""
+    asked, stored = scene.case.output.fields, tuple(stored)
+    for name in asked:
+        if name not in stored:
+            says = f"particles of this scene carry no {name}; they carry {', '.join(sorted(stored))}"
+            raise CaseError([one_line(f"{scene.case.file}: output.fields: {says}")])
+    return tuple(asked)
 
 
 def _line(scene, effect, says: str) -> str:

@@ -41,9 +41,9 @@ def gone(simulation, rows: np.ndarray) -> np.ndarray:
 
     Where the domain repeats also beyond it, if the particles count how often they crossed it.
     """
-    store = simulation.store
-    places = store.shown("position")[rows].copy()
-    for axis, period in enumerate(simulation.domain.periods):
+    store, domain = simulation.store, simulation.domain
+    places, beyond = domain.taken_back(store.shown("position")[rows])
+    for axis, period in enumerate(domain.periods):
         if period is not None and CROSSED.name in store:
-            places[:, axis] += period * store.shown(CROSSED.name)[rows, axis]
+            places[:, axis] += period * (store.shown(CROSSED.name)[rows, axis] + beyond[:, axis])
     return places

@@ -13,7 +13,7 @@ from psph.output.flowing import ALL, counted
 from psph.output.gauges.carried import Carrier
 from psph.parallel.reductions import whole_sums
 from psph.smoothing import weight
-from psph.vectors import add, at, dot, nearest_image, scale, subtract
+from psph.vectors import add, at, dot, inside, nearest_image, scale, subtract
 
 SURFACE = 0.5
 """Share of the kernel that lies in the fluid at a flat surface."""
@@ -76,7 +76,7 @@ class LevelGauge(NamedTuple):
             foot, top = (tuple(map(float, end)) for end in seen)
             step = scale(subtract(top, foot), 1.0 / self.parts)
             radius = plan.kernel.support / plan.kernel.inverse_h
-            around = (plan.kernel, domain.periods, store.view())
+            around = (plan.kernel, domain.lower, domain.periods, store.view())
             for begin, end in stretches(step, self.parts, radius, domain.periods):
                 start = add(foot, scale(step, float(begin))) if begin else foot
                 weigh_line(start, step, radius, *around, first, last, part, weights[:, begin:end])
@@ -123,16 +123,18 @@ def surfaces(share: np.ndarray, step: float) -> tuple[float, float]:
 
 
 @elementwise
-def weigh_line(foot, step, radius, kernel, periods, view, first, last, part, found):
+def weigh_line(foot, step, radius, kernel, lower, periods, view, first, last, part, found):
     """Add V_j W of columns ``first`` to ``last`` to ``found`` (parts, n), at foot + n step, in UNITs.
 
-    ``radius`` m is the support of the kernel, ``part`` the row of each column, or NEITHER.
+    ``radius`` m is the support of the kernel, ``lower`` m the corner from which ``periods`` count, ``part`` the
+    row of each column, or NEITHER.
     """
     long2 = dot(step, step)
     for k in range(np.uint64(first), np.uint64(last)):
         if part[k] != NEITHER:
             j = take(view, k)
-            from_foot = nearest_image(subtract(at(view.position, k), foot), periods)
+            place = inside(at(view.position, k), lower, periods)
+            from_foot = nearest_image(subtract(place, foot), periods)
             along = dot(from_foot, step) / long2
             aside = subtract(from_foot, scale(step, along))
             left2 = radius * radius - dot(aside, aside)

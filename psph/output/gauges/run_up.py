@@ -47,7 +47,7 @@ class RunUpGauge(NamedTuple):
         along = (top - foot) / length
         store = simulation.store
         counting = counted(store.kinds, self.of)[store.shown("group")]
-        away = store.shown("position")[counting] - 0.5 * (foot + top)
+        away = simulation.domain.inside(store.shown("position")[counting]) - 0.5 * (foot + top)
         for axis, period in enumerate(simulation.domain.periods):
             if period is not None:
                 away[:, axis] -= period * np.rint(away[:, axis] / period)

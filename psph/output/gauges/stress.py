@@ -37,6 +37,7 @@ class StressGauge(NamedTuple):
         store = simulation.store
         chosen = np.isin(store.shown("group"), self.groups)
         places = store.shown("reference" if self.keeps else "position")[chosen]
+        places = places if self.keeps else simulation.domain.inside(places)
         away = nearest(places - np.array(self.at), simulation.domain.periods)
         stress = fitted(simulation.comm, away, self.reach, self._of_particles(store, chosen))
         if store.dimensions == 2:

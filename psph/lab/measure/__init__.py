@@ -1,0 +1,1 @@
+"""Gauges on the frames of a run, and fields on planes and grids of points."""

@@ -1,0 +1,129 @@
+"""The particles of a stored frame, as gauges see those of a run."""
+
+from typing import Any
+
+import numpy as np
+
+from psph.fields import CROSSED, OF_MATERIAL, REFERENCE, SOLID
+from psph.lab.errors import MeasureError
+from psph.output.ledger import Ledger
+from psph.output.reader import Run
+from psph.parallel.reductions import alone
+from psph.particles.store import Store
+from psph.simulation.cpu import Engine
+from psph.simulation.filling import block_of
+from psph.simulation.plan import Plan
+
+ALWAYS = ("specific_volume", *(field.name for field in OF_MATERIAL))
+"""What follows from a frame and the case."""
+
+
+class StoredState:
+    """A frame of a ``run`` in the place of a simulation: what gauges ask of one (psph.output.gauges).
+
+    ``scene`` and ``plan`` are those of the run, with the gauges that are asked for.  All particles are on
+    this rank.  What frames do not hold is refused when it is asked for, in one line.  Places at the start,
+    which solids are measured from, are those of the first frame.
+    """
+
+    def __init__(self, run: Run, scene, plan: Plan):
+        self.run, self.scene, self.plan, self.comm = run, scene, plan, alone()
+        self._all = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.materials.kinds)
+        self.engine = Engine(scene, plan, self._all, self.comm, Ledger())
+        self.domain, self.neighbourhood = self.engine.domain, _Everywhere(self._all)
+        self.store: Any = self._all
+        self.time = self.dt = 0.0
+        self._poses = run.poses()
+        self._start: tuple[np.ndarray, np.ndarray] | None = None
+
+    def show(self, number: int, time: float) -> None:
+        """Turn to the frame of this ``number`` and ``time``, s."""
+        frame, self.time = self.run.frame(number), time
+        s = self._all
+        s.low = s.owned = s.high = 0
+        density, group = frame["density"], frame["group"]
+        seen = (frame["position"], frame["velocity"], density)
+        s.append(frame["id"], group, block_of(self.scene, self.plan.materials, s, group, *seen))
+        held = {name: rows for name, rows in frame.items() if name in s.rows}
+        if REFERENCE.name in s.rows and REFERENCE.name not in held:
+            held[REFERENCE.name] = self._starts(frame["id"])
+        if any(self.domain.periods) is False:
+            held[CROSSED.name] = np.zeros_like(frame["position"])
+        solid = np.flatnonzero(s.shown("kind") == SOLID)
+        if len(solid):  # what a fluid sees of it is not the pressure of its stress, which frames show
+            self.engine.bear(s.low, s.low + s.owned, 0.0)
+            held["pressure"][solid] = s.shown("pressure")[solid]
+        for name, rows in held.items():
+            if name in s.rows:
+                s.data[list(s.rows[name]), s.inner] = rows.reshape(len(group), -1).T
+        s.data[list(s.rows["specific_volume"]), s.inner] = 1.0 / density
+        self._place()
+        self.store = HeldFields(s, {*held, *frame, *ALWAYS}, self.run)
+
+    def _starts(self, ids: np.ndarray) -> np.ndarray:
+        """Where particles were in the first frame, m (n, dim); zeros where they came later."""
+        if self._start is None:
+            first = self.run.frame(0, "id", "position")
+            order = np.argsort(first["id"])
+            self._start = first["id"][order], first["position"][order]
+        known, places = self._start
+        row = np.minimum(np.searchsorted(known, ids), len(known) - 1)
+        return np.where((known[row] == ids)[:, None], places[row], 0.0)
+
+    def _place(self) -> None:
+        """What moves as a whole stands where it was at the time of the frame."""
+        movers = [work for work in self.engine.kinds if work.rows]
+        if movers:
+            told = self._poses.get(self.time)
+            if told is None:
+                raise MeasureError(
+                    f"{self.run.folder}: poses.csv has no line for the frame at {self.time:g} s: bodies and "
+                    "paddles have no place there; run the case again with this psph"
+                )
+            self.dt, state = told
+            for work in movers:
+                work.restore(state)
+        self.engine.poses.turn_to(self.time)
+
+
+class HeldFields:
+    """A store of which only the fields ``held`` are known: who asks for others is refused."""
+
+    def __init__(self, store: Store, held: set[str], run: Run):
+        self._store, self._held, self._run = store, held, run
+
+    def __getattr__(self, name: str):
+        return getattr(self._store, name)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._store and self._known(name)
+
+    def __getitem__(self, name: str):
+        self._known(name)
+        return self._store[name]
+
+    def shown(self, name: str) -> np.ndarray:
+        """The values of a field, as of :meth:`psph.particles.store.Store.shown`."""
+        self._known(name)
+        return self._store.shown(name)
+
+    def _known(self, name: str) -> bool:
+        if name in self._store.rows and name not in self._held:
+            raise MeasureError(
+                f"{self._run.path}: frames hold no {name}: run the case again with --set "
+                f"'output.fields=[\"{name}\"]', or with this gauge in the case"
+            )
+        return True
+
+
+class _Everywhere:
+    """In the place of the neighbourhood: nothing is sorted, so a point may see every column."""
+
+    def __init__(self, store: Store):
+        self._store = store
+
+    def columns_near(self, point, radius: float) -> tuple[int, int]:
+        """The first column, and that after the last."""
+        return self._store.low, self._store.low + self._store.owned
+
+
