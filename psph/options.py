@@ -194,8 +194,8 @@ def _add_measure_options(measure: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME",
-        help="a gauge of the case, a new one as 'NAME.level={foot=[1.0, 0.0], top=[1.0, 2.0]}', or a TOML file "
-        "with [gauges.NAME] (repeatable; default: all of the case)",
+        help="a gauge of the case, a new one as 'NAME.level={foot=[1.0, 0.0], top=[1.0, 2.0]}', or a TOML "
+        "file with [gauges.NAME] (repeatable; default: all of the case)",
     )
     measure.add_argument("--times", type=float, nargs="+", help="frames nearest to these, s (default: all)")
     measure.add_argument("--out", action=_Folder, help="folder of the tables (default: FOLDER)")

@@ -9,8 +9,9 @@ from pydantic_core import PydanticCustomError
 from psph.acts import BODIES, MATTER, SOILS, SOLIDS, UPDATED, refusals
 from psph.case.errors import advise
 from psph.case.findings import Finding, keys_one_sided
-from psph.case.keys import Axis, Name, Table, Vector, key
+from psph.case.keys import AXES, Axis, Name, Table, Vector, key
 from psph.case.placed import Placed
+from psph.case.shapes import Shape
 from psph.case.solids import Reaction
 from psph.physics.walls.conditions import BEARING, CONDITIONS
 
@@ -111,7 +112,41 @@ class Highest(OfFlow):
     """The largest coordinate of the fluid along an axis: its front, or its highest drop."""
 
     axis: Axis = key("the axis")
+    shape: Shape | None = key("the region in which fluid counts", None, otherwise="everywhere")
     of: Name | None = OF
+
+
+class Volume(OfFlow):
+    """Volume and mass of the fluid in a region."""
+
+    shape: Shape = key("the region")
+    of: Name | None = OF
+    moves_with: Name | None = MOVES_WITH
+
+
+class Overtopping(OfFlow):
+    """Volume of the fluid beyond the crest of a structure, by the metre of crest."""
+
+    at: float = key("place of the crest along the axis of 'towards'", unit="m")
+    towards: Literal["+x", "-x", "+y", "-y", "+z", "-z"] = key("the direction over the crest")
+    width: float | None = key(
+        "length of the crest; required in 3D", None, unit="m", otherwise="1, of 2D a metre of depth", gt=0
+    )
+    shape: Shape | None = key(
+        "the region in which fluid counts, such as the basin behind the crest", None, otherwise="everywhere"
+    )
+    of: Name | None = OF
+
+    def contradictions(self, case) -> Iterator[Finding]:
+        """A direction that is none, and a width that is not known."""
+        dimensions = case.space.dimensions
+        if self.towards[1] not in AXES[:dimensions]:
+            yield ("towards",), self.towards, f"there are {dimensions} axes; give one of them"
+        elif self.towards[1] in case.space.periodic:
+            says = "the domain repeats along this axis, so that nothing is beyond; give another"
+            yield ("towards",), self.towards, says
+        if dimensions == 3 and self.width is None:
+            yield ("width",), ..., "missing; give the length of the crest, m"
 
 
 class Point(Table):
@@ -210,6 +245,8 @@ class Gauge(Table):
         "level",
         "run_up",
         "highest",
+        "volume",
+        "overtopping",
         "point",
         "sensor",
         "flow",
@@ -224,6 +261,8 @@ class Gauge(Table):
     level: Level | None = key("water level along a line", None, otherwise=ANOTHER_KIND)
     run_up: RunUp | None = key("run-up along a slope", None, otherwise=ANOTHER_KIND)
     highest: Highest | None = key("largest coordinate of the fluid", None, otherwise=ANOTHER_KIND)
+    volume: Volume | None = key("volume of the fluid in a region", None, otherwise=ANOTHER_KIND)
+    overtopping: Overtopping | None = key("volume beyond a crest", None, otherwise=ANOTHER_KIND)
     point: Point | None = key("fields at a point", None, otherwise=ANOTHER_KIND)
     sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise=ANOTHER_KIND)
     flow: Flow | None = key("flow through a section", None, otherwise=ANOTHER_KIND)

@@ -225,6 +225,8 @@ class Case(WithMatter):
             _fill(gauge, every=self.output.probes)
             if turned := gauge.force or gauge.reaction:
                 _fill(turned, about=zeros)
+            if gauge.overtopping:
+                _fill(gauge.overtopping, width=1.0)
         for one in self.perturbations:
             _fill(one, velocity=zeros, shift=zeros)
         first = next((entry.name for entry in self.movers if entry.of.flows), None)

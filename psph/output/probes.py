@@ -138,10 +138,11 @@ def sensor(position, extent, spacing: float) -> np.ndarray:
 
 class Front:
     """How far the fluids of the groups ``of`` reach along an ``axis`` (0, 1 or 2): their largest coordinate,
-    m."""
+    m, of those that are ``within`` a region (psph.output.gauges.volume.Within) where one is given; NaN where
+    there are none."""
 
-    def __init__(self, name: str, axis: int, of: tuple[int, ...] = ALL):
-        self.name, self.axis, self.of = name, axis, of
+    def __init__(self, name: str, axis: int, of: tuple[int, ...] = ALL, within=None):
+        self.name, self.axis, self.of, self.within = name, axis, of, within
 
     def columns(self, dimensions: int) -> list[str]:
         """The name of the value: ``tip.front``."""
@@ -159,13 +160,15 @@ class Front:
         """How far those of this rank reach."""
         store = simulation.store
         fluid = counted(store.kinds, self.of)[store.shown("group")]
-        places = simulation.domain.inside(store.shown("position"))[:, self.axis]
-        reach = places.max(where=fluid, initial=-np.inf)
+        places = simulation.domain.inside(store.shown("position"))
+        if self.within is not None:
+            fluid = fluid & self.within.holds(places, simulation.domain.periods)
+        reach = places[:, self.axis].max(where=fluid, initial=-np.inf)
         return Contribution(tops=[float(reach)])
 
     def values(self, store: Store, total: Total) -> np.ndarray:
         """What :meth:`sample` returns, of what the :meth:`share` of all ranks come to."""
-        return total.tops
+        return np.where(np.isfinite(total.tops), total.tops, np.nan)
 
 
 def _radius(kernel) -> float:

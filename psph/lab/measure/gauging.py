@@ -162,6 +162,8 @@ def _refuse_unsummed(own, case, name: str) -> None:
 def _refuse_misplaced(scene: Scene, new: Sequence[str]) -> None:
     """CaseError with a line for each new gauge that looks where nothing can be."""
     begins = tuple(f"gauges.{name}." for name in new)
-    every: Iterator[str] = (line for rule in (outside_domain, off_parts, inside_walls) for line in rule(scene))
+    every: Iterator[str] = (
+        line for rule in (outside_domain, off_parts, inside_walls) for line in rule(scene)
+    )
     if wrong := [f"{scene.case.file}: {line}" for line in every if line.startswith(begins)]:
         raise CaseError(wrong)

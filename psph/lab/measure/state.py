@@ -1,12 +1,15 @@
 """The particles of a stored frame, as gauges see those of a run."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from psph.fields import CROSSED, OF_MATERIAL, REFERENCE, SOLID
+from psph.fields import CROSSED, OF_MATERIAL, REFERENCE, SOLID, WALL
 from psph.lab.errors import MeasureError
+from psph.output.gauges.fit import nearest
 from psph.output.ledger import Ledger
+from psph.output.probes import WET_MARK
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
 from psph.particles.store import Store
@@ -16,6 +19,10 @@ from psph.simulation.plan import Plan
 
 ALWAYS = ("specific_volume", *(field.name for field in OF_MATERIAL))
 """What follows from a frame and the case."""
+
+
+STORE = """--set 'output.fields=["{}"]'"""
+"""How frames come to hold a field."""
 
 
 class StoredState:
@@ -30,7 +37,9 @@ class StoredState:
         self.run, self.scene, self.plan, self.comm = run, scene, plan, alone()
         self._all = Store(scene.dimensions, plan.stored, plan.constants, plan.view, plan.materials.kinds)
         self.engine = Engine(scene, plan, self._all, self.comm, Ledger())
-        self.domain, self.neighbourhood = self.engine.domain, _Everywhere(self._all)
+        self.domain, self.neighbourhood = self.engine.domain, _Everywhere(self)
+        self.doubtful = np.zeros((0, scene.dimensions))
+        """Where walls are of which the frame does not tell whether they are wet, m (n, dim)."""
         self.store: Any = self._all
         self.time = self.dt = 0.0
         self._poses = run.poses()
@@ -47,8 +56,10 @@ class StoredState:
         held = {name: rows for name, rows in frame.items() if name in s.rows}
         if REFERENCE.name in s.rows and REFERENCE.name not in held:
             held[REFERENCE.name] = self._starts(frame["id"])
-        if any(self.domain.periods) is False:
+        if not any(self.domain.periods):
             held[CROSSED.name] = np.zeros_like(frame["position"])
+        if WET_MARK in s.rows and WET_MARK not in held:
+            held[WET_MARK] = self._wet(frame)
         solid = np.flatnonzero(s.shown("kind") == SOLID)
         if len(solid):  # what a fluid sees of it is not the pressure of its stress, which frames show
             self.engine.bear(s.low, s.low + s.owned, 0.0)
@@ -69,6 +80,17 @@ class StoredState:
         known, places = self._start
         row = np.minimum(np.searchsorted(known, ids), len(known) - 1)
         return np.where((known[row] == ids)[:, None], places[row], 0.0)
+
+    def _wet(self, frame: Mapping[str, np.ndarray]) -> np.ndarray:
+        """1 where a particle counts as wet (psph.physics.walls.dry), else 0 (n,).
+
+        A wall that is dry has its rest density, to the bit; one that has it may also be wet, and just so.
+        """
+        group = frame["group"]
+        rest = self.plan.materials.values("rest_density")[group]
+        still = (frame["kind"] == WALL) & (frame["density"] == rest)
+        self.doubtful = frame["position"][still]
+        return (~still).astype(float)
 
     def _place(self) -> None:
         """What moves as a whole stands where it was at the time of the frame."""
@@ -110,8 +132,7 @@ class HeldFields:
     def _known(self, name: str) -> bool:
         if name in self._store.rows and name not in self._held:
             raise MeasureError(
-                f"{self._run.path}: frames hold no {name}: run the case again with --set "
-                f"'output.fields=[\"{name}\"]', or with this gauge in the case"
+                f"{self._run.path}: frames hold no {name}; a run stores it with {STORE.format(name)}"
             )
         return True
 
@@ -119,11 +140,17 @@ class HeldFields:
 class _Everywhere:
     """In the place of the neighbourhood: nothing is sorted, so a point may see every column."""
 
-    def __init__(self, store: Store):
-        self._store = store
+    def __init__(self, state: StoredState):
+        self._state = state
 
     def columns_near(self, point, radius: float) -> tuple[int, int]:
-        """The first column, and that after the last."""
-        return self._store.low, self._store.low + self._store.owned
-
-
+        """The first column, and that after the last; refused where doubtful walls are within ``radius`` m."""
+        state = self._state
+        away = nearest(state.doubtful - np.array(point), state.domain.periods)
+        if ((away**2).sum(axis=1) < radius**2).any():
+            where = ", ".join(f"{x:g}" for x in point)
+            raise MeasureError(
+                f"{state.run.path}: frames hold no {WET_MARK}, and walls near ({where}) may be wet or dry; "
+                f"a run stores it with {STORE.format(WET_MARK)}"
+            )
+        return state.store.low, state.store.low + state.store.owned

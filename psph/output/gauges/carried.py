@@ -16,3 +16,8 @@ class Carrier(NamedTuple):
         Each is at X + R (x₀ − c) by the pose of what carries it (psph.physics.rigid.pose).
         """
         return simulation.engine.poses.carried(simulation.plan.materials.pose_of[self.group], points)
+
+    def taken_back(self, simulation, places: np.ndarray) -> np.ndarray:
+        """Where ``places`` (n, dim) were at the start if they went along, m: those of the nearest images."""
+        poses, row = simulation.engine.poses, simulation.plan.materials.pose_of[self.group]
+        return poses.taken_back(row, poses.beside(row, places, simulation.domain.periods))

@@ -126,8 +126,8 @@ def surfaces(share: np.ndarray, step: float) -> tuple[float, float]:
 def weigh_line(foot, step, radius, kernel, lower, periods, view, first, last, part, found):
     """Add V_j W of columns ``first`` to ``last`` to ``found`` (parts, n), at foot + n step, in UNITs.
 
-    ``radius`` m is the support of the kernel, ``lower`` m the corner from which ``periods`` count, ``part`` the
-    row of each column, or NEITHER.
+    ``radius`` m is the support of the kernel, ``lower`` m the corner from which ``periods`` count, ``part``
+    the row of each column, or NEITHER.
     """
     long2 = dot(step, step)
     for k in range(np.uint64(first), np.uint64(last)):

@@ -23,6 +23,7 @@ from psph.output.gauges.reaction import ReactionGauge
 from psph.output.gauges.run_up import RunUpGauge
 from psph.output.gauges.sensor import SensorGauge, face_of
 from psph.output.gauges.stress import StressGauge
+from psph.output.gauges.volume import OvertoppingGauge, VolumeGauge, Within
 from psph.output.probes import FieldProbe, Front
 from psph.output.tables import GAUGE
 from psph.scene.outside import WallRegion
@@ -75,7 +76,15 @@ def gauge_of(scene, name: str, table, mirrors=None):
             keeps = any(scene.layout.parts[group].keeps_neighbours for group in groups)
             return StressGauge(name, every, groups, asked.at, REACH * scene.spacing, keeps)
         case "highest":
-            return PointGauge(Front(name, AXES.index(asked.axis), _of(scene, asked)), every)
+            within = None if asked.shape is None else Within.of(scene, asked.shape)
+            return PointGauge(Front(name, AXES.index(asked.axis), _of(scene, asked), within), every)
+        case "volume":
+            within = Within.of(scene, asked.shape)
+            return VolumeGauge(name, every, within, _carrier(asked, names), _of(scene, asked))
+        case "overtopping":
+            way, axis = (1 if asked.towards[0] == "+" else -1), AXES.index(asked.towards[1])
+            plane, within = (axis, way, asked.at, asked.width), Within.of(scene, asked.shape)
+            return OvertoppingGauge(name, every, *plane, within, _of(scene, asked))
         case "point":
             probe = FieldProbe(name, asked.position, asked.fields, mirrors)
         case _:

@@ -75,7 +75,7 @@ class SensorGauge(NamedTuple):
         periods = simulation.domain.periods
         if self.carrier is not None:
             row = simulation.plan.materials.pose_of[self.carrier.group]
-            places = poses.taken_back(row, poses.beside(row, places, periods))
+            places = self.carrier.taken_back(simulation, places)
             inwards = poses.maps[row, PLACE][:, 1:] @ inwards
         shares = self.face.shares_of(places, periods)
         behind = np.flatnonzero(shares)

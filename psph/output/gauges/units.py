@@ -7,6 +7,9 @@ LENGTHS = ("level", "wetted", "run_up", "height", FRONT, "centre", "displacement
 PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m", "reaction": "N", "reaction_moment": "N m"}
 """In 2D per metre of depth."""
 
+VOLUMES = {"volume": ("m", "m²", "m³"), "mass": ("kg/m²", "kg/m", "kg")}
+"""By the number of dimensions: per square metre in 1D, per metre of depth in 2D."""
+
 FLOWS = {"flow": ("m/s", "m²/s", "m³/s"), "mass_flow": ("kg/(m² s)", "kg/(m s)", "kg/s")}
 """By the number of dimensions: per square metre of area in 1D, per metre of depth in 2D."""
 
@@ -36,6 +39,6 @@ def unit_of(field: str, dimensions: int) -> str:
         return PER_DEPTH[field] + ("/m" if dimensions == 2 else "")
     if field in MEASURED:
         return MEASURED[field].unit
-    if field in FLOWS:
-        return FLOWS[field][dimensions - 1]
-    return {"turn": "rad", "spin": "rad/s"}[field]
+    if by_dimension := FLOWS.get(field) or VOLUMES.get(field):
+        return by_dimension[dimensions - 1]
+    return {"turn": "rad", "spin": "rad/s", "beyond": "m³/m"}[field]

@@ -1,0 +1,275 @@
+"""Gauges after a run read what they read during it, to the bit; what frames do not hold is refused."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from drafts import TANK, draft
+from mpi4py import MPI
+
+from psph.__main__ import main
+from psph.case import CaseError, load
+from psph.errors import Refused
+from psph.lab.measure.gauging import readings
+from psph.output.checkpoint import checkpoints
+from psph.output.reader import Run
+from psph.parallel.reductions import alone
+from psph.runs.start import resume, run
+
+CASES = Path(__file__).parents[3] / "run" / "cases"
+
+ACROSS = """
+[space]
+dimensions = 2
+spacing = 0.1
+periodic = ["x"]
+lower = [0.0, -0.3]
+upper = [2.0, 1.6]
+[time]
+end = 0.2
+[physics]
+gravity = [0.0, -9.8]
+sound_speed = 20.0
+[fluids.heavy]
+shape.box = { lower = [0.0, 0.0], upper = [2.0, 0.4] }
+density = 1200.0
+velocity = [3.0, 0.0]
+viscosity = 0.01
+pressure = "hydrostatic"
+[fluids.light]
+shape.box = { lower = [0.0, 0.4], upper = [2.0, 0.8] }
+velocity = [-2.0, 0.0]
+viscosity = 0.01
+pressure = "hydrostatic"
+[walls.floor]
+shape.box = { lower = [0.0, -0.3], upper = [2.0, 0.0] }
+no_slip = true
+[walls.belt]
+shape.box = { lower = [0.5, 1.1], upper = [1.0, 1.4] }
+motion.translation = [2.0, -1.0]
+[gauges.lower.level]
+foot = [1.9, 0.0]
+top = [1.9, 1.0]
+of = "heavy"
+[gauges.across.level]
+foot = [0.1, 0.1]
+top = [1.9, 0.7]
+[gauges.tongue.run_up]
+foot = [0.0, 0.2]
+top = [1.9, 0.2]
+[gauges.front.highest]
+axis = "x"
+[gauges.flow.flow]
+lower = [0.02, 0.0]
+upper = [0.02, 1.0]
+[gauges.point.point]
+position = [0.02, 0.35]
+fields = ["pressure", "density", "velocity"]
+[gauges.carried.point]
+position = [0.7, 1.05]
+moves_with = "belt"
+[gauges.drag.force]
+on = ["floor"]
+[gauges.push.force]
+on = ["belt"]
+about = [0.7, 1.2]
+moves_with = "belt"
+[gauges.sensor.sensor]
+position = [0.7, 1.1]
+axis = "y"
+diameter = 0.3
+moves_with = "belt"
+"""
+"""Two fluids run past each other across a seam, and a belt that comes down across it."""
+
+OF_SPACE = """
+[space]
+dimensions = 3
+spacing = 0.1
+[time]
+end = 0.1
+[physics]
+gravity = [0.0, 0.0, -9.8]
+sound_speed = 15.0
+[fluids.water]
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [0.6, 0.4, 0.4] }
+[walls.tank]
+shape.difference.from.box = { lower = [-0.3, -0.3, -0.3], upper = [1.0, 0.7, 0.7] }
+shape.difference.minus = [{ box = { lower = [0.0, 0.0, 0.0], upper = [0.7, 0.4, 0.7] } }]
+motion.sinusoid = { amplitude = [0.05, 0.0, 0.0], period = 0.4 }
+[gauges.level.level]
+foot = [0.3, 0.2, 0.0]
+top = [0.3, 0.2, 0.7]
+moves_with = "tank"
+[gauges.push.force]
+on = ["tank"]
+[gauges.flow.flow]
+lower = [0.3, 0.0, 0.0]
+upper = [0.3, 0.4, 0.6]
+[gauges.wall.sensor]
+position = [0.0, 0.2, 0.15]
+axis = "x"
+diameter = 0.2
+moves_with = "tank"
+"""
+
+FIELDS = 'output.fields=["load","couple","wet"]'
+
+
+def finished(case, folder, comm=None):
+    """The folder of a run to its end."""
+    run(case, folder, comm or alone(), say=lambda *_: None)
+    return folder
+
+
+def differences(folder, read) -> list[str]:
+    """The columns of gauges that frames do not give as the run did, at the times of frames."""
+    own, found = Run(folder).gauges(), []
+    for name, table in read.tables.items():
+        rows = np.searchsorted(own[name]["time"], table["time"])
+        assert len(rows) and list(table) == list(own[name])
+        found += [c for c in table if not np.array_equal(own[name][c][rows], table[c], equal_nan=True)]
+    return found
+
+
+@pytest.mark.parametrize(
+    "file, changes, count",
+    [
+        ("across", ("output.frames=0.02", "output.probes=0.02", FIELDS), 10),
+        ("space", ("output.frames=0.02", "output.probes=0.02", 'output.fields=["load"]'), 4),
+        ("floating_box.toml", ("space.spacing=0.04", "time.end=0.3", "output.frames=0.1"), 2),
+        ("ends/weir.toml", ("space.spacing=0.025", "time.end=0.4", "output.frames=0.1"), 2),
+        ("solids/cantilever.toml", ("time.end=0.1", "output.frames=0.05"), 1),
+    ],
+)
+def test_the_same_bits_as_during_the_run(tmp_path, file, changes, count):
+    text = {"across": ACROSS, "space": OF_SPACE}.get(file)
+    case = draft(tmp_path, text, *changes) if text else load(CASES / file, changes)
+    folder = finished(case, tmp_path / "run")
+    read = readings(folder)
+    assert not read.refused and len(read.tables) == count
+    assert len(read.tables[next(iter(read.tables))]["time"]) > 2
+    assert differences(folder, read) == []
+
+
+def test_bodies_joined_and_moored_and_what_goes_with_them(tmp_path):
+    lines = "bodies.box.lines.left={at=[0.8,0.6],anchor=[0.4,0.0],stiffness=500.0,length=0.75,damping=50.0}"
+    case = load(
+        CASES / "floating_box.toml",
+        (
+            *("space.spacing=0.04", "time.end=0.3", "output.frames=0.1", lines, 'output.fields=["load"]'),
+            'gauges.push.force={on=["box"],about=[1.0,0.7],moves_with="box"}',
+            'gauges.side.sensor={position=[1.0,0.6],axis="y",diameter=0.2,moves_with="box"}',
+            'joints.rail={of=["box"],slider={along=[0.0,1.0]}}',
+            'gauges.rail.joint={of="rail"}',
+        ),
+    )
+    folder = finished(case, tmp_path / "run")
+    read = readings(folder)
+    assert not read.refused and len(read.tables) == 5 and differences(folder, read) == []
+    tension = read.tables["box"]["box.tension_left"]
+    assert len(set(tension)) > 1
+    (folder / "poses.csv").unlink()
+    with pytest.raises(Refused, match="poses.csv has no line for the frame at 0 s"):
+        readings(folder)
+
+
+def test_fields_that_frames_lack_are_named(tmp_path):
+    case = draft(tmp_path, ACROSS, "output.frames=0.1", "output.probes=0.1")
+    folder = finished(case, tmp_path / "run")
+    read = readings(folder)
+    assert len(read.tables) == 6 and differences(folder, read) == []
+    assert sum("frames hold no load; a run stores it with --set" in one for one in read.refused) == 3
+    with pytest.raises(Refused, match="gauges.drag: .*frames hold no load"):
+        readings(folder, ["drag"])
+    with pytest.raises(Refused, match="frames hold no wet, and walls near .* may be wet or dry"):
+        readings(folder, ["low.point={position=[0.7, 1.05]}"])
+    with pytest.raises(CaseError, match="particles of this scene carry no lode; they carry .*load"):
+        finished(draft(tmp_path, ACROSS, 'output.fields=["lode"]'), tmp_path / "other")
+
+
+def test_new_gauges_and_those_of_a_file(tmp_path, capsys):
+    case = draft(tmp_path, TANK, "time.end=0.1", "output.frames=0.05")
+    folder = finished(case, tmp_path / "run")
+    (tmp_path / "more.toml").write_text('[gauges.tip.highest]\naxis = "y"\n')
+    level = "mid.level={foot=[0.5,0.0],top=[0.5,0.7]}"
+    assert main(["measure", str(folder), "--gauge", level, "--gauge", str(tmp_path / "more.toml")]) == 0
+    assert capsys.readouterr().out.count("3 rows") == 2
+    table = np.genfromtxt(folder / "measured-mid.csv", delimiter=",", names=True, deletechars="")
+    # With the gauge in the case the run writes the same.
+    other = finished(draft(tmp_path, TANK, "time.end=0.1", f"gauges.{level}"), tmp_path / "other")
+    own = Run(other).gauges()["mid"]
+    rows = np.searchsorted(own["time"], table["time"])
+    assert np.array_equal(own["mid.level"][rows], table["mid.level"])
+    assert main(["measure", str(folder), "--gauge", level, "--times", "0.05", "--out", str(tmp_path)]) == 0
+    assert len((tmp_path / "measured-mid.csv").read_text().splitlines()) == 2
+    # A new run takes away what was measured of the old one.
+    run(case, folder, alone(), overwrite=True, say=lambda *_: None)
+    assert not list(folder.glob("measured-*"))
+
+
+@pytest.mark.parametrize(
+    "gauge, says",
+    [
+        ("x", "no gauge has this name: .*a new one is written as"),
+        (
+            "x.level={foot=[9.0,0.0],top=[0.5,0.5]}",
+            r"case.toml: gauges.x.level.foot: .*lies outside the domain",
+        ),
+        ("x.levle={foot=[0.5,0.0],top=[0.5,0.7]}", r"case.toml with --gauge .*levle"),
+        ("x.level={foot=[0.5,0.0]", "case.toml with --gauge .* is not a value"),
+        ('x.force={on=["tank"]}', "x: sums over neighbours at each step, which the run has not made"),
+        ("nowhere.toml", "--gauge nowhere.toml: .*give a TOML file"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_line(tmp_path_factory, gauge, says):
+    base = tmp_path_factory.getbasetemp() / "refusing"
+    if not base.exists():
+        base.mkdir()
+        finished(draft(base, TANK, "time.end=0.01"), base / "run")
+    with pytest.raises(Refused, match=says) as told:
+        readings(base / "run", [gauge])
+    assert "\n" not in str(told.value)
+
+
+def test_one_frame_equal_frames_thinned_ones_and_parts_of_a_run(tmp_path):
+    changes = (
+        "output.frames=0.02",
+        "output.probes=0.01",
+        "checkpoint.every=8",
+        "gauges.tip.highest={axis='x'}",
+    )
+    case = draft(tmp_path, ACROSS, *changes)
+    folder = finished(case, tmp_path / "run")
+    whole = readings(folder, ["lower", "tip"])
+    older = checkpoints(folder)[-1]
+    resume(folder, alone(), [], older.name, say=lambda *_: None)
+    again = readings(folder, ["lower", "tip"])
+    for name, table in whole.tables.items():
+        assert all(np.array_equal(table[column], again.tables[name][column]) for column in table)
+    with h5py.File(folder / "case.h5", "r+") as file:  # a person has thinned them
+        for number in sorted(file["frames"], key=int)[1:-1:2]:
+            del file["frames"][number]
+    thin = readings(folder, ["lower"])
+    assert 3 < len(thin.tables["lower"]["time"]) < len(whole.tables["lower"]["time"])
+    assert differences(folder, thin) == []
+    one = readings(folder, ["lower"], [0.0])
+    assert len(one.tables["lower"]["time"]) == 1
+    with h5py.File(folder / "case.h5", "r+") as file:
+        for number in file["frames"]:
+            del file["frames"][number]
+    with pytest.raises(Refused, match="no frame yet"):
+        readings(folder, ["lower"])
+
+
+@pytest.mark.mpi(min_size=2)
+def test_frames_of_several_ranks(mpi_tmp_path):
+    changes = ("time.end=0.06", "output.frames=0.02", "output.probes=0.02", FIELDS, "parallel.axis='x'")
+    if MPI.COMM_WORLD.rank == 0:
+        draft(mpi_tmp_path, ACROSS)
+    MPI.COMM_WORLD.barrier()
+    folder = finished(load(mpi_tmp_path / "case.toml", changes), mpi_tmp_path / "run", MPI.COMM_WORLD)
+    if MPI.COMM_WORLD.rank == 0:
+        read = readings(folder)
+        assert len(read.tables) == 10 and differences(folder, read) == []
