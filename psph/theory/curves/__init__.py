@@ -1,0 +1,1 @@
+"""Numbers of curves over time, such as gauges write: extremes, periods, spectra, responses."""
