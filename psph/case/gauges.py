@@ -116,7 +116,7 @@ class Highest(OfFlow):
     of: Name | None = OF
 
 
-class Volume(OfFlow):
+class VolumeIn(OfFlow):
     """Volume and mass of the fluid in a region."""
 
     shape: Shape = key("the region")
@@ -261,7 +261,7 @@ class Gauge(Table):
     level: Level | None = key("water level along a line", None, otherwise=ANOTHER_KIND)
     run_up: RunUp | None = key("run-up along a slope", None, otherwise=ANOTHER_KIND)
     highest: Highest | None = key("largest coordinate of the fluid", None, otherwise=ANOTHER_KIND)
-    volume: Volume | None = key("volume of the fluid in a region", None, otherwise=ANOTHER_KIND)
+    volume: VolumeIn | None = key("volume of the fluid in a region", None, otherwise=ANOTHER_KIND)
     overtopping: Overtopping | None = key("volume beyond a crest", None, otherwise=ANOTHER_KIND)
     point: Point | None = key("fields at a point", None, otherwise=ANOTHER_KIND)
     sensor: Sensor | None = key("mean pressure over a round sensor", None, otherwise=ANOTHER_KIND)

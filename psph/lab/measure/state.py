@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from psph.fields import CROSSED, OF_MATERIAL, REFERENCE, SOLID, WALL
+from psph.fields import CROSSED, OF_MATERIAL, REFERENCE, WALL
 from psph.lab.errors import MeasureError
 from psph.output.gauges.fit import nearest
 from psph.output.ledger import Ledger
@@ -43,6 +43,9 @@ class StoredState:
         self.store: Any = self._all
         self.time = self.dt = 0.0
         self._poses = run.poses()
+        self._bonded = np.zeros(len(plan.materials.kinds), bool)
+        parts = scene.layout.parts
+        self._bonded[[part.number for part in parts if parts[part.whole].keeps_neighbours]] = True
         self._start: tuple[np.ndarray, np.ndarray] | None = None
 
     def show(self, number: int, time: float) -> None:
@@ -60,10 +63,10 @@ class StoredState:
             held[CROSSED.name] = np.zeros_like(frame["position"])
         if WET_MARK in s.rows and WET_MARK not in held:
             held[WET_MARK] = self._wet(frame)
-        solid = np.flatnonzero(s.shown("kind") == SOLID)
-        if len(solid):  # what a fluid sees of it is not the pressure of its stress, which frames show
+        bonded = np.flatnonzero(self._bonded[group])
+        if len(bonded):  # what a fluid sees of it is not the pressure of its stress, which frames show
             self.engine.bear(s.low, s.low + s.owned, 0.0)
-            held["pressure"][solid] = s.shown("pressure")[solid]
+            held["pressure"][bonded] = s.shown("pressure")[bonded]
         for name, rows in held.items():
             if name in s.rows:
                 s.data[list(s.rows[name]), s.inner] = rows.reshape(len(group), -1).T
