@@ -1,5 +1,6 @@
 """What every case has before its matter: its names, its space and time, and what acts in it."""
 
+import math
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 
 from pydantic import Strict
@@ -14,6 +15,10 @@ if TYPE_CHECKING:  # made from the catalogue of effects
     Physics: TypeAlias = Any
 else:
     Physics = physics_table()
+
+
+ROUNDING = 1e-6
+"""Of a spacing."""
 
 
 class Space(Table):
@@ -55,6 +60,12 @@ class Space(Table):
         unit="m",
         otherwise="zeros",
     )
+
+    @property
+    def layers(self) -> int:
+        """Rows of particles over which the kernel of one at a face reaches."""
+        smooths: Any = KERNELS[self.kernel]
+        return math.ceil(smooths.support * self.smoothing - ROUNDING)
 
 
 class Time(Table):

@@ -9,7 +9,7 @@ from pydantic import Strict
 from psph.acts import BODIES, FRAME, ONE, speaks_for
 from psph.case.errors import advise
 from psph.case.findings import Finding
-from psph.case.keys import AXES, Name, Table, Vector, key
+from psph.case.keys import AXES, Name, Place, Table, Vector, key
 from psph.case.motion import Motions, way_and_turn
 from psph.case.placed import Placed
 from psph.case.shapes import Shape
@@ -42,6 +42,10 @@ class Line(Table):
     )
     damping: float = key("force over the rate at which it lengthens", 0.0, unit="N s/m", ge=0)
     pulls_only: bool = key("it is slack when shorter than its length: a mooring line without weight", False)
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """From end to end."""
+        yield self.at, self.anchor
 
 
 @speaks_for(BODIES)

@@ -44,26 +44,39 @@ def named(names: list[str]) -> str:
     return shortened(", ".join(names), LONGEST_QUOTE)
 
 
+def cells_of(path: Path, most: int) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """The names of the columns of a CSV file, and the numbers of its lines with their cells.
+
+    Raises Unfit where it has fewer than two rows, or more than ``most``.
+    """
+    lines = rows_of(path, most + 2)
+    if not lines:
+        raise Unfit(f"{path} is empty; {GIVE}")
+    (_, head), *cells = lines
+    if len(cells) < 2:
+        raise Unfit(f"{path} has {len(cells)} row{'s' * (len(cells) != 1)}; give two at least")
+    if len(cells) > most:
+        raise Unfit(f"{path} has more than {most:,} rows; give fewer: they are interpolated")
+    return [part.strip() for part in head], cells
+
+
+def numbers_of(path: Path, columns: list[str], cells, names: list[str]) -> np.ndarray:
+    """The numbers (n, len(names)) in some of the ``columns`` of the ``cells`` of a file.  Raises Unfit."""
+    for name in names:
+        if columns.count(name) != 1:
+            how = "no column" if name not in columns else "more than one column"
+            raise Unfit(f"{path} has {how} '{name}', only {named(columns)}; name one of its columns")
+    places = [columns.index(name) for name in names]
+    return np.array([_numbers(path, n, row, columns, places) for n, row in cells])
+
+
 def read_columns(path: Path, names: list[str]) -> np.ndarray:
     """The columns ``names`` of a CSV file of numbers (n, len(names)), the first of them times that rise.
 
     Raises Unfit.
     """
-    lines = rows_of(path, MOST_ROWS + 2)
-    if not lines:
-        raise Unfit(f"{path} is empty; {GIVE}")
-    (_, head), *cells = lines
-    columns = [part.strip() for part in head]
-    for name in names:
-        if columns.count(name) != 1:
-            how = "no column" if name not in columns else "more than one column"
-            raise Unfit(f"{path} has {how} '{name}', only {named(columns)}; name one of its columns")
-    if len(cells) < 2:
-        raise Unfit(f"{path} has {len(cells)} row{'s' * (len(cells) != 1)}; give two at least")
-    if len(cells) > MOST_ROWS:
-        raise Unfit(f"{path} has more than {MOST_ROWS:,} rows; give fewer: they are interpolated")
-    places = [columns.index(name) for name in names]
-    rows = np.array([_numbers(path, n, row, columns, places) for n, row in cells])
+    columns, cells = cells_of(path, MOST_ROWS)
+    rows = numbers_of(path, columns, cells, names)
     for (n, _), before, now in zip(cells[1:], rows[:-1, 0], rows[1:, 0]):
         if not now > before:
             raise Unfit(f"{path}: line {n}: the time {now:g} s follows {before:g} s; let times rise")

@@ -13,6 +13,7 @@ from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
 from psph.case.placed import Placed
+from psph.case.placing import Placing, Turn
 from psph.case.schemes import STABLE
 from psph.physics.roles import ROLES
 from psph.physics.walls.slip import NoSlip
@@ -22,6 +23,7 @@ def contradictions(case) -> list[InitErrorDetails]:
     """All contradictions between the keys of a case."""
     rules = (
         _named,
+        _shapes,
         _square,
         _axes,
         _domain,
@@ -108,13 +110,12 @@ def _sizes(case) -> Iterator[Finding]:
 
 
 def _dimensions(case) -> Iterator[Finding]:
-    dimensions = case.space.dimensions
     foreign: Location = ("no key",)  # the shape that does not belong here: one line is enough
-    for loc, value in walk(case):
+    for loc, value, dimensions, here in _in_space(case):
         if loc[:2] == ("study", "vary") or loc[-2:-1] == ("span",):  # ladders, intervals: no vectors
             continue
         only_in = getattr(value, "only_in", dimensions)
-        if only_in != dimensions:
+        if only_in != dimensions and loc[: len(foreign)] != foreign:
             foreign = loc
             yield (
                 loc,
@@ -124,15 +125,43 @@ def _dimensions(case) -> Iterator[Finding]:
                     f"use {getattr(value, 'instead', 'another shape')}"
                 ),
             )
+        elif isinstance(value, Turn) and (value.axis is None) != (dimensions < len(AXES)):
+            foreign = loc
+            says = "give axis, such as [0, 0, 1]" if value.axis is None else "remove axis"
+            yield loc, ..., f"a turn in {here}: {says}"
         elif _is_vector(value) and len(value) != dimensions and loc[: len(foreign)] != foreign:
             yield (
                 loc,
                 value,
                 (
-                    f"{len(value)} number{'s' * (len(value) > 1)} in a case with "
-                    f"space.dimensions = {dimensions}; give {dimensions}{with_points(value, dimensions)}"
+                    f"{len(value)} number{'s' * (len(value) > 1)} in {here}; give {dimensions}"
+                    f"{with_points(value, dimensions)}"
                 ),
             )
+
+
+def _in_space(case) -> Iterator[tuple[Location, Any, int, str]]:
+    """Every table and list of a case, with its location, how many numbers a point has there, and where that
+    is, in words: what is drawn out or turned is flat."""
+    flat: list[Location] = []
+    whole = case.space.dimensions
+    for loc, value in walk(case):
+        if name := getattr(value, "flat", ""):
+            flat.append((*loc, name))
+        if any(loc[: len(one)] == one for one in flat):
+            yield loc, value, 2, "a profile, which is flat"
+        else:
+            yield loc, value, whole, f"a case with space.dimensions = {whole}"
+
+
+def _shapes(case) -> Iterator[Finding]:
+    """Shapes without an end."""
+    outer: Location = ("no key",)
+    for loc, value in walk(case):
+        if isinstance(value, Placing) and loc[: len(outer)] != outer:
+            outer = loc
+            if value.is_endless:
+                yield loc, ..., "goes on without an end; take its intersection with a box"
 
 
 def _is_vector(value: Any) -> bool:

@@ -43,7 +43,7 @@ def beside(folder: Path, name: str, kind: str, endings: Sequence[str]) -> Found:
 def files_of(case) -> list[tuple[str, Path]]:
     """The files that a case needs besides itself, and the experiments that lie beside it: their names in the
     case, and where they are."""
-    folder, drawn = Path(case.file).parent, (mesh.file for mesh in case.meshes.values())
+    folder, drawn = Path(case.file).parent, (one.file for one in case.drawings)
     measured = (one.file for one in case.experiments.values() if lies_in(folder, one.file))
     used = (name for name in case.use if not name.startswith(PYTHON))
     names = dict.fromkeys([*used, *(one.file for one in (*case.series, *case.courses)), *drawn, *measured])

@@ -9,9 +9,10 @@ from pydantic_core import PydanticCustomError
 from psph.acts import BODIES, MATTER, SOILS, SOLIDS, UPDATED, refusals
 from psph.case.errors import advise
 from psph.case.findings import Finding, keys_one_sided
-from psph.case.keys import AXES, Axis, Name, Table, Vector, key
+from psph.case.keys import AXES, Axis, Name, Place, Table, Vector, key
 from psph.case.placed import Placed
 from psph.case.shapes import Shape
+from psph.case.sketches import rectangle, ring
 from psph.case.solids import Reaction
 from psph.physics.walls.conditions import BEARING, CONDITIONS
 
@@ -96,6 +97,10 @@ class Level(OfFlow):
 
     _has_a_length = model_validator(mode="after")(has_a_length)
 
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its line."""
+        yield self.foot, self.top
+
 
 class RunUp(OfFlow):
     """How far the tongue of the fluid reaches up a slope: along the slope, and in height."""
@@ -106,6 +111,10 @@ class RunUp(OfFlow):
     moves_with: Name | None = MOVES_WITH
 
     _has_a_length = model_validator(mode="after")(has_a_length)
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its line."""
+        yield self.foot, self.top
 
 
 class Highest(OfFlow):
@@ -158,6 +167,10 @@ class Point(Table):
     )
     moves_with: Name | None = MOVES_WITH
 
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its place."""
+        yield (self.position,)
+
 
 class Sensor(Table):
     """Mean pressure over a round sensor on a wall; parts of it that no fluid reaches bear none."""
@@ -166,6 +179,10 @@ class Sensor(Table):
     axis: Axis = key("the direction that it faces, across the wall")
     diameter: float = key("its diameter", unit="m", gt=0)
     moves_with: Name | None = MOVES_WITH
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its rim, in 2D its line."""
+        yield ring(self.position, self.axis, 0.5 * self.diameter)
 
 
 class Flow(OfFlow):
@@ -185,6 +202,10 @@ class Flow(OfFlow):
                 "the larger along the others",
             )
         return self
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its rim."""
+        yield rectangle(self.lower, self.upper)
 
 
 class MotionOf(Table):
@@ -218,6 +239,10 @@ class Displacement(Table):
     of: Name = key("the name of the solid")
     at: Vector = key("the point, on or in the solid, where it is at the start", unit="m")
 
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its point."""
+        yield (self.at,)
+
 
 class StressAt(Table):
     """Stress at a point of a solid or a soil, by the straight function fitted to the particles around it."""
@@ -231,6 +256,10 @@ class StressAt(Table):
         "Lagrangian solid it stays in space",
         unit="m",
     )
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its point."""
+        yield (self.at,)
 
 
 ANOTHER_KIND = "one kind of gauge is required"

@@ -8,7 +8,7 @@ from pydantic import Field, Strict
 from psph.acts import BODIES
 from psph.case.errors import advise
 from psph.case.findings import Finding
-from psph.case.keys import Name, Table, Vector, key
+from psph.case.keys import Name, Place, Table, Vector, key
 from psph.case.placed import Answering
 
 Limits = Annotated[tuple[float, ...], Strict(False), Field(min_length=2, max_length=2)]
@@ -30,6 +30,10 @@ class Hinge(Table):
     rest: float = key("the angle without torque", 0.0, unit="degrees")
     damping: float = key("torque of a damper over the angular velocity", 0.0, unit="N m s", ge=0)
 
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """A point of its axis, in 3D with the direction."""
+        yield (self.at,) if self.axis is None else (self.at, tuple(x + n for x, n in zip(self.at, self.axis)))
+
 
 class Slider(Table):
     """A joint along a way, without a turn."""
@@ -49,6 +53,10 @@ class BallJoint(Table):
 
     at: Vector = key("the point, where it is at the start", unit="m")
 
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its point."""
+        yield (self.at,)
+
 
 class FixedJoint(Table):
     """Both move as one."""
@@ -59,6 +67,10 @@ class Rod(Table):
 
     at: Vector = key("the point of the first body, where it is at the start", unit="m")
     anchor: Vector = key("that of the other, where it is at the start", unit="m")
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """From point to point."""
+        yield self.at, self.anchor
 
 
 KINDS = ("hinge", "slider", "ball", "fixed", "rod")

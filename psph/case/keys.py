@@ -1,6 +1,6 @@
 """Base of the tables of a case: strict models, described keys, vectors."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, StringConstraints
@@ -23,6 +23,10 @@ Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_-]+$")]
 """A name that a person gives; it stands in keys, files and columns."""
 
 
+Place = tuple[float, ...]
+"""A point, m."""
+
+
 def _one_line(text: str) -> str:
     if UNPRINTABLE.search(text):
         raise PydanticCustomError("psph", "holds a line break or a control character; take it out")
@@ -37,6 +41,11 @@ class Table(BaseModel):
     """A table of a case: unknown keys are refused, and so are strings or booleans for numbers."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True)
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Lines through points, m, that show where it acts in a picture of the scene; a point alone is a
+        dot.  Most tables have none."""
+        yield from ()
 
 
 def key(

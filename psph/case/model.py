@@ -11,6 +11,7 @@ from pydantic import PrivateAttr, Strict, ValidationError, model_validator
 
 from psph.case.consistency import contradictions, walk
 from psph.case.courses import Columned
+from psph.case.drawing import Drawing
 from psph.case.errors import dotted
 from psph.case.extensions import versions
 from psph.case.findings import keys_one_sided
@@ -22,6 +23,7 @@ from psph.case.placed import Answering, Named, Placed
 from psph.case.profiles import OFF, choices
 from psph.case.running import Checkpoint, GuardKeys, NeighbourLists, Output, Parallel, Perturbation, Probe
 from psph.case.schemes import scheme_keys
+from psph.case.shapes import Shell
 from psph.case.study import Experiment, Study, exact_table
 from psph.case.tables import WithMatter
 from psph.physics.catalogue import BUILT_IN, Catalogue
@@ -162,10 +164,15 @@ class Case(WithMatter):
         """The shapes that geometry files draw, by their dotted keys."""
         return {dotted(loc): value for loc, value in walk(self) if isinstance(value, Mesh)}
 
+    @cached_property
+    def drawings(self) -> list[Drawing]:
+        """The shapes that files draw."""
+        return [value for _, value in walk(self) if isinstance(value, Drawing)]
+
     @property
     def versions(self) -> list[str]:
         """A word for each file that the case uses: another content gives another word."""
-        named = (*self.series, *self.courses, *self.meshes.values())
+        named = (*self.series, *self.courses, *self.drawings)
         return [*versions(self.catalogue), *(one.found.digest for one in named)]
 
     @cached_property
@@ -219,6 +226,9 @@ class Case(WithMatter):
         end, zeros = self.time.end, (0.0,) * self.space.dimensions
         _fill(self.space, origin=zeros)
         _fill(self.output, frames=end / 50, probes=end / 1000, log=end / 200)
+        deep = self.space.layers * self.space.spacing
+        for one in (value for _, value in walk(self) if isinstance(value, Shell)):
+            _fill(one, thickness=deep)
         for mover in self.movers:
             _fill(mover.of, velocity=zeros, velocity_center=zeros)
         for gauge in self.gauges.values():

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from psph.acts import BONDED, FLOWING
 from psph.case.findings import Finding, Location
-from psph.case.keys import Table, Vector, key
+from psph.case.keys import Place, Table, Vector, key
 from psph.physics.catalogue import Catalogue
 
 
@@ -88,6 +88,10 @@ class HardPlane(Answering):
 
     at: Vector = key("a point of the plane", unit="m")
     normal: Vector = key("direction out of it, of any length", unit="1")
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its point and, in the direction out of it, a line of 1 m."""
+        yield self.at, tuple(x + n for x, n in zip(self.at, self.outward))
 
     @property
     def outward(self) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from psph.case import schema
 from psph.case.gauges import ANOTHER_KIND
 from psph.case.parameters import NOT_THIS
 from psph.case.physics import OFF
+from psph.case.placing import Placing
 from psph.case.schemes import by_default
 from psph.case.structure import Node, alternatives
 
@@ -81,16 +82,22 @@ def _named(whole: Node, heading: str, table: Node) -> Iterator[str]:
 
 
 def _shapes(whole: Node) -> Iterator[str]:
-    shapes = whole["$defs"]["Shape"]["properties"]
-    rows = [f"| `{name}` | {_type(whole, node)} | {node['description']} |" for name, node in shapes.items()]
-    meaning = "A shape is a table with exactly one of these keys."
+    every, placing = whole["$defs"]["Shape"]["properties"], Placing.model_fields
+    forms = {name: node for name, node in every.items() if name not in placing}
+    rows = [f"| `{name}` | {_type(whole, node)} | {node['description']} |" for name, node in forms.items()]
+    meaning = "A shape is a table with exactly one of these keys, and those that place it."
     yield from _section("Shapes", meaning, rows, head=("key", "value", "meaning"))
-    for name, node in shapes.items():
+    keys = {"properties": {name: every[name] for name in placing}}
+    meaning = _sentence(f"{WHERE} ([geometry.md](geometry.md))")
+    yield from _section("Where a shape is", meaning, _rows(whole, "shape", keys), level=3)
+    for name, node in ({name: every[name] for name in placing} | forms).items():
         for branch in alternatives(whole, node):
-            if "properties" in branch:
-                yield from _section(f"`{name}`", "", _rows(whole, name, branch), level=3)
+            table = next(alternatives(whole, branch.get("items", branch)))
+            if "properties" in table and table.get("title") != "Shape":
+                yield from _section(f"`{name}`", "", _rows(whole, name, table), level=3)
 
 
+WHERE = "It is scaled, mirrored, turned, moved and repeated, in this order"
 MOTIONS = (
     "A motion is a part, or a list of parts: a table with one way to move, and when it acts "
     "([motion.md](motion.md))"

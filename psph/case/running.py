@@ -1,10 +1,12 @@
 """Tables of a case that say what is measured, written, kept and guarded, and how ranks share it."""
 
+from collections.abc import Iterator
 from typing import Annotated, Literal
 
 from pydantic import Strict
 
-from psph.case.keys import Axis, Name, Table, Vector, key
+from psph.case.keys import Axis, Name, Place, Table, Vector, key
+from psph.case.sketches import edges
 
 
 class Probe(Table):
@@ -29,6 +31,16 @@ class Probe(Table):
         {},
     )
 
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its place, and the box of its sensor."""
+        if self.position and self.extent:
+            low, up = (
+                tuple(x + way * size for x, size in zip(self.position, self.extent)) for way in (-0.5, 0.5)
+            )
+            yield from edges(low, up)
+        elif self.position:
+            yield (self.position,)
+
 
 class Perturbation(Table):
     """A kick or a shift of the fluid particle nearest to a point."""
@@ -38,6 +50,10 @@ class Perturbation(Table):
     shift: Vector | None = key(
         "displacement at the start, even onto another particle", None, unit="m", otherwise="zeros"
     )
+
+    def sketch(self) -> Iterator[tuple[Place, ...]]:
+        """Its place."""
+        yield (self.position,)
 
 
 class Output(Table):

@@ -127,7 +127,7 @@ def _lopsided(scene: Scene) -> Iterator[str]:
         return
     for name, table in scene.case.bodies.items():
         mesh = table.shape.mesh
-        if mesh is None or mesh.shell or table.centre is not None:
+        if mesh is None or mesh.shell or table.shape.is_placed or table.centre is not None:
             continue
         from psph.scene.meshes.mass import enclosed_by
 

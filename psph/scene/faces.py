@@ -3,7 +3,7 @@
 import numpy as np
 
 from psph.scene.census import Census
-from psph.scene.distance import endless, faces_of
+from psph.scene.forms.make import form_of
 from psph.scene.lattice import TOLERANCE
 from psph.scene.layout import Layout
 
@@ -42,15 +42,16 @@ def drawn_faces(layout: Layout, species: np.ndarray, position: np.ndarray) -> tu
         if part.flows or whole.may_crack:
             continue
         drawn = (whole if whole.keeps_neighbours else part).shape
-        shape = endless(drawn, layout.lower, layout.upper, layout.periods)
+        ends = np.array(layout.lower), np.array(layout.upper)
+        form = form_of(drawn).endless(*ends, layout.periods)
         rows = species == number
-        found = faces_of(shape, position[rows])
+        found = form.faces(position[rows])
         mean = np.zeros_like(found.normal)
         for d in range(layout.dimensions):
             for way in (-BESIDE, BESIDE):
                 beside = position[rows].copy()
                 beside[:, d] += way * layout.spacing
-                mean += faces_of(shape, beside).normal / (2.0 * layout.dimensions)
+                mean += form.faces(beside).normal / (2.0 * layout.dimensions)
         alike = np.sqrt((mean**2).sum(axis=1))
         normal[rows], depth[rows] = (
             np.where(alike[:, None] > FLAT, found.normal, 0.0),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from psph.scene.shapes import Corner
+from psph.scene.forms.form import Corner
 
 TOLERANCE = 1e-6
 """In spacings: how far rounding may move a site or an edge."""

@@ -5,10 +5,13 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from psph.case.keys import AXES
-from psph.case.shapes import Box, Difference, Shape
+from psph.case.shapes import Shape
+from psph.scene.forms.form import Form
+from psph.scene.forms.joined import Less, Union
+from psph.scene.forms.make import form_of
+from psph.scene.forms.plain import Boxed
 from psph.scene.lattice import TOLERANCE, sites_between
 from psph.scene.scene import Scene
-from psph.scene.shapes import bounds
 
 WIDEST_MISFIT = 1e-3
 """Part of a width that the lattice may change without a warning: far below the errors of a run."""
@@ -41,9 +44,9 @@ def widths(scene: Scene) -> list[Width]:
     ]
     for part in scene.layout.parts:
         if part.moves_freely or part.moves_whole:
-            found += (Width(part.key, *side) for box in _boxes(part.shape) for side in _sides(box))
+            found += (Width(part.key, *side) for box in _boxes(form_of(part.shape)) for side in _sides(box))
     for name, wall in case.walls.items():
-        found += (Width(f"walls.{name}", *side) for side in _cavities(wall.shape))
+        found += (Width(f"walls.{name}", *side) for side in _cavities(form_of(wall.shape)))
     return found
 
 
@@ -89,41 +92,41 @@ def nearest_fit(
     return min((x for x in tried if fits(x, lengths)), key=lambda x: abs(math.log(x / spacing)), default=None)
 
 
-def _boxes(shape: Shape) -> Iterator[Box]:
-    """The boxes that a shape is made of."""
-    match shape.form:
-        case tuple() as shapes:
-            for one in shapes:
+def _boxes(form: Form) -> Iterator[Boxed]:
+    """The boxes that a form is made of."""
+    match form:
+        case Union(parts=parts):
+            for one in parts:
                 yield from _boxes(one)
-        case Difference(base=base):
+        case Less(base=base):
             yield from _boxes(base)
-        case Box() as box:
-            yield box
+        case Boxed():
+            yield form
 
 
 def is_of_boxes(shape: Shape) -> bool:
     """Whether a shape is one box, or several."""
-    match shape.form:
-        case tuple() as shapes:
-            return all(map(is_of_boxes, shapes))
-        case form:
-            return isinstance(form, Box)
+    return _is_of_boxes(form_of(shape))
 
 
-def _sides(box: Box) -> Iterator[tuple[int, float, float]]:
+def _is_of_boxes(form: Form) -> bool:
+    return all(map(_is_of_boxes, form.parts)) if isinstance(form, Union) else isinstance(form, Boxed)
+
+
+def _sides(box: Boxed) -> Iterator[tuple[int, float, float]]:
     for d, (low, up) in enumerate(zip(box.lower, box.upper)):
         yield d, low, up
 
 
-def _cavities(shape: Shape) -> Iterator[tuple[int, float, float]]:
-    """Axis and ends of the rooms that a shape leaves; not along an axis where a room is open."""
-    match shape.form:
-        case tuple() as shapes:
-            for one in shapes:
+def _cavities(form: Form) -> Iterator[tuple[int, float, float]]:
+    """Axis and ends of the rooms that a form leaves; not along an axis where a room is open."""
+    match form:
+        case Union(parts=parts):
+            for one in parts:
                 yield from _cavities(one)
-        case Difference(base=base, minus=minus):
+        case Less(base=base, minus=minus):
             yield from _cavities(base)
-            lower, upper = bounds(base)
+            lower, upper = base.bounds
             for box in (box for one in minus for box in _boxes(one)):
                 yield from (
                     side for side in _sides(box) if lower[side[0]] < side[1] and side[2] < upper[side[0]]

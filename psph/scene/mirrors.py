@@ -4,9 +4,12 @@ from collections.abc import Iterator, Sequence
 
 from psph.case import Case, CaseError
 from psph.case.keys import AXES
-from psph.case.shapes import Box, Difference, Shape
+from psph.case.shapes import Shape
 from psph.composition.mirrors import ABOVE, BELOW, Plane
 from psph.physics.walls.conditions import MIRROR
+from psph.scene.forms.joined import Less
+from psph.scene.forms.make import form_of
+from psph.scene.forms.plain import Boxed
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import Corner, bounds
 
@@ -96,8 +99,8 @@ def faces_before(
 ) -> Iterator[tuple[int, int, float]]:
     """Axis, side (BELOW, ABOVE) and place, m, of each face of a mirror that what is ``held`` is before."""
     low, high = held
-    match shape.form:
-        case Box(lower=lower, upper=upper):
+    match form_of(shape):
+        case Boxed(lower=lower, upper=upper):
             beside = [
                 (d, side, at)
                 for d in range(len(lower))
@@ -112,7 +115,7 @@ def faces_before(
                 others = [d for d in range(len(lower)) if d != axis]
                 if all(lower[d] <= low[d] + tolerance and upper[d] >= high[d] - tolerance for d in others):
                     yield from beside
-        case Difference(base=Shape(box=Box() as outer), minus=(Shape(box=Box() as room),)):
+        case Less(base=Boxed() as outer, minus=(Boxed() as room,)):
             inside = all(a <= b + tolerance for a, b in zip(room.lower, low)) and all(
                 a >= b - tolerance for a, b in zip(room.upper, high)
             )

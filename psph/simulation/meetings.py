@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.physics.rigid.pose import PLACE, VELOCITY
-from psph.scene.distance import Faces
+from psph.scene.forms.form import Faces
 from psph.simulation.obstacles import Obstacle, Tips, obstacles_of
 
 NEARBY, TOUCH, FAR = 1e-3, 0.1, 3.0

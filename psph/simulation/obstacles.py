@@ -6,13 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.case.shapes import Ball, Disc, Shape
 from psph.composition.mirrors import BELOW
 from psph.physics.motion import Fixed, is_rigid
 from psph.physics.rigid.body import RigidBody
-from psph.scene.distance import Faces, corners_of, faces_of
+from psph.scene.forms.form import Faces, Form
+from psph.scene.forms.make import form_of
+from psph.scene.forms.plain import Round
 from psph.scene.joints import apart
-from psph.scene.shapes import bounds
 
 LAYER = 1.0
 """Spacings below the face to which sites of a body give a point on the face."""
@@ -44,7 +44,7 @@ class Tips(NamedTuple):
 
 
 class Obstacle(NamedTuple):
-    """What a body may meet: a ``shape``, or the plane of a mirror, in its place at the start.
+    """What a body may meet: a ``shape``, a form or the plane of a mirror, in its place at the start.
 
     ``key`` is its key in the case; ``tips`` are what it meets the faces of bodies with, None of a mirror;
     ``body`` is the row of a body, −1 of others; ``pose`` that of the map that places it, −1 where it stays;
@@ -61,13 +61,11 @@ class Obstacle(NamedTuple):
     @property
     def corners(self) -> np.ndarray | None:
         """Those of a box around it at the start, m; None where it has no end."""
-        return None if isinstance(self.shape, MirrorFace) else np.array([*product(*zip(*bounds(self.shape)))])
+        return None if isinstance(self.shape, MirrorFace) else np.array([*product(*zip(*self.shape.bounds))])
 
     def faces(self, points: np.ndarray) -> Faces:
         """How far ``points`` (n, dim) are before its faces at the start, m, and the way out."""
-        return (
-            self.shape.faces(points) if isinstance(self.shape, MirrorFace) else faces_of(self.shape, points)
-        )
+        return self.shape.faces(points)
 
 
 class MirrorFace(NamedTuple):
@@ -93,13 +91,13 @@ def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
         key, motion, shape = (
             scene.layout.parts[part].key,
             scene.census.motions[part],
-            scene.layout.parts[part].shape,
+            form_of(scene.layout.parts[part].shape),
         )
         pose = int(plan.materials.pose_of[part]) if is_rigid(motion) else -1
         own = scene.layout.parts[part].name
         cuts = tuple(row for row, name in names.items() if {own, name} in joined)
         if isinstance(motion, RigidBody):
-            ends[row := rows.index(pose)] = bounds(shape)
+            ends[row := rows.index(pose)] = shape.bounds
             yield Obstacle(
                 key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose, cuts
             )
@@ -111,14 +109,14 @@ def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
         yield Obstacle("a mirror", plane, None, cuts=tuple(cut))
 
 
-def tips_of(shape: Shape, spacing: float, on_faces=()) -> Tips:
+def tips_of(form: Form, spacing: float, on_faces=()) -> Tips:
     """A disc or a ball as a whole; else the drawn corners, and points ``on_faces``, arrays (n, dim) in m."""
-    match shape.form:
-        case Disc(center=center, radius=radius) | Ball(center=center, radius=radius):
+    match form:
+        case Round(center=center, radius=radius):
             return Tips(np.array([center]), np.array([radius]), np.array([ROUND]))
-    corners = corners_of(shape, spacing)
+    corners = form.corners(spacing)
     if len(corners):
-        corners = corners[np.abs(faces_of(shape, corners).away) < ON_FACE * spacing]
+        corners = corners[np.abs(form.faces(corners).away) < ON_FACE * spacing]
     points = np.concatenate([*on_faces, corners])
     out = np.full(len(points), ROUND)
     out[len(points) - len(corners) :] = SHARP
@@ -127,11 +125,11 @@ def tips_of(shape: Shape, spacing: float, on_faces=()) -> Tips:
 
 def under_faces(scene, part: int) -> Iterator[np.ndarray]:
     """Points on the faces of a body, under its outer particles, m (n, dim), by chunks."""
-    shape = scene.layout.parts[part].shape
+    form = form_of(scene.layout.parts[part].shape)
     for begin, end in scene.layout.lattice.chunks():
         held = scene.layout.materials(begin, end) == part
         grid = scene.layout.lattice.grid(begin, end)
         sites = np.stack([np.broadcast_to(x, held.shape)[held] for x in grid], axis=1)
-        away, normal = faces_of(shape, sites)
+        away, normal = form.faces(sites)
         outer = away > -LAYER * scene.spacing
         yield sites[outer] - away[outer, None] * normal[outer]

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from psph.case.consistency import walk
-from psph.case.mesh import Mesh
-from psph.case.shapes import Difference, Shape
+from psph.case.findings import Location
+from psph.case.shapes import Shape
+from psph.scene.forms.form import Form
+from psph.scene.forms.make import form_of
 from psph.scene.meshes.drawn import Drawn
 from psph.scene.scene import Scene
 from psph.scene.shapes import bounds, shown
@@ -83,7 +85,7 @@ def described(scene: Scene) -> Iterator[str]:
         if one.mesh.shell:
             what = f"a shell {one.mesh.shell:g} m thick"
         else:
-            what = f"{surface.volume:.4g} m3"
+            what = f"{one.times * surface.volume:.4g} m3"
             what += f", {_excess(scene, one, sites):+.1%} on the lattice" if _is_within(scene, one) else ""
         yield (
             f"{one.key}: {one.mesh.file}: {one.size} from {shown(surface.lower)} to "
@@ -129,10 +131,11 @@ def _sizes(scene: Scene, one: Drawn) -> Iterator[str]:
 def _volumes(scene: Scene, one: Drawn, sites: int) -> Iterator[str]:
     excess = _excess(scene, one, sites)
     if not one.mesh.shell and _is_within(scene, one) and abs(excess) > MISFIT:
+        own, filled = one.times * one.surface.volume, sites * scene.spacing**3
         yield (
-            f"the surface encloses {one.surface.volume:.4g} m3, its sites {sites * scene.spacing**3:.4g} "
-            f"({excess:+.0%}): at {scene.spacing:g} m thin parts are lost or grow, or its parts overlap; "
-            "make space.spacing smaller"
+            f"the surface encloses {own:.4g} m3, its sites {filled:.4g} ({excess:+.0%}): at "
+            f"{scene.spacing:g} m thin parts are lost or grow, or its parts overlap; make space.spacing "
+            "smaller"
         )
 
 
@@ -140,6 +143,11 @@ def _rest(scene: Scene) -> float:
     """The largest extent, m, of what :func:`_others` encloses; 0 without any."""
     lower, upper = _others(scene)
     return float((upper - lower).max(initial=0.0))
+
+
+def _is_drawn(one: Form) -> bool:
+    """Whether it stands in a file, or has no end."""
+    return hasattr(getattr(one, "of", one), "mesh") or not np.isfinite(one.bounds).all()
 
 
 def _off(scene: Scene, one: Drawn) -> float:
@@ -153,9 +161,11 @@ def _others(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     space, boxes = scene.case.space, []
     if space.lower and space.upper:
         boxes.append((space.lower, space.upper))
-    for _, value in walk(scene.case):
-        if isinstance(value, Shape) and not isinstance(value.form, (Mesh, Difference, tuple)):
-            boxes.append(bounds(value))
+    inner: Location = ("no key",)
+    for loc, value in walk(scene.case):
+        if isinstance(value, Shape) and loc[: len(inner)] != inner:
+            inner = loc
+            boxes += (one.bounds for one in form_of(value).pieces() if not _is_drawn(one))
     if not boxes:
         return np.empty(0), np.empty(0)
     lower, upper = (np.array(ends) for ends in zip(*boxes))
@@ -173,5 +183,5 @@ def _is_within(scene: Scene, one: Drawn) -> bool:
 
 def _excess(scene: Scene, one: Drawn, sites: int) -> float:
     """How much more than a mesh encloses its sites hold, over that."""
-    volume = one.surface.volume
+    volume = one.times * one.surface.volume
     return sites * scene.spacing**3 / volume - 1.0 if volume > 0.0 else math.inf

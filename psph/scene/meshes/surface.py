@@ -8,13 +8,11 @@ import numpy as np
 
 from psph.case.files import Found
 from psph.case.mesh import Mesh, Turn
+from psph.scene.forms.form import ASKEW
 from psph.scene.meshes.loops import sides, windings
 from psph.scene.meshes.reading import LARGEST, MeshError, read
 from psph.scene.meshes.topology import Welded, areas, closed, edges_of, holes, turned, volume, weld
 from psph.scene.meshes.tree import Tree, tree_of
-
-ASKEW = np.array([1.0, 0.5 * np.sqrt(2.0), np.sqrt(3.0) / 3.0])
-"""Towards where points are moved by the tolerance: along no face that a person would draw."""
 
 BEND = np.radians(25.0)
 """The angle between two faces from which on they meet in an edge; less is a round face in pieces."""
@@ -62,12 +60,13 @@ class Surface:
         """Its extent along each axis, m."""
         return tuple(up - low for low, up in zip(self.lower, self.upper))
 
-    def encloses(self, grid: Sequence[np.ndarray], tolerance: float) -> np.ndarray:
-        """True where a point of a grid (psph.scene.shapes.Grid) lies within the closed surface.
+    def encloses(self, grid: Sequence[np.ndarray], tolerance: float, way: np.ndarray = ASKEW) -> np.ndarray:
+        """True where a point of a grid (psph.scene.forms.form.Grid) lies within the closed surface.
 
-        Points that it winds around any number of times but 0, either way: parts may overlap.
+        Points that it winds around any number of times but 0, either way: parts may overlap.  They are moved
+        by the tolerance along the ``way`` (3,).
         """
-        grid = self._off_the_faces(grid, tolerance)
+        grid = self._off_the_faces(grid, tolerance, way)
         shape = np.broadcast_shapes(*(x.shape for x in grid))
         if 0 in shape:
             return np.zeros(shape, bool)
@@ -83,13 +82,18 @@ class Surface:
         return (found != 0).transpose(np.argsort(order))
 
     def shell(
-        self, grid: Sequence[np.ndarray], thickness: float, outside: bool, tolerance: float
+        self,
+        grid: Sequence[np.ndarray],
+        thickness: float,
+        outside: bool,
+        tolerance: float,
+        way: np.ndarray = ASKEW,
     ) -> np.ndarray:
         """True where a point of a grid is nearer to the surface than ``thickness``, m, on one side of it.
 
         Where a surface ends, at a rim, its shell ends: nothing lies beyond.
         """
-        points = self._off_the_faces(grid, tolerance)
+        points = self._off_the_faces(grid, tolerance, way)
         shape = np.broadcast_shapes(*(x.shape for x in points))
         flat = np.stack([np.broadcast_to(x, shape).ravel() for x in points], axis=1)
         tree, corners, normals = self._lined
@@ -118,13 +122,15 @@ class Surface:
         ends = np.unique(np.sort(whole.faces[:, sides][bends[:, 4:]], axis=1), axis=0)
         return whole.vertices[corners], whole.vertices[ends]
 
-    def _off_the_faces(self, grid: Sequence[np.ndarray], tolerance: float) -> list[np.ndarray]:
+    def _off_the_faces(
+        self, grid: Sequence[np.ndarray], tolerance: float, way: np.ndarray
+    ) -> list[np.ndarray]:
         """The coordinates moved by a trifle, so that the low side of a face is inside and no point on it.
 
         Arrays with as many axes each as the points have.
         """
         axes = max(1, *(np.ndim(x) for x in grid))
-        by = max(tolerance, self.rounding) * ASKEW
+        by = max(tolerance, self.rounding) * way
         return [np.array(x + d, ndmin=axes) for x, d in zip(grid, by)]
 
     @cached_property
@@ -160,12 +166,15 @@ def surface_of(mesh: Mesh) -> Surface:
     return surface
 
 
-def holds(mesh: Mesh, grid: Sequence[np.ndarray], tolerance: float) -> np.ndarray:
-    """True where a point of a grid (psph.scene.shapes.Grid) lies in the shape; broadcasts like the grid."""
-    surface = surface_of(mesh)
+def holds(
+    mesh: Mesh, grid: Sequence[np.ndarray], tolerance: float, way: np.ndarray | None = None
+) -> np.ndarray:
+    """True where a point of a grid (psph.scene.forms.form.Grid), moved by the tolerance along the ``way``,
+    lies in the shape; broadcasts like the grid."""
+    surface, off = surface_of(mesh), ASKEW if way is None else way
     if mesh.shell:
-        return surface.shell(grid, mesh.shell, mesh.side == "outside", tolerance)
-    return surface.encloses(grid, tolerance)
+        return surface.shell(grid, mesh.shell, mesh.side == "outside", tolerance, off)
+    return surface.encloses(grid, tolerance, off)
 
 
 def box_around(mesh: Mesh) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -214,8 +223,9 @@ def _placed(surface: Welded, scale: float, turns: Sequence[Turn], move: Sequence
     with np.errstate(over="ignore", invalid="ignore"):
         vertices, rounding = surface.vertices * scale, surface.rounding * scale
     for turn in turns:
-        axis = np.array(turn.axis) / np.linalg.norm(turn.axis)
-        vertices = Rotation.from_rotvec(turn.degrees * axis, degrees=True).apply(vertices)
+        axis, stays = np.array(turn.axis) / np.linalg.norm(turn.axis), np.array(turn.about or (0.0,) * 3)
+        rotation = Rotation.from_rotvec(turn.degrees * axis, degrees=True)
+        vertices = rotation.apply(vertices - stays) + stays
     return Welded(vertices + np.array(move), surface.faces, rounding)
 
 

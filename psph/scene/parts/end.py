@@ -14,7 +14,6 @@ from psph.case.shapes import Box, Shape
 from psph.scene.lattice import TOLERANCE
 from psph.scene.parts.part import Known, Part
 from psph.scene.shapes import Grid, bounds, inside
-from psph.smoothing import KERNELS
 
 
 @dataclass(frozen=True)
@@ -87,8 +86,7 @@ def rows_of(case: Case, end: OpenEnd) -> int:
 
 def rows_reached(case: Case) -> int:
     """Rows behind a plane over which the kernel of a particle at the plane reaches."""
-    smooths: Any = KERNELS[case.space.kernel]
-    return math.ceil(smooths.support * case.space.smoothing - TOLERANCE)
+    return case.space.layers
 
 
 def behind(case: Case, end: OpenEnd, parts: Sequence[Part]) -> Shape:
