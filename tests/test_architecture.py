@@ -68,9 +68,9 @@ LATE = {
     "psph/output/pictures/show.py": 1,
     "psph/runs/post_mortem.py": 1,
     "psph/scene/body_checks.py": 1,
-    "psph/scene/distance.py": 2,
+    "psph/scene/forms/ground.py": 1,
+    "psph/scene/forms/make.py": 1,
     "psph/scene/meshes/drawn.py": 2,
-    "psph/scene/shapes.py": 2,
     "psph/simulation/solid_parts.py": 4,
 }
 """How many imports of psph's own modules a file has within functions and for types alone: what a command or

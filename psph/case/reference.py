@@ -119,7 +119,7 @@ def _ways(whole: Node, title: str, kind: str, meaning: str) -> Iterator[str]:
 def _inner(whole: Node, name: str, node: Node, required: bool = False) -> Iterator[tuple[str, Node, bool]]:
     """The keys of a table, and of the tables in it: with their names, whether they are required."""
     table = next((b for b in alternatives(whole, node) if "properties" in b), None)
-    if table is None:
+    if table is None or table.get("title") == "Shape":
         yield name, node, required
         return
     if "otherwise" in node:  # it may be left out, and says what follows

@@ -50,32 +50,32 @@ class Ground(Form):
 
     def faces(self, points: np.ndarray, room: Room | None = None) -> Faces:
         """As psph.scene.forms.form says; of four triangles in each cell of the grid."""
-        return self._outer.faces(points, room) if self.dimensions == 2 else Faces(*self._outer.faces(points))
+        return self._outer.faces(points, room)
 
     def corners(self, apart: float) -> np.ndarray:
         """As psph.scene.forms.form says."""
-        if self.dimensions == 2:
-            return self._outer.corners(apart)
-        from psph.scene.forms.of_mesh import sharp
+        return self._outer.corners(apart)
 
-        return sharp(self._outer, apart)
+    def straight(self, apart: float) -> np.ndarray:
+        """As psph.scene.forms.form says."""
+        return self._outer.straight(apart)
 
     def surface(self, spacing: float, lines: Sequence[np.ndarray]) -> Triangles:
         """As psph.scene.forms.form says, in pieces of its grid."""
-        return self._outer.sheet.corners
+        return self._outer.surface(spacing, lines)
 
     def outline(self, spacing: float) -> list[np.ndarray]:
         """As psph.scene.forms.form says."""
         return self._outer.outline(spacing)
 
     @cached_property
-    def _outer(self):
+    def _outer(self) -> Form:
         """Its border: a polygon, or a closed surface."""
         level = np.maximum(self.heights.level, self.bottom)
         if self.dimensions == 3:
-            from psph.scene.forms.of_mesh import enclosing
+            from psph.scene.forms.of_mesh import OfSurface  # takes a while
 
-            return enclosing(*_body(*self.heights.sides, level, self.bottom))
+            return OfSurface(*_body(*self.heights.sides, level, self.bottom))
         [side] = self.heights.sides
         ends = [(side[-1], self.bottom), (side[0], self.bottom)]
         points = [*zip(side.tolist(), level.tolist()), *ends]

@@ -10,13 +10,14 @@ from psph.case.height_map import HeightMap
 from psph.case.keys import AXES
 from psph.case.mesh import Mesh
 from psph.case.shapes import Difference, Prism, Revolution, Shape, Shell
-from psph.scene.forms import shell, swept
+from psph.scene.forms import swept
 from psph.scene.forms.form import Form
 from psph.scene.forms.ground import Ground
 from psph.scene.forms.joined import Common, Less, Union
 from psph.scene.forms.placed import Map, frame_of, placed, placed_as
-from psph.scene.forms.plain import Behind, Boxed, Round
+from psph.scene.forms.plain import BehindPlane, Boxed, Round
 from psph.scene.forms.polygon import Polygonal
+from psph.scene.forms.shell import Coat
 
 KEPT = 1024
 """Forms that are remembered."""
@@ -44,7 +45,7 @@ def _drawn(table: Any) -> Form:
         case Polygon(points=points):
             return Polygonal(points)
         case HalfSpace(at=at, normal=normal):
-            return Behind(at, normal)
+            return BehindPlane(at, normal)
         case Cylinder(center=center, axis=axis, radius=radius, height=height):
             return _about(Boxed((0.0, -0.5 * height), (radius, 0.5 * height)), axis, center)
         case Cone(begin=begin, end=end, radius=first, end_radius=last):
@@ -59,7 +60,7 @@ def _drawn(table: Any) -> Form:
         case HeightMap(heights=heights, bottom=bottom):
             return Ground(heights, bottom)
         case Shell(of=of, side=side, thickness=thickness):
-            return shell.Shell(form_of(of), thickness, side == "inside")
+            return Coat(form_of(of), thickness, side == "inside")
         case Mesh():
             from psph.scene.forms.of_mesh import OfMesh  # takes a while, and most scenes have none
 

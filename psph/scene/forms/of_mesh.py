@@ -46,13 +46,29 @@ class OfMesh(Form):
         return surface_of(self.mesh).sheet.corners
 
 
+class OfSurface(Form):
+    """A closed body: its corners (n, 3), m, and triangles (m, 3) turned outwards; for its faces alone."""
+
+    dimensions = 3
+
+    def __init__(self, vertices: np.ndarray, faces: np.ndarray):
+        whole = Welded(vertices, faces, 0.0)
+        self.whole = Surface(FileSurface(whole, whole, 0, 0, 0, False), 1.0, (), (0.0, 0.0, 0.0))
+
+    def faces(self, points: np.ndarray, room: Room | None = None) -> Faces:
+        """As psph.scene.forms.form says."""
+        return Faces(*self.whole.faces(points))
+
+    def corners(self, apart: float) -> np.ndarray:
+        """As psph.scene.forms.form says."""
+        return sharp(self.whole, apart)
+
+    def surface(self, spacing: float, lines: Sequence[np.ndarray]) -> Triangles:
+        """As psph.scene.forms.form says."""
+        return self.whole.sheet.corners
+
+
 def sharp(surface: Surface, apart: float) -> np.ndarray:
     """Sharp corners (n, 3) of a surface, m, and points on its sharp edges, ``apart`` m at most."""
     ends, sides = surface.sharp
     return np.concatenate([ends, *(between(*side, apart) for side in sides)])
-
-
-def enclosing(vertices: np.ndarray, faces: np.ndarray) -> Surface:
-    """The surface of a closed body with these corners (n, 3), m, and triangles (m, 3) turned outwards."""
-    whole = Welded(vertices, faces, 0.0)
-    return Surface(FileSurface(whole, whole, 0, 0, 0, False), 1.0, (), (0.0, 0.0, 0.0))

@@ -11,7 +11,7 @@ import numpy as np
 from psph.case.placing import FlatFace, Placing, Repeat, Turn
 from psph.scene.forms.form import Faces, Form, Grid, Room, Triangles
 from psph.scene.forms.joined import Together, Union
-from psph.scene.forms.plain import Behind, Boxed, Round
+from psph.scene.forms.plain import BehindPlane, Boxed, Round
 from psph.scene.forms.polygon import Polygonal
 
 QUARTER = 90.0
@@ -53,7 +53,7 @@ class Map(NamedTuple):
         return bool((np.abs(self.turn).max(axis=0) == 1.0).all())
 
 
-class Placed(Form):
+class Moved(Form):
     """A form that a ``map`` moves."""
 
     def __init__(self, of: Form, map: Map):
@@ -113,7 +113,7 @@ class Placed(Form):
         to = np.abs(self.map.turn).argmax(axis=0)
         stays = np.abs(self.map.turn).max(axis=0) == 1.0
         inner = [periods[d] if stay else None for d, stay in zip(to, stays)]
-        return Placed(self.of.endless(*self._inner(lower, upper), inner), self.map)
+        return Moved(self.of.endless(*self._inner(lower, upper), inner), self.map)
 
     def pieces(self) -> Iterator[Form]:
         """As psph.scene.forms.form says."""
@@ -137,14 +137,14 @@ def placed(form: Form, map: Map) -> Form:
     """A form that a map moves: what stays of its kind is drawn anew, so that a box turned by a right angle is
     a box."""
     match form:
-        case Placed(of=of):
+        case Moved(of=of):
             return placed(of, map.after(form.map))
         case Round(center=center, radius=radius):
             return Round(map.points(np.array([center]))[0], map.scale * radius)
         case Polygonal(points=points):
             return Polygonal(map.points(np.array(points)))
-        case Behind(at=at, normal=normal):
-            return Behind(map.points(at[None])[0], map.turn @ normal)
+        case BehindPlane(at=at, normal=normal):
+            return BehindPlane(map.points(at[None])[0], map.turn @ normal)
         case Boxed(lower=lower, upper=upper) if map.keeps_axes:
             ends = map.points(np.array([lower, upper]))
             return Boxed(ends.min(axis=0), ends.max(axis=0))
@@ -153,7 +153,7 @@ def placed(form: Form, map: Map) -> Form:
             return Polygonal(map.points(corners))
         case Together() if map.keeps_axes:
             return form.each(lambda one: placed(one, map))
-    return Placed(form, map)
+    return Moved(form, map)
 
 
 def placed_as(form: Form, keys: Placing) -> Form:

@@ -122,7 +122,7 @@ class Round(Form):
         return [np.array(self.center) + self.radius * np.column_stack([np.cos(angle), np.sin(angle)])]
 
 
-class Behind(Form):
+class BehindPlane(Form):
     """All behind a plane through ``at`` with the unit ``normal`` out of it, (dim,) each."""
 
     def __init__(self, at: Sequence[float], normal: Sequence[float]):

@@ -11,7 +11,7 @@ AT_ONCE = 1 << 16
 """Points whose distances are found together: bounds the memory."""
 
 
-class Shell(Form):
+class Coat(Form):
     """The surroundings of a form ``of`` so many m ``thickness``, or what is ``inside`` of its surface."""
 
     def __init__(self, of: Form, thickness: float, inside: bool):
@@ -51,7 +51,7 @@ class Shell(Form):
 
     def endless(self, lower: np.ndarray, upper: np.ndarray, periods: Sequence[float | None]) -> Form:
         """As psph.scene.forms.form says."""
-        return Shell(self.of.endless(lower, upper, periods), self.thickness, self.inside)
+        return Coat(self.of.endless(lower, upper, periods), self.thickness, self.inside)
 
     def surface(self, spacing: float, lines: Sequence[np.ndarray]) -> Triangles:
         """As psph.scene.forms.form says: that of what it goes round, and the same a thickness off."""

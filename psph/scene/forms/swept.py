@@ -13,7 +13,7 @@ NEAR = 1e-9
 """Of the size of a profile: nearer to the axis it has no face, but goes on beyond."""
 
 
-class Prism(Form):
+class DrawnOut(Form):
     """A flat ``profile`` drawn out along the axis number ``along`` over a ``range``, an interval."""
 
     dimensions = 3
@@ -57,7 +57,7 @@ class Prism(Form):
         flat, far = (
             [lower[axes], upper[axes], [periods[d] for d in axes]] for axes in (self.others, [self.along])
         )
-        return Prism(self.profile.endless(*flat), self.along, self.range.endless(*far))
+        return DrawnOut(self.profile.endless(*flat), self.along, self.range.endless(*far))
 
     def pieces(self) -> Iterator[Form]:
         """As psph.scene.forms.form says."""
@@ -91,7 +91,7 @@ def drawn_out(profile: Form, along: int, range: Boxed) -> Form:
             return Boxed(*ends)
         case Together():
             return profile.each(lambda one: drawn_out(one, along, range))
-    return Prism(profile, along, range)
+    return DrawnOut(profile, along, range)
 
 
 class Revolved(Form):
