@@ -103,6 +103,11 @@ def _check(options, comm) -> None:
     from psph.scene.meshes.report import described
 
     case = _load(options)
+    if options.draw and comm.rank == 0:
+        from psph.lab.draw.command import draw
+
+        for line in draw(case.model, options.draw):  # first: a picture shows what is refused
+            print(one_line(line))
     _warn(case, comm)
     scene = case.scene()
     if comm.rank == 0:

@@ -115,6 +115,14 @@ def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
             metavar="KEY=VALUE",
             help="override a key of the case, such as time.end=0.5; off removes it (repeatable)",
         )
+    verb["check"].add_argument(
+        "--draw",
+        action=_Folder,
+        nargs="?",
+        const=".",
+        metavar="DIR",
+        help="draw the scene at its start, a picture and a page for a browser, into DIR (default: here)",
+    )
     verb["run"].add_argument("--out", action=_Folder, help="folder of the files (default: the case's name)")
     verb["run"].add_argument("--overwrite", action="store_true", help="replace an earlier run there")
     verb["resume"].add_argument("folder", action=_Folder, help="the folder of the run")

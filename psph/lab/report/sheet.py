@@ -36,10 +36,10 @@ def first_run(folder: Path) -> Path | None:
     return next((path.parent for path in found if read_summary(path.parent)), None)
 
 
-def refuse_without_packages() -> None:
-    """Raise Refused where what makes a report is not installed."""
+def refuse_without_packages(who: str = "report") -> None:
+    """Raise Refused where what makes a report, or another page, is not installed."""
     if missing := [name for name in NEEDS if find_spec(name) is None]:
-        raise Refused(f"report: {missing[0]} is not installed: pip install psph[report]")
+        raise Refused(f"{who}: {missing[0]} is not installed: pip install psph[report]")
 
 
 def written(template: str, path: Path, **values: Any) -> Path:

@@ -1,6 +1,7 @@
 """Mirrors in pictures of a plane, planes of symmetry and walls: they have no particles to be seen by."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
@@ -13,10 +14,10 @@ from psph.scene.mirrors import around, faces_before
 from psph.scene.shapes import bounds
 
 
-def mirrors_of(case: dict) -> list[tuple[int, float]]:
-    """Axis and place, m, of each mirror of a ``case`` in 2D; of others none."""
+def mirrors_of(case: dict, folder: Path | None = None) -> list[tuple[int, float]]:
+    """Axis and place, m, of each mirror of a ``case`` in 2D, its files in ``folder``; of others none."""
     space = case["space"]
-    return [*_symmetric(space), *_walls(case)] if space["dimensions"] == 2 else []
+    return [*_symmetric(space), *_walls(case, folder)] if space["dimensions"] == 2 else []
 
 
 def with_mirrors(box: np.ndarray, mirrors: list[tuple[int, float]]) -> np.ndarray:
@@ -33,11 +34,16 @@ def _symmetric(space: dict) -> Iterator[tuple[int, float]]:
         yield axis, space[side[2:]][axis]
 
 
-def _walls(case: dict) -> Iterator[tuple[int, float]]:
+def _walls(case: dict, folder: Path | None) -> Iterator[tuple[int, float]]:
     walls = [wall for wall in case.get("walls", {}).values() if wall.get("condition") == MIRROR]
     if not walls:
         return
-    held = around([bounds(Shape.model_validate(one["shape"])) for _, one in spreading_of(case)])
+    held = around(
+        [bounds(Shape.model_validate(one["shape"], context=folder)) for _, one in spreading_of(case)]
+    )
     for wall in walls:
-        shape, slack = Shape.model_validate(wall["shape"]), TOLERANCE * case["space"]["spacing"]
+        shape, slack = (
+            Shape.model_validate(wall["shape"], context=folder),
+            TOLERANCE * case["space"]["spacing"],
+        )
         yield from ((axis, at) for axis, _, at in faces_before(shape, held, slack))

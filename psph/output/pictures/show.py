@@ -95,7 +95,7 @@ class Show:
         sample = spread(len(self.times), self.quantity.samples)
         glances = [self._glance(k) for k in with_progress(sample, "looking at the run", "frames")]
         scale = scale_of(self.quantity, [glance.values for glance in glances])
-        mirrors = mirrors_of(self.case)
+        mirrors = mirrors_of(self.case, self.run.folder)
         boxes = [with_mirrors(glance.box, mirrors) for glance in glances]
         room = room_of(self.case, boxes, [glance.most for glance in glances])
         if not self._spatial:

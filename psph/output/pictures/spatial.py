@@ -90,11 +90,19 @@ class View3D:
     ):
         self.room, self.parts, self.smooth, self.moorings = room, list(parts), smooth, moorings
         self.variant = self.remark = "surface" if smooth else ""
-        self.lower = np.maximum(room.lower, visible.min(axis=0))
-        self.upper = np.minimum(room.upper, visible.max(axis=0))
         self._axes = directions(room.up, room.sense, room.level[0])
-        self.aspect = before(self.lower, self.upper, self._axes, None).aspect
+        self.see(visible)
         self._pv = pyvista()
+
+    def see(self, visible: np.ndarray) -> None:
+        """Look at the box around all of some points (n, 3), m, in the room."""
+        self.lower = np.maximum(self.room.lower, visible.min(axis=0))
+        self.upper = np.minimum(self.room.upper, visible.max(axis=0))
+        self.aspect = self.camera(None).aspect
+
+    def camera(self, aspect: float | None) -> Camera:
+        """That of a picture with this width over its height; None: as the box asks for."""
+        return before(self.lower, self.upper, self._axes, aspect)
 
     def of(self, frame: dict) -> dict:
         """All of ``frame``."""
@@ -103,7 +111,7 @@ class View3D:
     def draw(self, axes: Axes, frame: dict, scale: Scale, first: bool, last: bool) -> None:
         """One frame; the panel that is both ``first`` and ``last`` has rulers."""
         pixels = axes.figure.get_size_inches() * axes.get_position().size * axes.figure.dpi
-        camera = before(self.lower, self.upper, self._axes, pixels[0] / pixels[1])
+        camera = self.camera(pixels[0] / pixels[1])
         image = self.image(frame, scale, camera, np.round(FINER * pixels).astype(int).tolist())
         axes.imshow(image, extent=(0, 1, 0, 1), aspect="auto", interpolation="antialiased")
         axes.set_axis_off()
