@@ -98,9 +98,7 @@ def _explain(options, comm) -> None:
 
 
 def _check(options, comm) -> None:
-    from psph.kinds import count_of
-    from psph.runs.explain import slab_planes
-    from psph.scene.meshes.report import described
+    from psph.runs.explain import found_good
 
     case = _load(options)
     if options.draw and comm.rank == 0:
@@ -111,11 +109,8 @@ def _check(options, comm) -> None:
     _warn(case, comm)
     scene = case.scene()
     if comm.rank == 0:
-        for line in described(scene):
+        for line in found_good(scene):
             print(one_line(f"{options.case}: {line}"))
-        count = count_of(scene)
-        good = f"{options.case}: good: {count:,} particles, at most {slab_planes(scene)} ranks"
-        print(one_line(good))
 
 
 def _schema(options, comm) -> None:

@@ -61,6 +61,12 @@ def _said_by_kinds(scene, plan: Plan) -> dict[str, list[str]]:
     return found
 
 
+def found_good(scene) -> Iterator[str]:
+    """What ``check`` says of a scene that can run: its geometry files, its size."""
+    yield from described(scene)
+    yield f"good: {count_of(scene):,} particles, at most {slab_planes(scene)} ranks"
+
+
 def slab_planes(scene) -> int:
     """Planes of cells along the slab axis: the most ranks that the scene can use."""
     return _grid(scene).counts[0]

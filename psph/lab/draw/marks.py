@@ -9,7 +9,7 @@ from psph.case.consistency import walk
 from psph.case.errors import dotted
 from psph.case.keys import AXES, Table
 from psph.case.sketches import edges, rectangle
-from psph.lab.draw.start import Start
+from psph.lab.draw.start import AtStart
 from psph.scene.forms.make import form_of
 from psph.scene.layout import Layout
 
@@ -49,7 +49,7 @@ def _mark(key: str, says: str, lines) -> Mark:
     return Mark(key, says, [np.array(line, float).reshape(-1, len(line[0])) for line in lines])
 
 
-def names_of(layout: Layout, start: Start) -> list[Mark]:
+def names_of(layout: Layout, start: AtStart) -> list[Mark]:
     """A mark on each part, at its particle nearest to the middle of all."""
     found = []
     for number, part in enumerate(layout.parts[: layout.parts.ends.start]):

@@ -8,7 +8,7 @@ from psph.case.keys import AXES
 from psph.fields import FLUID
 from psph.lab.draw.marks import Mark
 from psph.lab.draw.picture import colour_of
-from psph.lab.draw.start import Start
+from psph.lab.draw.start import AtStart
 from psph.lab.report.turning import EYE
 from psph.output.pictures import style
 from psph.output.pictures.walls import surface
@@ -21,7 +21,7 @@ WIDE, HIGH = 1000, 710
 """Of the view, pixels."""
 
 
-def turning(layout: Layout, start: Start, marks: list[Mark]):
+def turning(layout: Layout, start: AtStart, marks: list[Mark]):
     """A figure of plotly: parts and marks that a click on their names hides and shows."""
     import plotly.graph_objects as go
 
@@ -42,7 +42,7 @@ def turning(layout: Layout, start: Start, marks: list[Mark]):
     return figure
 
 
-def _parts(go, layout: Layout, start: Start) -> Iterator:
+def _parts(go, layout: Layout, start: AtStart) -> Iterator:
     groups = start.frame["group"]
     colours = iter(style.LINES * len(start.names))
     for number, name in enumerate(start.names):

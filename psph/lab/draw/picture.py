@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from psph.lab.draw.marks import Mark
-from psph.lab.draw.start import Start
-from psph.output.pictures import style
+from psph.lab.draw.start import AtStart
+from psph.output.pictures import spatial, style
 from psph.output.pictures.flat import Flat
 from psph.output.pictures.groups import first_whole, wholes_of
 from psph.output.pictures.quantities import quantity
@@ -32,7 +32,7 @@ def colour_of(mark: Mark) -> str:
     return style.INK if mark.matter else COLOURS.get(mark.table, style.LINES[1])
 
 
-def picture(layout: Layout, start: Start, marks: list[Mark]) -> Figure:
+def picture(layout: Layout, start: AtStart, marks: list[Mark]) -> Figure:
     """A page with the scene.  Raises Refused where 3D cannot be drawn."""
     case, points = tomllib.loads(layout.case.to_toml()), [line for mark in marks for line in mark.lines]
     box = box_around(np.concatenate([start.frame["position"], *points]))
@@ -53,12 +53,10 @@ def picture(layout: Layout, start: Start, marks: list[Mark]) -> Figure:
     return figure
 
 
-def _panel(layout: Layout, case: dict, start: Start, room: Room, points: list[np.ndarray]):
+def _panel(layout: Layout, case: dict, start: AtStart, room: Room, points: list[np.ndarray]):
     whole = first_whole(case) if wholes_of(case) else None
     if layout.dimensions < 3:
         return Flat(room, None, (), whole)
-    from psph.output.pictures import spatial
-
     boxes = [
         {
             int(group): box_around(start.frame["position"][start.frame["group"] == group])
@@ -70,7 +68,7 @@ def _panel(layout: Layout, case: dict, start: Start, room: Room, points: list[np
     return panel
 
 
-def _scale(case: dict, start: Start) -> Scale:
+def _scale(case: dict, start: AtStart) -> Scale:
     scale = scale_of(quantity(None, case, "group"), [])
     walls = () if len(start.names) == len(scale.names) else (("walls", style.WALLS),)
     return scale._replace(others=(*scale.others, *walls))

@@ -12,7 +12,7 @@ MOST = 20_000_000
 """Particles that are drawn."""
 
 
-class Start(NamedTuple):
+class AtStart(NamedTuple):
     """What a picture of the start shows: ``frame`` has ``position`` (n, dim) m, ``kind``, ``group``, ``id``
     (n,) and, as ``values``, the group; ``names`` are those of the groups."""
 
@@ -20,7 +20,7 @@ class Start(NamedTuple):
     names: tuple[str, ...]
 
 
-def start_of(layout: Layout) -> Start:
+def start_of(layout: Layout) -> AtStart:
     """The sites that parts hold; those behind an open end are of their fluid.  Raises Refused: too many."""
     first_end = layout.parts.ends.start
     group = np.arange(NONE + 1)
@@ -47,4 +47,4 @@ def start_of(layout: Layout) -> Start:
         "id": np.arange(len(groups)),
         "values": groups.astype(float),
     }
-    return Start(frame, layout.names[:first_end])
+    return AtStart(frame, layout.names[:first_end])
