@@ -142,7 +142,16 @@ class Work:
         yield from ()
 
     def passed(self) -> Iterator[str]:
-        """Lines at the end of a run: what has come into the domain and gone out of it."""
+        """Lines at the end of a run: what has come into the domain and gone out of it, or has broken."""
+        yield from ()
+
+    def news(self, time: float) -> Iterator[str]:
+        """Lines on what has happened in the step that ended at ``time``, s; the same on every rank."""
+        yield from ()
+
+    def strung(self, time: float) -> Iterator[Any]:
+        """What a frame at ``time``, s, holds beside particles: curves with a ``name``, ``points`` (n, 3), m,
+        and a ``tension``, N; the same on every rank."""
         yield from ()
 
     def booked(self) -> Sequence[float]:

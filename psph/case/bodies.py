@@ -7,9 +7,9 @@ import numpy as np
 from pydantic import Strict
 
 from psph.acts import BODIES, FRAME, ONE, speaks_for
-from psph.case.errors import advise
 from psph.case.findings import Finding
-from psph.case.keys import AXES, Name, Place, Table, Vector, key
+from psph.case.keys import AXES, Name, Vector, key
+from psph.case.lines import Line, tied
 from psph.case.motion import Motions, way_and_turn
 from psph.case.placed import Placed
 from psph.case.shapes import Shape
@@ -28,24 +28,6 @@ TURNS = tuple(f"turn_{axis}" for axis in AXES)
 def freedoms(dimensions: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The directions and the turns that there are."""
     return SLIDES[:dimensions], (TURNS[2:] if dimensions == 2 else TURNS if dimensions == 3 else ())
-
-
-class Line(Table):
-    """A spring with a damper, or a mooring line, between a point of the body and another point."""
-
-    at: Vector = key("the point of the body, where it is at the start", unit="m")
-    anchor: Vector = key("the other point, where it is at the start", unit="m")
-    to: Name | None = key("the body that the other point belongs to", None, otherwise="none: it stays")
-    stiffness: float = key("force per length", unit="N/m", ge=0)
-    length: float | None = key(
-        "length without tension", None, unit="m", otherwise="the distance of the points at the start", ge=0
-    )
-    damping: float = key("force over the rate at which it lengthens", 0.0, unit="N s/m", ge=0)
-    pulls_only: bool = key("it is slack when shorter than its length: a mooring line without weight", False)
-
-    def sketch(self) -> Iterator[tuple[Place, ...]]:
-        """From end to end."""
-        yield self.at, self.anchor
 
 
 @speaks_for(BODIES)
@@ -185,11 +167,7 @@ def held_together(case) -> Iterator[Finding]:
         elif body.motion:
             yield from _moved_and_free(here, body, freed)
         for line, table in body.lines.items():
-            if table.to is not None and (table.to not in case.bodies or table.to == name):
-                others = [other for other in case.bodies if other != name]
-                says = "no other body has this name; leave out to for a point in space"
-                says += f"; {advise(table.to, others)}" if others else ""
-                yield (*here, "lines", line, "to"), table.to, says
+            yield from tied(case, (*here, "lines", line), table)
     parts = len(case.fluids) + len(case.walls) + len(case.bodies)
     if parts > MOST_PARTS:
         says = f"{parts} fluids, walls and bodies; a case holds {MOST_PARTS} at most, so join some by union"

@@ -14,6 +14,7 @@ from psph.scene.bodies import BRAKED, body_step, braked, in_words, lightest_shar
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.body_parts import bodies_of
 from psph.scene.joints import joint_words
+from psph.scene.lines import line_faults, line_warnings, line_words
 from psph.scene.solids import meets
 from psph.scene.volumes import moved_as_whole
 
@@ -47,10 +48,12 @@ class RigidBodies(Kind):
         """Bodies that a mirror or a period does not let turn or go."""
         yield from body_faults(self.scene)
         yield from period_faults(self.scene)
+        yield from line_faults(self.scene)
 
     def warnings(self) -> Iterator[str]:
         """Numbers of theirs that are likely a slip."""
         yield from body_warnings(self.scene)
+        yield from line_warnings(self.scene)
 
     @property
     def fields(self) -> tuple[Field, ...]:
@@ -92,6 +95,8 @@ class RigidBodies(Kind):
             yield "matter", f"  body        {body.name}: {in_words(self.scene, body)}"
         for words in joint_words(self.scene):
             yield "matter", f"  joint       {words}"
+        for words in line_words(self.scene):
+            yield "matter", f"  line        {words}"
 
 
 def push_bodies(simulation) -> None:

@@ -23,6 +23,9 @@ from psph.output.xdmf import XdmfIndex
 POINTS = Field("points", "m", "place in space: what XDMF needs of a 1D scene")
 CONNECTIVITY = Field("connectivity", "1", "row of each particle: what XDMF needs")
 
+LINE, TENSION = "line", "tension"
+"""What the names of attributes of a frame begin with that are of lines: points, and a tension."""
+
 
 def funnel_notice(comm) -> str | None:
     """The line to print at the start if rank 0 has to write the frames of all ranks."""
@@ -58,6 +61,7 @@ class FrameFile:
         self._index = XdmfIndex(self.path)
         self._connected: set[int] = set()
         self._places: list[Place] = []
+        self._lines: dict[str, np.ndarray | float] = {}
         with together(comm, self.path):
             if comm.rank == 0 and kept is None:
                 self._create(attributes)
@@ -66,14 +70,27 @@ class FrameFile:
         if kept is not None:
             self._connected = comm.bcast(self._connected)
 
-    def write(self, index: int, time: float, step: int, arrays: dict[str, np.ndarray]) -> None:
+    def write(
+        self,
+        index: int,
+        time: float,
+        step: int,
+        arrays: dict[str, np.ndarray],
+        lines: dict[str, tuple[np.ndarray, float]] | None = None,
+    ) -> None:
         """Append a frame: the rows of the ranks one after another, in the order of the ranks.
 
         ``arrays`` holds the rows of this rank: ``(n,)`` or ``(n, dim)``, ``position`` among them.
-        They may be views of any layout: one at a time is copied, to spare memory.
+        They may be views of any layout: one at a time is copied, to spare memory.  ``lines`` by name, the
+        same on every rank, are points (m, dim), m, and a tension, N: attributes of the frame.
         """
         frame = f"frames/{index:05d}"
         counts = self.comm.allgather(len(arrays["position"]))
+        self._lines = {
+            f"{what} {name}": value
+            for name, line in (lines or {}).items()
+            for what, value in zip((LINE, TENSION), line)
+        }
         first, total = sum(counts[: self.comm.rank]), sum(counts)
         rows = self._rows(frame, arrays, first, total)
         shapes = {name: (total, *part.shape[1:]) for name, part in rows.items()}
@@ -177,7 +194,7 @@ class FrameFile:
     def _lay_out(self, file, frame: str, step: int, shapes: dict, rows: dict) -> None:
         hdf5.reserve(self.path, hdf5.MARGIN + hdf5.size_of(shapes, rows))
         self._places += hdf5.create_datasets(file, shapes, rows, self._texts)
-        hdf5.describe(file, frame, {"time": math.nan, "step": step})  # no time yet: not whole
+        hdf5.describe(file, frame, {"time": math.nan, "step": step} | self._lines)  # no time yet: not whole
 
     def _found(self, file, frame: str) -> tuple[str, float, dict]:
         """A frame's name, time, and the shape and type of its datasets in the order of the fields."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from psph.errors import one_line
 from psph.output.errors import NotThere, cause
+from psph.output.frames import LINE, TENSION
 from psph.output.tables import ERRORS, GAUGE, LOG, POSES, PROBES
 from psph.output.xdmf import index_of
 
@@ -85,6 +86,16 @@ class Run:
             for name in set(names) - set(saved):
                 raise NotThere(f"{self.path}: field: {name} is not saved; choose one of {', '.join(saved)}")
             return {name: frame[name][...] for name in names or saved}
+
+        return _read(self.path, read)
+
+    def lines(self, k: int) -> dict[str, tuple[np.ndarray, float]]:
+        """Points (m, dim), m, and tension, N, of each line of bodies in the k-th whole frame, by name."""
+
+        def read(file: h5py.File) -> dict[str, tuple[np.ndarray, float]]:
+            told = file["frames"][_whole(file)[k]].attrs
+            names = [key.removeprefix(f"{LINE} ") for key in told if key.startswith(f"{LINE} ")]
+            return {name: (told[f"{LINE} {name}"], float(told[f"{TENSION} {name}"])) for name in names}
 
         return _read(self.path, read)
 

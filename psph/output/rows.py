@@ -183,20 +183,21 @@ def _group(file, name: str):
     return h5g.create(file, name.encode(), lcpl=between)
 
 
-def describe(file, name: str, attributes: dict[str, str | float | int]) -> None:
+def describe(file, name: str, attributes: dict[str, str | float | int | np.ndarray]) -> None:
     """Give a group of an open file, as :func:`opened` gives it, attributes that it lacks."""
     from h5py import h5o
 
     _describe(h5o.open(file, name.encode()), attributes)
 
 
-def _describe(place, attributes: dict[str, str | float | int]) -> None:
+def _describe(place, attributes: dict[str, str | float | int | np.ndarray]) -> None:
     from h5py import h5a, h5s
 
     scalar = h5s.create(h5s.SCALAR)
     for key, value in attributes.items():
         content = _text(value) if isinstance(value, str) else np.array(value)
-        h5a.create(place, key.encode(), _kind(content.dtype), scalar).write(content)
+        room = h5s.create_simple(content.shape) if content.ndim else scalar
+        h5a.create(place, key.encode(), _kind(content.dtype), room).write(content)
 
 
 @cache

@@ -72,6 +72,9 @@ class Guards:
             self._stop(CLOCK)
         except BlowUp:
             self._stop("speed" if self.simulation.strain < np.inf else "finite")
+        for kind in self.simulation.engine.kinds:
+            for line in kind.news(self.simulation.time):
+                self.say(line)
         for guard in self._tripped():
             if self.bounds.on_trouble == STOP:
                 self._stop(guard)

@@ -204,7 +204,12 @@ class Record:
         if CROSSED.name in arrays:
             arrays[CROSSED.name] = arrays[CROSSED.name] + beyond
         arrays["pressure"] = sim.engine.shown_pressure()
-        self.frames.write(self.written, sim.time, sim.steps, arrays)
+        lines = {}
+        for kind in sim.engine.kinds:
+            for one in kind.strung(sim.time):
+                points = one.points[:, : sim.store.dimensions]
+                lines[one.name] = points + (sim.domain.inside(points[:1].copy()) - points[:1]), one.tension
+        self.frames.write(self.written, sim.time, sim.steps, arrays, lines)
         if self.poses:
             state = {key: value for work in self._movers for key, value in work.state().items()}
             self.poses.write([sim.time, sim.dt, json.dumps(state)])

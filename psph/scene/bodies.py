@@ -1,7 +1,6 @@
 """What holds rigid bodies, how their particles share their mass, and what they ask of the time step."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -9,11 +8,11 @@ from psph.case.parameters import as_numbers
 from psph.physics.fluid.friction import friction_step
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.rigid.body import RigidBody
-from psph.physics.rigid.lines import SpringLine, longest_step
-from psph.physics.rigid.pose import in_space
+from psph.physics.rigid.lines import longest_step
 from psph.physics.solid.contact import SolidContact
 from psph.scene.body_parts import bodies_of
 from psph.scene.joints import joint_step
+from psph.scene.lines import lines_of
 from psph.scene.scene import Scene
 from psph.scene.volumes import Volume, volume_of
 
@@ -55,26 +54,6 @@ def in_words(scene: Scene, body: RigidBody) -> str:
     until = f"; held until {body.held:g} s" if body.held else ""
     beside = f"{ratio:.3g} of the fluid's density, " if scene.case.flowing else ""
     return f"{body.mass:.4g} kg, {beside}centre ({where}) m; free: {freed}{until}"
-
-
-def lines_of(scene: Scene, order: Sequence[str]) -> tuple[SpringLine, ...]:
-    """The lines of all bodies, whose rows have the names in ``order``."""
-    rows = {name: row for row, name in enumerate(order)}
-    return tuple(
-        SpringLine(
-            f"{name}.{line}",
-            rows[name],
-            in_space(table.at),
-            None if table.to is None else rows[table.to],
-            in_space(table.anchor),
-            table.stiffness,
-            math.dist(table.at, table.anchor) if table.length is None else table.length,
-            table.damping,
-            table.pulls_only,
-        )
-        for name, body in scene.case.bodies.items()
-        for line, table in body.lines.items()
-    )
 
 
 def body_step(scene: Scene, passes: int = 1) -> float:

@@ -85,12 +85,8 @@ def _far_points(scene: Scene) -> Iterator[str]:
         for name, table in scene.case.bodies.items()
         for key, sizes in (("centre", 1.0), ("pivot", LONGEST_ARM))
     ]
-    for name, body in scene.case.bodies.items():
-        for line, table in body.lines.items():
-            told.append((f"bodies.{name}.lines.{line}.at", table.at, name, 1.0))
-            told.append((f"bodies.{name}.lines.{line}.anchor", table.anchor, table.to, 1.0))
     for key, point, name, sizes in told:
-        if point is None or name is None:
+        if point is None:
             continue
         low, high = ends[name]
         size = math.dist(low, high)

@@ -10,10 +10,11 @@ from psph.parallel.reductions import whole_sums
 from psph.physics.rigid.bodies import Bodies, crossing
 from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.joints import Joints
-from psph.physics.rigid.lines import pulls
+from psph.physics.rigid.lines import Lines, Shape
 from psph.physics.rigid.pushes import add_pushes
-from psph.scene.bodies import lines_of, shares_of
+from psph.scene.bodies import shares_of
 from psph.scene.joints import joints_of
+from psph.scene.lines import lines_of
 from psph.simulation.touching import Contacts
 
 BITS = 58
@@ -27,9 +28,9 @@ class FloatingBodies(Work):
     ``rows`` are their places there and ``bodies`` their state (psph.physics.rigid.bodies), the same on
     every rank: the fluid's pushes are added as whole numbers, so that they do not depend on how
     particles are spread, in ``units`` of N and N m.  ``body_of`` has the row of each group's body, −1 without
-    one; ``tensions`` are those of their lines, N; ``joints`` hold them together, None without any; ``masses``
-    share the mass of each body among its particles (psph.scene.bodies.shares_of), where body forces ask for
-    that.
+    one; ``lines`` pull them (psph.physics.rigid.lines), ``joints`` hold them together, None without any;
+    ``masses`` share the mass of each body among its particles (psph.scene.bodies.shares_of), where body
+    forces ask for that.
     """
 
     name = "bodies"
@@ -40,8 +41,7 @@ class FloatingBodies(Work):
         own = [plan.materials.rigid[row] for row in self.rows]
         self.bodies, self._dimensions = Bodies(own, plan.pulls.uniform), scene.dimensions
         self.masses = shares_of(scene) if plan.pulls.whole else None
-        self.lines = lines_of(scene, [one.name for one in own])
-        self.tensions = np.zeros(len(self.lines))
+        self.lines = Lines(lines_of(scene, [one.name for one in own]), self.bodies)
         joined = joints_of(scene, [one.name for one in own])
         self.joints = Joints(joined, self.bodies) if joined else None
         self.body_of = np.full(len(plan.materials.species), -1)
@@ -71,7 +71,7 @@ class FloatingBodies(Work):
         of_each = self.body_of, self.bodies.place, self.units, engine.domain.periods
         of_each += self._plan.pulls.whole, self.masses
         parts = engine.each(self._push, *of_each, engine.view(0.0), engine.columns())
-        self.load(sum(parts), engine.domain.comm)
+        self.load(sum(parts), engine.domain.comm, time, dt)
         if dt > 0.0:
             self.bodies.kick(time, dt, self.contacts, self.joints)
         engine.poses.turn_to(time)
@@ -110,15 +110,30 @@ class FloatingBodies(Work):
                     "a spacing or more below or beside them"
                 )
 
+    def news(self, time: float) -> Iterator[str]:
+        """Lines that have parted in the last step."""
+        for k in np.flatnonzero(self.lines.parted == time).tolist():
+            yield self.lines.parting(k)
+
+    def passed(self) -> Iterator[str]:
+        """Lines that have parted."""
+        for k in np.flatnonzero(np.isfinite(self.lines.parted)).tolist():
+            yield self.lines.parting(k)
+
+    def strung(self, time: float) -> Iterator[Shape]:
+        """Their lines."""
+        yield from self.lines.shapes(self.bodies, time)
+
     def state(self) -> dict:
         """Where they are, and how they move."""
-        state = self.bodies.state() | {"tensions": self.tensions.tolist()}
-        return state | ({"joints": self.joints.state()} if self.joints else {})
+        lines = {"lines": self.lines.state()} if self.lines.lines else {}
+        return self.bodies.state() | lines | ({"joints": self.joints.state()} if self.joints else {})
 
     def restore(self, state: dict) -> None:
         """Go on from there."""
         self.bodies.restore(state)
-        self.tensions = np.array(state.get("tensions", self.tensions), dtype=float)  # older ones have none
+        if "lines" in state:  # older ones have none
+            self.lines.restore(state["lines"])
         if self.joints:
             self.joints.restore(state["joints"], self.bodies)
 
@@ -133,12 +148,12 @@ class FloatingBodies(Work):
         maps[..., 1:] = linear[:, :, :d, :d]
         return maps
 
-    def load(self, pushes: np.ndarray, comm) -> None:
-        """The forces at the end of the step: those on the particles of this rank, ``pushes`` in whole
-        numbers of :attr:`units` (psph.physics.rigid.pushes), those of lines, and uniform pulls;
-        collective."""
+    def load(self, pushes: np.ndarray, comm, time: float, dt: float) -> None:
+        """The forces at ``time``, s, the end of a step of ``dt`` s: those on the particles of this rank,
+        ``pushes`` in whole numbers of :attr:`units` (psph.physics.rigid.pushes), those of lines, and uniform
+        pulls; collective."""
         total = whole_sums(comm, pushes).astype(np.float64)
-        pull, twist, self.tensions = pulls(self.lines, self.bodies)
+        pull, twist = self.lines.pulls(self.bodies, time, dt)
         if self.joints:
             pull, twist = (a + b for a, b in zip((pull, twist), self.joints.pulls(self.bodies)))
         self.bodies.load(total[:, :3] * self.units[0] + pull, total[:, 3:] * self.units[1] + twist)

@@ -13,7 +13,8 @@ class MotionGauge(NamedTuple):
     ``x`` of its centre of mass, m, its ``velocity`` in m/s; ``turn``, the rotation since the start as
     the vector of its axis times its angle in rad (counted past a turn about one axis), ``spin`` in
     rad/s; ``force`` and ``moment`` of all that acts on it, weight and lines included, about its pivot or
-    centre of mass, N and N m; the ``tension`` of each of its lines, N.  Of a body that is not free in all,
+    centre of mass, N and N m; the ``tension`` of each of its lines, N,
+    of a chain at the anchor too.  Of a body that is not free in all,
     or held at first, the ``reaction``, N, and ``reaction_moment``, N m, about the same point, of what holds
     it: a hinge, a guide, what moves it as it is told.
     """
@@ -34,7 +35,8 @@ class MotionGauge(NamedTuple):
         named = [f"centre_{axis}" for axis in axes] + [f"velocity_{axis}" for axis in axes]
         named += [f"turn_{axis}" for axis in round_about] + [f"spin_{axis}" for axis in round_about]
         named += [f"force_{axis}" for axis in axes] + [f"moment_{axis}" for axis in round_about]
-        named += [f"tension_{line}" for line in scene.case.bodies[self.body].lines]
+        for line, table in scene.case.bodies[self.body].lines.items():
+            named += [f"tension_{line}", *([f"anchor_tension_{line}"] if table.chain else [])]
         if self.restrained:
             named += [f"reaction_{axis}" for axis in axes]
             named += [f"reaction_moment_{axis}" for axis in round_about]
@@ -43,7 +45,7 @@ class MotionGauge(NamedTuple):
     def row(self, simulation) -> list[float]:
         """The values, the same on every rank."""
         floating = simulation.engine.of("bodies")
-        bodies, d = floating.bodies, simulation.store.dimensions
+        bodies, held, d = floating.bodies, floating.lines, simulation.store.dimensions
         [k] = (k for k, one in enumerate(bodies.bodies) if one.name == self.body)
         slid, turned = slice(0, d), slice(2, 3) if d == 2 else slice(0, 3)
         arm = bodies.arm[k]
@@ -56,7 +58,10 @@ class MotionGauge(NamedTuple):
             bodies.pushed[k, slid],
             bodies.turned_by[k, turned],
         )
-        own = [t for line, t in zip(floating.lines, floating.tensions.tolist()) if line.body == k]
+        own: list[float] = []
+        for line, near, far in zip(held.lines, held.tensions.tolist(), held.tensions_far.tolist()):
+            if line.body == k:
+                own += [near, far] if line.chain else [near]
         if self.restrained:
             force, torque = bodies.reaction
             own += [*force[k, slid].tolist(), *torque[k, turned].tolist()]

@@ -13,7 +13,6 @@ from psph.errors import Refused, one_line
 from psph.fields import WALL
 from psph.output.errors import NotThere
 from psph.output.pictures import style
-from psph.output.pictures.moorings import Moorings
 from psph.output.pictures.scale import Scale
 from psph.output.pictures.view import Room
 
@@ -52,8 +51,7 @@ class Flat:
     """The particles of a room in a plane; of a room in 3D those at ``cut``.
 
     ``mirrors`` (axis and place, m) are lines.  Particles of the group ``first_whole`` and later are of rigid
-    bodies; None: there are none.  ``moorings`` are theirs, or None.  Raises NotThere if the room does not
-    reach there.
+    bodies; None: there are none.  Raises NotThere if the room does not reach there.
     """
 
     def __init__(
@@ -62,10 +60,8 @@ class Flat:
         cut: Slice | None = None,
         mirrors: Sequence[tuple[int, float]] = (),
         first_whole: int | None = None,
-        moorings: Moorings | None = None,
     ):
         self.room, self.cut, self.mirrors, self.first_whole = room, cut, mirrors, first_whole
-        self.moorings = moorings
         self.variant, self.remark = "", ""
         level = room.level
         if cut is not None:
@@ -117,9 +113,8 @@ class Flat:
             for axis, at in self.mirrors:
                 line = axes.axvline if axis == self.across else axes.axhline
                 line(at, color=style.INK, lw=0.8)
-            for one in self.moorings.at(frame) if self.moorings else ():
-                across, up = one.ends[:, self.across], one.ends[:, self.up]
-                axes.plot(across, up, color=style.PALE if one.slack else style.INK, lw=0.8)
+            for points, tension in frame["lines"].values() if self.cut is None else ():
+                axes.plot(points[:, self.across], points[:, self.up], color=style.of_line(tension), lw=0.8)
         length = self.room.length[0]
         style.ticks(axes.xaxis, 5, length)
         style.ticks(axes.yaxis, 5, 1.0 if self.room.dimensions == 1 else length)

@@ -16,7 +16,6 @@ from psph.output.pictures import charts, style
 from psph.output.pictures.flat import Flat, Slice
 from psph.output.pictures.groups import first_whole, wholes_of
 from psph.output.pictures.mirrors import mirrors_of, with_mirrors
-from psph.output.pictures.moorings import has_moorings, moorings_of
 from psph.output.pictures.quantities import quantity, usual
 from psph.output.pictures.scale import Scale, scale_of
 from psph.output.pictures.view import Panel, around_most, box_around, room_of, spread
@@ -72,8 +71,8 @@ class Show:
         self.panel, self.scale = self._panel_and_scale(cut, smooth)
 
     def _frame(self, k: int) -> dict:
-        """The visible particles of a frame, with their ``values``."""
-        return self.panel.of(self._whole(k))
+        """The visible particles of a frame, with their ``values``, and its ``lines``."""
+        return self.panel.of(self._whole(k)) | {"lines": self.run.lines(k)}
 
     def _whole(self, k: int) -> dict:
         reads = {"position", "kind", *self.quantity.reads, *self._told_apart}
@@ -83,7 +82,7 @@ class Show:
     @property
     def _told_apart(self) -> tuple[str, ...]:
         """Fields that tell which wall or body a particle is of, where that is drawn."""
-        if self._spatial or has_moorings(self.case):
+        if self._spatial:
             return ("group", "id")
         return ("group",) if wholes_of(self.case) else ()
 
@@ -100,8 +99,7 @@ class Show:
         room = room_of(self.case, boxes, [glance.most for glance in glances])
         if not self._spatial:
             whole = first_whole(self.case) if wholes_of(self.case) else None
-            lines = moorings_of(self.case, self._whole(0)) if room.dimensions == 2 else None
-            return Flat(room, cut, mirrors, whole, lines), scale
+            return Flat(room, cut, mirrors, whole), scale
         return spatial.scene(
             self.case, self.run.folder, self._whole(0), room, [glance.groups for glance in glances], smooth
         ), scale

@@ -13,7 +13,6 @@ from psph.fields import WALL
 from psph.output.pictures import style
 from psph.output.pictures.camera import ANGLE, Camera, before, directions
 from psph.output.pictures.carried import Carried, carried_parts
-from psph.output.pictures.moorings import Moorings, moorings_of
 from psph.output.pictures.ruler import rulers
 from psph.output.pictures.scale import Scale
 from psph.output.pictures.view import Room
@@ -63,7 +62,7 @@ def scene(
     seen = {part.group for part in still}
     visible = [part.faces.reshape(-1, 3) for part in still]
     visible += [box for one in boxes for group, box in one.items() if group not in seen]
-    return View3D(room, parts, np.concatenate(visible), smooth, moorings_of(case, start))
+    return View3D(room, parts, np.concatenate(visible), smooth)
 
 
 def _stands(boxes: Sequence[np.ndarray]) -> bool:
@@ -75,7 +74,7 @@ class View3D:
     """All of a ``room`` with its rigid ``parts``, seen by one camera from the left, the front and above.
 
     It shows the box around all of the ``visible`` points, (n, 3) m.  ``smooth``: the fluid has a surface in
-    place of particles; ``moorings``: lines, or None.  Raises Refused where 3D cannot be drawn.
+    place of particles.  Raises Refused where 3D cannot be drawn.
     """
 
     keyed = True
@@ -86,9 +85,8 @@ class View3D:
         parts: Iterable[Carried],
         visible: np.ndarray,
         smooth: bool,
-        moorings: Moorings | None = None,
     ):
-        self.room, self.parts, self.smooth, self.moorings = room, list(parts), smooth, moorings
+        self.room, self.parts, self.smooth = room, list(parts), smooth
         self.variant = self.remark = "surface" if smooth else ""
         self._axes = directions(room.up, room.sense, room.level[0])
         self.see(visible)
@@ -129,9 +127,8 @@ class View3D:
             self._add_fluid(plotter, frame["position"][fluid], frame["values"][fluid], scale)
             for part in self.parts:
                 self._add_part(plotter, part, part.at(frame))
-            for one in self.moorings.at(frame) if self.moorings else ():
-                colour = style.PALE if one.slack else style.INK
-                plotter.add_lines(one.ends, color=colour, width=2 * FINER)
+            for points, tension in frame["lines"].values():
+                plotter.add_lines(points, color=style.of_line(tension), width=2 * FINER, connected=True)
             self._light(plotter, camera)
             plotter.enable_ssao(radius=2 * self.room.spacing, bias=0.1 * self.room.spacing, kernel_size=32)
             plotter.camera.position = camera.eye

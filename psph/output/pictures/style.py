@@ -49,6 +49,11 @@ def look():
     return matplotlib.rc_context(_LOOK)
 
 
+def of_line(tension: float) -> str:
+    """The colour of a line of bodies; pale where it is slack."""
+    return INK if tension else PALE
+
+
 def sheet(width: float, height: float, title: str, subtitle: str, dpi: int = DPI) -> Figure:
     """An empty page, inches, with its title at the top left; wide enough for that."""
     width = max(width, LEFT + 0.105 * len(title) + 0.3)
