@@ -56,8 +56,7 @@ class Created(NamedTuple):
     """Particles as they begin, all of a kind, the same on every rank.
 
     ``group`` (n,) is the number of that of each among those of the kind, ``position`` (n, dim) in m,
-    ``velocity`` (n, dim) in m/s, ``density`` (n,) in kg/m^d; ``values`` has fields by their names, (n,) or
-    (n, components).
+    ``velocity`` (n, dim) in m/s, ``density`` (n,) in kg/m^d; ``values`` has fields by name, (n, ...).
     """
 
     group: np.ndarray
@@ -127,18 +126,17 @@ class Work:
         return 0.0, 0.0
 
     def overlapping(self, store: Any, depth: float) -> np.ndarray | None:
-        """Above 0 for each particle of the ``store`` (owned,) that is more than ``depth`` spacings inside
-        what it must not enter; None where none is on any rank."""
+        """Above 0 for each of the ``store`` (owned,) that is more than ``depth`` spacings inside what it must
+        not enter; None: none is on any rank."""
         return None
 
     def overlap_words(self, number: int, key: str) -> str:
-        """Who is inside what, where :meth:`overlapping` has found it: the worst is the particle ``number``,
-        of what the case calls ``key``."""
+        """Who is inside what by :meth:`overlapping`, worst the particle ``number``, of the case's ``key``."""
         raise NotImplementedError
 
     def summary(self, poses: Any, lower: np.ndarray, upper: np.ndarray) -> Iterator[str]:
-        """Lines at the end of a run: what has left the walls, which stand between ``lower`` and ``upper``, m;
-        ``poses`` (psph.simulation.poses) are those of rigid motions."""
+        """Lines at the end of a run: what has left the walls between ``lower`` and ``upper``, m; ``poses``
+        (psph.simulation.poses) are those of rigid motions."""
         yield from ()
 
     def passed(self) -> Iterator[str]:
@@ -146,12 +144,11 @@ class Work:
         yield from ()
 
     def news(self, time: float) -> Iterator[str]:
-        """Lines on what has happened in the step that ended at ``time``, s; the same on every rank."""
+        """Lines on what has happened in the step that ended at ``time``, s."""
         yield from ()
 
     def strung(self, time: float) -> Iterator[Any]:
-        """What a frame at ``time``, s, holds beside particles: curves with a ``name``, ``points`` (n, 3), m,
-        and a ``tension``, N; the same on every rank."""
+        """What frames at ``time``, s, also hold: curves of ``name``, ``points`` (n, 3), m, ``tension``."""
         yield from ()
 
     def booked(self) -> Sequence[float]:
@@ -159,8 +156,7 @@ class Work:
         return ()
 
     def pushing(self, groups: Sequence[int], about: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """Force, N (3,), and moment, N m (3,) about the point ``about`` (dim,) m, of its own contacts on what
-        has these ``groups``; None where it has none."""
+        """Force, N, and moment about ``about`` (dim,) m, N m, of own contacts on ``groups``; or None."""
         return None
 
     def pairs(self) -> int:
@@ -172,8 +168,7 @@ class Work:
         return 0
 
     def state(self) -> dict:
-        """What its next step rests on beside particles, for a checkpoint: values that JSON holds, the same on
-        every rank."""
+        """What its next step rests on beside particles, as JSON holds it; the same on every rank."""
         return {}
 
     def restore(self, state: dict) -> None:

@@ -277,6 +277,7 @@ ROOMS = (
             "fluids",
             "hooke",
             "joints",
+            "lines",
             "regions",
             "soils",
             "solids",
@@ -286,12 +287,13 @@ ROOMS = (
     ),
     *(
         f"scene/{room}"
-        for room in ("fluid/", "bod", "joints", "regions", "soils", "solid", "stressed", "volumes")
+        for room in ("fluid/", "bod", "joints", "lines", "regions", "soils", "solid", "stressed", "volumes")
     ),
     *(f"scene/{room}" for room in ("answering", "calming", "end")),
     *(f"scene/parts/{room}" for room in ("end", "fluid", "hookean", "order", "rigid", "soil", "solid")),
     *(
         "physics/rigid/bod",
+        "physics/rigid/chains",
         "physics/rigid/contact",
         "physics/rigid/joints",
         "physics/rigid/lines",

@@ -10,7 +10,7 @@ from psph.case.keys import AXES
 from psph.case.lines import ChainTable, Line
 from psph.physics.motion import is_rigid
 from psph.physics.rigid.bodies import Bodies
-from psph.physics.rigid.chains import Chain, Hanging, at_rest, bearing_of
+from psph.physics.rigid.chains import Chain, Hanging, bearing_of
 from psph.physics.rigid.lines import Lines, SpringLine, ends_of
 from psph.physics.rigid.pose import in_space
 from psph.scene.body_parts import bodies_of
@@ -170,14 +170,10 @@ def line_faults(scene: Scene) -> Iterator[str]:
                 "more, or a greater length"
             )
         elif table.pretension is not None and not math.isclose(tension, table.pretension, rel_tol=1e-6):
-            says = (
-                "its weight pulls with {:.4g} N at least"
-                if table.chain
-                else "it is stretched by all of it at {:.4g} N"
-            )
-            most = tension if table.chain else (table.stiffness or 0.0) * math.dist(table.at, table.anchor)
-            more = "more" if table.chain else "less, or a greater stiffness"
-            yield f"{key}.pretension: {table.pretension:g} N, but {says.format(most)}; give {more}"
+            says = f"its weight pulls with {tension:.4g} N at least; give more"
+            if table.chain is None:
+                says = f"all of it is stretch at {tension:.4g} N; give less, or a greater stiffness"
+            yield f"{key}.pretension: {table.pretension:g} N, but {says}"
 
 
 def _misplaced(scene: Scene, key: str, name: str, table: Line) -> Iterator[str]:
@@ -187,9 +183,9 @@ def _misplaced(scene: Scene, key: str, name: str, table: Line) -> Iterator[str]:
         if of is None or of not in places or not scene.census.sizes[places[of]]:
             continue
         low, high = (ends[places[of]] for ends in (scene.census.lowest, scene.census.highest))
-        away = math.hypot(*np.maximum(np.maximum(low - point, point - high), 0.0))
-        if away > 1.5 * scene.spacing:
-            yield f"{key}.{what}: lies {away:.3g} m off {of}, which it is to be a point of; move it there"
+        away = np.maximum(np.maximum(low - point, point - high) - 0.5 * scene.spacing, 0.0)
+        if (far := math.hypot(*away)) > scene.spacing:
+            yield f"{key}.{what}: lies {far:.3g} m off {of}, which it is to be a point of; move it there"
     if table.chain is None:
         return
     if not any(scene.layout.up):
@@ -258,6 +254,9 @@ def _stiffness(lines: Sequence[SpringLine], bodies: Bodies, row: int, d: int) ->
         if row not in (line.body, line.other):
             continue
         ends, small = ends_of(line, bodies, 0.0)[0], 1e-4 * max(line.length, 1e-12)
+        if line.chain:  # longer ways, where it hangs: its masses leave the bed one by one
+            loose = line.length - math.dist(*ends)
+            small = max(small, min(0.2 * loose, 0.5 * line.length / line.chain.pieces))
         pulls = []
         for way in (-small, small):
             moved = ends.copy()

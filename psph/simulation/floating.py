@@ -10,7 +10,7 @@ from psph.parallel.reductions import whole_sums
 from psph.physics.rigid.bodies import Bodies, crossing
 from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.joints import Joints
-from psph.physics.rigid.lines import Lines, Shape
+from psph.physics.rigid.lines import Lines, Strung
 from psph.physics.rigid.pushes import add_pushes
 from psph.scene.bodies import shares_of
 from psph.scene.joints import joints_of
@@ -120,7 +120,7 @@ class FloatingBodies(Work):
         for k in np.flatnonzero(np.isfinite(self.lines.parted)).tolist():
             yield self.lines.parting(k)
 
-    def strung(self, time: float) -> Iterator[Shape]:
+    def strung(self, time: float) -> Iterator[Strung]:
         """Their lines."""
         yield from self.lines.shapes(self.bodies, time)
 

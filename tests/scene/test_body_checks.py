@@ -21,7 +21,6 @@ THIN = """
 shape.box = {{ lower = [0.3, 0.2], upper = [0.7, {:g}] }}
 density = 500.0
 """
-ROPE = "bodies.raft.lines.rope={{at={at}, anchor={anchor}, stiffness=10.0{to}}}"
 
 
 @pytest.mark.parametrize(
@@ -34,16 +33,6 @@ ROPE = "bodies.raft.lines.rope={{at={at}, anchor={anchor}, stiffness=10.0{to}}}"
             "pivot: lies 5.9 m from bodies.raft",
         ),
         ("bodies.raft.centre=[0.5, 0.1]", "bodies.raft.centre=[0.5, -0.5]", "centre: lies 0.7 m from"),
-        (
-            ROPE.format(at=[0.5, 1.0], anchor=[9.0, 0.0], to=""),
-            ROPE.format(at=[9.0, 0.0], anchor=[0.5, 1.0], to=""),
-            "lines.rope.at: lies 8.3 m from bodies.raft, which is 0.566 m long",
-        ),
-        (
-            ROPE.format(at=[0.5, 0.6], anchor=[0.8, 0.8], to=", to='buoy'"),
-            ROPE.format(at=[0.5, 0.6], anchor=[0.3, 0.2], to=", to='buoy'"),
-            "lines.rope.anchor: lies 0.781 m from bodies.buoy, which is 0.424 m long; correct it if it is",
-        ),
     ],
 )
 def test_points_and_inertia_that_a_body_hardly_has_are_warned_of(tmp_path, quiet, override, says):

@@ -12,6 +12,10 @@ from psph.vectors import Vector
 STEP = 0.2
 """Time steps of at most this over the angular frequency of lines, and over the rate at which they damp."""
 
+SAMPLED = 0.7
+"""Over the angular frequency of a body on the end pieces of chains alone: longer steps sample how these swing
+too seldom, and may feed it."""
+
 KEPT = ("tensions", "tensions_far", "parted", "borne")
 """The arrays of a state."""
 
@@ -21,9 +25,10 @@ class SpringLine(NamedTuple):
 
     ``body`` is its row; ``anchor`` a point in space where ``other`` is None, else one of the body of that
     row, or of what a ``leader`` has the pose of; points are given as they are at the start, m, three
-    numbers.  Its tension is k (l − l₀) + ζ dl/dt with ``stiffness`` k in N/m, ``length`` l₀ in m and ``damping`` ζ in N s/m.  One that
-    ``pulls_only`` is slack where it is shorter than l₀ and never pushes: a mooring line without weight.  One
-    that is a ``chain`` has weight.  It parts where its tension is ``breaks``, N, or more.
+    numbers.  Its tension is k (l − l₀) + ζ dl/dt with ``stiffness`` k in N/m, ``length`` l₀ in m and
+    ``damping`` ζ in N s/m.  One that ``pulls_only`` is slack where it is shorter than l₀ and never pushes: a
+    mooring line without weight.  One that is a ``chain`` has weight.  It parts where its tension is
+    ``breaks``, N, or more.
     """
 
     name: str
@@ -40,7 +45,7 @@ class SpringLine(NamedTuple):
     breaks: float = np.inf
 
 
-class Shape(NamedTuple):
+class Strung(NamedTuple):
     """A line of a ``name`` as it is drawn: ``points`` (n, 3), m, and its ``tension``, N."""
 
     name: str
@@ -91,13 +96,13 @@ class Lines:
             f"{self.parted[number]:.6g} s, pulled with {self.borne[number]:.4g} N"
         )
 
-    def shapes(self, bodies: Bodies, time: float) -> Iterator[Shape]:
+    def shapes(self, bodies: Bodies, time: float) -> Iterator[Strung]:
         """Those that have not parted, as they are at ``time``, s."""
         for number, line in enumerate(self.lines):
             if self.parted[number] > time:
                 ends = ends_of(line, bodies, time)[0]
                 points = self._hanging[number].place if line.chain else ends
-                yield Shape(line.name, points, float(self.tensions[number]))
+                yield Strung(line.name, points, float(self.tensions[number]))
 
     def state(self) -> dict:
         """What the next steps rest on, and what is told of this one, as lists of numbers."""
@@ -125,9 +130,8 @@ class Lines:
         apart = ends[1] - ends[0]
         length = float(np.sqrt(apart @ apart))
         along = apart / length if length > 0.0 else apart
-        tension = line.stiffness * (length - line.length) + line.damping * float(
-            (going[1] - going[0]) @ along
-        )
+        tension = line.stiffness * (length - line.length)
+        tension += line.damping * float((going[1] - going[0]) @ along)
         if line.pulls_only:
             tension = max(tension, 0.0) if length > line.length else 0.0
         self.tensions[number] = self.tensions_far[number] = tension
@@ -136,14 +140,14 @@ class Lines:
 
 def longest_step(lines: Sequence[SpringLine], bodies: Bodies) -> float:
     """Δt ≤ 0.2/√λ for the springs and 0.2/λ for the dampers, s: λ the largest eigenvalue of M⁻¹K, at most;
-    and 1/√λ by the pieces of chains.
+    and 0.7/√λ by the end pieces of chains.
 
     Bodies are joined by the sum of their lines, K_ab = Σ_l k_l √(y_la y_lb), with y what an end gives way by,
     1/kg.  One spring has λ = k/m.  Springs are stable up to 2/√λ, and dampers up to 1/λ: the rest is for
     accuracy, as a line that goes slack strikes.
     """
-    stiff = [line.stiffness for line in lines]
-    pieces = [line.stiffness * (STEP**2 * line.chain.pieces if line.chain else 1.0) for line in lines]
+    stiff, share = [line.stiffness for line in lines], (STEP / SAMPLED) ** 2
+    pieces = [line.stiffness * share * line.chain.pieces if line.chain else 0.0 for line in lines]
     rates = [_joined(lines, bodies, one) ** 0.5 for one in (stiff, pieces)]
     rate = max(*rates, _joined(lines, bodies, [line.damping for line in lines]))
     return STEP / rate if rate > 0.0 else float(np.inf)

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.rigid.body import RigidBody
 from psph.physics.rigid.laws import Accelerated
-from psph.physics.rigid.lines import SpringLine, longest_step, pulls
+from psph.physics.rigid.lines import Lines, SpringLine, longest_step
 from psph.physics.rigid.motion import MotionPart, Rigid
 from psph.physics.rigid.pose import Pose
 from psph.physics.rigid.schedule import ActingTime
@@ -26,14 +26,19 @@ def body(**different):
     )
 
 
+def pulls(lines, bodies):
+    """Forces and torques of springs, and their tensions."""
+    one = Lines(lines, bodies)
+    return *one.pulls(bodies, 0.0, 0.0), one.tensions
+
+
 def moved(bodies, dt, steps, lines=()):
     """The bodies after so many steps under their weight and ``lines``."""
-    force, torque, _ = pulls(lines, bodies)
-    bodies.load(force, torque)
+    held = Lines(lines, bodies)
+    bodies.load(*held.pulls(bodies, 0.0, 0.0))
     for n in range(1, steps + 1):
         bodies.drift(n * dt, dt)
-        force, torque, _ = pulls(lines, bodies)
-        bodies.load(force, torque)
+        bodies.load(*held.pulls(bodies, n * dt, dt))
         bodies.kick(n * dt, dt)
     return bodies
 
