@@ -146,6 +146,17 @@ def moored(here, there):
     return {"buoy": {**buoy, "lines": {"spring": spring, "rope": rope}}, "gate": gate}
 
 
+def chained(here, there):
+    """The same on lines with weight: one that lies on a slope, one between the two that hangs."""
+    found = moored(here, there)
+    lines, what = found["buoy"]["lines"], {"mass": 40.0, "diameter": 0.1, "axial_stiffness": 2e5, "pieces": 6}
+    bed = {"at": [-1.0, 0.25], "normal": [0.25, 1.0], "friction": 0.3}
+    lines["spring"] = {"at": list(here), "anchor": [-1.0, 0.25], "length": 1.6, "chain": {**what, "bed": bed}}
+    hung = {"at": list(here), "anchor": list(there), "to": "gate", "pretension": 900.0}
+    lines["rope"] = {**hung, "chain": {**what, "water_level": 0.5}}
+    return found
+
+
 TWO = {
     "water": water(shape=box((0.0, 0.0), (1.5, 0.5)), viscosity=0.02),
     "oil": water(shape=box((0.0, 0.5), (1.5, 1.0)), density=600.0, viscosity=0.1),
@@ -316,6 +327,7 @@ SCENES = {
     ),
     "jointed bodies": poured({"tank": tank()}, **jointed()),
     "moored bodies": poured({"tank": tank()}, bodies=moored((0.4375, 0.5625), (1.0625, 0.5625))),
+    "chained bodies": poured({"tank": tank()}, bodies=chained((0.4375, 0.5625), (1.0625, 0.5625))),
     "moored bodies on wet soils": scene(
         soils={
             "sand": sand(shape=box((0.0, 0.0), (1.5, 0.5)), water_level=0.25, water_density=1024.0),

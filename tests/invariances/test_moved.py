@@ -28,7 +28,7 @@ MOVED = (
 )
 """A scene of each kind of matter, and walls that show a pressure of their own."""
 
-HELD = ("moored bodies", "moored bodies on wet soils")
+HELD = ("moored bodies", "chained bodies", "moored bodies on wet soils")
 """Scenes with hinges and lines to places in space: what drifts would leave them."""
 
 NO_SHIFT = {"position_shift": "off"}

@@ -113,6 +113,14 @@ class Extruded(NamedTuple):
             return {"cylinder": self._cylinder(**table["disc"])}
         if isinstance(table, dict):
             found = {name: self.of(value, name) for name, value in table.items()}
+            if key == "chain":  # one in each metre of depth in 2D; what it displaces goes by d²
+                wider = self.depth**0.5
+                found |= {what: table[what] * self.depth for what in ("mass", "axial_stiffness")}
+                found |= {
+                    "diameter": table["diameter"] * wider,
+                    "drag": 1.2 * wider,
+                    "skin_drag": 0.05 * wider,
+                }
             turns = key == "rotation" or (key == "sinusoid" and "angle" in table)
             if "stiffness" in table:  # forces and masses are those of a metre of depth in 2D
                 found |= {
@@ -181,7 +189,8 @@ class Shift(NamedTuple):
 NO_UNIT = (
     "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction", "restitution",
     "exponent", "friction", "fast_friction", "inertial_number", "damping_ratio", "angle", "phase", "cfl",
-    "gather_every", "hourglass", "along", "alpha", "skin", "rate", "epsilon", "delta", "beta", "contact",
+    "gather_every", "hourglass", "along", "pieces", "drag", "skin_drag", "normal", "alpha", "skin", "rate", "epsilon", "delta", "beta",
+    "contact",
 )  # fmt: skip
 UNIT_OF = {
     **dict.fromkeys(
@@ -204,7 +213,12 @@ UNIT_OF = {
         "Pa s",
     ),
     **dict.fromkeys(("viscosity", "flow"), "m2/s"),
+    "pretension": "N/m",
 }
+
+
+OF_A_CHAIN = {"mass": "kg/m2", "axial_stiffness": "N/m"}
+"""Of a line with weight in 2D, one in each metre of depth: what its diameter displaces goes by d²."""
 
 
 class Units(NamedTuple):
@@ -222,6 +236,8 @@ class Units(NamedTuple):
     def of(self, table: Any, key: str = "", within: str = "") -> Any:
         """A table of a case, in these units."""
         if isinstance(table, dict):
+            if key == "chain":
+                table = {"drag": 1.2 * self.length**-0.5, "skin_drag": 0.05 * self.length**-0.5, **table}
             return {name: self._of_entry(name, value, key, table) for name, value in table.items()}
         if isinstance(table, list) and not np.ndim(table):
             return table
@@ -234,6 +250,10 @@ class Units(NamedTuple):
     def _of_entry(self, name, value, key, table):
         if name == "consistency":
             return value * self.factor("Pa") * self.time ** table["exponent"]
+        if key == "chain" and name in OF_A_CHAIN:
+            return value * self.factor(OF_A_CHAIN[name])
+        if key == "chain" and name == "diameter":
+            return value * self.length**0.5
         if name == "damping" and key == "contact":
             return value
         return self.of(value, name, key)

@@ -330,7 +330,7 @@ BRICK = "bodies.brick.shape.box={lower=[0.2,0.5],upper=[0.4,0.7]}"
                 "bodies.brick.mass=1.0",
                 "bodies.brick.lines.rope={at=[0.3,0.6],anchor=[0.3,0.0],stiffness=1.0,to='crane'}",
             ),
-            "no other body has this name; leave out to for a point in space",
+            "no other body or wall has this name; leave out to for a point in space",
         ),
         (
             ("bodies.brick.mass=1.0", "physics.pressure_gradient=minimum", "scheme=sph"),
