@@ -10,6 +10,9 @@ from psph.output.reader import Run
 FRAMES, PARTICLES, WALL_PARTICLES = 8, 8000, 4000
 """Frames, particles of a frame, and of its walls, at most: a browser turns them without a pause."""
 
+LINE = {"color": "#22262b", "width": 2}
+"""Of bodies."""
+
 EYE = {"x": -0.7, "y": -2.0, "z": 1.1}
 """From the front, the left and above, as the pictures in 3D."""
 
@@ -31,12 +34,19 @@ def turning(run: Run):
         colours = {"color": _short(speed), "cmin": 0.0, "cmax": fastest, "colorscale": "Viridis"}
         return _points(kind, places, size, **colours, colorbar={"title": "speed (m/s)"})
 
+    def seen(k: int) -> list:
+        strung = _lines(run, shown[k])
+        return [fluid(k), *([] if strung is None else [kind(**_axes(strung), mode="lines", line=LINE)])]
+
+    count = max(len(seen(k)) for k in range(len(frames)))
     figure = go.Figure(
         [
             _points(kind, walls, size - 1, color="#9aa1ab", opacity=0.25 if dimensions == 3 else 1.0),
-            fluid(-1),
+            *seen(-1),
         ],
-        frames=[go.Frame(data=[fluid(k)], traces=[1], name=str(k)) for k in range(len(frames))],
+        frames=[
+            go.Frame(data=seen(k), traces=list(range(1, 1 + count)), name=str(k)) for k in range(len(frames))
+        ],
     )
     steps = [
         {
@@ -63,11 +73,22 @@ def turning(run: Run):
 
 
 def _points(kind, places: np.ndarray, size: int, opacity: float = 1.0, **marker):
-    axes = {axis: _short(places[:, d]) for d, axis in enumerate(AXES[: places.shape[1]])}
-    if len(axes) == 1:
-        axes["y"] = np.zeros(len(places))
     marker |= {"size": size, "opacity": opacity}
-    return kind(**axes, mode="markers", marker=marker, hoverinfo="skip")
+    return kind(**_axes(places), mode="markers", marker=marker, hoverinfo="skip")
+
+
+def _axes(places: np.ndarray) -> dict[str, np.ndarray]:
+    """Places (n, dim) by the names that plotly has for their axes."""
+    axes = {axis: _short(places[:, d]) for d, axis in enumerate(AXES[: places.shape[1]])}
+    return axes if len(axes) > 1 else {**axes, "y": np.zeros(len(places))}
+
+
+def _lines(run: Run, k: int) -> np.ndarray | None:
+    """Points of all lines of bodies in a frame (n, dim), with gaps between; None of a run that had none."""
+    if not (first := run.lines(0)):
+        return None
+    gap = np.full_like(next(iter(first.values()))[0][:1], np.nan)
+    return np.concatenate([gap, *(part for points, _ in run.lines(k).values() for part in (points, gap))])
 
 
 def _particles(run: Run, k: int) -> tuple[np.ndarray, np.ndarray]:

@@ -130,6 +130,20 @@ def tank(tmp_path):
     return path
 
 
+def test_the_view_has_the_lines_of_each_frame(tmp_path):
+    frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": "", "dimensions": 2})
+    cloud = {"id": np.arange(4), "kind": np.arange(4, dtype=np.uint8) % 2, "group": np.zeros(4, np.uint8)}
+    cloud |= {"position": np.eye(4)[:, :2], "velocity": np.eye(4)[:, :2]}
+    points = np.array([[0.0, 0.0], [0.5, 0.1], [1.0, 0.5]])
+    for k in range(2):
+        frames.write(k, 0.1 * k, k, cloud, {"raft.line": (points + k, 1.0)} if k == 0 else {})
+    figure = turning(Run(tmp_path))
+    first, then = (frame.data[1].x for frame in figure.frames)
+    assert first[1:4].tolist() == [0.0, 0.5, 1.0] and np.isnan(first[[0, 4]]).all()
+    assert np.isnan(then).all()  # it has parted
+    assert figure.frames[0].traces == (1, 2) and len(figure.data) == 3
+
+
 @NEEDS_CHROMIUM
 def test_the_view_turns_under_the_mouse(tank, tmp_path):
     told = scripted(tank, tmp_path, DRAGS)
