@@ -21,7 +21,7 @@ class ChainTable(Table):
     mass: float = key("mass by length, in air", unit="kg/m", gt=0)
     diameter: float = key("that of a rod that displaces as much", unit="m", gt=0)
     axial_stiffness: float = key("force over strain", unit="N", gt=0)
-    pieces: int = key("equal straight pieces that it is made of", 20, ge=2, le=1000)
+    pieces: int = key("equal straight pieces that it is made of", 20, ge=2, le=200)
     damping_ratio: float = key("damping of its pieces, as part of critical", 0.1, ge=0, le=10)
     drag: float = key("coefficient of drag across it, by its diameter", 1.2, ge=0)
     skin_drag: float = key("that along it, by its circumference", 0.05, ge=0)

@@ -17,8 +17,11 @@ from psph.scene.body_parts import bodies_of
 from psph.scene.scene import Scene
 from psph.scene.volumes import volume_of
 
-HALVINGS = 60
+HALVINGS = 45
 """Of the range in which the length of a chain lies that has a pretension."""
+
+MOST_PARTS = 200.0
+"""Own steps of a line with weight within one that sound allows, without a warning."""
 
 STRETCHED = 0.1
 """Strain at the start without a warning."""
@@ -205,14 +208,23 @@ def _misplaced(scene: Scene, key: str, name: str, table: Line) -> Iterator[str]:
 
 
 def line_warnings(scene: Scene) -> Iterator[str]:
-    """A line of text for each that is stretched a lot at the start."""
+    """A line of text for each that is stretched a lot at the start, or takes very many steps."""
+    if not any(body.lines for body in scene.case.bodies.values()):
+        return
     _, lines = _begun(scene)
+    by_sound = scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
     for (key, _, table), line in zip(_tables(scene), lines.lines):
         strain = math.dist(table.at, table.anchor) / line.length - 1.0 if line.chain else 0.0
         if strain > STRETCHED:
             yield (
                 f"{key}.length: {line.length:.4g} m, and its ends are {100.0 * strain:.3g} % farther apart "
                 "at the start; give more, or pretension"
+            )
+        if line.chain and by_sound > MOST_PARTS * line.chain.longest_step:
+            parts = by_sound / line.chain.longest_step
+            yield (
+                f"{key}.chain: takes {parts:.3g} steps of its own in each that sound allows; give fewer "
+                "pieces, or a smaller axial_stiffness"
             )
 
 

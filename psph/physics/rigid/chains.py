@@ -127,7 +127,7 @@ def _hung(chain: Chain, ends: np.ndarray) -> np.ndarray:
     if not (slack := chain.length**2 - float(way @ way)) > 0.0 or not down.any():
         return place
     across = down * float(way @ way) - way * float(way @ down)
-    if np.sqrt(across @ across) < 1e-9 * np.sqrt(down @ down) * float(way @ way):
+    if np.sqrt(across @ across) <= 1e-9 * np.sqrt(down @ down) * float(way @ way):
         across = down
     sag = 0.5 * math.sqrt(slack) / float(np.sqrt(across @ across))
     place += sag * (1.0 - np.abs(2.0 * share - 1.0)) * across

@@ -56,7 +56,9 @@ def test_a_line_at_rest_is_an_elastic_catenary(length, stiffness, bed, x, z):
     assert np.abs(apart[1][:2]).max() < 0.35 * np.abs(apart[0][:2]).max()
 
 
-def test_a_line_over_its_anchor_and_one_on_a_slope_come_to_rest():
+def test_a_line_over_its_anchor_and_one_on_a_slope_or_in_a_loop_come_to_rest():
+    loop = between(chain(30, 2.0), (0.0, 0.0, 0.0))
+    assert loop.pulls[:, 2] == pytest.approx([-9.81, -9.81]) and loop.place[:, 2].min() < -0.99
     heap = between(chain(30, 2.0, bed=True), (0.0, 0.0, 1.0))
     assert -heap.pulls[0, 2] == pytest.approx(9.81, rel=0.06)  # what hangs
     slope = (-math.sin(0.3), 0.0, math.cos(0.3))
