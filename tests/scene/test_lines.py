@@ -85,7 +85,10 @@ def test_a_pretension_is_that_at_the_start(tmp_path):
 
 def test_check_warns_of_a_line_that_is_far_too_short_or_stiff(tmp_path):
     stiff = check(Scene(draft(tmp_path, MOORED, f"{CHAIN}axial_stiffness=1e11")))
-    assert any("port.chain: takes 1.63e+04 steps of its own" in line and "give fewer pieces" in line for line in stiff), stiff
+    assert any(
+        "port.chain: takes 1.63e+04 steps of its own" in line and "give fewer pieces" in line
+        for line in stiff
+    ), stiff
     found = [line for line in check(Scene(draft(tmp_path, MOORED, f"{PORT}length=0.7"))) if "port" in line]
     assert len(found) == 1 and "length: 0.7 m, and its ends are 27.8 % farther apart" in found[0]
     assert not [line for line in check(Scene(draft(tmp_path, MOORED))) if "port" in line]
