@@ -165,7 +165,7 @@ def _measure(options, comm) -> None:
     from psph.lab.measure.command import measure
 
     if comm.rank == 0:
-        measure(options.folder, options.gauge, options.times, options.out, print)
+        measure(options.folder, options.gauge, options.number, options.times, options.out, print)
 
 
 def _report(options, comm) -> None:

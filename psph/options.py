@@ -205,6 +205,14 @@ def _add_measure_options(measure: argparse.ArgumentParser) -> None:
         help="a gauge of the case, a new one as 'NAME.level={foot=[1.0, 0.0], top=[1.0, 2.0]}', or a TOML "
         "file with [gauges.NAME] (repeatable; default: all of the case)",
     )
+    measure.add_argument(
+        "--number",
+        action="append",
+        default=[],
+        metavar="NAME={...}",
+        help='a number of what is measured, as \'Hs={of="wave.level", take="significant_height"}\' '
+        "(repeatable; alone: of what the run has written)",
+    )
     measure.add_argument("--times", type=float, nargs="+", help="frames nearest to these, s (default: all)")
     measure.add_argument("--out", action=_Folder, help="folder of the tables (default: FOLDER)")
 

@@ -12,6 +12,7 @@ from psph.case.findings import Finding, Location, asked_of, frictions_of, not_of
 from psph.case.keys import AXES, Table
 from psph.case.measured import due, gauged, probed
 from psph.case.moved import moved
+from psph.case.numbers import numbered
 from psph.case.placed import Placed
 from psph.case.placing import Placing, Turn
 from psph.case.schemes import STABLE
@@ -36,6 +37,7 @@ def contradictions(case) -> list[InitErrorDetails]:
         _friction,
         probed,
         gauged,
+        numbered,
         of_tables,
         of_kinds,
         _single,

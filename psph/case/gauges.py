@@ -155,7 +155,7 @@ class Overtopping(OfFlow):
             says = "the domain repeats along this axis, so that nothing is beyond; give another"
             yield ("towards",), self.towards, says
         if dimensions == 3 and self.width is None:
-            yield ("width",), ..., "missing; give the length of the crest, m"
+            yield (), ..., "needs width in 3D, the length of the crest in m; add it"
 
 
 class Point(Table):

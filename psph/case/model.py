@@ -19,6 +19,7 @@ from psph.case.gauges import Gauge
 from psph.case.keys import Name, Table, key
 from psph.case.mesh import Mesh
 from psph.case.motion import Motions, series_in
+from psph.case.numbers import NumberOf
 from psph.case.placed import Answering, Named, Placed
 from psph.case.profiles import OFF, choices
 from psph.case.running import Checkpoint, GuardKeys, NeighbourLists, Output, Parallel, Perturbation, Probe
@@ -72,6 +73,7 @@ class Case(WithMatter):
     parallel: Parallel = key("how the domain is divided among ranks", make=Parallel)
     neighbours: NeighbourLists = key("the neighbour lists", make=NeighbourLists)
     exact: Exact = key("an exact solution of the case, for its initial state and its errors", make=Exact)
+    numbers: dict[Name, NumberOf] = key("numbers of what is measured over time, by name", {})
     experiments: dict[Name, Experiment] = key("experiments by name: measured curves to compare with", {})
     study: Study = key("the keys that `python -m psph study` varies, and its measure of error", make=Study)
 

@@ -52,8 +52,8 @@ class Study(Table):
     )
     grid: bool = key("all combinations of the values, not one key at a time", False)
     error: Text | None = key(
-        "what is compared: velocity, pressure or density of the fluid at the end, or a column of "
-        "probes.csv or of a gauge over time",
+        "what is compared: velocity, pressure or density of the fluid at the end, a column of probes.csv or "
+        "of a gauge over time, or the name of one of the numbers",
         None,
         otherwise="the first that the reference has",
     )
@@ -66,5 +66,12 @@ class Study(Table):
     after: float = key("probes are compared from this time on", 0.0, unit="s", ge=0)
     until: float | None = key(
         "probes are compared up to this time", None, unit="s", otherwise="the end", gt=0
+    )
+    shift: float | None = key(
+        "curves are compared after the best shift in time, of at most so much",
+        None,
+        unit="s",
+        otherwise="as they are",
+        gt=0,
     )
     repeats: int = key("number of times that a short run is timed", 3, ge=1)

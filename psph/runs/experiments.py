@@ -1,4 +1,4 @@
-"""Whether the experiments of a case can be held against what a run of it measures."""
+"""Whether a run measures what the experiments and the numbers of its case are of."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,11 +18,19 @@ def refuse_unfit_experiments(scene) -> None:
 
 def _faults(scene) -> Iterator[str]:
     case, folder = scene.case, Path(scene.case.file).parent
+    columns = columns_of(scene) if case.experiments or case.numbers else []
+
+    def unmeasured(where: str, column: str) -> Iterator[str]:
+        if column not in columns:
+            known = advise(column, columns) if columns else "add a probe or a gauge"
+            yield f'{case.file}: {where}: "{column}" is not measured in this case; {known}'
+
+    for name, number in case.numbers.items():
+        for which, column in zip(("of", "wave"), number.columns):
+            yield from unmeasured(f"numbers.{name}.{which}", column)
     for name, experiment in case.experiments.items():
         where, path = f"{case.file}: experiments.{name}", folder / experiment.file
-        if experiment.probe not in (columns := columns_of(scene)):
-            known = advise(experiment.probe, columns) if columns else "add a probe or a gauge"
-            yield f'{where}.probe: "{experiment.probe}" is not measured in this case; {known}'
+        yield from unmeasured(f"experiments.{name}.probe", experiment.probe)
         if path.is_file() and not lies_in(folder, experiment.file):
             continue  # a study reads it, where it is told to
         try:

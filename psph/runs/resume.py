@@ -23,7 +23,7 @@ from psph.runs.watch import SOONEST
 from psph.simulation.plan import Plan
 from psph.simulation.step import Simulation
 
-MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": True}
+MAY_CHANGE = {"time": {"end"}, "output": True, "checkpoint": True, "guards": True, "numbers": True}
 """Keys of a case that change no step: a run that goes on may have others."""
 
 

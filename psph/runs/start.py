@@ -28,7 +28,7 @@ from psph.runs.memory_check import check_memory, check_size
 from psph.runs.record import Record
 from psph.runs.resume import listed_particles, take_up, write_checkpoint
 from psph.runs.setup import compile_ahead, create_particles
-from psph.runs.summary import write_summary
+from psph.runs.summary import measured_lines, write_summary
 from psph.runs.watch import Call, Stopped, Watch
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
@@ -181,7 +181,8 @@ def _simulate(
     for line in summary:
         say(line)
     said = [*guards.summary(), *record.dry_probes()]
-    for line in said:
+    measured = measured_lines(scene, folder) if comm.rank == 0 else []
+    for line in [*measured, *said]:
         say(line)
     if comm.rank == 0 and steps:
         write_summary(folder, scene, simulation, whole, steps, said)

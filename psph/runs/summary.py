@@ -9,6 +9,8 @@ from pathlib import Path
 
 from psph.engine.jit import processor
 from psph.kinds import count_of
+from psph.output.numbers import extents, in_lines, numbers_in_lines
+from psph.output.reader import Run
 from psph.runs.cost import costs
 from psph.version import __version__
 
@@ -43,6 +45,18 @@ def write_summary(folder: Path, scene, simulation, seconds: float, steps: int, s
     }
     with suppress(OSError):
         (folder / SUMMARY).write_text(json.dumps(told, indent=1), encoding="utf-8")
+
+
+def measured_lines(scene, folder: Path) -> list[str]:
+    """What the gauges of a run have read from its start to now: mean and extremes of each, and the numbers of
+    the case; on one rank."""
+    case, run = scene.case, Run(folder, scene.case.name)
+    gauges = run.gauges()
+    own = [gauges[name] for name in case.gauges if name in gauges]
+    lines = [*in_lines(extents(own, scene.dimensions))]
+    if case.numbers:
+        lines += numbers_in_lines(case.numbers, [run.probes(), *own], scene.dimensions)
+    return lines
 
 
 def read_summary(folder: Path) -> dict:

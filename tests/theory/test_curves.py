@@ -48,12 +48,12 @@ def test_the_mean_of_noise_lies_within_its_reach_nine_times_in_ten():
 @pytest.mark.parametrize("damping", [0.0, 0.3])
 def test_period_of_a_damped_swing_about_any_place(damping):
     swing = 5.0 + np.exp(-damping * TIME) * np.cos(2.0 * math.pi * TIME / 1.3)
-    found = oscillation.period(Curve(TIME, swing + 0.02 * TIME))
+    found = oscillation.mean_period(Curve(TIME, swing + 0.02 * TIME))
     assert found.value == pytest.approx(1.3, rel=2e-3) and found.reach < 0.01
     noise = np.random.default_rng(2).normal(size=len(TIME))
-    assert oscillation.period(Curve(TIME, swing + 0.01 * noise)).value == pytest.approx(1.3, rel=0.01)
+    assert oscillation.mean_period(Curve(TIME, swing + 0.01 * noise)).value == pytest.approx(1.3, rel=0.01)
     with pytest.raises(NoNumber, match="no two maxima"):
-        oscillation.period(Curve(TIME, TIME))
+        oscillation.mean_period(Curve(TIME, TIME))
 
 
 def test_arrival_of_a_step_and_of_a_ramp():

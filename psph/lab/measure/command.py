@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from psph.lab.measure.gauging import readings
+from psph.output.numbers import extents, in_lines, numbers_in_lines
+from psph.output.reader import Run
 from psph.output.tables import MEASURED, CsvTable
 from psph.parallel.reductions import alone
 
@@ -11,20 +13,20 @@ from psph.parallel.reductions import alone
 def measure(
     folder: Path,
     gauges: Sequence[str],
+    numbers: Sequence[str],
     times: Sequence[float] | None,
     out: Path | None,
     say: Callable[[str], None],
 ) -> None:
-    """Write ``measured-NAME.csv`` for each gauge into ``out``, or the folder of the run; by one rank.
+    """Write ``measured-NAME.csv`` for each gauge into ``out``, or the folder of the run, and say mean,
+    extremes and numbers, those of the case where none are given; by one rank.
 
-    ``gauges`` and ``times`` are those of :func:`psph.lab.measure.gauging.readings`, which says what is
-    raised, and OutputError.
+    ``gauges``, ``numbers`` and ``times`` are those of :func:`psph.lab.measure.gauging.readings`, which says
+    what is raised, and OutputError.
     """
-    found = readings(folder, gauges, times)
-    target = folder if out is None else out
+    found = readings(folder, gauges, times, numbers)
+    target, run, case = folder if out is None else out, Run(folder), found.case
     target.mkdir(parents=True, exist_ok=True)
-    for line in found.refused:
-        say(line)
     for name, columns in found.tables.items():
         path = target / MEASURED.format(name)
         table = CsvTable(path, list(columns), alone())
@@ -32,3 +34,11 @@ def measure(
             table.write(map(float, row))
         table.close()
         say(f"wrote {path}: {len(columns['time'])} rows")
+    for line in in_lines(extents(found.tables.values(), case.space.dimensions)):
+        say(line)
+    # What the run has written has more rows than there are frames.
+    tables = [run.probes(), *run.gauges().values(), *found.tables.values()]
+    asked = {text.partition("=")[0].strip() for text in numbers} or set(case.numbers)
+    told = {name: one for name, one in case.numbers.items() if name in asked}
+    for line in (*found.refused, *numbers_in_lines(told, tables, case.space.dimensions)):
+        say(line)

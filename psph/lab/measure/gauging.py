@@ -31,30 +31,39 @@ TOML = ".toml"
 
 class Readings(NamedTuple):
     """What gauges read on frames: the columns of each by its name, and why others could not be read, a line
-    each."""
+    each; and the ``case`` of the run with all that was asked for."""
 
     tables: dict[str, dict[str, np.ndarray]]
     refused: tuple[str, ...]
+    case: Any
 
 
 class _Wanted(NamedTuple):
-    """Names of gauges, those that are new among them, and the case that has them all."""
+    """Names of gauges, those that are new among them, and the case with them and the numbers."""
 
     names: tuple[str, ...]
     new: tuple[str, ...]
     case: Any
 
 
-def readings(folder: Path, gauges: Iterable[str] = (), times: Sequence[float] | None = None) -> Readings:
+def readings(
+    folder: Path,
+    gauges: Iterable[str] = (),
+    times: Sequence[float] | None = None,
+    numbers: Sequence[str] = (),
+) -> Readings:
     """What ``gauges`` read on the frames of the run in ``folder`` nearest to ``times`` s, or on all.
 
     Each is the name of a gauge of the case, ``NAME.KIND={...}`` as in TOML, or a TOML file with tables
-    ``[gauges.NAME]``; none: all those of the case.  The numbers are those that the run itself writes at
-    these times, to the bit.  Raises NotThere, CaseError, or MeasureError where frames do not hold what a
-    gauge needs: of those of the case that were not named such ones are left out.
+    ``[gauges.NAME]``; none: all those of the case, or none where there are ``numbers``.  These are
+    ``NAME={of=..., take=...}``.  What is read is what the run itself writes at these times, to the bit.
+    Raises NotThere, CaseError, or MeasureError where frames do not hold what a gauge needs: of those of the
+    case that were not named such ones are left out.
     """
     run, gauges = Run(folder), tuple(gauges)
-    asked = _wanted(run, gauges)
+    asked = _wanted(run, gauges, numbers)
+    if numbers and not gauges:
+        return Readings({}, (), asked.case)
     frames = range(len(run.times)) if times is None else run.nearest(times)
     if not len(frames):
         raise MeasureError(f"{run.path}: no frame yet; wait for the first one")
@@ -70,7 +79,7 @@ def readings(folder: Path, gauges: Iterable[str] = (), times: Sequence[float] | 
             break
     if not found.gauges:
         raise MeasureError(found.refused[0])
-    return Readings(found.tables(), tuple(found.refused))
+    return Readings(found.tables(), tuple(found.refused), asked.case)
 
 
 class _Found:
@@ -105,8 +114,8 @@ class _Found:
         }
 
 
-def _wanted(run: Run, gauges: Sequence[str]) -> _Wanted:
-    """The gauges that are asked for, and the case of the run with those that are new."""
+def _wanted(run: Run, gauges: Sequence[str], numbers: Sequence[str]) -> _Wanted:
+    """The gauges that are asked for, and the case of the run with those, and the numbers, that are new."""
     file = str(run.folder / COPY)
     data = tables_of(file)
     without_python(file, data)
@@ -128,11 +137,12 @@ def _wanted(run: Run, gauges: Sequence[str]) -> _Wanted:
             )
         names.append(text)
     names = [n for n in names if n in own.gauges] + new if gauges else list(own.gauges)
-    if not names:
+    if not names and not numbers:
         raise MeasureError(
             f"{file}: the case has no gauges; give {OPTION} 'NAME.level={{foot=[...], top=[...]}}'"
         )
-    case = checked(file, data, changes, OPTION) if new else own
+    changes += [f"numbers.{text.strip()}" for text in numbers]
+    case = checked(file, data, changes, OPTION) if changes or new else own
     for name in new:
         _refuse_unsummed(own, case, name)
     return _Wanted(tuple(dict.fromkeys(names)), tuple(new), case)

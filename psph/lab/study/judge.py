@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from scipy import optimize
 
 from psph.case.study import EXACT
 from psph.fields import FLUID
 from psph.lab.errors import StudyError
 from psph.lab.study.experiment import read_experiment
+from psph.lab.study.numbers import value_in, value_of
 from psph.output.accuracy import NORMS
 from psph.output.interpolation import interpolated
 from psph.output.reader import Run
@@ -36,9 +38,9 @@ class Judgement(NamedTuple):
 class Judge:
     """The quantity and the reference of a case's errors; reads the files of its runs.
 
-    ``what`` is a field at the end or a column of probes.csv or of a gauge, ``against`` the reference.  Raises
-    StudyError where the case has no such thing.  ``files`` is the folder that its files lie in or
-    below, where it is not that of the case.
+    ``what`` is a field at the end, a column of probes.csv or of a gauge, or a number of the case, ``against``
+    the reference.  Raises StudyError where the case has no such thing.  ``files`` is the folder that its
+    files lie in or below, where it is not that of the case.
     """
 
     def __init__(self, case, files: Path | None = None):
@@ -53,20 +55,44 @@ class Judge:
         """``velocity at the end against the exact solution``."""
         names = {EXACT: "the exact solution", THEORY: "theory", FINEST: "the finest run, its own error added"}
         at = " at the end" if self.what in AT_THE_END else ""
-        return f"{self.what}{at} against {names.get(self.against, f'experiment {self.against}')}"
+        if number := self.case.numbers.get(self.what):
+            at = f" ({number.take} of {number.of})"
+        less = f", less a shift in time of {self._longest_shift:g} s at most" if self._longest_shift else ""
+        return f"{self.what}{at} against {names.get(self.against, f'experiment {self.against}')}{less}"
 
-    def errors(self, folder: Path, finest: Path) -> Judgement:
-        """Of the run in ``folder``; ``finest`` holds the run with the smallest spacing."""
+    def errors(self, folder: Path, finest: Path) -> tuple[Judgement, float]:
+        """Of the run in ``folder``, and the shift in time, s, that is not in them; ``finest`` holds the run
+        with the smallest spacing."""
         run = Run(folder)
         if self.what in AT_THE_END:
-            return self._fields(run, finest)
+            return self._fields(run, finest), 0.0
+        if self.what in self.case.numbers:
+            return self._number(run, finest), 0.0
         table = run.measured(self.what)
         theirs, of_theirs = self._curve(run, finest)
         at = table["time"] if of_theirs is None else of_theirs  # None: known at any time
         at = at[window(self.case.study, at)]
-        ours, of_theirs = value_at(at, table, self.what), theirs(at)
-        both = np.isfinite(ours) & np.isfinite(of_theirs)
-        return series_errors(ours[both], of_theirs[both])
+        return shifted(lambda shift: value_at(at + shift, table, self.what), theirs(at), self._longest_shift)
+
+    @property
+    def _longest_shift(self) -> float:
+        """The longest that is taken out of a curve, s."""
+        over_time = self.what not in (*AT_THE_END, *self.case.numbers)
+        return (self.case.study.shift or 0.0) if over_time else 0.0
+
+    def _number(self, run: Run, finest: Path) -> Judgement:
+        """The relative error of a number, in all norms."""
+        asked = self.case.numbers[self.what]
+        ours, theirs = value_of(asked, run), math.nan
+        if self.against == THEORY:
+            theirs = asked.theory
+        elif self.against == FINEST:
+            theirs = math.nan if run.folder == finest else value_of(asked, Run(finest))
+        else:
+            time, value = self.measured
+            theirs = value_in(asked, [{"time": time, asked.of: value}])
+        error = abs(ours / theirs - 1.0) if theirs else math.nan
+        return Judgement(error, error, error)
 
     def _fields(self, run: Run, finest: Path) -> Judgement:
         if self.against == EXACT:
@@ -136,8 +162,8 @@ class Judge:
     def _agree(self) -> None:
         """StudyError where the reference does not fit what is compared."""
         file, what = self.case.file, self.what
-        if what not in (*AT_THE_END, *self.columns):
-            names = ", ".join((*AT_THE_END, *self.columns))
+        if what not in (*AT_THE_END, *self.columns, *self.case.numbers):
+            names = ", ".join((*AT_THE_END, *self.columns, *self.case.numbers))
             raise StudyError(f"{file}: study.error: {what} is not measured; give one of {names}")
         known_here = self._references_of(what)
         if self.against not in known_here:
@@ -167,6 +193,10 @@ class Judge:
 
     def _references_of(self, what: str) -> list[str]:
         """The references of the case that have ``what``."""
+        if number := self.case.numbers.get(what):
+            # One that is taken of two curves has no measured one beside it.
+            alike = [n for n, e in self.case.experiments.items() if number.columns == (e.probe,)]
+            return [*alike, *([] if number.theory is None else [THEORY]), FINEST]
         found = [n for n, e in self.case.experiments.items() if e.probe == what]
         solution = Scene(self.case).layout.exact
         name, _, quantity = what.partition(".")
@@ -202,6 +232,39 @@ def value_at(time: np.ndarray, table: dict[str, np.ndarray], column: str) -> np.
         return np.full(len(time), math.nan)
     unknown = np.interp(time, rows, ~known, left=1.0, right=1.0) > 0.0
     return np.where(unknown, math.nan, np.interp(time, rows[known], values[known]))
+
+
+def shifted(ours: Callable[[float], np.ndarray], theirs: np.ndarray, longest: float):
+    """The :class:`Judgement` of a curve, ``ours`` after a shift in time, s, against ``theirs`` (n,), with the
+    shift of the least L2 error, of ``longest`` s at most; and that shift, s: how late the curve is.
+
+    Points beyond either curve do not count, but half of those that count without a shift have to be left.
+    """
+
+    def judged(shift: float) -> tuple[Judgement, int]:
+        own = ours(shift)
+        both = np.isfinite(own) & np.isfinite(theirs)
+        return series_errors(own[both], theirs[both]), int(np.count_nonzero(both))
+
+    plain, count = judged(0.0)
+    if not longest or not count:
+        return plain, 0.0
+
+    def cost(shift: float) -> float:
+        found, left = judged(shift)
+        return found.l2 if 2 * left >= count and found.l2 == found.l2 else math.inf
+
+    tried = np.linspace(-longest, longest, 2 * SHIFTS + 1)
+    nearest = tried[int(np.argmin([cost(one) for one in tried.tolist()]))]
+    step = longest / SHIFTS
+    ends = max(nearest - step, -longest), min(nearest + step, longest)
+    best = float(optimize.minimize_scalar(cost, bounds=ends, method="bounded").x)
+    best = min((best, float(nearest), 0.0), key=cost)
+    return judged(best)[0], best
+
+
+SHIFTS = 50
+"""Shifts on either side that are tried first."""
 
 
 def series_errors(ours: np.ndarray, theirs: np.ndarray) -> Judgement:

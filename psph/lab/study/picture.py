@@ -73,6 +73,29 @@ def draw(
     return style.save(figure, path)
 
 
+def draw_number(path: Path, title: str, found) -> Path:
+    """Write the values of a number over the spacing, with bars for their reach, and its limit at zero spacing
+    with its interval (psph.lab.study.numbers.NumberLadder)."""
+    with style.look():
+        figure = style.sheet(
+            style.LEFT + WIDTH + style.RIGHT, style.TOP + HEIGHT + style.BOTTOM, title, found.name
+        )
+        axes = style.panel(figure, style.LEFT, style.TOP, WIDTH, HEIGHT)
+        bars = [0.0 if reach != reach else reach for reach in found.reaches]
+        axes.errorbar(found.spacings, found.values, bars, fmt="o-", ms=4, capsize=3, color=style.LINES[0])
+        if found.limit:
+            value = found.limit.value
+            known = value.high == value.high
+            reach = [[value.value - value.low], [value.high - value.value]] if known else None
+            axes.errorbar([0.0], [value.value], reach, fmt="D", ms=5, capsize=3, color=style.LINES[1])
+        axes.set_xlim(left=-0.03 * max(found.spacings))
+        axes.margins(y=0.12)
+        axes.grid(color=style.WALLS, lw=0.4)
+        axes.set_xlabel("spacing (m); the limit at 0")
+        axes.set_title(f"{found.name} ({found.unit})", loc="left", size=9, weight="bold")
+    return style.save(figure, path)
+
+
 def _numbers(low: float, high: float) -> Locator:
     """Numbers along a logarithmic axis from ``low`` to ``high``: some even where it is far from a decade."""
     if high < 2.0 * low:

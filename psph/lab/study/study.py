@@ -11,7 +11,8 @@ from psph.lab.study import fit, report, words
 from psph.lab.study.answer import answers
 from psph.lab.study.judge import FINEST, Judge, Judgement, known_values, window
 from psph.lab.study.ladder import PROFILE, SPACING, Settings, groups, name_of
-from psph.lab.study.picture import draw
+from psph.lab.study.numbers import NumberLadder, columns_of_numbers, ladders_of_numbers, sentences_of_numbers
+from psph.lab.study.picture import draw, draw_number
 from psph.lab.study.runs import DONE, Make, cases, conditions, perform
 from psph.output.reader import Run as Folder
 from psph.runs.memory_check import check_size
@@ -19,6 +20,8 @@ from psph.scene import Scene, check
 from psph.scene.checks import warnings
 
 CSV, PAGE, PICTURE, KEPT = "study.csv", "study.md", "study.png", "study.json"
+PICTURE_OF = "study.{}.png"
+"""Of a number over the spacings."""
 
 
 class StudyRuns:
@@ -112,10 +115,11 @@ class StudyRuns:
             own = settings | ({SPACING: self.cases[k].space.spacing} if result["status"] == DONE else {})
             folder = self.folder / f"run-{k + 1:02d}"
             if result["status"] == DONE:
-                errors = self.judge.errors(folder, reference)
-                more = vitals(Folder(folder), self.case.study)
+                errors, shift = self.judge.errors(folder, reference)
+                more = vitals(Folder(folder), self.case.study) | columns_of_numbers(Folder(folder), self.case)
+                more |= {SHIFT: shift} if self.case.study.shift else {}
             else:
-                errors, more = Judgement(math.nan, math.nan, math.nan), {}
+                errors, more = Judgement(math.nan, math.nan, math.nan), dict[str, float]()
             figures = {name: x for name, x in result.items() if not isinstance(x, dict)}
             norms = {f"error_{norm}": x for norm, x in errors._asdict().items()}
             rows.append({**own, **norms, **figures, **more})
@@ -182,6 +186,9 @@ class StudyRuns:
                 "conditions": [conditions(case) for case in self._first_of_each_ladder()],
             },
         )
+        for one in self._numbers(rows):
+            if len(one.values) > 1:
+                draw_number(self.folder / PICTURE_OF.format(one.name), title, one)
         good = [row for row in rows if row["error_l2"] > 0.0]
         if good:
             self._draw(title, rows, good, error)
@@ -221,6 +228,7 @@ class StudyRuns:
         base = next((ladder for shared, _, ladder in ladders if ladder and not shared), None)
         yield from self._choices(rows, base)
         yield from self._limits(rows)
+        yield from sentences_of_numbers(self._numbers(rows))
         front = [name_of({k: row[k] for k in self.keys if k in row}) for row in pareto(rows)]
         if 0 < len(front) < len(rows) and len(rows) > 2:
             yield words.front_words(front)
@@ -243,13 +251,19 @@ class StudyRuns:
             if plain:
                 yield words.against_base(row, plain[0], own[0], ladder)
 
+    def _alone(self, rows: list[dict]) -> list[dict]:
+        """The rows of finished runs that differ in the spacing alone."""
+        done = (row for row in rows if row["status"] == DONE)
+        return [row for row in done if not any(k in row for k in self.keys if k != SPACING)]
+
+    def _numbers(self, rows: list[dict]) -> list[NumberLadder]:
+        """The numbers of the case over spacings, where there are several."""
+        alone = self._alone(rows)
+        return [*ladders_of_numbers(self.case, alone)] if len(alone) > 1 else []
+
     def _limits(self, rows: list[dict]) -> Iterator[str]:
         """Means of the probes at zero spacing, from three runs or more."""
-        alone = [
-            row
-            for row in rows
-            if row["status"] == DONE and not any(k in row for k in self.keys if k != SPACING)
-        ]
+        alone = self._alone(rows)
         for name in alone[0] if alone else ():
             if name.startswith(MEAN):
                 values = [row[name] for row in alone]
@@ -285,6 +299,9 @@ def _outcome(result: dict) -> str:
         f"{report.seconds(result['seconds'])}" + (compiled if result["compiling_seconds"] > 1.0 else "")
     )
 
+
+SHIFT = "time_shift"
+"""Column of a row: how late its curve is, s, where a shift is taken out."""
 
 DIFFERENCE = "difference_"
 """Columns of a row: its difference from the finest run, in three norms, where that run is the reference."""

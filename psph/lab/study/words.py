@@ -82,11 +82,13 @@ def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
     return f"{same}: about {scaled:.2f} of the time for the same error."
 
 
-def limit_words(what: str, found: Extrapolated, finest: float, runs: int) -> str:
+def limit_words(what: str, found: Extrapolated, finest: float, runs: int, unit: str = "") -> str:
     """A quantity at zero spacing, from so many runs."""
     value = found.value
+    how = " (by the grid convergence index)" if runs == LAST else ""
+    of = f" {unit}" if unit else ""
     text = (
-        f"{what} goes to {value.value:.6g}{within(value, '.3g')} at zero spacing, with order "
+        f"{what} goes to {value.value:.6g}{within(value, '.3g')}{of}{how} at zero spacing, with order "
         f"{found.order.value:.2f}{within(found.order, '.2f')}"
     )
     if value.value and not found.order.low <= 0.0:

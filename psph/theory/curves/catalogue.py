@@ -35,11 +35,11 @@ TAKEN = {
     "last": Taking(moments.last, "the last value"),
     "change": Taking(moments.change, "the last value less the first"),
     "impulse": Taking(moments.impulse, "the integral over time", "{} s"),
-    "period": Taking(oscillation.period, "the mean time between extremes", "s"),
+    "period": Taking(oscillation.mean_period, "the mean time between extremes", "s"),
     "arrival": Taking(oscillation.arrival, "the first time at a level", "s", ("level",)),
     "crossings": Taking(oscillation.crossings, "how often it goes up through a level", "1", ("level",)),
     "response": Taking(
-        oscillation.response, "its amplitude over that of a wave", "{}/m", ("wave", "of_period"), ("wave",)
+        oscillation.response, "its amplitude over that of a wave", "{}/m", ("wave", "period"), ("wave",)
     ),
     "significant_height": Taking(spectra.significant_height, "4 standard deviations of a level"),
     "peak_period": Taking(spectra.peak_period, "the period at the peak of the spectrum", "s"),

@@ -60,7 +60,7 @@ def crossings(curve: Curve, level: float | None = None) -> CurveNumber:
     return CurveNumber(float(len(times)), float(times[0]) if len(times) else math.nan)
 
 
-def period(curve: Curve) -> CurveNumber:
+def mean_period(curve: Curve) -> CurveNumber:
     """The mean time from one maximum to the next, and from one minimum to the next, s.
 
     A damped swing keeps these, whatever it swings about.  A maximum stands out by a tenth of the whole swing;
@@ -111,10 +111,10 @@ def harmonic(curve: Curve, of_period: float) -> tuple[complex, float]:
     return complex(parts[0], parts[1]), error
 
 
-def response(curve: Curve, wave: Curve, of_period: float | None = None) -> CurveNumber:
+def response(curve: Curve, wave: Curve, period: float | None = None) -> CurveNumber:
     """How far something swings for each metre of a ``wave``: the ratio of both amplitudes at the period of
     the wave, s (response amplitude operator)."""
-    at = period(wave).value if of_period is None else of_period
+    at = mean_period(wave).value if period is None else period
     (own, error), (other, error_of_wave) = (harmonic(one, at) for one in (curve, wave))
     if wave.is_still or not abs(other) > NORMAL * error_of_wave:
         raise NoNumber(f"the other curve does not swing with a period of {at:g} s")

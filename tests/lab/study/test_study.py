@@ -432,7 +432,7 @@ def test_the_finest_run_is_compared_across_the_period(tmp_path):
     side_by_side = interpolated(
         np.concatenate([x - 1.0, x, x + 1.0]), np.tile(p, 3), coarse[0], 0.025, (None,)
     )
-    judged = Judge(case).errors(tmp_path / "0.05", tmp_path / "0.025")
+    judged, _ = Judge(case).errors(tmp_path / "0.05", tmp_path / "0.025")
     assert judged == pytest.approx(series_errors(coarse[1], side_by_side), rel=1e-12)
     one_sided = interpolated(x, p, coarse[0], 0.025, (None,))
     assert judged.l1 < 0.999 * series_errors(coarse[1], one_sided).l1
