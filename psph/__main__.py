@@ -162,10 +162,14 @@ def _export(options, comm) -> None:
 
 
 def _measure(options, comm) -> None:
-    from psph.lab.measure.command import measure
+    from psph.lab.measure.command import grid, measure
 
-    if comm.rank == 0:
-        measure(options.folder, options.gauge, options.number, options.times, options.out, print)
+    if comm.rank != 0:
+        return
+    if options.grid or options.plane:
+        print(grid(options))
+        return
+    measure(options.folder, options.gauge, options.number, options.times, options.out, print)
 
 
 def _report(options, comm) -> None:

@@ -1,6 +1,6 @@
 """The results of a run in Python: frames as arrays, tables by column, units of both."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, overload
 
@@ -11,6 +11,8 @@ from psph.fields import FLUID
 from psph.output.gauges.units import quantity_of, unit_of
 from psph.output.probes import FRONT, MEASURED
 from psph.output.reader import Run
+from psph.theory.curves.catalogue import TAKEN
+from psph.theory.curves.number import Curve, NoNumber
 
 
 class Table(Mapping[str, np.ndarray]):
@@ -60,6 +62,25 @@ class Table(Mapping[str, np.ndarray]):
     def __repr__(self) -> str:
         named = [f"{name} ({self.units[name]})" if name in self.units else name for name in self]
         return f"<psph.Table, {self.rows} rows: {', '.join(named)}>"
+
+    def number(self, column: str, take: str, after: float = 0.0, **parameters: Any):
+        """A number of a column, such as ``table.number("wave.level", "significant_height", after=5.0)``: its
+        ``value``, ``time`` in s and ``reach`` (docs/gauges.md#numbers).  A ``wave`` is a column of the table,
+        or times and values.  Refused where there is none."""
+        taking = TAKEN.get(take)
+        if taking is None:
+            raise Refused(f"number: no such number: {take}; give one of {', '.join(TAKEN)}")
+        if wrong := [*(set(parameters) - set(taking.reads)), *(set(taking.needs) - set(parameters))]:
+            needs = ", ".join(taking.reads) or "none"
+            raise Refused(f"number: {take}: {wrong[0]}: it takes {needs}")
+        late = self["time"] >= after
+        if wave := parameters.get("wave"):
+            time, value = (self["time"], self[wave]) if isinstance(wave, str) else map(np.asarray, wave)
+            parameters["wave"] = Curve.of(time[time >= after], value[time >= after])
+        try:
+            return taking.of(Curve.of(self["time"][late], self[column][late]), **parameters)
+        except NoNumber as error:
+            raise Refused(f"number: {take} of {column}: no answer: {error}") from None
 
 
 class Frame(Mapping[str, np.ndarray]):
@@ -214,6 +235,37 @@ class Results:
         from psph.output.export.command import export
 
         return export(self.folder, to, times, None if out is None else Path(out))
+
+    def measure(self, gauges: Iterable[str] = (), times: Sequence[float] | None = None) -> dict[str, Table]:
+        """What ``gauges`` read on the frames nearest to ``times`` s, or on all: tables by name.
+
+        Each is the name of a gauge of the case, ``"NAME.level={foot=[...], top=[...]}"`` or a TOML file with
+        ``[gauges.NAME]``; none: all those of the case.  Refused where frames do not hold what a gauge needs.
+        """
+        from psph.lab.measure.gauging import readings
+
+        found = readings(self.folder, gauges, times).tables
+        return {name: Table(columns, self._gauge_units(columns)) for name, columns in found.items()}
+
+    def grid(
+        self,
+        times: Sequence[float] | None = None,
+        *,
+        step: float | None = None,
+        plane: str | None = None,
+        lower: Sequence[float] | None = None,
+        upper: Sequence[float] | None = None,
+        fields: Sequence[str] = ("velocity", "pressure"),
+        of: str | None = None,
+    ) -> Iterator[Any]:
+        """Fields at the points of a grid ``step`` m apart, or of a ``plane`` such as "y=0.5", of the frames
+        nearest to ``times`` s or all: each with ``time``, ``axes`` and ``fields``, NaN outside the fluid
+        (docs/export.md#grids-and-planes)."""
+        from psph.lab.measure.fields import Gridding
+        from psph.output.pictures.flat import slice_of
+
+        cut = slice_of(plane, "grid: plane") if plane else None
+        return Gridding(self.folder, step, cut, lower, upper, fields, of).frames(times)
 
     def report(self, field: str = "speed") -> Path:
         """Write report.html into the folder, with pictures of ``field``; its path (docs/output.md)."""

@@ -17,7 +17,7 @@ Columns = Mapping[str, np.ndarray]
 HEAD = ("gauge", "mean", "least", "at (s)", "most", "at (s)", "unit")
 
 
-class Extent(NamedTuple):
+class ColumnExtent(NamedTuple):
     """Mean, least and largest value of a ``column``, with the times of the latter, s, and its ``unit``."""
 
     column: str
@@ -36,19 +36,19 @@ class Extent(NamedTuple):
         return (self.column, *(f"{number:.4g}" for number in numbers), self.unit)
 
 
-def extents(tables: Iterable[Columns], dimensions: int) -> Iterator[Extent]:
+def extents(tables: Iterable[Columns], dimensions: int) -> Iterator[ColumnExtent]:
     """Those of each column that has a value, of gauges."""
     for table in tables:
         for column in table:
             if column != "time" and np.isfinite(table[column]).any():
                 curve = Curve.of(table["time"], table[column])
                 unit = unit_of(quantity_of(column)[0], dimensions)
-                yield Extent(
+                yield ColumnExtent(
                     column, unit, moments.mean(curve), moments.minimum(curve), moments.maximum(curve)
                 )
 
 
-def in_lines(found: Iterable[Extent]) -> Iterator[str]:
+def in_lines(found: Iterable[ColumnExtent]) -> Iterator[str]:
     """A table for a terminal; nothing of nothing."""
     rows = [one.cells for one in found]
     widths = [max(map(len, column)) for column in zip(HEAD, *rows)]

@@ -3,11 +3,27 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from psph.lab.measure.fields import USUAL, Gridding
 from psph.lab.measure.gauging import readings
+from psph.output.errors import OutputError, cause
 from psph.output.numbers import extents, in_lines, numbers_in_lines
+from psph.output.pictures.flat import slice_of
+from psph.output.pictures.names import GRID
 from psph.output.reader import Run
 from psph.output.tables import MEASURED, CsvTable
 from psph.parallel.reductions import alone
+
+
+def grid(options) -> Path:
+    """Write the fields that the ``options`` of the verb ask for; the file to be opened.  Raises what
+    :class:`psph.lab.measure.fields.Gridding` does, and OutputError."""
+    cut = slice_of(options.plane, "measure --plane") if options.plane else None
+    asked = (options.step, cut, options.lower, options.upper, options.fields or USUAL, options.of)
+    target = options.out or options.folder / GRID
+    try:
+        return Gridding(options.folder, *asked).written(target, options.times)
+    except OSError as error:
+        raise OutputError(f"{target}: cannot be written: {cause(error)}") from None
 
 
 def measure(

@@ -85,7 +85,7 @@ def against_base(row: dict, base: dict, key: str, ladder: Ladder | None) -> str:
 def limit_words(what: str, found: Extrapolated, finest: float, runs: int, unit: str = "") -> str:
     """A quantity at zero spacing, from so many runs."""
     value = found.value
-    how = " (by the grid convergence index)" if runs == LAST else ""
+    how = " (by the grid convergence index)" if runs == LAST and not math.isnan(value.low) else ""
     of = f" {unit}" if unit else ""
     text = (
         f"{what} goes to {value.value:.6g}{within(value, '.3g')}{of}{how} at zero spacing, with order "

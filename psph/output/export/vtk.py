@@ -6,6 +6,7 @@ https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
 
 import os
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -28,15 +29,13 @@ def write_vtk(exported: Exported, folder: Path) -> Path:
     Points are the particles, each with a vertex; ``part`` tells PARTS apart; the names of the groups stand in
     the field data, as the time does.  Numbers are those of the frames, to the bit.
     """
-    lines = []
+    files = []
     for k in with_progress(exported.chosen, "writing", "frames"):
         path = folder / f"{exported.stem}_{k:05d}.vtp"
-        _replace(path, _cloud(exported, k))
-        time = float(exported.times[k])
-        lines.append(f'<DataSet timestep="{time!r}" part="0" file={quoteattr(path.name)}/>\n')
+        replace(path, _cloud(exported, k))
+        files.append((float(exported.times[k]), path.name))
     index = folder / f"{exported.stem}.pvd"
-    listed = _HEAD.format(type="Collection") + f"<Collection>\n{''.join(lines)}</Collection>\n</VTKFile>\n"
-    _replace(index, listed.encode())
+    replace(index, collection(files))
     return index
 
 
@@ -65,6 +64,40 @@ def _cloud(exported: Exported, k: int) -> bytes:
         '</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding="raw">\n_',
     ]
     return "".join(xml).encode() + b"".join(behind.blocks) + b"\n</AppendedData>\n</VTKFile>\n"
+
+
+def image(
+    origin, step: float, fields: Mapping[str, np.ndarray], units: Mapping[str, str], time: float
+) -> bytes:
+    """A file ``.vti`` of ``fields`` at the points of a grid along the axes, ``step`` m apart from ``origin``.
+
+    Each is (nx, ny, nz) or (nx, ny, nz, components), x first; VTK has x fastest.
+    """
+    counts = next(iter(fields.values())).shape[:3]
+    ends = " ".join(f"0 {count - 1}" for count in counts)
+    behind = _Behind()
+    arrays = []
+    for name, values in fields.items():
+        rows = np.moveaxis(values, (0, 1, 2), (2, 1, 0)).reshape(-1, *values.shape[3:])
+        arrays.append(behind.array(name, rows, units[name]))
+    place = " ".join(map(repr, map(float, origin)))
+    shape = f'WholeExtent="{ends}" Origin="{place}" Spacing="{step!r} {step!r} {step!r}"'
+    xml = [
+        _HEAD.format(type="ImageData"),
+        f"<ImageData {shape}>\n<FieldData>\n",
+        behind.array("TimeValue", np.array([time]), "s", whole=True),
+        f'</FieldData>\n<Piece Extent="{ends}">\n<PointData>\n',
+        *arrays,
+        '</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding="raw">\n_',
+    ]
+    return "".join(xml).encode() + b"".join(behind.blocks) + b"\n</AppendedData>\n</VTKFile>\n"
+
+
+def collection(files: Sequence[tuple[float, str]]) -> bytes:
+    """A file ``.pvd`` that lists files with their times, s."""
+    lines = (f'<DataSet timestep="{time!r}" part="0" file={quoteattr(name)}/>\n' for time, name in files)
+    listed = f"<Collection>\n{''.join(lines)}</Collection>\n</VTKFile>\n"
+    return (_HEAD.format(type="Collection") + listed).encode()
 
 
 class _Behind:
@@ -96,7 +129,8 @@ def _texts(name: str, texts: tuple[str, ...]) -> str:
     )
 
 
-def _replace(path: Path, content: bytes) -> None:
+def replace(path: Path, content: bytes) -> None:
+    """Write a file in one step."""
     fresh = path.with_name(f"{path.name}.new")
     fresh.write_bytes(content)
     os.replace(fresh, path)

@@ -34,7 +34,7 @@ class Slice(NamedTuple):
     place: float
 
 
-def slice_of(text: str) -> Slice:
+def slice_of(text: str, option: str = "plot --slice") -> Slice:
     """What ``y=0.5`` asks for.  Refused if it is not an axis and a number."""
     name, _, place = text.partition("=")
     try:
@@ -42,9 +42,7 @@ def slice_of(text: str) -> Slice:
             return Slice(AXES.index(name), float(place))
     except ValueError:
         pass
-    raise Refused(
-        one_line(f"plot --slice {text}: not a plane; write an axis and a place in m, such as y=0.5")
-    )
+    raise Refused(one_line(f"{option} {text}: not a plane; write an axis and a place in m, such as y=0.5"))
 
 
 class Flat:

@@ -19,6 +19,9 @@ PARAVIEW = "paraview.py"
 EXPORTS = {"vtk": "export-vtk", "gadget": "export-gadget"}
 """Folders of frames for other programs."""
 
+GRID = "grid"
+"""The folder of fields on a grid."""
+
 DERIVED = ("vorticity",)
 """Fields that frames do not hold, and pictures show."""
 VARIANTS = ("surface", "slice")
@@ -46,7 +49,7 @@ def remove_pictures(folder: Path) -> None:
             or _GAUGED.fullmatch(path.name)
         ):
             path.unlink()
-        elif path.name in (TRIANGLES, *EXPORTS.values()) and path.is_dir():
+        elif path.name in (TRIANGLES, GRID, *EXPORTS.values()) and path.is_dir():
             rmtree(path)
 
 
