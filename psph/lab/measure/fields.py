@@ -9,7 +9,7 @@ import numpy as np
 
 from psph.case.loader import load_to_read
 from psph.lab.errors import MeasureError
-from psph.lab.measure.grids import Weighing, GridPoints, at_points, clouds
+from psph.lab.measure.grids import GridPoints, Weighing, at_points, clouds
 from psph.output.checkpoint import COPY
 from psph.output.export.parts import in_space
 from psph.output.export.vtk import collection, image, replace

@@ -46,7 +46,8 @@ class Judge:
     def __init__(self, case, files: Path | None = None):
         self.case, self.files, study = case, files, case.study
         self.columns = columns_of(Scene(case))
-        self.against = study.against or self._first_reference()
+        own = self._references_of(study.error)[:1] if study.error in case.numbers else []
+        self.against = study.against or (*own, self._first_reference())[0]
         self.what = study.error or self._first_known()
         self._agree()
 
