@@ -81,7 +81,7 @@ def test_check_explain_schema():
         (
             ("qqqqq",),
             "qqqqq: neither a command nor a case file; known here: run, resume, explain, check, "
-            "schema, plot, export, report, study, stability, completion, bench, --help, --version",
+            "schema, plot, export, measure, report, study, stability, completion, bench, --help, --version",
         ),
         (("chek.toml",), "chek.toml: No such file or directory; give the path of a case in TOML"),
     ],

@@ -223,6 +223,26 @@ def test_run_up_ends_where_the_water_meets_the_slope(tmp_path):
     assert read["above.run_up"] == read["above.height"] == 0.0
 
 
+@pytest.mark.parametrize("angle", [0, 10, 20, 30, 45])
+def test_run_up_of_a_drawn_tongue_is_its_length(tmp_path, angle):
+    """A tongue of five spacings that ends across the slope: exact along the lattice."""
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+
+    def at(*places):
+        return str([[a * c - b * s, a * s + b * c] for a, b in places])
+
+    text = (
+        "space = { dimensions = 2, spacing = 0.02 }\ntime.end = 0.1\nphysics.sound_speed = 20.0\n"
+        "physics.gravity = [0.0, -9.8]\n"
+        f"fluids.water.shape.polygon.points = {at((0, 0), (0.6, 0), (0.6, 0.1), (0, 0.1))}\n"
+        f"walls.slope.shape.polygon.points = {at((-0.2, -0.1), (1.2, -0.1), (1.2, 0), (-0.2, 0))}\n"
+        f"gauges.tip.run_up = {{ foot = {at((0, 0))[1:-1]}, top = {at((1, 0))[1:-1]} }}\n"
+    )
+    found = readings(*started(draft(tmp_path, text)))
+    assert found["tip.run_up"] == pytest.approx(0.6, abs=0.6 * 0.02 if angle else 1e-9)
+    assert found["tip.height"] == pytest.approx(found["tip.run_up"] * s)
+
+
 def test_spray_is_no_run_up():
     nothing = -np.inf
     assert tongue(np.array([nothing, 0.1, nothing, 0.25, nothing, 0.45]), 0.2) == 0.45

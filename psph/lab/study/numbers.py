@@ -15,10 +15,11 @@ NUMBER, REACH = "number ", "reach "
 
 
 class NumberLadder(NamedTuple):
-    """A number ``name`` over spacings, m, the coarsest first, with its ``values``, ``reaches``, its ``unit``
-    and the ``limit`` at zero spacing; None: there is no answer, and ``why``."""
+    """A number ``name``, what it is ``of``, over spacings, m, the coarsest first, with its ``values``,
+    ``reaches``, its ``unit`` and the ``limit`` at zero spacing; None: there is no answer, and ``why``."""
 
     name: str
+    of: str
     unit: str
     spacings: tuple[float, ...]
     values: tuple[float, ...]
@@ -67,7 +68,8 @@ def ladders_of_numbers(case, rows: Sequence[Mapping]) -> Iterator[NumberLadder]:
         )
         limit, why = _limit(spacings, values, len(rows) - len(known))
         unit = unit_taken(asked, case.space.dimensions)
-        yield NumberLadder(name, unit, spacings, values, reaches, limit, why)
+        of = f"{asked.take} of {asked.of}"
+        yield NumberLadder(name, of, unit, spacings, values, reaches, limit, why)
 
 
 def _limit(spacings, values, without: int) -> tuple[fit.Extrapolated | None, str]:

@@ -78,7 +78,7 @@ def draw_number(path: Path, title: str, found) -> Path:
     with its interval (psph.lab.study.numbers.NumberLadder)."""
     with style.look():
         figure = style.sheet(
-            style.LEFT + WIDTH + style.RIGHT, style.TOP + HEIGHT + style.BOTTOM, title, found.name
+            style.LEFT + WIDTH + style.RIGHT, style.TOP + HEIGHT + style.BOTTOM, title, found.of
         )
         axes = style.panel(figure, style.LEFT, style.TOP, WIDTH, HEIGHT)
         bars = [0.0 if reach != reach else reach for reach in found.reaches]
