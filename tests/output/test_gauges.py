@@ -1,6 +1,7 @@
 """Gauges: forces, levels and flows against what is exact."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,11 +10,14 @@ from gauging import readings, started
 from long import LONG
 from mpi4py import MPI
 
+from psph.case import load
 from psph.fields import FLUID
 from psph.output.checkpoint import checkpoints
+from psph.output.gauges import gauges_of
 from psph.output.gauges.level import surfaces
 from psph.output.gauges.points import disc
 from psph.output.gauges.run_up import tongue
+from psph.output.gauges.units import quantity_of, unit_of
 from psph.output.reader import Run
 from psph.runs.start import resume, run
 from psph.scene import Scene, check
@@ -392,3 +396,15 @@ def test_check_warns_of_a_level_that_is_measured_downwards(tmp_path):
     assert "gauges.rod.level: its foot [0.5, 0.6] is above its top [0.5, 0]" in told
     upright, level = line.format(0.0, 0.6), "gauges.front.level={foot=[0.0,0.2],top=[1.0,0.2]}"
     assert not [text for text in check(Scene(draft(tmp_path, TANK, upright, level))) if "gauges" in text]
+
+
+def test_every_column_of_a_shipped_case_has_a_unit():
+    counted = 0
+    for path in (Path(__file__).parents[2] / "run" / "cases").rglob("*.toml"):
+        case = load(path)
+        scene = Scene(case) if case.gauges else None
+        for gauge in gauges_of(scene).values() if scene else ():
+            for column in gauge.columns(scene):
+                assert unit_of(quantity_of(column)[0], scene.dimensions), (path, column)
+                counted += 1
+    assert counted > 200

@@ -4,7 +4,8 @@ from psph.output.probes import FRONT, MEASURED
 
 LENGTHS = ("level", "wetted", "run_up", "height", FRONT, "centre", "displacement")
 
-PER_DEPTH = {"force": "N", "tension": "N", "moment": "N m", "reaction": "N", "reaction_moment": "N m"}
+PER_DEPTH = dict.fromkeys(("force", "tension", "anchor_tension", "reaction"), "N")
+PER_DEPTH |= dict.fromkeys(("moment", "reaction_moment"), "N m")
 """In 2D per metre of depth."""
 
 VOLUMES = {"volume": ("m", "m²", "m³"), "mass": ("kg/m²", "kg/m", "kg")}
@@ -15,7 +16,7 @@ FLOWS = {"flow": ("m/s", "m²/s", "m³/s"), "mass_flow": ("kg/(m² s)", "kg/(m s
 
 STRESSES = ("stress", "mean_stress", "von_mises")
 
-OF_TWO_WORDS = ("mass_flow", "mean_stress", "reaction_moment", "run_up", "von_mises")
+OF_TWO_WORDS = ("anchor_tension", "mass_flow", "mean_stress", "reaction_moment", "run_up", "von_mises")
 """Quantities whose name is not the first word of their column."""
 
 
