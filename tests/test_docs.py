@@ -23,6 +23,7 @@ from psph import smoothing
 from psph.__main__ import VERBS, _with_verb
 from psph.case import acts, load, profiles, reference
 from psph.case.physics import physics_table
+from psph.case.shapes import Shape
 from psph.composition.trial import reads
 from psph.fields import OTHER, SAVED, by_name
 from psph.options import parser
@@ -35,6 +36,7 @@ from psph.physics import catalogue
 from psph.physics.catalogue import Entry
 from psph.runs.stability_forecast import stability_forecast
 from psph.scene import Scene, check
+from psph.scene.shapes import bounds
 from psph.simulation.plan import make_plan
 from psph.theory.stability.growth import is_stable
 from psph.theory.stability.uniform import Settings
@@ -295,8 +297,16 @@ def test_the_case_of_the_readme_raises_no_warning(drop):
 # The hull of docs/geometry.md
 
 
+def test_the_shapes_of_the_page_are_shapes(tmp_path):
+    (tmp_path / "bed.csv").write_text("x,y,z\n0,0,0\n1,0,1\n0,1,0\n1,1,1\n")
+    shapes = tomllib.loads(fences("docs/geometry.md", "toml")[0])
+    walls = [one["shape"] for one in (*shapes["fluids"].values(), *shapes["walls"].values())]
+    sizes = [bounds(Shape.model_validate(one, context=tmp_path)) for one in walls if "shell" not in one]
+    assert sizes[1][1][0] > 1.1 and sizes[2] == ((0.0, 0.0, -0.5), (1.0, 1.0, 1.0))
+
+
 def test_the_hull_of_the_page_is_that_of_the_case():
-    [block] = fences("docs/geometry.md", "toml")
+    [_, block] = fences("docs/geometry.md", "toml")
     told, case = tomllib.loads(block), tomllib.loads(text("run/cases/hull.toml"))
     assert told["walls"]["hull"] == case["walls"]["hull"]
     assert told["fluids"]["water"]["shape"] == case["fluids"]["water"]["shape"]

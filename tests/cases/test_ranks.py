@@ -34,6 +34,7 @@ END = {
     "cylinder_on_spring": 0.05,
     "falling_wedge": 0.01,
     "heaving_sphere": 0.005,
+    "conical_tank": 0.01,
     "hull": 0.01,
     "minimal": 0.05,
     "taylor_green": 0.05,

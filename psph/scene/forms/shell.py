@@ -54,18 +54,12 @@ class Coat(Form):
         return Coat(self.of.endless(lower, upper, periods), self.thickness, self.inside)
 
     def surface(self, spacing: float, lines: Sequence[np.ndarray]) -> Triangles:
-        """As psph.scene.forms.form says: that of what it goes round, and the same a thickness off."""
-        drawn = np.concatenate([one.surface(spacing, lines) for one in self.of.pieces()])
-        return np.concatenate([drawn, self._off(drawn.reshape(-1, 3)).reshape(-1, 3, 3)])
+        """As psph.scene.forms.form says: that of what it goes round, which hides the other."""
+        return np.concatenate([one.surface(spacing, lines) for one in self.of.pieces()])
 
     def outline(self, spacing: float) -> list[np.ndarray]:
-        """As psph.scene.forms.form says."""
-        drawn = [line for one in self.of.pieces() for line in one.outline(spacing)]
-        return [*drawn, *map(self._off, drawn)]
-
-    def _off(self, points: np.ndarray) -> np.ndarray:
-        out = self.of.faces(points).normal
-        return points + (-self.thickness if self.inside else self.thickness) * out
+        """As psph.scene.forms.form says: that of what it goes round."""
+        return [line for one in self.of.pieces() for line in one.outline(spacing)]
 
 
 def hollow(found: Faces, thickness: float, inside: bool) -> Faces:
