@@ -38,5 +38,5 @@ def catenary(weight, length, stiffness, x, z, bed=False):
         return Catenary(weight, length, stiffness, abs(h), v, lying)
 
     start = 0.3 * weight * length, 0.7 * weight * length
-    found = fsolve(lambda hv: np.subtract(one(*hv).point(length), (x, z)), start, xtol=1e-13)
+    found = fsolve(lambda hv: np.subtract(one(*hv).point(length), (x, z)), start, xtol=1e-11)
     return one(*found)
