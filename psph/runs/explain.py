@@ -22,6 +22,7 @@ from psph.runs.stability_forecast import stability_forecast
 from psph.scene.meshes.report import described
 from psph.scene.sites import sites_within
 from psph.simulation.plan import Plan, make_plan
+from psph.theory.curves.catalogue import TAKEN
 
 NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
 """Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
@@ -144,6 +145,8 @@ def _scene_lines(scene, plan: Plan, particles: int, said: dict[str, list[str]]) 
     for name, gauge in case.gauges.items():
         measures = _first_line(getattr(gauge, gauge.kind))
         yield f"  gauge       {name}: {measures} Every {gauge.every:g} s in {GAUGE.format(name)}"
+    for name, number in case.numbers.items():
+        yield f"  number      {name}: {number.take} of {number.of}: {TAKEN[number.take].says}"
     yield from said["reach"]
 
 

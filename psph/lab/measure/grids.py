@@ -106,7 +106,7 @@ def at_points(
     trees = [cKDTree(folded(one.position - start, lengths), boxsize=lengths) for one in (fluid, walls)]
     share = np.zeros(len(places))
     found = {name: np.full((len(places), *rows.shape[1:]), np.nan) for name, rows in values.items()}
-    rows = {name: one.reshape(len(fluid.position), -1) for name, one in values.items()}
+    rows = {name: one.reshape(len(one), int(np.prod(one.shape[1:]))) for name, one in values.items()}
     for first in range(0, len(places), AT_ONCE):
         some = slice(first, first + AT_ONCE)
         at = folded(places[some] - start, lengths)

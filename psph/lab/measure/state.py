@@ -25,6 +25,10 @@ STORE = """--set 'output.fields=["{}"]'"""
 """How frames come to hold a field."""
 
 
+NEEDED = ("id", "group", "kind", "position", "density")
+"""What every frame has to hold."""
+
+
 class StoredState:
     """A frame of a ``run`` in the place of a simulation: what gauges ask of one (psph.output.gauges).
 
@@ -46,30 +50,37 @@ class StoredState:
         self._bonded = np.zeros(len(plan.materials.kinds), bool)
         parts = scene.layout.parts
         self._bonded[[part.number for part in parts if parts[part.whole].keeps_neighbours]] = True
+        self._from_the_start = len(run.times) and run.times[0] == 0.0
         self._start: tuple[np.ndarray, np.ndarray] | None = None
 
     def show(self, number: int, time: float) -> None:
         """Turn to the frame of this ``number`` and ``time``, s."""
         frame, self.time = self.run.frame(number), time
+        if lacking := [name for name in NEEDED if name not in frame]:
+            raise MeasureError(
+                f"{self.run.path}: frame {number} holds no {lacking[0]}, without which nothing can be read"
+            )
         s = self._all
         s.low = s.owned = s.high = 0
         density, group = frame["density"], frame["group"]
-        seen = (frame["position"], frame["velocity"], density)
+        seen = (frame["position"], frame.get("velocity", np.zeros_like(frame["position"])), density)
         s.append(frame["id"], group, block_of(self.scene, self.plan.materials, s, group, *seen))
         held = {name: rows for name, rows in frame.items() if name in s.rows}
-        if REFERENCE.name in s.rows and REFERENCE.name not in held:
+        if REFERENCE.name in s.rows and REFERENCE.name not in held and self._from_the_start:
             held[REFERENCE.name] = self._starts(frame["id"])
         if not any(self.domain.periods):
             held[CROSSED.name] = np.zeros_like(frame["position"])
         if WET_MARK in s.rows and WET_MARK not in held:
             held[WET_MARK] = self._wet(frame)
         bonded = np.flatnonzero(self._bonded[group])
-        if len(bonded):  # what a fluid sees of it is not the pressure of its stress, which frames show
+        if (
+            len(bonded) and "pressure" in held
+        ):  # what a fluid sees of it is not the pressure of its stress, which frames show
             self.engine.bear(s.low, s.low + s.owned, 0.0)
             held["pressure"][bonded] = s.shown("pressure")[bonded]
         for name, rows in held.items():
             if name in s.rows:
-                s.data[list(s.rows[name]), s.inner] = rows.reshape(len(group), -1).T
+                s.data[list(s.rows[name]), s.inner] = rows.reshape(len(group), len(s.rows[name])).T
         s.data[list(s.rows["specific_volume"]), s.inner] = 1.0 / density
         self._place()
         self.store = HeldFields(s, {*held, *frame, *ALWAYS}, self.run)
@@ -120,6 +131,16 @@ class HeldFields:
     def __getattr__(self, name: str):
         return getattr(self._store, name)
 
+    @property
+    def rows(self) -> Mapping[str, range]:
+        """The rows of each field, as those of the store."""
+        return _HeldRows(self)
+
+    def rows_of(self, name: str) -> range:
+        """Those of one."""
+        self._known(name)
+        return self._store.rows[name]
+
     def __contains__(self, name: str) -> bool:
         return name in self._store and self._known(name)
 
@@ -138,6 +159,16 @@ class HeldFields:
                 f"{self._run.path}: frames hold no {name}; a run stores it with {STORE.format(name)}"
             )
         return True
+
+
+class _HeldRows(dict):
+    """The rows of fields, each refused where it is not known."""
+
+    def __init__(self, held: HeldFields):
+        self._held = held
+
+    def __getitem__(self, name: str) -> range:
+        return self._held.rows_of(name)
 
 
 class _Everywhere:

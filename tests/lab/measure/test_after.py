@@ -263,6 +263,85 @@ def test_one_frame_equal_frames_thinned_ones_and_parts_of_a_run(tmp_path):
         readings(folder, ["lower"])
 
 
+GOING_ROUND = """
+space = { dimensions = 2, spacing = 0.1, periodic = ["x"], lower = [0, 0], upper = [2, 1] }
+time.end = 0.4
+output = { frames = 0.1, probes = 0.1, log = 0.1 }
+[solids.block]
+shape.box = { lower = [0.2, 0.2], upper = [0.8, 0.6] }
+density = 1000.0
+young = 1e5
+poisson = 0.3
+velocity = [9.0, 0.0]
+[gauges.middle]
+displacement = { of = "block", at = [0.5, 0.4] }
+[gauges.within.stress]
+of = "block"
+at = [0.5, 0.4]
+"""
+
+
+def test_a_solid_that_crosses_the_seam(tmp_path):
+    folder = finished(draft(tmp_path, GOING_ROUND, 'output.fields=["crossed"]'), tmp_path / "run")
+    read = readings(folder)
+    assert len(read.tables) == 2 and differences(folder, read) == []
+    assert read.tables["middle"]["middle.displacement_x"] == pytest.approx([0.0, 0.9, 1.8, 2.7, 3.6], abs=0.1)
+    with h5py.File(folder / "case.h5", "r+") as file:
+        del file["frames"]["00000"]
+    with pytest.raises(Refused, match="gauges.middle: .*frames hold no reference"):
+        readings(folder, ["middle"])
+    run(draft(tmp_path, GOING_ROUND), folder, alone(), overwrite=True, say=lambda *_: None)
+    with pytest.raises(Refused, match="gauges.middle: .*frames hold no crossed"):
+        readings(folder, ["middle"])
+
+
+def emptied(file, *names):
+    """Take fields out of all frames, or with none all rows of every field."""
+    for frame in file["frames"].values():
+        for name in names or list(frame):
+            told, rows = dict(frame[name].attrs), frame[name][:0]
+            del frame[name]
+            if not names:
+                frame.create_dataset(name, data=rows).attrs.update(told)
+
+
+def test_frames_without_particles_and_without_fields(tmp_path):
+    folder = finished(draft(tmp_path, ACROSS, "time.end=0.04", "output.frames=0.02"), tmp_path / "run")
+    with h5py.File(folder / "case.h5", "r+") as file:
+        emptied(file, "velocity", "pressure")
+    read = readings(folder, ["lower", "tongue", "front"])
+    assert differences(folder, read) == []
+    for gauge, field in (("flow", "velocity"), ("point", "pressure")):
+        with pytest.raises(Refused, match=f"gauges.{gauge}: .*frames hold no {field}"):
+            readings(folder, [gauge])
+    with h5py.File(folder / "case.h5", "r+") as file:
+        emptied(file)
+    box = "box.volume={shape={box={lower=[0.0,0.0],upper=[1.0,0.5]}}}"
+    empty = readings(folder, ["lower", "tongue", "front", box]).tables
+    assert (empty["box"]["box.volume"] == 0.0).all() and np.isnan(empty["front"]["front.front"]).all()
+    assert (empty["lower"]["lower.level"] == 0.0).all() and (empty["tongue"]["tongue.run_up"] == 0.0).all()
+    with h5py.File(folder / "case.h5", "r+") as file:
+        emptied(file, "density")
+    with pytest.raises(Refused, match="frame 0 holds no density, without which nothing can be read"):
+        readings(folder, ["lower"])
+
+
+def test_a_paddle_that_answers_carries_its_gauges(tmp_path):
+    with_it = 'moves_with="paddle"'
+    case = load(
+        CASES / "absorbing_paddle.toml",
+        (
+            *("space.spacing=0.05", "time.end=0.3", "output.frames=0.1", "output.probes=0.1"),
+            f"gauges.before.level={{foot=[0.3,0.0],top=[0.3,0.5],{with_it}}}",
+            f'gauges.push.force={{on=["paddle"],about=[0.0,0.0],{with_it}}}',
+            'output.fields=["load"]',
+        ),
+    )
+    folder = finished(case, tmp_path / "run")
+    read = readings(folder, ["before", "push"])
+    assert differences(folder, read) == []
+
+
 @pytest.mark.mpi(min_size=2)
 def test_frames_of_several_ranks(mpi_tmp_path):
     changes = ("time.end=0.06", "output.frames=0.02", "output.probes=0.02", FIELDS, "parallel.axis='x'")
