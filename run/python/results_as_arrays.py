@@ -22,6 +22,11 @@ print(f"pressure up to {frame['pressure'][water].max():.0f} {frame.unit('pressur
 
 tip = results.probes["tip.front"]
 print(f"the front moved from {tip[0]:.2f} to {tip[-1]:.2f} {results.probes.units['tip.front']}")
+level = results.measure(["mid.level={foot=[0.5, 0.0], top=[0.5, 2.0]}"])["mid"]
+least = level.number("mid.level", "minimum")
+print(f"at x = 0.5 m the water falls to {least.value:.2f} m, at {least.time:.2f} s")
+[grid] = results.grid([0.5], step=0.1, fields=["pressure"])
+print(f"up to {np.nanmax(grid.fields['pressure']):.0f} Pa at {grid.fields['pressure'].size} points of a grid")
 log = results.log.to_structured()
 print(log[["time", "kinetic_energy"]][-1])
 

@@ -52,6 +52,7 @@ ASIDE = (
     "checkpoint",
     "guards",
     "parallel",
+    "numbers",
     "study",
 )
 """Tables and keys of a case that decide neither its answers nor, noticeably, its run time; what a
@@ -142,7 +143,7 @@ def _silent(line: str, where=None) -> None:
 
 def _key(case, comm) -> dict:
     """What a result depends on, psph's own sources included: it is used for no other."""
-    text = case.model_copy(update={"study": type(case.study)()}).to_toml()
+    text = case.model_copy(update={"study": type(case.study)(), "numbers": {}}).to_toml()
     return {
         "case": text,
         "sources": SOURCES,

@@ -114,6 +114,12 @@ def test_a_number_of_a_small_case_by_theory_an_experiment_and_the_finest(tmp_pat
     found = study(own, {"space.spacing": [0.1, 0.05]}, out=tmp_path / "study", quiet=True, comm=alone())
     assert "less a shift in time of 0.02 s at most" in found.error
     assert (np.abs(found.table["time_shift"]) <= 0.02).all()
+    # A further number asks for no run.
+    before = [path.stat().st_mtime_ns for path in sorted((tmp_path / "study").glob("run-*/case.h5"))]
+    more = own.with_({"numbers.mean.of": "side.level", "numbers.mean.take": "mean"})
+    found = study(more, {"space.spacing": [0.1, 0.05]}, out=tmp_path / "study", quiet=True, comm=alone())
+    assert np.isfinite(found.table["number mean"]).all()
+    assert before == [path.stat().st_mtime_ns for path in sorted((tmp_path / "study").glob("run-*/case.h5"))]
     with open(tmp_path / "study" / "study.csv", newline="") as file:
         assert {"number top", "reach top", "time_shift"} <= set(next(csv.DictReader(file)))
 
