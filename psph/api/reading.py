@@ -13,6 +13,7 @@ from psph.output.probes import FRONT, MEASURED
 from psph.output.reader import Run
 from psph.theory.curves.catalogue import TAKEN
 from psph.theory.curves.number import Curve, NoNumber
+from psph.theory.curves.spectrum import spectrum
 
 
 class Table(Mapping[str, np.ndarray]):
@@ -73,14 +74,25 @@ class Table(Mapping[str, np.ndarray]):
         if wrong := [*(set(parameters) - set(taking.reads)), *(set(taking.needs) - set(parameters))]:
             needs = ", ".join(taking.reads) or "none"
             raise Refused(f"number: {take}: {wrong[0]}: it takes {needs}")
-        late = self["time"] >= after
         if wave := parameters.get("wave"):
             time, value = (self["time"], self[wave]) if isinstance(wave, str) else map(np.asarray, wave)
             parameters["wave"] = Curve.of(time[time >= after], value[time >= after])
         try:
-            return taking.of(Curve.of(self["time"][late], self[column][late]), **parameters)
+            return taking.of(self._curve(column, after), **parameters)
         except NoNumber as error:
             raise Refused(f"number: {take} of {column}: no answer: {error}") from None
+
+    def spectrum(self, column: str, after: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+        """Frequencies, Hz, and the variance density of a column, its unit squared by Hz, by Welch's method.
+        Refused where there is none."""
+        try:
+            return spectrum(self._curve(column, after))
+        except NoNumber as error:
+            raise Refused(f"spectrum of {column}: no answer: {error}") from None
+
+    def _curve(self, column: str, after: float) -> Curve:
+        late = self["time"] >= after
+        return Curve.of(self["time"][late], self[column][late])
 
 
 class Frame(Mapping[str, np.ndarray]):

@@ -15,6 +15,7 @@ from psph.output.checkpoint import Saved
 from psph.output.frames import funnel_notice
 from psph.output.ledger import Ledger
 from psph.output.progress import Progress
+from psph.output.reader import Run
 from psph.output.xdmf import ENDING
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
@@ -181,7 +182,7 @@ def _simulate(
     for line in summary:
         say(line)
     said = [*guards.summary(), *record.dry_probes()]
-    measured = measured_lines(scene, folder) if comm.rank == 0 else []
+    measured = measured_lines(scene, Run(folder, case.name)) if comm.rank == 0 else []
     for line in [*measured, *said]:
         say(line)
     if comm.rank == 0 and steps:

@@ -47,11 +47,10 @@ def write_summary(folder: Path, scene, simulation, seconds: float, steps: int, s
         (folder / SUMMARY).write_text(json.dumps(told, indent=1), encoding="utf-8")
 
 
-def measured_lines(scene, folder: Path) -> list[str]:
+def measured_lines(scene, run: Run) -> list[str]:
     """What the gauges of a run have read from its start to now: mean and extremes of each, and the numbers of
     the case; on one rank."""
-    case, run = scene.case, Run(folder, scene.case.name)
-    gauges = run.gauges()
+    case, gauges = scene.case, run.gauges()
     own = [gauges[name] for name in case.gauges if name in gauges]
     lines = [*in_lines(extents(own, scene.dimensions))]
     if case.numbers:

@@ -19,7 +19,7 @@ from psph.output.pictures.plot import plot
 from psph.output.reader import Run
 from psph.runs.explain import explain
 from psph.runs.stability_forecast import stability_forecast
-from psph.runs.summary import NO_SUMMARY, read_summary
+from psph.runs.summary import NO_SUMMARY, measured_lines, read_summary
 from psph.scene import Scene, check
 from psph.simulation.plan import make_plan
 from psph.version import __version__
@@ -59,13 +59,14 @@ def report(folder: Path, field: str = "speed") -> Path:
         key_numbers=list(_key_numbers(run)),
         accuracy=list(_accuracy(run, measured)),
         psph_version=run.attributes.get("psph_version", __version__),
-        **_of_case(run.folder, remarks),
+        **_of_case(run, remarks),
     )
 
 
-def _of_case(folder: Path, remarks: list[str]) -> dict:
+def _of_case(run: Run, remarks: list[str]) -> dict:
     """What the case says, and what ``check`` and ``explain`` say of it; of a case that this psph or this
     process cannot load, why."""
+    folder = run.folder
     try:
         case, left_out = load_to_read(folder / COPY)
         scene = Scene(case)
@@ -74,11 +75,12 @@ def _of_case(folder: Path, remarks: list[str]) -> dict:
         ranks = read_summary(folder).get("ranks", 1)
         return {
             "plan": "\n".join(explain(scene, ranks)),
+            "numbers": "\n".join(measured_lines(scene, run)),
             "expected": expected,
             "warnings": [*remarks, *left_out, *check(scene)],
         }
     except CaseError as error:
-        return {"plan": "", "expected": [], "warnings": [*remarks, *error.lines]}
+        return {"plan": "", "numbers": "", "expected": [], "warnings": [*remarks, *error.lines]}
 
 
 def _in_order(drawn: list[Path]) -> Iterator[tuple[str, Path]]:
