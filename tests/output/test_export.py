@@ -98,6 +98,33 @@ def folder(tmp_path, alone, dimensions):
     return folder
 
 
+def test_vtk_has_the_lines_of_bodies(folder, alone, dimensions):
+    """Two in the first frame; one has parted in the second."""
+    assert not [*export(folder, "vtk").parent.glob("*lines*")]
+    case = load(folder / "case.toml").to_toml()
+    frames = FrameFile(folder / "tank.h5", alone, {"case": case}, None, (*SAVED, STRAIN_RATE))
+    random = np.random.default_rng(4)
+    lines = {
+        name: (random.normal(size=(n, dimensions)), float(n)) for name, n in (("b.one", 3), ("b.two", 5))
+    }
+    for k in range(2):
+        kept = {name: line for name, line in lines.items() if k == 0 or name == "b.two"}
+        frames.write(k, MOMENTS[k], k, particles(dimensions, k), kept)
+    frames.complete_index()
+    index = export(folder, "vtk").with_name("tank-lines.pvd")
+    for k, one in enumerate(ElementTree.parse(index).iter("DataSet")):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(index.with_name(one.get("file"))))
+        reader.Update()
+        drawn, seen = reader.GetOutput(), [*lines.values()][k:]
+        assert drawn.GetNumberOfLines() == len(seen) == drawn.GetNumberOfCells()
+        for cell, (points, tension) in enumerate(seen):
+            there = vtk_to_numpy(drawn.GetCell(cell).GetPoints().GetData())
+            assert np.array_equal(there, padded(points))
+            assert drawn.GetCellData().GetArray("tension").GetValue(cell) == tension
+        assert drawn.GetFieldData().GetAbstractArray("line_names").GetValue(0) == [*lines][k]
+
+
 def test_vtk_reads_every_field_to_the_bit(folder, dimensions):
     index = export(folder, "vtk")
     assert index == folder / "export-vtk" / "tank.pvd"

@@ -27,16 +27,19 @@ def write_vtk(exported: Exported, folder: Path) -> Path:
     """Write the chosen frames into ``folder``; the path of the ``.pvd``.
 
     Points are the particles, each with a vertex; ``part`` tells PARTS apart; the names of the groups stand in
-    the field data, as the time does.  Numbers are those of the frames, to the bit.
+    the field data, as the time does.  Lines of bodies have files of their own, each a line with a tension,
+    where the first frame has some.  Numbers are those of the frames, to the bit.
     """
-    files = []
+    kinds = {"": _cloud} | ({"-lines": _lines} if exported.run.lines(0) else {})
+    files: dict[str, list[tuple[float, str]]] = {kind: [] for kind in kinds}
     for k in with_progress(exported.chosen, "writing", "frames"):
-        path = folder / f"{exported.stem}_{k:05d}.vtp"
-        replace(path, _cloud(exported, k))
-        files.append((float(exported.times[k]), path.name))
-    index = folder / f"{exported.stem}.pvd"
-    replace(index, collection(files))
-    return index
+        for kind, written in kinds.items():
+            path = folder / f"{exported.stem}{kind}_{k:05d}.vtp"
+            replace(path, written(exported, k))
+            files[kind].append((float(exported.times[k]), path.name))
+    for kind, listed in files.items():
+        replace(folder / f"{exported.stem}{kind}.pvd", collection(listed))
+    return folder / f"{exported.stem}.pvd"
 
 
 def _cloud(exported: Exported, k: int) -> bytes:
@@ -62,6 +65,29 @@ def _cloud(exported: Exported, k: int) -> bytes:
         behind.array("connectivity", rows),
         behind.array("offsets", rows + 1),
         '</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding="raw">\n_',
+    ]
+    return "".join(xml).encode() + b"".join(behind.blocks) + b"\n</AppendedData>\n</VTKFile>\n"
+
+
+def _lines(exported: Exported, k: int) -> bytes:
+    """The file of the lines of frame ``k``."""
+    lines, behind = exported.run.lines(k), _Behind()
+    points = [in_space(points, points.shape[1]) for points, _ in lines.values()]
+    ends = np.cumsum([len(one) for one in points], dtype=np.int64)
+    count = int(ends[-1]) if lines else 0
+    xml = [
+        _HEAD.format(type="PolyData"),
+        "<PolyData>\n<FieldData>\n",
+        behind.array("TimeValue", exported.times[k : k + 1], "s", whole=True),
+        _texts("line_names", tuple(lines)),
+        f'</FieldData>\n<Piece NumberOfPoints="{count}" NumberOfLines="{len(lines)}">\n<CellData>\n',
+        behind.array("tension", np.array([tension for _, tension in lines.values()], float), "N"),
+        "</CellData>\n<Points>\n",
+        behind.array("position", np.concatenate([np.empty((0, 3)), *points]), "m"),
+        "</Points>\n<Lines>\n",
+        behind.array("connectivity", np.arange(count, dtype=np.int64)),
+        behind.array("offsets", ends),
+        '</Lines>\n</Piece>\n</PolyData>\n<AppendedData encoding="raw">\n_',
     ]
     return "".join(xml).encode() + b"".join(behind.blocks) + b"\n</AppendedData>\n</VTKFile>\n"
 
