@@ -6,6 +6,7 @@ import h5py
 import numpy as np
 import pytest
 from drafts import TANK, draft
+from long import LONG
 from mpi4py import MPI
 
 from psph.__main__ import main
@@ -114,6 +115,37 @@ diameter = 0.2
 moves_with = "tank"
 """
 
+IN_WATER = (
+    (
+        TANK
+        + """
+[solids.plate]
+shape.box = { lower = [0.4, 0.0], upper = [0.6, 0.4] }
+clamped.box = { lower = [0.4, 0.0], upper = [0.6, 0.1] }
+density = 1200.0
+young = 1e6
+poisson = 0.3
+[gauges.tip]
+displacement = { of = "plate", at = [0.5, 0.4] }
+[gauges.beside.point]
+position = [0.36, 0.25]
+[gauges.push.force]
+on = ["plate"]
+[gauges.within.stress]
+of = "plate"
+at = [0.5, 0.2]
+"""
+    )
+    .replace("end = 2.0", "end = 0.04")
+    .replace(
+        "[fluids.water]\nshape.box",
+        "[fluids.water]\nshape.difference.minus = [PLATE]\nshape.difference.from.box",
+    )
+    .replace("[PLATE]", "[{ box = { lower = [0.4, 0.0], upper = [0.6, 0.4] } }]")
+)
+
+LOAD = 'output.fields=["load"]'
+
 FIELDS = 'output.fields=["load","couple","wet"]'
 
 
@@ -137,14 +169,20 @@ def differences(folder, read) -> list[str]:
     "file, changes, count",
     [
         ("across", ("output.frames=0.02", "output.probes=0.02", FIELDS), 10),
-        ("space", ("output.frames=0.02", "output.probes=0.02", 'output.fields=["load"]'), 4),
+        ("space", ("output.frames=0.02", "output.probes=0.02", LOAD), 4),
         ("floating_box.toml", ("space.spacing=0.04", "time.end=0.3", "output.frames=0.1"), 2),
-        ("ends/weir.toml", ("space.spacing=0.025", "time.end=0.4", "output.frames=0.1"), 2),
+        ("ends/weir.toml", ("space.spacing=0.025", "time.end=0.15", "output.frames=0.05"), 2),
         ("solids/cantilever.toml", ("time.end=0.1", "output.frames=0.05"), 1),
+        pytest.param("plate", ("output.frames=0.01", "output.probes=0.01", LOAD), 4, marks=LONG),
+        (
+            "soils/submerged_slide.toml",
+            ("time.end=0.03", "output.frames=0.01", 'gauges.g.stress={of="wedge",at=[0.5,0.1]}'),
+            1,
+        ),
     ],
 )
 def test_the_same_bits_as_during_the_run(tmp_path, file, changes, count):
-    text = {"across": ACROSS, "space": OF_SPACE}.get(file)
+    text = {"across": ACROSS, "space": OF_SPACE, "plate": IN_WATER}.get(file)
     case = draft(tmp_path, text, *changes) if text else load(CASES / file, changes)
     folder = finished(case, tmp_path / "run")
     read = readings(folder)

@@ -71,6 +71,7 @@ def test_it_tells_what_was_simulated_and_what_it_cost(page):
         f"psph {psph.__version__}",
         "numba",
         "walls.floor",
+        "height.level",  # what gauges read
     ):
         assert sentence in text, sentence
 
