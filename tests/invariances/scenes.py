@@ -65,6 +65,26 @@ def tank(layers=4, **keys):
     return {"shape": less(box((-t, -t), (1.5 + t, 1.25)), box((0.0, 0.0), (1.5, 1.25))), **keys}
 
 
+def placed_shapes():
+    """A shell with a lid taken off, studs in a row on a ramp that is turned and mirrored, water cut by a plane,
+    and a body that is turned in place."""
+    room = box((0.0, 0.0), (1.5, 1.25))
+    shell = less({"shell": {"of": room, "thickness": 4 * DX}}, box((-1.0, 1.25), (3.0, 2.0)))
+    ramp = box((0.9, -0.25), (1.9, 0.0)) | {
+        "rotate": [{"degrees": 25.0, "about": [0.9, 0.0]}],
+        "mirror": {"at": [0.75, 0.0], "normal": [2.0, 0.0]},
+        "move": [0.11, 0.013],
+    }
+    studs = {"disc": {"center": [1.1, 0.03], "radius": 0.1}, "repeat": [{"count": 2, "step": [0.3, 0.2]}]}
+    cut = {"intersection": [BLOCK, {"half_space": {"at": [0.7, 0.93], "normal": [0.2, 1.0]}}]}
+    raft = box((0.5, 0.35), (0.9, 0.75)) | {"rotate": [{"degrees": 20.0, "about": [0.7, 0.55]}]}
+    return poured(
+        {"tank": {"shape": shell}, "ramp": {"shape": {"union": [ramp, studs]}, "displaces": True}},
+        {"water": water() | {"shape": cut}},
+        bodies={"raft": {"shape": raft, "density": 700.0}},
+    ) | {"perturbations": []}
+
+
 def poured(walls, fluids=None, **tables):
     """Water in a tank under gravity."""
     physics = {"gravity": PULL, **tables.pop("physics", {})}
@@ -179,6 +199,7 @@ SCENES = {
     "air between mirrors": poured({"tank": tank(condition="mirror")}, AIR),
     "rocked air": poured({"tank": tank(motion=[SWING, SWAY])}, AIR),
     "tank": poured({"tank": tank()}),
+    "placed shapes": placed_shapes(),
     "plain": poured({"tank": tank()}, scheme="sph"),
     "sticky tank": poured({"tank": tank(no_slip=True)}, {"water": water(viscosity=0.1)}),
     "extrapolated": poured(

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 KINDS = (
     "tank",
+    "placed shapes",
     "sticky tank",
     "rocked tank",
     "body",

@@ -14,6 +14,7 @@ SHORT = ("plain",)
 
 MOVED = (
     "plain",
+    "placed shapes",
     "solid",
     "rubber",
     "metal",

@@ -18,8 +18,11 @@ DIRECTIONS = (
     "direction",
     "translation",
     "force",
+    "move",
 )
-TURNS = ("spin", "angle", "rotation", "speed")
+TURNS = ("spin", "angle", "rotation", "speed", "degrees")
+PLACING = {"rotate", "mirror", "move", "repeat", "intersection", "shell", "union"}
+"""Keys in shapes that are drawn out as a whole."""
 AXES = "xyz"
 
 
@@ -46,6 +49,8 @@ class Turn(NamedTuple):
             return {**table, **self._end(**table)}
         if isinstance(table, dict):
             found = {name: self.of(value, name) for name, value in table.items()}
+            if key == "repeat":
+                found |= {"step": _clean(self.directions(np.array([table["step"]]))[0])}
             if key in ("box", "space") and "lower" in table:
                 ends = np.array([found["lower"], found["upper"]])
                 found |= {"lower": ends.min(axis=0).tolist(), "upper": ends.max(axis=0).tolist()}
@@ -109,6 +114,8 @@ class Extruded(NamedTuple):
 
     def of(self, table: Any, key: str = "") -> Any:
         """A table of a case, in 3D."""
+        if isinstance(table, dict) and key == "shape" and any(f"'{one}'" in str(table) for one in PLACING):
+            return {"prism": {"profile": table, "along": "z", "lower": 0.0, "upper": self.depth}}
         if isinstance(table, dict) and key == "shape" and "disc" in table:
             return {"cylinder": self._cylinder(**table["disc"])}
         if isinstance(table, dict):
@@ -187,6 +194,7 @@ class Shift(NamedTuple):
 
 
 NO_UNIT = (
+    "degrees", "normal", "count",
     "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction", "restitution",
     "exponent", "friction", "fast_friction", "inertial_number", "damping_ratio", "angle", "phase", "cfl",
     "gather_every", "hourglass", "along", "pieces", "drag", "skin_drag", "normal", "alpha", "skin", "rate", "epsilon", "delta", "beta",
@@ -195,7 +203,18 @@ NO_UNIT = (
 UNIT_OF = {
     **dict.fromkeys(
         (
-            *("spacing", "radius", "shift", "diameter", "amplitude", "lower", "upper", "points", *POINTS),
+            *(
+                "spacing",
+                "radius",
+                "shift",
+                "diameter",
+                "amplitude",
+                "lower",
+                "upper",
+                "points",
+                *POINTS,
+                "move",
+            ),
             *("length", "water_level", "level", *AXES),
         ),
         "m",
@@ -256,4 +275,6 @@ class Units(NamedTuple):
             return value * self.length**0.5
         if name == "damping" and key == "contact":
             return value
+        if name == "thickness" or (name == "step" and key == "repeat"):
+            return self.of(value, "length", name)
         return self.of(value, name, key)
