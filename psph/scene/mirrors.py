@@ -10,6 +10,7 @@ from psph.physics.walls.conditions import MIRROR
 from psph.scene.forms.joined import Less
 from psph.scene.forms.make import form_of
 from psph.scene.forms.plain import Boxed
+from psph.scene.forms.shell import Coat
 from psph.scene.lattice import TOLERANCE
 from psph.scene.shapes import Corner, bounds
 
@@ -115,15 +116,25 @@ def faces_before(
                 others = [d for d in range(len(lower)) if d != axis]
                 if all(lower[d] <= low[d] + tolerance and upper[d] >= high[d] - tolerance for d in others):
                     yield from beside
-        case Less(base=Boxed() as outer, minus=(Boxed() as room,)):
-            inside = all(a <= b + tolerance for a, b in zip(room.lower, low)) and all(
-                a >= b - tolerance for a, b in zip(room.upper, high)
-            )
-            for d in range(len(low) if inside else 0):
-                if outer.lower[d] < room.lower[d] - tolerance:
-                    yield d, BELOW, room.lower[d]
-                if outer.upper[d] > room.upper[d] + tolerance:
-                    yield d, ABOVE, room.upper[d]
+        case Less(base=Boxed(bounds=outer), minus=(Boxed() as room,)):
+            yield from _faces_around(room, outer, held, tolerance)
+        case Coat(of=Boxed() as room, inside=False, bounds=outer):
+            yield from _faces_around(room, outer, held, tolerance)
+
+
+def _faces_around(
+    room: Boxed, outer: tuple[Corner, Corner], held: tuple[Corner, Corner], tolerance: float
+) -> Iterator[tuple[int, int, float]]:
+    """Those of a room in which all is that is ``held``, where the wall reaches beyond it."""
+    (low, high), (lower, upper) = held, outer
+    inside = all(a <= b + tolerance for a, b in zip(room.lower, low)) and all(
+        a >= b - tolerance for a, b in zip(room.upper, high)
+    )
+    for d in range(len(low) if inside else 0):
+        if lower[d] < room.lower[d] - tolerance:
+            yield d, BELOW, room.lower[d]
+        if upper[d] > room.upper[d] + tolerance:
+            yield d, ABOVE, room.upper[d]
 
 
 def _refuse_between_sites(case: Case, key: str, plane: Plane) -> None:

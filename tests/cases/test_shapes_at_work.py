@@ -7,11 +7,13 @@ import pytest
 from drafts import draft
 from jobs import mpirun
 from long import LONG
+from scipy.spatial.transform import Rotation
 
 from psph.__main__ import main
 from psph.case import load
 from psph.output.reader import Run
 from psph.scene import Scene
+from psph.scene.bodies import bodies_of
 
 TILTED = """
 [space]
@@ -123,3 +125,48 @@ def test_water_in_a_cone_swings_in_time(fine, tmp_path):
 def test_the_cone_s_water_has_its_volume():
     scene = Scene(load("run/cases/conical_tank.toml"))
     assert scene.census.sizes[0] * 0.02**3 == pytest.approx(math.pi * 0.3**3 / 6.0, rel=0.04)
+
+
+RAFT = """
+[space]
+dimensions = 3
+spacing = 0.025
+[time]
+end = 1.0
+[physics]
+gravity = [0.0, 0.0, -9.81]
+[fluids.water]
+density = 1000.0
+pressure = "hydrostatic"
+shape.box = { lower = [-1.0, -0.7, -0.4], upper = [1.0, 0.7, 0.0] }
+[bodies.raft]
+density = 500.0
+shape.box = { lower = [-0.4, -0.2, -0.1], upper = [0.4, 0.2, 0.1] }
+shape.rotate = [{ axis = [0.3, 0.2, 1.0], degrees = 30 }]
+"""
+
+
+def test_a_turned_body_has_the_turned_inertia(tmp_path):
+    """R I Rᵀ of the block's, and its mass; the control is the block that lies along the axes."""
+    scene = Scene(draft(tmp_path, RAFT))
+    [body] = bodies_of(scene.census)
+    size = np.array([0.8, 0.4, 0.2])
+    mass = 500.0 * size.prod()
+    own = mass / 12.0 * np.diag((size**2).sum() - size**2)
+    axis = np.array([0.3, 0.2, 1.0]) / np.linalg.norm([0.3, 0.2, 1.0])
+    turn = Rotation.from_rotvec(30.0 * axis, degrees=True).as_matrix()
+    found = np.reshape(body.inertia, (3, 3))
+    assert body.mass == pytest.approx(mass, rel=0.02)
+    assert found == pytest.approx(turn @ own @ turn.T, abs=0.02 * own.max())
+    assert np.abs(found - own).max() > 0.1 * own.max()
+
+
+@pytest.mark.parametrize("condition", ["mirror", "dynamic"])
+def test_a_shell_of_a_box_is_a_mirror_around_it(condition, tmp_path):
+    text = TILTED.replace("degrees = 30", "degrees = 180").replace("0.6]", "-0.2]")
+    text = text.replace(
+        "[walls.tank.shape]\n", f'[walls.tank]\ncondition = "{condition}"\n[walls.tank.shape]\n'
+    )
+    planes = Scene(draft(tmp_path, text)).layout.mirror_planes
+    places = sorted((plane.axis, round(plane.at, 9)) for plane in planes)
+    assert places == ([(0, -1.0), (0, 0.0), (1, -0.8), (1, 0.0)] if condition == "mirror" else [])
