@@ -16,6 +16,7 @@ from psph.case import load
 from psph.lab.study import runs
 from psph.output.checkpoint import CheckpointError
 from psph.output.errors import OutputError
+from psph.output.pictures.plot import plot
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
 from psph.runs.start import resume, run
@@ -53,6 +54,43 @@ def test_a_run_keeps_its_meshes_and_goes_on_with_them(tmp_path, monkeypatch, cas
     one, other = whole.frame(-1), again.frame(-1)
     assert one["position"].any() and one.keys() == other.keys()
     assert all(np.array_equal(one[name], other[name]) for name in one)
+
+
+BEACH = """
+[space]
+dimensions = 2
+spacing = 0.05
+[time]
+end = 0.02
+[physics]
+gravity = [0.0, -9.81]
+[fluids.water]
+density = 1000.0
+shape.difference = { from = { box = { lower = [0, 0], upper = [1, 0.5] } }, minus = [{ height_map = { file = "parts/bed.csv", bottom = -0.2 } }] }
+[walls.bed]
+shape.height_map = { file = "parts/bed.csv", bottom = -0.2 }
+[walls.side]
+condition = "mirror"
+shape.box = { lower = [-0.2, -0.2], upper = [0.0, 1.0] }
+"""
+
+
+def test_a_run_keeps_its_ground_and_is_drawn_with_it(tmp_path, monkeypatch):
+    (tmp_path / "parts").mkdir()
+    bed = tmp_path / "parts/bed.csv"
+    bed.write_text("x,y\n0,0\n0.5,0\n1.5,0.6\n")
+    case = draft(tmp_path, BEACH, "checkpoint.every=4")
+    run(case, tmp_path / "whole", COMM, **QUIET)
+    stopped(monkeypatch, case, tmp_path / "run")
+    bed.unlink()  # the copy is what counts
+    resume(tmp_path / "run", COMM, **QUIET)
+    logs = [(tmp_path / name / "log.csv").read_bytes() for name in ("whole", "run")]
+    assert logs[0] == logs[1]
+    assert plot(tmp_path / "run")
+    stopped(monkeypatch, load(tmp_path / "whole/case.toml"), tmp_path / "again")
+    (tmp_path / "again/parts/bed.csv").write_text("x,y\n0,0\n1.5,0.6\n")
+    with pytest.raises(CheckpointError, match="belongs to another case"):
+        resume(tmp_path / "again", COMM, **QUIET)
 
 
 def test_a_changed_mesh_is_another_case(tmp_path, monkeypatch, case):

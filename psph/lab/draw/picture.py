@@ -46,7 +46,7 @@ def picture(layout: Layout, start: AtStart, marks: list[Mark]) -> Figure:
         count = f"{len(start.frame['id']):,} particles at the start, {layout.spacing:g} m apart"
         figure = style.sheet(*page, title, count)
         axes = style.panel(figure, style.LEFT, style.TOP, width, height)
-        panel.draw(axes, start.frame, scale, True, True)
+        panel.draw(axes, start.frame | {"lines": {}}, scale, True, True)
         seen = _seen(panel, axes)
         _draw_marks(axes, marks, lambda points: seen(np.clip(points, room.lower, room.upper)))
         scale.draw_key(figure, style.panel(figure, style.LEFT + width + 0.15, style.TOP, 0.13, height))

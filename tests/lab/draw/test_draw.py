@@ -9,6 +9,7 @@ from psph.__main__ import main
 from psph.case import CaseError
 from psph.lab.draw.marks import marks_of, names_of
 from psph.lab.draw.page import turning
+from psph.lab.draw.picture import picture
 from psph.lab.draw.start import start_of
 from psph.scene.layout import lay_out
 
@@ -132,6 +133,10 @@ def test_ends_are_shown_with_the_way_in(tmp_path):
     plane, way = marks["ends.outlet (pressure, -x)"].lines
     assert plane.tolist() == [[2.0, 0.0], [2.0, 1.0]] and way[0].tolist() == [2.0, 0.5] and way[1][0] < 2.0
     start = start_of(layout)
+    figure = picture(layout, start, [*marks.values()])
+    [panel, _] = figure.axes
+    drawn = [line.get_xdata().tolist() for line in panel.lines]
+    assert [2.0, 2.0] in drawn and {text.get_text() for text in panel.texts} == set(marks)
     assert not start.frame["group"].any() and start.frame["position"][:, 0].min() < 0.0  # rows behind the end
 
 
