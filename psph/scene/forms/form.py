@@ -92,6 +92,31 @@ class Form:
         return lower, tuple(self.support(way) + 0.0 for way in ways)
 
 
+def in_its_box(
+    form: Form, holds, grid: Grid, by: np.ndarray, slack: float, held: np.ndarray | None = None
+) -> np.ndarray:
+    """What ``holds`` says, asked only in the box around a form where each array of a grid has an axis of its
+    own; or what was ``held`` before, which is changed."""
+    shape = np.broadcast_shapes(*(np.shape(x) for x in grid))
+    held = np.zeros(shape, bool) if held is None else held
+    axes = [np.flatnonzero(np.array(np.shape(x)) > 1) + len(shape) - np.ndim(x) for x in grid]
+    own = [axis[0] for axis in axes if len(axis) == 1]
+    if len(own) < len(grid) or len(set(own)) < len(own):
+        held |= holds(grid, by, slack)
+        return held
+    part = [slice(None)] * len(shape)
+    for x, axis, low, up, d in zip(grid, own, *form.bounds, np.abs(by)):
+        near = np.flatnonzero((x.ravel() >= low - 2.0 * d) & (x.ravel() <= up + 2.0 * d))
+        part[axis] = slice(near[0], near[-1] + 1) if len(near) else slice(0, 0)
+    if held[tuple(part)].size:
+        cut = [
+            x[tuple(p if n > 1 else slice(None) for p, n in zip(part[len(shape) - x.ndim :], x.shape))]
+            for x in grid
+        ]
+        held[tuple(part)] |= holds(cut, by, slack)
+    return held
+
+
 def along(way: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> float:
     """The largest x · ``way`` of the points x in a box."""
     return float(sum(w * (up if w > 0.0 else low) for w, low, up in zip(way, lower, upper) if w))

@@ -5,7 +5,10 @@ from functools import reduce
 
 import numpy as np
 
-from psph.scene.forms.form import BESIDE, Faces, Form, Grid, Room, chosen, meeting, room_in
+from psph.scene.forms.form import BESIDE, Faces, Form, Grid, Room, chosen, in_its_box, meeting, room_in
+
+MANY = 8
+"""Parts of a union from which on each is looked for only in the box around it."""
 
 
 class Together(Form):
@@ -46,9 +49,11 @@ class Union(Together):
 
     def holds(self, grid: Grid, by: np.ndarray, slack: float) -> np.ndarray:
         """As psph.scene.forms.form says."""
-        held = False
+        if len(self.parts) <= MANY:
+            return reduce(np.logical_or, [one.holds(grid, by, slack) for one in self.parts])
+        held = np.zeros(np.broadcast_shapes(*(np.shape(x) for x in grid)), bool)
         for one in self.parts:
-            held = held | one.holds(grid, by, slack)
+            in_its_box(one, one.holds, grid, by, slack, held)
         return held
 
     def support(self, way: np.ndarray) -> float:
@@ -66,11 +71,12 @@ class Union(Together):
             real = []
             for number, (own, part) in enumerate(zip(self.parts, found)):
                 step = BESIDE * max(up - low for low, up in zip(*own.bounds))
-                there = part.normal[within] * (step - part.away[within, None])
-                before, still = [*(points[within] + there).T], np.zeros(self.dimensions)
-                others = [one for k, one in enumerate(self.parts) if k != number]
-                hidden = np.logical_or.reduce([one.holds(before, still, 0.0) for one in others])
-                away = np.where(hidden | (part.away[within] > 0.0), -np.inf, part.away[within])
+                away = np.where(part.away[within] > 0.0, -np.inf, part.away[within])
+                here = np.flatnonzero(np.isfinite(away))
+                there = part.normal[within[here]] * (step - away[here, None])
+                before, still = [*(points[within[here]] + there).T], np.zeros(self.dimensions)
+                for one in (one for k, one in enumerate(self.parts) if k != number and len(here)):
+                    away[here[np.broadcast_to(one.holds(before, still, 0.0), len(here))]] = -np.inf
                 real.append(Faces(away, part.normal[within]))
             nearest = chosen(real, np.argmax)
             known = np.isfinite(nearest.away)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from psph.case.placing import FlatFace, Placing, Repeat, Turn
-from psph.scene.forms.form import Faces, Form, Grid, Room, Triangles
+from psph.scene.forms.form import Faces, Form, Grid, Room, Triangles, in_its_box
 from psph.scene.forms.joined import Together, Union
 from psph.scene.forms.plain import BehindPlane, Boxed, Round
 from psph.scene.forms.polygon import Polygonal
@@ -61,23 +61,7 @@ class Moved(Form):
 
     def holds(self, grid: Grid, by: np.ndarray, slack: float) -> np.ndarray:
         """As psph.scene.forms.form says; of a grid only the points in the box around it are looked at."""
-        shape = np.broadcast_shapes(*(np.shape(x) for x in grid))
-        axes = [np.flatnonzero(np.array(np.shape(x)) > 1) + len(shape) - np.ndim(x) for x in grid]
-        own = [axis[0] for axis in axes if len(axis) == 1]
-        if len(own) < len(grid) or len(set(own)) < len(own):
-            return self._holds(grid, by, slack)
-        part = [slice(None)] * len(shape)
-        for x, axis, low, up, d in zip(grid, own, *self.bounds, np.abs(by)):
-            near = np.flatnonzero((x.ravel() >= low - 2.0 * d) & (x.ravel() <= up + 2.0 * d))
-            part[axis] = slice(near[0], near[-1] + 1) if len(near) else slice(0, 0)
-        held = np.zeros(shape, bool)
-        if held[tuple(part)].size:
-            cut = [
-                x[tuple(p if n > 1 else slice(None) for p, n in zip(part[len(shape) - x.ndim :], x.shape))]
-                for x in grid
-            ]
-            held[tuple(part)] = self._holds(cut, by, slack)
-        return held
+        return in_its_box(self, self._holds, grid, by, slack)
 
     def _holds(self, grid: Grid, by: np.ndarray, slack: float) -> np.ndarray:
         scale, turn, shift = self.map
