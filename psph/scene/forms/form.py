@@ -148,7 +148,8 @@ def meeting(one: Faces, other: Faces) -> Faces:
     """Of what lies behind both; before a rim at a right angle the edge is nearest."""
     found = chosen([one, other], np.argmax)
     at_right_angles = np.abs((one.normal * other.normal).sum(axis=1)) < SQUARE
-    rim = np.flatnonzero((one.away > 0.0) & (other.away > 0.0) & at_right_angles)
+    before = (one.away > 0.0) & (other.away > 0.0) & np.isfinite(one.away + other.away)
+    rim = np.flatnonzero(before & at_right_angles)
     arm = one.away[rim, None] * one.normal[rim] + other.away[rim, None] * other.normal[rim]
     found.away[rim], found.normal[rim] = radial(arm)
     return found
