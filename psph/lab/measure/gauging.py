@@ -142,7 +142,7 @@ def _wanted(run: Run, gauges: Sequence[str], numbers: Sequence[str]) -> _Wanted:
             f"{file}: the case has no gauges; give {OPTION} 'NAME.level={{foot=[...], top=[...]}}'"
         )
     changes += [f"numbers.{text.strip()}" for text in numbers]
-    case = checked(file, data, changes, OPTION) if changes or new else own
+    case = checked(file, data, changes, OPTION if gauges else "--number") if changes or new else own
     for name in new:
         _refuse_unsummed(own, case, name)
     return _Wanted(tuple(dict.fromkeys(names)), tuple(new), case)

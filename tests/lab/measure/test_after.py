@@ -271,6 +271,16 @@ def test_what_cannot_be_is_refused_in_a_line(tmp_path_factory, gauge, says):
     assert "\n" not in str(told.value)
 
 
+def test_a_number_that_is_none_is_one_line(tmp_path):
+    folder = finished(draft(tmp_path, TANK, "time.end=0.01"), tmp_path / "run")
+    for number, says in (
+        ("a", "with --number numbers.a: no key"),
+        ("a={of='x.y'}", "numbers.a.take: missing"),
+    ):
+        with pytest.raises(CaseError, match=says):
+            readings(folder, numbers=[number])
+
+
 def test_one_frame_equal_frames_thinned_ones_and_parts_of_a_run(tmp_path):
     changes = (
         "output.frames=0.02",
