@@ -3,18 +3,20 @@
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Strict
+from pydantic import BeforeValidator, Field, Strict, create_model
 
 import psph.acts as words
 from psph.acts import BODIES, refusals
+from psph.case.elastic import MOST_BRANCHES, STRAIN, Plane, Relaxing, elastic_keys, hyperelastic, modulus
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
 from psph.case.keys import Name, Table, Text, Vector, key
 from psph.case.motion import PADDLES, Motions
-from psph.case.placed import HardPlane
+from psph.case.placed import Answering, HardPlane
 from psph.case.shapes import Shape
 from psph.case.updated import OF_SOLIDS, TOTAL, UPDATED, referred_in, updated, updated_in
+from psph.physics.catalogue import ELASTIC_LAWS, Catalogue
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS
 from psph.physics.solid.laws import LAWS
@@ -74,6 +76,9 @@ class Anvil(HardPlane):
     normal: Vector = key("direction out of it, towards the solids, of any length", unit="1")
 
 
+Hyperelastic = hyperelastic()
+
+
 @words.speaks_for(words.SOLIDS)
 class Solid(Hookean):
     """An elastic solid: total or updated Lagrangian SPH."""
@@ -88,8 +93,32 @@ class Solid(Hookean):
         gt=0,
     )
     density: float = key("density of the undeformed solid", unit="kg/m3", gt=0)
-    young: float = key("Young's modulus E", unit="Pa", gt=0)
-    poisson: float = key("Poisson's ratio ν; in 2D the solid is in plane strain", unit="1", gt=-1, lt=0.5)
+    hyperelastic: Hyperelastic | None = key(  # type: ignore[valid-type]
+        "a law of rubber with numbers of its own", None, otherwise="law, with young and poisson"
+    )
+    young: Annotated[float, BeforeValidator(modulus)] = key(
+        "Young's modulus E",
+        None,
+        unit="Pa",
+        otherwise="that of hyperelastic at rest",
+        gt=0,
+        validate_default=True,
+    )
+    poisson: Annotated[float, BeforeValidator(modulus)] = key(
+        "Poisson's ratio ν",
+        None,
+        unit="1",
+        otherwise="that of hyperelastic at rest",
+        gt=-1,
+        lt=0.5,
+        validate_default=True,
+    )
+    plane: Plane = key(
+        "in 2D: strain, it keeps its length across; stress, a sheet, which nothing holds across", STRAIN
+    )
+    relaxation: Annotated[tuple[Relaxing, ...], Strict(False), Field(max_length=MOST_BRANCHES)] = key(
+        "shear moduli beside those of the law, which relax: the series of Prony", ()
+    )
     description: Literal[TOTAL, UPDATED] = key(
         "total Lagrangian: its neighbours are those of the start, and its stress is that of its deformation; "
         "updated: its neighbours are those of the present, and its stress follows the flow (Jaumann)",
@@ -160,6 +189,14 @@ class Solid(Hookean):
     keeps_form: ClassVar = True
     not_absorbing: ClassVar = "a clamp"
     refuses: ClassVar = OF_SOLIDS
+
+    @classmethod
+    def with_more(cls, catalogue: Catalogue) -> type[Answering]:
+        """With further laws."""
+        if not catalogue.laws:
+            return cls
+        told, laws = cls.model_fields["hyperelastic"], hyperelastic((*ELASTIC_LAWS, *catalogue.laws))
+        return create_model("Solid", __base__=cls, __doc__=cls.__doc__, hyperelastic=(laws | None, told))
 
     @classmethod
     def held_parts(cls, entry: Mapping[str, Any]) -> int:
@@ -263,6 +300,7 @@ def elastic(case) -> Iterator[Finding]:
             yield ("anvils",), ..., "nothing feels them but solids; remove them, or give [solids.NAME]"
         return
     yield from _yielding(case)
+    yield from elastic_keys(case)
     yield from _finer(case)
     yield from updated(case) if updated_in(case) else _meeting(case)
     for name, anvil in case.anvils.items():

@@ -11,6 +11,9 @@ TOTAL, UPDATED = "total", "updated"
 
 OF_REFERENCE = (
     "law",
+    "hyperelastic",
+    "plane",
+    "relaxation",
     "yield_stress",
     "hardening",
     "johnson_cook",

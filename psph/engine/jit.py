@@ -217,35 +217,38 @@ def _is_written_in(kinds) -> bool:
     return any(getattr(getattr(one, "instance_class", None), "written_in", False) for one in kinds)
 
 
-def call_by_type(name: str):
+def call_by_type(name: str, otherwise=None):
     """A function ``(value, *args) -> value.name(*args)`` for compiled code and plain Python.
 
-    The formula is found by the value's class and inlined.
+    The formula is found by the value's class and inlined; a class without it has the formula ``otherwise``.
     """
 
     def call(value, *args):
-        return getattr(value, name)(*args)
+        return getattr(type(value), name, otherwise)(value, *args)
 
     @overload_inside(call)
     def typed(value, *args):
-        formula = inside(formula_of(value, name))
+        formula = inside(formula_of(value, name) or otherwise)
         return lambda value, *args: formula(value, *args)
 
     return call
 
 
-def call_by_number(name: str):
+def call_by_number(name: str, otherwise=None):
     """A function ``(values, number, *args) -> values[number].name(*args)`` of values of several classes.
 
-    All formulas give the same type.  Where there is one value, its number is not looked at.
+    All formulas give the same type; a class without it has the formula ``otherwise``.  Where there is one
+    value, its number is not looked at.
     """
 
     def call(values, number, *args):
-        return getattr(values[int(number)], name)(*args)
+        value = values[int(number)]
+        return getattr(type(value), name, otherwise)(value, *args)
 
     @overload_inside(call)
     def typed(values, number, *args):
-        formulas = {f"formula_{n}": inside(formula_of(kind, name)) for n, kind in enumerate(values)}
+        formulas = (inside(formula_of(kind, name) or otherwise) for kind in values)
+        formulas = {f"formula_{n}": formula for n, formula in enumerate(formulas)}
         lines = ["found = formula_0(values[0], *args)"]
         for n in range(1, len(values)):
             lines += [f"if number == {n}:", f"    found = formula_{n}(values[{n}], *args)"]

@@ -27,6 +27,7 @@ from psph.physics.solid.deformation import (
 )
 from psph.physics.solid.material import STEP, is_damped
 from psph.physics.solid.plastic import OF_PLASTIC
+from psph.physics.solid.viscous import RELAXED
 from psph.scene.calming import damped_solids, solids_of
 from psph.scene.faces import drawn_faces
 from psph.scene.sites import sites_within
@@ -72,7 +73,7 @@ class ElasticSolids(SolidMatter):
     name = SOLIDS
     columns = ("stored_energy",)
     pushes_within = True
-    may_save = (*OF_SOLIDS, STRESS_ZZ, *OF_PLASTIC, *OF_HEAT, *OF_CRACKS)
+    may_save = (*OF_SOLIDS, STRESS_ZZ, *OF_PLASTIC, *RELAXED, *OF_HEAT, *OF_CRACKS)
 
     @cached_property
     def immersed(self) -> bool:

@@ -37,6 +37,7 @@ from psph.physics.order.shifting import ParticleShifting, PositionShift
 from psph.physics.order.stress import ArtificialStress
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.contact import SolidContact
+from psph.physics.solid.rubber import MooneyRivlin, Ogden
 from psph.physics.solid.turn import SolidTurn
 from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
 from psph.physics.stress.faces import SmoothFace
@@ -80,6 +81,8 @@ class Catalogue(NamedTuple):
     """Tables of numbers that a run writes as NAME.csv, ``tables.NAME``: psph.runs.record."""
     kinds: tuple[Entry, ...] = ()
     """Kinds of matter beside those of psph, ``KIND.*``: psph.kinds."""
+    laws: tuple[Entry, ...] = ()
+    """Laws of elasticity, ``solids.*.hyperelastic.NAME``: psph.physics.solid.rubber."""
 
     def with_more(self, other: "Catalogue") -> "Catalogue":
         """All that either of two offers."""
@@ -166,6 +169,11 @@ CATALOGUE = (
 EQUATIONS_OF_STATE = (
     Entry("physics.equation_of_state=linear", Linear),
     Entry("physics.equation_of_state=tait", Tait),
+)
+
+ELASTIC_LAWS = (
+    Entry("solids.*.hyperelastic.mooney_rivlin", MooneyRivlin),
+    Entry("solids.*.hyperelastic.ogden", Ogden),
 )
 
 BUILT_IN = Catalogue(CATALOGUE, EQUATIONS_OF_STATE)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from psph.case.elastic import STRESS
 from psph.case.keys import AXES
 from psph.case.solids import FINEST
 from psph.case.updated import referred_in
@@ -253,5 +254,8 @@ def _law(table) -> str:
     if table.johnson_cook:
         return f"Johnson and Cook, {table.johnson_cook.yield_stress:g} Pa at no strain"
     if table.yield_stress is None:
-        return table.law
+        law = table.law if table.hyperelastic is None else type(table.hyperelastic.law).__name__
+        sheet = " in plane stress" if table.plane == STRESS else ""
+        relaxes = "".join(f" + {one.shear:g} Pa for {one.time:g} s" for one in table.relaxation)
+        return f"{law}{sheet}{relaxes}"
     return f"yields at {table.yield_stress:g} Pa, hardening {table.hardening:g} Pa"

@@ -8,9 +8,10 @@ from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import MET, OF_CONTACT, OF_FRICTION, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
 from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, STRESS_ZZ
-from psph.physics.solid.material import is_heated, remembers
+from psph.physics.solid.material import is_heated, relaxing, yields
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
+from psph.physics.solid.viscous import RELAXED
 from psph.scene.calming import solids_of
 from psph.scene.gauging import followed_fields
 from psph.scene.scene import Scene
@@ -21,7 +22,8 @@ def solid_fields(scene: Scene) -> tuple[Field, ...]:
     fluid."""
     across = tuple(field for field in followed_fields(scene) if field == CROSSED)
     loaded = any(table.loads for table in scene.case.solids.values())
-    lasting = OF_PLASTIC if remembers(solids_of(scene.starts)) else ()
+    lasting = OF_PLASTIC if yields(solids_of(scene.starts)) else ()
+    lasting += RELAXED[: relaxing(solids_of(scene.starts))]
     lasting += OF_HEAT if is_heated(solids_of(scene.starts)) else ()
     plane = [STRESS_ZZ] if scene.dimensions == 2 else []
     shares = [SHARE] if any(one.shared for one in solids_of(scene.starts)) else []

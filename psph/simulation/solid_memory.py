@@ -1,16 +1,18 @@
-"""The stress of a particle of a solid, with what it remembers where any solid of the scene yields.
+"""The stress of a particle of a solid, with what it remembers where any solid of the scene yields or relaxes.
 
 ``memory`` is None where none does: then these are the laws of elasticity, and nothing else is compiled.
 """
 
 from typing import Any, NamedTuple
 
+import numpy as np
 from numba.core import types
 
-from psph.engine.jit import call_by_number, inside, overload_inside
+from psph.engine.jit import call_by_number, inside, overload_inside, unrolled
 from psph.physics.solid.compression import Heat
+from psph.physics.solid.plane import even
 from psph.physics.solid.plastic import History
-from psph.vectors import at, dot, put
+from psph.vectors import dot
 
 law_stress = call_by_number("stress")
 """(laws, number, F, [History,] a) → P, Pa."""
@@ -24,14 +26,16 @@ law_flow = call_by_number("flow")
 
 class Memory(NamedTuple):
     """Where a row's history is: its ``columns`` (rows,) in the arrays ``metric``, ``strain`` and ``work``
-    (psph.physics.solid.plastic), and in those of its ``heat``, None where there is none
-    (psph.physics.solid.compression); and the time ``dt`` since they were written, s."""
+    (psph.physics.solid.plastic), in those of its ``heat`` (psph.physics.solid.compression) and of its
+    ``branches`` (psph.physics.solid.viscous), each None where no solid has it; and the time ``dt`` since they
+    were written, s."""
 
     columns: Any
     metric: Any
     strain: Any
     work: Any
     heat: Any
+    branches: Any
     dt: float
 
 
@@ -39,38 +43,53 @@ class Memory(NamedTuple):
 def recalled(memory, k):
     """The History of row ``k``."""
     column = memory.columns[k]
-    heat = warmth(memory.heat, column)
-    return History(at(memory.metric, column), memory.strain[column], memory.work[column], heat)
+    metric, strain = read(memory.metric, column), read(memory.strain, column)
+    heat, branches = read(memory.heat, column), read(memory.branches, column)
+    return History(metric, strain, read(memory.work, column), heat, branches)
 
 
-def warmth(heat, column):
-    """The Heat of a particle; None where there is none."""
-    return None if heat is None else Heat(heat.energy[column], heat.swelling[column])
+def read(kept, column):
+    """What a particle has in some arrays: a number, or a tuple of what it has in each; None where there are
+    none."""
+    if kept is None or isinstance(kept, np.ndarray):
+        return None if kept is None else kept[column]
+    values = [read(one, column) for one in kept]
+    return type(kept)(*values) if isinstance(kept, Heat) else tuple(values)
 
 
-@overload_inside(warmth)
-def _typed_warmth(heat, column):
-    if isinstance(heat, types.NoneType):
-        return lambda heat, column: None
-    return lambda heat, column: Heat(heat.energy[column], heat.swelling[column])
+@overload_inside(read)
+def _typed_read(kept, column):
+    if isinstance(kept, types.NoneType):
+        return lambda kept, column: None
+    if not isinstance(kept, types.BaseTuple):
+        return lambda kept, column: kept[column]
+    values = ", ".join(f"read(kept[{n}], column)" for n in range(len(kept)))
+    made = "Heat" if isinstance(kept, types.BaseNamedTuple) else ""
+    returned = f"return {made}({values}{'' if made else ','})"
+    return unrolled("kept, column", returned, read=read, Heat=Heat)
 
 
-def keep_warm(heat, column, now):
-    """Write the Heat of a particle, where there is any."""
-    if heat is not None:
-        heat.energy[column], heat.swelling[column] = now
+def write(kept, column, now):
+    """Let a particle have this in the same arrays."""
+    if isinstance(kept, np.ndarray):
+        kept[column] = now
+    elif kept is not None:
+        for one, value in zip(kept, now):
+            write(one, column, value)
 
 
-@overload_inside(keep_warm)
-def _typed_keep_warm(heat, column, now):
-    if isinstance(heat, types.NoneType):
-        return lambda heat, column, now: None
+@overload_inside(write)
+def _typed_write(kept, column, now):
+    if isinstance(kept, types.NoneType):
+        return lambda kept, column, now: None
+    if not isinstance(kept, types.BaseTuple):
+        return _put_number
+    lines = (f"write(kept[{n}], column, now[{n}])" for n in range(len(kept)))
+    return unrolled("kept, column, now", *lines, write=write)
 
-    def write(heat, column, now):
-        heat.energy[column] = now.energy
-        heat.swelling[column] = now.swelling
 
-    return write
+def _put_number(kept, column, now):
+    kept[column] = now
 
 
 @inside
@@ -79,10 +98,11 @@ def _flow_on(laws, number, memory, k, f, a):
         return f
     p, now = law_flow(laws, number, f, recalled(memory, k), memory.dt, a)
     column = memory.columns[k]
-    put(memory.metric, column, now.metric)
-    memory.strain[column] = now.strain
-    memory.work[column] = now.work
-    keep_warm(memory.heat, column, now.heat)
+    write(memory.metric, column, now.metric)
+    write(memory.strain, column, now.strain)
+    write(memory.work, column, now.work)
+    write(memory.heat, column, now.heat)
+    write(memory.branches, column, now.branches)
     return p
 
 
@@ -116,3 +136,6 @@ def _of_state(law_value):
 
 
 stress, across, energy = map(_of_state, (law_stress, law_across, law_energy))
+
+thinned = call_by_number("thinned", even)
+"""(laws, number, F, a) → the thickness of a sheet in plane stress over that at the start; else 1."""

@@ -16,7 +16,7 @@ from psph.composition.terms import added
 from psph.engine.jit import compiled, elementwise, overload, overload_inside, register_jitable
 from psph.engine.simd import spread, total, width_of
 from psph.physics.solid.deformation import ReferencePair
-from psph.simulation.solid_memory import across, advanced, energy, stress
+from psph.simulation.solid_memory import across, advanced, energy, stress, thinned
 from psph.smoothing import slope_over_r
 from psph.vectors import (
     add,
@@ -264,6 +264,7 @@ def measure(first, last, matter, weights, rows, moment, memory, found):
             put(found[1], k, scale(outer(a), 0.0))
             found[2][k] = found[3][k] = 0.0
             continue
+        dilated *= thinned(matter.laws, number, f, a)
         stored = weakened((energy(matter.laws, number, memory, k, f, a),), matter.intact, k)
         stored = weakened(stored, matter.share, k)
         found[0][k] = own_volume(weights.finer, k, i) * (stored[0] + held)

@@ -30,6 +30,7 @@ from psph.physics.solid.deformation import (
 from psph.physics.solid.material import is_damped, remembers
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
+from psph.physics.solid.viscous import RELAXED
 from psph.scene.parts.order import among
 from psph.simulation.materials import NOT_BONDED
 from psph.simulation.solid_memory import Memory
@@ -351,13 +352,15 @@ class Solids(Work):
         return reference_rows(self.comm, extent, self.supports, ids, reference, body[own])
 
     def _memory(self, dt: float) -> Memory | None:
-        """What particles remember, ``dt`` s after they last yielded; None where no solid does."""
+        """What particles remember, ``dt`` s after they last yielded or relaxed; None where no solid does."""
         if not remembers(self._planned.solids):
             return None
         store = self.store
+        plastic = [store[field.name] if field.name in store else None for field in OF_PLASTIC]
         warm = all(field.name in store for field in OF_HEAT)
         heat = Heat(*(store[field.name] for field in OF_HEAT)) if warm else None
-        return Memory(self._columns, *(store[field.name] for field in OF_PLASTIC), heat, dt)
+        branches = tuple(store[field.name] for field in RELAXED if field.name in store)
+        return Memory(self._columns, *plastic, heat, branches or None, dt)
 
     def _sum_gradients(self, first: int, last: int, memory: Memory | None) -> None:
         second = self._tables[1]

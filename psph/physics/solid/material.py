@@ -6,7 +6,9 @@ from typing import Any, NamedTuple
 
 from psph.physics.solid.compression import EvenBulk, MieGruneisen
 from psph.physics.solid.laws import LAWS, moduli
+from psph.physics.solid.plane import PlaneStress
 from psph.physics.solid.plastic import JohnsonCook, LinearHardening, Metal
+from psph.physics.solid.viscous import Branch, Viscoelastic
 
 STEP = 0.6
 """Δt ≤ 0.6 min(h/(c_l + v), √(h/a)).  Gray, Monaghan & Swift (2001), Comput. Methods Appl. Mech. Eng. 190,
@@ -61,7 +63,7 @@ class ElasticSolid(NamedTuple):
         the spacing of the lattice, m."""
         h = smoothing_length / self.finer
         by_waves = STEP * h / (self.wave_speed + speed)
-        if remembers((self,)):
+        if yields((self,)):
             by_waves /= PRESSED
         if not self.viscosity:
             return by_waves
@@ -85,25 +87,32 @@ def solid_of(
     length: float = 0.0,
     shared: bool = False,
     finer: int = 1,
+    hyperelastic: Any = None,
+    sheet: bool = False,
+    branches: tuple[Branch, ...] = (),
 ) -> ElasticSolid:
     """The solid of these numbers: ``young`` and ``poisson`` E in Pa and ν, ``damping`` η in Pa s; where it
     yields, ``yield_stress`` and ``hardening`` in Pa, or the numbers of a table ``johnson_cook``; where it
     cracks, ``critical_stretch`` and perhaps the Weibull modulus ``flaws``; with the numbers of a table
     ``mie_gruneisen`` its pressure is by that law, shocks as wide as some ``length`` in m; ``shared`` and
-    ``finer`` as in :class:`ElasticSolid`."""
+    ``finer`` as in :class:`ElasticSolid`.  A ``hyperelastic`` law stands in the place of that named; a
+    ``sheet`` is in plane stress; the stress of ``branches`` relaxes."""
     lame, shear = moduli(young, poisson)
     bulk = lame + 2.0 * shear / 3.0
     compression: Any = EvenBulk(bulk)
     if mie_gruneisen is not None:
         compression = mie_gruneisen_of(density, bulk, length, **mie_gruneisen)
         bulk = density * compression.sound_speed**2
-    speed = ((bulk + 4.0 * shear / 3.0) / density) ** 0.5
+    stiff = shear + sum(one.shear for one in branches)
+    speed = ((bulk + 4.0 * stiff / 3.0) / density) ** 0.5
     yielding: Any = None
     if johnson_cook is not None:
         yielding = johnson_cook_of(density, **johnson_cook)
     elif yield_stress is not None:
         yielding = LinearHardening(yield_stress, hardening)
-    own = Metal(compression, shear, yielding) if yielding else LAWS[law](lame, shear)
+    own: Any = hyperelastic or LAWS[law](lame, shear)
+    own = Metal(compression, shear, yielding) if yielding else PlaneStress(own) if sheet else own
+    own = Viscoelastic(own, branches) if branches else own
     most = math.inf if critical_stretch is None else critical_stretch
     stiffness = hourglass * young
     return ElasticSolid(name, own, density, speed, damping, stiffness, most, flaws or 0.0, shared, finer)
@@ -138,8 +147,18 @@ def johnson_cook_of(density: float, heat_capacity: float | None, **numbers) -> J
     return JohnsonCook(heated=HEAT / (density * heat_capacity) if heat_capacity else 0.0, **numbers)
 
 
+def yields(solids: Iterable[ElasticSolid]) -> bool:
+    """Whether any solid yields: then all particles carry the history of a metal."""
+    return any(isinstance(one.law, Metal) for one in solids)
+
+
+def relaxing(solids: Iterable[ElasticSolid]) -> int:
+    """The most branches of a solid whose stress relaxes: as many histories all particles carry."""
+    return max((len(getattr(one.law, "branches", ())) for one in solids), default=0)
+
+
 def remembers(solids: Iterable[ElasticSolid]) -> bool:
-    """Whether any solid yields: then all particles carry a history."""
+    """Whether any solid yields or relaxes."""
     return any(hasattr(one.law, "flow") for one in solids)
 
 

@@ -20,23 +20,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import call_by_type, overload, register_jitable
+from psph.engine.jit import call_by_type
 from psph.fields import SYMMETRIC, Field, Same
-from psph.formula import where
 from psph.physics.solid.compression import mean_stress, pressed, stored_by
-from psph.vectors import (
-    cofactor,
-    determinant,
-    dot,
-    first_row,
-    less_diagonal,
-    matrix_product,
-    norm_squared,
-    product_transposed,
-    scale,
-    trace,
-    transposed,
-)
+from psph.physics.solid.plane import thinned
+from psph.physics.solid.strain import dilation, elastic_part, history_of, nominal, only_in_plane
+from psph.vectors import less_diagonal, norm_squared, scale, trace
 
 PLASTIC_METRIC = Field("plastic_metric", "1", "C_p⁻¹ − 1, the history of a solid that yields", SYMMETRIC)
 PLASTIC_STRAIN = Field("plastic_strain", "1", "equivalent plastic strain of a solid", saved=True, image=Same)
@@ -55,13 +44,16 @@ CLOSE = 1e-13
 class History(NamedTuple):
     """What a particle remembers: C_p⁻¹ − 1, the equivalent plastic ``strain``, the plastic ``work``, J/m³.
 
-    ``heat`` is its psph.physics.solid.compression.Heat where a solid of the scene asks for it, else None.
+    ``heat`` is its psph.physics.solid.compression.Heat where a solid of the scene asks for it, and
+    ``branches`` are what relaxes of it (psph.physics.solid.viscous); else None, as all is that no solid of
+    the scene asks for.
     """
 
     metric: Any
     strain: Any
     work: Any
     heat: Any = None
+    branches: Any = None
 
 
 class LinearHardening(NamedTuple):
@@ -158,14 +150,11 @@ class Metal(NamedTuple):
             left = max(1.0 - stiffness * more / q, 0.0)
             s, s_zz = scale(s, left), s_zz * left
             b, b_zz = scale(s, 1.0 / self.shear), s_zz / self.shear
-            unit = unit_trace(b, b_zz, a)
-            inverse = scale(transposed(cofactor(f, a), a), 1.0 / volume)
-            again = matrix_product(inverse, less_diagonal(b, -unit, a), a)
-            metric = scale(product_transposed(again, inverse, a), np.abs(volume) ** (2.0 / 3.0))
+            metric = history_of(b, b_zz, f, volume, a)
             work = past.work + more * (q - stiffness * more)
-            past = History(less_diagonal(metric, 1.0, a), past.strain + more, work, past.heat)
+            past = History(metric, past.strain + more, work, past.heat, past.branches)
         swells, heat = pressed(self.compression, volume, past.heat, past.work - before, dt)
-        past = History(past.metric, past.strain, past.work, heat)
+        past = History(past.metric, past.strain, past.work, heat, past.branches)
         return nominal(less_diagonal(s, -swells, a), f, volume, a), past
 
     def stress(self, f, past, a):
@@ -216,57 +205,6 @@ class Lasting(NamedTuple):
         """ψ, J per reference volume."""
         return law_energy(self.law, f, a)
 
-
-@register_jitable
-def dilation(f, a):
-    """J = det F; 1 for an F of zeros, that of a particle whose neighbours do not span space: no stress."""
-    volume = dot(first_row(f, a), first_row(cofactor(f, a), a))
-    return where(volume == 0.0, 1.0, volume)
-
-
-@register_jitable
-def nominal(kirchhoff, f, volume, a):
-    """P = τ F⁻ᵀ by rows of a symmetric τ in Pa."""
-    inverse = scale(transposed(cofactor(f, a), a), 1.0 / volume)
-    return transposed(matrix_product(inverse, kirchhoff, a), a)
-
-
-@register_jitable
-def elastic_part(f, metric, volume, a):
-    """b = J^{−2/3} F C_p⁻¹ Fᵀ, and in plane strain b_zz, where det C_p⁻¹ = 1; 0 in 3D."""
-    whole = less_diagonal(metric, -1.0, a)
-    even = np.abs(volume) ** (-2.0 / 3.0)
-    b = scale(product_transposed(matrix_product(f, whole, a), f, a), even)
-    return b, only_in_plane(even / determinant(whole, a), a)
-
-
-def only_in_plane(value, a):
-    """``value`` in plane strain, 0 in 3D, where what is across is among the components."""
-    return value if len(a) < 3 else 0.0
-
-
-@register_jitable
-def unit_trace(s, s_zz, a):
-    """m for which det(s + m1) = 1, s the deviator of three dimensions: m³ − m s:s/2 + det s = 1."""
-    half, third = 0.5 * (norm_squared(s, a) + s_zz * s_zz), whole_determinant(s, s_zz, a)
-    m = 1.0
-    for _ in range(6):
-        m -= (m * m * m - m * half + third - 1.0) / (3.0 * m * m - half)
-    return m
-
-
-def whole_determinant(s, s_zz, a):
-    """det s of three dimensions."""
-    return determinant(s, a) * s_zz if len(a) < 3 else determinant(s, a)
-
-
-@overload(only_in_plane)
-def _typed_only_in_plane(value, a):
-    return (lambda value, a: value) if len(a) < 3 else (lambda value, a: 0.0)
-
-
-@overload(whole_determinant)
-def _typed_whole_determinant(s, s_zz, a):
-    if len(a) < 3:
-        return lambda s, s_zz, a: determinant(s, a) * s_zz
-    return lambda s, s_zz, a: determinant(s, a)
+    def thinned(self, f, a):
+        """Its thickness over that at the start."""
+        return thinned(self.law, f, a)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from psph.case import Case
+from psph.case.elastic import STRESS, branches
 from psph.case.updated import referred_in, updated_in
 from psph.particles.reach import Reach
 from psph.physics.solid.contact import REACH as CONTACT
@@ -112,6 +113,9 @@ def solids_in(case: Case) -> tuple[ElasticSolid, ...]:
             mie_gruneisen=table.mie_gruneisen and dict(table.mie_gruneisen),
             length=SMOOTHING * case.space.spacing / table.finer(case.space.spacing),
             finer=table.finer(case.space.spacing),
+            hyperelastic=table.hyperelastic and table.hyperelastic.law,
+            sheet=table.plane == STRESS,
+            branches=branches(table.relaxation),
         )
         for name, table in referred_in(case).items()
     )

@@ -5,9 +5,15 @@ import pytest
 
 from psph.physics.solid.laws import LAWS, moduli
 from psph.physics.solid.material import solid_of
+from psph.physics.solid.rubber import MooneyRivlin, Ogden
 
 YOUNG, POISSON = 2.0e6, 0.3
 LAME, SHEAR = moduli(YOUNG, POISSON)
+BULK = LAME + 2.0 * SHEAR / 3.0
+RUBBERS = (
+    MooneyRivlin(0.3 * SHEAR, 0.2 * SHEAR, BULK),
+    Ogden((1.5 * SHEAR, 0.02 * SHEAR, -0.1 * SHEAR), (0.8, 20.0, -4.0), BULK),
+)
 
 
 def turned(angle, d):
@@ -27,7 +33,9 @@ def axis(d):
     return (1.0,) * d
 
 
-laws = pytest.mark.parametrize("law", [kind(LAME, SHEAR) for kind in LAWS.values()])
+laws = pytest.mark.parametrize(
+    "law", [*(kind(LAME, SHEAR) for kind in LAWS.values()), *RUBBERS], ids=lambda law: type(law).__name__
+)
 
 
 @laws
