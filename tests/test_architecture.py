@@ -273,6 +273,7 @@ ROOMS = (
         f"case/{room}"
         for room in (
             "bodies",
+            "elastic",
             "ends",
             "fluids",
             "hooke",

@@ -16,6 +16,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from gauging import start
 from jobs import clean_environment, mpirun
 from physics.pairs import OPEN, H, rates, view
 
@@ -499,6 +500,42 @@ walls.belt.shape.box = { lower = [-0.5, -0.4], upper = [0.5, 0.0] }
 walls.belt.motion.steady = [3.0, 0.0]
 regions.drain.sink = 0.1
 markers.dye.shape.box = { lower = [0.0, 0.2], upper = [0.5, 0.4] }
+"""
+
+
+def test_example_law(module, tmp_path):
+    """P is the derivative of the energy, the moduli are those at rest, and a case takes it."""
+    gent = module("law", "psph_example_law").Gent(4e5, 50.0, 2e6)
+    for d in (2, 3):
+        a, f = (1.0,) * d, np.eye(d) + 0.2 * np.random.default_rng(1).standard_normal((d, d))
+        p = np.reshape(gent.stress(tuple(f.ravel()), a), (d, d))
+        for k in np.ndindex(d, d):
+            ends = [
+                f + sign * 1e-6 * np.outer(np.arange(d) == k[0], np.arange(d) == k[1]) for sign in (-1, 1)
+            ]
+            low, high = (gent.energy(tuple(end.ravel()), a) for end in ends)
+            assert (high - low) / 2e-6 == pytest.approx(p[k], rel=1e-5, abs=1.0)
+    small = gent.stress((1.0 + 1e-6, 0.0, 0.0, 1.0), (1.0, 1.0))
+    lame, shear = gent.moduli()
+    assert small[0] == pytest.approx((lame + 2.0 * shear) * 1e-6, rel=1e-4)
+    assert gent.across((1.0 + 1e-6, 0.0, 0.0, 1.0), (1.0, 1.0)) == pytest.approx(lame * 1e-6, rel=1e-4)
+    (tmp_path / "gent.py").write_text(example("law"), encoding="utf-8")
+    (tmp_path / "rubber.toml").write_text(RUBBER, encoding="utf-8")
+    simulation = start(load(tmp_path / "rubber.toml"))
+    simulation.step()
+    assert np.abs(simulation.store.shown("acceleration")).max() > 1.0
+
+
+RUBBER = """
+use = ["gent.py"]
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 0.02
+[solids.strip]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
+density = 1000.0
+hyperelastic.gent = { shear = 4e5, limit = 50.0, bulk = 2e6 }
+plane = "stress"
+velocity_gradient = [[1.0, 0.0], [0.0, 0.0]]
 """
 
 

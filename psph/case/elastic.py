@@ -10,7 +10,9 @@ from psph.case.findings import Finding
 from psph.case.keys import Table, key
 from psph.case.parameters import chosen, last_part, table_of
 from psph.physics.catalogue import ELASTIC_LAWS, Entry
-from psph.physics.solid.viscous import MOST, Branch
+from psph.physics.solid.viscous import Branch
+
+OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
 
 STRAIN, STRESS = "strain", "stress"
 Plane = Literal["strain", "stress"]
@@ -71,9 +73,6 @@ def branches(relaxation: Sequence[Relaxing]) -> tuple[Branch, ...]:
     return tuple(Branch(one.shear, one.time) for one in relaxation)
 
 
-MOST_BRANCHES = MOST
-
-
 def modulus(value: Any, info: ValidationInfo) -> Any:
     """E in Pa or ν, which follow from the law of a solid where it has one with numbers of its own."""
     law, name = info.data.get("hyperelastic"), info.field_name
@@ -92,6 +91,7 @@ def modulus(value: Any, info: ValidationInfo) -> Any:
 
 def elastic_keys(case) -> Iterator[Finding]:
     """Contradictions between these keys and others of a solid."""
+    yield from _yielding(case)
     for name, solid in case.solids.items():
         here, yields = ("solids", name), solid.johnson_cook or solid.yield_stress is not None
         if solid.hyperelastic and yields:
@@ -99,14 +99,40 @@ def elastic_keys(case) -> Iterator[Finding]:
         if solid.hyperelastic and solid.law != type(solid).model_fields["law"].default:
             yield (*here, "law"), solid.law, "hyperelastic is the law; remove one of the two"
         if solid.relaxation and yields:
-            yield (
-                (*here, "relaxation"),
-                ...,
-                "metals that relax are not known; remove it, or yield_stress",
-            )
+            says = "metals that relax are not known; remove it, or yield_stress"
+            yield (*here, "relaxation"), ..., says
         if solid.plane == STRESS:
             if case.space.dimensions != 2:
                 yield (*here, "plane"), STRESS, "a sheet has two dimensions; remove it, or draw its thickness"
             if yields or solid.relaxation:
                 says = "is known of laws without a memory; remove it, or what yields and relaxes"
                 yield (*here, "plane"), STRESS, says
+
+
+def _yielding(case) -> Iterator[Finding]:
+    """Contradictions between the keys of a solid that yields."""
+    for name, solid in case.solids.items():
+        here, table = ("solids", name), solid.johnson_cook
+        if table and solid.yield_stress is not None:
+            says = "johnson_cook has a yield_stress of its own; remove one of the two"
+            yield (*here, "yield_stress"), solid.yield_stress, says
+        if solid.mie_gruneisen and not table and solid.yield_stress is None:
+            says = "a pressure of metals; give yield_stress too, as large as you like"
+            yield (*here, "mie_gruneisen"), ..., says
+        if solid.flaws is not None and solid.critical_stretch is None:
+            yield (
+                (*here, "flaws"),
+                solid.flaws,
+                "without critical_stretch nothing cracks; give it, or remove flaws",
+            )
+        if solid.critical_stretch is not None and case.flowing:
+            yield (
+                (*here, "critical_stretch"),
+                ...,
+                "nothing is known of cracks in fluids; remove it, or the fluids",
+            )
+        if solid.hardening and solid.yield_stress is None:
+            says = "an elastic solid does not harden; give yield_stress, or put it into johnson_cook"
+            yield (*here, "hardening"), solid.hardening, says
+        if (table or solid.yield_stress is not None) and solid.law != type(solid).model_fields["law"].default:
+            yield (*here, "law"), solid.law, OF_METALS

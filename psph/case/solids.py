@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, Strict, create_model
 
 import psph.acts as words
 from psph.acts import BODIES, refusals
-from psph.case.elastic import MOST_BRANCHES, STRAIN, Plane, Relaxing, elastic_keys, hyperelastic, modulus
+from psph.case.elastic import STRAIN, Plane, Relaxing, elastic_keys, hyperelastic, modulus
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
@@ -20,6 +20,7 @@ from psph.physics.catalogue import ELASTIC_LAWS, Catalogue
 from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS
 from psph.physics.solid.laws import LAWS
+from psph.physics.solid.viscous import MOST
 
 
 class SolidLoad(Table):
@@ -116,7 +117,7 @@ class Solid(Hookean):
     plane: Plane = key(
         "in 2D: strain, it keeps its length across; stress, a sheet, which nothing holds across", STRAIN
     )
-    relaxation: Annotated[tuple[Relaxing, ...], Strict(False), Field(max_length=MOST_BRANCHES)] = key(
+    relaxation: Annotated[tuple[Relaxing, ...], Strict(False), Field(max_length=MOST)] = key(
         "shear moduli beside those of the law, which relax: the series of Prony", ()
     )
     description: Literal[TOTAL, UPDATED] = key(
@@ -285,8 +286,6 @@ class Reaction(Table):
                 yield ("of", place), support, says
 
 
-OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
-
 FINEST, SAME = 3, 1e-6
 """Of how many parts of the scene's spacing that of a solid may be one, and how near rounding has to be."""
 
@@ -299,7 +298,6 @@ def elastic(case) -> Iterator[Finding]:
         if case.anvils:
             yield ("anvils",), ..., "nothing feels them but solids; remove them, or give [solids.NAME]"
         return
-    yield from _yielding(case)
     yield from elastic_keys(case)
     yield from _finer(case)
     yield from updated(case) if updated_in(case) else _meeting(case)
@@ -379,32 +377,3 @@ def _finer(case) -> Iterator[Finding]:
             yield here, solid.spacing, "there is no fluid of another spacing; give space.spacing instead"
         elif solid.finer(dx) > 1 and case.physics.contact is not None:
             yield here, solid.spacing, "contact knows of one spacing; remove this key, or physics.contact"
-
-
-def _yielding(case) -> Iterator[Finding]:
-    """Contradictions between the keys of a solid that yields."""
-    for name, solid in case.solids.items():
-        here, table = ("solids", name), solid.johnson_cook
-        if table and solid.yield_stress is not None:
-            says = "johnson_cook has a yield_stress of its own; remove one of the two"
-            yield (*here, "yield_stress"), solid.yield_stress, says
-        if solid.mie_gruneisen and not table and solid.yield_stress is None:
-            says = "a pressure of metals; give yield_stress too, as large as you like"
-            yield (*here, "mie_gruneisen"), ..., says
-        if solid.flaws is not None and solid.critical_stretch is None:
-            yield (
-                (*here, "flaws"),
-                solid.flaws,
-                "without critical_stretch nothing cracks; give it, or remove flaws",
-            )
-        if solid.critical_stretch is not None and case.flowing:
-            yield (
-                (*here, "critical_stretch"),
-                ...,
-                "nothing is known of cracks in fluids; remove it, or the fluids",
-            )
-        if solid.hardening and solid.yield_stress is None:
-            says = "an elastic solid does not harden; give yield_stress, or put it into johnson_cook"
-            yield (*here, "hardening"), solid.hardening, says
-        if (table or solid.yield_stress is not None) and solid.law != next(iter(LAWS)):
-            yield (*here, "law"), solid.law, OF_METALS

@@ -5,13 +5,11 @@
 
 from typing import Any, NamedTuple
 
-import numpy as np
 from numba.core import types
 
-from psph.engine.jit import call_by_number, inside, overload_inside, unrolled
-from psph.physics.solid.compression import Heat
+from psph.engine.jit import call_by_number, inside, overload_inside
+from psph.physics.solid.history import History, read, write
 from psph.physics.solid.plane import even
-from psph.physics.solid.plastic import History
 from psph.vectors import dot
 
 law_stress = call_by_number("stress")
@@ -46,50 +44,6 @@ def recalled(memory, k):
     metric, strain = read(memory.metric, column), read(memory.strain, column)
     heat, branches = read(memory.heat, column), read(memory.branches, column)
     return History(metric, strain, read(memory.work, column), heat, branches)
-
-
-def read(kept, column):
-    """What a particle has in some arrays: a number, or a tuple of what it has in each; None where there are
-    none."""
-    if kept is None or isinstance(kept, np.ndarray):
-        return None if kept is None else kept[column]
-    values = [read(one, column) for one in kept]
-    return type(kept)(*values) if isinstance(kept, Heat) else tuple(values)
-
-
-@overload_inside(read)
-def _typed_read(kept, column):
-    if isinstance(kept, types.NoneType):
-        return lambda kept, column: None
-    if not isinstance(kept, types.BaseTuple):
-        return lambda kept, column: kept[column]
-    values = ", ".join(f"read(kept[{n}], column)" for n in range(len(kept)))
-    made = "Heat" if isinstance(kept, types.BaseNamedTuple) else ""
-    returned = f"return {made}({values}{'' if made else ','})"
-    return unrolled("kept, column", returned, read=read, Heat=Heat)
-
-
-def write(kept, column, now):
-    """Let a particle have this in the same arrays."""
-    if isinstance(kept, np.ndarray):
-        kept[column] = now
-    elif kept is not None:
-        for one, value in zip(kept, now):
-            write(one, column, value)
-
-
-@overload_inside(write)
-def _typed_write(kept, column, now):
-    if isinstance(kept, types.NoneType):
-        return lambda kept, column, now: None
-    if not isinstance(kept, types.BaseTuple):
-        return _put_number
-    lines = (f"write(kept[{n}], column, now[{n}])" for n in range(len(kept)))
-    return unrolled("kept, column, now", *lines, write=write)
-
-
-def _put_number(kept, column, now):
-    kept[column] = now
 
 
 @inside

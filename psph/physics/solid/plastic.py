@@ -23,6 +23,7 @@ import numpy as np
 from psph.engine.jit import call_by_type
 from psph.fields import SYMMETRIC, Field, Same
 from psph.physics.solid.compression import mean_stress, pressed, stored_by
+from psph.physics.solid.history import History
 from psph.physics.solid.plane import thinned
 from psph.physics.solid.strain import dilation, elastic_part, history_of, nominal, only_in_plane
 from psph.vectors import less_diagonal, norm_squared, scale, trace
@@ -39,21 +40,6 @@ TURNS = 60
 
 CLOSE = 1e-13
 """Of the trial stress: how well it is found."""
-
-
-class History(NamedTuple):
-    """What a particle remembers: C_p⁻¹ − 1, the equivalent plastic ``strain``, the plastic ``work``, J/m³.
-
-    ``heat`` is its psph.physics.solid.compression.Heat where a solid of the scene asks for it, and
-    ``branches`` are what relaxes of it (psph.physics.solid.viscous); else None, as all is that no solid of
-    the scene asks for.
-    """
-
-    metric: Any
-    strain: Any
-    work: Any
-    heat: Any = None
-    branches: Any = None
 
 
 class LinearHardening(NamedTuple):

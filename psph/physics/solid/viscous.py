@@ -13,7 +13,7 @@ import numpy as np
 from psph.engine.jit import call_by_type, overload_inside, tuple_of, unrolled
 from psph.fields import SYMMETRIC, Field
 from psph.formula import long_helper
-from psph.physics.solid.plastic import History
+from psph.physics.solid.history import History
 from psph.physics.solid.strain import dilation, elastic_part, history_of, nominal, only_in_plane
 from psph.vectors import add, less_diagonal, scale, trace
 

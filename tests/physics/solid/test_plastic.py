@@ -6,9 +6,10 @@ from physics.solid.test_laws import axis, rows, turned
 
 from psph.engine.jit import compiled
 from psph.physics.solid.compression import EvenBulk
+from psph.physics.solid.history import History
 from psph.physics.solid.laws import moduli
 from psph.physics.solid.material import solid_of
-from psph.physics.solid.plastic import History, JohnsonCook, Lasting, LinearHardening, Metal, strength
+from psph.physics.solid.plastic import JohnsonCook, Lasting, LinearHardening, Metal, strength
 from psph.physics.solid.strain import elastic_part
 
 YOUNG, POISSON = 117.0e9, 0.35

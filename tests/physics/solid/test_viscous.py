@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from physics.solid.test_laws import LAME, SHEAR, axis, rows, turned
 
+from psph.physics.solid.history import History
 from psph.physics.solid.laws import NeoHookean
-from psph.physics.solid.plastic import History
 from psph.physics.solid.viscous import Branch, Viscoelastic
 
 LAW = NeoHookean(LAME, SHEAR)
