@@ -1,4 +1,5 @@
-"""How elastic solids of a case resist: laws with numbers of their own, sheets, stress that relaxes."""
+"""How elastic solids of a case resist, by laws with numbers of their own, as sheets, with stress that
+relaxes; and what pulls and pushes them."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, Literal, Self
@@ -7,8 +8,9 @@ from pydantic import ValidationInfo, create_model, model_validator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
 from psph.case.findings import Finding
-from psph.case.keys import Table, key
+from psph.case.keys import Table, Vector, key
 from psph.case.parameters import chosen, last_part, table_of
+from psph.case.shapes import Shape
 from psph.physics.catalogue import ELASTIC_LAWS, Entry
 from psph.physics.solid.viscous import Branch
 
@@ -87,6 +89,34 @@ def modulus(value: Any, info: ValidationInfo) -> Any:
     if isinstance(value, (int, float)) and abs(value - found) > SAME * max(abs(found), SAME):
         raise PydanticCustomError("psph", f"is {found:.6g} by hyperelastic; remove this key")
     return found
+
+
+class SolidLoad(Table):
+    """A force on a part of a solid, the same on each of its particles, whatever its deformation; or a
+    pressure on the faces of a part, which follows them."""
+
+    shape: Shape = key("the part of the solid that it pulls or pushes, at the start")
+    force: Vector | None = key(
+        "the total force; in 2D per metre of depth", None, unit="N", otherwise="a pressure"
+    )
+    pressure: float | None = key(
+        "pushes on the faces of the part, across them as they turn and grow",
+        None,
+        unit="Pa",
+        otherwise="a force",
+    )
+    facing: Vector | None = key(
+        "the side that the pressed faces look to, of any length", None, unit="1", otherwise="any side"
+    )
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        if (self.force is None) == (self.pressure is None):
+            raise PydanticCustomError("psph", "is a force or a pressure; give one of the two")
+        if self.facing is not None and (self.pressure is None or not any(self.facing)):
+            says = "has no direction" if self.pressure is not None else "is of a pressure, and there is none"
+            raise PydanticCustomError("psph", f"facing {says}; give another, or remove it")
+        return self
 
 
 def elastic_keys(case) -> Iterator[Finding]:

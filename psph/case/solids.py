@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, Strict, create_model
 
 import psph.acts as words
 from psph.acts import BODIES, refusals
-from psph.case.elastic import STRAIN, Plane, Relaxing, elastic_keys, hyperelastic, modulus
+from psph.case.elastic import STRAIN, Plane, Relaxing, SolidLoad, elastic_keys, hyperelastic, modulus
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.hooke import Hookean
@@ -21,13 +21,6 @@ from psph.physics.solid.anvil import Anvils
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS
 from psph.physics.solid.laws import LAWS
 from psph.physics.solid.viscous import MOST
-
-
-class SolidLoad(Table):
-    """A force on a part of a solid, the same on each of its particles, whatever its deformation."""
-
-    shape: Shape = key("the part of the solid that it pulls, at the start")
-    force: Vector = key("the total force; in 2D per metre of depth", unit="N")
 
 
 class Clamp(Table):

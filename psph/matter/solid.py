@@ -20,6 +20,7 @@ from psph.physics.solid.deformation import (
     DRAWN,
     KERNEL,
     OF_SOLIDS,
+    PUSHED,
     SMOOTHING,
     STRESS_ZZ,
     places_of,
@@ -238,6 +239,7 @@ class ElasticSolids(SolidMatter):
         return (
             tuple((law, bool(one.viscosity) or None) for law, one in zip(own.laws, own.solids)),
             DRAWN.name in plan.arrays or None,
+            PUSHED.name in plan.arrays or None,
             own.cracks or None,
             bool(own.grips) or None,
         )

@@ -15,6 +15,7 @@ from psph.scene.lattice import TOLERANCE
 from psph.scene.parts.solid import ElasticPart, UpdatedPart
 from psph.scene.scene import Scene
 from psph.scene.shapes import inside
+from psph.scene.solid_areas import faced
 
 FEWEST = 4
 """Particles across a plate: fewer bend too softly (docs/solids.md)."""
@@ -54,6 +55,11 @@ def solid_faults(scene: Scene) -> Iterator[str]:
         for load, table in scene.case.solids[name].loads.items():
             if not _pulls(scene, scene.layout.parts.of_whole(number), table.shape):
                 yield f"solids.{name}.loads.{load}.shape: no particle of the solid lies in it; move it there"
+            elif table.pressure is not None and not _is_pressed(scene, number, table):
+                yield (
+                    f"solids.{name}.loads.{load}.pressure: no face of the solid in it looks that way; let "
+                    "the shape hold the outermost particles there"
+                )
 
 
 def solid_warnings(scene: Scene) -> Iterator[str]:
@@ -211,6 +217,20 @@ def _sites_in(scene: Scene, *shapes) -> int:
         held = (np.broadcast_to(inside(shape, grid, tolerance), size) for shape in shapes)
         count += int(np.count_nonzero(np.logical_and.reduce([*held])))
     return count
+
+
+def _is_pressed(scene: Scene, number: int, load) -> bool:
+    """Whether a pressure finds any face of a solid."""
+    layout = scene.layout
+    for first, last in layout.lattice.chunks():
+        own = np.isin(layout.materials(first, last), layout.parts.of_whole(number))
+        sites = np.stack(
+            [np.broadcast_to(x, own.shape)[own] for x in layout.lattice.grid(first, last)], axis=1
+        )
+        for off in layout.lattice.within_cell(layout.parts[number].finer):
+            if faced(layout, number, load, sites + off).any():
+                return True
+    return False
 
 
 def _pulls(scene: Scene, parts: list[int], shape) -> bool:

@@ -7,7 +7,7 @@ from psph.physics.motion import WORK
 from psph.physics.solid.compression import OF_HEAT
 from psph.physics.solid.contact import MET, OF_CONTACT, OF_FRICTION, SolidContact
 from psph.physics.solid.cracks import OF_CRACKS
-from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, STRESS_ZZ
+from psph.physics.solid.deformation import DRAWN, INERTIA, OF_SOLIDS, PULLED, PUSHED, STRESS_ZZ
 from psph.physics.solid.material import is_heated, relaxing, yields
 from psph.physics.solid.plastic import OF_PLASTIC
 from psph.physics.solid.shares import SHARE
@@ -21,7 +21,8 @@ def solid_fields(scene: Scene) -> tuple[Field, ...]:
     """What particles carry because the scene has solids, and these yield, crack, have loads or stand in a
     fluid."""
     across = tuple(field for field in followed_fields(scene) if field == CROSSED)
-    loaded = any(table.loads for table in scene.case.solids.values())
+    loads = [load for table in scene.case.solids.values() for load in table.loads.values()]
+    followed = [PULLED, PUSHED] if any(load.pressure is not None for load in loads) else []
     lasting = OF_PLASTIC if yields(solids_of(scene.starts)) else ()
     lasting += RELAXED[: relaxing(solids_of(scene.starts))]
     lasting += OF_HEAT if is_heated(solids_of(scene.starts)) else ()
@@ -33,7 +34,7 @@ def solid_fields(scene: Scene) -> tuple[Field, ...]:
     meeting += OF_FRICTION if meeting and scene.physics.contact.friction else ()
     meeting += (MET,) if meeting and scene.case.flowing else ()
     own = (*OF_SOLIDS, *plane, *shares, *across, *lasting, *cracks, *meeting)
-    return (*own, *([DRAWN, WORK] if loaded else []), *wet)
+    return (*own, *([DRAWN, *followed, WORK] if loads else []), *wet)
 
 
 def meets(scene: Scene) -> bool:

@@ -8,8 +8,12 @@ from typing import Any, NamedTuple
 from numba.core import types
 
 from psph.engine.jit import call_by_number, inside, overload_inside
+from psph.physics.solid.compression import OF_HEAT, Heat
 from psph.physics.solid.history import History, read, write
+from psph.physics.solid.material import remembers
 from psph.physics.solid.plane import even
+from psph.physics.solid.plastic import OF_PLASTIC
+from psph.physics.solid.viscous import RELAXED
 from psph.vectors import dot
 
 law_stress = call_by_number("stress")
@@ -35,6 +39,18 @@ class Memory(NamedTuple):
     heat: Any
     branches: Any
     dt: float
+
+
+def memory_of(solids, store, columns, dt: float) -> Memory | None:
+    """What the particles at some ``columns`` of a ``store`` remember, ``dt`` s after they last yielded or
+    relaxed; None where none of the ``solids`` (psph.physics.solid.material) does."""
+    if not remembers(solids):
+        return None
+    plastic = [store[field.name] if field.name in store else None for field in OF_PLASTIC]
+    warm = all(field.name in store for field in OF_HEAT)
+    heat = Heat(*(store[field.name] for field in OF_HEAT)) if warm else None
+    branches = tuple(store[field.name] for field in RELAXED if field.name in store)
+    return Memory(columns, *plastic, heat, branches or None, dt)
 
 
 @inside

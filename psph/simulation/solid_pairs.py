@@ -54,6 +54,7 @@ class Matter(NamedTuple):
     (psph.physics.solid.deformation).  Of each row ``intact`` is the part of its bonds that hold, None where
     none can be cut: its stress and energy are so much less (psph.physics.solid.cracks).  ``share`` is the
     part of its volume that counts for the stress, None where all of it does (psph.physics.solid.shares).
+    ``following`` lets pressures follow faces, None where there are none.
     """
 
     laws: tuple
@@ -64,6 +65,17 @@ class Matter(NamedTuple):
     density: Any
     intact: Any = None
     share: Any = None
+    following: Any = None
+
+
+class Following(NamedTuple):
+    """Where the acceleration by loads is made up, at the ``columns`` of rows: ``drawn`` = ``pulled`` + cof F
+    ``pushed``, since a face n da was cof F N dA (Nanson)."""
+
+    columns: Any
+    pulled: Any
+    pushed: Any
+    drawn: Any
 
 
 class Weights(NamedTuple):
@@ -165,11 +177,32 @@ def sum_gradients(first, last, matter, weights, rows, moment, memory, flux):
         number, a = matter.number[k], i.reference
         inverse = at(moment, k)
         f = matrix_product(folded[0], inverse, a)
+        follow(matter.following, matter.laws, number, k, f, a)
         p = advanced(matter.laws, number, memory, k, f, a)
         p = weakened(p, matter.intact, k)
         p = added(p, drag(matter.viscosity[number], f, folded, inverse, a))
         against = matrix_product(weakened(p, matter.share, k), inverse, a)
         put(flux, k, subtract(scale(f, 0.5 * matter.stiffness[number]), against))
+
+
+def follow(following, laws, number, k, f, a):
+    """Let pressures push row ``k`` across its faces as they are."""
+    if following is not None:
+        _follow(following, laws, number, k, f, a)
+
+
+def _follow(following, laws, number, k, f, a):
+    column = following.columns[k]
+    pushed = applied(cofactor(f, a), at(following.pushed, column))
+    pushed = scale(pushed, thinned(laws, number, f, a))
+    put(following.drawn, column, add(at(following.pulled, column), pushed))
+
+
+@overload_inside(follow)
+def _typed_follow(following, laws, number, k, f, a):
+    if isinstance(following, types.NoneType):
+        return lambda following, laws, number, k, f, a: None
+    return _follow
 
 
 def weakened(values, intact, k):

@@ -12,7 +12,6 @@ from psph.parallel.reductions import exact_sums
 from psph.parallel.reference import reference_rows
 from psph.particles.others import keep_others
 from psph.particles.partners import ReferenceRows, padded_lists
-from psph.physics.solid.compression import OF_HEAT, Heat
 from psph.physics.solid.contact import CONTACT_ENERGY
 from psph.physics.solid.deformation import (
     DRAWN,
@@ -27,13 +26,11 @@ from psph.physics.solid.deformation import (
     pressure_of,
     support_of,
 )
-from psph.physics.solid.material import is_damped, remembers
-from psph.physics.solid.plastic import OF_PLASTIC
+from psph.physics.solid.material import is_damped
 from psph.physics.solid.shares import SHARE
-from psph.physics.solid.viscous import RELAXED
 from psph.scene.parts.order import among
 from psph.simulation.materials import NOT_BONDED
-from psph.simulation.solid_memory import Memory
+from psph.simulation.solid_memory import Memory, memory_of
 from psph.simulation.solid_pairs import (
     Matter,
     Rows,
@@ -152,6 +149,8 @@ class Solids(Work):
         if self.clamps:
             self.clamps.settle(self._columns, self._masses)
         self._make_tables(store.id[columns[order]], np.unique(partners[abroad]), unknown)
+        if self.loads:
+            self._matter = self._matter._replace(following=self.loads.following(self._columns))
         if SHARE.name in store:
             self._matter = self._matter._replace(share=store[SHARE.name][self._columns])
         self._moment = tuple(of[self._columns] for of in store[MOMENT.name])
@@ -221,8 +220,10 @@ class Solids(Work):
     def strain(self, dt: float) -> None:
         """The stress of all particles of solids, and their faces, ``dt`` s after the last; collective."""
         rows, inner = self._owned, self._inner
-        memory = self._memory(dt)
+        memory = memory_of(self._planned.solids, self.store, self._columns, dt)
         first, second = self._tables
+        if self.loads:
+            self.loads.book(dt, self._columns, self._matter.number, self._masses)
         with self.ledger("records"):
             for name in self._moving:
                 self._put(first, name, 0, rows)
@@ -274,7 +275,7 @@ class Solids(Work):
                 store["acceleration"],
             )
             if loads:
-                loads.book(time, dt, self._columns, number, self._masses)
+                loads.book(dt, self._columns, number, self._masses)
             if self.clamps:
                 self.clamps.book(dt)
             self._crack()
@@ -294,7 +295,8 @@ class Solids(Work):
         stress = tuple(np.zeros(n) for _ in store.rows[STRESS.name])
         measured = (np.zeros(n), stress, np.zeros(n), np.zeros(n))
         matter = self._matter._replace(sums=self._matter.sums[:1])
-        seen = (matter, self._weights, self._around[1], self._moment, self._memory(0.0))
+        memory = memory_of(self._planned.solids, store, self._columns, 0.0)
+        seen = (matter, self._weights, self._around[1], self._moment, memory)
         self._each(self._measure, 0, n, *seen, measured)
         if self._cracks:
             self._cracks.measure(self._columns)
@@ -350,17 +352,6 @@ class Solids(Work):
         reference = store.shown("reference")[own]
         ids = store.id[store.inner][own]
         return reference_rows(self.comm, extent, self.supports, ids, reference, body[own])
-
-    def _memory(self, dt: float) -> Memory | None:
-        """What particles remember, ``dt`` s after they last yielded or relaxed; None where no solid does."""
-        if not remembers(self._planned.solids):
-            return None
-        store = self.store
-        plastic = [store[field.name] if field.name in store else None for field in OF_PLASTIC]
-        warm = all(field.name in store for field in OF_HEAT)
-        heat = Heat(*(store[field.name] for field in OF_HEAT)) if warm else None
-        branches = tuple(store[field.name] for field in RELAXED if field.name in store)
-        return Memory(self._columns, *plastic, heat, branches or None, dt)
 
     def _sum_gradients(self, first: int, last: int, memory: Memory | None) -> None:
         second = self._tables[1]

@@ -30,12 +30,14 @@ STRESS_ZZ = Field("stress_zz", "Pa", "Cauchy stress of a solid across the plane 
 VON_MISES = Field("von_mises", "Pa", "von Mises stress of a solid", saved=True)
 STORED = Field("stored_energy", "J", "energy of deformation, with that of the hourglass control")
 DRAWN = Field("drawn", "m/s2", "acceleration by the loads of a case at their full size", VECTOR)
+PULLED = Field("pulled", "m/s2", "the part of it by loads that keep their direction", VECTOR)
+PUSHED = Field("pushed", "m/s2", "the part of it by pressures, before faces have turned and grown", VECTOR)
 
 INERTIA = Field("inertia", "kg", "true mass of a particle; of a solid in a fluid its mass is the fluid's")
 
 OF_SOLIDS = (REFERENCE, MOMENT, STRESS, VON_MISES, STORED)
-"""What particles carry only where a scene has solids; DRAWN where these have loads, INERTIA where
-these are in a fluid, STRESS_ZZ in plane strain."""
+"""What particles carry only where a scene has solids; DRAWN where these have loads, PULLED and PUSHED
+where one is a pressure, INERTIA where these are in a fluid, STRESS_ZZ in plane strain."""
 
 KERNEL, SMOOTHING = "wendland-c2", 2.0**0.5
 """A solid's own kernel and its h/dx: its lists have no part in those of fluids."""
