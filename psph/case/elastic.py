@@ -7,6 +7,7 @@ from typing import Any, ClassVar, Literal, Self
 from pydantic import ValidationInfo, create_model, model_validator
 from pydantic_core import PydanticCustomError, PydanticKnownError
 
+from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.keys import Table, Vector, key
 from psph.case.parameters import chosen, last_part, table_of
@@ -131,6 +132,14 @@ def elastic_keys(case) -> Iterator[Finding]:
         if solid.relaxation and yields:
             says = "metals that relax are not known; remove it, or yield_stress"
             yield (*here, "relaxation"), ..., says
+        for key_of, clamp in solid.grips.items():
+            of = (*here, *key_of.split("."), "body")
+            if clamp.body is not None and clamp.body not in case.bodies:
+                yield of, clamp.body, f"no rigid body has this name; {advise(clamp.body, case.bodies)}"
+            elif clamp.body is not None and clamp.motion:
+                yield of, clamp.body, "goes as its body does; remove it, or motion"
+            elif clamp.body is not None and solid.is_updated:
+                yield of, clamp.body, 'needs description = "total"; remove it'
         if solid.plane == STRESS:
             if case.space.dimensions != 2:
                 yield (*here, "plane"), STRESS, "a sheet has two dimensions; remove it, or draw its thickness"

@@ -30,6 +30,7 @@ class Clamp(Table):
     motion: Motions | None = key(
         "how it moves, as `walls.NAME.motion`; forces change nothing of it", None, otherwise="not at all"
     )
+    body: Name | None = key("the rigid body that it is fixed to and that bears it", None, otherwise="none")
 
 
 class JohnsonCookTable(Table):
@@ -317,8 +318,9 @@ def _meeting(case) -> Iterator[Finding]:
     if contact or not case.flowing:
         yield from _rigid(case)
     rigid = [entry for entry in case.entries if entry.of.rigid]
+    carried = {clamp.body for solid in case.solids.values() for clamp in solid.grips.values()}
     for table, name, _ in rigid:
-        if not contact and (name in case.bodies or not case.flowing):
+        if not contact and name not in carried and (name in case.bodies or not case.flowing):
             says = f"solids do not feel {table} without contact; give physics.contact = {{}}"
             yield (table, name), ..., says
     if case.flowing:

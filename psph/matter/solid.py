@@ -241,7 +241,7 @@ class ElasticSolids(SolidMatter):
             DRAWN.name in plan.arrays or None,
             PUSHED.name in plan.arrays or None,
             own.cracks or None,
-            bool(own.grips) or None,
+            bool(own.grips.any()) or None,
         )
 
     def rehearsed(self) -> tuple[int, ...]:

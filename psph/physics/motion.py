@@ -104,6 +104,11 @@ def told_of(motion):
     return getattr(motion, "motion", motion)
 
 
+def carried_by(motion):
+    """What a motion goes with: another, as of what is fixed to a body; itself where there is none."""
+    return getattr(motion, "carrier", motion)
+
+
 def is_prescribed(motion) -> bool:
     """Whether a motion says where its particles are."""
     return deforms(motion) or is_rigid(motion)

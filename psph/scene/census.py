@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from psph.kinds import in_case
+from psph.physics.motion import carried_by
 from psph.scene.layout import Layout, first_claim
 from psph.scene.meshes.drawn import sites_in
 
@@ -38,7 +39,9 @@ class Census:
         def own(part: Any) -> Any:
             return next(filter(None, (kind.motion_of(self.layout, part) for kind in kinds)))
 
-        return tuple(own(part) if part.moves_whole else part.motion for part in self.layout.parts)
+        parts = self.layout.parts
+        whole = {part.name: own(part) for part in parts if part.moves_whole}
+        return tuple(whole[part.name] if part.moves_whole else _borne(part.motion, whole) for part in parts)
 
     @cached_property
     def flow(self) -> tuple[np.ndarray, np.ndarray]:
@@ -54,6 +57,11 @@ class Census:
     def surface_of(self, fluid: int) -> float:
         """Height of a fluid's surface at the start, m."""
         return float(self.top[fluid]) + 0.5 * self.layout.spacing
+
+
+def _borne(motion: Any, whole: dict[str, Any]) -> Any:
+    """A motion, with what it goes with where it waits for that (psph.physics.motion.carried_by)."""
+    return motion._replace(carrier=whole[motion.name]) if carried_by(motion) is None else motion
 
 
 def take_census(layout: Layout) -> Census:

@@ -172,7 +172,7 @@ def _site_faults(scene: Scene) -> Iterator[str]:
     for (one, other), site in sorted(census.clashes.items()):
         if not parts[one].drawn or not parts[other].drawn:
             yield f"{parts[other].key}: overlaps {parts[one].key} at {shown(site)}; move one"
-        elif not parts[one].rigid or parts[other].moves_whole:
+        elif (not parts[one].rigid or parts[other].moves_whole) and not parts[one].borne_by(parts[other]):
             move = "" if parts[one].flows else "move one, or "
             yield (
                 f"{parts[other].key}.shape: overlaps {parts[one].key} at {shown(site)}; {move}subtract "

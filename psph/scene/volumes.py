@@ -67,6 +67,22 @@ def drawn_volume(layout: Layout, shape) -> float:
     return float(count) * fine**layout.dimensions
 
 
+def _with_clamps(layout: Layout, name: str, mass: float, centre: np.ndarray, inertia: np.ndarray) -> tuple:
+    """Mass, centre and moments about it of a body and of the parts of elastic solids that it carries."""
+    for part in layout.parts:
+        if getattr(part.motion, "name", None) != name:
+            continue
+        filled = volume_of(layout, part.number)
+        if not filled.volume:
+            continue
+        more = part.table.density * filled.volume
+        both, away = (mass * centre + more * filled.centre) / (mass + more), filled.centre - centre
+        lever = mass * more / (mass + more) * (away @ away * np.eye(3) - np.outer(away, away))
+        inertia = inertia + filled.inertia(more) + lever
+        mass, centre = mass + more, both
+    return mass, centre, inertia
+
+
 def moved_as_whole(layout: Layout, part: Part) -> RigidBody:
     """How a part moves that keeps its form under forces."""
     table, filled, dimensions = part.table, volume_of(layout, part.number), layout.dimensions
@@ -76,12 +92,14 @@ def moved_as_whole(layout: Layout, part: Part) -> RigidBody:
         inertia[2, 2] = table.inertia
     elif table.inertia is not None:
         inertia = np.array(table.inertia)
+    centre = np.array(in_space(table.centre)) if table.centre else filled.centre
+    mass, centre, inertia = _with_clamps(layout, part.name, mass, centre, inertia)
     spin = (0.0, 0.0, table.spin or 0.0) if dimensions == 2 else tuple(table.spin or (0.0,) * 3)
     freed = table.freed(dimensions)
     return RigidBody(
         part.name,
         mass,
-        in_space(table.centre) if table.centre else tuple(filled.centre.tolist()),
+        tuple(centre.tolist()),
         tuple(inertia.ravel().tolist()),
         in_space(table.velocity),
         spin,

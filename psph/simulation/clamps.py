@@ -10,16 +10,16 @@ from psph.engine.threads import in_threads
 from psph.physics.motion import ANCHOR, WORK
 from psph.physics.rigid.mapped import affine
 from psph.physics.rigid.pose import PLACE, VELOCITY, maps
-from psph.physics.solid.motion import MovingClamp
+from psph.simulation.solid_plan import solid_plan
 from psph.vectors import at, dot, nearest_to, put, subtract
 
 
 class Clamps:
-    """The particles of a rank in the clamps of a ``scene`` that move as they are told."""
+    """The particles of a rank in the clamps of a ``scene`` that move, as they are told or with a body."""
 
     def __init__(self, scene, plan, store):
         self._plan, self._store, self._periods = plan, store, scene.layout.periods
-        self._moves = plan.materials.where(lambda one: isinstance(one.motion, MovingClamp))
+        self._moves = solid_plan(plan).grips
         self._maps = np.zeros((len(plan.materials.rigid), 3, store.dimensions, 1 + store.dimensions))
         self._carry, self._book = settled(carry), settled(book)
 

@@ -14,6 +14,8 @@ from psph.physics.rigid.lines import Lines, Strung
 from psph.physics.rigid.pushes import add_pushes
 from psph.scene.bodies import shares_of
 from psph.scene.joints import joints_of
+from psph.simulation.riders import Riders
+from psph.simulation.solid_plan import solid_plan
 from psph.scene.lines import lines_of
 from psph.simulation.touching import Contacts
 
@@ -55,6 +57,7 @@ class FloatingBodies(Work):
         force = pressure * scene.spacing ** (scene.dimensions - 1) / units
         self.units = (force, force * max(up - low for low, up in zip(scene.layout.lower, scene.layout.upper)))
         self._scene, self._plan, self._push = scene, plan, settled(add_pushes)
+        self._riders = Riders(plan, own) if solid_plan(plan).riding.any() else None
         self.contacts: Contacts | None = None
 
     def meet(self, maps: np.ndarray) -> None:
@@ -71,6 +74,11 @@ class FloatingBodies(Work):
         of_each = self.body_of, self.bodies.place, self.units, engine.domain.periods
         of_each += self._plan.pulls.whole, self.masses
         parts = engine.each(self._push, *of_each, engine.view(0.0), engine.columns())
+        pushes = sum(parts)
+        if self._riders:
+            told = self.bodies.place, self.units, engine.domain.periods
+            pushes = pushes + self._riders.pushes(engine.of("solids"), *told)
+        self.load(pushes, engine.domain.comm)
         self.load(sum(parts), engine.domain.comm, time, dt)
         if dt > 0.0:
             self.bodies.kick(time, dt, self.contacts, self.joints)

@@ -13,6 +13,7 @@ from psph.physics.motion import (
     RIGID,
     WHIRL,
     WORK,
+    carried_by,
     deforms,
     is_free,
     is_rigid,
@@ -53,14 +54,15 @@ def carried_fields(movement: Movement, frame) -> tuple[str, ...]:
 def _distinct(species, one_of) -> tuple:
     """The different motions of some species that are ``one_of`` these."""
     # By type too: named tuples of different types are equal where their values are.
-    motions = {(type(s.motion), s.motion) for s in species if one_of(s.motion)}
+    found = (carried_by(s.motion) for s in species if one_of(s.motion))
+    motions = {(type(one), one) for one in found}
     return tuple(motion for _, motion in sorted(motions, key=str))
 
 
 def _row(motion, among: tuple) -> int:
     """The place of a motion among others, 0 where it is none of them."""
-    told = [(type(one), one) for one in among]
-    return told.index((type(motion), motion)) if (type(motion), motion) in told else 0
+    told, own = [(type(one), one) for one in among], carried_by(motion)
+    return told.index((type(own), own)) if (type(own), own) in told else 0
 
 
 def _number(motion, motions: tuple) -> int:

@@ -10,7 +10,7 @@ def parts_of(scene, plan, store, comm) -> tuple:
     a plan has no use for."""
     own = solid_plan(plan)
     clamps = loads = faces = cracks = None
-    if own.grips:
+    if own.grips.any():
         from psph.simulation.clamps import Clamps
 
         clamps = Clamps(scene, plan, store)

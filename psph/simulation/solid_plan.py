@@ -4,12 +4,14 @@ import math
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from psph.acts import FLOWING, SOLIDS
 from psph.fields import WALL
 from psph.physics.solid.cracks import CUT
 from psph.physics.solid.deformation import INERTIA, SMOOTHING
 from psph.physics.solid.material import remembers
-from psph.physics.solid.motion import MovingClamp
+from psph.physics.solid.motion import MovingClamp, Riding
 from psph.physics.solid.plastic import Lasting
 from psph.simulation.passes import Pass, array_of, make_passes
 
@@ -57,12 +59,18 @@ class SolidPlan:
         return self.touching and any(one.kind == WALL for one in self._plan.materials.rigid)
 
     @property
+    def riding(self) -> np.ndarray:
+        """Whether the particles of each group go with a rigid body."""
+        return self._plan.materials.where(lambda one: isinstance(one.motion, Riding))
+
+    @property
     def substeps(self) -> bool:
         """Whether solids make steps of their own within one of the fluid.
 
-        What they press and moves as a whole takes the steps of the fluid: beside it they take these too.
+        What they press or are fixed to and moves as a whole takes the steps of the fluid: beside it they
+        take these too.
         """
-        return self.immersed and not self.pressed
+        return self.immersed and not self.pressed and not self.riding.any()
 
     @property
     def contact_step(self) -> float:
@@ -71,9 +79,9 @@ class SolidPlan:
         return min((one.longest_step(self._plan.extremes) for one in effects), default=math.inf)
 
     @property
-    def grips(self) -> tuple[Any, ...]:
-        """The motions of clamps that move, among those that are rigid."""
-        return tuple(one for one in self._plan.materials.rigid if isinstance(one, MovingClamp))
+    def grips(self) -> np.ndarray:
+        """Whether the particles of each group are in a clamp that moves, as it is told or with a body."""
+        return self._plan.materials.where(lambda one: isinstance(one.motion, (MovingClamp, Riding)))
 
     @cached_property
     def laws(self) -> tuple:

@@ -115,6 +115,11 @@ class Solids(Work):
         """Those of the rows."""
         return self._columns
 
+    @property
+    def masses(self) -> np.ndarray:
+        """True masses of the rows, kg."""
+        return self._masses
+
     def fill_masses(self, mass: np.ndarray) -> None:
         """The true masses of rows, kg, into the columns of all particles."""
         mass[self._columns] = self._masses

@@ -10,7 +10,7 @@ from psph.output.gauges.displacement import gone
 from psph.output.gauges.force import moments, turns
 from psph.parallel.reductions import exact_sums
 from psph.physics.motion import ANCHOR, LOAD, RIGID
-from psph.physics.rigid.pose import in_space
+from psph.physics.rigid.pose import ACCELERATION
 from psph.physics.solid.anvil import Anvils, pressed
 from psph.physics.solid.deformation import INERTIA
 
@@ -71,11 +71,9 @@ class ReactionGauge(NamedTuple):
         for number in self.groups:
             if plan.materials.motion_of[number] == RIGID:
                 own = group == number
-                pose = plan.materials.rigid[plan.materials.pose_of[number]].pose(simulation.time)
-                places = in_space(tuple(store.shown(ANCHOR.name)[rows[own]].T))
-                told[own] = np.stack(np.broadcast_arrays(*pose.acceleration_of(places)), axis=1)[
-                    :, : store.dimensions
-                ]
+                place = simulation.engine.poses.maps[plan.materials.pose_of[number], ACCELERATION]
+                anchors = store.shown(ANCHOR.name)[rows[own]]
+                told[own] = place[:, 0] + anchors @ place[:, 1:].T
         return told
 
     def _on_anvil(self, simulation, number: int) -> tuple[np.ndarray, np.ndarray]:

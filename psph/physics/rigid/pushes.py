@@ -31,7 +31,7 @@ def add_pushes(first, last, body_of, places, units, periods, pulls, masses, view
             continue
         arm = nearest_image(subtract(at(columns.position, k), point(places, body, force)), periods)
         torque = twisted(moment(arm, force), columns.couple, k, take(view, k).mass)
-        _book(found, body, force, torque, per_force, per_torque)
+        book(found, body, force, torque, per_force, per_torque)
     return found
 
 
@@ -101,14 +101,15 @@ def _typed_twisted(torque, couple, k, mass):
     return unrolled("torque, couple, k, mass", f"return {tuple_of(parts)}")
 
 
-def _book(found, body, force, torque, per_force, per_torque):
+def book(found, body, force, torque, per_force, per_torque):
+    """Add a force and a torque to those ``found`` for a body, in whole numbers."""
     for d in range(len(force)):
         found[body, d] += int(np.rint(force[d] * per_force))
     for d in range(3):
         found[body, 3 + d] += int(np.rint(torque[d] * per_torque))
 
 
-@overload(_book)
+@overload(book)
 def _typed_book(found, body, force, torque, per_force, per_torque):
     lines = [f"found[body, {d}] += int(rint(force[{d}] * per_force))" for d in range(len(force))]
     lines += [f"found[body, {3 + d}] += int(rint(torque[{d}] * per_torque))" for d in range(3)]

@@ -26,6 +26,30 @@ class Clamped(NamedTuple):
     kind = SOLID
 
 
+class Riding(NamedTuple):
+    """Particles of a solid that go with a rigid body of this ``name``, which bears what pulls on them; its
+    :class:`psph.physics.rigid.body.RigidBody` is known once its sites are."""
+
+    name: str
+    carrier: Any = None
+
+    kind = SOLID
+
+    def pose(self, time: float):
+        """Where what is not free of the body has it at ``time``, s."""
+        return self.carrier.pose(time)
+
+    @property
+    def motion(self):
+        """That of the body which the case tells."""
+        return self.carrier.motion
+
+    @property
+    def goes_free(self) -> bool:
+        """As the body."""
+        return self.carrier.goes_free
+
+
 class MovingClamp(NamedTuple):
     """Particles of a solid that move as a whole by a rigid ``motion``, as they are told."""
 

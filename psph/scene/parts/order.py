@@ -12,7 +12,7 @@ from psph.case.tensions import tensions_in
 from psph.case.updated import referred_in, updated_in
 from psph.fields import WALL
 from psph.physics.motion import Buffered, Fixed, Free
-from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp
+from psph.physics.solid.motion import Clamped, Elastic, Immersed, MovingClamp, Riding
 from psph.physics.walls.conditions import MIRROR
 from psph.scene.parts.end import Behind, EndPart, behind
 from psph.scene.parts.fluid import FluidPart
@@ -118,7 +118,7 @@ def parts_of(case: Case, gravity: tuple[float, ...]) -> Parts:
             f"{name} ({key})",
             f"solids.{name}.{key}",
             whole.table.held(clamp),
-            MovingClamp(told) if told else Clamped(),
+            MovingClamp(told) if told else Riding(clamp.body) if clamp.body else Clamped(),
             whole=whole.number,
             source=whole.source,
             solid=whole.solid or WALL,

@@ -85,6 +85,10 @@ class Part:
         """Whether it is clamped, and so a part of another."""
         return self.whole != self.number
 
+    def borne_by(self, other: "Part") -> bool:
+        """Whether another part bears it, in whose shape it may be."""
+        return False
+
     @property
     def moves_whole(self) -> bool:
         """Whether forces move it as a whole."""

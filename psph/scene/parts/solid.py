@@ -12,9 +12,9 @@ from psph.particles.reach import Reach
 from psph.physics.solid.contact import REACH as CONTACT
 from psph.physics.solid.deformation import HOURGLASS, SHARED_HOURGLASS, SMOOTHING
 from psph.physics.solid.material import MADE_OF, ElasticSolid, solid_of
-from psph.physics.solid.motion import Immersed
+from psph.physics.solid.motion import Immersed, Riding
 from psph.scene.parts.hookean import HookeanPart, StressedPart
-from psph.scene.parts.part import Known
+from psph.scene.parts.part import Known, Part
 
 BEYOND = 0.1
 """Spacings: more than two particles approach each other in a step of a fluid."""
@@ -76,6 +76,10 @@ class ClampPart(HookeanPart):
 
     keeps_form = True
     looks = "elastic solid"
+
+    def borne_by(self, other: Part) -> bool:
+        """Whether it is fixed to a body, in which it may be."""
+        return isinstance(self.motion, Riding) and other.moves_whole and other.name == self.motion.name
 
     def own(self, known: Known) -> dict[str, Any]:
         """The same as its solid, whose deviatoric stress does not evolve here."""
