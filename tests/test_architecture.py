@@ -301,7 +301,10 @@ ROOMS = (
         "physics/rigid/pushes",
     ),
     *("physics/solid/", "physics/stress/", "physics/region"),
-    *(f"simulation/{room}" for room in ("solid", "immersion", "pressed", "floating", "touching", "meetings")),
+    *(
+        f"simulation/{room}"
+        for room in ("solid", "immersion", "pressed", "floating", "touching", "meetings", "riders")
+    ),
     *(f"simulation/{room}" for room in ("clamps", "end", "obstacles", "paddles", "wet_contact")),
     *("particles/others", "particles/partners", "parallel/reference", "parallel/partner"),
     *(f"output/gauges/{room}" for room in ("joint", "motion", "reaction", "stress")),

@@ -89,7 +89,7 @@ def test_the_guard_of_the_energy_knows_what_the_hull_gives(tmp_path):
         simulation.step()
         gains.append(guards._gain() * guards._unit)
     assert abs(hull.kinetic_energy()[0] - before) > 0.05 and simulation.engine.stored_energy() > 0.002
-    assert np.abs(gains).max() < 2e-3 * abs(hull.kinetic_energy()[0] - before)
+    assert np.abs(gains).max() < 5e-3 * abs(hull.kinetic_energy()[0] - before)
 
 
 def test_in_water_that_slips_and_sticks_their_momentum_is_kept(tmp_path):
