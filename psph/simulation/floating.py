@@ -14,9 +14,9 @@ from psph.physics.rigid.lines import Lines, Strung
 from psph.physics.rigid.pushes import add_pushes
 from psph.scene.bodies import shares_of
 from psph.scene.joints import joints_of
+from psph.scene.lines import lines_of
 from psph.simulation.riders import Riders
 from psph.simulation.solid_plan import solid_plan
-from psph.scene.lines import lines_of
 from psph.simulation.touching import Contacts
 
 BITS = 58
@@ -78,8 +78,7 @@ class FloatingBodies(Work):
         if self._riders:
             told = self.bodies.place, self.units, engine.domain.periods
             pushes = pushes + self._riders.pushes(engine.of("solids"), *told)
-        self.load(pushes, engine.domain.comm)
-        self.load(sum(parts), engine.domain.comm, time, dt)
+        self.load(pushes, engine.domain.comm, time, dt)
         if dt > 0.0:
             self.bodies.kick(time, dt, self.contacts, self.joints)
         engine.poses.turn_to(time)
