@@ -4,6 +4,10 @@ import numpy as np
 import pytest
 from drafts import draft
 from gauging import start
+from long import LONG
+
+from psph.physics.fluid.buffers import NoBuffers
+from psph.physics.order import shifting
 
 STREAM = """
 space = {{ dimensions = {dim}, spacing = 0.1, periodic = {across}, lower = {low}, upper = {high} }}
@@ -326,3 +330,41 @@ at = 2.4
 inward = "-x"
 pressure = 0.0
 """
+
+
+CHANNEL = """
+space = { dimensions = 2, spacing = 0.0125 }
+time.end = 20.0
+physics.gravity = [0.0, -9.81]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0], upper = [1.2, 0.6] }
+pressure = "hydrostatic"
+velocity = [0.5, 0.0]
+[walls.bed]
+shape.box = { lower = [-0.4, -0.05], upper = [1.6, 0.0] }
+[ends.upstream]
+at = 0.0
+inward = "+x"
+velocity = 0.5
+[ends.downstream]
+at = 1.2
+inward = "-x"
+level = 0.6
+"""
+
+
+@LONG
+def test_deep_channels(tmp_path, monkeypatch):
+    """48 rows deep, 4 s: the water stays at the level that its end gives.  Control: where rows step aside at the
+    plane too, as between neighbours all around, an eddy stands there and the channel fills."""
+
+    def depth():
+        simulation = start(draft(tmp_path, CHANNEL))
+        while simulation.time < 4.0:
+            simulation.step()
+        store = simulation.store
+        return np.count_nonzero(store.shown("kind") == 0) * 0.0125**2 / 1.2
+
+    assert depth() == pytest.approx(0.6, rel=0.02)
+    monkeypatch.setattr(shifting, "buffers_of", lambda scene: NoBuffers())
+    assert depth() > 0.66

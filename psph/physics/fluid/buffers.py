@@ -9,6 +9,10 @@ from psph.physics.facts import Facts
 class NoBuffers(NamedTuple):
     """All fluid."""
 
+    def stands_behind(self, i):
+        """0: there is no end."""
+        return 0.0
+
     def in_front(self, i):
         """1 in a fluid, else 0."""
         return i.is_fluid
@@ -16,6 +20,10 @@ class NoBuffers(NamedTuple):
 
 class BesideBuffers(NamedTuple):
     """Fluid that forces move: behind an end there is nothing, as behind a wall."""
+
+    def stands_behind(self, i):
+        """1 in the buffer of an end, else 0."""
+        return i.is_fluid * (1.0 - i.mobile)
 
     def in_front(self, i):
         """1 in a fluid in front of an end, else 0."""
@@ -26,6 +34,10 @@ Buffers = NoBuffers | BesideBuffers
 
 in_front = call_by_type("in_front")
 """(buffers, i) → 1 in fluid in front of open ends, else 0: see :class:`BesideBuffers`."""
+
+
+stands_behind = call_by_type("stands_behind")
+"""(buffers, i) → 1 in the buffer of an end, else 0."""
 
 
 def buffers_of(scene: Facts) -> Buffers:

@@ -11,6 +11,7 @@ from psph.fields import Field as Declared
 from psph.formula import helper, where
 from psph.moments import first_moment
 from psph.physics.facts import Facts
+from psph.physics.fluid.buffers import Buffers, NoBuffers, buffers_of, stands_behind
 from psph.physics.fluid.cells import Cells, OneEach, cells_of, sharing
 from psph.physics.roles import ORDER
 from psph.physics.walls.conditions import BEARING, MIRROR
@@ -106,10 +107,11 @@ class PositionShift(NamedTuple):
     δx_i = −2 U Δt h Σ_j m_j/ρ_j [n + 0.2 n⁴] ∇W_ij, |δx_i| ≤ U Δt, n = m_j/ρ_j W′/r over what it is at
     dx on the lattice.  None where −Σ_j m_j/ρ_j r W′ is below 0.7 of what it is on the lattice.  U is no
     larger than the largest speed of the flow: still water is left alone, where the shift of a constant U
-    would stir a lattice under tension.  The weight n is psph's own: the usual 1 also sees the rows that are
-    missing above the second row of a surface, and would push that row outwards for ever (a rotating patch
-    gains 1.5 % of angular momentum, with n 0.5 %).  Two spacings off n is 0.09.  It is left out
-    beside walls that bear no pressure: against them it pumps energy.
+    would stir a lattice under tension.  What stands behind an open end counts as missing there: rows that
+    step aside at its plane part, and stir an eddy that shuts it.  The weight n is psph's own: the usual 1
+    also sees the rows that are missing above the second row of a surface, and would push that row outwards
+    for ever (a rotating patch gains 1.5 % of angular momentum, with n 0.5 %).  Two spacings off n is 0.09.
+    It is left out beside walls that bear no pressure: against them it pumps energy.
     Velocity and density go along unchanged, so that momentum is conserved to round-off.  Lind, Xu,
     Stansby & Rogers (2012), J. Comput. Phys. 231, 1499; Sun et al. (2017), Comput. Methods Appl.
     Mech. Eng. 315, 25.
@@ -137,7 +139,7 @@ class PositionShift(NamedTuple):
         if not all(one.bearing for one in scene.species):
             return None
         made = lattice_shift(self.strength, scene.kernel, scene.spacing, scene.dimensions)
-        return made._replace(cells=cells_of(scene))
+        return made._replace(cells=cells_of(scene), buffers=buffers_of(scene))
 
     def why_absent(self, scene: Facts):
         """Why it has no form in the scene."""
@@ -147,7 +149,7 @@ class PositionShift(NamedTuple):
 class LatticeShift(NamedTuple):
     """Particles shift from where they crowd to where they are few, with unchanged velocity.
 
-    The form of :class:`PositionShift` for the lattice of a scene.
+    The form of :class:`PositionShift` for the lattice of a scene, with or without ``buffers`` of open ends.
     ``full`` is Σ dx^d r W′ over the lattice of the start; ``near`` 1/(dx^d W′(dx)/dx), m².  Where particles
     share ``cells`` n is that of the cell of which each fills a part.
     """
@@ -158,6 +160,7 @@ class LatticeShift(NamedTuple):
     full: float
     near: float
     cells: Cells = OneEach()
+    buffers: Buffers = NoBuffers()
 
     writes = CROWDED
     lagged = True
@@ -171,7 +174,8 @@ class LatticeShift(NamedTuple):
         share = j.specific_volume * pair.m_dw_r
         n = share * (sharing(self.cells, j) * self.near)
         pull = share * n * (1.0 + CROWDING * n * (n * n))
-        return total[0] + share * pair.r2, add(total[1], scale(pair.x_ij, pull))
+        whole = share * pair.r2 * (1.0 - stands_behind(self.buffers, j))
+        return total[0] + whole, add(total[1], scale(pair.x_ij, pull))
 
     def finish_value(self, total, i, kernel):
         """h Σ_j V_j [n + 0.2 n⁴] ∇W, zero near a surface."""
