@@ -332,7 +332,7 @@ pressure = 0.0
 """
 
 
-CHANNEL = """
+DEEP_CHANNEL = """
 space = { dimensions = 2, spacing = 0.0125 }
 time.end = 20.0
 physics.gravity = [0.0, -9.81]
@@ -359,7 +359,7 @@ def test_deep_channels(tmp_path, monkeypatch):
     plane too, as between neighbours all around, an eddy stands there and the channel fills."""
 
     def depth():
-        simulation = start(draft(tmp_path, CHANNEL))
+        simulation = start(draft(tmp_path, DEEP_CHANNEL))
         while simulation.time < 4.0:
             simulation.step()
         store = simulation.store

@@ -137,12 +137,12 @@ def test_a_basin_follows_the_sea_up_and_down(tmp_path):
 
 def test_a_basin_that_has_run_dry_is_filled_again(tmp_path):
     """What went out last does not keep out what stands behind a plane with nothing in front."""
-    (tmp_path / "tide.csv").write_text("time,value\n0,0.6\n1,-0.5\n3,-0.5\n4,0.6\n9,0.6\n")
+    (tmp_path / "tide.csv").write_text("time,value\n0,0.6\n1,-0.5\n4,-0.5\n5,0.6\n9,0.6\n")
     more = 'ends.sea.level={file="tide.csv"}', "physics.gravity=[-1.0, -9.81]"
     simulation = start(draft(tmp_path, BASIN, *more))
-    run_to(simulation, 3.0)
+    run_to(simulation, 4.0)
     assert volume(simulation) < 0.05
-    run_to(simulation, 5.5)
+    run_to(simulation, 6.5)
     assert volume(simulation) > 0.4
 
 
