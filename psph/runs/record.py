@@ -200,9 +200,11 @@ class Record:
         """All saved fields of all particles."""
         sim = self.simulation
         arrays = {field.name: sim.store.shown(field.name) for field in sim.plan.saved}
-        arrays["position"], beyond = sim.domain.taken_back(arrays["position"])
         if CROSSED.name in arrays:
+            arrays["position"], beyond = sim.domain.taken_back(arrays["position"])
             arrays[CROSSED.name] = arrays[CROSSED.name] + beyond
+        else:
+            arrays["position"] = sim.domain.inside(arrays["position"])
         arrays["pressure"] = sim.engine.shown_pressure()
         lines = {}
         for kind in sim.engine.kinds:
