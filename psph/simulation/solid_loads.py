@@ -23,6 +23,7 @@ class SolidLoads:
         self._tables = tuple(scene.case.solids.values())
         self._rises = np.array([table.load_rise for table in self._tables])
         self._book = settled(book)
+        self.share(0.0)
 
     def draw(self, columns: np.ndarray, solid: np.ndarray) -> None:
         """What they give each particle at their full size; the particles at ``columns`` belong to the
@@ -55,15 +56,15 @@ class SolidLoads:
     def share(self, time: float) -> np.ndarray:
         """The part of the loads of each solid that acts from now on, at ``time``, s."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            self._acting = np.where(self._rises > 0.0, np.minimum(time / self._rises, 1.0), 1.0)
-        return self._acting
+            self.acting = np.where(self._rises > 0.0, np.minimum(time / self._rises, 1.0), 1.0)
+        return self.acting
 
     def book(self, dt: float, columns: np.ndarray, solid: np.ndarray, mass: np.ndarray) -> None:
         """Half of the work of a step of ``dt`` s, on particles of these true masses, kg: by the forces that
         act, once before they change and once after, as the kicks there have it."""
         arrays = (self.store[name] for name in (DRAWN.name, "velocity", WORK.name))
         if len(columns) and dt > 0.0:
-            in_threads(self._book, 0, len(columns), columns, 0.5 * dt, mass * self._acting[solid], *arrays)
+            in_threads(self._book, 0, len(columns), columns, 0.5 * dt, mass * self.acting[solid], *arrays)
 
 
 @elementwise

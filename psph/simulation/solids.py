@@ -115,14 +115,18 @@ class Solids(Work):
         """Those of the rows."""
         return self._columns
 
-    @property
-    def masses(self) -> np.ndarray:
-        """True masses of the rows, kg."""
-        return self._masses
+    def state(self) -> dict:
+        """The part of the loads that acts."""
+        return {"acting": self.loads.acting.tolist()} if self.loads else {}
+
+    def restore(self, state: dict) -> None:
+        """Go on from there."""
+        if self.loads:
+            self.loads.acting = np.array(state["acting"])
 
     def fill_masses(self, mass: np.ndarray) -> None:
         """The true masses of rows, kg, into the columns of all particles."""
-        mass[self._columns] = self._masses
+        mass[self._columns] = self.masses
 
     def settle(self) -> None:
         """Rows and partners after particles have found new columns or ranks; the first time the reference
@@ -148,11 +152,11 @@ class Solids(Work):
         if self._finer is not None:
             finer = self._finer[self._matter.number]
             self._weights, volume = self._weights._replace(finer=finer), volume / finer**store.dimensions
-        self._inverse_density, self._masses = 1.0 / density, density * volume
+        self._inverse_density, self.masses = 1.0 / density, density * volume
         if self._faces:
             self._faces.settle(self._columns)
         if self.clamps:
-            self.clamps.settle(self._columns, self._masses)
+            self.clamps.settle(self._columns, self.masses)
         self._make_tables(store.id[columns[order]], np.unique(partners[abroad]), unknown)
         if self.loads:
             self._matter = self._matter._replace(following=self.loads.following(self._columns))
@@ -228,7 +232,7 @@ class Solids(Work):
         memory = memory_of(self._planned.solids, self.store, self._columns, dt)
         first, second = self._tables
         if self.loads:
-            self.loads.book(dt, self._columns, self._matter.number, self._masses)
+            self.loads.book(dt, self._columns, self._matter.number, self.masses)
         with self.ledger("records"):
             for name in self._moving:
                 self._put(first, name, 0, rows)
@@ -280,7 +284,7 @@ class Solids(Work):
                 store["acceleration"],
             )
             if loads:
-                loads.book(dt, self._columns, number, self._masses)
+                loads.book(dt, self._columns, number, self.masses)
             if self.clamps:
                 self.clamps.book(dt)
             self._crack()
