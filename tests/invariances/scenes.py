@@ -249,6 +249,24 @@ SCENES = {
     "solid": scene(solids={"block": stirred_solid()}),
     "rubber": scene(solids={"block": stirred_solid(law="neo-hookean", damping=50.0)}),
     "metal": scene(solids={"block": stirred_solid(yield_stress=2e3, hardening=1e4)}),
+    "pressed rubber that relaxes": scene(
+        solids={
+            "block": stirred_solid(
+                relaxation=[{"shear": 1e5, "time": 0.01}, {"shear": 5e4, "time": 0.05}],
+                loads={"side": {"shape": BLOCK, "pressure": 2e4, "facing": [-1.0, 0.5]}},
+            )
+        }
+    ),
+    "fin on a hull": scene(
+        bodies={"hull": {"shape": box((0.0, 0.0), (0.75, 0.875)), "density": 800.0, "spin": 2.0}},
+        solids={
+            "fin": {
+                "shape": box((0.25, 0.25), (1.75, 0.625)),
+                "clamps": {"root": {"shape": box((0.25, 0.25), (0.75, 0.625)), "body": "hull"}},
+                **RUBBER,
+            }
+        },
+    ),
     "updated": scene(scheme="solid", solids={"block": stirred_solid(description="updated")}),
     "solids that meet": scene(
         solids={

@@ -14,6 +14,7 @@ DIRECTIONS = (
     "amplitude",
     "shift",
     "normal",
+    "facing",
     "along",
     "direction",
     "translation",
@@ -194,7 +195,7 @@ class Shift(NamedTuple):
 
 
 NO_UNIT = (
-    "degrees", "normal", "count",
+    "facing", "degrees", "normal", "count",
     "dimensions", "smoothing", "poisson", "friction_angle", "dilatancy", "rest_coefficient", "strength_reduction", "restitution",
     "exponent", "friction", "fast_friction", "inertial_number", "damping_ratio", "angle", "phase", "cfl",
     "gather_every", "hourglass", "along", "pieces", "drag", "skin_drag", "normal", "alpha", "skin", "rate", "epsilon", "delta", "beta",
@@ -225,7 +226,7 @@ UNIT_OF = {
     **dict.fromkeys(("gravity", "acceleration"), "m/s2"),
     **dict.fromkeys(("density", "grain_density", "water_density"), "kg/m3"),
     **dict.fromkeys(
-        ("young", "cohesion", "yield_stress", "hardening", "pressure", "tension", "stiffness"), "Pa"
+        ("young", "cohesion", "yield_stress", "hardening", "pressure", "tension", "stiffness", "shear"), "Pa"
     ),
     **dict.fromkeys(
         ("largest_viscosity", "plastic_viscosity", "viscosity_at_rest", "viscosity_in_shear", "damping"),
