@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from gauging import start
 from mpi4py import MPI
+from parallel.written import written
 from runs.resuming import go_on_elsewhere
-
-from psph.case import load
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -41,15 +40,8 @@ of = "elbow"
 """Two bodies in water, on a hinge in the wall and one between them, across all slabs."""
 
 
-def arm(folder):
-    if COMM.rank == 0:
-        (folder / "arm.toml").write_text(ARM, encoding="utf-8")
-    COMM.Barrier()
-    return load(folder / "arm.toml")
-
-
 def test_same_bits_on_any_number_of_ranks(mpi_tmp_path):
-    case = arm(mpi_tmp_path)
+    case = written(mpi_tmp_path, ARM)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
     for _ in range(60):
         single.step()
@@ -71,4 +63,4 @@ def rows_of(simulation):
 
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
 def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
-    go_on_elsewhere(arm(mpi_tmp_path), before, after, mpi_tmp_path)
+    go_on_elsewhere(written(mpi_tmp_path, ARM), before, after, mpi_tmp_path)

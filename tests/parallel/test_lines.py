@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from gauging import start
 from mpi4py import MPI
+from parallel.written import written
 from runs.resuming import go_on_elsewhere
-
-from psph.case import load
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -45,15 +44,8 @@ of = "raft"
 """A raft across two slabs, between a line on the bed and one that parts."""
 
 
-def moored(folder):
-    if COMM.rank == 0:
-        (folder / "moored.toml").write_text(MOORED, encoding="utf-8")
-    COMM.Barrier()
-    return load(folder / "moored.toml")
-
-
 def test_same_bits_on_any_number_of_ranks(mpi_tmp_path):
-    case = moored(mpi_tmp_path)
+    case = written(mpi_tmp_path, MOORED)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
     for _ in range(60):
         single.step()
@@ -61,13 +53,10 @@ def test_same_bits_on_any_number_of_ranks(mpi_tmp_path):
     one, other = (sim.engine.of("bodies") for sim in (single, together))
     assert one.state() == other.state()
     lines = one.lines
-    assert np.isfinite(lines.parted).tolist() == [True, False] or np.isfinite(lines.parted).tolist() == [
-        False,
-        True,
-    ]
+    assert np.count_nonzero(np.isfinite(lines.parted)) == 1
     assert lines.tensions.max() > 1.0
 
 
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
 def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
-    go_on_elsewhere(moored(mpi_tmp_path), before, after, mpi_tmp_path)
+    go_on_elsewhere(written(mpi_tmp_path, MOORED), before, after, mpi_tmp_path)

@@ -5,9 +5,8 @@ import pytest
 from gauging import start
 from mpi4py import MPI
 from parallel.test_joints import rows_of
+from parallel.written import written
 from runs.resuming import go_on_elsewhere
-
-from psph.case import load
 
 COMM = MPI.COMM_WORLD
 pytestmark = pytest.mark.mpi(min_size=2)
@@ -38,15 +37,8 @@ clamps.root = { shape.box = { lower = [0.7, 0.3], upper = [1.1, 0.5] }, body = "
 """Across all slabs."""
 
 
-def swimmer(folder):
-    if COMM.rank == 0:
-        (folder / "swimmer.toml").write_text(SWIMMER, encoding="utf-8")
-    COMM.Barrier()
-    return load(folder / "swimmer.toml")
-
-
 def test_same_bits_on_any_number_of_ranks(mpi_tmp_path):
-    case = swimmer(mpi_tmp_path)
+    case = written(mpi_tmp_path, SWIMMER)
     single, together = start(case, MPI.COMM_SELF), start(case, COMM)
     for _ in range(60):
         single.step()
@@ -59,4 +51,4 @@ def test_same_bits_on_any_number_of_ranks(mpi_tmp_path):
 
 @pytest.mark.parametrize("before, after", [(1, 2), (2, 1)])
 def test_a_resume_on_other_ranks_goes_on_alike(before, after, mpi_tmp_path):
-    go_on_elsewhere(swimmer(mpi_tmp_path), before, after, mpi_tmp_path)
+    go_on_elsewhere(written(mpi_tmp_path, SWIMMER), before, after, mpi_tmp_path)
