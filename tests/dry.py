@@ -1,8 +1,9 @@
-"""Rigid bodies without the fluid of their case, for the tests of their contacts."""
+"""Rigid bodies without the fluid of their case, for the tests of their contacts, joints and lines."""
 
 import math
 
 import numpy as np
+from mpi4py import MPI
 
 from psph.scene import Scene
 from psph.simulation.floating import FloatingBodies
@@ -35,14 +36,18 @@ class Dry:
         self.poses = Poses(plan.materials.rigid, corners, None, self.scene.gravity, (self.floating,))
         self.floating.meet(self.poses.maps)
         self.bodies = self.floating.bodies
-        self.bodies.load(np.zeros_like(self.bodies.force), np.zeros_like(self.bodies.force))
+        self._load()
 
     def step(self):
         self.time += self.dt
         self.poses.advance(self.time, self.dt)
-        self.bodies.load(np.zeros_like(self.bodies.force), np.zeros_like(self.bodies.force))
-        self.bodies.kick(self.time, self.dt, self.floating.contacts)
+        self._load()
+        self.bodies.kick(self.time, self.dt, self.floating.contacts, self.floating.joints)
         self.poses.turn_to(self.time)
+
+    def _load(self):
+        none = np.zeros((len(self.bodies.bodies), 6), np.int64)
+        self.floating.load(none, MPI.COMM_SELF, self.time, self.dt)
 
     def to(self, time):
         while self.time < time - 0.5 * self.dt:

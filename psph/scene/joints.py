@@ -30,9 +30,10 @@ def joints_of(scene: Scene, order: Sequence[str]) -> tuple[Joint, ...]:
         if len(table.of) == 1:
             other, motion = None, None
         leader = motion if other is None and motion is not None and is_rigid(motion) else None
-        points = _points(table, places[table.of[0]])
+        middles = [places[one] for one in table.of if one in rows]
+        points = _points(table, places[table.of[0]], middles, scene.layout.periods)
         held = _held(table, slides, turns)
-        found.append(Joint(name, rows[table.of[0]], other, *points, leader=leader, **held))
+        found.append(Joint(name, rows[table.of[0]], other, leader=leader, **points, **held))
     return tuple(found)
 
 
@@ -48,13 +49,21 @@ def apart(scene: Scene) -> frozenset[frozenset[str]]:
     return frozenset(frozenset(table.of) for table in scene.case.joints.values())
 
 
-def _points(table: JointTable, place) -> tuple:
-    """The points of both that are joined, at the start."""
-    if table.rod is not None:
-        return in_space(table.rod.at), in_space(table.rod.anchor)
-    told = table.hinge or table.ball
+def _points(table: JointTable, place, middles, periods) -> dict[str, Any]:
+    """The points of both that are joined, at the start, of the images that are nearest to the ``middles`` of
+    the bodies; and by how many periods, m, the two lie apart."""
+    told = table.rod or table.hinge or table.ball
     at = in_space(told.at) if told is not None else place
-    return at, at
+    ends = at, in_space(table.rod.anchor) if table.rod is not None else at
+    away = [beyond(end, middle, periods) for end, middle in zip(ends, [*middles, middles[0]])]
+    here, there = (tuple(x - by for x, by in zip(end, far)) for end, far in zip(ends, away))
+    return {"here": here, "there": there, "over": tuple(b - a for a, b in zip(*away))}
+
+
+def beyond(point, middle, periods) -> tuple[float, ...]:
+    """By how many whole periods a point lies beyond its image that is nearest to a middle, m."""
+    pairs = zip(point, middle, (*periods, None))
+    return tuple(period * round((x - m) / period) if period else 0.0 for x, m, period in pairs)
 
 
 def _held(table: JointTable, slides, turns) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from psph.physics.rigid.chains import Chain, Hanging, bearing_of
 from psph.physics.rigid.lines import Lines, SpringLine, ends_of
 from psph.physics.rigid.pose import in_space
 from psph.scene.body_parts import bodies_of
+from psph.scene.joints import beyond
 from psph.scene.scene import Scene
 from psph.scene.volumes import volume_of
 
@@ -52,12 +53,16 @@ def _line(scene: Scene, rows: dict[str, int], name: str, line: str, table: Line)
         damping = chain.damping * math.sqrt(chain.stiffness * chain.mass)
     elif table.pretension:
         length -= table.pretension / stiffness
+    places, periods = {one.name: one.reference for one in bodies_of(scene.census)}, scene.layout.periods
+    at, anchor = in_space(table.at), in_space(table.anchor)
+    away = beyond(at, places[name], periods), beyond(anchor, places.get(table.to or "", anchor), periods)
+    at, anchor = (tuple(x - by for x, by in zip(end, far)) for end, far in zip((at, anchor), away))
     return SpringLine(
         f"{name}.{line}",
         rows[name],
-        in_space(table.at),
+        at,
         rows.get(table.to or ""),
-        in_space(table.anchor),
+        anchor,
         stiffness,
         max(length, 0.0),
         damping,
@@ -65,6 +70,7 @@ def _line(scene: Scene, rows: dict[str, int], name: str, line: str, table: Line)
         leader,
         chain,
         table.break_load or math.inf,
+        tuple(b - a for a, b in zip(*away)),
     )
 
 
@@ -186,6 +192,7 @@ def _misplaced(scene: Scene, key: str, name: str, table: Line) -> Iterator[str]:
         if of is None or of not in places or not scene.census.sizes[places[of]]:
             continue
         low, high = (ends[places[of]] for ends in (scene.census.lowest, scene.census.highest))
+        point = np.array(point) - beyond(point, 0.5 * (low + high), scene.layout.periods)[: len(low)]
         away = np.maximum(np.maximum(low - point, point - high) - 0.5 * scene.spacing, 0.0)
         if (far := math.hypot(*away)) > scene.spacing:
             yield f"{key}.{what}: lies {far:.3g} m off {of}, which it is to be a point of; move it there"

@@ -29,8 +29,8 @@ MOVED = (
 )
 """A scene of each kind of matter, and walls that show a pressure of their own."""
 
-HELD = ("moored bodies", "chained bodies", "moored bodies on wet soils")
-"""Scenes with hinges and lines to places in space: what drifts would leave them."""
+HELD = ("jointed bodies", "moored bodies", "chained bodies", "moored bodies on wet soils")
+"""Scenes with hinges, joints and lines to places in space: what drifts would leave them."""
 
 NO_SHIFT = {"position_shift": "off"}
 """Its size is bounded by the largest speed, which drifts: docs/limits.md says by how much that tells."""

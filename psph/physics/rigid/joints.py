@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from psph.engine.jit import elementwise
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.rigid.contact import Yielding
+from psph.physics.rigid.linear import factored, solved
 from psph.physics.rigid.lines import STEP
 from psph.vectors import Vector
 
@@ -21,8 +21,8 @@ ROUNDS = 40
 FITS = 1e-13
 """Of the longest arm of a joint, or of 1 rad: what is left of a gap."""
 
-SHARED = 1e-10
-"""Part of its answer to itself that is left of a row which forbids what others do: it bears nothing."""
+ROUNDED = 8.0
+"""Units in the last place of the farthest point that are left of a gap at least."""
 
 SLIDE, TURN, TILT, LENGTH, GO, SPIN = range(6)
 """What a row of a joint is about: that it does not slide along a way, turn about it or tilt its axis about
@@ -37,7 +37,8 @@ KEPT = ("push", "twist", "ways", "latched")
 class Joint(NamedTuple):
     """What joins the body of the row ``body`` with that of the row ``other``, None for what no force moves.
 
-    ``here`` and ``there`` are the points of the two that it joins, where they are at the start, m.
+    ``here`` and ``there`` are the points of the two that it joins, where they are at the start, m; the first
+    lies by ``over``, whole periods, beyond that of the other's image that is joined.
     ``slides`` are directions along which the first may not move seen from the other, ``turns`` those about
     which it may not turn, and ``tilts`` those about which an ``axis`` of both may not tilt; all of them
     turn with the other. ``length`` in m is that of a rod between the points, None without one.  ``leader``
@@ -65,6 +66,7 @@ class Joint(NamedTuple):
     rest: float = 0.0
     damping: float = 0.0
     latch: bool = False
+    over: Vector = ORIGIN
 
 
 class JointRows(NamedTuple):
@@ -103,7 +105,8 @@ class Joints:
         )
         origin = [one.pose(0.0).reference if one else ORIGIN for one in self._leaders]
         self._reference = np.concatenate([bodies.reference, np.reshape(origin, (-1, 3))])
-        self._here, self._there = (np.array([getattr(one, of) for one in joints]) for of in ("here", "there"))
+        points = (np.array([getattr(one, of) for one in joints]) for of in ("here", "there", "over"))
+        self._here, self._there, self._over = points
         rows = [(j, *row) for j, one in enumerate(joints) for row in _rows_of(one)]
         self._of, self._what, self._way = (np.array(of) for of in zip(*rows))
         self._axis = np.array([one.axis or ORIGIN for one in joints])[self._of]
@@ -115,7 +118,8 @@ class Joints:
         arms = np.abs(self._here - self._reference[self._first]).max()
         gyration = np.sqrt(np.trace(bodies.inertia, axis1=1, axis2=2) / bodies.mass[:, 0])
         size = max(float(arms), float(gyration.max()), float(self._length.max()))
-        self._enough = FITS * np.where(np.isin(self._what, (SLIDE, LENGTH, GO)), size, 1.0)
+        self._ways = np.isin(self._what, (SLIDE, LENGTH, GO))
+        self._enough = FITS * np.where(self._ways, size, 1.0)
         self.push, self.twist = np.zeros((2, len(joints), 3))
         self.ways, self.latched, self._stops = np.zeros((3, len(joints)))
         self._see(bodies, 0.0)
@@ -127,13 +131,13 @@ class Joints:
         before, kept, give = self._now, bodies.pose(), bodies.yielding(then)
         given, let_go = np.zeros(len(self._of)), np.zeros(len(self._of), bool)
         binds = self._binds()
-        solve = self._solver(before, give, binds)
+        solve, enough = self._solver(before, give, binds), self._fitting(bodies)
         for _ in range(ROUNDS):
             go()
             gaps = self._gaps(self._rows(bodies, then))
             if not dt > 0.0:
                 break
-            if not (np.abs(np.where(binds, gaps, 0.0)) > self._enough).any():
+            if not (np.abs(np.where(binds, gaps, 0.0)) > enough).any():
                 if not self._switch(gaps, given, let_go):
                     break
                 binds = self._binds()
@@ -142,6 +146,8 @@ class Joints:
             share = np.where(binds, solve(np.where(binds, -gaps / dt, 0.0)), -given)
             given = given + share
             self._act(bodies, before, share)
+        else:
+            go()
         self.latched = np.where(self._latches, self._stops, 0.0)
         self._see(bodies, then)
         self._bear(bodies, self._sums(before, given), dt)
@@ -212,6 +218,11 @@ class Joints:
         with np.errstate(invalid="ignore"):  # where there is no limit
             return np.where(self._free, np.where(side != 0.0, way - limit, beyond), rows.gap)
 
+    def _fitting(self, bodies: Bodies) -> np.ndarray:
+        """What may be left of gaps (m,), m or rad, no less than what places are rounded to."""
+        far = max(float(np.abs(bodies.place).max()), float(np.abs(self._there).max()))
+        return np.maximum(self._enough, np.where(self._ways, ROUNDED * np.spacing(far), 0.0))
+
     def _binds(self) -> np.ndarray:
         """Which rows hold."""
         return ~self._free | (self._stops[self._of] != 0.0)
@@ -245,12 +256,13 @@ class Joints:
         one, other = self._first[self._of], self._second[self._of]
         here = place[one] + _turned(turn[one], self._here[self._of] - self._reference[one])
         there = place[other] + _turned(turn[other], self._there[self._of] - self._reference[other])
-        apart, way = here - there, _turned(turn[other], self._way)
+        over = self._over[self._of]
+        apart, way = here - there - over, _turned(turn[other], self._way)
         distance = np.sqrt((apart**2).sum(axis=1))
         is_length = self._what == LENGTH
         way = np.where(is_length[:, None], apart / np.where(distance > 0.0, distance, 1.0)[:, None], way)
-        slides = np.isin(self._what, (SLIDE, LENGTH, GO))[:, None]
-        arm = np.where(is_length[:, None], there, here) - place[other]
+        slides = self._ways[:, None]
+        arm = np.where(is_length[:, None], there, here - over) - place[other]
         push = np.where(slides, way, 0.0)
         twist = np.where(slides, np.cross(here - place[one], way), way)
         back = np.where(slides, np.cross(arm, way), way)
@@ -362,39 +374,3 @@ def _vector_of(turn: np.ndarray) -> np.ndarray:
     """Axis times sine of the angle of matrices (n, 3, 3)."""
     m = 0.5 * (turn - turn.transpose(0, 2, 1))
     return np.stack([m[:, 2, 1], m[:, 0, 2], m[:, 1, 0]], axis=1)
-
-
-@elementwise
-def factored(matrix):
-    """L below, and D on the diagonal, of the ``matrix`` (m, m) = L D Lᵀ; zeros in D of rows that forbid
-    nothing new.  Other units change no bit of it but by their powers of two."""
-    a = matrix.copy()
-    for k in range(len(a)):
-        if not a[k, k] > SHARED * matrix[k, k]:
-            a[k, k] = 0.0
-            continue
-        for i in range(k + 1, len(a)):
-            factor = a[i, k] / a[k, k]
-            for j in range(k + 1, i + 1):
-                a[i, j] -= factor * a[j, k]
-        for i in range(k + 1, len(a)):
-            a[i, k] /= a[k, k]
-    return a
-
-
-@elementwise
-def solved(factors, rates):
-    """x (m,) with L D Lᵀ x = ``rates``; zeros where D is."""
-    x = rates.copy()
-    for k in range(len(x)):
-        if factors[k, k] > 0.0:
-            for i in range(k + 1, len(x)):
-                x[i] -= factors[i, k] * x[k]
-            x[k] /= factors[k, k]
-        else:
-            x[k] = 0.0
-    for k in range(len(x) - 1, -1, -1):
-        if factors[k, k] > 0.0:
-            for i in range(k + 1, len(x)):
-                x[k] -= factors[i, k] * x[i]
-    return x

@@ -24,11 +24,11 @@ class SpringLine(NamedTuple):
     """A spring with a damper between two points: one ``at`` a point of a ``body``, one at an ``anchor``.
 
     ``body`` is its row; ``anchor`` a point in space where ``other`` is None, else one of the body of that
-    row, or of what a ``leader`` has the pose of; points are given as they are at the start, m, three
-    numbers.  Its tension is k (l − l₀) + ζ dl/dt with ``stiffness`` k in N/m, ``length`` l₀ in m and
-    ``damping`` ζ in N s/m.  One that ``pulls_only`` is slack where it is shorter than l₀ and never pushes: a
-    mooring line without weight.  One that is a ``chain`` has weight.  It parts where its tension is
-    ``breaks``, N, or more.
+    row, or of what a ``leader`` has the pose of; points are given as they are at the start, m, three numbers,
+    the anchor ``over``, whole periods, before that of the image that the line ends at. Its tension is k (l −
+    l₀) + ζ dl/dt with ``stiffness`` k in N/m, ``length`` l₀ in m and ``damping`` ζ in N s/m. One that
+    ``pulls_only`` is slack where it is shorter than l₀ and never pushes: a mooring line without weight. One
+    that is a ``chain`` has weight. It parts where its tension is ``breaks``, N, or more.
     """
 
     name: str
@@ -43,6 +43,7 @@ class SpringLine(NamedTuple):
     leader: Any = None
     chain: Chain | None = None
     breaks: float = np.inf
+    over: Vector = (0.0, 0.0, 0.0)
 
 
 class Strung(NamedTuple):
@@ -83,6 +84,7 @@ class Lines:
             if most >= line.breaks:
                 self.parted[number], self.borne[number] = time, most
                 on_ends, self.tensions[number], self.tensions_far[number] = np.zeros((2, 3)), 0.0, 0.0
+            ends[1] -= line.over
             for row, point, pull in zip((line.body, line.other), ends, on_ends):
                 if row is not None:
                     force[row] += pull
@@ -163,7 +165,7 @@ def ends_of(line: SpringLine, bodies: Bodies, time: float) -> tuple[np.ndarray, 
         last = np.array(pose.place(line.anchor)), np.array(pose.velocity_of(line.anchor))
     else:
         last = there, np.zeros(3)
-    return np.array([first[0], last[0]]), np.array([first[1], last[1]])
+    return np.array([first[0], last[0] + line.over]), np.array([first[1], last[1]])
 
 
 def _joined(lines: Sequence[SpringLine], bodies: Bodies, by: Sequence[float]) -> float:
