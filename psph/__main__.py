@@ -90,7 +90,8 @@ def _explain(options, comm) -> None:
     case = _load(options)
     _warn(case, comm)
     if comm.rank == 0:
-        print(case.explain(ranks))
+        plan = case.explain(ranks)
+        print("\n".join(plan.lines if options.all else plan.page))
         if options.study:
             from psph.lab.study.prediction import predicted
 

@@ -142,6 +142,9 @@ def parser(verbs, program: str = MODULE) -> argparse.ArgumentParser:
         verb[name].add_argument("--threads", type=int, default=1, help="threads per rank (default: 1)")
     verb["explain"].add_argument("--ranks", type=int, help="plan for this number of ranks")
     verb["explain"].add_argument(
+        "--all", action="store_true", help="all of it: reasons, what is absent, fields, messages, stability"
+    )
+    verb["explain"].add_argument(
         "--study", type=Path, metavar="DIR", help="predict error and run time from a study"
     )
     _add_plot_options(verb["plot"])

@@ -69,7 +69,7 @@ def test_a_case_of_one_s_own_is_not_replaced_by_the_resolved_one(tmp_path):
 
 def test_check_explain_schema():
     assert "good: 441 particles" in psph("check", CASE).stdout
-    assert "because: physics.pressure_gradient = minimum" in psph("explain", CASE).stdout
+    assert "because: physics.pressure_gradient = minimum" in psph("explain", CASE, "--all").stdout
     assert "fluids" in json.loads(psph("schema").stdout)["properties"]
 
 

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 from psph.kinds import count_of
 from psph.runs.absent import absent
-from psph.runs.explain import Acting, acting, bytes_of_rank, explain, laws_of, slab_planes
+from psph.runs.explain import Acting, acting, explain, laws_of, page
+from psph.runs.footprint import bytes_of_rank, slab_planes
 from psph.runs.forecast import forecast, pull
 from psph.runs.hints import hints
 from psph.simulation.plan import make_plan
@@ -16,7 +17,8 @@ class Explanation(NamedTuple):
     ``effects`` and ``laws`` (equations of state) each have ``name``, ``does`` and ``because``; ``absent``
     says of each other effect why it is not there.  ``step_limits`` (s) are the bounds of the time step by
     their names, at the expected speed; ``steps`` and ``seconds`` a guess of what the run takes;
-    ``bytes_per_rank`` the memory of a rank.  ``lines`` are what the command line prints.
+    ``bytes_per_rank`` the memory of a rank.  ``page`` are the lines that the command line prints, ``lines``
+    those that it prints with ``--all``.
     """
 
     title: str
@@ -36,16 +38,17 @@ class Explanation(NamedTuple):
     seconds: float
     bytes_per_rank: float
     hints: list[str]
+    page: list[str]
     lines: list[str]
 
     def __str__(self) -> str:
-        return "\n".join(self.lines)
+        return "\n".join(self.page)
 
 
 def explained(scene, ranks: int) -> Explanation:
     """The plan of a scene on so many ranks.  Raises TooManyRanks."""
     plan, case = make_plan(scene), scene.case
-    lines = list(explain(scene, ranks))
+    lines = list(explain(scene, ranks))  # first: it says whether so many ranks can be
     expected = forecast(scene, plan, ranks)
     return Explanation(
         title=case.title or case.name,
@@ -65,5 +68,6 @@ def explained(scene, ranks: int) -> Explanation:
         seconds=expected.seconds,
         bytes_per_rank=bytes_of_rank(scene, plan, ranks),
         hints=list(hints(scene, plan)),
+        page=list(page(scene, ranks)),
         lines=lines,
     )

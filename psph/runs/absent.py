@@ -17,12 +17,16 @@ def absent(scene, plan: Plan) -> dict[str, str]:
     return {name: why or unnamed[name] for name, why in _reasons(scene, plan).items()}
 
 
-def absent_lines(scene, plan: Plan, width: int) -> Iterator[str]:
-    """What was left out or switched off, and why; then the keys that would bring the other effects."""
+def dropped_lines(scene, plan: Plan, width: int) -> Iterator[str]:
+    """What was left out or switched off, and why."""
     if refused := {name: why for name, why in _reasons(scene, plan).items() if why}:
         yield "Not simulated: left out or switched off"
         for name, why in refused.items():
             yield f"  {name:<{width}}{why}"
+
+
+def absent_lines(scene, plan: Plan) -> Iterator[str]:
+    """The keys that would bring the other effects."""
     if not plan.materials.flows:
         yield "Not simulated: what acts between fluids"
     if tables := _by_table(_unnamed(scene, plan).values()):

@@ -1,20 +1,22 @@
 """The plan in words: what will be simulated, why, and its cost."""
 
-import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from psph.errors import Refused
 from psph.kinds import TOPICS, count_of
 from psph.output.tables import GAUGE
-from psph.parallel.domain import CELLS_A_PARTICLE
 from psph.parallel.machine import free_memory
 from psph.parallel.slabs import check_ranks
-from psph.particles.cells import make_grid
-from psph.particles.records import record_width, recorded
-from psph.particles.store import SPARE
-from psph.runs.absent import absent_lines
+from psph.runs.absent import absent_lines, dropped_lines
 from psph.runs.acting import matter_lines
+from psph.runs.footprint import (
+    bytes_of_rank,
+    bytes_per_particle,
+    bytes_per_refresh,
+    ghosts_a_side,
+    slab_planes,
+)
 from psph.runs.forecast import forecast, forecast_lines, pull
 from psph.runs.hints import hints
 from psph.runs.output_size import output_lines
@@ -24,30 +26,53 @@ from psph.scene.sites import sites_within
 from psph.simulation.plan import Plan, make_plan
 from psph.theory.curves.catalogue import TAKEN
 
-NUMBER, IDENTITY, ROW, SORTING, ENTRY, CELL = 8, 9, 12, 24, 4, 24
-"""Bytes of a number; of a particle's id and kind; of the position of its list; of the arrays that a
-rebuild sorts with; of a neighbour in a list; and of a cell of the grid during a rebuild."""
-
 
 def explain(scene, ranks: int) -> Iterator[str]:
-    """Lines that describe the plan of a scene on so many ranks."""
+    """All lines that describe the plan of a scene on so many ranks."""
     plan = make_plan(scene)
-    particles = count_of(scene)
     said = _said_by_kinds(scene, plan)
-    yield from _scene_lines(scene, plan, particles, said)
-    yield from _rank_lines(scene, plan, ranks, said)
+    width = _width(plan)
+    yield from _title_lines(scene)
+    yield from _preset_lines(scene.case, _keys_of)
+    yield from _scene_lines(scene, said)
+    yield from _rank_lines(scene, plan, ranks)
+    yield from _field_lines(scene, plan, ranks, said)
     yield from _pass_lines(scene, plan, said)
+    for one in acting(plan):
+        yield from _acting_lines(one, width)
+    yield "Equation of state"
+    for one in laws_of(plan):
+        yield from _acting_lines(one, width)
+    yield from dropped_lines(scene, plan, width)
+    yield from absent_lines(scene, plan)
     yield from matter_lines(scene.case, plan)
     yield from _step_lines(scene, plan)
     yield from said["steps"]
     yield from said["friction"]
-    found = forecast(scene, plan, ranks)
-    yield from forecast_lines(found, ranks, scene.case.time.end)
-    neighbours = sites_within(scene, scene.support)
-    yield from output_lines(scene, plan, neighbours, found.steps)
+    yield from _cost_lines(scene, plan, ranks)
     yield from stability_forecast(scene, plan)
-    for line in hints(scene, plan):
-        yield f"Hint: {line}"
+    yield from _hint_lines(scene, plan)
+
+
+def page(scene, ranks: int) -> Iterator[str]:
+    """Those that a user reads first: what is in the scene, what acts, and what the run takes."""
+    plan = make_plan(scene)
+    said = _said_by_kinds(scene, plan)
+    width = _width(plan)
+    yield from _title_lines(scene)
+    yield from _preset_lines(scene.case)
+    yield from _scene_lines(scene, said)
+    yield from _rank_lines(scene, plan, ranks)
+    yield "What acts"
+    for one in (*acting(plan), *laws_of(plan)):
+        yield f"  {one.name:<{width}}{one.does}"
+    yield from dropped_lines(scene, plan, width)
+    yield from said["friction"]
+    yield "What it takes"
+    yield from said["steps"]
+    yield from _cost_lines(scene, plan, ranks)
+    yield from _hint_lines(scene, plan)
+    yield "--all says what calls for each effect, what is not simulated, fields, messages, limits of the step"
 
 
 def _said_by_kinds(scene, plan: Plan) -> dict[str, list[str]]:
@@ -68,73 +93,13 @@ def found_good(scene) -> Iterator[str]:
     yield f"good: {count_of(scene):,} particles, at most {slab_planes(scene)} ranks"
 
 
-def slab_planes(scene) -> int:
-    """Planes of cells along the slab axis: the most ranks that the scene can use."""
-    return _grid(scene).counts[0]
+def _title_lines(scene) -> Iterator[str]:
+    yield f"{scene.case.title or scene.case.name} ({scene.case.file})"
+    yield f"  particles   {count_of(scene):,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
 
 
-def bytes_per_particle(scene, plan: Plan) -> tuple[float, float]:
-    """Memory of a particle: its fields with the arrays to sort them, and its neighbour list, bytes."""
-    own = NUMBER * _rows(scene, plan, plan.arrays) + IDENTITY
-    widths = (record_width(_rows(scene, plan, recorded(p.neighbour_fields))) for p in plan.passes)
-    record = sum(widths) * plan.space.record_type.itemsize
-    own += own / SPARE + record + SORTING + CELL * _cells_per_particle(scene)
-    entries = sites_within(scene, _cutoff(scene)) + (plan.space.lanes - 1) / 2 if plan.passes else 0.0
-    listed = (ENTRY * entries + ROW) * (1.0 + 1.0 / SPARE)
-    return own, listed + sum(kind.bytes_of_particle(plan) for kind in plan.matter)
-
-
-def bytes_of_rank(scene, plan: Plan, ranks: int) -> float:
-    """Memory of the particles, ghosts and lists of one of so many ranks, bytes."""
-    own, listed = bytes_per_particle(scene, plan)
-    share = count_of(scene) / ranks
-    return own * (share + _neighbours(scene, ranks) * _ghosts_a_side(scene)) + listed * share
-
-
-def bytes_per_refresh(scene, plan: Plan, ranks: int) -> tuple[int, float]:
-    """Messages of a halo refresh: bytes per ghost, and bytes that a rank sends in all."""
-    each = NUMBER * _rows(scene, plan, plan.refreshed)
-    return each, each * _neighbours(scene, ranks) * _ghosts_a_side(scene)
-
-
-def _rows(scene, plan: Plan, names: tuple[str, ...]) -> int:
-    """Numbers that these fields take."""
-    return sum(plan.fields[name].width(scene.dimensions) for name in names)
-
-
-def _neighbours(scene, ranks: int) -> int:
-    """Ranks, or sides, that a rank exchanges ghosts with."""
-    return 2 if scene.layout.periods[scene.layout.axis] is not None else min(ranks - 1, 2)
-
-
-def _ghosts_a_side(scene) -> float:
-    """Particles of an average plane of cells: a rank holds one plane from each side."""
-    return count_of(scene) / slab_planes(scene)
-
-
-def _cells_per_particle(scene) -> float:
-    """The most that the grid may come to have, when particles leave an open domain."""
-    grid = _grid(scene)
-    closed = all(period is not None for period in scene.layout.periods)
-    return max(math.prod(grid.counts) / count_of(scene), 0.0 if closed else CELLS_A_PARTICLE)
-
-
-def _grid(scene):
-    """The grid over the scene at its start."""
-    return make_grid(
-        scene.layout.axis, _cutoff(scene), scene.layout.lower, scene.layout.upper, scene.layout.periods
-    )
-
-
-def _cutoff(scene) -> float:
-    return scene.layout.reach.cutoff
-
-
-def _scene_lines(scene, plan: Plan, particles: int, said: dict[str, list[str]]) -> Iterator[str]:
+def _scene_lines(scene, said: dict[str, list[str]]) -> Iterator[str]:
     case = scene.case
-    yield f"{case.title or case.name} ({case.file})"
-    yield f"  particles   {particles:,} in {scene.dimensions}D, spacing {scene.spacing:g} m"
-    yield from _preset_lines(case)
     names = ", ".join(m.name for m in scene.species)
     yield f"  materials   {names}"
     yield from said["matter"]
@@ -150,25 +115,28 @@ def _scene_lines(scene, plan: Plan, particles: int, said: dict[str, list[str]]) 
     yield from said["reach"]
 
 
-def _preset_lines(case) -> Iterator[str]:
-    """The scheme and the profile: the keys that they set, and those that the case overrides."""
+def _preset_lines(case, below=lambda keys: ()) -> Iterator[str]:
+    """The scheme and the profile, with those of their keys that the case overrides; ``below`` each, lines of
+    the keys that it sets."""
     names = dict.fromkeys((f"scheme {case.scheme}", *(name for name, _ in case.presets.values())))
     for name in names:
         keys = {key: value for key, (of, value) in case.presets.items() if of == name}
         own = [key for key in keys if not case.preset(key)]
         what, _, which = name.partition(" ")
         yield f"  {what:<11} {which}" + (f", except {', '.join(own)}" if own else "")
-        for key, value in keys.items():
-            if key not in own:
-                yield f"              {key} = {value}"
+        yield from below({key: value for key, value in keys.items() if key not in own})
 
 
-def _rank_lines(scene, plan: Plan, ranks: int, said: dict[str, list[str]]) -> Iterator[str]:
+def _keys_of(keys: dict) -> Iterator[str]:
+    for key, value in keys.items():
+        yield f"              {key} = {value}"
+
+
+def _rank_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
     planes = slab_planes(scene)
     check_ranks(ranks, planes)
     own, listed = bytes_per_particle(scene, plan)
     memory, free = bytes_of_rank(scene, plan, ranks), free_memory()
-    each, sent = bytes_per_refresh(scene, plan, ranks)
     along = "xyz"[scene.layout.axis]
     yield f"  ranks       {ranks}, at most {planes}: that many planes of cells along {along}"
     yield (
@@ -180,6 +148,11 @@ def _rank_lines(scene, plan: Plan, ranks: int, said: dict[str, list[str]]) -> It
             f"              too much for this machine: {ranks * memory / 2**30:.1f} GiB, and "
             f"{free / 2**30:.1f} GiB are free"
         )
+
+
+def _field_lines(scene, plan: Plan, ranks: int, said: dict[str, list[str]]) -> Iterator[str]:
+    """What is kept of each particle, and what travels."""
+    each, sent = bytes_per_refresh(scene, plan, ranks)
     yield f"  arrays      {', '.join(plan.arrays)}"
     shared = ", ".join(f"{k} {v:g}" for k, v in plan.constants.items())
     yield f"  shared      {shared}"
@@ -189,7 +162,7 @@ def _rank_lines(scene, plan: Plan, ranks: int, said: dict[str, list[str]]) -> It
         at_its_end = "at its end" if plan.midway else "once a step"
         yield f"  {'' if plan.midway else 'halo':<11} {at_its_end}: {', '.join(plan.refreshed)}"
         yield (
-            f"              {each} bytes a ghost, about {_ghosts_a_side(scene):.0f} ghosts a side, "
+            f"              {each} bytes a ghost, about {ghosts_a_side(scene):.0f} ghosts a side, "
             f"{sent:,.0f} bytes from a rank"
         )
     yield from said["messages"]
@@ -206,14 +179,18 @@ def _pass_lines(scene, plan: Plan, said: dict[str, list[str]]) -> Iterator[str]:
     yield from said["passes"]
     if scene.case.time.passes == 2 and not plan.midway:
         yield "Steps of one pass, for not all that is in the scene bears time.passes = 2"
-    effects, laws = acting(plan), laws_of(plan)
-    width = _column([one.name for one in (*effects, *laws)] + [e.effect.__name__ for e in plan.absent])
-    for one in effects:
-        yield from _acting_lines(one, width)
-    yield "Equation of state"
-    for one in laws:
-        yield from _acting_lines(one, width)
-    yield from absent_lines(scene, plan, width)
+
+
+def _cost_lines(scene, plan: Plan, ranks: int) -> Iterator[str]:
+    """Steps, time and bytes of files."""
+    found = forecast(scene, plan, ranks)
+    yield from forecast_lines(found, ranks, scene.case.time.end)
+    yield from output_lines(scene, plan, sites_within(scene, scene.support), found.steps)
+
+
+def _hint_lines(scene, plan: Plan) -> Iterator[str]:
+    for line in hints(scene, plan):
+        yield f"Hint: {line}"
 
 
 class Acting(NamedTuple):
@@ -240,6 +217,12 @@ def laws_of(plan: Plan) -> list[Acting]:
 def _acting_lines(one: Acting, width: int) -> Iterator[str]:
     yield f"  {one.name:<{width}}{one.does}"
     yield f"  {'':<{width}}because: {one.because}"
+
+
+def _width(plan: Plan) -> int:
+    """Width of the column of effects' names."""
+    names = [one.name for one in (*acting(plan), *laws_of(plan))]
+    return _column(names + [entry.effect.__name__ for entry in plan.absent])
 
 
 def _column(names: Iterable[str]) -> int:

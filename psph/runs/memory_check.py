@@ -5,7 +5,7 @@ import math
 from psph.errors import Refused
 from psph.kinds import count_of
 from psph.parallel.machine import free_memory, ranks_here
-from psph.runs.explain import bytes_of_rank
+from psph.runs.footprint import bytes_of_rank
 from psph.simulation.plan import Plan
 
 GIB = 2.0**30

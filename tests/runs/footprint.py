@@ -9,7 +9,7 @@ from mpi4py import MPI
 from psph.case import load
 from psph.output.ledger import Ledger
 from psph.scene import Scene
-from psph.runs.explain import bytes_per_particle
+from psph.runs.footprint import bytes_per_particle
 from psph.simulation.plan import make_plan
 from psph.runs.record import Record
 from psph.runs.setup import compile_ahead, create_particles

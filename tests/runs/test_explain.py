@@ -1,20 +1,25 @@
 """What explain predicts against what a run then holds and sends."""
 
 import re
+from pathlib import Path
 
 import pytest
 from drafts import TANK, draft
 from mpi4py import MPI
 
+from psph.case import load
 from psph.errors import Refused
 from psph.matter.soil import Soils
 from psph.output.ledger import Ledger
 from psph.runs.absent import absent
-from psph.runs.explain import bytes_per_particle, bytes_per_refresh, explain
+from psph.runs.explain import explain, page
+from psph.runs.footprint import bytes_per_particle, bytes_per_refresh
 from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
 from psph.simulation.step import Simulation
+
+PONTOON = Path(__file__).parents[2] / "run/cases/moored_pontoon.toml"
 
 BOX = """
 scheme = "sph"
@@ -200,3 +205,14 @@ shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
     steps = [float(re.search(r"steps of (\S+) s", line).group(1)) for line in (water, air)]
     assert steps[0] > 4.0 * steps[1]
     assert not any("of 100 particles" in line for line in explain(Scene(draft(tmp_path, text)), 1))
+
+
+def test_the_page_has_what_a_user_reads_first():
+    scene = Scene(load(PONTOON))
+    first, whole = list(page(scene, 2)), list(explain(scene, 2))
+    assert len(first) <= 50 < len(whole)
+    added = [line for line in first if line not in whole and not line.startswith("  ")]
+    assert added == ["What acts", "What it takes", first[-1]] and "--all" in first[-1]
+    assert not any("because:" in line for line in first)
+    told = "\n".join(first)
+    assert all(word in told for word in ("pontoon.seaward", "period 2.27 s", "Gravity", "run time", "MiB"))

@@ -9,7 +9,8 @@ from psph.lab.study.runs import perform
 from psph.lab.study.study import StudyRuns
 from psph.runs import explain as words
 from psph.runs import memory_check
-from psph.runs.explain import bytes_of_rank, explain
+from psph.runs.explain import explain
+from psph.runs.footprint import bytes_of_rank
 from psph.runs.memory_check import TooLittleMemory
 from psph.runs.start import run
 from psph.scene import Scene

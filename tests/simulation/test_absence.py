@@ -13,7 +13,7 @@ from psph.engine.jit import FAST
 from psph.output.ledger import Ledger
 from psph.physics.catalogue import BUILT_IN, CATALOGUE, Entry
 from psph.physics.solid.contact import SolidContact
-from psph.runs.explain import bytes_per_refresh
+from psph.runs.footprint import bytes_per_refresh
 from psph.runs.setup import create_particles
 from psph.scene import Scene
 from psph.simulation import cpu as engine_module

@@ -10,7 +10,7 @@ from psph.lab.battery.order import nearest, pieces
 from psph.output.reader import Run
 from psph.physics.solid.deformation import KERNEL, Gradient, support_of
 from psph.physics.stress.invariants import j2
-from psph.runs.explain import bytes_per_particle
+from psph.runs.footprint import bytes_per_particle
 from psph.scene import Scene
 from psph.scene.sites import sites_within
 from psph.simulation.plan import make_plan

@@ -14,7 +14,7 @@ from psph.lab.bench.tank import GRAVITY, HEIGHT, Tank
 from psph.output.interpolation import interpolated
 from psph.output.ledger import Ledger
 from psph.particles.store import Store
-from psph.runs.explain import slab_planes
+from psph.runs.footprint import slab_planes
 from psph.runs.setup import create_particles, lattice_particles, store_of
 from psph.scene import Scene
 from psph.scene.particles import NUMBERS_PER_COUNT, ParticleSet

@@ -26,7 +26,7 @@ from psph.output.pages import BEGIN, END
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
 from psph.runs import memory_check
-from psph.runs.explain import bytes_of_rank
+from psph.runs.footprint import bytes_of_rank
 from psph.runs.start import run
 from psph.scene import Scene
 from psph.simulation.plan import make_plan
