@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from psph.fields import Field
 from psph.kinds import count_of
+from psph.output.checkpoint import KEPT
 from psph.output.probes import FieldProbe
 from psph.runs.record import probes_of
 from psph.simulation.plan import Plan
@@ -15,6 +16,9 @@ either side those within the support and the half of a cutoff that a particle st
 
 STRUCTURE = 8192
 """Bytes of a frame beside its rows: names, shapes, units, meanings."""
+
+NUMBER = 8
+"""Bytes of a number in a frame or a checkpoint."""
 
 DIGITS = 19
 """Bytes of a number in a table, its comma included: most have all their digits."""
@@ -58,6 +62,14 @@ def bytes_per_frame(scene, plan: Plan) -> int:
     return count_of(scene) * (rows + points) + STRUCTURE
 
 
+def bytes_of_run(scene, plan: Plan, steps: int, begun: float = 0.0) -> int:
+    """Of the frames from ``begun`` (s) on and of the checkpoints that stand side by side meanwhile."""
+    interval = scene.case.output.frames
+    frames = _moments(scene, interval, steps) - (math.floor(begun / interval) + 1 if begun else 0)
+    saved = NUMBER * sum(plan.fields[name].width(scene.dimensions) for name in plan.arrays)
+    return max(0, frames) * bytes_per_frame(scene, plan) + (KEPT + 1) * count_of(scene) * saved
+
+
 def amount(size: float) -> str:
     """Bytes as people read them: ``3.4 MiB``."""
     power = max(0, min(int(math.log(max(size, 1.0), 1024)), len(UNITS) - 1))
@@ -69,7 +81,7 @@ UNITS = ("bytes", "KiB", "MiB", "GiB", "TiB", "PiB")
 
 
 def _bytes(field: Field, dimensions: int) -> int:
-    return 1 if field.name in ("kind", "group") else 8 * field.width(dimensions)
+    return 1 if field.name in ("kind", "group") else NUMBER * field.width(dimensions)
 
 
 def _moments(scene, interval: float, steps: int) -> int:

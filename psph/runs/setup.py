@@ -15,6 +15,7 @@ from psph.parallel.reductions import alone
 from psph.particles.store import Store
 from psph.physics.motion import OF_MOTION
 from psph.runs.record import probes_of
+from psph.runs.uncompiled import in_one_line
 from psph.scene.particles import ParticleSet
 from psph.simulation.cpu import Engine
 from psph.simulation.filling import block_of
@@ -104,7 +105,7 @@ def compile_ahead(scene, plan: Plan, comm) -> float:
     measured = "step and probes" if scene.case.probes or scene.case.gauges else "step"
     ready = marker(measured, *examples)
     together = comm.bcast(ready is None or ready.exists())
-    with many_loops():
+    with many_loops(), in_one_line():
         if not together:
             (_share if comm.size > 1 else _share_with_copy)(scene, plan, comm)
         if together or comm.rank == 0:

@@ -20,9 +20,10 @@ from psph.output.xdmf import ENDING
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
 from psph.runs.cost import cost_lines
+from psph.runs.disk_check import check_disk
 from psph.runs.experiments import refuse_unfit_experiments
-from psph.runs.explain import slab_planes
 from psph.runs.folder import alone_in, make_folder, prepare_folder, reopen_folder
+from psph.runs.footprint import slab_planes
 from psph.runs.forecast import long_run
 from psph.runs.guards import Guards
 from psph.runs.memory_check import check_memory, check_size
@@ -136,6 +137,7 @@ def _simulate(
     for warning in long_run(scene, plan, comm.size):
         say(f"warning: {warning}", sys.stderr)
     check_memory(scene, plan, comm)
+    check_disk(scene, plan, folder, comm, saved.state["time"] if saved else 0.0)
     prepare()
     say(f"psph: {case.title or case.name}: {particles:,} particles, {_ranks(comm.size)}")
     for line in filter(None, [funnel_notice(comm), CACHE.trouble]):
