@@ -114,7 +114,7 @@ def _sizes(case) -> Iterator[Finding]:
 def _dimensions(case) -> Iterator[Finding]:
     foreign: Location = ("no key",)  # the shape that does not belong here: one line is enough
     for loc, value, dimensions, here in _in_space(case):
-        if loc[:2] == ("study", "vary") or loc[-2:-1] == ("span",):  # ladders, intervals: no vectors
+        if loc[:2] == ("study", "vary"):  # ladders: no vectors
             continue
         only_in = getattr(value, "only_in", dimensions)
         if only_in != dimensions and loc[: len(foreign)] != foreign:
@@ -143,11 +143,16 @@ def _dimensions(case) -> Iterator[Finding]:
 
 
 def _in_space(case) -> Iterator[tuple[Location, Any, int, str]]:
-    """Every table and list of a case, with its location, how many numbers a point has there, and where that
-    is, in words: what is drawn out or turned is flat."""
+    """Every table and list of a case but those that are no points, with its location, how many numbers a
+    point has there, and where that is, in words: what is drawn out or turned is flat."""
     flat: list[Location] = []
+    lists: set[Location] = set()
     whole = case.space.dimensions
     for loc, value in walk(case):
+        if loc in lists:
+            continue
+        if isinstance(value, Table):
+            lists |= {(*loc, name) for name in value.lists()}
         if name := getattr(value, "flat", ""):
             flat.append((*loc, name))
         if any(loc[: len(one)] == one for one in flat):

@@ -129,7 +129,10 @@ def _joined(case, loc, joint: JointTable) -> Iterator[Finding]:
 
 
 def _drawn(loc, told, dimensions: int) -> Iterator[Finding]:
-    """Axes without a direction, limits in the wrong order, or not at 0, and a latch without any."""
+    """Axes without a direction, rods without a length, limits in the wrong order, or not at 0, and a latch
+    without any."""
+    if isinstance(told, Rod) and told.at == told.anchor:
+        yield (*loc, "anchor"), list(told.anchor), "is where the rod begins; move it, or give ball"
     if isinstance(told, Hinge) and (told.axis is None) == (dimensions == 3):
         says = "in 3D a hinge has an axis; add axis = [...]"
         yield loc, ..., says if dimensions == 3 else "in 2D all turn about z; remove axis"

@@ -1,7 +1,7 @@
 """Base of the tables of a case: strict models, described keys, vectors."""
 
 from collections.abc import Callable, Iterator
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, StringConstraints
 from pydantic_core import PydanticCustomError
@@ -46,6 +46,22 @@ class Table(BaseModel):
         """Lines through points, m, that show where it acts in a picture of the scene; a point alone is a
         dot.  Most tables have none."""
         yield from ()
+
+    @classmethod
+    def lists(cls) -> Iterator[str]:
+        """Keys with a list of numbers that is no vector: it has a largest length of its own."""
+        for name, field in cls.model_fields.items():
+            rules = (*field.metadata, *_rules(field.annotation))
+            if any(getattr(rule, "max_length", None) for rule in rules):
+                yield field.alias or name
+
+
+def _rules(annotation: Any) -> Iterator[Any]:
+    """All that a type says of its values, within unions too."""
+    for told in getattr(annotation, "__metadata__", ()):
+        yield from getattr(told, "metadata", (told,))
+    for part in get_args(annotation):
+        yield from _rules(part)
 
 
 def key(

@@ -111,7 +111,7 @@ class GuardKeys(Table):
         gt=0,
     )
     overlap: float = key(
-        "how far a body or an elastic solid may get inside another or a wall, in spacings",
+        "how far a body or an elastic solid may get inside another or a wall, or a joint gape, in spacings",
         1.0,
         unit="1",
         gt=0,

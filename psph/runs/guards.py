@@ -29,7 +29,7 @@ EVERY = 100
 STOP, CLOCK, DEPTH, OVERLAP = "stop", "clock", "depth", "overlap"
 
 
-VERBS = {DEPTH: "lost a particle", CLOCK: "stands still", OVERLAP: "has a body inside another"}
+VERBS = {DEPTH: "lost a particle", CLOCK: "stands still", OVERLAP: "has a body where it cannot be"}
 """What the run did, by guard, where it is not that it blew up."""
 
 

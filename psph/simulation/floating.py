@@ -84,18 +84,27 @@ class FloatingBodies(Work):
         engine.poses.turn_to(time)
 
     def overlapping(self, store, depth: float) -> np.ndarray | None:
-        """The particles of the body that is deepest inside another or a wall, where that is more than
-        ``depth`` spacings; the same on every rank."""
-        deepest = self.contacts.deepest(self.bodies)
-        if not deepest.depth > depth * self._scene.spacing:
+        """The particles of the body that is deepest inside another or a wall, or whose joint gapes most, where
+        that is more than ``depth`` spacings; the same on every rank."""
+        size, row, _ = self._worst()
+        if not size > depth * self._scene.spacing:
             return None
-        return (self.body_of[store.shown("group")] == deepest.body).astype(float)
+        return (self.body_of[store.shown("group")] == row).astype(float)
 
     def overlap_words(self, number: int, key: str) -> str:
-        """Which body is how deep inside what."""
+        """Which body is how deep inside what, or which joint gapes."""
+        return self._worst()[2]
+
+    def _worst(self) -> tuple[float, int, str]:
+        """How far the worst of all overlaps and joints has gone, m; the row of its body; and in words."""
         deepest = self.contacts.deepest(self.bodies)
         inner = self.bodies.bodies[deepest.body].name
-        return f"bodies.{inner} is {deepest.depth:.3g} m inside {deepest.other}"
+        found = deepest.depth, deepest.body, f"bodies.{inner} is {deepest.depth:.3g} m inside {deepest.other}"
+        wide, number = self.joints.widest() if self.joints else (0.0, 0)
+        if not wide > deepest.depth:
+            return found
+        joint = self.joints.joints[number]
+        return wide, joint.body, f"joints.{joint.name} gapes by {wide:.3g} m: something else moves its parts"
 
     def pushing(self, groups: Sequence[int], about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Force and moment of the contacts of bodies among the groups."""

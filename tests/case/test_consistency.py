@@ -215,3 +215,35 @@ def test_an_effect_without_matter_to_act_on_is_refused(tmp_path, key, acts):
     assert len(says) == 1 and f"acts on {acts} alone, and the case has none; remove this key" in says[0]
     pull = "physics.central_force = { frequency = 1.0, center = [0.0, 0.0] }\n"
     assert draft(tmp_path, f"{space}{pull}{IN_SPACE}").physics.fourth_order_diffusion is not None
+
+
+LISTS = {
+    "limits in 3D": """
+space = { dimensions = 3, spacing = 0.25 }
+time.end = 1.0
+[solids.drop]
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.0, 1.0, 1.0] }
+density = 1e3
+young = 1e5
+poisson = 0.3
+[bodies.flap]
+shape.box = { lower = [2.0, 0.0, 0.0], upper = [3.0, 1.0, 1.0] }
+density = 1e3
+[joints.foot]
+of = ["flap"]
+hinge = { at = [2.5, 0.5, 0.0], axis = [0.0, 1.0, 0.0], limits = [-20.0, 10.0] }
+""",
+    "three powers in 2D": """
+space = { dimensions = 2, spacing = 0.25 }
+time.end = 1.0
+[solids.rubber]
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }
+density = 1e3
+hyperelastic.ogden = { shear = [6e5, 1e3, -1e4], exponents = [1.3, 5.0, -2.0], bulk = 1e7 }
+""",
+}
+
+
+@pytest.mark.parametrize("text", LISTS.values(), ids=LISTS)
+def test_a_list_that_is_no_vector_has_a_length_of_its_own(tmp_path, text):
+    assert draft(tmp_path, text)

@@ -41,6 +41,12 @@ WRONG = {
         "joints.shoulder.hinge",
         "turn about z",
     ),
+    "no rod": (
+        "fixed = {}",
+        "rod = { at = [1.0, 0.4], anchor = [1.0, 0.4] }",
+        "joints.elbow.rod.anchor",
+        "is where the rod begins",
+    ),
     "no way": ("fixed = {}", "slider = { along = [0.0, 0.0] }", "joints.elbow.slider.along", "no direction"),
     "limits": (
         "at = [0.5, 0.4]",
@@ -71,7 +77,7 @@ def test_a_joint_with_a_mirror_stays_where_it_is(tmp_path):
         "[walls.floor]", '[walls.floor]\ncondition = "mirror"'
     )
     simulation, _ = started(draft(tmp_path, text), 2)
-    assert simulation.engine.of("bodies").joints.widest() < 1e-12
+    assert simulation.engine.of("bodies").joints.widest()[0] < 1e-12
 
 
 def test_a_hinge_bears_what_hangs_on_it(tmp_path):

@@ -58,7 +58,7 @@ class Dry:
             self.bodies.drift(self.time, dt, None, self.joints)
             self._load()
             self.bodies.kick(self.time, dt, None, self.joints)
-            self.widest = max(self.widest, self.joints.widest())
+            self.widest = max(self.widest, self.joints.widest()[0])
             found.append(self.energy)
         return np.array(found)
 

@@ -19,8 +19,22 @@ RAM = (
 
 def test_a_body_forced_into_a_wall_ends_the_run(tmp_path):
     trouble, _ = started(boxed(tmp_path, MPI.COMM_WORLD, RAM), tmp_path / "run", MPI.COMM_WORLD)
-    assert "the run has a body inside another at step 100" in str(trouble)
+    assert "the run has a body where it cannot be at step 100" in str(trouble)
     assert "bodies.ram is " in str(trouble) and "m inside walls.frame (guards.overlap = 1)" in str(trouble)
+
+
+PULLED = (
+    "bodies.ram={shape={box={lower=[1.2,1.2],upper=[1.5,1.5]}},density=2000.0,free=['y']}",
+    "bodies.hand={shape={box={lower=[1.8,1.2],upper=[2.1,1.5]}},density=2000.0,free=[],"
+    "motion={translation=[2.0,0.0]}}",
+    "joints.arm={of=['ram','hand'],fixed={}}",
+)
+
+
+def test_a_joint_that_cannot_hold_ends_the_run(tmp_path):
+    """What the ram is not free to do pulls it off the hand."""
+    trouble, _ = started(boxed(tmp_path, MPI.COMM_WORLD, *PULLED), tmp_path / "run", MPI.COMM_WORLD)
+    assert "joints.arm gapes by " in str(trouble) and "(guards.overlap = 1)" in str(trouble)
 
 
 @pytest.mark.parametrize("key", ["guards.overlap=5.0", "guards.on_trouble=warn"])
@@ -51,7 +65,7 @@ PUDDLE = "fluids.puddle.shape.box={lower=[5.0,0.0],upper=[5.3,0.3]}", "physics.s
 @pytest.mark.parametrize("wet", [(), PUDDLE], ids=["alone", "in a fluid"])
 def test_elastic_solids_inside_each_other_end_the_run(tmp_path, wet):
     trouble, _ = met(tmp_path, BLOCKS, SOFT, *wet)
-    assert "the run has a body inside another at step 100" in str(trouble)
+    assert "the run has a body where it cannot be at step 100" in str(trouble)
     assert "is inside another solid, a body or a wall (guards.overlap = 1)" in str(trouble)
     assert "of solids.left" in str(trouble) or "of solids.right" in str(trouble)
 
@@ -71,7 +85,7 @@ BULLET = (
 
 def test_a_small_body_inside_an_elastic_solid_ends_the_run(tmp_path):
     trouble, _ = met(tmp_path, BLOCKS, SOFT, *BULLET)
-    assert "the run has a body inside another at step 100" in str(trouble)
+    assert "the run has a body where it cannot be at step 100" in str(trouble)
     assert "of bodies.bullet is inside another solid, a body or a wall (guards.overlap = 1)" in str(trouble)
     assert met(tmp_path, BLOCKS, *BULLET)[0] is None
 

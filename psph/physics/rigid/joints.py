@@ -119,7 +119,7 @@ class Joints:
         gyration = np.sqrt(np.trace(bodies.inertia, axis1=1, axis2=2) / bodies.mass[:, 0])
         size = max(float(arms), float(gyration.max()), float(self._length.max()))
         self._ways = np.isin(self._what, (SLIDE, LENGTH, GO))
-        self._enough = FITS * np.where(self._ways, size, 1.0)
+        self._enough, self._arm = FITS * np.where(self._ways, size, 1.0), size
         self.push, self.twist = np.zeros((2, len(joints), 3))
         self.ways, self.latched, self._stops = np.zeros((3, len(joints)))
         self._see(bodies, 0.0)
@@ -178,9 +178,11 @@ class Joints:
         rate = max(float(one.max()) for one in rates)
         return STEP / rate if rate > 0.0 else float(np.inf)
 
-    def widest(self) -> float:
-        """How far a joint gapes, m or rad."""
-        return float(np.abs(np.where(self._binds(), self._gaps(self._now), 0.0)).max())
+    def widest(self) -> tuple[float, int]:
+        """How far a joint gapes at most, m, an angle at the longest arm; and the number of that joint."""
+        gaps = np.abs(np.where(self._binds(), self._gaps(self._now), 0.0))
+        gaps = np.where(self._ways, gaps, self._arm * gaps)
+        return float(gaps.max()), int(self._of[gaps.argmax()])
 
     def state(self) -> dict:
         """What the next steps rest on, as lists of numbers."""
