@@ -84,8 +84,8 @@ class FloatingBodies(Work):
         engine.poses.turn_to(time)
 
     def overlapping(self, store, depth: float) -> np.ndarray | None:
-        """The particles of the body that is deepest inside another or a wall, or whose joint gapes most, where
-        that is more than ``depth`` spacings; the same on every rank."""
+        """The particles of the body that is deepest inside another or a wall, or whose joint gapes most,
+        where that is more than ``depth`` spacings; the same on every rank."""
         size, row, _ = self._worst()
         if not size > depth * self._scene.spacing:
             return None
