@@ -1,7 +1,7 @@
 """Slips in units and signs that `check` warns of; the shipped cases have none."""
 
 import pytest
-from drafts import TANK, WATER, draft
+from drafts import CHANNEL, TANK, WATER, draft
 
 from psph.case import CaseError
 from psph.scene import Scene, check
@@ -18,7 +18,24 @@ def test_a_density_of_no_substance_is_warned_of(tmp_path, density, than):
     assert line == (
         f"fluids.water.density: {density:g} kg/m³ is {than}; densities are in kg/m³: water has 1000, air 1.2"
     )
-    assert checked(tmp_path, TANK, "fluids.water.density=1.2") == []
+    assert checked(tmp_path, TANK, "fluids.water.density=700") == []
+
+
+def test_a_gas_with_a_free_surface_is_warned_of_on_earth(tmp_path):
+    [line] = checked(tmp_path, TANK, "fluids.water.density=1.0")
+    assert line == (
+        "fluids.water.density: 1 kg/m³ is that of a gas, which has no free surface; densities are in kg/m³: "
+        "water has 1000"
+    )
+    assert checked(tmp_path, TANK, "fluids.water.density=1.0", "physics.gravity=[0.0, -1.0]") == []
+    assert checked(tmp_path, CHANNEL, "fluids.water.density=1.2", "physics.gravity=[9.81, 0.0]") == []
+
+
+def test_a_viscosity_of_no_liquid_is_warned_of_on_earth(tmp_path):
+    [line] = checked(tmp_path, TANK, "fluids.water.viscosity=1e-9")
+    assert line.startswith("fluids.water.viscosity: 1e-09 m²/s is thinner than any liquid; ")
+    assert checked(tmp_path, TANK, "fluids.water.viscosity=1.1e-7") == []
+    assert checked(tmp_path, TANK, "fluids.water.viscosity=1e-9", "physics.gravity=[0.0, -1.0]") == []
 
 
 def in_millimetres(text: str) -> str:

@@ -21,6 +21,12 @@ LIGHTEST, HEAVIEST = 0.05, 25_000.0
 EARTH, STRONGEST = 9.81, 100.0
 """m/s²: gravity at the ground, and that from which on cm/s² or mm/s² are more likely than a centrifuge."""
 
+LIGHTEST_LIQUID = 50.0
+"""kg/m³: liquid hydrogen has 71; a dense gas such as sulphur hexafluoride 6."""
+
+THINNEST = 2e-8
+"""m²/s: liquid helium above its superfluid state has 2.5e-8."""
+
 MOST_SHORTER = 200.0
 """How many times friction may shorten the time steps that sound allows, without a warning: the slow flow
 between plates of run/cases/poiseuille.toml has 15."""
@@ -52,11 +58,29 @@ def _densities(scene: Scene) -> Iterator[str]:
                 f"fluids.{name}.density: {fluid.density:g} kg/m³ is {than}; densities are in kg/m³: "
                 "water has 1000, air 1.2"
             )
+    fluids = scene.case.fluids.items()
+    heaviest = max(fluids, key=lambda one: one[1].density, default=None) if _on_earth(scene) else None
+    if (
+        heaviest
+        and LIGHTEST <= heaviest[1].density < LIGHTEST_LIQUID
+        and _on_earth(scene)
+        and _is_open(scene)
+    ):
+        name, fluid = heaviest
+        yield (
+            f"fluids.{name}.density: {fluid.density:g} kg/m³ is that of a gas, which has no free surface; "
+            "densities are in kg/m³: water has 1000"
+        )
 
 
 def _viscosities(scene: Scene) -> Iterator[str]:
-    """A viscosity that shortens the time step far below what sound allows."""
+    """A viscosity that shortens the time step far below what sound allows, or that nothing has."""
     for name, fluid in scene.case.fluids.items():
+        if fluid.viscosity and fluid.viscosity < THINNEST and _on_earth(scene):
+            yield (
+                f"fluids.{name}.viscosity: {fluid.viscosity:g} m²/s is thinner than any liquid; it is the "
+                "kinematic viscosity in m²/s: water has 1e-6, mercury 1.1e-7"
+            )
         sound = scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
         times = sound / friction_step(scene, fluid.viscosity) if fluid.viscosity else 0.0
         if times > MOST_SHORTER:
@@ -64,6 +88,17 @@ def _viscosities(scene: Scene) -> Iterator[str]:
                 f"fluids.{name}.viscosity: {fluid.viscosity:g} m²/s makes time steps {times:.2g} times "
                 "shorter than sound does; it is the kinematic viscosity in m²/s: water has 1e-6, honey 7e-3"
             )
+
+
+def _on_earth(scene: Scene) -> bool:
+    """Whether gravity is that at the ground, so that numbers likely are in SI units."""
+    return abs(float(np.linalg.norm(scene.gravity)) / EARTH - 1.0) < 0.02
+
+
+def _is_open(scene: Scene) -> bool:
+    """Whether fluid has a free surface without tension: scaled drops may be of any density."""
+    tensions = any(fluid.surface_tension for fluid in scene.case.fluids.values())
+    return scene.has_free_surface and not tensions
 
 
 def _long_tank(scene: Scene) -> Iterator[str]:
