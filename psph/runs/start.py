@@ -19,6 +19,7 @@ from psph.output.reader import Run
 from psph.output.xdmf import ENDING
 from psph.parallel.slabs import check_ranks
 from psph.particles.store import check_room
+from psph.runs.busy import Busy
 from psph.runs.cost import cost_lines
 from psph.runs.disk_check import check_disk
 from psph.runs.experiments import refuse_unfit_experiments
@@ -164,8 +165,10 @@ def _simulate(
         at_last.callback(progress.close)
         simulation.request = watch.call
         watch.begin_steps()
+        busy = Busy(comm)
         while simulation.time < case.time.end:
-            guards.step()
+            if warning := busy.step(guards.step):
+                say(f"warning: {warning}", sys.stderr)
             record.write_due()
             progress.update(simulation.time, simulation.steps, simulation.dt, simulation.fluid_speed)
             _attend(simulation, record, watch, case, folder)
@@ -183,7 +186,7 @@ def _simulate(
         summary = ["no step was left to the end: for a later one, resume with --set time.end=..."]
     for line in summary:
         say(line)
-    said = [*guards.summary(), *record.dry_probes()]
+    said = [*guards.summary(), *record.dry_probes(), *busy.summary()]
     measured = measured_lines(scene, Run(folder, case.name)) if comm.rank == 0 else []
     for line in [*measured, *said]:
         say(line)
