@@ -1,17 +1,25 @@
 """The view of a run that turns in the browser: particles of some frames, coloured by speed."""
 
+import math
+import tomllib
+
 import numpy as np
 
 from psph.case.keys import AXES
 from psph.fields import WALL
+from psph.output.pictures import style
+from psph.output.pictures.groups import first_whole, wholes_of
 from psph.output.pictures.view import spread
 from psph.output.reader import Run
 
 FRAMES, PARTICLES, WALL_PARTICLES = 8, 8000, 4000
 """Frames, particles of a frame, and of its walls, at most: a browser turns them without a pause."""
 
-LINE = {"color": "#22262b", "width": 2}
+LINE = {"color": style.INK, "width": 2}
 """Of bodies."""
+
+GREY = "#9aa1ab"
+"""Of walls."""
 
 EYE = {"x": -0.7, "y": -2.0, "z": 1.1}
 """From the front, the left and above, as the pictures in 3D."""
@@ -24,8 +32,8 @@ def turning(run: Run):
     shown = spread(len(run.times), FRAMES)
     frames = [_particles(run, k) for k in shown]
     fastest = max((speed.max(initial=0.0) for _, speed in frames), default=1.0) or 1.0
-    walls = _walls(run)
-    dimensions = walls.shape[1]
+    rigid = _Rigid(run, shown)
+    dimensions = rigid.standing.shape[1]
     kind = go.Scatter3d if dimensions == 3 else go.Scattergl
     size = 3 if dimensions == 3 else 5
 
@@ -34,16 +42,21 @@ def turning(run: Run):
         colours = {"color": _short(speed), "cmin": 0.0, "cmax": fastest, "colorscale": "Viridis"}
         return _points(kind, places, size, **colours, colorbar={"title": "speed (m/s)"})
 
+    def walls(places: np.ndarray):
+        return _points(kind, places, size - 1, color=GREY, opacity=0.25 if dimensions == 3 else 1.0)
+
     def seen(k: int) -> list:
         strung = _lines(run, shown[k])
-        return [fluid(k), *([] if strung is None else [kind(**_axes(strung), mode="lines", line=LINE)])]
+        return [
+            fluid(k),
+            *([] if strung is None else [kind(**_axes(strung), mode="lines", line=LINE)]),
+            *([walls(rigid.walls[k])] if rigid.has_moving_walls else []),
+            *([_points(kind, rigid.wholes[k], size, color=style.WHOLE)] if rigid.has_wholes else []),
+        ]
 
     count = max(len(seen(k)) for k in range(len(frames)))
     figure = go.Figure(
-        [
-            _points(kind, walls, size - 1, color="#9aa1ab", opacity=0.25 if dimensions == 3 else 1.0),
-            *seen(-1),
-        ],
+        [walls(rigid.standing), *seen(-1)],
         frames=[
             go.Frame(data=seen(k), traces=list(range(1, 1 + count)), name=str(k)) for k in range(len(frames))
         ],
@@ -98,9 +111,31 @@ def _particles(run: Run, k: int) -> tuple[np.ndarray, np.ndarray]:
     return frame["position"][chosen], np.linalg.norm(frame["velocity"][chosen], axis=1)
 
 
-def _walls(run: Run) -> np.ndarray:
-    frame = run.frame(-1, "position", "kind")
-    return frame["position"][_some(np.flatnonzero(frame["kind"] == WALL), WALL_PARTICLES)]
+class _Rigid:
+    """Places (n, dim) of what is rigid: of walls that stand, and in each frame of moving ``walls`` and of
+    ``wholes``."""
+
+    def __init__(self, run: Run, shown):
+        case = tomllib.loads(run.case_text)
+        self.has_wholes = bool(wholes_of(case))
+        first = first_whole(case) if self.has_wholes else math.inf
+        frames = [run.frame(k, "position", "velocity", "kind", "group") for k in shown]
+        moving = {
+            int(group)
+            for frame in frames
+            for group in np.unique(frame["group"][frame["velocity"].any(axis=1) & (frame["kind"] == WALL)])
+            if group < first
+        }
+        self.has_moving_walls = bool(moving)
+        self.walls = [_chosen(frame, np.isin(frame["group"], [*moving])) for frame in frames]
+        self.wholes = [_chosen(frame, frame["group"] >= first) for frame in frames]
+        last = frames[-1]["group"]
+        self.standing = _chosen(frames[-1], (last < first) & ~np.isin(last, [*moving]))
+
+
+def _chosen(frame: dict, these: np.ndarray) -> np.ndarray:
+    """Places of those of ``these`` that are rigid."""
+    return frame["position"][_some(np.flatnonzero(these & (frame["kind"] == WALL)), WALL_PARTICLES)]
 
 
 def _some(rows: np.ndarray, most: int) -> np.ndarray:

@@ -15,6 +15,9 @@ from psph.output.reader import Run
 
 WIDTH, HEIGHT, GAP = 7.0, 1.6, 0.5
 """Of a chart, and between two of them, inches."""
+NARROWEST = 1e-3
+"""Height of a chart over its largest value, at least: the numbers beside it have six digits."""
+
 STEEP = 1e3
 """Ratio of the largest to the smallest number from which on the axis is logarithmic."""
 
@@ -155,6 +158,7 @@ def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
     else:
         style.ticks(axes.yaxis, 4)
         axes.margins(y=0.12)
+        _widen(axes)
     axes.grid(axis="y", color=style.WALLS, lw=0.4)
     axes.set_title(f"{chart.title} ({unit})" if unit else chart.title, loc="left", size=9, weight="bold")
     _legend(axes, chart)
@@ -163,6 +167,15 @@ def draw(axes: Axes, chart: Chart, last: bool = True) -> None:
     axes.tick_params(labelbottom=last)
     if last:
         axes.set_xlabel(f"time ({second})")
+
+
+def _widen(axes: Axes) -> None:
+    """Let a curve that hardly changes lie level, rather than show its rounding between equal numbers."""
+    low, high = axes.get_ylim()
+    least = NARROWEST * max(abs(low), abs(high))
+    if high - low < least:
+        middle = (low + high) / 2
+        axes.set_ylim(middle - least / 2, middle + least / 2)
 
 
 def _legend(axes: Axes, chart: Chart) -> None:

@@ -13,6 +13,7 @@ import psph
 from psph.lab.report.sheet import interactive
 from psph.lab.report.turning import turning
 from psph.output.frames import FrameFile
+from psph.output.pictures import style
 from psph.output.reader import Run
 from psph.parallel.reductions import alone
 
@@ -134,7 +135,7 @@ def tank(tmp_path):
 def test_the_view_has_the_lines_of_each_frame(tmp_path):
     frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": "", "dimensions": 2})
     cloud = {"id": np.arange(4), "kind": np.arange(4, dtype=np.uint8) % 2, "group": np.zeros(4, np.uint8)}
-    cloud |= {"position": np.eye(4)[:, :2], "velocity": np.eye(4)[:, :2]}
+    cloud |= {"position": np.eye(4)[:, :2], "velocity": np.zeros((4, 2))}
     points = np.array([[0.0, 0.0], [0.5, 0.1], [1.0, 0.5]])
     for k in range(2):
         frames.write(k, 0.1 * k, k, cloud, {"raft.line": (points + k, 1.0)} if k == 0 else {})
@@ -143,6 +144,25 @@ def test_the_view_has_the_lines_of_each_frame(tmp_path):
     assert first[1:4].tolist() == [0.0, 0.5, 1.0] and np.isnan(first[[0, 4]]).all()
     assert np.isnan(then).all()  # it has parted
     assert figure.frames[0].traces == (1, 2) and len(figure.data) == 3
+
+
+def test_the_view_moves_bodies_and_the_walls_that_the_case_moves(tmp_path):
+    case = "fluids.water = {}\nwalls = { tank = {}, paddle = {} }\nbodies.raft = {}\n"
+    frames = FrameFile(tmp_path / "raft.h5", alone(), {"case": case, "dimensions": 2})
+    cloud = {
+        "id": np.arange(4),
+        "kind": np.array([0, 1, 1, 1], np.uint8),
+        "group": np.arange(4, dtype=np.uint8),
+    }
+    for k in range(2):
+        moved = {"position": np.array([[0.0, 0], [1, 0], [2 + k, 0], [3 + k, 0]])}
+        moved["velocity"] = np.array([[1.0, 0], [0, 0], [k, 0], [0, 0]])  # the body has just come to rest
+        frames.write(k, 0.1 * k, k, cloud | moved)
+    figure = turning(Run(tmp_path))
+    assert figure.data[0].x.tolist() == [1.0]  # the tank
+    shown = [[trace.x.tolist() for trace in frame.data] for frame in figure.frames]
+    assert shown == [[[0.0], [2.0], [3.0]], [[0.0], [3.0], [4.0]]]
+    assert figure.frames[0].data[2].marker.color == style.WHOLE != figure.frames[0].data[1].marker.color
 
 
 @NEEDS_CHROMIUM

@@ -364,3 +364,15 @@ def test_numbers_have_few_digits(unit, largest, factor, text):
 )
 def test_time_is_told_in_its_unit(time, end, text):
     assert style.moment(time, end) == text
+
+
+def test_a_curve_that_keeps_its_value_lies_level_between_numbers_that_differ():
+    time = np.linspace(0.0, 1.0, 5)
+    still = charts.Chart("centre x", "m", time, {"x": 1.0 + 1e-9 * time})
+    figure = charts.picture([still], "A box", "gauge")
+    [axes] = figure.axes
+    low, high = axes.get_ylim()
+    assert high - low == pytest.approx(1e-3, rel=1e-6)
+    figure.canvas.draw()
+    labels = [label.get_text() for label in axes.get_yticklabels()]
+    assert len(set(labels)) == len(labels) > 1
