@@ -26,6 +26,7 @@ class Hinge(Table):
         otherwise="none",
     )
     latch: bool = key("what has reached a limit stays there", False)
+    restitution: float = key("speed after over that before at a limit", 0.0, unit="1", ge=0, le=1)
     stiffness: float = key("torque of a spring by its angle", 0.0, unit="N m", ge=0)
     rest: float = key("the angle without torque", 0.0, unit="degrees")
     damping: float = key("torque of a damper over the angular velocity", 0.0, unit="N m s", ge=0)
@@ -43,6 +44,7 @@ class Slider(Table):
         "smallest and largest way of the first body, 0 at the start", None, unit="m", otherwise="none"
     )
     latch: bool = key("what has reached a limit stays there", False)
+    restitution: float = key("speed after over that before at a limit", 0.0, unit="1", ge=0, le=1)
     stiffness: float = key("force of a spring by its way", 0.0, unit="N/m", ge=0)
     rest: float = key("the way without force", 0.0, unit="m")
     damping: float = key("force of a damper over the speed", 0.0, unit="N s/m", ge=0)
@@ -143,5 +145,8 @@ def _drawn(loc, told, dimensions: int) -> Iterator[Finding]:
         if not limits[0] <= 0.0 <= limits[1] or limits[0] == limits[1]:
             says = "gives the smallest and the largest, and 0, where it starts, is not between; change them"
             yield (*loc, "limits"), list(limits), says
-    elif getattr(told, "latch", False):
-        yield (*loc, "latch"), True, "needs limits; give them, or remove latch"
+    for name in ("latch", "restitution"):
+        if getattr(told, name, False) and not getattr(told, "limits", None):
+            yield (*loc, name), getattr(told, name), f"needs limits; give them, or remove {name}"
+    if getattr(told, "latch", False) and told.restitution:
+        yield (*loc, "restitution"), told.restitution, "what latches does not bounce; remove one of the two"

@@ -98,6 +98,7 @@ def _gone(told, unit: float) -> dict[str, Any]:
         "stiffness": told.stiffness,
         "damping": told.damping,
         "latch": told.latch,
+        "restitution": told.restitution,
     }
 
 

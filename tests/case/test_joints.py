@@ -60,6 +60,18 @@ WRONG = {
         "joints.shoulder.hinge.latch",
         "needs limits",
     ),
+    "bounces": (
+        "at = [0.5, 0.4]",
+        "at = [0.5, 0.4], restitution = 0.5",
+        "joints.shoulder.hinge.restitution",
+        "needs limits",
+    ),
+    "bounces and latches": (
+        "at = [0.5, 0.4]",
+        "at = [0.5, 0.4], limits = [-9.0, 9.0], latch = true, restitution = 0.5",
+        "joints.shoulder.hinge.restitution",
+        "does not bounce",
+    ),
     "a gauge": ('of = "shoulder"', 'of = "sholder"', "gauges.shoulder.joint.of", "did you mean 'shoulder'"),
 }
 

@@ -235,6 +235,27 @@ def test_a_flap_stops_at_its_limit(latch):
     assert lifted == pytest.approx(0.0, abs=1e-12) if latch else lifted > 0.05
 
 
+@pytest.mark.parametrize("restitution", (0.3, 0.7, 1.0))
+def test_what_meets_a_limit_goes_back(restitution):
+    """With e times its speed: e² of the energy above the limit is left of each bounce, to 1e-3; then it rests there."""
+    limits = (-math.pi / 3.0, 1.0)
+    dry = Dry(
+        [rod((0, 0, 0), (1.0, 0, 0), wide=0.0)],
+        [hinge(0, None, (0.0, 0.0, 0.0), limits=limits, restitution=restitution)],
+    )
+    lowest = -9.81 * 0.5 * math.sin(math.pi / 3.0)
+    above = np.concatenate([[dry.energy], dry.go(600, 4e-3)]) - lowest
+    assert dry.widest < 1e-12
+    drops = np.flatnonzero(above[1:] < 0.9 * above[:-1])
+    if restitution == 1.0:
+        assert not len(drops) and above[-1] == pytest.approx(above[0], rel=1e-3)
+        return
+    lost = above[drops + 1] / above[drops]
+    assert lost[:3] == pytest.approx(restitution**2, abs=1e-3)
+    if restitution == 0.3:
+        assert above[-1] == pytest.approx(0.0, abs=1e-9) and dry.joints.ways[0] == pytest.approx(limits[0])
+
+
 def test_a_state_goes_on():
     """Saved and taken up again, with an angle of more than a turn: the same bits."""
 

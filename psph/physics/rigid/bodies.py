@@ -112,12 +112,16 @@ class Bodies:
         before = self.velocity, self.spin_by(self.angular_momentum)
         self._kick(then, dt)
         self.pressing, self.twisting = np.zeros_like(self.force), np.zeros_like(self.torque)
-        if contacts and dt > 0.0:
-            contacts.meet(self, before, then, dt)
         loose, step = then > self.held, self._lasting(then, dt)
+
+        def meet(hold=None):
+            if contacts and dt > 0.0:
+                contacts.meet(self, before, then, dt, hold)
+
         if joints:
-            joints.move(self, then, dt, lambda: self._go(then, step))
+            joints.move(self, then, dt, lambda: self._go(then, step), meet)
         else:
+            meet()
             self._go(then, step)
         velocity = np.where(self.slides, self.velocity + 0.5 * step * self.force / self.mass, self.velocity)
         momentum = self.angular_momentum + 0.5 * step * self._driving
@@ -126,10 +130,10 @@ class Bodies:
     def kick(self, then: float, dt: float, contacts=None, joints=None) -> None:
         """The second half of the kick, by the forces at the end of the step, ``contacts`` and ``joints``."""
         self._kick(then, dt)
-        if contacts:
-            contacts.rest(self, dt)
         if joints:
-            joints.rest(self, dt)
+            joints.rest(self, dt, contacts)
+        elif contacts:
+            contacts.rest(self, dt)
         self._show(then > self.held, self.velocity, self.angular_momentum)
 
     def pose(self) -> tuple[np.ndarray, ...]:
@@ -140,6 +144,15 @@ class Bodies:
         """Let them stand there again."""
         self.place, turn, self.frame, self.angle = pose
         self.turn = turn.copy()
+
+    def motion(self) -> tuple[np.ndarray, np.ndarray]:
+        """How they move, for :meth:`set_off`."""
+        return self.velocity, self.angular_momentum
+
+    def set_off(self, motion: tuple[np.ndarray, np.ndarray]) -> None:
+        """Let them move so again, before any contact."""
+        self.velocity, self.angular_momentum = motion
+        self.pressing, self.twisting = np.zeros_like(self.force), np.zeros_like(self.torque)
 
     def load(self, force: np.ndarray, torque: np.ndarray) -> None:
         """Forces and torques about the reference points (n, 3) at the end of the step; weight is added."""

@@ -4,16 +4,29 @@ All joints are held at once, by impulses and not by springs: a step moves the bo
 every joint fits, and lets them go on with velocities at which it stays so.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from psph.physics.rigid.bodies import Bodies
 from psph.physics.rigid.contact import Yielding
+from psph.physics.rigid.joint_rows import (
+    GO,
+    LENGTH,
+    ORIGIN,
+    SLIDE,
+    SPIN,
+    TILT,
+    TURN,
+    Joint,
+    JointRows,
+    rows_of,
+    turned,
+    vector_of,
+)
+from psph.physics.rigid.joints_answer import Jointed, answering
 from psph.physics.rigid.linear import factored, solved
 from psph.physics.rigid.lines import STEP
-from psph.vectors import Vector
 
 ROUNDS = 40
 """In which the joints of a step are made to fit, at most; some four do."""
@@ -24,61 +37,8 @@ FITS = 1e-13
 ROUNDED = 8.0
 """Units in the last place of the farthest point that are left of a gap at least."""
 
-SLIDE, TURN, TILT, LENGTH, GO, SPIN = range(6)
-"""What a row of a joint is about: that it does not slide along a way, turn about it or tilt its axis about
-it, or keeps a length; and its coordinate, along a way or about it."""
-
-ORIGIN = (0.0, 0.0, 0.0)
-
 KEPT = ("push", "twist", "ways", "latched")
 """The arrays of a state."""
-
-
-class Joint(NamedTuple):
-    """What joins the body of the row ``body`` with that of the row ``other``, None for what no force moves.
-
-    ``here`` and ``there`` are the points of the two that it joins, where they are at the start, m; the first
-    lies by ``over``, whole periods, beyond that of the other's image that is joined.
-    ``slides`` are directions along which the first may not move seen from the other, ``turns`` those about
-    which it may not turn, and ``tilts`` those about which an ``axis`` of both may not tilt; all of them
-    turn with the other. ``length`` in m is that of a rod between the points, None without one.  ``leader``
-    has the pose of the other where it moves as it is told.  ``along`` is the way, or the axis, of its
-    coordinate q: where the joint ``goes`` how far along it in m, else the angle about it in rad.  q has
-    ``limits``, a spring of the ``stiffness`` (N/m or N m) about ``rest``, and a damper with the ``damping``
-    (N s/m or N m s).  What reaches a limit with a ``latch`` stays there.
-    """
-
-    name: str
-    body: int
-    other: int | None
-    here: Vector
-    there: Vector
-    slides: tuple[Vector, ...] = ()
-    turns: tuple[Vector, ...] = ()
-    tilts: tuple[Vector, ...] = ()
-    axis: Vector | None = None
-    length: float | None = None
-    leader: Any = None
-    along: Vector | None = None
-    goes: bool = False
-    limits: tuple[float, float] = (-np.inf, np.inf)
-    stiffness: float = 0.0
-    rest: float = 0.0
-    damping: float = 0.0
-    latch: bool = False
-    over: Vector = ORIGIN
-
-
-class JointRows(NamedTuple):
-    """The rows of all joints at a moment: the ``gap`` of each (m,), m or rad, or the coordinate q of a
-    joint; the ``push`` N s and ``twist`` N m s (m, 3) of a unit impulse on the first body, and what turns
-    the second ``back``; ``told`` (m,) the rates at which what leads opens the gaps, m/s or rad/s."""
-
-    gap: np.ndarray
-    push: np.ndarray
-    twist: np.ndarray
-    back: np.ndarray
-    told: np.ndarray
 
 
 class Joints:
@@ -88,7 +48,8 @@ class Joints:
     which g = 0 after the step, and V = V½ + Δt M⁻¹ F/2 + M⁻¹ Gᵀ μ with the μ for which G V = 0: SHAKE and
     RATTLE (Ryckaert, Ciccotti & Berendsen 1977, J. Comput. Phys. 23, 327; Andersen 1983, J. Comput. Phys.
     52, 24), for bodies that turn.  What several rows could bear is shared evenly.  A limit is a row as long
-    as it is reached and pushes back.
+    as it is reached and pushes back: where it throws back, G V = −e v with the speed v at which it was met.
+    Contacts of bodies and what joints bear of them are solved as one (psph.physics.rigid.joints_answer).
 
     ``push`` N s and ``twist`` N m s (n, 3) are the impulses of each joint on its first body in the last
     step, about its point; ``ways`` (n,) the coordinates q, angles beyond half a turn too; ``latched`` (n,)
@@ -107,7 +68,7 @@ class Joints:
         self._reference = np.concatenate([bodies.reference, np.reshape(origin, (-1, 3))])
         points = (np.array([getattr(one, of) for one in joints]) for of in ("here", "there", "over"))
         self._here, self._there, self._over = points
-        rows = [(j, *row) for j, one in enumerate(joints) for row in _rows_of(one)]
+        rows = [(j, *row) for j, one in enumerate(joints) for row in rows_of(one)]
         self._of, self._what, self._way = (np.array(of) for of in zip(*rows))
         self._axis = np.array([one.axis or ORIGIN for one in joints])[self._of]
         self._length = np.array([one.length or 0.0 for one in joints])[self._of]
@@ -121,46 +82,50 @@ class Joints:
         self._ways = np.isin(self._what, (SLIDE, LENGTH, GO))
         self._enough, self._arm = FITS * np.where(self._ways, size, 1.0), size
         self.push, self.twist = np.zeros((2, len(joints), 3))
-        self.ways, self.latched, self._stops = np.zeros((3, len(joints)))
+        self.ways, self.latched, self._stops, self._bounce = np.zeros((4, len(joints)))
         self._see(bodies, 0.0)
 
-    def move(self, bodies: Bodies, then: float, dt: float, go: Callable[[], None]) -> None:
-        """Let the bodies ``go`` to ``then``, s, by impulses at its beginning after which all joints fit."""
-        self.push, self.twist = np.zeros_like(self.push), np.zeros_like(self.twist)
-        self._stops = self.latched.copy()
-        before, kept, give = self._now, bodies.pose(), bodies.yielding(then)
-        given, let_go = np.zeros(len(self._of)), np.zeros(len(self._of), bool)
-        binds = self._binds()
-        solve, enough = self._solver(before, give, binds), self._fitting(bodies)
+    def move(
+        self, bodies: Bodies, then: float, dt: float, go: Callable[[], None], meet: Callable[..., None]
+    ) -> None:
+        """Let the bodies ``go`` to ``then``, s, by impulses at its beginning after which all joints fit, by
+        those too of contacts where they ``meet`` others."""
+        self._stops, self._bounce = self.latched.copy(), np.zeros(len(self.joints))
+        before, start, motion = self._now, bodies.pose(), bodies.motion()
+        let_go = np.zeros(len(self._of), bool)
         for _ in range(ROUNDS):
-            go()
-            gaps = self._gaps(self._rows(bodies, then))
-            if not dt > 0.0:
+            bodies.put(start)
+            bodies.set_off(motion)
+            self.push, self.twist = np.zeros_like(self.push), np.zeros_like(self.twist)
+            given, gaps = self._fitted(bodies, then, dt, go, meet)
+            if not dt > 0.0 or not self._switch(bodies, gaps, given, let_go, dt):
                 break
-            if not (np.abs(np.where(binds, gaps, 0.0)) > enough).any():
-                if not self._switch(gaps, given, let_go):
-                    break
-                binds = self._binds()
-                solve = self._solver(before, give, binds)
-            bodies.put(kept)
-            share = np.where(binds, solve(np.where(binds, -gaps / dt, 0.0)), -given)
-            given = given + share
-            self._act(bodies, before, share)
-        else:
-            go()
         self.latched = np.where(self._latches, self._stops, 0.0)
         self._see(bodies, then)
         self._bear(bodies, self._sums(before, given), dt)
 
-    def rest(self, bodies: Bodies, dt: float) -> None:
-        """Velocities at the end of a step of ``dt`` s at which all joints stay as they are."""
-        share = self._staying(bodies.velocity, bodies.spin_by(bodies.angular_momentum))
+    def rest(self, bodies: Bodies, dt: float, contacts=None) -> None:
+        """Velocities at the end of a step of ``dt`` s at which all joints stay as they are, and what rests in
+        ``contacts`` does (psph.simulation.touching)."""
+        held: list[Jointed] = []
+
+        def hold() -> Jointed:
+            share, binds = self._staying(*_moving(bodies))
+            self._act(bodies, self._now, share)
+            held.append(self._holding(self._now, self._give, binds, share))
+            return held[0]
+
+        if contacts:
+            contacts.rest(bodies, dt, hold)
+        share = self._staying(*_moving(bodies))[0]
         self._act(bodies, self._now, share)
+        for one in held:
+            share = share + self._noted(self._now, one)
         self._bear(bodies, self._sums(self._now, share), dt)
 
     def steadied(self, bodies: Bodies, velocity: np.ndarray, momentum: np.ndarray) -> tuple:
         """The ``velocity`` and angular ``momentum`` (n, 3) that the joints would make of these."""
-        push, twist = self._sums(self._now, self._staying(velocity, bodies.spin_by(momentum)))
+        push, twist = self._sums(self._now, self._staying(velocity, bodies.spin_by(momentum))[0])
         return np.where(bodies.slides, velocity + push / bodies.mass, velocity), momentum + twist
 
     def pulls(self, bodies: Bodies) -> tuple[np.ndarray, np.ndarray]:
@@ -192,8 +157,47 @@ class Joints:
         """Go on from there."""
         for name in KEPT:
             setattr(self, name, np.reshape(state[name], getattr(self, name).shape).astype(float))
-        self._stops = self.latched.copy()
+        self._stops, self._bounce = self.latched.copy(), np.zeros(len(self.joints))
         self._see(bodies, state["time"])
+
+    def _fitted(self, bodies: Bodies, then: float, dt: float, go, meet) -> tuple[np.ndarray, np.ndarray]:
+        """One try of a step, with the limits that are reached so far: impulses (m,), and the gaps after."""
+        before, start, give, binds = self._now, bodies.pose(), bodies.yielding(then), self._binds()
+        solve, enough, held = self._solver(before, give, binds), self._fitting(bodies), []
+
+        def hold() -> Jointed:
+            opening = self._gaps(before) / dt + self._rates(before, *_moving(bodies))
+            share = solve(np.where(binds, -opening, 0.0))
+            self._act(bodies, before, share)
+            held.append(self._holding(before, give, binds, share))
+            return held[0]
+
+        meet(hold)
+        given = sum((self._noted(before, one) for one in held), np.zeros(len(self._of)))
+        for _ in range(ROUNDS):
+            go()
+            gaps = self._gaps(self._rows(bodies, then))
+            if not dt > 0.0 or not (np.abs(np.where(binds, gaps, 0.0)) > enough).any():
+                break
+            bodies.put(start)
+            share = solve(np.where(binds, -gaps / dt, 0.0))
+            given = given + share
+            self._act(bodies, before, share)
+        else:
+            go()
+        return given, gaps
+
+    def _holding(self, rows: JointRows, give: Yielding, binds: np.ndarray, given: np.ndarray) -> Jointed:
+        """What the rows that bind answer to contacts, after the impulses ``given`` (m,)."""
+        return Jointed(np.flatnonzero(binds), given, *(of[binds] for of in self._whole(rows, give)))
+
+    def _noted(self, rows: JointRows, held: Jointed) -> np.ndarray:
+        """The impulses (m,) of what held in contacts, added to those of the step."""
+        found = held.given.copy()
+        share = np.zeros(len(found))
+        share[held.which] = -held.borne
+        self._note(rows, share)
+        return found + share
 
     def _lead(self, joint: Joint) -> int:
         """Which leader it has."""
@@ -229,7 +233,9 @@ class Joints:
         """Which rows hold."""
         return ~self._free | (self._stops[self._of] != 0.0)
 
-    def _switch(self, gaps: np.ndarray, given: np.ndarray, let_go: np.ndarray) -> bool:
+    def _switch(
+        self, bodies: Bodies, gaps: np.ndarray, given: np.ndarray, let_go: np.ndarray, dt: float
+    ) -> bool:
         """Whether a limit has been reached, or pulls and lets go."""
         side = self._stops[self._of]
         pulls = self._free & (side * given > 0.0) & (self.latched[self._of] == 0.0)
@@ -237,29 +243,48 @@ class Joints:
         let_go |= pulls
         changed = pulls | reached
         self._stops[self._of[changed]] = np.where(reached, np.sign(gaps), 0.0)[changed]
+        self._bounce[self._of[changed]] = np.where(reached, self._thrown(bodies, gaps, dt), 0.0)[changed]
         return bool(changed.any())
 
-    def _staying(self, velocity: np.ndarray, spin: np.ndarray) -> np.ndarray:
-        """The impulses (m,) after which no gap opens; a limit does not pull."""
+    def _thrown(self, bodies: Bodies, beyond: np.ndarray, dt: float) -> np.ndarray:
+        """The rates (m,) at which limits throw back what would be ``beyond`` them after the step of ``dt`` s.
+
+        It meets them at v + f a dt, after the part f of its way in the step.
+        """
+        start, before = self.ways[self._of], self._rates(self._now, bodies.ahead, bodies.spin_ahead)
+        limit = np.where(beyond > 0.0, self._upper, self._lower)
+        with np.errstate(invalid="ignore"):  # where there is no limit
+            free = limit + beyond - start
+            part = np.clip((limit - start) / np.where(free != 0.0, free, 1.0), 0.0, 1.0)
+            meeting = before + 2.0 * part * (free / dt - before)
+            side = np.sign(beyond)
+            return -side * self._told("restitution") * np.maximum(side * meeting, 0.0)
+
+    def _back(self) -> np.ndarray:
+        """The rates (m,) that limits ask for."""
+        return np.where(self._free, self._bounce[self._of], 0.0)
+
+    def _staying(self, velocity: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The impulses (m,) after which no gap opens, and the rows that bind; a limit does not pull."""
         if self._calm is None:
             self._calm = self._binds(), self._solver(self._now, self._give, self._binds())
         binds, solve = self._calm
-        rates, side = self._rates(self._now, velocity, spin), self._stops[self._of]
-        share = solve(np.where(binds, -rates, 0.0))
+        lacks = self._back() - self._rates(self._now, velocity, spin)
+        share, side = solve(np.where(binds, lacks, 0.0)), self._stops[self._of]
         pulls = self._free & (side * share > 0.0) & (self.latched[self._of] == 0.0)
         if pulls.any():
             binds = binds & ~pulls
-            share = self._solver(self._now, self._give, binds)(np.where(binds, -rates, 0.0))
-        return share
+            share = self._solver(self._now, self._give, binds)(np.where(binds, lacks, 0.0))
+        return share, binds
 
     def _rows(self, bodies: Bodies, time: float) -> JointRows:
         """All rows where the bodies stand at ``time``, s."""
         place, turn, velocity, spin = self._standing(bodies, time)
         one, other = self._first[self._of], self._second[self._of]
-        here = place[one] + _turned(turn[one], self._here[self._of] - self._reference[one])
-        there = place[other] + _turned(turn[other], self._there[self._of] - self._reference[other])
+        here = place[one] + turned(turn[one], self._here[self._of] - self._reference[one])
+        there = place[other] + turned(turn[other], self._there[self._of] - self._reference[other])
         over = self._over[self._of]
-        apart, way = here - there - over, _turned(turn[other], self._way)
+        apart, way = here - there - over, turned(turn[other], self._way)
         distance = np.sqrt((apart**2).sum(axis=1))
         is_length = self._what == LENGTH
         way = np.where(is_length[:, None], apart / np.where(distance > 0.0, distance, 1.0)[:, None], way)
@@ -269,8 +294,8 @@ class Joints:
         twist = np.where(slides, np.cross(here - place[one], way), way)
         back = np.where(slides, np.cross(arm, way), way)
         relative = turn[one] @ turn[other].transpose(0, 2, 1)
-        sine, cosine = _vector_of(relative), 0.5 * (np.trace(relative, axis1=1, axis2=2) - 1.0)
-        tilted = np.cross(_turned(turn[other], self._axis), _turned(turn[one], self._axis))
+        sine, cosine = vector_of(relative), 0.5 * (np.trace(relative, axis1=1, axis2=2) - 1.0)
+        tilted = np.cross(turned(turn[other], self._axis), turned(turn[one], self._axis))
         along = {
             SLIDE: apart,
             TURN: sine,
@@ -306,8 +331,9 @@ class Joints:
         second = (rows.push * velocity[other]).sum(axis=1) + (rows.back * spin[other]).sum(axis=1)
         return first - np.where(self._second[self._of] < len(velocity), second, 0.0) + rows.told
 
-    def _answers(self, rows: JointRows, give: Yielding) -> np.ndarray:
-        """The matrix G M⁻¹ Gᵀ (m, m): how fast the gap of a row opens after a unit impulse of another."""
+    def _whole(self, rows: JointRows, give: Yielding) -> tuple[np.ndarray, np.ndarray]:
+        """Impulses and moments on the bodies (m, n, 6) of unit impulses of the rows, and what these change of
+        velocities and spins."""
         count, m = len(give.sliding), len(self._of)
         one, other, each = self._first[self._of], self._second[self._of], np.arange(m)
         whole, free = np.zeros((m, count, 6)), other < count
@@ -316,7 +342,11 @@ class Joints:
         moved = np.concatenate(
             [whole[:, :, :3] * give.sliding, np.einsum("mnd,nde->mne", whole[:, :, 3:], give.turning)], axis=2
         )
-        return moved.reshape(m, -1) @ whole.reshape(m, -1).T
+        return whole, moved
+
+    def _answers(self, rows: JointRows, give: Yielding) -> np.ndarray:
+        """How fast the gap of a row opens after a unit impulse of another (m, m)."""
+        return answering(*self._whole(rows, give))
 
     def _solver(
         self, rows: JointRows, give: Yielding, binds: np.ndarray
@@ -344,6 +374,9 @@ class Joints:
     def _act(self, bodies: Bodies, rows: JointRows, share: np.ndarray) -> None:
         """Let impulses act, and add them to those of the step."""
         bodies.shoved(*self._sums(rows, share))
+        self._note(rows, share)
+
+    def _note(self, rows: JointRows, share: np.ndarray) -> None:
         slides = (rows.push != 0.0).any(axis=1)[:, None]
         np.add.at(self.push, self._of, share[:, None] * rows.push)
         np.add.at(self.twist, self._of, np.where(slides, 0.0, share[:, None] * rows.twist))
@@ -357,22 +390,6 @@ class Joints:
         return np.array([getattr(one, name) for one in self.joints])[self._of]
 
 
-def _rows_of(joint: Joint) -> Iterator[tuple[int, Vector]]:
-    """What each row of a joint is about, and its way."""
-    yield from ((SLIDE, way) for way in joint.slides)
-    yield from ((TURN, way) for way in joint.turns)
-    yield from ((TILT, way) for way in joint.tilts)
-    if joint.length is not None:
-        yield LENGTH, ORIGIN
-    if joint.along is not None:
-        yield (GO if joint.goes else SPIN), joint.along
-
-
-def _turned(turn: np.ndarray, ways: np.ndarray) -> np.ndarray:
-    return np.einsum("nde,ne->nd", turn, ways)
-
-
-def _vector_of(turn: np.ndarray) -> np.ndarray:
-    """Axis times sine of the angle of matrices (n, 3, 3)."""
-    m = 0.5 * (turn - turn.transpose(0, 2, 1))
-    return np.stack([m[:, 2, 1], m[:, 0, 2], m[:, 1, 0]], axis=1)
+def _moving(bodies: Bodies) -> tuple[np.ndarray, np.ndarray]:
+    """Velocities and spins (n, 3), of their own."""
+    return bodies.velocity, bodies.spin_by(bodies.angular_momentum)
