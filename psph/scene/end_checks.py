@@ -1,6 +1,7 @@
 """What `check` says of the open ends of a scene."""
 
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 
@@ -9,13 +10,13 @@ from psph.case.ends import LEVEL
 from psph.case.keys import AXES
 from psph.scene.end_columns import column_of
 from psph.scene.end_rides import ride_faults
-from psph.scene.end_rows import across_up, rows_behind
+from psph.scene.end_rows import across_up, raised, rows_behind
 from psph.scene.ends import UNLIKE, groups_of, mean_of, unlike
 from psph.scene.lattice import TOLERANCE
 from psph.scene.layout import NONE
 from psph.scene.moving import moving_parts
 from psph.scene.parts.end import rows_of, rows_reached
-from psph.scene.shapes import shown
+from psph.scene.shapes import inside, shown
 
 HELD = 0.5
 """Spacings that a wall may move and still hold what stands behind a plane."""
@@ -94,6 +95,17 @@ def end_warnings(scene) -> Iterator[str]:
                 f"ends.{name}.level: {low:.4g} m is below the bed behind its plane, at {bed:.4g} m, so that "
                 "all of the fluid runs out; give a height above it, against gravity"
             )
+        if (found := _over_the_rim(scene, name, end)) is not None:
+            level, axis, site = found
+            yield (
+                f"ends.{name}.level: {level:.4g} m is above what holds the fluid behind its plane towards "
+                f"{axis}, at {shown(site)}, so that it runs over there; let walls reach higher"
+            )
+        if (body := _body_behind(scene, name)) is not None:
+            yield (
+                f"ends.{name}: {body} starts behind its plane, where a buffer stands that does not feel it; "
+                "let it start in front"
+            )
         if (site := _fluid_behind(scene, name, end)) is not None:
             yield (
                 f"ends.{name}: fluid stands behind its buffer at {shown(site)} and stays there; move the "
@@ -131,13 +143,54 @@ def _above_water(scene, end) -> tuple[float, float] | None:
 def _below_the_bed(scene, name: str, end) -> tuple[float, float] | None:
     """The least level that an end is given and the height of the bed behind it, m, where that is above; else
     None."""
+    if (rows := _rows(scene, name, end)) is None:
+        return None
+    low, half = _levels(end)[0], 0.5 * scene.spacing
+    return (low, rows.heights[0] - half) if low < rows.heights[0] - half else None
+
+
+def _over_the_rim(scene, name: str, end) -> tuple[float, str, tuple[float, ...]] | None:
+    """The largest level that an end is given, a direction across the end, and a site below that level beyond
+    which there is nothing; None where all that may come to stand behind the plane is held."""
+    if (rows := _rows(scene, name, end)) is None:
+        return None
+    layout, high = scene.layout, _levels(end)[1]
+    filled = [row for row, height in zip(rows.sites, rows.heights) if height < high][rows.wet :]
+    level = (d for d in range(layout.dimensions) if d != end.axis and not layout.up[d])
+    for d, sign, row in product(level, (-1.0, 1.0), filled):
+        beyond = row.copy()
+        beyond[:, d] += sign * layout.spacing
+        middle, half = 0.5 * (row[:, d].min() + row[:, d].max()), 0.5 * np.ptp(row[:, d])
+        past = np.abs(beyond[:, d] - middle) > half + HELD * layout.spacing
+        free = past & (layout.held([*beyond.T], (len(beyond),)) == NONE)
+        free &= ~_mirrored(layout, d, beyond[:, d])
+        if free.any() and not _repeats(layout, d):
+            return high, f"{'+' if sign > 0 else '-'}{AXES[d]}", tuple(row[free][0].tolist())
+    return None
+
+
+def _body_behind(scene, name: str) -> str | None:
+    """The key of a part that moves as a whole and has sites in the buffer of an end; None where none has."""
+    layout = scene.layout
+    box = layout.parts[groups_of(layout, name)[0]].shape
+    for first, last in layout.lattice.chunks():
+        grid = layout.lattice.grid(first, last)
+        held = layout.materials(first, last)
+        held = held[np.broadcast_to(inside(box, grid, TOLERANCE * layout.spacing), held.shape)]
+        for number in np.unique(held[held != NONE]):
+            if layout.parts[int(number)].moves_whole:
+                return layout.parts[int(number)].key
+    return None
+
+
+def _rows(scene, name: str, end):
+    """The rows behind an end that is given a level in numbers; None of any other."""
     groups = groups_of(scene.layout, name)
     if not isinstance(end.level, (float, Course)) or not groups:
         return None
     box = scene.layout.parts[groups[0]].shape.form
-    rows = rows_behind(scene.layout, end, groups, np.array(box.lower), np.array(box.upper))
-    low, half = _levels(end)[0], 0.5 * scene.spacing
-    return (low, rows.heights[0] - half) if rows is not None and low < rows.heights[0] - half else None
+    corners = raised(scene.layout, end, np.array(box.lower), np.array(box.upper))
+    return rows_behind(scene.layout, end, groups, *corners)
 
 
 def _levels(end) -> tuple[float, float]:

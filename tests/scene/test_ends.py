@@ -245,3 +245,37 @@ def test_a_plane_rides_along_its_axis(tmp_path, motion, fine):
     assert not fine or not [*end_warnings(Scene(case))]
     rests = draft(tmp_path, PLATES, *RIDES)
     assert len([*end_faults(Scene(rests))]) == 2
+
+
+FLUME = """
+space = { dimensions = 3, spacing = 0.1 }
+time.end = 1.0
+physics.gravity = [0.0, 0.0, -9.81]
+[fluids.water]
+shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.5, 0.5, 0.5] }
+pressure = "hydrostatic"
+[walls.flume]
+shape.difference.from.box = { lower = [-0.5, -0.4, -0.4], upper = [1.9, 0.9, 0.8] }
+shape.difference.minus = [{ box = { lower = [-0.5, 0.0, 0.0], upper = [1.5, 0.5, 0.8] } }]
+[ends.sea]
+at = 0.0
+inward = "+x"
+level = 0.5
+"""
+
+
+def test_a_level_above_the_walls_beside_it_is_warned_of(tmp_path):
+    assert not [*end_warnings(Scene(draft(tmp_path, FLUME, "ends.sea.level=0.78")))]
+    [line] = end_warnings(Scene(draft(tmp_path, FLUME, "ends.sea.level=0.95")))
+    assert line.startswith(
+        "ends.sea.level: 0.95 m is above what holds the fluid behind its plane towards -y, at"
+    )
+    higher = FLUME.replace("0.8]", "1.1]")
+    assert not [*end_warnings(Scene(draft(tmp_path, higher, "ends.sea.level=0.95")))]
+
+
+def test_a_body_that_starts_in_a_buffer_is_warned_of(tmp_path):
+    raft = "bodies.raft={{density=500.0, shape={{box={{lower=[{}, 0.1, 0.3], upper=[{}, 0.4, 0.5]}}}}}}"
+    [line] = end_warnings(Scene(draft(tmp_path, FLUME, raft.format(-0.4, -0.1))))
+    assert line.startswith("ends.sea: bodies.raft starts behind its plane")
+    assert not [*end_warnings(Scene(draft(tmp_path, FLUME, raft.format(0.5, 0.8))))]
