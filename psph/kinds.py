@@ -24,7 +24,6 @@ CATALOGUE = (
 """Module and class of each kind that psph has, in the order in which they are asked.  They are named here and
 imported when a scene is there, since they stand above all that asks them."""
 
-
 TOPICS = ("matter", "reach", "messages", "passes", "steps", "friction")
 """Of lines for `explain`: what it is; how far its particles see others; what it sends in each step beside the
 halo; passes over neighbours of its own; what it does within a step; its friction."""
@@ -263,12 +262,13 @@ class Kind:
         """For `check`: what will run, and likely not as intended."""
         yield from ()
 
-    def groups(self) -> tuple:
-        """Groups of particles that it adds to those on the scene's lattice (psph.scene.species.Species).
+    def curves(self) -> dict[str, Any]:
+        """For `check --draw`: points (n, dim), m, by key, of what the case tells straight and hangs."""
+        return {}
 
-        Such particles are apart: only sums of effects that say ``across = True`` see them, and what they
-        see (psph.particles.apart).
-        """
+    def groups(self) -> tuple:
+        """Groups of particles that it adds to those on the lattice (psph.scene.species.Species). They are
+        apart (psph.particles.apart): sums of effects with ``across = True`` alone see them or theirs."""
         return ()
 
     def particles(self) -> Created | None:

@@ -14,7 +14,7 @@ from psph.scene.bodies import BRAKED, body_step, braked, in_words, lightest_shar
 from psph.scene.body_checks import body_faults, body_warnings, period_faults
 from psph.scene.body_parts import bodies_of
 from psph.scene.joints import joint_words
-from psph.scene.lines import line_faults, line_warnings, line_words
+from psph.scene.lines import line_faults, line_warnings, line_words, strung_at_start
 from psph.scene.solids import meets
 from psph.scene.volumes import moved_as_whole
 
@@ -54,6 +54,10 @@ class RigidBodies(Kind):
         """Numbers of theirs that are likely a slip."""
         yield from body_warnings(self.scene)
         yield from line_warnings(self.scene)
+
+    def curves(self) -> dict[str, np.ndarray]:
+        """Chains hang."""
+        return strung_at_start(self.scene)
 
     @property
     def fields(self) -> tuple[Field, ...]:

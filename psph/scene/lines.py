@@ -157,6 +157,13 @@ def _begun(scene: Scene) -> tuple[Bodies, Lines]:
     return bodies, lines
 
 
+def strung_at_start(scene: Scene) -> dict[str, np.ndarray]:
+    """The points (n, dim), m, of each line by its key, as it hangs at the start."""
+    bodies, lines = _begun(scene)
+    keys = [key for key, _, _ in _tables(scene)]  # in the order of the lines
+    return {key: one.points[:, : scene.dimensions] for key, one in zip(keys, lines.shapes(bodies, 0.0))}
+
+
 def _tables(scene: Scene) -> Iterator[tuple[str, str, Line]]:
     """The key, the body and the table of each line."""
     for name, body in scene.case.bodies.items():

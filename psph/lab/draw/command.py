@@ -3,8 +3,11 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from psph.case import Case
 from psph.errors import Refused
+from psph.kinds import kinds_in
 from psph.lab.draw.marks import marks_of, names_of
 from psph.lab.draw.page import turning
 from psph.lab.draw.picture import picture
@@ -12,6 +15,8 @@ from psph.lab.draw.start import start_of
 from psph.lab.report.sheet import embedded, interactive, refuse_without_packages, written
 from psph.output.errors import OutputError
 from psph.output.pictures import style
+from psph.scene import Scene
+from psph.scene.checks import faults
 from psph.scene.layout import lay_out
 
 TEMPLATE = "scene.html"
@@ -26,7 +31,7 @@ def draw(case: Case, folder: Path) -> Iterator[str]:
     refuse_without_packages("check --draw")
     layout = lay_out(case)
     start = start_of(layout)
-    marks = [*names_of(layout, start), *marks_of(layout)]
+    marks = [*names_of(layout, start), *marks_of(layout, _hung(case))]
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -50,3 +55,11 @@ def draw(case: Case, folder: Path) -> Iterator[str]:
         turning=interactive(turning(layout, start, marks), "turning"),
     )
     yield f"{page}: the same, to be turned in a browser"
+
+
+def _hung(case: Case) -> dict[str, np.ndarray]:
+    """The points (n, dim), m, of each line at the start; none of a case that cannot be run."""
+    scene = Scene(case)
+    if any(faults(scene)):
+        return {}
+    return {key: points for kind in kinds_in(scene) for key, points in kind.curves().items()}

@@ -1,6 +1,7 @@
 """What a case has beside matter: ends, gauges, joints, lines, zones, and the sides of the domain."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -40,9 +41,13 @@ class Mark(NamedTuple):
         return 0.5 * (points.min(axis=0) + points.max(axis=0))
 
 
-def marks_of(layout: Layout) -> list[Mark]:
-    """All that a picture of the scene shows beside its particles."""
-    return [*_domain(layout), *_ends(layout), *_zones(layout), *_sketched(layout)]
+def marks_of(layout: Layout, hung: Mapping[str, np.ndarray] = MappingProxyType({})) -> list[Mark]:
+    """All that a picture of the scene shows beside its particles; ``hung``: points (n, dim), m, of lines
+    that hang otherwise than straight, by their keys."""
+    sketched = (
+        mark._replace(lines=[hung[mark.key]]) if mark.key in hung else mark for mark in _sketched(layout)
+    )
+    return [*_domain(layout), *_ends(layout), *_zones(layout), *sketched]
 
 
 def _mark(key: str, says: str, lines) -> Mark:

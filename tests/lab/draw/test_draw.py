@@ -1,17 +1,23 @@
 """``check --draw``: what it shows stands where the case says, of a case that is refused too."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from browser import NEEDS_CHROMIUM, Page, colours, looked_at, scripted
 from drafts import draft
 
 from psph.__main__ import main
-from psph.case import CaseError
+from psph.case import CaseError, load
 from psph.lab.draw.marks import marks_of, names_of
 from psph.lab.draw.page import turning
 from psph.lab.draw.picture import picture
 from psph.lab.draw.start import start_of
+from psph.scene import Scene
 from psph.scene.layout import lay_out
+from psph.scene.lines import strung_at_start
+
+ROOT = Path(__file__).parents[3]
 
 CASE = """
 title = "A box on a slope"
@@ -74,6 +80,17 @@ def test_all_that_acts_is_marked_where_it_is(tmp_path):
     assert set(zone[:, 0]) == {1.5, 2.0}
     assert zone[:, 1:].min(axis=0).tolist() == [-0.5, -0.5] and zone[:, 1:].max(axis=0).tolist() == [1.5, 2.5]
     assert len(marks["space"].lines) == 12
+
+
+def test_a_chain_is_drawn_as_it_hangs():
+    scene = Scene(load(ROOT / "run/cases/moored_pontoon.toml"))
+    marks = {mark.key: mark for mark in marks_of(scene.layout, strung_at_start(scene))}
+    [points] = marks["bodies.pontoon.lines.seaward"].lines
+    at, anchor = (np.array(place) for place in points[[0, -1]])
+    told = scene.case.bodies["pontoon"].lines["seaward"]
+    assert at == pytest.approx(told.at) and anchor == pytest.approx(told.anchor)
+    chord = at[1] + (points[:, 0] - at[0]) / (anchor - at)[0] * (anchor - at)[1]
+    assert (points[1:-1, 1] < chord[1:-1]).all() and len(points) == 31
 
 
 def test_all_particles_are_shown_by_their_names(tmp_path):
