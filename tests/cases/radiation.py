@@ -1,13 +1,15 @@
 """Small motions of a floating box in 2D by the linear theory of waves: added mass, damping and period.
 
 The potential of the water around a box that swings with exp(−iωt) obeys φ_n = ω²φ/g at the surface, φ_n = ikφ far
-away on both sides, where waves leave, and φ_n = n_y or (x × n)_z on the box. By Green's third identity, πφ = ∫(φ ∂ln
+away on both sides, where waves leave, and φ_n = n_x, n_y or (x × n)_z on the box. By Green's third identity, πφ = ∫(φ ∂ln
 r/∂n − ln r φ_n) ds, with panels on which φ and φ_n are constant.
 """
 
 import math
 
 import numpy as np
+
+from psph.theory.water_waves import wave_number
 
 G = 9.81
 
@@ -26,8 +28,27 @@ def swing(beam, draught, depth, inertia, stiffness, rolls=False, panel=0.02) -> 
     return 2.0 * math.pi / (w * math.sqrt(1.0 - share**2)), share
 
 
+def responses(w, beam, draught, depth, mass, stiffness, panel=0.02) -> np.ndarray:
+    """Complex amplitudes (3,) of sway, m, heave, m, and roll, rad, in waves along x with η = Re exp(i(kx − ωt)) m
+    at the middle of the box.
+
+    ``mass`` (3,) and ``stiffness`` (3, 3) are over the density of water, about the middle of the waterline:
+    [−ω²(M + A) − iωB + C] ξ = X with the force X of waves that the box at rest scatters.
+    """
+    force, scattered = forces(w, beam, draught, depth, panel)
+    return np.linalg.solve(stiffness - w * w * np.diag(mass) + 1j * w * force, scattered)
+
+
 def _radiated(w, beam, draught, depth, rolls, panel):
     """Added mass and damping over the density of water."""
+    force = forces(w, beam, draught, depth, panel)[0]
+    one = force[2, 2] if rolls else force[1, 1]
+    return one.imag / w, -one.real
+
+
+def forces(w, beam, draught, depth, panel):
+    """What the water pushes with, over its density, along x and y and about the middle of the waterline: at
+    unit speeds of the box (3, 3), iωA − B, and on the box at rest in waves (3,)."""
     far, half = 8.0 * depth, 0.5 * beam
     sides = (  # around the water, anticlockwise
         ([(-far, -depth), (far, -depth)], 2.0 * panel),
@@ -45,14 +66,22 @@ def _radiated(w, beam, draught, depth, rolls, panel):
     along /= length[:, None]
     out = np.stack([along[:, 1], -along[:, 0]], axis=1)
     box = which == 3
-    pushed = np.where(box, middle[:, 0] * out[:, 1] - middle[:, 1] * out[:, 0] if rolls else out[:, 1], 0.0)
+    turning = middle[:, 0] * out[:, 1] - middle[:, 1] * out[:, 0]
+    pushed = np.where(box, [out[:, 0], out[:, 1], turning], 0.0).T
+    k = wave_number(w, depth, G)
     share = np.zeros(len(ends), complex)  # φ_n/φ
     share[(which == 2) | (which == 4)] = w * w / G
-    share[(which == 1) | (which == 5)] = 1j * _wave_number(w, depth)
+    share[(which == 1) | (which == 5)] = 1j * k
+    size = -1j * G / w / math.cosh(k * depth) * np.exp(1j * k * middle[:, 0])
+    high = k * (middle[:, 1] + depth)
+    wave = size * np.cosh(high)
+    slope = k * size * (1j * np.cosh(high) * out[:, 0] + np.sinh(high) * out[:, 1])
     doubled, single = _influences(middle, ends, along, out, length)
-    potential = np.linalg.solve(doubled - single * share, (single @ pushed).astype(complex))
-    force = 1j * w * (potential * pushed * length)[box].sum()  # iωρ∫φ n ds = iωA − B
-    return force.imag / w, -force.real
+    given = np.column_stack([pushed, np.where(box, -slope, 0.0)])
+    potential = np.linalg.solve(doubled - single * share, single @ given)
+    potential[:, 3] += wave
+    force = 1j * w * (pushed * length[:, None]).T @ potential
+    return force[:, :3], force[:, 3]
 
 
 def _panels(corners, size):
@@ -75,12 +104,3 @@ def _influences(middle, ends, along, out, length):
     single = logs[1] - logs[0] - (s[1] - s[0]) + d * seen
     np.fill_diagonal(single, length * (np.log(0.5 * length) - 1.0))
     return seen - math.pi * np.eye(len(middle)), single
-
-
-def _wave_number(w, depth):
-    """k with ω² = gk tanh kh, 1/m."""
-    k = max(w * w / G, w / math.sqrt(G * depth))
-    for _ in range(50):
-        t = math.tanh(k * depth)
-        k -= (G * k * t - w * w) / (G * t + G * k * depth * (1.0 - t * t))
-    return k

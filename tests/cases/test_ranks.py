@@ -82,6 +82,7 @@ END = {
     "solids/ball_through_plate": 3e-6,
     "wave_flap": 0.05,
     "moored_pontoon": 0.05,
+    "coast/breakwater": 0.05,
     "ends/open_poiseuille": 0.15,
     "ends/open_channel": 0.15,
     "ends/nozzle": 0.12,

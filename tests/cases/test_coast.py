@@ -1,0 +1,96 @@
+"""Cases of the coast against laws of run-up and overtopping, formulas for walls, and the linear theory of waves."""
+
+import math
+
+import numpy as np
+import pytest
+from cases.measures import finished, window
+from cases.radiation import G, forces, responses
+from long import LONG
+
+from psph.theory.curves.number import Curve
+from psph.theory.curves.oscillation import harmonic
+from psph.theory.water_waves import wave_number
+
+BOX = {"beam": 0.5, "draught": 0.1, "depth": 0.4}
+"""Of the pontoon, m."""
+
+
+def test_what_waves_push_with_is_what_the_box_radiates():
+    """By Haskind's relation B_jj = |X_j|²/(2 g c_g) for a box with two alike sides; forces are symmetric."""
+    w = 2.0 * math.pi / 1.4
+    force, pushed = forces(w, **BOX, panel=0.03)
+    k = wave_number(w, BOX["depth"], G)
+    kh = k * BOX["depth"]
+    group = 0.5 * w / k * (1.0 + 2.0 * kh / math.sinh(2.0 * kh))
+    assert -force.real.diagonal() == pytest.approx(np.abs(pushed) ** 2 / (2.0 * G * group), rel=0.01)
+    assert abs(force[0, 2] - force[2, 0]) < 0.02 * abs(force[0, 2])
+
+
+def told(period):
+    """Sway, m/m, heave and roll, rad/m, of the pontoon by linear theory: its centre is in the waterline."""
+    beam, draught = BOX["beam"], BOX["draught"]
+    mass = beam * draught
+    inertia = mass * (beam**2 + (2.0 * draught) ** 2) / 12.0
+    springs = 2.0 * 50.0 / 1000.0
+    stiffness = np.diag([springs, G * beam, G * (beam**3 / 12.0 - 0.5 * mass * draught)])
+    return np.abs(responses(2.0 * math.pi / period, **BOX, mass=[mass, mass, inertia], stiffness=stiffness))
+
+
+def incident(gauges, places, period, depth, begin):
+    """Amplitude, m, of the waves that run along x, by the levels at some ``places``, m, from ``begin`` s on:
+    c(x) = A exp(ikx) + B exp(−ikx)."""
+    k = wave_number(2.0 * math.pi / period, depth, G)
+    tones = [harmonic(later(gauges[name], f"{name}.level", begin), period)[0] for name in places]
+    x = np.array(list(places.values()))
+    waves = np.stack([np.exp(1j * k * x), np.exp(-1j * k * x)], axis=1)
+    return np.abs(np.linalg.lstsq(waves, np.conj(tones), rcond=None)[0][0])
+
+
+def later(table, column, begin):
+    """A column from a time on."""
+    return Curve(*(window(table, name, begin, math.inf) for name in ("time", column)))
+
+
+def answers(run, period):
+    """Sway, heave and roll of the pontoon over the amplitude of the waves that come."""
+    gauges, begin = run.gauges(), run.times[-1] - 3.0 * period
+    wave = incident(gauges, {"first": 1.0, "second": 1.2, "third": 1.45}, period, BOX["depth"], begin)
+    columns = ("centre_x", "centre_y", "turn_z")
+    swings = [harmonic(later(gauges["pontoon"], f"pontoon.{name}", begin), period)[0] for name in columns]
+    return np.abs(swings) / wave
+
+
+def goda(height, period, depth):
+    """Largest force of waves on a wall that stands on the bed and is not overtopped, over its force at rest,
+    N/m: Goda (2000), (4.2) to (4.14), with α₂ = 0, for waves that come straight."""
+    kh = depth * wave_number(2.0 * math.pi / period, depth, G)
+    surface = 1000.0 * G * height * (0.6 + 0.5 * (2.0 * kh / math.sinh(2.0 * kh)) ** 2)
+    return 0.5 * surface * 1.5 * height + 0.5 * surface * (1.0 + 1.0 / math.cosh(kh)) * depth
+
+
+def sainflou(height, period, depth):
+    """The same by Sainflou (1928)."""
+    k = wave_number(2.0 * math.pi / period, depth, G)
+    bed, rise = 1000.0 * G * height / math.cosh(k * depth), 0.5 * k * height**2 / math.tanh(k * depth)
+    still = 1000.0 * G * depth
+    return 0.5 * (depth + height + rise) * (bed + still) - 0.5 * still * depth
+
+
+@LONG
+def test_waves_push_a_breakwater_as_goda_says(tmp_path):
+    """From 7.2 s on in waves of half the swing at the wall, 0.056 m: 116 N/m at the crests, where Goda has 114,
+    Sainflou 154; for each metre that the surface swings there 0.97 of linear theory."""
+    gauges, period, depth = finished("coast/breakwater", tmp_path / "run").gauges(), 1.2, 0.3
+    force, level = (gauges["breakwater"], "breakwater.force_x"), (gauges["wall"], "wall.wetted")
+    rest = window(*force, 0.0, 0.6).mean()
+    assert rest == pytest.approx(0.5 * 1000.0 * G * depth**2, rel=0.002)
+    spans = [(begin, begin + period) for begin in (7.2, 8.4, 9.6, 10.8)]
+    height = 0.5 * np.mean([np.ptp(window(*level, *span)) for span in spans])
+    crests = np.mean([window(*force, *span).max() for span in spans]) - rest
+    assert crests == pytest.approx(goda(height, period, depth), rel=0.1)
+    assert crests < 0.85 * sainflou(height, period, depth)  # the control: another formula
+    k = wave_number(2.0 * math.pi / period, depth, G)
+    swings = [abs(harmonic(later(*one, 7.2), period)[0]) for one in (force, level)]
+    at_wall = swings[1] / math.cos(k * 0.042)  # the level is measured so far before it
+    assert swings[0] == pytest.approx(1000.0 * G * math.tanh(k * depth) / k * at_wall, rel=0.05)
