@@ -13,6 +13,7 @@ from psph.case.keys import Table, Vector, key
 from psph.case.parameters import chosen, last_part, table_of
 from psph.case.shapes import Shape
 from psph.physics.catalogue import ELASTIC_LAWS, Entry
+from psph.physics.solid.trial import misfit
 from psph.physics.solid.viscous import Branch
 
 OF_METALS = "a solid that yields has a law of its own, Hooke's for the elastic part; remove law"
@@ -44,6 +45,10 @@ class OneLaw(Table):
             raise PydanticCustomError("psph", f"{said}; give one of {', '.join(names)}")
         if len({len(value) for value in self.law if isinstance(value, tuple)}) > 1:
             raise PydanticCustomError("psph", f"{given[0]} has lists of unlike lengths; give as many of each")
+        if says := misfit(self.law):
+            raise PydanticCustomError(
+                "psph", "{says}", {"says": f"{given[0]} {says}; see docs/recipes/law.md"}
+            )
         lame, shear = self.law.moduli()
         if shear <= 0.0 or 3.0 * lame + 2.0 * shear <= 0.0:
             raise PydanticCustomError(
