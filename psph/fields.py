@@ -9,8 +9,23 @@ from functools import cache
 from typing import Any, NamedTuple
 
 SCALAR, VECTOR, SYMMETRIC, MATRIX, AXIAL = "scalar", "vector", "symmetric", "matrix", "axial"
+SLOPES = "slopes"
 """Shapes of a field: a number, one number per axis, a symmetric matrix (its rows from the diagonal
-on), a full matrix by rows, one number per axis of rotation (in 2D z, in 3D x, y, z)."""
+on), a full matrix by rows, one number per axis of rotation (in 2D z, in 3D x, y, z); the derivatives of a
+symmetric matrix along each axis, one after the other."""
+
+
+def indices(dimensions: int) -> dict[str, list[tuple[int, ...]]]:
+    """The axes of each component of the shapes whose indices turn as places do."""
+    axes = range(dimensions)
+    upper: list[tuple[int, ...]] = [(d, e) for d in axes for e in axes if d <= e]
+    return {
+        VECTOR: [(d,) for d in axes],
+        SYMMETRIC: upper,
+        MATRIX: [(d, e) for d in axes for e in axes],
+        SLOPES: [(d, *pair) for d in axes for pair in upper],
+    }
+
 
 FLUID, WALL, SOLID, OTHER, BUFFER = 0, 1, 2, 3, 4
 """Values of ``kind``: a fluid particle moves freely, a wall particle does not, a solid one is held by its
@@ -30,7 +45,7 @@ class Same(NamedTuple):
 class Turned(NamedTuple):
     """Each index turns as a place does: the gradient of a number, a matrix of places."""
 
-    shapes = (VECTOR, SYMMETRIC, MATRIX)
+    shapes = (VECTOR, SYMMETRIC, MATRIX, SLOPES)
 
 
 class Place(NamedTuple):
@@ -72,7 +87,8 @@ class Stress(NamedTuple):
 
 class StressUnderWeight(NamedTuple):
     """As :class:`Stress`, Pa; behind a plane that sticks it grows with the pressure of a still column, both
-    from the tip of a cone on: friction is that at the plane, not that half a spacing before it."""
+    from the tip of a cone on: friction is that at the plane, not that half a spacing before it.  To a pass
+    that reads no pressure it is a plain :class:`Stress`."""
 
     shapes = (SYMMETRIC,)
 
@@ -148,6 +164,7 @@ class Field(NamedTuple):
             VECTOR: dimensions,
             SYMMETRIC: dimensions * (dimensions + 1) // 2,
             MATRIX: dimensions**2,
+            SLOPES: dimensions**2 * (dimensions + 1) // 2,
             AXIAL: dimensions * (dimensions - 1) // 2,
         }[self.shape]
 

@@ -31,6 +31,7 @@ from psph.fields import (
     StressUnderWeight,
     Turned,
     VelocityGradient,
+    indices,
     view_of,
 )
 from psph.vectors import along
@@ -273,6 +274,8 @@ def _seen(view, widths: tuple[int, ...], rules: dict[str, type]):
     told = dict(zip(view._fields, widths))
     # Of one matter no loop need read them of a neighbour; of several each image is of its own.
     known = all(told.get(name, ABSENT) != ABSENT and rules[name] is not type(None) for name in OF_COLUMN)
+    if told.get("pressure", ABSENT) == ABSENT:
+        rules = {name: Stress if rule is StressUnderWeight else rule for name, rule in rules.items()}
     parts = (
         f"j.{name}" if width == ABSENT else _text(name, rules[name], width, dimensions, "ij"[known])
         for name, width in told.items()
@@ -323,11 +326,7 @@ def _text(name: str, rule: type, width: int, dimensions: int, of: str) -> str:
     if not width:
         least = f"min({', '.join(f'reflection.turn[{d}]' for d in axes)})"
         return OF_NUMBERS[rule].format(name=name, least=least, of=of)
-    shapes: dict[int, list[tuple[int, ...]]] = {
-        dimensions: [(d,) for d in axes],
-        dimensions * (dimensions + 1) // 2: [(d, e) for d in axes for e in axes if d <= e],
-        dimensions**2: [(d, e) for d in axes for e in axes],
-    }
+    shapes = {len(at): at for at in indices(dimensions).values()}
     parts = (
         OF_COMPONENTS[rule].format(
             name=name, n=n, d=at[0], e=at[-1], of=of, turn=" * ".join(f"reflection.turn[{d}]" for d in at)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from psph.composition.mirrors import Plane
-from psph.fields import MATRIX, SYMMETRIC, VECTOR, Place, Stress, StressUnderWeight
+from psph.fields import Place, Stress, StressUnderWeight, indices
 
 
 def bring_back(store, planes: Iterable[Plane], free: int) -> None:
@@ -25,13 +25,10 @@ def bring_back(store, planes: Iterable[Plane], free: int) -> None:
 
 def _odd_rows(store, plane: Plane) -> Iterable[int]:
     """The rows of components that a mirror turns round; behind one that sticks a stress goes on."""
-    dimensions = store.dimensions
-    full = [(d, e) for d in range(dimensions) for e in range(dimensions)]
-    shapes = {VECTOR: [(d,) for d in range(dimensions)], MATRIX: full}
-    shapes[SYMMETRIC] = [(d, e) for d, e in full if d <= e]
+    shapes = indices(store.dimensions)
     for name, field in store.fields.items():
         goes_on = field.image is Place or field.image in (Stress, StressUnderWeight) and plane.sticks
         if field.composed and not goes_on:
             for row, axes in zip(store.rows[name], shapes[field.shape]):
-                if axes.count(plane.axis) == 1:
+                if axes.count(plane.axis) % 2:
                     yield row

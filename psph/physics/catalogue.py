@@ -41,6 +41,7 @@ from psph.physics.solid.rubber import MooneyRivlin, Ogden
 from psph.physics.solid.turn import SolidTurn
 from psph.physics.stress.deviator import DeviatoricForce, DeviatorRate
 from psph.physics.stress.faces import SmoothFace
+from psph.physics.stress.spreading import StressSlopes
 from psph.physics.stress.strength import Strength
 from psph.physics.surface.contact import ContactAngle, ContactLine
 from psph.physics.surface.free import FreeSurface, TensionFloor
@@ -128,6 +129,7 @@ CATALOGUE = (
     Entry("soils.*|solids.*.description=updated", DeviatorRate),
     Entry("soils.*|solids.*.description=updated", DeviatoricForce),
     Entry("soils.*|solids.*.description=updated", SmoothFace),
+    Entry("soils.*", StressSlopes),
     Entry("soils.*", Strength),
     Entry("fluids.*.viscosity", LaminarViscosity),
     Entry("physics.central_friction", CentralFriction),

@@ -68,6 +68,7 @@ def view(n=2, dim=2, seed=3):
         cone_tip=np.resize((3e3, 0.0, 0.0), n),
         velocity_gradient=tuple(rng.normal(size=n) * 30 for _ in range(dim * dim)),
         whirl=tuple(rng.normal(size=n) * 30 for _ in range(dim * dim)),
+        stress_slopes=tuple(rng.normal(size=n) * 9e4 for _ in range(dim * dim * (dim + 1) // 2)),
         deviator=tuple(rng.normal(size=n) * 500 for _ in range(dim * (dim + 1) // 2)),
         face_normal=tuple(np.resize((0.0, 0.6 if d else 0.8, 0.0), n) for d in range(dim)),
         face_side=tuple(np.resize((0.0, 0.2 if d else -0.3, 0.0), n) for d in range(dim)),

@@ -2,15 +2,14 @@
 
 import numpy as np
 import pytest
-from physics.pairs import pair_of, view
+from physics.pairs import pair_of, sums_of, view
 
 from psph.physics.damping.diffusion import BesideSmoothDensity, TankDiffusion
 from psph.physics.damping.matter import OneMatter, SeveralMatters
 from psph.physics.fluid.weight import Steady
-from psph.physics.stress.deviator import spread
+from psph.physics.stress.spreading import AnyOrder, SeenOrder, StressSlopes, spread
 
 PULL = (0.4, -9.8)
-LEVEL = (PULL, (-0.2, 0.1, 0.3))
 SPREADING = (TankDiffusion, BesideSmoothDensity)
 
 
@@ -48,18 +47,26 @@ def test_a_still_column_keeps_the_slope_of_its_own_matter(effect):
 
 def test_stress_spreads_within_a_soil_alone_and_what_one_gains_the_other_loses():
     apart, within = beside(strength=(1.0, 2.0)), beside(strength=(2.0, 2.0))
-    assert spread(LEVEL, *pair_of(apart, 0, 1)) == (0.0, 0.0, 0.0)
-    assert spread(LEVEL, *pair_of(beside(strength=(0.0, 0.0)), 0, 1)) == (0.0, 0.0, 0.0)
-    gained = [np.array(spread(LEVEL, *pair_of(within, *ends))) for ends in ((0, 1), (1, 0))]
+    assert spread(SeenOrder(), *pair_of(apart, 0, 1)) == (0.0, 0.0, 0.0)
+    assert spread(SeenOrder(), *pair_of(beside(strength=(0.0, 0.0)), 0, 1)) == (0.0, 0.0, 0.0)
+    gained = [np.array(spread(SeenOrder(), *pair_of(within, *ends))) for ends in ((0, 1), (1, 0))]
     volume = within.mass * within.specific_volume
     assert gained[0] * volume[0] == pytest.approx(-gained[1] * volume[1], rel=1e-12)
     assert (gained[0] != 0.0).all()
 
 
-def test_the_stress_of_level_ground_stays_with_the_coefficient_of_its_soil():
-    p = beside(strength=(1.0, 1.0), rest_coefficient=(0.4, 0.4), rest_density=(900.0, 900.0))
-    depth = 900.0 * np.array(PULL) @ np.array(p.position)
-    level = p._replace(deviator=tuple(0.6 * part * depth for part in LEVEL[1]))
-    moved = level._replace(rest_coefficient=np.array((0.6, 0.6)))
-    still, other = (np.abs(spread(LEVEL, *pair_of(q, 0, 1))).max() for q in (level, moved))
-    assert still < 1e-9 * other
+@pytest.mark.parametrize("dim", (2, 3))
+def test_a_stress_that_is_linear_stays_whatever_else_is_near(dim):
+    """In disorder, with neighbours on one side alone, another soil among them."""
+    upper = dim * (dim + 1) // 2
+    slopes = np.random.default_rng(2).normal(size=(dim, upper)) * 1e4
+    p = view(n=40, dim=dim)._replace(strength=np.resize((1.0, 1.0, 2.0), 40))
+    x = np.array(p.position)
+    other = 1e5 * (p.strength > 1.0)
+    p = p._replace(deviator=tuple(slopes.T @ x + other))
+    found = [np.ravel(sums_of(StressSlopes(), p, b)) for b in (0, 1)]
+    assert found[0] == pytest.approx(slopes.ravel(), rel=1e-9)
+    known = p._replace(stress_slopes=tuple(np.resize(at, 40) for at in found[0]))
+    plain = p._replace(stress_slopes=tuple(np.zeros(40) for _ in found[0]))
+    left, whole = (np.abs(spread(AnyOrder(), *pair_of(q, 0, 1))).max() for q in (known, plain))
+    assert left < 1e-9 * whole

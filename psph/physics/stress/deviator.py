@@ -6,25 +6,22 @@ plane strain, and s_zz = −(s_xx + s_yy).  A fluid beside it has G = 0 and s = 
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from psph.acts import SOILS, UPDATED
 from psph.fields import SYMMETRIC, StressUnderWeight
 from psph.fields import Field as Declared
-from psph.formula import helper, where
+from psph.formula import helper
 from psph.physics.damping.diffusion import diffusion_step
 from psph.physics.facts import Facts
 from psph.physics.fluid.strain import FEWEST, linear_gradient, no_rate, rate_weight, take_rate
 from psph.physics.stress.faces import Sticking, across, counts, faces_of, steepness
+from psph.physics.stress.spreading import AnyOrder, order_of, spread
 from psph.vectors import (
     add,
-    dot,
     less_diagonal,
     matrix_product,
     outer,
     scale,
     skew_part,
-    subtract,
     symmetric_part,
     times,
     trace,
@@ -91,7 +88,7 @@ class DeviatorRate(NamedTuple):
         diffusion = max(one.stress_diffusion for one in scene.species)
         if not diffusion:
             return DeviatorRate(self.least, faces_of(scene))
-        return DiffusedDeviatorRate(diffusion, levelled(scene), faces_of(scene))
+        return DiffusedDeviatorRate(diffusion, order_of(scene), faces_of(scene))
 
     def start(self, i):
         """No neighbour yet."""
@@ -107,37 +104,15 @@ class DeviatorRate(NamedTuple):
         return jaumann_rate(gradient, i.deviator, i.shear_modulus, i.position)
 
 
-@helper
-def spread(level, i, j, pair):
-    """2δhc V_j W′/r [s_i − s_j less what weight asks for], Pa/s, between particles of one soil."""
-    weaker, stronger = min(i.strength, j.strength), max(i.strength, j.strength)
-    one_soil = where(weaker > 0.0, 1.0, 0.0) * where(stronger > weaker, 0.0, 1.0)
-    mixing = (i.stress_diffusion + j.stress_diffusion) * i.smoothing_length * i.sound_speed
-    loosely = 1.0 - 0.5 * (i.rest_coefficient + j.rest_coefficient)
-    depth = 0.5 * (i.rest_density + j.rest_density) * loosely * dot(pair.x_ij, level[0])
-    change = subtract(subtract(i.deviator, j.deviator), scale(level[1], depth))
-    return scale(change, one_soil * mixing * j.specific_volume * pair.m_dw_r)
-
-
-def levelled(scene: Facts):
-    """(g in m/s², −(n nᵀ − ⅓ 1) with n along g): the deviator of level ground at rest by (1 − K₀) ρg·x."""
-    g = np.array(scene.gravity)
-    size = np.sqrt(g @ g) or 1.0
-    shape = np.eye(len(g)) / 3.0 - np.outer(g, g) / size**2
-    return tuple(g.tolist()), tuple(shape[np.triu_indices(len(g))].tolist())
-
-
 class DiffusedDeviatorRate(NamedTuple):
     """The deviatoric stress follows the flow, with the rate of Jaumann, and its noise spreads.
 
-    As :class:`DeviatorRate`, and ds_i/dt += 2δhc Σ_j V_j [s_i − s_j − s⁰(x_i) + s⁰(x_j)] W′/r between
-    particles of one soil, s⁰ of level ground at rest under its weight: Feng, Fourtakas, Rogers & Lombardi
-    (2021), Adv. Water Resour. 156, 104030.  The pressure spreads as that of fluids does.  ``largest`` δ of
-    any soil; ``level`` by :func:`levelled`.
+    As :class:`DeviatorRate`, and what :class:`psph.physics.stress.spreading.StressSlopes` says.  The pressure
+    spreads as that of fluids does.  ``largest`` δ of any soil.
     """
 
     largest: float
-    level: tuple
+    order: Any = AnyOrder()
     faces: Any = Sticking()
 
     writes = DEVIATOR
@@ -150,7 +125,7 @@ class DiffusedDeviatorRate(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take a neighbour that holds, and what it spreads."""
         flow = take_neighbour(self.faces, total[0], j, pair)
-        return flow, add(total[1], spread(self.level, i, j, pair))
+        return flow, add(total[1], spread(self.order, i, j, pair))
 
     def finish_value(self, total, i, kernel):
         """ds/dt, Pa/s; 0 in what does not resist shear."""
