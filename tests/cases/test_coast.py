@@ -94,3 +94,29 @@ def test_waves_push_a_breakwater_as_goda_says(tmp_path):
     swings = [abs(harmonic(later(*one, 7.2), period)[0]) for one in (force, level)]
     at_wall = swings[1] / math.cos(k * 0.042)  # the level is measured so far before it
     assert swings[0] == pytest.approx(1000.0 * G * math.tanh(k * depth) / k * at_wall, rel=0.05)
+
+
+@LONG
+@pytest.mark.timeout(1800)
+def test_a_pontoon_answers_waves_as_linear_theory_says(tmp_path):
+    """Measured: sway + 3.0, heave − 1.3, roll − 1.2 %."""
+    found = answers(finished("coast/pontoon", tmp_path / "run"), 1.4)
+    assert found == pytest.approx(told(1.4), rel=0.1)
+    assert not np.allclose(found, told(1.2), rtol=0.15)  # the control: waves of another period
+
+
+@LONG
+@pytest.mark.timeout(1800)
+def test_a_solitary_wave_runs_up_a_beach_as_synolakis_says(tmp_path):
+    """Within 5 %, measured − 0.3; − 14 % with the default walls and damping, the control."""
+    synolakis = 2.831 * math.sqrt(2.0) * (0.06 / 0.3) ** 1.25 * 0.3
+    assert run_up(finished("coast/run_up", tmp_path / "run")) == pytest.approx(synolakis, rel=0.05)
+    plain = ("walls.flume.condition=dynamic", "walls.beach.condition=dynamic")
+    damping = "physics.reconstructed_damping={alpha=0.03,in_disorder=0.2}"
+    braked = finished("coast/run_up", tmp_path / "braked", *plain, damping, "time.end=4.0")
+    assert run_up(braked) < 0.9 * synolakis
+
+
+def run_up(run):
+    """How far the tongue comes above the still water, m."""
+    return run.gauges()["tongue"]["tongue.height"].max() - 0.02
