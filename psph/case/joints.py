@@ -131,8 +131,10 @@ def _joined(case, loc, joint: JointTable) -> Iterator[Finding]:
 
 
 def _drawn(loc, told, dimensions: int) -> Iterator[Finding]:
-    """Axes without a direction, rods without a length, limits in the wrong order, or not at 0, and a latch
-    without any."""
+    """Axes without a direction, rods without a length, limits in the wrong order, or not at 0, a latch
+    without any, and a rest of no spring."""
+    if getattr(told, "rest", 0.0) and not told.stiffness:
+        yield (*loc, "rest"), told.rest, "there is no spring; give stiffness, or remove rest"
     if isinstance(told, Rod) and told.at == told.anchor:
         yield (*loc, "anchor"), list(told.anchor), "is where the rod begins; move it, or give ball"
     if isinstance(told, Hinge) and (told.axis is None) == (dimensions == 3):

@@ -4,12 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from psph.case.keys import AXES
 from psph.fields import CROSSED, REFERENCE, Field
 from psph.scene.lattice import TOLERANCE
 from psph.scene.moving import moving_parts
 from psph.scene.outside import WallRegion
 from psph.scene.scene import Scene
-from psph.scene.shapes import inside, shown
+from psph.scene.shapes import bounds, inside, shown
 
 BURIED = 0.5
 """Spacings behind a wall's face from which on a probe is said to be in the wall."""
@@ -90,6 +91,7 @@ def gauge_warnings(scene: Scene) -> Iterator[str]:
     """A line for each gauge that reads something else than it is likely meant to."""
     yield from _left_behind(scene)
     yield from _upside_down(scene)
+    yield from _beyond(scene)
 
 
 def _upside_down(scene: Scene) -> Iterator[str]:
@@ -104,6 +106,22 @@ def _upside_down(scene: Scene) -> Iterator[str]:
                 f"{shown(line.top)}, and the {gauge.kind.replace('_', '-')} counts from the foot to the "
                 "farthest point in the fluid; exchange the two"
             )
+
+
+def _beyond(scene: Scene) -> Iterator[str]:
+    """A line for each crest and each whole shape outside the domain."""
+    lower, upper, periods = scene.layout.lower, scene.layout.upper, scene.layout.periods
+    where = f"outside the domain {shown(lower)} to {shown(upper)}, where nothing is at the start"
+    for name, gauge in scene.case.gauges.items():
+        key, asked = f"gauges.{name}.{gauge.kind}", getattr(gauge, gauge.kind)
+        if gauge.overtopping:
+            axis = AXES.index(asked.towards[1])
+            if not lower[axis] <= asked.at <= upper[axis]:
+                yield f"{key}.at: {asked.at:g} m lies {where}"
+        if (within := getattr(asked, "shape", None)) is not None:
+            ends = zip(*bounds(within), lower, upper, periods)
+            if any(period is None and (up < least or low > most) for low, up, least, most, period in ends):
+                yield f"{key}.shape: lies {where}"
 
 
 def _left_behind(scene: Scene) -> Iterator[str]:

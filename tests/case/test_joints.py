@@ -54,6 +54,12 @@ WRONG = {
         "joints.shoulder.hinge.limits",
         "0",
     ),
+    "a rest": (
+        "at = [0.5, 0.4]",
+        "at = [0.5, 0.4], rest = 5.0",
+        "joints.shoulder.hinge.rest",
+        "there is no spring",
+    ),
     "a latch": (
         "at = [0.5, 0.4]",
         "at = [0.5, 0.4], latch = true",

@@ -174,6 +174,15 @@ def test_a_probe_outside_the_domain_is_refused(tmp_path):
     assert checked(tmp_path, TANK, "probes.P1.position=[0.5, 0.7]") == []
 
 
+def test_a_gauge_of_a_crest_or_a_region_outside_the_domain_is_warned_of(tmp_path):
+    crest, region = 'gauges.o.overtopping={{at={},towards="+x"}}', 'gauges.h.highest={{axis="x",shape={}}}'
+    near, far = (f"{{box={{lower=[{x}, 0.0],upper=[{x + 1}, 1.0]}}}}" for x in (1.2, 5.0))
+    assert checked(tmp_path, TANK, crest.format(0.5), region.format(near)) == []
+    one, other = checked(tmp_path, TANK, crest.format(9.0), region.format(far))
+    assert "gauges.o.overtopping.at: 9 m lies outside the domain [-0.3, -0.3] to [1.3, 0.7]" in one
+    assert "gauges.h.highest.shape: lies outside the domain" in other
+
+
 def test_a_gauge_may_end_at_the_rim_whatever_rounding_makes_of_it(tmp_path):
     """54 cells of 0.0075 m are less than 0.405 in binary numbers."""
     rim = TANK.replace("spacing = 0.1", "spacing = 0.0075").replace("0.7]", "0.405]")
