@@ -78,6 +78,14 @@ def test_crossings_of_a_level_do_not_count_noise():
     assert oscillation.crossings(Curve(TIME, sine), 2.0).value == 0.0
 
 
+def test_a_period_leaves_out_where_a_curve_has_no_value():
+    """As of a point that falls dry for a while."""
+    swing = np.sin(2.0 * np.pi * TIME / 1.3)
+    dry = (TIME > 5.0) & (TIME < 9.0)
+    found = oscillation.mean_period(Curve.of(TIME, np.where(dry, np.nan, swing)))
+    assert found.value == pytest.approx(1.3, rel=0.01)
+
+
 def test_response_is_the_ratio_of_amplitudes_at_the_period_of_the_wave():
     angle = 2.0 * math.pi * TIME / 1.7
     wave = Curve(TIME, 0.5 + 0.04 * np.cos(angle) + 0.01 * np.cos(2.0 * angle))

@@ -63,15 +63,24 @@ def crossings(curve: Curve, level: float | None = None) -> CurveNumber:
 def mean_period(curve: Curve) -> CurveNumber:
     """The mean time from one maximum to the next, and from one minimum to the next, s.
 
-    A damped swing keeps these, whatever it swings about.  A maximum stands out by a tenth of the whole swing;
-    its time is that of the top of a parabola.  The reach is by the scatter of the times, where there are
-    three or more.
+    A damped swing keeps these, whatever it swings about.  A maximum stands out by a tenth of the whole
+    swing; its time is that of the top of a parabola.  A time half of which has no row does not count.  The
+    reach is by the scatter of the times, where there are three or more.
     """
-    gaps = np.concatenate([np.diff(tops(curve)), np.diff(tops(Curve(curve.time, -curve.value)))])
+    gaps = np.concatenate([_lasting(one) for one in (curve, Curve(curve.time, -curve.value))])
     if not len(gaps):
         raise NoNumber("it has no two maxima, nor two minima, that stand out by a tenth of the whole swing")
     reach = NORMAL * float(gaps.std(ddof=1)) / math.sqrt(len(gaps)) if len(gaps) > 2 else math.nan
     return CurveNumber(float(gaps.mean()), reach=reach)
+
+
+def _lasting(curve: Curve) -> np.ndarray:
+    """The times (n,), s, from each maximum to the next."""
+    times = tops(curve)
+    rows = np.searchsorted(curve.time, times)
+    holes = [np.diff(curve.time[max(low - 1, 0) : up + 1]).max() for low, up in zip(rows, rows[1:])]
+    last = np.diff(times)
+    return last[np.array(holes) < 0.5 * last]
 
 
 def tops(curve: Curve) -> np.ndarray:
