@@ -83,6 +83,7 @@ END = {
     "wave_flap": 0.05,
     "moored_pontoon": 0.05,
     "coast/breakwater": 0.05,
+    "coast/overtopping": 0.05,
     "coast/pontoon": 0.05,
     "coast/run_up": 0.03,
     "ends/open_poiseuille": 0.15,
