@@ -16,7 +16,7 @@ class Bed(Table):
 
 
 class ChainTable(Table):
-    """What gives a line weight; it hangs in water at rest. In 2D one in each metre of depth."""
+    """What gives a line weight; it hangs in the heaviest fluid, at rest. In 2D one in each metre of depth."""
 
     mass: float = key("mass by length, in air", unit="kg/m", gt=0)
     diameter: float = key("that of a rod that displaces as much", unit="m", gt=0)

@@ -48,7 +48,7 @@ def _line(scene: Scene, rows: dict[str, int], name: str, line: str, table: Line)
     chain, stiffness, damping = None, table.stiffness or 0.0, table.damping
     length = math.dist(table.at, table.anchor) if table.length is None else table.length
     if table.chain is not None:
-        chain = _chain(scene, name, table, length)
+        chain = _chain(scene, table, length)
         length, stiffness = chain.length, chain.stiffness / chain.length
         damping = chain.damping * math.sqrt(chain.stiffness * chain.mass)
     elif table.pretension:
@@ -74,12 +74,11 @@ def _line(scene: Scene, rows: dict[str, int], name: str, line: str, table: Line)
     )
 
 
-def _chain(scene: Scene, name: str, table: Line, length: float) -> Chain:
-    """What a line with weight is; of its pretension the one with the nearest."""
+def _chain(scene: Scene, table: Line, length: float) -> Chain:
+    """What a line with weight is, in the heaviest fluid; of its pretension the one with the nearest."""
     told = table.chain
     assert told is not None
-    water = scene.species[[one.name for one in scene.species].index(name)].density
-    water = water if scene.case.flowing else 0.0
+    water = max((one.density for one in scene.case.fluids.values()), default=0.0)
     displaced = 0.25 * math.pi * told.diameter**2 * water
     pull = in_space(scene.gravity)
     bed = told.bed
@@ -227,7 +226,11 @@ def line_warnings(scene: Scene) -> Iterator[str]:
         return
     _, lines = _begun(scene)
     by_sound = scene.case.time.cfl * scene.smoothing_length / scene.sound_speed
+    fluids = scene.case.fluids
+    heaviest = max(fluids, key=lambda name: fluids[name].density, default="")
     for (key, _, table), line in zip(_tables(scene), lines.lines):
+        if table.chain and len(fluids) > 1 and table.chain.water_level is None:
+            yield f"{key}.chain: hangs in {heaviest} everywhere; give water_level, above which it is dry"
         strain = math.dist(table.at, table.anchor) / line.length - 1.0 if line.chain else 0.0
         if strain > STRETCHED:
             yield (

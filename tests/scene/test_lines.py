@@ -8,6 +8,7 @@ from gauging import start
 
 from psph.runs.explain import explain
 from psph.scene import Scene, check
+from psph.scene.lines import line_warnings, lines_of
 
 MOORED = """
 space = { dimensions = 2, spacing = 0.05 }
@@ -110,6 +111,25 @@ stiffness = 500.0
     assert f"period {2.0 * math.pi * math.sqrt(40.0 / 500.0):.3g}" in surge
     assert "9.21 N/m and buoyancy with 4e+03" in heave
     assert f"period {2.0 * math.pi * math.sqrt(40.0 / 4009.2):.3g}" in heave
+
+
+AIR = "fluids.air={shape={box={lower=[0.0,0.5],upper=[2.0,0.8]}},density=1.2}"
+SAND = "soils.sand={shape={box={lower=[0.0,0.0],upper=[2.0,0.3]}},density=1600.0,young=1e6,poisson=0.3,friction_angle=30.0}"
+
+
+def test_a_chain_hangs_in_the_heaviest_fluid_and_in_no_soil(tmp_path):
+    """Whatever fluid its body continues; w = (m − ρπd²/4) g."""
+    for keys, density in (
+        ((), 1000.0),
+        ((AIR,), 1000.0),
+        ((AIR, "bodies.raft.continues=air"), 1000.0),
+        (("fluids=off", SAND, "physics.sound_speed=off"), 0.0),
+    ):
+        scene = Scene(draft(tmp_path, MOORED, *keys))
+        [line] = lines_of(scene, ["raft"])
+        assert line.chain.displaced == pytest.approx(density * 0.25 * math.pi * 0.01**2)
+        told = any("hangs in water everywhere; give water_level" in one for one in line_warnings(scene))
+        assert told == (AIR in keys)
 
 
 def test_a_line_holds_to_a_wall_that_moves(tmp_path):
