@@ -9,6 +9,7 @@ from psph.acts import BODIES
 from psph.case.errors import advise
 from psph.case.findings import Finding
 from psph.case.keys import Name, Place, Table, Vector, key
+from psph.case.lines import cannot_hold
 from psph.case.placed import Answering
 
 Limits = Annotated[tuple[float, ...], Strict(False), Field(min_length=2, max_length=2)]
@@ -119,13 +120,8 @@ def _joined(case, loc, joint: JointTable) -> Iterator[Finding]:
         if name not in known:
             says = "no body has this name" if place == 0 else "no body or wall has this name"
             yield (*loc, "of", place), name, f"{says}; {advise(name, known)}"
-    wall = case.walls.get(joint.of[-1])
-    if wall and not all(part.is_rigid for part in wall.motion or () if len(part.ways) == 1):
-        yield (
-            (*loc, "of", len(joint.of) - 1),
-            joint.of[-1],
-            "this wall deforms and holds no joint; name another",
-        )
+    if says := cannot_hold(case, joint.of[-1]):
+        yield (*loc, "of", len(joint.of) - 1), joint.of[-1], says
     if len(set(joint.of)) < len(joint.of):
         yield (*loc, "of"), list(joint.of), "is one and the same; name two"
 

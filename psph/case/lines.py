@@ -68,10 +68,8 @@ def tied(case, here, line: Line) -> Iterator[Finding]:
         says = "no other body or wall has this name; leave out to for a point in space"
         others = [other for other in known if other != name]
         yield (*here, "to"), line.to, says + (f"; {advise(line.to, others)}" if others else "")
-    elif (wall := case.walls.get(line.to)) and not all(
-        part.is_rigid for part in wall.motion or () if len(part.ways) == 1
-    ):
-        yield (*here, "to"), line.to, "this wall deforms and holds no line; name another"
+    elif says := cannot_hold(case, line.to):
+        yield (*here, "to"), line.to, says
     if line.length is not None and line.pretension is not None:
         yield (*here, "pretension"), line.pretension, "a length is given too; remove one of the two"
     if (line.stiffness is None) == (line.chain is None):
@@ -80,6 +78,16 @@ def tied(case, here, line: Line) -> Iterator[Finding]:
         yield from _as_a_chain(here, line)
     elif line.pretension is not None and not line.stiffness:
         yield (*here, "pretension"), line.pretension, "a spring without stiffness has none; give stiffness"
+
+
+def cannot_hold(case, name: str | None) -> str | None:
+    """Why a wall of this name can hold no line and no joint; None where it can, or there is none."""
+    parts = [part for part in getattr(case.walls.get(name), "motion", None) or () if len(part.ways) == 1]
+    if not all(part.is_rigid for part in parts):
+        return "this wall deforms and holds no line and no joint; name another"
+    if any(part.absorbs for part in parts):
+        return "this wall absorbs waves and holds no line and no joint; remove absorb, or name another"
+    return None
 
 
 def _as_a_chain(here, line: Line) -> Iterator[Finding]:

@@ -33,6 +33,13 @@ WRONG = {
     "no body": ('of = ["upper"]', 'of = ["uper"]', "joints.shoulder.of[0]", "did you mean 'upper'"),
     "no other": ('["lower", "upper"]', '["lower", "roof"]', "joints.elbow.of[1]", "no body or wall"),
     "itself": ('["lower", "upper"]', '["lower", "lower"]', "joints.elbow.of", "name two"),
+    "a paddle": (
+        'of = ["lower", "upper"]\nfixed = {}',
+        'of = ["lower", "floor"]\nfixed = {}\n[walls.floor.motion.piston]\nheight = 0.05\nperiod = 1.0\ndepth = 0.5\n'
+        "absorb = {}",
+        "joints.elbow.of[1]",
+        "absorbs waves and holds no line and no joint",
+    ),
     "two kinds": ("fixed = {}", "fixed = {}\nball = { at = [1.0, 0.4] }", "joints.elbow", "ball and fixed"),
     "no kind": ("fixed = {}", "", "joints.elbow", "give one of hinge, slider, ball, fixed, rod"),
     "an axis": (
