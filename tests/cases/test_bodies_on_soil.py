@@ -82,6 +82,23 @@ def test_a_block_slides_until_sand_has_stopped_it(no_slip, tmp_path):
         assert slowed < 0.07 and speed[-1] > 0.6
 
 
+@LONG
+def test_a_driven_wheel_rolls_and_a_heavy_one_digs_itself_in(tmp_path):
+    slip, sunk, lifted = {}, {}, {}
+    for mass in (40.0, 100.0):
+        run = finished("soils/wheel", tmp_path / f"{mass:g}", f"bodies.wheel.mass={mass}")
+        wheel, late = run.gauges()["wheel"], run.gauges()["wheel"]["time"] > 1.0
+        slip[mass] = 1.0 + wheel["wheel.velocity_x"][late].mean() / (
+            wheel["wheel.spin_z"][late].mean() * 0.15
+        )
+        sunk[mass] = 0.39 - wheel["wheel.centre_y"][-1]
+        lifted[mass] = run.gauges()["push"]["push.force_y"][late].mean() / (mass * G)
+    tell(f"wheels of 40 and 100 kg/m on sand: slip {slip}, sunk {sunk} m")
+    assert 0.15 < slip[40.0] < 0.3 and 0.5 < slip[100.0] < 0.8
+    assert abs(sunk[40.0]) < 0.005 < 0.015 < sunk[100.0]
+    assert list(lifted.values()) == pytest.approx([1.0, 1.0], abs=0.02)
+
+
 def in_a_tank(density):
     """A block on 0.6 m of soil, or as heavy as the soil in it."""
     low = 0.2 if density == BED["density"] else 0.6

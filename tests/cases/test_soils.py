@@ -126,6 +126,38 @@ def test_a_blade_meets_the_passive_force_and_then_more(tmp_path):
 
 
 @LONG
+def test_clay_bears_a_punch_as_prandtl_has_it(tmp_path):
+    """(2 + π) c: 6 % too little with ten spacings half a width, and no more as it goes deeper."""
+    push = finished("soils/punch", tmp_path).gauges()["push"]
+    time, borne = push["time"], push["push.force_y"] / (1e4 * 0.2 * (2.0 + math.pi))
+    tell(f"punch in clay over (2 + π) c: {borne[time > 0.3].mean():.3f}")
+    assert borne[time > 0.3].mean() == pytest.approx(1.0, abs=0.08)
+    assert borne[time > 0.4].mean() == pytest.approx(borne[(time > 0.2) & (time < 0.3)].mean(), rel=0.05)
+
+
+@LONG
+def test_a_silo_discharges_with_the_power_five_halves_of_its_opening(tmp_path):
+    """Beverloo and others (1961); and no slower as the sand in it falls."""
+    width, rate = np.array([0.06, 0.08, 0.1]), []
+    for one in width:
+        hole = (
+            f"{{ box = {{ lower = [{-one / 2}, {-one / 2}, -0.03], upper = [{one / 2}, {one / 2}, 0.0] }} }}"
+        )
+        inside = "{ box = { lower = [-0.12, -0.12, 0.0], upper = [0.12, 0.12, 0.3] } }"
+        minus = f"walls.silo.shape.difference.minus=[{inside}, {hole}]"
+        out = finished("soils/silo", tmp_path / f"{one}", minus, "time.end=0.35").gauges()["out"]
+        early, late = (
+            -4.0 * out["out.flow"][(out["time"] > begin) & (out["time"] < begin + 0.1)].mean()
+            for begin in (0.15, 0.25)
+        )
+        assert late == pytest.approx(early, rel=0.03)
+        rate.append(0.5 * (early + late))
+    power = polynomial.polyfit(np.log(width), np.log(rate), 1)[1]
+    tell(f"silo: {np.array(rate) / math.sqrt(G) / width**2.5} √g D^5/2, power {power:.2f}")
+    assert power == pytest.approx(2.5, abs=0.2)
+
+
+@LONG
 def test_without_stress_diffusion_the_stress_of_standing_soil_is_noise(tmp_path):
     """The control: the cut that stands; between neighbours s differs by a tenth of the weight of the bank."""
     weight, rough, creep = 1835.0 * G * 1.5, {}, {}
