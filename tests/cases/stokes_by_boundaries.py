@@ -69,10 +69,19 @@ def tractions(walls, viscosity):
     flat = speed.ravel()
     right = 0.5 * flat + (double.reshape(2 * n, 2 * n) @ flat) / (4.0 * np.pi)
     matrix = single.reshape(2 * n, 2 * n) / (4.0 * np.pi * viscosity)
-    evenly = (normal * length[:, None]).ravel() / length.sum()  # of what a pressure does nothing is known
-    scale = np.abs(matrix).max()
-    force = np.linalg.solve(matrix + scale * np.outer(normal.ravel(), evenly), right)
+    scale, first = np.abs(matrix).max(), 0
+    for wall in walls:  # of a pressure on all of one nothing is known: it moves nothing
+        each = np.arange(first, first := first + len(wall.begin))
+        matrix = matrix + scale * _evenly(each, normal, length)
+    force = np.linalg.solve(matrix, right)
     return force.reshape(n, 2), middle, length
+
+
+def _evenly(rows, normal, length):
+    """The matrix (2n, 2n) that takes the mean pressure on some elements to all of them."""
+    own = np.zeros_like(normal)
+    own[rows] = normal[rows]
+    return np.outer(own.ravel(), (own * length[:, None]).ravel()) / length[rows].sum()
 
 
 def moments(walls, viscosity, about):

@@ -131,3 +131,41 @@ def test_a_chain_lies_on_the_floor(tmp_path):
     bodies = dry.to(0.2)
     assert np.abs(bodies.place - bodies.reference).max() < 1e-9 and np.abs(bodies.velocity).max() < 1e-9
     assert bodies.pressing[:, 1].sum() == pytest.approx(-bodies.weight[:, 1].sum(), rel=1e-9)
+
+
+def bar(name, begin, end, wide=0.08):
+    """A bar between two points whose ends stop short of these."""
+    a, b = np.array(begin), np.array(end)
+    along = (b - a) / np.hypot(*(b - a))
+    across = wide * np.array([-along[1], along[0]])
+    a, b = a + 0.12 * along, b - 0.12 * along
+    points = [[round(float(x), 12) for x in p] for p in (a - across, b - across, b + across, a + across)]
+    return f"[bodies.{name}]\nshape.polygon.points = {points}\ndensity = 2000.0\n"
+
+
+def toggle(folder):
+    """Two bars in a flat roof that hold a block against a wall; and the push that statics asks for, N."""
+    rise, half = 0.2, 0.8
+    foot, knee, head = (0.0, 0.3), (half, 0.3 + rise), (2.0 * half, 0.3)
+    text = FLAT.format(dx=0.05, friction=0.0, restitution=0.0) + parts(-1.0, 4.0)
+    text += "[walls.stop.shape.box]\nlower = [2.1, 0.0]\nupper = [2.4, 1.0]\n"
+    text += bar("left", foot, knee) + bar("right", knee, head)
+    text += "[bodies.block]\nshape.box = { lower = [1.7, 0.0], upper = [2.1, 0.6] }\ndensity = 2000.0\n"
+    for n, (of, at) in enumerate(((["left"], foot), (["right", "left"], knee), (["right", "block"], head))):
+        text += f"[joints.hinge{n}]\nof = {of}\nhinge = {{ at = {list(at)} }}\n".replace("'", '"')
+    dry = Dry(draft(folder, text))
+    left = [one.name for one in dry.bodies.bodies].index("left")
+    return dry, -dry.bodies.weight[left, 1] * half / (2.0 * rise)
+
+
+def test_a_toggle_presses_a_block_against_a_wall(tmp_path):
+    """By w/(2 tan α), with the weight w of a bar, and all stays where it is."""
+    dry, push = toggle(tmp_path)
+    bodies = dry.to(0.2)
+    assert bodies.pressing[:, 0].sum() == pytest.approx(-push, rel=1e-9)
+    assert np.abs(bodies.place - bodies.reference).max() < 1e-12
+
+
+def test_a_toggle_gives_way_if_one_is_solved_after_the_other(tmp_path, one_after_the_other):
+    dry, _ = toggle(tmp_path)
+    assert dry.floating.contacts.deepest(dry.to(0.2)).depth > 1e-4
