@@ -85,6 +85,7 @@ END = {
     "solids/plate_impact": 4e-7,
     "solids/ball_through_plate": 3e-6,
     "wave_flap": 0.05,
+    "mast_on_pontoon": 0.05,
     "moored_pontoon": 0.05,
     "coast/breakwater": 0.05,
     "coast/overtopping": 0.05,
