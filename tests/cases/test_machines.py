@@ -129,10 +129,10 @@ def test_a_stirred_vessel_has_the_power_number_of_creeping_flow(tmp_path):
 @pytest.mark.timeout(900)
 def test_a_gear_pump_delivers_what_creeping_flow_has_it_deliver(tmp_path):
     """Within 7 % by both mouths together, while its spaces still fill; less than without slip, 2π (R² − a²) a turn."""
-    early = (f"numbers.{name}.after=0.05" for name in ("drawn", "delivered"))
-    gauges = finished("machines/gear_pump", tmp_path, "time.end=0.16", *early).gauges()
-    begin = 0.16 - 2.0 * math.pi / 6.0 / SPEED
-    flows = [float(window(gauges[g], f"{g}.flow", begin, 0.16).mean()) for g in ("drawn", "delivered")]
+    early = (f"numbers.{name}.after=0.02" for name in ("drawn", "delivered"))
+    gauges = finished("machines/gear_pump", tmp_path, "time.end=0.13", *early).gauges()
+    begin = 0.13 - 2.0 * math.pi / 6.0 / SPEED
+    flows = [float(window(gauges[g], f"{g}.flow", begin, 0.13).mean()) for g in ("drawn", "delivered")]
     turn = np.array(flows) * 2.0 * math.pi / SPEED
     assert turn.mean() == pytest.approx(delivered(0.0015)[0], rel=0.07)
     assert turn.max() < 2.0 * math.pi * (TIP**2 - APART**2)
