@@ -256,6 +256,18 @@ def test_what_meets_a_limit_goes_back(restitution):
         assert above[-1] == pytest.approx(0.0, abs=1e-9) and dry.joints.ways[0] == pytest.approx(limits[0])
 
 
+def test_many_limits_at_once_are_kept_and_give_no_energy():
+    """Six links of 0.3 m that fall from level until all of their limits bear: what bars a limit that has let go
+    once in a step left them by 5 degrees, and won 340 J."""
+    limits = (-math.pi / 18.0, math.pi / 18.0)
+    bodies = [rod((0.3 * k, 0, 0), (0.3 * k + 0.3, 0, 0), 20.0) for k in range(6)]
+    joints = [hinge(k, k - 1 if k else None, (0.3 * k, 0.0, 0.0), limits=limits) for k in range(6)]
+    dry = Dry(bodies, joints)
+    energy = np.concatenate([[dry.energy], dry.go(200, 4e-3)])
+    assert np.diff(energy).max() < 1e-4 * (energy[0] - energy[-1])
+    assert dry.joints.ways == pytest.approx([limits[0]] * 6, abs=1e-9)
+
+
 def test_a_state_goes_on():
     """Saved and taken up again, with an angle of more than a turn: the same bits."""
 

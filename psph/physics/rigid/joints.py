@@ -34,6 +34,9 @@ ROUNDS = 40
 FITS = 1e-13
 """Of the longest arm of a joint, or of 1 rad: what is left of a gap."""
 
+STILL = 1e-12
+"""Of the largest rate at which gaps open: what a limit takes for none."""
+
 ROUNDED = 8.0
 """Units in the last place of the farthest point that are left of a gap at least."""
 
@@ -92,13 +95,12 @@ class Joints:
         those too of contacts where they ``meet`` others."""
         self._stops, self._bounce = self.latched.copy(), np.zeros(len(self.joints))
         before, start, motion = self._now, bodies.pose(), bodies.motion()
-        let_go = np.zeros(len(self._of), bool)
-        for _ in range(ROUNDS):
+        for number in range(ROUNDS):
             bodies.put(start)
             bodies.set_off(motion)
             self.push, self.twist = np.zeros_like(self.push), np.zeros_like(self.twist)
             given, gaps = self._fitted(bodies, then, dt, go, meet)
-            if not dt > 0.0 or not self._switch(bodies, gaps, given, let_go, dt):
+            if not dt > 0.0 or not self._switch(bodies, gaps, given, dt, number > 0):
                 break
         self.latched = np.where(self._latches, self._stops, 0.0)
         self._see(bodies, then)
@@ -233,18 +235,16 @@ class Joints:
         """Which rows hold."""
         return ~self._free | (self._stops[self._of] != 0.0)
 
-    def _switch(
-        self, bodies: Bodies, gaps: np.ndarray, given: np.ndarray, let_go: np.ndarray, dt: float
-    ) -> bool:
-        """Whether a limit has been reached, or pulls and lets go."""
+    def _switch(self, bodies: Bodies, gaps: np.ndarray, given: np.ndarray, dt: float, alone: bool) -> bool:
+        """Whether a limit has been reached, or pulls and lets go; of several the first ``alone``, so that it
+        ends (Murty 1974, Linear Algebra Appl. 9, 65)."""
         side = self._stops[self._of]
         pulls = self._free & (side * given > 0.0) & (self.latched[self._of] == 0.0)
-        reached = self._free & (side == 0.0) & (gaps != 0.0) & ~let_go
-        let_go |= pulls
-        changed = pulls | reached
+        reached = self._free & (side == 0.0) & (np.abs(gaps) > self._fitting(bodies))
+        changed = np.flatnonzero(pulls | reached)[: 1 if alone else None]
         self._stops[self._of[changed]] = np.where(reached, np.sign(gaps), 0.0)[changed]
         self._bounce[self._of[changed]] = np.where(reached, self._thrown(bodies, gaps, dt), 0.0)[changed]
-        return bool(changed.any())
+        return bool(len(changed))
 
     def _thrown(self, bodies: Bodies, beyond: np.ndarray, dt: float) -> np.ndarray:
         """The rates (m,) at which limits throw back what would be ``beyond`` them after the step of ``dt`` s.
@@ -270,10 +270,14 @@ class Joints:
             self._calm = self._binds(), self._solver(self._now, self._give, self._binds())
         binds, solve = self._calm
         lacks = self._back() - self._rates(self._now, velocity, spin)
-        share, side = solve(np.where(binds, lacks, 0.0)), self._stops[self._of]
-        pulls = self._free & (side * share > 0.0) & (self.latched[self._of] == 0.0)
-        if pulls.any():
-            binds = binds & ~pulls
+        share = solve(np.where(binds, lacks, 0.0))
+        side = np.where(self.latched == 0.0, self._stops, 0.0)[self._of] * self._free
+        for _ in range(ROUNDS if side.any() else 0):
+            more = side * (self._answers(self._now, self._give) @ share - lacks)
+            wrong = np.where(binds, side * share > 0.0, more > STILL * np.abs(lacks).max())
+            if not wrong.any():
+                break
+            binds = binds ^ (np.arange(len(binds)) == wrong.argmax())
             share = self._solver(self._now, self._give, binds)(np.where(binds, lacks, 0.0))
         return share, binds
 
