@@ -128,9 +128,7 @@ class Meetings:
         which = tips.obstacle.tips
         assert which
         points = self._carried(tips.obstacle.pose, which.points) - tips.shift
-        low, high = self._box(face.obstacle)
-        there, wide = points + face.shift, (ahead + which.radius)[:, None]
-        near = np.flatnonzero(((there + wide >= low) & (there - wide <= high)).all(axis=1))
+        near = np.flatnonzero(self._in_its_box(face, points, (ahead + which.radius)[:, None]))
         away, normal = self._faces(face, points[near])
         gap = away - which.radius[near]
         kept = gap < ahead
@@ -152,7 +150,8 @@ class Meetings:
         wall that stands on a floor keeps its foot.
         """
         step, touches, goes_on = NEARBY * self._spacing, *np.zeros((2, len(feet)), bool)
-        away = [self._faces(one, feet).away for one in others] if len(feet) else []
+        others = [one for one in others if self._in_its_box(one, feet, FAR * step).any()]
+        away = [self._faces(one, feet).away for one in others]
         others = [one for one, far in zip(others, away) if far.min() < FAR * step]
         if not others:
             return touches, goes_on
@@ -198,6 +197,12 @@ class Meetings:
             if period is not None:
                 home[:, d] = -period * np.rint((places[:, d] - self._middle[d]) / period)
         return home
+
+    def _in_its_box(self, seen: Seen, points: np.ndarray, wide) -> np.ndarray:
+        """Whether points are in the box around something, or less than ``wide`` m from it (n,)."""
+        low, high = self._box(seen.obstacle)
+        there = points + seen.shift
+        return ((there + wide >= low) & (there - wide <= high)).all(axis=1)
 
     def _box(self, obstacle: Obstacle) -> tuple[np.ndarray, np.ndarray]:
         """The corners of a box around an obstacle, as it stands now, m."""

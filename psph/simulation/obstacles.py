@@ -48,7 +48,8 @@ class Obstacle(NamedTuple):
 
     ``key`` is its key in the case; ``tips`` are what it meets the faces of bodies with, None of a mirror;
     ``body`` is the row of a body, −1 of others; ``pose`` that of the map that places it, −1 where it stays;
-    ``cuts`` are the rows of bodies that it cuts in two, or is joined to, and does not meet.
+    ``cuts`` are the rows of bodies that it cuts in two, or is joined to, and does not meet; ``corners``
+    (n, dim), m, those of a box around it at the start, None where it has no end.
     """
 
     key: str
@@ -57,11 +58,7 @@ class Obstacle(NamedTuple):
     body: int = -1
     pose: int = -1
     cuts: tuple[int, ...] = ()
-
-    @property
-    def corners(self) -> np.ndarray | None:
-        """Those of a box around it at the start, m; None where it has no end."""
-        return None if isinstance(self.shape, MirrorFace) else np.array([*product(*zip(*self.shape.bounds))])
+    corners: np.ndarray | None = None
 
     def faces(self, points: np.ndarray) -> Faces:
         """How far ``points`` (n, dim) are before its faces at the start, m, and the way out."""
@@ -96,13 +93,13 @@ def obstacles_of(scene, plan, rows) -> Iterator[Obstacle]:
         pose = int(plan.materials.pose_of[part]) if is_rigid(motion) else -1
         own = scene.layout.parts[part].name
         cuts = tuple(row for row, name in names.items() if {own, name} in joined)
+        corners = np.array([*product(*zip(*shape.bounds))])
         if isinstance(motion, RigidBody):
             ends[row := rows.index(pose)] = shape.bounds
-            yield Obstacle(
-                key, shape, tips_of(shape, scene.spacing, [*under_faces(scene, part)]), row, pose, cuts
-            )
+            tips = tips_of(shape, scene.spacing, [*under_faces(scene, part)])
+            yield Obstacle(key, shape, tips, row, pose, cuts, corners)
         elif isinstance(motion, Fixed) or is_rigid(motion):
-            yield Obstacle(key, shape, tips_of(shape, scene.spacing), -1, pose, cuts)
+            yield Obstacle(key, shape, tips_of(shape, scene.spacing), -1, pose, cuts, corners)
     for one in scene.layout.mirror_planes:
         cut = [row for row, (low, up) in ends.items() if low[one.axis] < one.at < up[one.axis]]
         plane = MirrorFace(one.axis, one.at, 1 if one.side == BELOW else -1)

@@ -1,7 +1,9 @@
 """Polygons."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import groupby, product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,10 +38,14 @@ class Polygonal(Form):
 
     def faces(self, points: np.ndarray, room: Room | None = None) -> Faces:
         """As psph.scene.forms.form says."""
-        corners = bulged(np.array(self.points), room)
-        rows = max(1, AT_ONCE // len(corners))
-        parts = [_faces(points[k : k + rows], corners) for k in range(0, max(len(points), 1), rows)]
+        edges = self._edges if room is None else edges_between(bulged(np.array(self.points), room))
+        rows = max(1, AT_ONCE // len(edges.corners))
+        parts = [_faces(points[k : k + rows], edges) for k in range(0, max(len(points), 1), rows)]
         return Faces(*(np.concatenate(of) for of in zip(*parts)))
+
+    @cached_property
+    def _edges(self) -> "PolygonEdges":
+        return edges_between(np.array(self.points))
 
     def corners(self, apart: float) -> np.ndarray:
         """As psph.scene.forms.form says."""
@@ -76,25 +82,47 @@ def bulged(corners: np.ndarray, room: Room | None) -> np.ndarray:
     return corners
 
 
-def _faces(points: np.ndarray, corners: np.ndarray) -> Faces:
+class PolygonEdges(NamedTuple):
+    """The edges of a polygon, m: each leaves one of the ``corners`` (n, 2) as the vector ``edge`` of the
+    ``square`` (n,) length, with the ``normal`` out of it; those that are ``rising`` go on to ``upper``, with
+    ``slope`` dx/dy."""
+
+    corners: np.ndarray
+    edge: np.ndarray
+    square: np.ndarray
+    normal: np.ndarray
+    rising: np.ndarray
+    upper: np.ndarray
+    slope: np.ndarray
+
+
+def edges_between(corners: np.ndarray) -> PolygonEdges:
+    """The edges between ``corners`` (n, 2)."""
+    after = np.roll(corners, -1, axis=0)
+    edge = after - corners
+    area = (corners[:, 0] * after[:, 1] - after[:, 0] * corners[:, 1]).sum()
+    normal = np.column_stack([edge[:, 1], -edge[:, 0]]) * np.sign(area)
+    normal /= np.sqrt((normal**2).sum(axis=1))[:, None]
+    rising = corners[:, 1] != after[:, 1]
+    slope = edge[rising, 0] / edge[rising, 1]
+    return PolygonEdges(
+        corners, edge, (edge**2).sum(axis=1), normal, corners[rising], after[rising, 1], slope
+    )
+
+
+def _faces(points: np.ndarray, edges: PolygonEdges) -> Faces:
     """By the nearest edge: φ has its normal unless a corner is nearest."""
-    edge = np.roll(corners, -1, axis=0) - corners
-    area = (corners[:, 0] * np.roll(corners[:, 1], -1) - np.roll(corners[:, 0], -1) * corners[:, 1]).sum()
-    edge_normal = np.column_stack([edge[:, 1], -edge[:, 0]]) * np.sign(area)
-    edge_normal /= np.sqrt((edge_normal**2).sum(axis=1))[:, None]
-    arm = points[:, None] - corners
-    share = np.clip((arm * edge).sum(axis=2) / (edge**2).sum(axis=1), 0.0, 1.0)
-    left = arm - share[:, :, None] * edge
+    arm = points[:, None] - edges.corners
+    share = np.clip((arm * edges.edge).sum(axis=2) / edges.square, 0.0, 1.0)
+    left = arm - share[:, :, None] * edges.edge
     square, row = (left**2).sum(axis=2), np.arange(len(points))
     nearest = square.argmin(axis=1)
-    found, normal = left[row, nearest], edge_normal[nearest]
+    found, normal = left[row, nearest], edges.normal[nearest]
     on_edge = (share[row, nearest] > 0.0) & (share[row, nearest] < 1.0)
     # Of two edges that meet at the nearest corner, the point may lie before one and behind the other.
-    odd = np.zeros(len(points), bool)
-    for (x_1, y_1), (x_2, y_2) in zip(corners, np.roll(corners, -1, axis=0)):
-        if y_1 != y_2:
-            crossing = x_1 + (points[:, 1] - y_1) * ((x_2 - x_1) / (y_2 - y_1))
-            odd ^= ((points[:, 1] < y_1) != (points[:, 1] < y_2)) & (points[:, 0] < crossing)
+    x, y = points[:, :1], points[:, 1:]
+    crossing = edges.rising[:, 0] + (y - edges.rising[:, 1]) * edges.slope
+    odd = np.logical_xor.reduce(((y < edges.rising[:, 1]) != (y < edges.upper)) & (x < crossing), axis=1)
     sign = np.where(odd, -1.0, 1.0)
     length, out = radial(found)
     to_corner = ~on_edge & (length > 0.0)
