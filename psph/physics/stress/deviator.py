@@ -14,7 +14,7 @@ from psph.physics.damping.diffusion import diffusion_step
 from psph.physics.facts import Facts
 from psph.physics.fluid.strain import FEWEST, linear_gradient, no_rate, rate_weight, take_rate
 from psph.physics.stress.faces import Sticking, across, counts, faces_of, steepness
-from psph.physics.stress.spreading import AnyOrder, order_of, spread
+from psph.physics.stress.spreading import AnyOrder, levelled, order_of, spread
 from psph.vectors import (
     add,
     less_diagonal,
@@ -88,7 +88,7 @@ class DeviatorRate(NamedTuple):
         diffusion = max(one.stress_diffusion for one in scene.species)
         if not diffusion:
             return DeviatorRate(self.least, faces_of(scene))
-        return DiffusedDeviatorRate(diffusion, order_of(scene), faces_of(scene))
+        return DiffusedDeviatorRate(diffusion, levelled(scene), order_of(scene), faces_of(scene))
 
     def start(self, i):
         """No neighbour yet."""
@@ -108,10 +108,12 @@ class DiffusedDeviatorRate(NamedTuple):
     """The deviatoric stress follows the flow, with the rate of Jaumann, and its noise spreads.
 
     As :class:`DeviatorRate`, and what :class:`psph.physics.stress.spreading.StressSlopes` says.  The pressure
-    spreads as that of fluids does.  ``largest`` δ of any soil.
+    spreads as that of fluids does.  ``largest`` δ of any soil, ``level`` by
+    :func:`psph.physics.stress.spreading.levelled`.
     """
 
     largest: float
+    level: tuple
     order: Any = AnyOrder()
     faces: Any = Sticking()
 
@@ -125,7 +127,7 @@ class DiffusedDeviatorRate(NamedTuple):
     def gather(self, total, i, j, pair):
         """Take a neighbour that holds, and what it spreads."""
         flow = take_neighbour(self.faces, total[0], j, pair)
-        return flow, add(total[1], spread(self.order, i, j, pair))
+        return flow, add(total[1], spread(self.order, self.level, i, j, pair))
 
     def finish_value(self, total, i, kernel):
         """ds/dt, Pa/s; 0 in what does not resist shear."""

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from psph.acts import SOILS
 from psph.engine.jit import call_by_type
 from psph.fields import SLOPES, Turned
@@ -10,7 +12,18 @@ from psph.formula import helper, where
 from psph.physics.facts import Facts
 from psph.physics.fluid.correction import ROUGH, half_disorder
 from psph.physics.fluid.strain import FEWEST
-from psph.vectors import add, adjugate, by_dimension, determinant, dyad, outer, scale, subtract, zero_like
+from psph.vectors import (
+    add,
+    adjugate,
+    by_dimension,
+    determinant,
+    dot,
+    dyad,
+    outer,
+    scale,
+    subtract,
+    zero_like,
+)
 
 STRESS_SLOPES = Declared(
     "stress_slopes", "Pa/m", "derivatives of the deviatoric stress along each axis", SLOPES, image=Turned
@@ -79,19 +92,33 @@ def order_of(scene: Facts):
     return AnyOrder() if scene.physics.gradient_correction is None else SeenOrder()
 
 
+def levelled(scene: Facts):
+    """(g in m/s², −(n nᵀ − ⅓ 1) with n along g): the deviator of level ground at rest by (1 − K₀) ρg·x."""
+    g = np.array(scene.gravity)
+    size = np.sqrt(g @ g) or 1.0
+    shape = np.eye(len(g)) / 3.0 - np.outer(g, g) / size**2
+    return tuple(g.tolist()), tuple(shape[np.triu_indices(len(g))].tolist())
+
+
 @helper
-def spread(order, i, j, pair):
-    """2δhc V_j W′/r [s_i − s_j − ½(∇s_i + ∇s_j)·x_ij], Pa/s, between particles of one soil."""
+def spread(order, level, i, j, pair):
+    """2δhc V_j W′/r [s_i − s_j − k ½(∇s_i + ∇s_j)·x_ij − (1 − k)(s⁰(x_i) − s⁰(x_j))], Pa/s, between those of
+    one soil: k of what is smooth stays, and of the rest s⁰, what weight asks of level ground."""
     mixing = (i.stress_diffusion + j.stress_diffusion) * i.smoothing_length * i.sound_speed
-    smooth = scale(slopes_along(add(i.stress_slopes, j.stress_slopes), pair.x_ij), 0.5 * kept(order, i, j))
+    share = kept(order, i, j)
+    smooth = scale(slopes_along(add(i.stress_slopes, j.stress_slopes), pair.x_ij), 0.5 * share)
+    loosely = 1.0 - 0.5 * (i.rest_coefficient + j.rest_coefficient)
+    depth = 0.5 * (i.rest_density + j.rest_density) * loosely * dot(pair.x_ij, level[0])
     rough = subtract(subtract(i.deviator, j.deviator), smooth)
+    rough = subtract(rough, scale(level[1], (1.0 - share) * depth))
     return scale(rough, of_one_soil(i, j) * mixing * j.specific_volume * pair.m_dw_r)
 
 
 class StressSlopes(NamedTuple):
     """Between neighbours the noise of a soil's stress spreads, and what is smooth stays.
 
-    ds_i/dt += 2δhc Σ_j V_j [s_i − s_j − ½(∇s_i + ∇s_j)·x_ij] W′/r between particles of one soil, with
+    ds_i/dt += 2δhc Σ_j V_j [s_i − s_j − ½(∇s_i + ∇s_j)·x_ij] W′/r between particles of one soil, in disorder
+    and at surfaces with the slopes of level ground at rest under its weight; with
     ∇s_i = −Σ_j V_j (s_i − s_j) ∇W_ijᵀ M⁻¹, M = −Σ_j V_j x_ij ∇W_ijᵀ over these, of some steps before: 0
     where s is linear, up to a surface.  Antuono, Colagrossi, Marrone & Molteni (2010), Comput. Phys. Commun.
     181, 532, do so with the density.  Without the slopes (Feng, Fourtakas, Rogers & Lombardi 2021, Adv. Water
