@@ -1,5 +1,7 @@
 """What spreads between neighbours where soils differ from each other, or from a fluid."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from physics.pairs import pair_of, sums_of, view
@@ -7,9 +9,10 @@ from physics.pairs import pair_of, sums_of, view
 from psph.physics.damping.diffusion import BesideSmoothDensity, TankDiffusion
 from psph.physics.damping.matter import OneMatter, SeveralMatters
 from psph.physics.fluid.weight import Steady
-from psph.physics.stress.spreading import AnyOrder, SeenOrder, StressSlopes, spread
+from psph.physics.stress.spreading import AnyOrder, SeenOrder, StressSlopes, levelled, spread
 
 PULL = (0.4, -9.8)
+LEVEL = levelled(SimpleNamespace(gravity=PULL))
 SPREADING = (TankDiffusion, BesideSmoothDensity)
 
 
@@ -47,9 +50,9 @@ def test_a_still_column_keeps_the_slope_of_its_own_matter(effect):
 
 def test_stress_spreads_within_a_soil_alone_and_what_one_gains_the_other_loses():
     apart, within = beside(strength=(1.0, 2.0)), beside(strength=(2.0, 2.0))
-    assert spread(SeenOrder(), *pair_of(apart, 0, 1)) == (0.0, 0.0, 0.0)
-    assert spread(SeenOrder(), *pair_of(beside(strength=(0.0, 0.0)), 0, 1)) == (0.0, 0.0, 0.0)
-    gained = [np.array(spread(SeenOrder(), *pair_of(within, *ends))) for ends in ((0, 1), (1, 0))]
+    assert spread(SeenOrder(), LEVEL, *pair_of(apart, 0, 1)) == (0.0, 0.0, 0.0)
+    assert spread(SeenOrder(), LEVEL, *pair_of(beside(strength=(0.0, 0.0)), 0, 1)) == (0.0, 0.0, 0.0)
+    gained = [np.array(spread(SeenOrder(), LEVEL, *pair_of(within, *ends))) for ends in ((0, 1), (1, 0))]
     volume = within.mass * within.specific_volume
     assert gained[0] * volume[0] == pytest.approx(-gained[1] * volume[1], rel=1e-12)
     assert (gained[0] != 0.0).all()
@@ -60,6 +63,7 @@ def test_a_stress_that_is_linear_stays_whatever_else_is_near(dim):
     """In disorder, with neighbours on one side alone, another soil among them."""
     upper = dim * (dim + 1) // 2
     slopes = np.random.default_rng(2).normal(size=(dim, upper)) * 1e4
+    level = levelled(SimpleNamespace(gravity=(0.4, -9.8, 0.3)[:dim]))
     p = view(n=40, dim=dim)._replace(strength=np.resize((1.0, 1.0, 2.0), 40))
     x = np.array(p.position)
     other = 1e5 * (p.strength > 1.0)
@@ -68,5 +72,17 @@ def test_a_stress_that_is_linear_stays_whatever_else_is_near(dim):
     assert found[0] == pytest.approx(slopes.ravel(), rel=1e-9)
     known = p._replace(stress_slopes=tuple(np.resize(at, 40) for at in found[0]))
     plain = p._replace(stress_slopes=tuple(np.zeros(40) for _ in found[0]))
-    left, whole = (np.abs(spread(AnyOrder(), *pair_of(q, 0, 1))).max() for q in (known, plain))
+    left, whole = (np.abs(spread(AnyOrder(), level, *pair_of(q, 0, 1))).max() for q in (known, plain))
     assert left < 1e-9 * whole
+
+
+def test_where_nothing_smooth_stays_the_stress_of_level_ground_does():
+    """In disorder, s = (1 − K₀) ρg·x of the weight; control: with the slopes of that instead, which disorder forgets."""
+    disorder = tuple(np.full(2, x) for x in (1.6, 0.0, 0.0, 1.6))
+    p = beside(strength=(2.0, 2.0), rest_coefficient=(0.4, 0.4), rest_density=(1600.0, 1600.0))
+    p = p._replace(gradient_correction=disorder, stress_slopes=tuple(np.zeros(2) for _ in p.stress_slopes))
+    depth = 0.6 * 1600.0 * np.array(LEVEL[0]) @ np.array(p.position)
+    ground = p._replace(deviator=tuple(shape * depth for shape in LEVEL[1]))
+    left = np.abs(spread(SeenOrder(), LEVEL, *pair_of(ground, 0, 1))).max()
+    forgotten = np.abs(spread(AnyOrder(), LEVEL, *pair_of(ground, 0, 1))).max()
+    assert left < 1e-9 * forgotten
