@@ -19,6 +19,7 @@ WANTED = {
     "finite_number": "a finite number",
     "int_type": "a whole number",
     "string_type": "a text in quotes",
+    "bool_type": "true or false",
     "tuple_type": "a list",
     "model_type": "a table",
     "dict_type": "a table",

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from psph.case import schema
-from psph.case.gauges import ANOTHER_KIND
 from psph.case.parameters import NOT_THIS
 from psph.case.physics import OFF
 from psph.case.placing import Placing
@@ -87,9 +86,9 @@ def _shapes(whole: Node) -> Iterator[str]:
     rows = [f"| `{name}` | {_type(whole, node)} | {node['description']} |" for name, node in forms.items()]
     meaning = "A shape is a table with exactly one of these keys, and those that place it."
     yield from _section("Shapes", meaning, rows, head=("key", "value", "meaning"))
-    keys = {"properties": {name: every[name] for name in placing}}
+    rows = [_row(whole, f"shape.{name}", name, every[name], False) for name in placing]
     meaning = _sentence(f"{WHERE} ([geometry.md](geometry.md))")
-    yield from _section("Where a shape is", meaning, _rows(whole, "shape", keys), level=3)
+    yield from _section("Where a shape is", meaning, rows, level=3)
     for name, node in ({name: every[name] for name in placing} | forms).items():
         for branch in alternatives(whole, node):
             table = next(alternatives(whole, branch.get("items", branch)))
@@ -102,6 +101,9 @@ MOTIONS = (
     "A motion is a part, or a list of parts: a table with one way to move, and when it acts "
     "([motion.md](motion.md))"
 )
+ELSEWHERE = ("Shape", "Motion", "Rheology")
+"""Tables with a section of their own."""
+
 RHEOLOGIES = "A rheology is a table with exactly one law ([mud.md](mud.md))"
 
 
@@ -118,11 +120,13 @@ def _ways(whole: Node, title: str, kind: str, meaning: str) -> Iterator[str]:
 
 def _inner(whole: Node, name: str, node: Node, required: bool = False) -> Iterator[tuple[str, Node, bool]]:
     """The keys of a table, and of the tables in it: with their names, whether they are required."""
-    table = next((b for b in alternatives(whole, node) if "properties" in b), None)
-    if table is None or table.get("title") == "Shape":
+    ways = list(alternatives(whole, node))
+    inner = (t for way in ways for t in alternatives(whole, way.get("items", way)))
+    table = next((t for t in inner if "properties" in t), None)
+    if table is None or table.get("title") in ELSEWHERE:
         yield name, node, required
         return
-    if "otherwise" in node:  # it may be left out, and says what follows
+    if "otherwise" in node or node.get("default") is not None or len(ways) > 1:  # it has more to say itself
         yield name, node, required
     for key, below in table["properties"].items():
         yield from _inner(whole, f"{name}.{key}", below, key in table.get("required", ()))
@@ -150,11 +154,11 @@ def _rows(whole: Node, heading: str, table: Node) -> list[str]:
 
 
 def _unfolded(whole: Node, name: str, node: Node, required: bool) -> Iterator[tuple[str, Node, bool]]:
-    """A key, or, of one of several kinds of a thing, also the keys of its table."""
-    if node.get("otherwise") == ANOTHER_KIND:
-        yield from _inner(whole, name, node, required)
-    else:
+    """A key, and the keys of its table where nothing else lists them."""
+    if node.get("otherwise", "").startswith((OFF, NOT_THIS)):  # _choices has these
         yield name, node, required
+    else:
+        yield from _inner(whole, name, node, required)
 
 
 def _row(whole: Node, key: str, name: str, node: Node, required: bool) -> str:

@@ -52,7 +52,8 @@ def in_words(scene: Scene, body: RigidBody) -> str:
     freed = ", ".join(scene.case.bodies[body.name].freed(scene.dimensions)) or "nothing"
     where = ", ".join(f"{x:.4g}" for x in body.centre[: scene.dimensions])
     until = f"; held until {body.held:g} s" if body.held else ""
-    beside = f"{ratio:.3g} of the fluid's density, " if scene.case.flowing else ""
+    matter = "fluid" if scene.case.fluids else "soil"
+    beside = f"{ratio:.3g} of the {matter}'s density, " if scene.case.flowing else ""
     return f"{body.mass:.4g} kg, {beside}centre ({where}) m; free: {freed}{until}"
 
 

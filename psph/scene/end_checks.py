@@ -95,6 +95,19 @@ def end_warnings(scene) -> Iterator[str]:
                 f"ends.{name}.level: {low:.4g} m is below the bed behind its plane, at {bed:.4g} m, so that "
                 "all of the fluid runs out; give a height above it, against gravity"
             )
+        if (heights := _over_the_span(scene, name, end)) is not None:
+            level, top = heights
+            yield (
+                f"ends.{name}.level: {level:.4g} m is above what the end reaches, to {top:.4g} m, so that "
+                "water runs over it; let its span reach higher"
+            )
+        if (extent := _out_of_reach(scene, name, end)) is not None:
+            low, high = extent
+            yield (
+                f"ends.{name}.at: {end.at:.4g} m, and fluids and walls stand from {low:.4g} to {high:.4g} m "
+                f"along {AXES[end.axis]}, so that nothing may come to it; move the plane to the edge of the "
+                "fluid"
+            )
         if (found := _over_the_rim(scene, name, end)) is not None:
             level, axis, site = found
             yield (
@@ -147,6 +160,30 @@ def _below_the_bed(scene, name: str, end) -> tuple[float, float] | None:
         return None
     low, half = _levels(end)[0], 0.5 * scene.spacing
     return (low, rows.heights[0] - half) if low < rows.heights[0] - half else None
+
+
+def _over_the_span(scene, name: str, end) -> tuple[float, float] | None:
+    """The largest level that an end is given and the height up to which it reaches, m, where that is lower
+    and nothing lies upon it; else None."""
+    if (rows := _rows(scene, name, end)) is None:
+        return None
+    level, top = _levels(end)[1], float(rows.heights[-1]) + 0.5 * scene.spacing
+    upon = rows.sites[-1] + scene.spacing * rows.up
+    free = scene.layout.held([*upon.T], (len(upon),)) == NONE
+    return (level, top) if level > top + TOLERANCE * scene.spacing and free.any() else None
+
+
+def _out_of_reach(scene, name: str, end) -> tuple[float, float] | None:
+    """From where to where fluids and walls stand along the axis of an empty end, whose plane is beyond all of
+    them; else None."""
+    own, census = groups_of(scene.layout, name), scene.census
+    if census.sizes[list(own)].any():
+        return None
+    ends = {number for one in scene.case.ends for number in groups_of(scene.layout, one)}
+    others = [n for n, size in enumerate(census.sizes) if size and n not in ends]
+    low = float(np.min(census.lowest[others, end.axis])) - 0.5 * scene.spacing
+    high = float(np.max(census.highest[others, end.axis])) + 0.5 * scene.spacing
+    return None if low <= end.at <= high else (low, high)
 
 
 def _over_the_rim(scene, name: str, end) -> tuple[float, str, tuple[float, ...]] | None:

@@ -13,6 +13,7 @@ from psph.physics.rigid.joints import Joint, Joints
 from psph.physics.rigid.pose import in_space
 from psph.scene.body_parts import bodies_of
 from psph.scene.scene import Scene
+from psph.scene.shapes import shown
 
 AXES: Any = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 UP = AXES[2]
@@ -38,10 +39,17 @@ def joints_of(scene: Scene, order: Sequence[str]) -> tuple[Joint, ...]:
 
 
 def joint_words(scene: Scene) -> Iterator[str]:
-    """What each joint is."""
+    """What each joint is, with the numbers that are given."""
     for name, table in scene.case.joints.items():
         beside = f"{table.of[0]} and {table.of[1]}" if len(table.of) == 2 else f"{table.of[0]} and a place"
-        yield f"{name}: {table.kind} of {beside}"
+        yield ", ".join((f"{name}: {table.kind} of {beside}", *_given(getattr(table, table.kind))))
+
+
+def _given(told: Any) -> Iterator[str]:
+    """The keys of a kind of joint that differ from their defaults, with their values."""
+    for name, field in type(told).model_fields.items():
+        if (value := getattr(told, name)) != field.default:
+            yield f"{name} {shown(value) if isinstance(value, tuple) else str(value).lower()}"
 
 
 def apart(scene: Scene) -> frozenset[frozenset[str]]:

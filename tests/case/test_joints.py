@@ -4,6 +4,9 @@ import pytest
 from drafts import draft, refusal
 from gauging import readings, started
 
+from psph.scene import Scene
+from psph.scene.joints import joint_words
+
 ARM = """
 space = { dimensions = 2, spacing = 0.05 }
 time.end = 1.0
@@ -94,6 +97,16 @@ def test_a_joint_that_cannot_be_is_refused(was, now, where, says, tmp_path):
     assert was in ARM
     lines = refusal(tmp_path, ARM.replace(was, now))
     assert any(where in line and says in line for line in lines), lines
+
+
+def test_a_joint_is_told_with_its_numbers(tmp_path):
+    text = ARM.replace(
+        "at = [0.5, 0.4]", "at = [0.5, 0.4], limits = [-9.0, 9.0], latch = true, damping = 2.0"
+    )
+    [line, *_] = joint_words(Scene(draft(tmp_path, text)))
+    assert line.endswith(", at [0.5, 0.4], limits [-9, 9], latch true, damping 2.0")
+    [line, *_] = joint_words(Scene(draft(tmp_path, ARM)))
+    assert line.endswith(", at [0.5, 0.4]")
 
 
 def test_a_joint_with_a_mirror_stays_where_it_is(tmp_path):

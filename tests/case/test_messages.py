@@ -115,6 +115,10 @@ FAULTS = {
         replaced("dimensions = 2", "dimensions = true"),
         "space.dimensions: true is not a whole number; give a whole number",
     ),
+    "a number for a choice": (
+        WATER + "[walls.floor]\nno_slip = 3\nshape.box = { lower = [0.0, 0.0], upper = [1.0, 1.0] }\n",
+        "walls.floor.no_slip: 3 is not true or false; give true or false (the fluid has the wall's velocity at",
+    ),
     "four dimensions": (
         replaced("dimensions = 2", "dimensions = 4"),
         "space.dimensions: 4 is out of range; it must be at least 1 and at most 3",

@@ -17,6 +17,20 @@ def test_every_table_and_form_has_a_section():
     assert [heading for heading in headings if f"# `{heading}`\n" not in text] == []
 
 
+def test_keys_of_tables_within_tables_are_listed():
+    text = reference()
+    keys = (
+        "hinge.latch",
+        "chain.bed.friction",
+        "level.file",
+        "hyperelastic.ogden.bulk",
+        "relaxation.time",
+        "level",
+    )
+    assert [key for key in keys if f"| `{key}` |" not in text] == []
+    assert text.count("| `degrees` |") == 1 and "motion.piston" not in text  # they have sections of their own
+
+
 def test_a_row_holds_type_default_and_unit():
     assert "| `end` | number > 0 | **required** | s | simulated time" in reference()
     assert "| `frames` | number > 0 | time.end / 50 | s | time between frames |" in reference()

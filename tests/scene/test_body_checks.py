@@ -4,6 +4,7 @@ import pytest
 from drafts import TANK, draft
 
 from psph.scene import Scene, check
+from psph.scene.bodies import bodies_of, in_words
 
 AFLOAT = (
     TANK
@@ -77,3 +78,27 @@ shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.4] }
     lines = check(Scene(draft(tmp_path, text, f"bodies.brick={{shape={{{shape}}},density=500.0}}")))
     found = [line for line in lines if "bodies.brick" in line and ("wide along x" in line or "fill" in line)]
     assert len(found) == (says is not None) and all(says in line for line in found), lines
+
+
+BED = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+[soils.sand]
+density = 2000.0
+young = 1e6
+poisson = 0.3
+friction_angle = 30.0
+shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.4] }
+[bodies.block]
+density = 500.0
+shape.box = { lower = [0.3, 0.4], upper = [0.7, 0.8] }
+"""
+
+
+@pytest.mark.parametrize(
+    "text, says", [(AFLOAT, "0.5 of the fluid's density"), (BED, "0.25 of the soil's density")]
+)
+def test_the_density_of_a_body_is_told_over_that_of_what_it_meets(tmp_path, text, says):
+    scene = Scene(draft(tmp_path, text))
+    assert says in in_words(scene, next(iter(bodies_of(scene.census))))

@@ -155,6 +155,11 @@ def test_a_profile_needs_a_mean(tmp_path, values, fine):
             "ends.downstream.span: begins at a height of 1 m, and",
         ),
         (CHANNEL, "ends.downstream.level=-0.1", "ends.downstream.level: -0.1 m is below the bed"),
+        (
+            CHANNEL,
+            'ends.downstream={at=9.0,inward="-x",pressure=0.0}',
+            "ends.downstream.at: 9 m, and fluids and",
+        ),
     ],
 )
 def test_what_is_likely_not_meant_is_said(tmp_path, text, key, says):
@@ -272,6 +277,15 @@ def test_a_level_above_the_walls_beside_it_is_warned_of(tmp_path):
     )
     higher = FLUME.replace("0.8]", "1.1]")
     assert not [*end_warnings(Scene(draft(tmp_path, higher, "ends.sea.level=0.95")))]
+
+
+def test_a_level_above_the_span_is_warned_of_where_nothing_lies_upon_it(tmp_path):
+    span = "ends.sea.span={y=[0.0, 0.5], z=[0.0, 0.6]}"
+    assert not [*end_warnings(Scene(draft(tmp_path, FLUME, span, "ends.sea.level=0.6")))]
+    [line] = end_warnings(Scene(draft(tmp_path, FLUME, span, "ends.sea.level=0.75")))
+    assert line.startswith("ends.sea.level: 0.75 m is above what the end reaches, to 0.6 m")
+    lid = "walls.lid={shape={box={lower=[-0.5, 0.0, 0.6], upper=[1.5, 0.5, 0.8]}}}"
+    assert not [*end_warnings(Scene(draft(tmp_path, FLUME, span, lid, "ends.sea.level=0.75")))]
 
 
 def test_a_body_that_starts_in_a_buffer_is_warned_of(tmp_path):

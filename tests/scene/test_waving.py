@@ -197,3 +197,22 @@ def test_the_depth_is_that_before_the_paddle(tmp_path):
     assert warned(0.2) == []
     [line] = warned(0.3)
     assert "depth = 0.3 m, and the fluid is 0.2 m deep before the paddle" in line
+
+
+@pytest.mark.parametrize("begin, said", [(0.5, 0), (1.0, 0), (9.0, 1), (-2.0, 1)])
+def test_a_zone_that_begins_off_the_fluid_is_warned_of(tmp_path, begin, said):
+    text = """
+space = { dimensions = 2, spacing = 0.1 }
+time.end = 1.0
+physics.gravity = [0.0, -9.81]
+fluids.water.shape.box = { lower = [0.0, 0.0], upper = [1.0, 0.5] }
+walls.bed.shape.box = { lower = [0.0, -0.3], upper = [1.0, 0.0] }
+physics.damping_zone = { begin = 0.0, end = 1.0 }
+"""
+    if begin == 1.0:
+        text = text.replace("end = 1.0 }", "end = 0.0 }")
+    warned = check(Scene(draft(tmp_path, text, f"physics.damping_zone.begin={begin}")))
+    lines = [line for line in warned if "damping_zone" in line]
+    assert len(lines) == said
+    says = f"physics.damping_zone.begin: {begin:g} m, and fluid stands from 0 to 1 m along x"
+    assert all(says in line for line in lines)

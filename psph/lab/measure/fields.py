@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from psph.case.keys import AXES
 from psph.case.loader import load_to_read
 from psph.lab.errors import MeasureError
 from psph.lab.measure.grids import GridPoints, Weighing, at_points, clouds
@@ -17,6 +18,7 @@ from psph.output.flowing import ALL, counted
 from psph.output.progress import with_progress
 from psph.output.reader import Run
 from psph.scene import Scene
+from psph.scene.shapes import shown
 from psph.simulation.materials import Materials
 from psph.simulation.plan import make_plan
 
@@ -82,6 +84,7 @@ class Gridding:
             ends[place] = ends[place] if given is None else tuple(given)
         if plane is not None and plane[0] >= self.dimensions:
             raise MeasureError(f"measure --plane: no such axis in {self.dimensions}D")
+        self._plane = "" if plane is None else f"-{AXES[plane[0]]}{plane[1]:g}"
         self.points = GridPoints.over(*ends, dx if step is None else step, plane)
 
     def _groups(self, of: str | None) -> tuple[int, ...]:
@@ -112,12 +115,14 @@ class Gridding:
         )
 
     def written(self, folder: Path, times: Sequence[float] | None = None) -> Path:
-        """Write a ``.vti`` and an ``.npz`` for each frame into ``folder``; the path of the ``.pvd`` that
-        lists the former."""
+        """Write a ``.vti`` and an ``.npz`` for each frame into ``folder``, with the place of a plane in their
+        names; the path of the ``.pvd`` that lists the former.  Raises MeasureError where no point is near
+        fluid in any of the frames."""
         folder.mkdir(parents=True, exist_ok=True)
         units = {name: self.run.unit(name) for name in self.fields} | {SHARE: "1"}
-        stem, files = self.run.path.stem, []
+        stem, files, met = f"{self.run.path.stem}{self._plane}", [], False
         for one in self.frames(times):
+            met |= bool(one.fields[SHARE].any())
             path = folder / f"{stem}_{one.number:05d}.vti"
             fields = {name: self._in_space(values) for name, values in one.fields.items()}
             replace(path, image(self.points.origin, self.points.step, fields, units, one.time))
@@ -125,6 +130,14 @@ class Gridding:
             stored = io.BytesIO()
             np.savez_compressed(stored, time=one.time, **dict(zip("xyz", one.axes)), **one.fields)
             replace(path.with_suffix(".npz"), stored.getvalue())
+        if not met:
+            for name in (folder / name for _, name in files):
+                name.unlink()
+                name.with_suffix(".npz").unlink()
+            corners = " to ".join(shown(one) for one in (self.scene.layout.lower, self.scene.layout.upper))
+            raise MeasureError(
+                f"{self.run.path}: no point is in the fluid; the domain at the start is {corners} m"
+            )
         index = folder / f"{stem}.pvd"
         replace(index, collection(files))
         return index

@@ -9,6 +9,7 @@ from psph.scene.fluid.density_ratios import several_fluids
 from psph.scene.fluid.rheologies import rheology_warnings
 from psph.scene.fluid.slips import slips
 from psph.scene.fluid.start_checks import driven_flow, effect_warnings, start_warnings
+from psph.scene.fluid.zones import zones_off_the_fluid
 from psph.scene.gauging import gauge_warnings, inside_walls
 from psph.scene.lattice import TOLERANCE
 from psph.scene.pressureless_walls import unbearing_warnings
@@ -95,6 +96,7 @@ def _tables(scene: Scene) -> list:
 
 ALL = (
     wave_warnings,
+    zones_off_the_fluid,
     _thin_walls,
     _surface_threshold,
     effect_warnings,

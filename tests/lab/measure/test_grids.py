@@ -85,18 +85,22 @@ def test_files_for_numpy_and_for_viewers(tmp_path, capsys):
     run(case, folder, alone(), say=lambda *_: None)
     asked = ["measure", str(folder), "--plane", "y=0.5", "--step", "0.05", "--fields", "pressure", "velocity"]
     assert main([*asked, "--from", "0", "0", "0", "--to", "1.5", "1.0", "0.5"]) == 0
-    index = folder / "grid" / "case.pvd"
+    index = folder / "grid" / "case-y0.5.pvd"
     assert capsys.readouterr().out.splitlines() == [str(index)]
     reader = pyvista.get_reader(index)
     assert len(reader.time_values) == len(Run(folder).times)
     block = reader.read()[0]
     assert block.dimensions == (31, 1, 11)
-    stored = np.load(folder / "grid" / "case_00000.npz")
+    stored = np.load(folder / "grid" / "case-y0.5_00000.npz")
     assert stored["pressure"].shape == (31, 1, 11) and stored["velocity"].shape == (31, 1, 11, 3)
     there = np.array(block["pressure"]).reshape(11, 1, 31).transpose(2, 1, 0)
     assert np.array_equal(there, stored["pressure"], equal_nan=True)
     assert stored["pressure"][15, 0, 4] == pytest.approx(1000.0 * 9.8 * 0.3, rel=0.02)
     assert stored["z"][4] == pytest.approx(0.2) and list(stored["y"]) == [0.5]
+    there = {*(folder / "grid").iterdir()}
+    with pytest.raises(Refused, match="no point is in the fluid; the domain at the start is"):
+        Gridding(folder, plane=(1, 5.0)).written(folder / "grid")
+    assert {*(folder / "grid").iterdir()} == there
 
 
 BASIN = """
