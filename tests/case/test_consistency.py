@@ -221,6 +221,7 @@ LISTS = {
     "limits in 3D": """
 space = { dimensions = 3, spacing = 0.25 }
 time.end = 1.0
+physics.contact = {}
 [solids.drop]
 shape.box = { lower = [0.0, 0.0, 0.0], upper = [1.0, 1.0, 1.0] }
 density = 1e3
